@@ -1,0 +1,68 @@
+"""Everything recon4 raises on purpose.
+
+    Recon4Error
+    ├── ConfigError            a setting or a rig file is wrong (also a ValueError)
+    ├── RecordingError         a recording cannot be read
+    │   ├── UnknownFormat      no reader recognizes the file
+    │   ├── EmptyRecording     the file is readable but holds no points
+    │   └── CorruptFile        bytes do not match the format
+    ├── OutOfRange             a time was asked for that the trajectory does not cover
+    ├── GraphError             a pose graph cannot be solved (not finite, not connected, …)
+    ├── GeoreferenceError      no usable CRS, transformation or position
+    ├── StoreError             a project folder is damaged, locked or cannot be written
+    │   └── NoSpace            the disk is full
+    └── Cancelled              the caller asked to stop (not a failure)
+
+A measurement that turns out bad is not an error: it is a value
+(``Registration.converged``, ``Edge.verdict``, ``OdometryStep.lost``).
+"""
+
+from __future__ import annotations
+
+
+class Recon4Error(Exception):
+    """Base of the tree above; the message is fit to be shown to an operator."""
+
+
+class ConfigError(Recon4Error, ValueError):
+    """A setting or a rig file is wrong."""
+
+
+class RecordingError(Recon4Error):
+    """A recording cannot be read."""
+
+
+class UnknownFormat(RecordingError):
+    """No reader recognizes the file."""
+
+
+class EmptyRecording(RecordingError):
+    """The file is readable but holds no points."""
+
+
+class CorruptFile(RecordingError):
+    """Bytes do not match the format."""
+
+
+class OutOfRange(Recon4Error):
+    """A time was asked for that the trajectory does not cover."""
+
+
+class GraphError(Recon4Error):
+    """A pose graph cannot be solved."""
+
+
+class GeoreferenceError(Recon4Error):
+    """No usable CRS, transformation or position."""
+
+
+class StoreError(Recon4Error):
+    """A project folder is damaged, locked or cannot be written."""
+
+
+class NoSpace(StoreError):
+    """The disk is full."""
+
+
+class Cancelled(Recon4Error):
+    """The caller asked to stop."""

@@ -1,0 +1,115 @@
+"""Poses, and every relation between two of them that was ever tried."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from typing import Any
+
+import numpy as np
+
+from recon4.geometry.se3 import SE3, Array
+from recon4.model.trajectory import Times
+
+
+class EdgeKind(StrEnum):
+    """Where an edge comes from."""
+
+    ODOMETRY = "odometry"
+    """Between consecutive nodes: protected, the graph must not fall apart."""
+    NEIGHBOR = "neighbor"
+    """Between nodes a few steps apart in time."""
+    LOOP = "loop"
+    """A place seen again."""
+    MANUAL = "manual"
+    """Made by an operator."""
+
+
+class Verdict(StrEnum):
+    """What became of an edge."""
+
+    ACCEPTED = "accepted"
+    REJECTED = "rejected"
+    UNVERIFIED = "unverified"
+    """Accepted by its own error, but no alternative path could confirm it: in the graph, shown grey."""
+
+
+class Reason(StrEnum):
+    """Why an edge was turned down; the value is shown to people."""
+
+    NONE = ""
+    OVERLAP = "overlap < t_o"
+    ERROR = "error > limit"
+    NOT_CONVERGED = "not converged"
+    DEGENERATE = "degenerate"
+    VERIFICATION = "verification median > limit"
+    ROBUST = "outlier in the robust solution"
+    OPERATOR = "operator"
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Edge:
+    """One pair of nodes that was tried."""
+
+    i: int
+    """Row of the first node."""
+    j: int
+    """Row of the second node; ``i < j``."""
+    T_i_j: SE3
+    """Maps points of the body at node ``j`` into the body frame at node ``i`` (A0 no. 3)."""
+    kind: EdgeKind
+    verdict: Verdict
+    reason: Reason = Reason.NONE
+    overlap: float = float("nan")
+    """Share of points of ``j`` inside the view volume of ``i``, 0..1 (V Eq. 2.6)."""
+    error_m: float = float("nan")
+    """Mean distance of matched lines after the last step [m]."""
+    limit_m: float = float("nan")
+    """Largest error accepted, ``median_range * t_r + t_a`` [m] (V Eq. 2.7)."""
+    information: Array = field(default_factory=lambda: np.eye(6))
+    """Inverse covariance of the tangent of ``T_i_j``, rotation first, (6, 6)."""
+    degeneracy: float = float("nan")
+    """Smallest eigenvalue of the registration's normalized translation information, 0..1/3."""
+    converged: bool = True
+    iterations: int = 0
+    verification_m: float = float("nan")
+    """Median translation difference to the alternative paths [m]; NaN = no path (V Eq. 2.12)."""
+    paths: int = 0
+    """How many alternative paths of at most three edges there were."""
+    chi2: float = float("nan")
+    """Squared Mahalanobis residual in the final graph."""
+    decided_by: str = "auto"
+    """``auto`` or the name of the person."""
+
+    def evolve(self, **changes: Any) -> Edge:
+        """The edge with some fields changed."""
+        return replace(self, **changes)
+
+    @property
+    def in_graph(self) -> bool:
+        """Whether the optimizer uses it."""
+        return self.verdict is not Verdict.REJECTED
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PoseGraph:
+    """Nodes with their poses, and all edges tried, whatever became of them."""
+
+    frame_ids: Times
+    """Multiframe of each node, (N,)."""
+    t_ns: Times
+    """Time of each node [ns], (N,)."""
+    T_map_body: SE3
+    """Pose of each node, a batch of N."""
+    edges: tuple[Edge, ...]
+
+    def __len__(self) -> int:
+        return len(self.frame_ids)
+
+    def with_edges(self, edges: tuple[Edge, ...]) -> PoseGraph:
+        """The same nodes with other edges."""
+        return replace(self, edges=edges)
+
+    def with_poses(self, T_map_body: SE3) -> PoseGraph:
+        """The same graph with other poses."""
+        return replace(self, T_map_body=T_map_body)

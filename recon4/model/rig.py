@@ -1,0 +1,197 @@
+"""What is mounted on the backpack, and where."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from recon4.errors import ConfigError
+from recon4.geometry.se3 import SE3, Array
+
+SENSOR_MODELS = ("VLP-16", "VLP-32C", "HDL-32E", "HDL-64E", "generic")
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Sensor:
+    """One LiDAR."""
+
+    name: str
+    """Unique within the rig, for example ``horizontal``."""
+    model: str
+    """One of `SENSOR_MODELS`; it pins the packet decoder."""
+    T_body_sensor: SE3
+    """Mounting: maps points of the sensor into the body."""
+    time_offset_s: float = 0.0
+    """Added to the sensor's time stamps to get rig time [s]."""
+    address: str = ""
+    """IP address its packets come from; empty = any."""
+    port: int = 2368
+    """UDP port its data packets go to."""
+    topic: str = ""
+    """Topic in a bag; empty = guessed."""
+    enabled: bool = True
+    """Off = its points are read and stored but not registered nor mapped (V §3.4)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Rig:
+    """All sensors with their places on the body (x forward, y left, z up)."""
+
+    name: str
+    sensors: tuple[Sensor, ...]
+    T_body_imu: SE3
+    """Mounting of the IMU."""
+    imu_time_offset_s: float
+    """Added to the IMU's time stamps to get rig time [s]."""
+    p_body_antenna: Array
+    """Lever arm: phase center of the GNSS antenna in the body [m], (3,)."""
+    gnss_time_offset_s: float
+    """Added to the GNSS time stamps to get rig time [s]."""
+
+    @property
+    def T_body_sensor(self) -> SE3:
+        """Mountings of all sensors, a batch."""
+        return SE3.stack(sensor.T_body_sensor for sensor in self.sensors)
+
+
+def rig_presets() -> list[str]:
+    """Names of the rigs that ship with recon4."""
+    folder = resources.files("recon4") / "rigs"
+    return sorted(
+        Path(entry.name).stem for entry in folder.iterdir() if entry.name.endswith(".toml")
+    )
+
+
+def load_rig(name_or_path: str | Path) -> Rig:
+    """Read a rig file, or one of the shipped presets by name.
+
+    Raises:
+        ConfigError: If there is no such preset or file, or the file is not a rig.
+    """
+    path = Path(name_or_path)
+    if not path.suffix:
+        preset = resources.files("recon4") / "rigs" / f"{name_or_path}.toml"
+        if not preset.is_file():
+            raise ConfigError(
+                f"no rig named {str(name_or_path)!r}; shipped: {', '.join(rig_presets())}; "
+                "or give the path of a .toml file"
+            )
+        return parse_rig(preset.read_text("utf-8"), where=str(name_or_path))
+    try:
+        return parse_rig(path.read_text("utf-8"), where=path.name)
+    except (OSError, UnicodeDecodeError) as error:
+        raise ConfigError(f"cannot read rig file {path.name}: {error}") from error
+
+
+def parse_rig(text: str, *, where: str) -> Rig:
+    """Read a rig from TOML text (see ``docs/rig.md``).
+
+    Raises:
+        ConfigError: Naming the place, what was expected and what was found.
+    """
+    try:
+        table = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ConfigError(f"{where}: not a TOML file: {error}") from error
+    _refuse_unknown(table, {"name", "sensor", "imu", "gnss"}, where)
+    rows = table.get("sensor", [])
+    if not rows:
+        raise ConfigError(f"{where}: a rig needs at least one [[sensor]]")
+    sensors = tuple(_sensor(row, f"{where}: sensor {k}") for k, row in enumerate(rows))
+    names = [sensor.name for sensor in sensors]
+    if len(set(names)) < len(names):
+        raise ConfigError(f"{where}: sensor names must differ, got {names}")
+    imu, gnss = table.get("imu", {}), table.get("gnss", {})
+    _refuse_unknown(imu, {"xyz_m", "rpy_deg", "quat_xyzw", "time_offset_s"}, f"{where}: imu")
+    _refuse_unknown(gnss, {"lever_arm_m", "time_offset_s"}, f"{where}: gnss")
+    return Rig(
+        name=str(table.get("name", where)),
+        sensors=sensors,
+        T_body_imu=_mounting(imu, f"{where}: imu"),
+        imu_time_offset_s=_number(imu, "time_offset_s", 0.0, f"{where}: imu"),
+        p_body_antenna=_vector(gnss, "lever_arm_m", 3, (0.0, 0.0, 0.0), f"{where}: gnss"),
+        gnss_time_offset_s=_number(gnss, "time_offset_s", 0.0, f"{where}: gnss"),
+    )
+
+
+def format_rig(rig: Rig) -> str:
+    """The rig as TOML text that `parse_rig` reads back."""
+    lines = [f'name = "{rig.name}"', ""]
+    for sensor in rig.sensors:
+        lines += ["[[sensor]]", f'name = "{sensor.name}"', f'model = "{sensor.model}"']
+        lines += _mounting_lines(sensor.T_body_sensor)
+        lines += [f"time_offset_s = {sensor.time_offset_s!r}", f"port = {sensor.port}"]
+        lines += [f'address = "{sensor.address}"', f'topic = "{sensor.topic}"']
+        lines += [f"enabled = {str(sensor.enabled).lower()}", ""]
+    lines += ["[imu]", *_mounting_lines(rig.T_body_imu)]
+    lines += [f"time_offset_s = {rig.imu_time_offset_s!r}", "", "[gnss]"]
+    lines += [f"lever_arm_m = {_floats(rig.p_body_antenna)}"]
+    lines += [f"time_offset_s = {rig.gnss_time_offset_s!r}", ""]
+    return "\n".join(lines)
+
+
+def _floats(values: Array) -> str:
+    return "[" + ", ".join(repr(float(v)) for v in values) + "]"
+
+
+def _mounting_lines(T_body_x: SE3) -> list[str]:
+    return [f"xyz_m = {_floats(T_body_x.t)}", f"quat_xyzw = {_floats(T_body_x.quat_xyzw())}"]
+
+
+def _sensor(row: dict[str, Any], where: str) -> Sensor:
+    known = {"name", "model", "xyz_m", "rpy_deg", "quat_xyzw", "time_offset_s"}
+    _refuse_unknown(row, known | {"address", "port", "topic", "enabled"}, where)
+    model = row.get("model", "VLP-16")
+    if model not in SENSOR_MODELS:
+        raise ConfigError(f"{where}: model must be one of {SENSOR_MODELS}, got {model!r}")
+    if not isinstance(row.get("name"), str) or not row["name"]:
+        raise ConfigError(f"{where}: name must be a text, got {row.get('name')!r}")
+    return Sensor(
+        name=row["name"],
+        model=model,
+        T_body_sensor=_mounting(row, where),
+        time_offset_s=_number(row, "time_offset_s", 0.0, where),
+        address=str(row.get("address", "")),
+        port=int(_number(row, "port", 2368, where)),
+        topic=str(row.get("topic", "")),
+        enabled=bool(row.get("enabled", True)),
+    )
+
+
+def _mounting(row: dict[str, Any], where: str) -> SE3:
+    xyz_m = _vector(row, "xyz_m", 3, (0.0, 0.0, 0.0), where)
+    if "quat_xyzw" in row:
+        quat = _vector(row, "quat_xyzw", 4, (), where)
+        if not 0.99 < np.linalg.norm(quat) < 1.01:
+            raise ConfigError(f"{where}: quat_xyzw must have length 1, got {quat.tolist()}")
+        return SE3.from_quat(quat, xyz_m)
+    roll, pitch, yaw = np.deg2rad(_vector(row, "rpy_deg", 3, (0.0, 0.0, 0.0), where))
+    return SE3.from_rpy(roll, pitch, yaw, xyz_m)
+
+
+def _vector(
+    row: dict[str, Any], key: str, size: int, default: tuple[float, ...], where: str
+) -> Array:
+    value = row.get(key, default)
+    numbers = isinstance(value, list | tuple) and all(isinstance(v, int | float) for v in value)
+    if not numbers or len(value) != size or not np.all(np.isfinite(value)):
+        raise ConfigError(f"{where}: {key} must be {size} finite numbers, got {value!r}")
+    return np.asarray(value, dtype=np.float64)
+
+
+def _number(row: dict[str, Any], key: str, default: float, where: str) -> float:
+    value = row.get(key, default)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
+        raise ConfigError(f"{where}: {key} must be a finite number, got {value!r}")
+    return float(value)
+
+
+def _refuse_unknown(row: dict[str, Any], known: set[str], where: str) -> None:
+    unknown = sorted(set(row) - known)
+    if unknown:
+        raise ConfigError(f"{where}: unknown {unknown}; known: {sorted(known)}")

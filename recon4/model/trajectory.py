@@ -1,0 +1,58 @@
+"""Where the body was, as a function of time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import OutOfRange
+from recon4.geometry.se3 import SE3, interpolate
+
+Times = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Trajectory:
+    """Poses at strictly increasing times; between two of them lerp and SLERP (V Eq. 2.8)."""
+
+    t_ns: Times
+    """Absolute times [ns], strictly increasing, (N,)."""
+    T_a_b: SE3
+    """Poses of ``b`` (normally the body) in ``a`` (odom, map, …), a batch of N."""
+
+    def __post_init__(self) -> None:
+        assert len(self.t_ns) == len(self.T_a_b)
+        assert np.all(np.diff(self.t_ns) > 0)
+
+    def __len__(self) -> int:
+        return len(self.t_ns)
+
+    def __getitem__(self, rows: slice | NDArray[np.bool_] | NDArray[np.integer]) -> Trajectory:
+        return Trajectory(self.t_ns[rows], self.T_a_b[rows])
+
+    def at(self, t_ns: Times, *, slack_ns: int = 0) -> SE3:
+        """Poses at any times covered.
+
+        Args:
+            t_ns: Times [ns], (M,).
+            slack_ns: How far outside the covered time the first or last motion is extrapolated.
+
+        Raises:
+            OutOfRange: If a time lies further outside, or there is no pose at all.
+        """
+        t = np.asarray(t_ns, dtype=np.int64)
+        if len(self.t_ns) == 0:
+            raise OutOfRange("the trajectory is empty")
+        if t.size and (t.min() < self.t_ns[0] - slack_ns or t.max() > self.t_ns[-1] + slack_ns):
+            raise OutOfRange(
+                f"time {t.min() / 1e9:.3f} … {t.max() / 1e9:.3f} s is outside the trajectory, "
+                f"which covers {self.t_ns[0] / 1e9:.3f} … {self.t_ns[-1] / 1e9:.3f} s"
+            )
+        if len(self.t_ns) == 1:
+            return self.T_a_b[np.zeros(t.shape, dtype=np.intp)]
+        left = np.clip(np.searchsorted(self.t_ns, t, side="right") - 1, 0, len(self.t_ns) - 2)
+        span = self.t_ns[left + 1] - self.t_ns[left]
+        fraction = (t - self.t_ns[left]) / span
+        return interpolate(self.T_a_b[left], self.T_a_b[left + 1], fraction)

@@ -1,0 +1,54 @@
+"""Progress and cancellation, without knowing who watches."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sized
+from dataclasses import dataclass, field
+from typing import Protocol, TypeVar
+
+Item = TypeVar("Item")
+
+
+class Progress(Protocol):
+    """What a stage tells whoever watches; a stage calls it often and cheaply."""
+
+    def start(self, what: str, total: int, unit: str) -> None:
+        """Begin a piece of work of ``total`` units (0 = unknown)."""
+
+    def advance(self, done: int = 1) -> None:
+        """Say that ``done`` more units are finished.
+
+        Raises:
+            Cancelled: If the watcher asked to stop.
+        """
+
+    def event(self, kind: str, **facts: object) -> None:
+        """Say what was found (an edge, a repair, a warning), as plain JSON values."""
+
+
+@dataclass(slots=True)
+class Silent:
+    """Watches nothing: the default of every library call. Keeps the events, for tests."""
+
+    events: list[tuple[str, dict[str, object]]] = field(default_factory=list)
+
+    def start(self, what: str, total: int, unit: str) -> None:
+        """Ignore."""
+
+    def advance(self, done: int = 1) -> None:
+        """Ignore."""
+
+    def event(self, kind: str, **facts: object) -> None:
+        """Remember."""
+        self.events.append((kind, facts))
+
+
+def track(
+    items: Iterable[Item], progress: Progress, *, what: str, unit: str, total: int | None = None
+) -> Iterator[Item]:
+    """Yield the items, one unit of progress each."""
+    count = total if total is not None else len(items) if isinstance(items, Sized) else 0
+    progress.start(what, count, unit)
+    for item in items:
+        yield item
+        progress.advance()

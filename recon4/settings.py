@@ -1,0 +1,316 @@
+"""Every setting of the pipeline, declared once: code, command line, API and docs read this file.
+
+A stage receives its own group only, so a changed setting reruns only what depends on it.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
+from typing import Any, Literal, get_args, get_type_hints
+
+from recon4.errors import ConfigError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class IngestSettings:
+    """Reading a recording into multiframes."""
+
+    rate_hz: float = 10.0
+    """Multiframes per second. 0 = the rotation rate of the first LiDAR."""
+    reorder_window_s: float = 0.2
+    """Packets out of order by at most this are put back in order [s]."""
+    min_range_m: float = 0.7
+    """Nearer returns are the carrier and are dropped [m]."""
+    max_range_m: float = 120.0
+    """Farther returns are dropped [m]."""
+    gap_s: float = 0.2
+    """A jump of the clock larger than this is reported as a gap [s]."""
+
+    def __post_init__(self) -> None:
+        _require(0.0 <= self.rate_hz <= 100.0, "rate_hz must be 0 to 100", self.rate_hz)
+        _require(
+            0.0 <= self.min_range_m < self.max_range_m,
+            "min_range_m must be below max_range_m",
+            self.min_range_m,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SegmentSettings:
+    """Collar line segments (V §2.4, requirements A3.1)."""
+
+    azimuth_bins: int = 36
+    """Cells around the spin axis."""
+    generated: int = 20
+    """Random segments drawn in a cell between two neighboring rings."""
+    preserved: int = 5
+    """Shortest of them that are kept."""
+    seed: int = 4
+    """Seed of the random draws; combined with the frame id."""
+
+    def __post_init__(self) -> None:
+        _require(
+            4 <= self.azimuth_bins <= 3600, "azimuth_bins must be 4 to 3600", self.azimuth_bins
+        )
+        _require(
+            1 <= self.preserved <= self.generated,
+            "preserved must be 1 to generated",
+            self.preserved,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OverlapSettings:
+    """Overlap by a spherical z-buffer (V §2.5, requirements A4)."""
+
+    azimuth_bins: int = 180
+    elevation_bins: int = 90
+    min_points: int = 5
+    """A bin with fewer points is empty."""
+    relative_tolerance: float = 0.1
+    """t_r of V Eq. 2.6, read as ``p_r < r_min * (1 + t_r) + t_a`` (A0 no. 2)."""
+    absolute_tolerance_m: float = 0.3
+    """t_a of V Eq. 2.6 [m]."""
+    threshold: float = 0.5
+    """t_o: pairs that overlap less are rejected."""
+    mode: Literal["target", "source", "min", "harmonic"] = "target"
+    """Whose points are tested in whose buffer; ``target`` is the text."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RegistrationSettings:
+    """Registration of two sets of collar line segments (V §2.4, requirements A3)."""
+
+    solver: Literal["common_normal", "svd"] = "common_normal"
+    """``svd`` is the documents' closed form on closest points; ``common_normal`` is ours."""
+    max_iterations: int = 12
+    """Upper bound on match-and-solve rounds (thesis: 500)."""
+    converged_step_m: float = 5e-4
+    """Stop once a round moves a point at 5 m by less than this [m] (``common_normal``)."""
+    max_distance_m: float = 1.0
+    """Midpoints farther apart never match [m] (``common_normal``)."""
+    kernel_m: float = 0.05
+    """Scale of the Cauchy kernel on the line distance [m] (``common_normal``)."""
+    portion: float = 0.5
+    """Share of nearest matches kept when no overlap is given (``svd``)."""
+    error_window: int = 20
+    """Rounds over which the error must not change (``svd``)."""
+    error_deviation: float = 1e-4
+    """Standard deviation of the error in that window below which it has converged (``svd``)."""
+    target_error_m: float = 0.01
+    """An error below this has converged [m] (``svd``)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OdometrySettings:
+    """Pose of each multiframe from the ones before (V §2.4, requirements A3, A5)."""
+
+    history: int = 10
+    """Multiframes in the local map."""
+    use_imu: bool = True
+    """Predict and undistort with the IMU when the recording has one."""
+    gyro_noise_rad_s: float = 0.003
+    """Standard deviation of one gyroscope sample [rad/s]."""
+    accel_noise_m_s2: float = 0.05
+    """Standard deviation of one accelerometer sample [m/s²]."""
+    gyro_bias_walk_rad_s: float = 1e-4
+    """Random walk of the gyroscope's bias [rad/s/sqrt(s)]."""
+    accel_bias_walk_m_s2: float = 1e-3
+    """Random walk of the accelerometer's bias [m/s²/sqrt(s)]."""
+    lost_error_m: float = 0.25
+    """A larger error means lost [m]."""
+    lost_share: float = 0.3
+    """A smaller share of matched segments means lost."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GraphSettings:
+    """Progressive pose graph (V §2.7, Algorithm 2.1, requirements A6)."""
+
+    mode: Literal["10", "overlap", "verification", "beyond"] = "beyond"
+    """What V Table 3.2 compares, and our own."""
+    node_stride: int = 5
+    """A node every so many multiframes."""
+    closed_trajectory: bool = False
+    """The walk ends where it began: pairs may wrap around (A0 no. 5)."""
+    exhaustive: bool = False
+    """Test all pairs as the thesis does: quadratic in the walk."""
+    neighbors: int = 4
+    """Pairs with the nodes before, at growing distance."""
+    revisits: int = 6
+    """At most so many pairs of a node with earlier visits of the same place."""
+    revisit_radius_m: float = 4.0
+    """Nodes farther apart are not revisits of one place [m]."""
+    error_relative: float = 0.01
+    """t_r of the acceptance limit ``median_range * t_r + t_a`` (A0 no. 12)."""
+    error_absolute_m: float = 0.05
+    """t_a of that limit [m]."""
+    odometry_sd_m: float = 0.01
+    """Standard deviation of an odometry edge per node step [m]."""
+    odometry_sd_rad: float = 0.002
+    loop_sd_m: float = 0.01
+    """Standard deviation of an accepted edge [m]."""
+    loop_sd_rad: float = 0.002
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VerificationSettings:
+    """Verification by alternative paths (V §2.8, requirements A7)."""
+
+    max_path_edges: int = 3
+    limit_m: float = 0.1
+    """An edge whose median disagreement is above this is rejected [m] (A0 no. 1)."""
+    robust: Literal["gnc", "cauchy", "none"] = "gnc"
+    """The final solve after verification."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RefineSettings:
+    """Semi-rigid refinement of every multiframe (requirements A12 L-4; mode ``beyond`` only)."""
+
+    rounds: int = 3
+    """Rounds of matching against the whole map and solving for all multiframes at once."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LevelSettings:
+    """Horizontal alignment (V §2.9, requirements A8)."""
+
+    source: Literal["auto", "imu", "floor", "none"] = "auto"
+    """``auto``: the IMU if there is one, else the dominant floor."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GnssSettings:
+    """Georeferencing by GNSS/INS (requirements A10)."""
+
+    enabled: bool = True
+    """Use the positions when the recording has them."""
+    crs: str = ""
+    """EPSG code of the map's horizontal (and vertical) CRS, as ``EPSG:5514+8357``.
+    Empty = UTM zone of the place with ellipsoidal heights."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class IntensitySettings:
+    """Intensity normalization (V §2.10, Eq. 2.17, requirements A9)."""
+
+    range_bin_m: float = 0.2
+    incidence_bin_deg: float = 1.0
+    min_count: int = 50
+    """Bins with fewer points fall back to a coarser bin."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapSettings:
+    """The point map and what is written of it."""
+
+    voxel_m: float = 0.01
+    """Keep at most one point in a cube of this size [m]; 0 = keep all."""
+    max_range_m: float = 60.0
+    """Points farther from the sensor are left out of the map [m]."""
+    tile_m: float = 10.0
+    """Edge length of the tiles in which the map is stored [m]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Settings:
+    """All of them. A preset is one of these; ``--set group.field=value`` changes one field."""
+
+    ingest: IngestSettings = field(default_factory=IngestSettings)
+    segments: SegmentSettings = field(default_factory=SegmentSettings)
+    overlap: OverlapSettings = field(default_factory=OverlapSettings)
+    registration: RegistrationSettings = field(default_factory=RegistrationSettings)
+    odometry: OdometrySettings = field(default_factory=OdometrySettings)
+    graph: GraphSettings = field(default_factory=GraphSettings)
+    verification: VerificationSettings = field(default_factory=VerificationSettings)
+    refine: RefineSettings = field(default_factory=RefineSettings)
+    level: LevelSettings = field(default_factory=LevelSettings)
+    gnss: GnssSettings = field(default_factory=GnssSettings)
+    intensity: IntensitySettings = field(default_factory=IntensitySettings)
+    map: MapSettings = field(default_factory=MapSettings)
+
+
+PRESETS: dict[str, Settings] = {
+    "indoor": Settings(),
+    "staircase": Settings(),
+    "outdoor": Settings(map=MapSettings(voxel_m=0.03, max_range_m=100.0, tile_m=20.0)),
+    "thesis": Settings(
+        registration=RegistrationSettings(solver="svd", max_iterations=500),
+        odometry=OdometrySettings(use_imu=False),
+        graph=GraphSettings(mode="verification"),
+        verification=VerificationSettings(robust="none"),
+    ),
+}
+
+
+def preset(name: str) -> Settings:
+    """The settings of a preset.
+
+    Raises:
+        ConfigError: If there is no such preset.
+    """
+    if name not in PRESETS:
+        raise ConfigError(f"no preset named {name!r}; there are: {', '.join(sorted(PRESETS))}")
+    return PRESETS[name]
+
+
+def override(settings: Settings, assignments: list[str]) -> Settings:
+    """Apply ``group.field=value`` texts in order.
+
+    Raises:
+        ConfigError: Naming the setting, what was expected and what was given.
+    """
+    for text in assignments:
+        path, sign, value = text.partition("=")
+        group_name, dot, name = path.strip().partition(".")
+        if not sign or not dot:
+            raise ConfigError(f"expected group.field=value, got {text!r}")
+        group = getattr(settings, group_name, None) if group_name in _names(settings) else None
+        if group is None:
+            raise ConfigError(f"no setting group {group_name!r}; known: {_names(settings)}")
+        if name not in _names(group):
+            raise ConfigError(f"no setting {path!r}; known in {group_name}: {_names(group)}")
+        kind = get_type_hints(type(group))[name]
+        settings = replace(
+            settings, **{group_name: replace(group, **{name: _parse(value.strip(), kind, path)})}
+        )
+    return settings
+
+
+def to_json(settings: object) -> dict[str, Any]:
+    """Plain JSON values of a group or of all settings."""
+    assert is_dataclass(settings) and not isinstance(settings, type)
+    return asdict(settings)
+
+
+def canonical(settings: object) -> str:
+    """One text for equal settings: what a stage's key is hashed from."""
+    return json.dumps(to_json(settings), sort_keys=True, separators=(",", ":"))
+
+
+def _parse(text: str, kind: Any, path: str) -> Any:
+    choices = get_args(kind)
+    if choices:
+        if text not in choices:
+            raise ConfigError(f"{path} must be one of {', '.join(choices)}, got {text!r}")
+        return text
+    if kind is bool:
+        if text.lower() not in {"true", "false"}:
+            raise ConfigError(f"{path} must be true or false, got {text!r}")
+        return text.lower() == "true"
+    try:
+        return kind(text)
+    except ValueError as error:
+        raise ConfigError(f"{path} must be {kind.__name__}, got {text!r}") from error
+
+
+def _names(group: object) -> list[str]:
+    assert is_dataclass(group)
+    return [f.name for f in fields(group)]
+
+
+def _require(holds: bool, rule: str, value: object) -> None:
+    if not holds:
+        raise ConfigError(f"{rule}, got {value}")
