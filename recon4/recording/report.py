@@ -1,0 +1,36 @@
+"""What reading a recording found: everything counted, nothing dropped in silence."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+
+
+@dataclass(slots=True)
+class ImportReport:
+    """Counts and remarks of one import; the only mutable record of the readers."""
+
+    counts: Counter[str] = field(default_factory=Counter)
+    """Packets, messages, points and samples by what became of them,
+    for example ``packets``, ``packets_duplicate``, ``points_nan``."""
+    derived: list[str] = field(default_factory=list)
+    """What was not in the recording and was worked out, in words."""
+    warnings: list[str] = field(default_factory=list)
+    """What a person should know: repairs, gaps, missing sensors, forced models."""
+    outcome: str = "complete"
+    """``complete``, ``lossy`` (salvaged) or ``nothing``."""
+
+    def count(self, name: str, number: int = 1) -> None:
+        """Add to a counter; zero adds nothing."""
+        if number:
+            self.counts[name] += int(number)
+
+    def derive(self, text: str) -> None:
+        """Remember once what was worked out."""
+        if text not in self.derived:
+            self.derived.append(text)
+
+    def warn(self, text: str) -> None:
+        """Remember a warning once."""
+        if text not in self.warnings:
+            self.warnings.append(text)

@@ -1,0 +1,31 @@
+"""Decoded measurements of one LiDAR, before they are cut into multiframes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.model.trajectory import Times
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Shots:
+    """Some returns of one sensor in firing order; a reader yields many of these."""
+
+    sensor: int
+    """Row in ``Rig.sensors``."""
+    t_ns: Times
+    """Time of each shot on the rig's clock [ns], non-decreasing, (N,)."""
+    xyz: NDArray[np.float32]
+    """Points in the frame of the sensor [m], (N, 3)."""
+    intensity: NDArray[np.uint16]
+    """As the sensor gave it, (N,)."""
+    ring: NDArray[np.uint8]
+    """Beam, 0 = lowest elevation, (N,)."""
+    echo: NDArray[np.uint8]
+    """0 = only or strongest return, 1 = further return of the same shot, (N,)."""
+
+    def __len__(self) -> int:
+        return len(self.t_ns)
