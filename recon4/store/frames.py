@@ -1,0 +1,271 @@
+"""The columnar store of multiframes: one ``.npy`` file a column, streamed out, memory-mapped in.
+
+    xyz.npy intensity.npy ring.npy sensor.npy echo.npy dt_ns.npy    one row a point
+    index.npy                                                       one row a multiframe
+    imu.npz gnss.npz                                                when there are any
+    rig.toml report.json
+
+Points of frame ``k`` are rows ``index["start"][k]`` to ``index["stop"][k]`` of every column.
+"""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Any, BinaryIO, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import ConfigError, NoSpace, StoreError
+from recon4.model.multiframe import COLUMNS, Multiframe
+from recon4.model.rig import Rig, format_rig, load_rig
+from recon4.model.samples import GnssSamples, ImuSamples
+from recon4.model.trajectory import Times
+from recon4.store.arrays import load_record, save_record
+
+INDEX = np.dtype(
+    [
+        ("frame_id", "<i8"),
+        ("t_ns", "<i8"),
+        ("duration_ns", "<i8"),
+        ("start", "<i8"),
+        ("stop", "<i8"),
+    ]
+)
+"""One row of ``index.npy``."""
+
+_HEADER_BYTES = 128
+_NO_SPACE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+
+
+class FrameWriter:
+    """Appends multiframes to a folder; holds one multiframe in memory, however long the walk.
+
+    The columns' headers get their length when the ``with`` block ends without an error.
+    A folder left by an error has no ``index.npy`` and is refused by `FrameStore`.
+    """
+
+    def __init__(self, folder: Path, rig: Rig) -> None:
+        """Create the folder's column files.
+
+        Raises:
+            StoreError: If the folder cannot be written.
+        """
+        self._folder = folder
+        self._points = 0
+        self._rows: list[tuple[int, int, int, int, int]] = []
+        self._files: dict[str, BinaryIO] = {}
+        with _storing(folder):
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / "rig.toml").write_text(format_rig(rig), "utf-8")
+            for name in COLUMNS:
+                self._files[name] = (folder / f"{name}.npy").open("wb")
+                self._files[name].write(_header(name, 0))
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None
+    ) -> None:
+        try:
+            if kind is None:
+                self._finish()
+        finally:
+            for file in self._files.values():
+                _close_quietly(file)
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    @property
+    def points(self) -> int:
+        """Points written so far."""
+        return self._points
+
+    def append(self, frame: Multiframe) -> None:
+        """Write one multiframe behind the others.
+
+        Raises:
+            StoreError: If it cannot be written (`NoSpace` when the disk is full).
+        """
+        assert frame.frame_id == len(self._rows), "frame ids count from 0 without holes"
+        with _storing(self._folder):
+            for name, (dtype, width) in COLUMNS.items():
+                column = np.ascontiguousarray(getattr(frame, name), dtype=dtype)
+                assert column.shape == ((len(frame), width) if width > 1 else (len(frame),))
+                self._files[name].write(column.data)
+        start, self._points = self._points, self._points + len(frame)
+        self._rows.append((frame.frame_id, frame.t_ns, frame.duration_ns, start, self._points))
+
+    def add(
+        self,
+        *,
+        imu: ImuSamples | None = None,
+        gnss: GnssSamples | None = None,
+        report: dict[str, Any] | None = None,
+    ) -> None:
+        """Write what belongs to the recording beside its points."""
+        with _storing(self._folder):
+            if imu is not None:
+                save_record(self._folder / "imu.npz", imu)
+            if gnss is not None:
+                save_record(self._folder / "gnss.npz", gnss)
+            if report is not None:
+                text = json.dumps(report, indent=2, ensure_ascii=False)
+                (self._folder / "report.json").write_text(text + "\n", "utf-8")
+
+    def _finish(self) -> None:
+        with _storing(self._folder):
+            for name, file in self._files.items():
+                file.seek(0)
+                file.write(_header(name, self._points))
+                file.flush()
+                os.fsync(file.fileno())
+            with (self._folder / "index.npy").open("wb") as file:
+                np.save(file, np.array(self._rows, dtype=INDEX))
+                file.flush()
+                os.fsync(file.fileno())
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FrameStore:
+    """The multiframes of a recording, read on demand.
+
+    ``store[k]`` maps frame ``k`` only, and the mapping goes with the frame: memory follows what is
+    held, not the walk. The arrays are private copies on write; the files are never changed.
+    """
+
+    folder: Path
+    index: NDArray[np.void]
+    """`INDEX` records, (N,)."""
+    rig: Rig
+    imu: ImuSamples | None
+    gnss: GnssSamples | None
+    report: dict[str, Any]
+
+    @staticmethod
+    def open(folder: Path) -> FrameStore:
+        """Open what a `FrameWriter` left.
+
+        Raises:
+            StoreError: If something is missing or the files do not fit each other.
+        """
+        try:
+            index = np.load(folder / "index.npy", allow_pickle=False)
+            rig = load_rig(folder / "rig.toml")
+        except (OSError, ValueError, EOFError, ConfigError) as error:
+            raise StoreError(f"{folder.name} is not a finished frame store: {error}") from error
+        if index.dtype != INDEX or index.ndim != 1:
+            raise StoreError(f"{folder.name}/index.npy: expected {INDEX}, got {index.dtype}")
+        _check_columns(folder, int(index["stop"][-1]) if len(index) else 0)
+        imu, gnss = folder / "imu.npz", folder / "gnss.npz"
+        return FrameStore(
+            folder,
+            index,
+            rig,
+            load_record(imu, ImuSamples) if imu.exists() else None,
+            load_record(gnss, GnssSamples) if gnss.exists() else None,
+            _read_report(folder / "report.json"),
+        )
+
+    def __len__(self) -> int:
+        return len(self.index)
+
+    def __getitem__(self, k: int) -> Multiframe:
+        if not -len(self) <= k < len(self):
+            raise IndexError(f"frame {k} of {len(self)}")
+        row = self.index[k]
+        start, stop = int(row["start"]), int(row["stop"])
+        columns = {name: _map_rows(self.folder, name, start, stop) for name in COLUMNS}
+        return Multiframe(
+            int(row["frame_id"]), int(row["t_ns"]), int(row["duration_ns"]), **columns
+        )
+
+    def __iter__(self) -> Iterator[Multiframe]:
+        return (self[k] for k in range(len(self)))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return FrameStore.open, (self.folder,)
+
+    @property
+    def t_mid_ns(self) -> Times:
+        """Middle of each multiframe [ns], (N,)."""
+        return np.asarray(self.index["t_ns"] + self.index["duration_ns"] // 2, dtype=np.int64)
+
+    @property
+    def points(self) -> int:
+        """Points of all multiframes together."""
+        return int(self.index["stop"][-1]) if len(self) else 0
+
+
+def _shape(name: str, rows: int) -> tuple[int, ...]:
+    width = COLUMNS[name][1]
+    return (rows, width) if width > 1 else (rows,)
+
+
+def _header(name: str, rows: int) -> bytes:
+    """The header of a version 1.0 ``.npy`` file, always of the same size so it can be patched."""
+    shape = _shape(name, rows)
+    text = f"{{'descr': '{COLUMNS[name][0]}', 'fortran_order': False, 'shape': {shape}, }}"
+    body = text.encode("latin1").ljust(_HEADER_BYTES - 11) + b"\n"
+    return b"\x93NUMPY\x01\x00" + len(body).to_bytes(2, "little") + body
+
+
+def _map_rows(folder: Path, name: str, start: int, stop: int) -> NDArray[Any]:
+    dtype = np.dtype(COLUMNS[name][0])
+    if start == stop:
+        return np.empty(_shape(name, 0), dtype)
+    offset = _HEADER_BYTES + start * dtype.itemsize * COLUMNS[name][1]
+    shape = _shape(name, stop - start)
+    try:
+        # "c" rather than "r": a writable array, for which Numba needs no second compilation.
+        mapped = np.memmap(folder / f"{name}.npy", dtype, mode="c", offset=offset, shape=shape)
+    except (OSError, ValueError) as error:
+        raise StoreError(f"{folder.name}/{name}.npy cannot be read: {error}") from error
+    return mapped.view(np.ndarray)
+
+
+def _check_columns(folder: Path, points: int) -> None:
+    for name, (dtype, width) in COLUMNS.items():
+        path = folder / f"{name}.npy"
+        expected = _HEADER_BYTES + points * np.dtype(dtype).itemsize * width
+        found = path.stat().st_size if path.is_file() else -1
+        if found != expected:
+            raise StoreError(
+                f"{folder.name}/{name}.npy: expected {expected} bytes for {points} points, "
+                f"got {found if found >= 0 else 'no file'}"
+            )
+
+
+def _read_report(path: Path) -> dict[str, Any]:
+    try:
+        report = json.loads(path.read_text("utf-8")) if path.exists() else {}
+    except (OSError, ValueError) as error:
+        raise StoreError(f"{path.name} cannot be read: {error}") from error
+    return dict(report)
+
+
+@contextmanager
+def _storing(folder: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        kind = NoSpace if error.errno in _NO_SPACE else StoreError
+        raise kind(f"cannot write {folder}: {error.strerror or error}") from error
+
+
+def _close_quietly(file: BinaryIO) -> None:
+    """Close; buffered bytes that no longer fit belong to an error already on its way."""
+    try:
+        file.close()
+    except OSError as error:
+        if error.errno not in _NO_SPACE:
+            raise
