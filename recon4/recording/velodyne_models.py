@@ -1,0 +1,195 @@
+"""What the data sheets say of each Velodyne: beams, firing times, bytes on the wire.
+
+Sources: VLP-16 user manual 63-9243 rev. D (§6, §9, appendix C), VLP-32C user manual 63-9325
+(§9.3, appendix D), HDL-32E user manual 63-9113 (appendix B and E).
+The order of the lasers is the order on the wire; ring 0 is the lowest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import ConfigError
+from recon4.geometry.se3 import Array
+
+RETURN = np.dtype([("distance", "<u2"), ("intensity", "u1")])
+BLOCK = np.dtype([("flag", "<u2"), ("azimuth_cdeg", "<u2"), ("returns", RETURN, 32)])
+DATA_PACKET = np.dtype(
+    [("blocks", BLOCK, 12), ("time_us", "<u4"), ("return_mode", "u1"), ("product", "u1")]
+)
+"""A data packet as it lies on the wire."""
+
+DATA_SIZE = DATA_PACKET.itemsize
+"""Bytes of a data packet: 1206."""
+POSITION_SIZE = 512
+"""Bytes of a position packet."""
+BLOCKS = 12
+CHANNELS = 32
+"""Returns in a block."""
+BLOCK_FLAG = 0xEEFF
+"""First two bytes of a block (FF EE on the wire)."""
+LOWER_BLOCK_FLAG = 0xDDFF
+"""The same in blocks of the lower lasers of an HDL-64E."""
+HOUR_US = 3_600_000_000
+
+STRONGEST, LAST, DUAL = 0x37, 0x38, 0x39
+RETURN_MODES = {STRONGEST: "strongest", LAST: "last", DUAL: "dual"}
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class VelodyneModel:
+    """Beams and firing times of one model."""
+
+    name: str
+    """As in `recon4.model.rig.SENSOR_MODELS`."""
+    product: int
+    """Product byte at the end of a data packet."""
+    distance_unit_m: float
+    """Meters per unit of distance."""
+    elevation_rad: Array
+    """Elevation of each laser [rad], (L,)."""
+    azimuth_offset_cdeg: NDArray[np.int32]
+    """Added to the azimuth of the block, clockwise [0.01°], (L,)."""
+    height_m: Array
+    """How far above the center each beam leaves the sensor [m], (L,)."""
+    laser_time_s: Array
+    """When each laser fires after the start of its firing sequence [s], (L,)."""
+    sequence_s: float
+    """From the start of one firing sequence to the next [s]."""
+
+    @property
+    def lasers(self) -> int:
+        """Number of beams L."""
+        return len(self.elevation_rad)
+
+    @property
+    def sequences_per_block(self) -> int:
+        """Firing sequences that share one azimuth on the wire: 2 for 16 beams, else 1."""
+        return CHANNELS // self.lasers
+
+    @property
+    def block_s(self) -> float:
+        """Time covered by one block [s]."""
+        return self.sequence_s * self.sequences_per_block
+
+    def packet_s(self, return_mode: int) -> float:
+        """Time from one packet to the next [s]."""
+        return self.block_s * (BLOCKS // 2 if return_mode == DUAL else BLOCKS)
+
+    @cached_property
+    def ring(self) -> NDArray[np.uint8]:
+        """Ring of each laser, 0 = lowest elevation, (L,)."""
+        return np.argsort(np.argsort(self.elevation_rad)).astype(np.uint8)
+
+    @cached_property
+    def channel_time_s(self) -> Array:
+        """When each of the 32 returns of a block is fired after the block's start [s], (32,)."""
+        starts = self.sequence_s * np.arange(self.sequences_per_block)
+        return (starts[:, None] + self.laser_time_s).ravel()
+
+    def firing_time_s(self, return_mode: int = STRONGEST) -> Array:
+        """When each return of a packet is fired after the packet's time stamp [s], (12, 32).
+
+        ``block * block_s + sequence * sequence_s + laser_time_s``; in dual return mode two
+        blocks that follow each other hold the two returns of the same shots.
+        """
+        block = np.arange(BLOCKS) // (2 if return_mode == DUAL else 1)
+        return block[:, None] * self.block_s + self.channel_time_s
+
+
+_VLP16 = VelodyneModel(
+    name="VLP-16",
+    product=0x22,
+    distance_unit_m=0.002,
+    elevation_rad=np.deg2rad(
+        [-15.0, 1, -13, 3, -11, 5, -9, 7, -7, 9, -5, 11, -3, 13, -1, 15],
+    ),
+    azimuth_offset_cdeg=np.zeros(16, dtype=np.int32),
+    height_m=1e-3
+    * np.array(
+        [11.2, -0.7, 9.7, -2.2, 8.1, -3.7, 6.6, -5.1, 5.1, -6.6, 3.7, -8.1, 2.2, -9.7, 0.7, -11.2]
+    ),
+    laser_time_s=2.304e-6 * np.arange(16.0),
+    sequence_s=55.296e-6,
+)
+
+_VLP32C = VelodyneModel(
+    name="VLP-32C",
+    product=0x28,
+    distance_unit_m=0.004,
+    elevation_rad=np.deg2rad(
+        np.ravel(
+            [
+                [-25.0, -1, -1.667, -15.639, -11.31, 0, -0.667, -8.843],
+                [-7.254, 0.333, -0.333, -6.148, -5.333, 1.333, 0.667, -4],
+                [-4.667, 1.667, 1, -3.667, -3.333, 3.333, 2.333, -2.667],
+                [-3, 7, 4.667, -2.333, -2, 15, 10.333, -1.333],
+            ]
+        )
+    ),
+    azimuth_offset_cdeg=np.array(
+        [
+            [140, -420, 140, -140, 140, -140, 420, -140],
+            [140, -420, 140, -140, 420, -140, 420, -140],
+            [140, -420, 140, -420, 420, -140, 140, -140],
+            [140, -140, 140, -420, 420, -140, 140, -140],
+        ],
+        dtype=np.int32,
+    ).ravel(),
+    height_m=np.zeros(32),
+    laser_time_s=2.304e-6 * (np.arange(32.0) // 2),
+    sequence_s=55.296e-6,
+)
+
+_HDL32E = VelodyneModel(
+    name="HDL-32E",
+    product=0x21,
+    distance_unit_m=0.002,
+    elevation_rad=np.deg2rad(
+        np.column_stack(
+            [np.linspace(-92.0, -32.0, 16) / 3, np.linspace(-28.0, 32.0, 16) / 3]
+        ).ravel()
+    ),
+    azimuth_offset_cdeg=np.zeros(32, dtype=np.int32),
+    height_m=np.zeros(32),
+    laser_time_s=1.152e-6 * np.arange(32.0),
+    sequence_s=46.08e-6,
+)
+
+MODELS = {model.name: model for model in (_VLP16, _VLP32C, _HDL32E)}
+"""Models whose packets are decoded, by name."""
+PRODUCTS = {model.product: model.name for model in MODELS.values()}
+"""Product byte to name."""
+
+
+def velodyne_model(name: str) -> VelodyneModel:
+    """The tables of a model.
+
+    Raises:
+        ConfigError: If its packets are not decoded here.
+    """
+    if name in MODELS:
+        return MODELS[name]
+    known = ", ".join(MODELS)
+    if name == "HDL-64E":
+        raise ConfigError(
+            "packets of an HDL-64E need the calibration of the very sensor, which is not read yet; "
+            f"decoded: {known}; give it as PointCloud2 or as a folder of frames instead"
+        )
+    raise ConfigError(f"no packet decoder for sensor model {name!r}; decoded: {known}")
+
+
+def model_of_interval(seconds: float, return_mode: int) -> str | None:
+    """Name of the model whose packets follow each other at this interval, or None.
+
+    The interval is fixed by the firing sequence and does not depend on the rotation rate: 1.327 ms
+    for a VLP-16, 0.664 ms for a VLP-32C and 0.553 ms for an HDL-32E, half of it in dual mode.
+    """
+    for model in MODELS.values():
+        if abs(seconds / model.packet_s(return_mode) - 1.0) < 0.03:
+            return model.name
+    return None
