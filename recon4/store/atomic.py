@@ -1,0 +1,154 @@
+"""Files and folders that are there completely or not at all.
+
+Written under a temporary name beside their place, fsynced, renamed, and the folder fsynced:
+after a crash at any moment the old state or the new one is there, never half of it.
+"""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import re
+import secrets
+import shutil
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from recon4.errors import NoSpace, StoreError
+
+_TEMPORARY = re.compile(r"\.tmp-[0-9a-f]{12}-.+")
+_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
+_NUMPY_SHORT_WRITE = re.compile(r"\d+ requested and \d+ written")
+"""What numpy says, without an error number, when the disk fills under ``ndarray.tofile``."""
+
+
+@contextmanager
+def atomic_file(path: Path) -> Iterator[Path]:
+    """Yield a temporary path with the same suffix; the file appears as ``path`` at the end.
+
+    If the block raises, nothing of it stays and an older ``path`` is untouched.
+
+    Raises:
+        NoSpace: If the disk is full.
+        StoreError: If the place cannot be written.
+    """
+    temporary = _temporary_beside(path)
+    try:
+        yield temporary
+        _fsync(temporary)
+        os.replace(temporary, path)
+        _fsync(path.parent)
+    except OSError as error:
+        raise_if_full(error, path)
+        raise StoreError(f"cannot write {path}: {error.strerror or error}") from error
+    except Exception as error:
+        raise_if_full(error, path)
+        raise
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def atomic_folder(path: Path) -> Iterator[Path]:
+    """Yield an empty temporary folder; it appears as ``path`` at the end.
+
+    If the block raises, nothing of it stays. ``path`` must not exist yet.
+
+    Raises:
+        NoSpace: If the disk is full.
+        StoreError: If the place cannot be written.
+    """
+    temporary = _temporary_beside(path)
+    try:
+        temporary.mkdir()
+    except OSError as error:
+        raise_if_full(error, path)
+        raise StoreError(f"cannot write {path.parent}: {error.strerror}") from error
+    try:
+        yield temporary
+        _fsync_tree(temporary)
+        os.rename(temporary, path)
+        _fsync(path.parent)
+    except Exception as error:
+        raise_if_full(error, path)
+        raise
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file, completely or not at all."""
+    with atomic_file(path) as temporary:
+        temporary.write_text(text, "utf-8")
+
+
+def write_json(path: Path, value: object) -> None:
+    """Write a JSON file for people and programs: indented, keys as given, no NaN."""
+    write_text(path, json.dumps(value, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+
+
+def copy_file(source: Path, target: Path) -> None:
+    """Copy a file, completely or not at all."""
+    with atomic_file(target) as temporary:
+        shutil.copyfile(source, temporary)
+
+
+def sweep(folder: Path) -> list[str]:
+    """Remove what a killed process of ours left unfinished in a folder; nothing else.
+
+    Only one process at a time writes in a project, so whatever bears our temporary name is dead.
+
+    Returns:
+        The names removed.
+    """
+    orphans = sorted(entry for entry in folder.iterdir() if _TEMPORARY.fullmatch(entry.name))
+    for orphan in orphans:
+        if orphan.is_dir() and not orphan.is_symlink():
+            shutil.rmtree(orphan)
+        else:
+            orphan.unlink()
+    return [orphan.name for orphan in orphans]
+
+
+def raise_if_full(error: BaseException, path: Path) -> None:
+    """Turn an error that a full disk caused into one that says so.
+
+    Raises:
+        NoSpace: If the error, or one it came from, is a full disk (or quota, or size limit).
+    """
+    cause: BaseException | None = error
+    while cause is not None:
+        if _says_full(cause):
+            raise NoSpace(
+                f"no space left on the disk while writing {path}; "
+                "make room and start again: finished stages are kept"
+            ) from error
+        cause = cause.__cause__ or cause.__context__
+
+
+def _says_full(error: BaseException) -> bool:
+    if isinstance(error, OSError):
+        return error.errno in _FULL or bool(_NUMPY_SHORT_WRITE.search(str(error)))
+    return isinstance(error, sqlite3.OperationalError) and "full" in str(error)
+
+
+def _temporary_beside(path: Path) -> Path:
+    return path.with_name(f".tmp-{secrets.token_hex(6)}-{path.name}")
+
+
+def _fsync_tree(folder: Path) -> None:
+    for root, _, names in os.walk(folder):
+        for name in names:
+            _fsync(Path(root, name))
+        _fsync(Path(root))
+
+
+def _fsync(path: Path) -> None:
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

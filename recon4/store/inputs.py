@@ -1,0 +1,53 @@
+"""Recordings and other files from outside, as inputs of stages: keyed by what is in them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from recon4.errors import RecordingError
+from recon4.progress import Progress
+from recon4.store.hashing import files_below, hash_file, hash_json
+from recon4.store.ledger import Ledger
+from recon4.store.stage import Input
+
+
+def input_file(path: Path, ledger: Ledger, progress: Progress) -> Input:
+    """One file or folder, keyed by its content; the value is its path.
+
+    A folder (a bag, a folder of frames) is keyed by the names and contents of its files.
+
+    Raises:
+        RecordingError: If there is no such file or it cannot be read.
+    """
+    return Input(_hash_of(path, ledger, progress), path)
+
+
+def input_files(paths: Sequence[Path], ledger: Ledger, progress: Progress) -> Input:
+    """Several of them, in order; the value is the tuple of paths.
+
+    Raises:
+        RecordingError: If one is missing or cannot be read.
+    """
+    hashes = [_hash_of(path, ledger, progress) for path in paths]
+    return Input(hash_json(hashes), tuple(paths))
+
+
+def _hash_of(path: Path, ledger: Ledger, progress: Progress) -> str:
+    try:
+        if path.is_dir():
+            names = files_below(path)
+            return hash_json({n: _hash_file(path / n, ledger, progress) for n in names})
+        return _hash_file(path, ledger, progress)
+    except OSError as error:
+        raise RecordingError(f"cannot read {path}: {error.strerror}") from error
+
+
+def _hash_file(path: Path, ledger: Ledger, progress: Progress) -> str:
+    known = ledger.cached_hash(path)
+    if known is not None:
+        return known
+    progress.start(f"hash {path.name}", path.stat().st_size, "B")
+    found = hash_file(path, progress.advance)
+    ledger.remember_hash(path, found)
+    return found

@@ -1,0 +1,173 @@
+"""What is finished, in one SQLite file: durable when a call returns, whatever happens next."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import astuple, dataclass, fields
+from pathlib import Path
+from types import TracebackType
+
+from recon4.errors import StoreError
+from recon4.store.atomic import raise_if_full
+
+SCHEMA_VERSION = 1
+_SCHEMA = """
+CREATE TABLE stages (
+    key TEXT PRIMARY KEY,
+    stage TEXT NOT NULL,
+    version INTEGER NOT NULL,
+    finished TEXT NOT NULL,
+    seconds REAL NOT NULL,
+    cpu_seconds REAL NOT NULL,
+    peak_bytes INTEGER NOT NULL
+);
+CREATE TABLE current (stage TEXT PRIMARY KEY, key TEXT NOT NULL REFERENCES stages (key));
+CREATE TABLE hashes (
+    path TEXT PRIMARY KEY, size INTEGER NOT NULL, mtime_ns INTEGER NOT NULL, sha256 TEXT NOT NULL
+);
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class FinishedStage:
+    """One row: a stage that ran to its end and whose artifact is in place."""
+
+    key: str
+    """Name of its folder below ``artifacts/``."""
+    stage: str
+    version: int
+    """Version of the stage's code."""
+    finished: str
+    """When, ISO 8601 UTC."""
+    seconds: float
+    """Wall clock time it took [s]."""
+    cpu_seconds: float
+    """Processor time, children included [s]."""
+    peak_bytes: int
+    """Largest resident memory of the process or one of its children [bytes]."""
+
+
+class Ledger:
+    """The ledger of a project. One process writes; any number may read meanwhile (WAL)."""
+
+    def __init__(self, path: Path) -> None:
+        """Open, or create.
+
+        Raises:
+            StoreError: If the file is damaged, of another version, or cannot be opened.
+        """
+        self.path = path
+        with self._errors():
+            self._db = sqlite3.connect(path, isolation_level=None, timeout=10.0)
+        try:
+            self._prepare()
+        except BaseException:
+            self._db.close()
+            raise
+
+    def _prepare(self) -> None:
+        with self._errors():
+            self._db.execute("PRAGMA journal_mode = WAL")
+            self._db.execute("PRAGMA synchronous = FULL")
+            self._db.execute("PRAGMA foreign_keys = ON")
+            (found,) = self._db.execute("PRAGMA quick_check").fetchone()
+            if found != "ok":
+                raise sqlite3.DatabaseError(found)
+            (version,) = self._db.execute("PRAGMA user_version").fetchone()
+            if version == 0:
+                self._db.executescript(
+                    f"BEGIN; {_SCHEMA} PRAGMA user_version = {SCHEMA_VERSION}; COMMIT;"
+                )
+        if version not in {0, SCHEMA_VERSION}:
+            raise StoreError(
+                f"{self.path} has version {version}, this recon4 reads version {SCHEMA_VERSION}"
+            )
+
+    @contextmanager
+    def _errors(self) -> Iterator[None]:
+        try:
+            yield
+        except sqlite3.Error as error:
+            raise_if_full(error, self.path)
+            raise StoreError(
+                f"{self.path} is damaged or cannot be used ({error}); move it away and start "
+                "again: finished stages are found by their artifacts"
+            ) from error
+
+    # -- stages
+
+    def add(self, row: FinishedStage) -> None:
+        """Remember a finished stage, durably."""
+        with self._errors():
+            self._db.execute("INSERT OR REPLACE INTO stages VALUES (?,?,?,?,?,?,?)", astuple(row))
+
+    def find(self, key: str) -> FinishedStage | None:
+        """The stage with this key, if it is finished."""
+        with self._errors():
+            row = self._db.execute(f"{_SELECT} WHERE key = ?", (key,)).fetchone()
+        return FinishedStage(*row) if row else None
+
+    def forget(self, key: str) -> None:
+        """Drop a stage whose artifact is gone."""
+        with self._errors():
+            self._db.execute("DELETE FROM current WHERE key = ?", (key,))
+            self._db.execute("DELETE FROM stages WHERE key = ?", (key,))
+
+    def stages(self) -> list[FinishedStage]:
+        """All finished stages in the order they finished."""
+        with self._errors():
+            rows = self._db.execute(f"{_SELECT} ORDER BY finished, key").fetchall()
+        return [FinishedStage(*row) for row in rows]
+
+    def set_current(self, stage: str, key: str) -> None:
+        """Say which artifact of a stage belongs to the latest run."""
+        with self._errors():
+            self._db.execute("INSERT OR REPLACE INTO current VALUES (?,?)", (stage, key))
+
+    def current(self) -> dict[str, str]:
+        """Stage name -> key of its artifact in the latest run."""
+        with self._errors():
+            return dict(self._db.execute("SELECT stage, key FROM current").fetchall())
+
+    # -- hashes of input files
+
+    def cached_hash(self, path: Path) -> str | None:
+        """SHA-256 of an input file hashed before, if size and change time are still the same."""
+        status = path.stat()
+        with self._errors():
+            row = self._db.execute(
+                "SELECT sha256 FROM hashes WHERE path = ? AND size = ? AND mtime_ns = ?",
+                (str(path.resolve()), status.st_size, status.st_mtime_ns),
+            ).fetchone()
+        return row[0] if row else None
+
+    def remember_hash(self, path: Path, sha256: str) -> None:
+        """Keep the hash of an input file, so that a large recording is read once."""
+        status = path.stat()
+        with self._errors():
+            self._db.execute(
+                "INSERT OR REPLACE INTO hashes VALUES (?,?,?,?)",
+                (str(path.resolve()), status.st_size, status.st_mtime_ns, sha256),
+            )
+
+    # -- closing
+
+    def close(self) -> None:
+        """Close the file; closing twice is allowed."""
+        self._db.close()
+
+    def __enter__(self) -> Ledger:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        at: TracebackType | None,
+    ) -> None:
+        self.close()
+
+
+_SELECT = f"SELECT {', '.join(f.name for f in fields(FinishedStage))} FROM stages"

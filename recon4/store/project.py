@@ -1,0 +1,161 @@
+"""A project: one folder that can be zipped, moved and opened elsewhere."""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import time
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from recon4.errors import StoreError
+from recon4.store.atomic import raise_if_full, sweep, write_json
+from recon4.store.ledger import FinishedStage, Ledger
+
+FORMAT = 1
+
+
+class Project:
+    """An open project folder; while it is open no other process can open it.
+
+    Layout and rules are in ``docs/stages.md``. Who only looks needs no lock: `read_project`.
+    """
+
+    def __init__(self, root: Path, ledger: Ledger, lock: int) -> None:
+        self.root = root
+        self.ledger = ledger
+        self._lock = lock
+
+    @staticmethod
+    def open(root: Path) -> Project:
+        """Open a project, or make one of an empty or missing folder.
+
+        What a killed run left unfinished is removed; folders we do not know are left alone.
+
+        Raises:
+            NoSpace: If the disk is full.
+            StoreError: If the folder is something else, in use, damaged or not writable.
+        """
+        _make_folder(root)
+        lock = _lock(root / ".lock")
+        try:
+            sweep(root)
+            sweep(root / "artifacts")
+            return Project(root, Ledger(root / "ledger.sqlite"), lock)
+        except BaseException:
+            os.close(lock)
+            raise
+
+    @property
+    def artifacts(self) -> Path:
+        """Folder of the finished stages."""
+        return self.root / "artifacts"
+
+    def describe(self, **facts: Any) -> None:
+        """Add facts to ``project.json`` (name, rig, preset, what was imported)."""
+        write_json(self.root / "project.json", read_description(self.root) | facts)
+
+    def close(self) -> None:
+        """Close the ledger and let others in."""
+        self.ledger.close()
+        os.close(self._lock)
+
+    def __enter__(self) -> Project:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        at: TracebackType | None,
+    ) -> None:
+        self.close()
+
+
+def is_project(root: Path) -> bool:
+    """Whether a folder is a recon4 project."""
+    return (root / "project.json").is_file()
+
+
+def read_description(root: Path) -> dict[str, Any]:
+    """``project.json``, without opening the project.
+
+    Raises:
+        StoreError: If it is missing or damaged.
+    """
+    path = root / "project.json"
+    try:
+        found = json.loads(path.read_text("utf-8"))
+    except FileNotFoundError as error:
+        raise StoreError(f"{root} is not a recon4 project: it has no project.json") from error
+    except (OSError, ValueError) as error:
+        raise StoreError(f"{path} cannot be read: {error}") from error
+    if not isinstance(found, dict) or found.get("format") != FORMAT:
+        raise StoreError(f"{path}: expected format {FORMAT}")
+    return found
+
+
+def read_stages(root: Path) -> list[FinishedStage]:
+    """Finished stages of a project that another process may have open.
+
+    Raises:
+        StoreError: If the folder is not a project or its ledger is damaged.
+    """
+    with _reading(root) as ledger:
+        return ledger.stages()
+
+
+def read_artifacts(root: Path) -> dict[str, Path]:
+    """Stage name -> folder of its artifact in the latest run, open or not.
+
+    Raises:
+        StoreError: If the folder is not a project or its ledger is damaged.
+    """
+    with _reading(root) as ledger:
+        return {stage: root / "artifacts" / key for stage, key in ledger.current().items()}
+
+
+def _reading(root: Path) -> Ledger:
+    read_description(root)
+    return Ledger(root / "ledger.sqlite")
+
+
+def _make_folder(root: Path) -> None:
+    try:
+        root.mkdir(parents=True, exist_ok=True)
+        if not is_project(root):
+            _refuse_foreign(root)
+            created = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
+            name = root.resolve().name
+            write_json(root / "project.json", {"format": FORMAT, "name": name, "created": created})
+        read_description(root)
+        (root / "artifacts").mkdir(exist_ok=True)
+    except OSError as error:
+        raise_if_full(error, root)
+        raise StoreError(f"cannot use {root} as a project: {error.strerror}") from error
+
+
+def _refuse_foreign(root: Path) -> None:
+    sweep(root)
+    others = sorted(entry.name for entry in root.iterdir())
+    if others:
+        raise StoreError(
+            f"{root} is not empty and not a recon4 project (it holds {others[0]!r}); "
+            "give a new folder"
+        )
+
+
+def _lock(path: Path) -> int:
+    try:
+        descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+    except OSError as error:
+        raise_if_full(error, path)
+        raise StoreError(f"cannot lock {path.parent}: {error.strerror}") from error
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        os.close(descriptor)
+        raise StoreError(f"{path.parent} is in use by another recon4 process") from error
+    return descriptor

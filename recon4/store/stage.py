@@ -1,0 +1,266 @@
+"""Run a stage once: same inputs, settings and code version find the finished artifact again."""
+
+from __future__ import annotations
+
+import json
+import platform
+import secrets
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, fields, replace
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+import recon4
+from recon4.errors import StoreError
+from recon4.progress import Progress
+from recon4.settings import Settings, to_json
+from recon4.store.atomic import atomic_folder, raise_if_full, write_json
+from recon4.store.hashing import files_below, hash_file, hash_json
+from recon4.store.ledger import FinishedStage
+from recon4.store.project import Project
+from recon4.store.usage import Meter
+
+_KEY_PACKAGES = ("numpy", "scipy", "numba", "gtsam", "laspy", "pyproj")
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """What a stage is: a pure function of its inputs and of some groups of settings."""
+
+    name: str
+    version: int
+    """Raised whenever the same inputs give another result than before."""
+    groups: tuple[str, ...]
+    """Groups of `Settings` it reads; the others are not there when it runs."""
+    function: Callable[..., Mapping[str, Any] | None]
+    """``function(out=folder, settings=…, progress=…, **inputs)``. Writes into the empty folder
+    ``out``; may return figures for the manifest as plain JSON values."""
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """Something from outside the project that a stage reads."""
+
+    key: str
+    """Hash of its content."""
+    value: Any
+    """What the stage's function is given."""
+
+
+@dataclass(frozen=True, slots=True)
+class Artifact:
+    """The result of a stage."""
+
+    stage: str
+    key: str
+    folder: Path
+
+    @property
+    def value(self) -> Path:
+        """What a stage reading it is given: its folder."""
+        return self.folder
+
+    def manifest(self) -> dict[str, Any]:
+        """What it is made of, of which version, what it took and the hashes of its files.
+
+        Raises:
+            StoreError: If it cannot be read.
+        """
+        return read_manifest(self.folder)
+
+
+@dataclass(frozen=True, slots=True)
+class StageRun:
+    """How a stage went in this run."""
+
+    done: FinishedStage
+    """What it took when it really ran."""
+    reused: bool
+    """Found finished, not run."""
+    figures: Mapping[str, Any]
+    """What its function returned."""
+
+
+class StageRunner:
+    """Runs stages of a project in the order it is told, each at most once for the same inputs."""
+
+    def __init__(self, project: Project, settings: Settings, progress: Progress) -> None:
+        self.runs: dict[str, StageRun] = {}
+        """Stage name -> how it went, in order."""
+        self._project = project
+        self._settings = settings
+        self._progress = progress
+
+    def run(self, stage: Stage, **inputs: Input | Artifact | None) -> Artifact:
+        """The artifact of a stage, made now unless it is there already.
+
+        Args:
+            stage: What to run.
+            inputs: Keyword arguments of its function; None stays None.
+
+        Raises:
+            NoSpace: If the disk is full; nothing half-written stays.
+            Recon4Error: Whatever the stage raises.
+        """
+        key = stage_key(stage, self._settings, inputs)
+        artifact = Artifact(stage.name, key, self._project.artifacts / key)
+        self._progress.event("stage", stage=stage.name, key=key, state="running")
+        done = self._finished(artifact)
+        reused = done is not None
+        if done is None:
+            done = self._make(stage, artifact, inputs)
+        self._project.ledger.set_current(stage.name, key)
+        self.runs[stage.name] = StageRun(done, reused, artifact.manifest()["figures"])
+        state = "reused" if reused else "done"
+        self._progress.event(
+            "stage", stage=stage.name, key=key, state=state, seconds=round(done.seconds, 3)
+        )
+        return artifact
+
+    def _finished(self, artifact: Artifact) -> FinishedStage | None:
+        """Its row, if the artifact is there and whole; a damaged one is set aside, not deleted."""
+        ledger = self._project.ledger
+        row = ledger.find(artifact.key)
+        if not artifact.folder.exists():
+            if row is not None:
+                ledger.forget(artifact.key)
+            return None
+        # No row: killed between the rename and the commit, or the ledger was lost. Trust nothing.
+        damage = damage_of(artifact.folder, hashes=row is None)
+        if damage:
+            self._set_aside(artifact, damage)
+            return None
+        if row is None:
+            row = FinishedStage(**artifact.manifest()["done"])
+            ledger.add(row)
+        return row
+
+    def _set_aside(self, artifact: Artifact, damage: list[str]) -> None:
+        aside = artifact.folder.with_name(f"damaged-{artifact.key[:12]}-{secrets.token_hex(3)}")
+        artifact.folder.rename(aside)
+        self._project.ledger.forget(artifact.key)
+        self._progress.event(
+            "damaged", stage=artifact.stage, moved_to=f"artifacts/{aside.name}", files=damage[:10]
+        )
+
+    def _make(
+        self, stage: Stage, artifact: Artifact, inputs: Mapping[str, Input | Artifact | None]
+    ) -> FinishedStage:
+        values = {name: None if given is None else given.value for name, given in inputs.items()}
+        settings = only(self._settings, stage.groups)
+        meter = Meter()
+        with atomic_folder(artifact.folder) as folder:
+            figures = stage.function(
+                out=folder, settings=settings, progress=self._progress, **values
+            )
+            done = FinishedStage(
+                key=artifact.key,
+                stage=stage.name,
+                version=stage.version,
+                finished=time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()),
+                seconds=meter.seconds,
+                cpu_seconds=meter.cpu_seconds,
+                peak_bytes=meter.peak_bytes,
+            )
+            _write_manifest(folder, done, _recipe(stage, self._settings, inputs), figures or {})
+        try:
+            self._project.ledger.add(done)
+        except Exception as error:
+            raise_if_full(error, self._project.root)
+            raise
+        return done
+
+
+def stage_key(
+    stage: Stage, settings: Settings, inputs: Mapping[str, Input | Artifact | None]
+) -> str:
+    """SHA-256 of the stage's name and version, the settings it reads and its inputs' keys."""
+    return hash_json(_recipe(stage, settings, inputs))
+
+
+def only(settings: Settings, groups: tuple[str, ...]) -> Settings:
+    """The settings with all other groups missing (None).
+
+    A stage that reads a group it did not declare fails at once instead of being cached wrongly.
+    """
+    missing: dict[str, Any] = {f.name: None for f in fields(settings) if f.name not in groups}
+    return replace(settings, **missing)
+
+
+def read_manifest(folder: Path) -> dict[str, Any]:
+    """``manifest.json`` of an artifact.
+
+    Raises:
+        StoreError: If it is missing or damaged.
+    """
+    path = folder / "manifest.json"
+    try:
+        found = json.loads(path.read_text("utf-8"))
+        return {name: found[name] for name in ("recipe", "done", "figures", "versions", "files")}
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise StoreError(f"{path} cannot be read: {error}") from error
+
+
+def damage_of(folder: Path, *, hashes: bool) -> list[str]:
+    """What is wrong with an artifact, in words; empty = as it was written.
+
+    Args:
+        folder: The artifact.
+        hashes: Also read and hash every byte; otherwise only names and sizes are compared.
+    """
+    try:
+        files = read_manifest(folder)["files"]
+    except StoreError as error:
+        return [str(error)]
+    there = set(files_below(folder)) - {"manifest.json"}
+    damage = [f"{name} is missing" for name in sorted(files.keys() - there)]
+    damage += [f"{name} does not belong here" for name in sorted(there - files.keys())]
+    for name in sorted(files.keys() & there):
+        if (folder / name).stat().st_size != files[name]["bytes"]:
+            damage.append(f"{name} has another size")
+        elif hashes and hash_file(folder / name) != files[name]["sha256"]:
+            damage.append(f"{name} has other bytes")
+    return damage
+
+
+def versions() -> dict[str, str]:
+    """Versions of recon4, Python and the packages whose numbers end up in a result."""
+    found = {"recon4": recon4.__version__, "python": platform.python_version()}
+    for name in _KEY_PACKAGES:
+        try:
+            found[name] = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            found[name] = "missing"
+    return found
+
+
+def _recipe(
+    stage: Stage, settings: Settings, inputs: Mapping[str, Input | Artifact | None]
+) -> dict[str, Any]:
+    return {
+        "stage": stage.name,
+        "version": stage.version,
+        "settings": {group: to_json(getattr(settings, group)) for group in sorted(stage.groups)},
+        "inputs": {name: given.key if given else None for name, given in sorted(inputs.items())},
+    }
+
+
+def _write_manifest(
+    folder: Path, done: FinishedStage, recipe: dict[str, Any], figures: Mapping[str, Any]
+) -> None:
+    files = {
+        name: {"bytes": (folder / name).stat().st_size, "sha256": hash_file(folder / name)}
+        for name in files_below(folder)
+    }
+    write_json(
+        folder / "manifest.json",
+        {
+            "recipe": recipe,
+            "done": asdict(done),
+            "figures": dict(figures),
+            "versions": versions(),
+            "files": files,
+        },
+    )
