@@ -12,6 +12,11 @@ from typing import Any, Literal, get_args, get_type_hints
 from recon4.errors import ConfigError
 
 
+def _require(holds: bool, rule: str, value: object) -> None:
+    if not holds:
+        raise ConfigError(f"{rule}, got {value}")
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class IngestSettings:
     """Reading a recording into multiframes."""
@@ -46,6 +51,9 @@ class SegmentSettings:
     """Random segments drawn in a cell between two neighboring rings."""
     preserved: int = 5
     """Shortest of them that are kept."""
+    max_length_per_range: float = 0.34
+    """A segment longer than this times its nearer end's range bridges a depth edge and is dropped
+    (a third: 2° between beams, at least 6° of incidence)."""
     seed: int = 4
     """Seed of the random draws; combined with the frame id."""
 
@@ -103,21 +111,51 @@ class RegistrationSettings:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class PlaneSettings:
+    """The map of small planes that solver ``planes`` registers segments to."""
+
+    finest_m: float = 0.2
+    """Edge of the smallest cubes [m]."""
+    levels: int = 4
+    """Sizes of cubes, each twice the one before."""
+    min_points: int = 8
+    """A cube with fewer points has no plane."""
+    max_sd_m: float = 0.05
+    """Points of one plane scatter by at most this across it [m]."""
+    point_sd_m: float = 0.02
+    """Standard deviation of one measured point [m]."""
+    kernel_m: float = 0.04
+    """Scale of the Cauchy kernel on the distance from the plane [m]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class OdometrySettings:
     """Pose of each multiframe from the ones before (V §2.4, requirements A3, A5)."""
 
     history: int = 10
-    """Multiframes in the local map."""
+    """Keyframes in the local map."""
+    keyframe_m: float = 0.3
+    """A multiframe joins the local map once the body moved so far [m] …"""
+    keyframe_rad: float = 0.26
+    """… or turned so far [rad] since the last that did."""
+    rounds: int = 8
+    """Upper bound on match-and-solve rounds."""
+    information_scale: float = 0.02
+    """Share of the matches counted as independent: neighbors see the same plane's error."""
     use_imu: bool = True
     """Predict and undistort with the IMU when the recording has one."""
-    gyro_noise_rad_s: float = 0.003
-    """Standard deviation of one gyroscope sample [rad/s]."""
-    accel_noise_m_s2: float = 0.05
-    """Standard deviation of one accelerometer sample [m/s²]."""
-    gyro_bias_walk_rad_s: float = 1e-4
+    gyro_noise: float = 3e-4
+    """Noise density of the gyroscope [rad/s/sqrt(Hz)]."""
+    accel_noise: float = 1e-2
+    """Noise density of the accelerometer [m/s²/sqrt(Hz)]."""
+    gyro_bias_walk: float = 1e-4
     """Random walk of the gyroscope's bias [rad/s/sqrt(s)]."""
-    accel_bias_walk_m_s2: float = 1e-3
+    accel_bias_walk: float = 1e-3
     """Random walk of the accelerometer's bias [m/s²/sqrt(s)]."""
+    free_turn_walk: float = 3.0
+    """Without an IMU: random walk of the turn rate [rad/s/sqrt(s)]."""
+    free_accel: float = 2.0
+    """Without an IMU: random walk of the velocity [m/s/sqrt(s)]."""
     lost_error_m: float = 0.25
     """A larger error means lost [m]."""
     lost_share: float = 0.3
@@ -222,6 +260,7 @@ class Settings:
     segments: SegmentSettings = field(default_factory=SegmentSettings)
     overlap: OverlapSettings = field(default_factory=OverlapSettings)
     registration: RegistrationSettings = field(default_factory=RegistrationSettings)
+    planes: PlaneSettings = field(default_factory=PlaneSettings)
     odometry: OdometrySettings = field(default_factory=OdometrySettings)
     graph: GraphSettings = field(default_factory=GraphSettings)
     verification: VerificationSettings = field(default_factory=VerificationSettings)
@@ -309,8 +348,3 @@ def _parse(text: str, kind: Any, path: str) -> Any:
 def _names(group: object) -> list[str]:
     assert is_dataclass(group)
     return [f.name for f in fields(group)]
-
-
-def _require(holds: bool, rule: str, value: object) -> None:
-    if not holds:
-        raise ConfigError(f"{rule}, got {value}")

@@ -1,0 +1,150 @@
+"""Strapdown integration of an IMU, with the covariance of its error state."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def rotation(w: Any) -> Any:
+    """Rotation matrix of a rotation vector [rad], (3,) -> (3, 3). Rodrigues' formula."""
+    angle = np.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+    if angle < 1e-9:
+        a, b = 1.0, 0.5
+    else:
+        a, b = np.sin(angle) / angle, (1.0 - np.cos(angle)) / (angle * angle)
+    out = np.empty((3, 3))
+    xx, yy, zz = w[0] * w[0], w[1] * w[1], w[2] * w[2]
+    out[0, 0] = 1.0 - b * (yy + zz)
+    out[1, 1] = 1.0 - b * (xx + zz)
+    out[2, 2] = 1.0 - b * (xx + yy)
+    out[0, 1] = -a * w[2] + b * w[0] * w[1]
+    out[1, 0] = a * w[2] + b * w[0] * w[1]
+    out[0, 2] = a * w[1] + b * w[0] * w[2]
+    out[2, 0] = -a * w[1] + b * w[0] * w[2]
+    out[1, 2] = -a * w[0] + b * w[1] * w[2]
+    out[2, 1] = a * w[0] + b * w[1] * w[2]
+    return out
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def propagate(
+    t_s: Any,
+    gyro: Any,
+    accel: Any,
+    R0: Any,
+    state0: Any,
+    P0: Any,
+    noise: Any,
+) -> Any:
+    """Carry a state over the samples of one frame (midpoint rule between two samples).
+
+    Args:
+        t_s: Sample times, the first at the start, the last at the end of the frame [s], (K,).
+        gyro: Angular rate in the body [rad/s], (K, 3).
+        accel: Specific force in the body [m/s²], (K, 3).
+        R0: Rotation ``R_odom_body`` at the start, (3, 3).
+        state0: Position, velocity, gyro bias, accel bias, gravity, (15,).
+        P0: Covariance of the error (rotation about odom axes, then as ``state0``), (18, 18).
+        noise: Densities per sqrt(s): gyro, accel, gyro bias walk, accel bias walk, (4,).
+
+    Returns:
+        Rotations (K, 3, 3), positions (K, 3), velocity at the end (3,), transition Phi (18, 18)
+        and covariance at the end (18, 18).
+    """
+    count = len(t_s)
+    R_all, p_all = np.empty((count, 3, 3)), np.empty((count, 3))
+    R, p, v = R0.copy(), state0[0:3].copy(), state0[3:6].copy()
+    bg, ba, gravity = state0[6:9], state0[9:12], state0[12:15]
+    Phi = np.eye(18)
+    P = P0.copy()
+    R_all[0], p_all[0] = R, p
+    for k in range(count - 1):
+        dt = t_s[k + 1] - t_s[k]
+        omega = 0.5 * (gyro[k] + gyro[k + 1]) - bg
+        force = 0.5 * (accel[k] + accel[k + 1]) - ba
+        half = R @ rotation(omega * (0.5 * dt))
+        a = half @ force + gravity
+        F = np.eye(18)
+        f = half @ force
+        F[6, 1], F[6, 2] = f[2] * dt, -f[1] * dt
+        F[7, 0], F[7, 2] = -f[2] * dt, f[0] * dt
+        F[8, 0], F[8, 1] = f[1] * dt, -f[0] * dt
+        for i in range(3):
+            F[3 + i, 6 + i] = dt
+            F[6 + i, 15 + i] = dt
+            F[3 + i, 15 + i] = 0.5 * dt * dt
+            for j in range(3):
+                F[i, 9 + j] = -half[i, j] * dt
+                F[6 + i, 12 + j] = -half[i, j] * dt
+                F[3 + i, 12 + j] = -0.5 * half[i, j] * dt * dt
+                F[3 + i, j] = 0.5 * dt * F[6 + i, j]
+        Phi = F @ Phi
+        P = F @ P @ F.T
+        for i in range(3):
+            P[i, i] += noise[0] ** 2 * dt
+            P[3 + i, 3 + i] += noise[1] ** 2 * dt**3 / 3.0
+            P[3 + i, 6 + i] += noise[1] ** 2 * dt**2 / 2.0
+            P[6 + i, 3 + i] += noise[1] ** 2 * dt**2 / 2.0
+            P[6 + i, 6 + i] += noise[1] ** 2 * dt
+            P[9 + i, 9 + i] += noise[2] ** 2 * dt
+            P[12 + i, 12 + i] += noise[3] ** 2 * dt
+        p = p + v * dt + 0.5 * a * dt * dt
+        v = v + a * dt
+        R = R @ rotation(omega * dt)
+        R_all[k + 1], p_all[k + 1] = R, p
+    return R_all, p_all, v, Phi, P
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def place_points(t_s: Any, R: Any, p: Any, t_points: Any, points: Any) -> Any:
+    """Points of the body, each at its own time, in the frame of the poses (V Eq. 2.8).
+
+    Args:
+        t_s: Times of the poses, increasing [s], (K,).
+        R: Rotations, (K, 3, 3).
+        p: Positions [m], (K, 3).
+        t_points: Times of the points within the first and last pose [s], (N,).
+        points: In the body [m], (N, 3).
+
+    Returns:
+        (N, 3): between two poses the position is interpolated and the rotation is SLERP.
+    """
+    count = len(t_s)
+    w = np.empty((count - 1, 3))
+    for k in range(count - 1):
+        D = R[k].T @ R[k + 1]
+        trace = min(3.0, max(-1.0, D[0, 0] + D[1, 1] + D[2, 2]))
+        angle = np.arccos(0.5 * (trace - 1.0))
+        scale = 0.5 if angle < 1e-6 else 0.5 * angle / np.sin(angle)
+        w[k, 0] = scale * (D[2, 1] - D[1, 2])
+        w[k, 1] = scale * (D[0, 2] - D[2, 0])
+        w[k, 2] = scale * (D[1, 0] - D[0, 1])
+    out = np.empty((len(points), 3))
+    for n in range(len(points)):
+        k = min(max(np.searchsorted(t_s, t_points[n], side="right") - 1, 0), count - 2)
+        s = (t_points[n] - t_s[k]) / (t_s[k + 1] - t_s[k])
+        x, y, z = points[n, 0], points[n, 1], points[n, 2]
+        wx, wy, wz = s * w[k, 0], s * w[k, 1], s * w[k, 2]
+        angle_sq = wx * wx + wy * wy + wz * wz
+        # Taylor series: exact to 1e-10 rad for the less than 0.3 rad between two poses.
+        a = 1.0 - angle_sq / 6.0 * (1.0 - angle_sq / 20.0 * (1.0 - angle_sq / 42.0))
+        b = 0.5 - angle_sq / 24.0 * (1.0 - angle_sq / 30.0 * (1.0 - angle_sq / 56.0))
+        cx, cy, cz = wy * z - wz * y, wz * x - wx * z, wx * y - wy * x
+        rx = x + a * cx + b * (wy * cz - wz * cy)
+        ry = y + a * cy + b * (wz * cx - wx * cz)
+        rz = z + a * cz + b * (wx * cy - wy * cx)
+        M = R[k]
+        out[n, 0] = (
+            M[0, 0] * rx + M[0, 1] * ry + M[0, 2] * rz + p[k, 0] + s * (p[k + 1, 0] - p[k, 0])
+        )
+        out[n, 1] = (
+            M[1, 0] * rx + M[1, 1] * ry + M[1, 2] * rz + p[k, 1] + s * (p[k + 1, 1] - p[k, 1])
+        )
+        out[n, 2] = (
+            M[2, 0] * rx + M[2, 1] * ry + M[2, 2] * rz + p[k, 2] + s * (p[k + 1, 2] - p[k, 2])
+        )
+    return out

@@ -1,0 +1,56 @@
+"""Spherical z-buffers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def _bin(x: Any, y: Any, z: Any, azimuth_bins: Any, elevation_bins: Any) -> Any:
+    range_m = np.sqrt(x * x + y * y + z * z)
+    if range_m < 1e-6:
+        return -1, -1, range_m
+    column = int((np.arctan2(y, x) + np.pi) * azimuth_bins / (2.0 * np.pi))
+    row = int((np.arcsin(min(max(z / range_m, -1.0), 1.0)) + 0.5 * np.pi) * elevation_bins / np.pi)
+    return min(column, azimuth_bins - 1), min(row, elevation_bins - 1), range_m
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def nearest_ranges(p: Any, azimuth_bins: int, elevation_bins: int, min_points: int) -> Any:
+    """Smallest range in each bin of azimuth and elevation [m]; 0 = fewer points than needed.
+
+    Args:
+        p: Points in the frame of the buffer [m], (N, 3).
+    """
+    buffer = np.full((azimuth_bins, elevation_bins), np.float32(np.inf), np.float32)
+    count = np.zeros((azimuth_bins, elevation_bins), np.int32)
+    for k in range(len(p)):
+        column, row, range_m = _bin(p[k, 0], p[k, 1], p[k, 2], azimuth_bins, elevation_bins)
+        if column >= 0:
+            count[column, row] += 1
+            buffer[column, row] = min(buffer[column, row], np.float32(range_m))
+    for column in range(azimuth_bins):
+        for row in range(elevation_bins):
+            if count[column, row] < min_points:
+                buffer[column, row] = 0.0
+    return buffer
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def share_inside(buffer: Any, p: Any, R: Any, t: Any, relative: float, absolute_m: float) -> float:
+    """Share of points, moved by (R, t) into the buffer's frame, that its view volume holds."""
+    azimuth_bins, elevation_bins = buffer.shape
+    inside = 0
+    for k in range(len(p)):
+        x = R[0, 0] * p[k, 0] + R[0, 1] * p[k, 1] + R[0, 2] * p[k, 2] + t[0]
+        y = R[1, 0] * p[k, 0] + R[1, 1] * p[k, 1] + R[1, 2] * p[k, 2] + t[1]
+        z = R[2, 0] * p[k, 0] + R[2, 1] * p[k, 1] + R[2, 2] * p[k, 2] + t[2]
+        column, row, range_m = _bin(x, y, z, azimuth_bins, elevation_bins)
+        if column < 0 or buffer[column, row] == 0.0:
+            continue
+        if range_m < buffer[column, row] * (1.0 + relative) + absolute_m:
+            inside += 1
+    return inside / max(len(p), 1)

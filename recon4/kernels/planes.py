@@ -1,0 +1,254 @@
+"""A map of small planes: points summed in cubes of several sizes, and how far points lie off.
+
+A cube's ten sums (count, first and second moments) can be added to and subtracted from exactly
+enough, so a map can forget a multiframe, or be asked about one that it holds but must not use.
+The tables are plain arrays: ``keys`` (C,), ``sums`` (C, 10), ``fits`` (C, 10), ``state`` (C,).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+EMPTY = np.int64(-1)
+DIRTY, PLANE, NO_PLANE = np.uint8(0), np.uint8(1), np.uint8(2)
+_OFFSET = np.int64(1 << 19)
+_MASK = np.int64((1 << 20) - 1)
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def _key(level: Any, x: Any, y: Any, z: Any, size: Any) -> Any:
+    ix = (np.int64(np.floor(x / size)) + _OFFSET) & _MASK
+    iy = (np.int64(np.floor(y / size)) + _OFFSET) & _MASK
+    iz = (np.int64(np.floor(z / size)) + _OFFSET) & _MASK
+    return (np.int64(level) << 60) | (ix << 40) | (iy << 20) | iz
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def _slot(keys: Any, key: Any) -> Any:
+    """Where a key is, or the empty place where it would be."""
+    mask = np.int64(len(keys) - 1)
+    h = np.uint64(key) * np.uint64(0x9E3779B97F4A7C15)
+    row = np.int64(h >> np.uint64(20)) & mask
+    while keys[row] != key and keys[row] != EMPTY:
+        row = (row + 1) & mask
+    return row
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def add_points(keys: Any, sums: Any, state: Any, sizes: Any, p: Any, sign: float) -> int:
+    """Add (``sign`` 1) or take away (-1) points, (N, 3). Returns how many cubes are new."""
+    fresh = 0
+    for level in range(len(sizes)):
+        size = sizes[level]
+        for k in range(len(p)):
+            x, y, z = p[k, 0], p[k, 1], p[k, 2]
+            key = _key(level, x, y, z, size)
+            row = _slot(keys, key)
+            if keys[row] == EMPTY:
+                keys[row] = key
+                fresh += 1
+            # Moments about the cube's center: small numbers, so that taking away is exact enough.
+            x -= (np.floor(x / size) + 0.5) * size
+            y -= (np.floor(y / size) + 0.5) * size
+            z -= (np.floor(z / size) + 0.5) * size
+            s = sums[row]
+            s[0] += sign
+            s[1] += sign * x
+            s[2] += sign * y
+            s[3] += sign * z
+            s[4] += sign * x * x
+            s[5] += sign * x * y
+            s[6] += sign * x * z
+            s[7] += sign * y * y
+            s[8] += sign * y * z
+            s[9] += sign * z * z
+            state[row] = DIRTY
+    return fresh
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def rehash(keys: Any, sums: Any, capacity: int) -> Any:
+    """The non-empty cubes in tables of another size (a power of two)."""
+    new_keys = np.full(capacity, EMPTY, np.int64)
+    new_sums = np.zeros((capacity, 10), np.float64)
+    used = 0
+    for row in range(len(keys)):
+        if keys[row] != EMPTY and sums[row, 0] > 0.5:
+            to = _slot(new_keys, keys[row])
+            new_keys[to] = keys[row]
+            new_sums[to] = sums[row]
+            used += 1
+    return new_keys, new_sums, used
+
+
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+def _eigen_sym3(a: Any, vals: Any, vecs: Any) -> None:
+    """Eigenvalues (ascending) and vectors (columns) of a symmetric 3x3 by Jacobi rotations."""
+    for i in range(3):
+        for j in range(3):
+            vecs[i, j] = 1.0 if i == j else 0.0
+    for _ in range(8):
+        off = a[0, 1] ** 2 + a[0, 2] ** 2 + a[1, 2] ** 2
+        if off < 1e-24:
+            break
+        for p in range(2):
+            for q in range(p + 1, 3):
+                if abs(a[p, q]) < 1e-16:
+                    continue
+                theta = 0.5 * (a[q, q] - a[p, p]) / a[p, q]
+                t = 1.0 / (abs(theta) + np.sqrt(theta * theta + 1.0))
+                if theta < 0.0:
+                    t = -t
+                c = 1.0 / np.sqrt(t * t + 1.0)
+                s = t * c
+                for k in range(3):
+                    akp, akq = a[k, p], a[k, q]
+                    a[k, p] = c * akp - s * akq
+                    a[k, q] = s * akp + c * akq
+                for k in range(3):
+                    apk, aqk = a[p, k], a[q, k]
+                    a[p, k] = c * apk - s * aqk
+                    a[q, k] = s * apk + c * aqk
+                for k in range(3):
+                    vkp, vkq = vecs[k, p], vecs[k, q]
+                    vecs[k, p] = c * vkp - s * vkq
+                    vecs[k, q] = s * vkp + c * vkq
+    for i in range(3):
+        vals[i] = a[i, i]
+    for i in range(2):
+        for j in range(2 - i):
+            if vals[j] > vals[j + 1]:
+                vals[j], vals[j + 1] = vals[j + 1], vals[j]
+                for k in range(3):
+                    vecs[k, j], vecs[k, j + 1] = vecs[k, j + 1], vecs[k, j]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _fit(key: Any, s: Any, size: Any, min_points: Any, max_sd: Any, f: Any, work: Any) -> Any:
+    """Fit the plane of one cube into ``f``: center, normal, variances across and along."""
+    n = s[0]
+    if n < min_points:
+        return NO_PLANE
+    mx, my, mz = s[1] / n, s[2] / n, s[3] / n
+    a, vecs, vals = work[0:3], work[3:6], work[6]
+    a[0, 0] = s[4] / n - mx * mx
+    a[0, 1] = s[5] / n - mx * my
+    a[0, 2] = s[6] / n - mx * mz
+    a[1, 1] = s[7] / n - my * my
+    a[1, 2] = s[8] / n - my * mz
+    a[2, 2] = s[9] / n - mz * mz
+    a[1, 0], a[2, 0], a[2, 1] = a[0, 1], a[0, 2], a[1, 2]
+    _eigen_sym3(a, vals, vecs)
+    across, along = max(vals[0], 0.0), max(vals[1], 1e-12)
+    if across > max_sd * max_sd or along < (0.1 * size) ** 2 or across > 0.1 * along:
+        return NO_PLANE
+    ix = ((key >> 40) & _MASK) - _OFFSET
+    iy = ((key >> 20) & _MASK) - _OFFSET
+    iz = (key & _MASK) - _OFFSET
+    f[0] = (ix + 0.5) * size + mx
+    f[1] = (iy + 0.5) * size + my
+    f[2] = (iz + 0.5) * size + mz
+    f[3], f[4], f[5] = vecs[0, 0], vecs[1, 0], vecs[2, 0]
+    f[6], f[7], f[8] = across, along, n
+    return PLANE
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def accumulate(
+    keys: Any,
+    sums: Any,
+    fits: Any,
+    state: Any,
+    sizes: Any,
+    q: Any,
+    fraction: Any,
+    center: Any,
+    finest: int,
+    gate: float,
+    kernel: float,
+    point_var: float,
+    min_points: float,
+    max_sd: float,
+    H: Any,
+    g: Any,
+    residual: Any,
+) -> Any:
+    """Normal equations of points against the planes of the finest cube that holds one.
+
+    A correction is a rotation about ``center`` and a shift, one at the start and one at the end
+    of the frame; a point at ``fraction`` s of the frame feels (1 - s) of the first and s of the
+    second. Cauchy weights on the distance, scaled by the variances of point and plane.
+
+    Args:
+        q: Points in the map frame [m], (N, 3).
+        fraction: 0 at the start of the frame, 1 at its end, (N,).
+        H: Receives the sum of w J^T J, (12, 12): rotation, shift at the start, then at the end.
+        g: Receives the sum of w J^T r, (12,).
+        residual: Receives the distance of each point [m], NaN where there is no plane, (N,).
+
+    Returns:
+        Number of matches, sum of absolute distances, sum of w r², and the sum of n n^T (3, 3).
+    """
+    work = np.empty((7, 3))
+    J = np.empty(6)
+    H6b = np.zeros((6, 6))
+    H6m = np.zeros((6, 6))
+    H6e = np.zeros((6, 6))
+    normals = np.zeros((3, 3))
+    matches = 0
+    total = 0.0
+    chi2 = 0.0
+    for k in range(len(q)):
+        residual[k] = np.nan
+        for level in range(finest, len(sizes)):
+            key = _key(level, q[k, 0], q[k, 1], q[k, 2], sizes[level])
+            row = _slot(keys, key)
+            if keys[row] == EMPTY:
+                continue
+            if state[row] == DIRTY:
+                state[row] = _fit(key, sums[row], sizes[level], min_points, max_sd, fits[row], work)
+            if state[row] != PLANE:
+                continue
+            f = fits[row]
+            dx, dy, dz = q[k, 0] - f[0], q[k, 1] - f[1], q[k, 2] - f[2]
+            r = f[3] * dx + f[4] * dy + f[5] * dz
+            if abs(r) > gate:
+                break
+            inplane_sq = dx * dx + dy * dy + dz * dz - r * r
+            var = point_var + f[6] / f[8] * (1.0 + inplane_sq / f[7])
+            w = 1.0 / (var * (1.0 + (r / kernel) ** 2))
+            bx, by, bz = q[k, 0] - center[0], q[k, 1] - center[1], q[k, 2] - center[2]
+            J[0] = by * f[5] - bz * f[4]
+            J[1] = bz * f[3] - bx * f[5]
+            J[2] = bx * f[4] - by * f[3]
+            J[3], J[4], J[5] = f[3], f[4], f[5]
+            s = fraction[k]
+            wb, wm, we = w * (1.0 - s) * (1.0 - s), w * s * (1.0 - s), w * s * s
+            for i in range(6):
+                ji = J[i]
+                for j in range(i, 6):
+                    jj = ji * J[j]
+                    H6b[i, j] += wb * jj
+                    H6m[i, j] += wm * jj
+                    H6e[i, j] += we * jj
+                g[i] += w * (1.0 - s) * ji * r
+                g[6 + i] += w * s * ji * r
+            for i in range(3):
+                for j in range(3):
+                    normals[i, j] += f[3 + i] * f[3 + j]
+            residual[k] = r
+            matches += 1
+            total += abs(r)
+            chi2 += w * r * r
+            break
+    for i in range(6):
+        for j in range(6):
+            lo, hi = min(i, j), max(i, j)
+            H[i, j] += H6b[lo, hi]
+            H[6 + i, j] += H6m[lo, hi]
+            H[i, 6 + j] += H6m[lo, hi]
+            H[6 + i, 6 + j] += H6e[lo, hi]
+    return matches, total, chi2, normals

@@ -1,0 +1,128 @@
+"""Drawing collar line segments: which two points make one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+_MAX_PRESERVED = 16
+_RING_GAP = 3
+"""A ring that is empty in a cell is skipped, but no more than this far."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _next_random(state: Any) -> Any:
+    """Splitmix64 (Steele 2014): a stream that depends on nothing but its seed."""
+    state = np.uint64(state + np.uint64(0x9E3779B97F4A7C15))
+    z = state
+    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    return state, z ^ (z >> np.uint64(31))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _sort_by_cell(xyz: Any, ring: Any, rings: int, bins: int) -> Any:
+    """Rows ordered by (azimuth bin, ring), and where each cell starts."""
+    count = len(xyz)
+    cell = np.empty(count, np.int32)
+    start = np.zeros(bins * rings + 1, np.int64)
+    scale = bins / (2.0 * np.pi)
+    for k in range(count):
+        azimuth = np.arctan2(xyz[k, 1], xyz[k, 0]) + np.float32(np.pi)
+        column = min(int(azimuth * scale), bins - 1)
+        cell[k] = column * rings + ring[k]
+        start[cell[k] + 1] += 1
+    for k in range(bins * rings):
+        start[k + 1] += start[k]
+    fill = start[:-1].copy()
+    order = np.empty(count, np.int32)
+    for k in range(count):
+        order[fill[cell[k]]] = k
+        fill[cell[k]] += 1
+    return order, start
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def draw_pairs(
+    xyz: NDArray[np.float32],
+    ring: NDArray[np.uint8],
+    rings: int,
+    bins: int,
+    generated: int,
+    preserved: int,
+    max_length_per_range: float,
+    seed: int,
+) -> Any:
+    """Rows of the two ends of each collar line segment of one sensor (requirements A3.1, 1-2).
+
+    In every azimuth bin and between every two neighboring rings ``generated`` random pairs are
+    drawn and the ``preserved`` shortest kept; one longer than its nearer end's range times
+    ``max_length_per_range`` bridges a depth edge and is dropped.
+
+    Args:
+        xyz: Points of one sensor in its own frame, spin axis z [m], (N, 3).
+        ring: Beam of each, below ``rings``, (N,).
+
+    Returns:
+        (M, 2) int32, ordered by cell.
+    """
+    order, start = _sort_by_cell(xyz, ring, rings, bins)
+    out = np.empty((bins * (rings - 1) * preserved, 2), np.int32)
+    size = 0
+    best_sq = np.empty(_MAX_PRESERVED, np.float64)
+    best = np.empty((_MAX_PRESERVED, 2), np.int32)
+    state = np.uint64(seed)
+    for column in range(bins):
+        for lower in range(rings - 1):
+            a0, a1 = start[column * rings + lower], start[column * rings + lower + 1]
+            if a0 == a1:
+                continue
+            upper = lower + 1
+            while (
+                upper < rings - 1
+                and upper < lower + _RING_GAP
+                and start[column * rings + upper] == start[column * rings + upper + 1]
+            ):
+                upper += 1
+            b0, b1 = start[column * rings + upper], start[column * rings + upper + 1]
+            if b0 == b1:
+                continue
+            kept = 0
+            for _ in range(min(generated, (a1 - a0) * (b1 - b0))):
+                state, r1 = _next_random(state)
+                state, r2 = _next_random(state)
+                a = order[a0 + np.int64(r1 % np.uint64(a1 - a0))]
+                b = order[b0 + np.int64(r2 % np.uint64(b1 - b0))]
+                sq = (
+                    (xyz[a, 0] - xyz[b, 0]) ** 2
+                    + (xyz[a, 1] - xyz[b, 1]) ** 2
+                    + (xyz[a, 2] - xyz[b, 2]) ** 2
+                )
+                known = False
+                for m in range(kept):
+                    if best[m, 0] == a and best[m, 1] == b:
+                        known = True
+                if known or (kept == preserved and sq >= best_sq[kept - 1]):
+                    continue
+                row = kept if kept < preserved else kept - 1
+                while row > 0 and best_sq[row - 1] > sq:
+                    best_sq[row] = best_sq[row - 1]
+                    best[row] = best[row - 1]
+                    row -= 1
+                best_sq[row] = sq
+                best[row, 0] = a
+                best[row, 1] = b
+                kept = min(kept + 1, preserved)
+            for m in range(kept):
+                a, b = best[m, 0], best[m, 1]
+                near_sq = min(
+                    xyz[a, 0] ** 2 + xyz[a, 1] ** 2 + xyz[a, 2] ** 2,
+                    xyz[b, 0] ** 2 + xyz[b, 1] ** 2 + xyz[b, 2] ** 2,
+                )
+                if best_sq[m] > 0.0 and best_sq[m] <= near_sq * max_length_per_range**2:
+                    out[size] = best[m]
+                    size += 1
+    return out[:size]

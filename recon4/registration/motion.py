@@ -1,0 +1,163 @@
+"""What the body does between two registrations: the IMU's word, or constant velocity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from recon4.geometry.se3 import SE3, Array, so3_exp
+from recon4.kernels.imu import propagate
+from recon4.model.rig import Rig
+from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.settings import OdometrySettings
+
+_SLOT_S = 0.02
+"""Without an IMU the motion is sampled this often [s]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MotionState:
+    """Pose, velocity and sensor biases at one time, with the covariance of their error."""
+
+    t_ns: int
+    R: Array
+    """``R_odom_body``, (3, 3)."""
+    vector: Array
+    """Position, velocity, gyro bias, accelerometer bias, gravity, all in SI, (15,)."""
+    P: Array
+    """Covariance of (rotation about odom axes, then as ``vector``), (18, 18)."""
+
+    @property
+    def T_odom_body(self) -> SE3:
+        """The pose."""
+        return SE3(self.R, self.vector[:3])
+
+    def corrected(self, delta: Array, P: Array) -> MotionState:
+        """The state moved by an error (18,), with a new covariance."""
+        return replace(self, R=so3_exp(delta[:3]) @ self.R, vector=self.vector + delta[3:], P=P)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Prediction:
+    """Motion over one frame, before the LiDAR has its say."""
+
+    t_s: Array
+    """Times after the start of the frame [s], from 0 to its end, (K,)."""
+    T_odom_body: SE3
+    """Poses at these times, a batch of K."""
+    end: MotionState
+    prior: Array
+    """Covariance of the pose error at the start (6) and the state's error at the end (18)."""
+
+
+class ImuMotion:
+    """Motion predicted by an IMU, rotated into the body."""
+
+    def __init__(self, imu: ImuSamples, rig: Rig, settings: OdometrySettings) -> None:
+        self._t_ns = imu.t_ns + round(rig.imu_time_offset_s * 1e9)
+        self._gyro, self._accel = _in_body(imu, rig)
+        self._has_accel = bool(np.isfinite(self._accel).all())
+        s = settings
+        self._noise = np.array([s.gyro_noise, s.accel_noise, s.gyro_bias_walk, s.accel_bias_walk])
+        if not self._has_accel:
+            self._noise[1] = s.free_accel
+
+    def covers(self, start_ns: int, end_ns: int) -> bool:
+        """Whether there are samples all through a time, without a hole of more than 50 ms."""
+        first, last = np.searchsorted(self._t_ns, [start_ns, end_ns])
+        first, last = max(first - 1, 0), min(last, len(self._t_ns) - 1)
+        times = self._t_ns[first : last + 1]
+        outside = start_ns < times[0] - 50_000_000 or end_ns > times[-1] + 50_000_000
+        return len(times) > 1 and not outside and bool(np.diff(times).max() <= 50_000_000)
+
+    def initial(self, t_ns: int) -> MotionState:
+        """At rest or walking at ``t_ns``: roll and pitch from the mean specific force."""
+        near = np.abs(self._t_ns - t_ns) < 500_000_000
+        up_body = self._accel[near].mean(axis=0) if self._has_accel else np.array([0, 0, 1.0])
+        sd = np.repeat([1e-4, 1e-4, 1.0, 0.02, 0.2, 0.3], 3)
+        if not self._has_accel:
+            sd[12:] = 1e-9
+        vector = np.zeros(15)
+        vector[14] = -STANDARD_GRAVITY_M_S2 if self._has_accel else 0.0
+        return MotionState(t_ns, _level(up_body), vector, np.diag(sd**2))
+
+    def predict(self, state: MotionState, end_ns: int) -> Prediction:
+        """Integrate from the state's time to ``end_ns``."""
+        first, last = np.searchsorted(self._t_ns, [state.t_ns + 1, end_ns])
+        times = np.concatenate([[state.t_ns], self._t_ns[first:last], [end_ns]])
+        gyro, accel = (_at(times, self._t_ns, v) for v in (self._gyro, self._accel))
+        if not self._has_accel:
+            accel = np.zeros_like(gyro)
+        return _predict(state, times, gyro, accel, self._noise)
+
+
+class FreeMotion:
+    """Constant velocity and constant turn rate, when there is no IMU.
+
+    The same filter with silent sensors: a gyroscope that reads 0 has the bias minus the turn rate.
+    """
+
+    def __init__(self, settings: OdometrySettings) -> None:
+        self._noise = np.array([1e-3, settings.free_accel, settings.free_turn_walk, 1e-9])
+
+    def covers(self, start_ns: int, end_ns: int) -> bool:
+        """Always."""
+        return end_ns > start_ns
+
+    def initial(self, t_ns: int) -> MotionState:
+        """At rest at the origin, not knowing it."""
+        sd = np.repeat([1e-4, 1e-4, 1.0, 0.5, 1e-9, 1e-9], 3)
+        return MotionState(t_ns, np.eye(3), np.zeros(15), np.diag(sd**2))
+
+    def predict(self, state: MotionState, end_ns: int) -> Prediction:
+        """Go on as before until ``end_ns``."""
+        slots = max(2, round((end_ns - state.t_ns) * 1e-9 / _SLOT_S) + 1)
+        times = np.linspace(state.t_ns, end_ns, slots).astype(np.int64)
+        silent = np.zeros((slots, 3))
+        return _predict(state, times, silent, silent, self._noise)
+
+
+Motion = ImuMotion | FreeMotion
+
+
+def _predict(
+    state: MotionState, t_ns: Array, gyro: Array, accel: Array, noise: Array
+) -> Prediction:
+    t_s = (t_ns - t_ns[0]) * 1e-9
+    R, p, v, Phi, P = propagate(t_s, gyro, accel, state.R, state.vector, state.P, noise)
+    vector = state.vector.copy()
+    vector[:3], vector[3:6] = p[-1], v
+    cross = state.P[:6] @ Phi.T
+    prior = np.block([[state.P[:6, :6], cross], [cross.T, P]])
+    return Prediction(t_s, SE3(R, p), MotionState(int(t_ns[-1]), R[-1], vector, P), prior)
+
+
+def _in_body(imu: ImuSamples, rig: Rig) -> tuple[Array, Array]:
+    """Turn rate and specific force at the body's origin, in body axes."""
+    R_body_imu, r = rig.T_body_imu.R, rig.T_body_imu.t
+    gyro, accel = imu.gyro_rad_s @ R_body_imu.T, imu.accel_m_s2 @ R_body_imu.T
+    if np.linalg.norm(r) > 1e-3:
+        turn_accel = np.gradient(gyro, imu.t_ns * 1e-9, axis=0)
+        accel = accel - np.cross(turn_accel, r) - np.cross(gyro, np.cross(gyro, r))
+    return np.ascontiguousarray(gyro), np.ascontiguousarray(accel)
+
+
+def _at(t_ns: Array, sample_t_ns: Array, values: Array) -> Array:
+    """Linear interpolation of samples (N, 3) at other times, the ends held."""
+    # float64 holds nanoseconds exactly only after taking the start away.
+    t = (t_ns - t_ns[0]).astype(np.float64)
+    first, last = np.searchsorted(sample_t_ns, [t_ns[0], t_ns[-1]])
+    rows = slice(max(first - 1, 0), last + 1)
+    known = (sample_t_ns[rows] - t_ns[0]).astype(np.float64)
+    return np.stack([np.interp(t, known, values[rows, axis]) for axis in range(3)], axis=1)
+
+
+def _level(up_body: Array) -> Array:
+    """The rotation without heading that turns a direction of the body straight up."""
+    up = up_body / np.linalg.norm(up_body)
+    axis = np.cross(up, [0.0, 0.0, 1.0])
+    sine = np.linalg.norm(axis)
+    if sine < 1e-9:
+        return np.eye(3) if up[2] > 0 else so3_exp([np.pi, 0.0, 0.0])
+    return so3_exp(axis / sine * np.arctan2(sine, up[2]))

@@ -1,0 +1,220 @@
+"""Pose of each multiframe from the ones before: one object for files and for live capture."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import SE3, Array, interpolate, so3_exp
+from recon4.kernels.imu import place_points
+from recon4.model.multiframe import Multiframe
+from recon4.model.rig import Rig
+from recon4.model.samples import ImuSamples
+from recon4.model.trajectory import Times
+from recon4.registration.motion import FreeMotion, ImuMotion, Motion, MotionState, Prediction
+from recon4.registration.plane_map import Match, PlaneMap
+from recon4.registration.segments import Segments, sample_segments
+from recon4.settings import Settings
+
+_GATES_M = (1.0, 0.5, 0.3, 0.2)
+"""How far from its plane a point may lie, round by round; the last one stays."""
+_STARTS_RAD = (0.0, 0.2, -0.2, 0.45, -0.45)
+"""Without an IMU a lost frame is tried again from these turns away."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OdometryStep:
+    """What became of one multiframe. Being lost is an outcome, not an error."""
+
+    frame_id: int
+    t_mid_ns: int
+    T_odom_body: SE3
+    """Pose at the middle of the frame."""
+    t_ns: Times
+    """Times of the dense poses [ns], after the last of the frame before, (K,)."""
+    T_dense: SE3
+    """Poses at these times, a batch of K."""
+    error_m: float
+    """Mean distance of the matched segments from the local map [m]; NaN without a match."""
+    share: float
+    """Matched share of the segments."""
+    rounds: int
+    converged: bool
+    degeneracy: float
+    """See `Match.degeneracy`."""
+    gap_m: float
+    """How far the LiDAR moved the prediction [m]."""
+    lost: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Fit:
+    """Outcome of the rounds for one frame from one start."""
+
+    T_dense: SE3
+    delta: Array
+    """Correction of the pose at the start (6) and of the state at the end (18)."""
+    P_end: Array
+    match: Match
+    rounds: int
+    converged: bool
+
+
+class Odometry:
+    """Registers multiframes one after the other against a local map of keyframes.
+
+    Each frame is undistorted with the predicted motion, its collar line segments are held against
+    planes of the last keyframes, and pose, velocity and IMU biases are updated together (an
+    iterated error-state Kalman filter over the pose at the start and the state at the end of the
+    frame). Without an IMU the same filter predicts constant velocity.
+    """
+
+    def __init__(self, rig: Rig, settings: Settings, imu: ImuSamples | None = None) -> None:
+        self._rig, self._settings = rig, settings
+        with_imu = imu is not None and len(imu) > 1 and settings.odometry.use_imu
+        self._free: Motion = FreeMotion(settings.odometry)
+        self._motion = ImuMotion(imu, rig, settings.odometry) if with_imu and imu else self._free
+        self._state: MotionState | None = None
+        self._map = PlaneMap(settings.planes)
+        self._keyframes: deque[Array] = deque()
+        self._last_keyframe = SE3.identity()
+
+    def push(self, frame: Multiframe) -> OdometryStep:
+        """Register the next multiframe; frames come in the order of their time."""
+        segments = sample_segments(frame, self._rig, self._settings.segments)
+        first = self._state is None
+        prediction = self._predict(frame)
+        fit = self._register(segments, prediction)
+        lost = not first and self._is_lost(fit)
+        if lost:
+            fit = self._search(segments, prediction, fit)
+            lost = self._is_lost(fit)
+        self._state = _updated(prediction, fit, lost=lost, first=first)
+        T_dense = prediction.T_odom_body if lost or first else fit.T_dense
+        if not lost:
+            self._extend_map(segments, prediction.t_s, T_dense)
+        return _step(frame, prediction, fit, T_dense, lost=lost)
+
+    def _predict(self, frame: Multiframe) -> Prediction:
+        start_ns, end_ns = frame.t_ns, frame.t_ns + frame.duration_ns
+        if self._state is None:
+            self._state = self._motion.initial(start_ns)
+        covered = self._motion.covers(self._state.t_ns, end_ns)
+        return (self._motion if covered else self._free).predict(self._state, end_ns)
+
+    def _register(
+        self, segments: Segments, prediction: Prediction, *, turn_rad: float = 0.0
+    ) -> _Fit:
+        o = self._settings.odometry
+        coarse = 0 if isinstance(self._motion, ImuMotion) else self._settings.planes.levels - 1
+        information = np.linalg.inv(prediction.prior + 1e-12 * np.eye(24))
+        center = prediction.T_odom_body.t[-1]
+        delta = np.zeros(24)
+        delta[[2, 8]] = turn_rad
+        mid_body = 0.5 * (segments.a_body + segments.b_body)
+        mid_s = 0.5 * (segments.a_s + segments.b_s)
+        duration_s = prediction.t_s[-1]
+        T_dense = _correct(prediction, delta, center)
+        converged, rounds = False, 0
+        for rounds in range(1, o.rounds + 1):  # noqa: B007
+            p_odom = place_points(prediction.t_s, T_dense.R, T_dense.t, mid_s, mid_body)
+            gate_m = _GATES_M[min(rounds - 1 + (0 if coarse else 1), len(_GATES_M) - 1)]
+            match = self._map.match(
+                p_odom, mid_s / duration_s, center=center,
+                finest=max(coarse + 1 - rounds, 0), gate_m=gate_m,
+            )  # fmt: skip
+            H, g = information.copy(), information @ delta
+            H[:12, :12] += o.information_scale * match.H
+            g[:12] += o.information_scale * match.g
+            step = -np.linalg.solve(H, g)
+            delta = delta + step
+            T_dense = _correct(prediction, delta, center)
+            if (
+                rounds > coarse
+                and _largest_move(step) < self._settings.registration.converged_step_m
+            ):
+                converged = True
+                break
+        P = np.linalg.inv(H)[6:, 6:]
+        return _Fit(T_dense, delta, P, match, rounds, converged)
+
+    def _is_lost(self, fit: _Fit) -> bool:
+        o = self._settings.odometry
+        bad = fit.match.share < o.lost_share or not fit.match.mean_m < o.lost_error_m
+        return bad or not np.isfinite(fit.delta).all()
+
+    def _search(self, segments: Segments, prediction: Prediction, fit: _Fit) -> _Fit:
+        """Several starts around the prediction, the one that matches most."""
+        fits = [self._register(segments, prediction, turn_rad=turn) for turn in _STARTS_RAD[1:]]
+        return max([fit, *fits], key=lambda f: f.match.share)
+
+    def _extend_map(self, segments: Segments, t_s: Array, T_dense: SE3) -> None:
+        o = self._settings.odometry
+        T_last_now = self._last_keyframe.inverse() @ T_dense[-1]
+        moved = np.linalg.norm(T_last_now.t) > o.keyframe_m or T_last_now.angle() > o.keyframe_rad
+        if self._keyframes and not moved:
+            return
+        self._last_keyframe = T_dense[-1]
+        ends_odom = np.concatenate(
+            [
+                place_points(t_s, T_dense.R, T_dense.t, segments.a_s, segments.a_body),
+                place_points(t_s, T_dense.R, T_dense.t, segments.b_s, segments.b_body),
+            ]
+        )
+        self._map.add(ends_odom)
+        self._keyframes.append(ends_odom)
+        if len(self._keyframes) > o.history:
+            self._map.remove(self._keyframes.popleft())
+
+
+def _correct(prediction: Prediction, delta: Array, center: Array) -> SE3:
+    """The predicted poses moved by a correction that grows linearly over the frame."""
+    s = (prediction.t_s / prediction.t_s[-1])[:, None]
+    omega = (1.0 - s) * delta[:3] + s * delta[6:9]
+    shift = (1.0 - s) * delta[3:6] + s * delta[9:12]
+    R = so3_exp(omega)
+    T = prediction.T_odom_body
+    return SE3(R @ T.R, center + np.einsum("nij,nj->ni", R, T.t - center) + shift)
+
+
+def _largest_move(step: Array) -> float:
+    """How far a step moves a point 5 m away, at the start or end of the frame [m]."""
+    return float(
+        max(
+            5 * np.linalg.norm(step[k : k + 3]) + np.linalg.norm(step[k + 3 : k + 6])
+            for k in (0, 6)
+        )
+    )
+
+
+def _updated(prediction: Prediction, fit: _Fit, *, lost: bool, first: bool) -> MotionState:
+    if lost or first:
+        return prediction.end
+    return prediction.end.corrected(fit.delta[6:], fit.P_end)
+
+
+def _step(
+    frame: Multiframe, prediction: Prediction, fit: _Fit, T_dense: SE3, *, lost: bool
+) -> OdometryStep:
+    end = prediction.T_odom_body[-1]
+    middle = prediction.t_s[-1] / 2
+    k = int(np.searchsorted(prediction.t_s, middle)) - 1
+    s = (middle - prediction.t_s[k]) / (prediction.t_s[k + 1] - prediction.t_s[k])
+    t_ns = frame.t_ns + np.round(prediction.t_s * 1e9).astype(np.int64)
+    return OdometryStep(
+        frame.frame_id,
+        frame.t_mid_ns,
+        interpolate(T_dense[k], T_dense[k + 1], s),
+        t_ns,
+        T_dense,
+        fit.match.mean_m,
+        fit.match.share,
+        fit.rounds,
+        fit.converged,
+        fit.match.degeneracy,
+        float(np.linalg.norm(T_dense.t[-1] - end.t)),
+        lost,
+    )

@@ -1,0 +1,61 @@
+"""How much two multiframes see of each other (V §2.5, requirements A4)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import SE3, Array
+from recon4.kernels.overlap import nearest_ranges, share_inside
+from recon4.settings import OverlapSettings
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class View:
+    """Points of a multiframe (or a few) and the view volume they span around the origin."""
+
+    points: Array
+    """Points in the frame of the view [m], (N, 3)."""
+    nearest_m: NDArray[np.float32]
+    """Smallest range in each bin of azimuth and elevation [m]; 0 = empty."""
+
+
+def make_view(points: Array, settings: OverlapSettings) -> View:
+    """The spherical z-buffer of points [m], (N, 3), around the origin of their frame."""
+    nearest_m = nearest_ranges(
+        points, settings.azimuth_bins, settings.elevation_bins, settings.min_points
+    )
+    return View(points, nearest_m)
+
+
+def overlap(source: View, target: View, T_source_target: SE3, settings: OverlapSettings) -> float:
+    """Share of points in the other's view volume, 0..1 (V Eq. 2.6, read as A0 no. 2).
+
+    Args:
+        source: The view whose volume is asked (mode ``target``, the text's).
+        target: The view whose points are tested.
+        T_source_target: Maps points of the target into the source.
+        settings: Tolerances and mode.
+    """
+    if settings.mode == "target":
+        return _inside(source, target, T_source_target, settings)
+    backward = _inside(target, source, T_source_target.inverse(), settings)
+    if settings.mode == "source":
+        return backward
+    forward = _inside(source, target, T_source_target, settings)
+    if settings.mode == "min":
+        return min(forward, backward)
+    return 2.0 * forward * backward / max(forward + backward, 1e-12)
+
+
+def _inside(view: View, other: View, T_view_other: SE3, settings: OverlapSettings) -> float:
+    return share_inside(
+        view.nearest_m,
+        other.points,
+        T_view_other.R,
+        T_view_other.t,
+        settings.relative_tolerance,
+        settings.absolute_tolerance_m,
+    )

@@ -1,0 +1,101 @@
+"""A map that answers "how far is this point from the surface it lies on?"."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import Array
+from recon4.kernels import planes
+from recon4.settings import PlaneSettings
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Match:
+    """Normal equations of one round; see `recon4.kernels.planes.accumulate`."""
+
+    H: Array
+    """Sum of w J^T J over start and end correction, (12, 12)."""
+    g: Array
+    """Sum of w J^T r, (12,)."""
+    residual_m: Array
+    """Distance of each point from its plane [m], NaN = no plane, (N,)."""
+    matches: int
+    mean_m: float
+    """Mean absolute distance [m]; NaN without a match."""
+    chi2: float
+    degeneracy: float
+    """Smallest eigenvalue of the mean of n n^T: 0 = free to slide, 1/3 = held alike all around."""
+
+    @property
+    def share(self) -> float:
+        """Matched share of the points."""
+        return self.matches / max(len(self.residual_m), 1)
+
+
+class PlaneMap:
+    """Planes fitted to the points in cubes of several sizes; can take points back."""
+
+    def __init__(self, settings: PlaneSettings) -> None:
+        self._settings = settings
+        self._sizes = settings.finest_m * 2.0 ** np.arange(settings.levels)
+        self._allocate(1 << 14)
+        self._used = 0
+
+    def _allocate(self, capacity: int) -> None:
+        self._keys = np.full(capacity, planes.EMPTY, np.int64)
+        self._sums = np.zeros((capacity, 10))
+        self._fits = np.zeros((capacity, 9))
+        self._state = np.zeros(capacity, np.uint8)
+
+    def add(self, p_map: Array) -> None:
+        """Take in points [m], (N, 3)."""
+        self._reserve(len(p_map) * len(self._sizes))
+        self._used += planes.add_points(
+            self._keys, self._sums, self._state, self._sizes, p_map, 1.0
+        )
+
+    def remove(self, p_map: Array) -> None:
+        """Take away points that were added before, bit for bit the same."""
+        planes.add_points(self._keys, self._sums, self._state, self._sizes, p_map, -1.0)
+
+    def _reserve(self, more: int) -> None:
+        if 2 * (self._used + more) < len(self._keys):
+            return
+        alive = int(np.count_nonzero(self._sums[:, 0] > 0.5))
+        capacity = 1 << int(np.ceil(np.log2(max(4 * (alive + more), 1 << 14))))
+        self._keys, self._sums, self._used = planes.rehash(self._keys, self._sums, capacity)
+        self._fits = np.zeros((capacity, 9))
+        self._state = np.zeros(capacity, np.uint8)
+
+    def match(
+        self,
+        p_map: Array,
+        fraction: Array,
+        *,
+        center: Array,
+        finest: int,
+        gate_m: float,
+    ) -> Match:
+        """Hold points against the finest plane at their place.
+
+        Args:
+            p_map: Points [m], (N, 3).
+            fraction: Time of each within its frame, 0..1, (N,).
+            center: Point about which a correction rotates [m], (3,).
+            finest: Level to begin with, 0 = smallest cubes.
+            gate_m: Points farther from their plane do not match [m].
+        """
+        s = self._settings
+        H, g = np.zeros((12, 12)), np.zeros(12)
+        residual_m: NDArray[np.float64] = np.empty(len(p_map))
+        matches, total, chi2, normals = planes.accumulate(
+            self._keys, self._sums, self._fits, self._state, self._sizes,
+            p_map, fraction, center, finest, gate_m, s.kernel_m, s.point_sd_m**2,
+            float(s.min_points), s.max_sd_m, H, g, residual_m,
+        )  # fmt: skip
+        degeneracy = float(np.linalg.eigvalsh(normals / matches)[0]) if matches else 0.0
+        mean_m = total / matches if matches else float("nan")
+        return Match(H, g, residual_m, int(matches), mean_m, float(chi2), degeneracy)

@@ -1,0 +1,70 @@
+"""Collar line segments of a multiframe: the samples every registration works with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from recon4.geometry.se3 import Array
+from recon4.kernels.segments import draw_pairs
+from recon4.model.multiframe import Multiframe
+from recon4.model.rig import Rig
+from recon4.settings import SegmentSettings
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Segments:
+    """Segments between neighboring rings; each end was measured at its own time."""
+
+    a_body: Array
+    """First end in the body frame of its own time [m], (N, 3)."""
+    b_body: Array
+    """Second end, likewise, (N, 3)."""
+    a_s: Array
+    """Time of the first end after the start of the frame [s], (N,)."""
+    b_s: Array
+    """Time of the second end, (N,)."""
+    range_m: Array
+    """Distance of the nearer end from its sensor [m], (N,)."""
+
+    def __len__(self) -> int:
+        return len(self.a_s)
+
+
+def sample_segments(frame: Multiframe, rig: Rig, settings: SegmentSettings) -> Segments:
+    """Draw the collar line segments of all enabled sensors (requirements A3.1, 1-3).
+
+    The same frame and settings give the same segments.
+    """
+    parts = [_of_sensor(frame, row, rig, settings) for row in range(len(rig.sensors))]
+    kept = [part for part in parts if part is not None]
+    if not kept:
+        return Segments(np.empty((0, 3)), np.empty((0, 3)), np.empty(0), np.empty(0), np.empty(0))
+    a, b, a_s, b_s, range_m = (np.concatenate(column) for column in zip(*kept, strict=True))
+    return Segments(a, b, a_s, b_s, range_m)
+
+
+def _of_sensor(
+    frame: Multiframe, row: int, rig: Rig, settings: SegmentSettings
+) -> tuple[Array, Array, Array, Array, Array] | None:
+    sensor = rig.sensors[row]
+    rows = np.flatnonzero(frame.sensor == row)
+    if not sensor.enabled or len(rows) < 2:
+        return None
+    xyz = np.ascontiguousarray(frame.xyz[rows])
+    ring = np.ascontiguousarray(frame.ring[rows])
+    pairs = draw_pairs(
+        xyz, ring, int(ring.max()) + 1, settings.azimuth_bins, settings.generated,
+        settings.preserved, settings.max_length_per_range, _seed(settings.seed, frame, row),
+    )  # fmt: skip
+    first, second = pairs[:, 0], pairs[:, 1]
+    p_body = sensor.T_body_sensor @ xyz.astype(np.float64)
+    dt_s = frame.dt_ns[rows] * 1e-9
+    range_m = np.linalg.norm(xyz, axis=1).astype(np.float64)
+    nearer = np.minimum(range_m[first], range_m[second])
+    return p_body[first], p_body[second], dt_s[first], dt_s[second], nearer
+
+
+def _seed(seed: int, frame: Multiframe, row: int) -> int:
+    return (seed * 1_000_003 + frame.frame_id * 257 + row) & 0x7FFF_FFFF_FFFF_FFFF
