@@ -1,0 +1,101 @@
+"""What must hold before a graph goes to the optimizer.
+
+gtsam answers a graph with a NaN, or one that falls apart, with the initial poses and no error.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from recon4.errors import GraphError
+from recon4.geometry.se3 import SE3, Array
+from recon4.model.pose_graph import PoseGraph
+from recon4.pose_graph.relations import Flags, Relations, relations
+
+_ROTATION_TOLERANCE = 1e-6
+
+
+def check_graph(graph: PoseGraph) -> list[tuple[int, int]]:
+    """Refuse a graph that cannot be solved.
+
+    Returns:
+        Pairs of nodes joined by more than one edge of the graph: allowed, but worth a word.
+
+    Raises:
+        GraphError: Naming the node or the edge and what is wrong with it.
+    """
+    return check_relations(graph.T_map_body, relations(graph.edges))
+
+
+def check_relations(T_map_body: SE3, of: Relations) -> list[tuple[int, int]]:
+    """`check_graph` for who has the arrays already."""
+    if len(T_map_body) == 0:
+        raise GraphError("the graph has no node")
+    bad_nodes = ~_is_motion(T_map_body)
+    if bad_nodes.any():
+        raise GraphError(f"pose of node {int(np.argmax(bad_nodes))} is not a finite rigid motion")
+    _check_ends(of, nodes=len(T_map_body))
+    _refuse(of, ~_is_motion(of.T_i_j), "its transformation is not a finite rigid motion")
+    _refuse(
+        of,
+        ~np.isfinite(of.information).reshape(len(of), 36).all(1),
+        "its information is not finite",
+    )
+    _refuse(of, ~_is_positive(of), "its information is not symmetric positive definite")
+    _check_connected(of, nodes=len(T_map_body))
+    return _duplicates(of)
+
+
+def _is_motion(T_a_b: SE3) -> Flags:
+    R = T_a_b.R
+    defect = np.abs(R @ np.swapaxes(R, -1, -2) - np.eye(3)).max((-1, -2), initial=0.0)
+    proper = np.linalg.det(np.nan_to_num(R)) > 0.0
+    return np.isfinite(T_a_b.t).all(-1) & (defect < _ROTATION_TOLERANCE) & proper
+
+
+def _is_positive(of: Relations) -> Flags:
+    used: Array = np.where(of.in_graph[:, None, None], of.information, np.eye(6))
+    size = np.abs(used).max((1, 2), initial=0.0)
+    symmetric = np.abs(used - np.swapaxes(used, 1, 2)).max((1, 2), initial=0.0) <= 1e-9 * size
+    try:
+        np.linalg.cholesky(used)
+    except np.linalg.LinAlgError:
+        return symmetric & (np.linalg.eigvalsh(used)[:, 0] > 0.0)
+    return symmetric
+
+
+def _check_ends(of: Relations, *, nodes: int) -> None:
+    outside = (np.minimum(of.i, of.j) < 0) | (np.maximum(of.i, of.j) >= nodes)
+    if outside.any():
+        row = int(np.argmax(outside))
+        raise GraphError(
+            f"edge {row} joins nodes {of.i[row]} and {of.j[row]}; there are nodes 0 to {nodes - 1}"
+        )
+    _refuse(of, of.i == of.j, "it joins a node with itself")
+
+
+def _refuse(of: Relations, bad: Flags, what: str) -> None:
+    bad = bad & of.in_graph
+    if bad.any():
+        row = int(np.argmax(bad))
+        raise GraphError(f"edge {row} (nodes {of.i[row]} and {of.j[row]}): {what}")
+
+
+def _check_connected(of: Relations, *, nodes: int) -> None:
+    i, j = of.i[of.in_graph], of.j[of.in_graph]
+    links = coo_array((np.ones(len(i), dtype=np.int8), (i, j)), shape=(nodes, nodes))
+    parts, label = connected_components(links, directed=False)
+    if parts > 1:
+        cut_off = np.flatnonzero(label != label[0])
+        raise GraphError(
+            f"the graph is not connected: {len(cut_off)} of {nodes} nodes cannot be reached "
+            f"from node 0, the first is node {cut_off[0]}"
+        )
+
+
+def _duplicates(of: Relations) -> list[tuple[int, int]]:
+    ends = np.sort(np.stack([of.i, of.j], 1)[of.in_graph], axis=1)
+    pairs, count = np.unique(ends, axis=0, return_counts=True)
+    return [(int(i), int(j)) for i, j in pairs[count > 1]]

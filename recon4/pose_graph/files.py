@@ -1,0 +1,125 @@
+"""A pose graph on disk: exact (``graph.npz``), for people (``edges.json``)."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from recon4.errors import StoreError
+from recon4.geometry.se3 import SE3
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.pose_graph.relations import relations
+from recon4.store.arrays import load_arrays
+
+_NUMBERS = ("overlap", "error_m", "limit_m", "degeneracy", "verification_m", "chi2")
+_COUNTS = ("iterations", "paths")
+_TEXTS = ("kind", "verdict", "reason", "decided_by")
+_NODES = ("frame_ids", "t_ns", "node_R", "node_t")
+_EDGES = ("i", "j", "edge_R", "edge_t", "information", "converged")
+
+
+def save_graph(folder: Path, graph: PoseGraph) -> None:
+    """Write ``graph.npz`` (everything, bit for bit) and ``edges.json`` (every pair tried)."""
+    of = relations(graph.edges)
+    columns: dict[str, Any] = {
+        "frame_ids": graph.frame_ids,
+        "t_ns": graph.t_ns,
+        "node_R": graph.T_map_body.R,
+        "node_t": graph.T_map_body.t,
+        "i": of.i.astype(np.int64),
+        "j": of.j.astype(np.int64),
+        "edge_R": of.T_i_j.R,
+        "edge_t": of.T_i_j.t,
+        "information": of.information,
+        "converged": np.array([edge.converged for edge in graph.edges], dtype=np.bool_),
+    }
+    for names, kind in ((_NUMBERS, np.float64), (_COUNTS, np.int64), (_TEXTS, np.str_)):
+        for name in names:
+            columns[name] = np.array([getattr(edge, name) for edge in graph.edges], dtype=kind)
+    np.savez(folder / "graph.npz", **columns)
+    write_edges_json(folder / "edges.json", graph)
+
+
+def load_graph(folder: Path) -> PoseGraph:
+    """Read what `save_graph` wrote.
+
+    Raises:
+        StoreError: If the file is missing, damaged or its columns do not fit together.
+    """
+    names = [*_NODES, *_EDGES, *_NUMBERS, *_COUNTS, *_TEXTS]
+    columns = load_arrays(folder / "graph.npz", names)
+    for name in names:
+        expected = len(columns["frame_ids"] if name in _NODES else columns["i"])
+        if len(columns[name]) != expected:
+            raise StoreError(
+                f"graph.npz: {name}: expected {expected} rows, got {len(columns[name])}"
+            )
+    try:
+        edges = tuple(_edge(columns, row) for row in range(len(columns["i"])))
+    except ValueError as error:
+        raise StoreError(f"graph.npz: {error}") from error
+    T_map_body = SE3(columns["node_R"], columns["node_t"])
+    return PoseGraph(columns["frame_ids"], columns["t_ns"], T_map_body, edges)
+
+
+def _edge(columns: dict[str, Any], row: int) -> Edge:
+    facts: dict[str, Any] = {name: float(columns[name][row]) for name in _NUMBERS}
+    facts |= {name: int(columns[name][row]) for name in _COUNTS}
+    return Edge(
+        i=int(columns["i"][row]),
+        j=int(columns["j"][row]),
+        T_i_j=SE3(columns["edge_R"][row], columns["edge_t"][row]),
+        kind=EdgeKind(str(columns["kind"][row])),
+        verdict=Verdict(str(columns["verdict"][row])),
+        reason=Reason(str(columns["reason"][row])),
+        information=columns["information"][row],
+        converged=bool(columns["converged"][row]),
+        decided_by=str(columns["decided_by"][row]),
+        **facts,
+    )
+
+
+def write_edges_json(path: Path, graph: PoseGraph) -> None:
+    """Write every pair tried as JSON, one line a pair; a number nobody knows is ``null``."""
+    lines = ",\n".join(json.dumps(edge_record(graph, edge)) for edge in graph.edges)
+    head = json.dumps(
+        {
+            "convention": "T_a_b maps points of node b into node a; metres; quaternion x y z w",
+            "nodes": len(graph),
+        }
+    )
+    path.write_text(f'{head[:-1]}, "edges": [\n{lines}\n]}}\n', "utf-8")
+
+
+def edge_record(graph: PoseGraph, edge: Edge) -> dict[str, Any]:
+    """Plain JSON values of one edge, for files and for the API."""
+    return {
+        "nodes": [edge.i, edge.j],
+        "frames": [int(graph.frame_ids[edge.i]), int(graph.frame_ids[edge.j])],
+        "t_ns": [int(graph.t_ns[edge.i]), int(graph.t_ns[edge.j])],
+        "T_a_b": {
+            "translation": edge.T_i_j.t.tolist(),
+            "quaternion_xyzw": edge.T_i_j.quat_xyzw().tolist(),
+        },
+        "kind": str(edge.kind),
+        "verdict": str(edge.verdict),
+        "reason": str(edge.reason),
+        "overlap": _or_null(edge.overlap),
+        "error_m": _or_null(edge.error_m),
+        "limit_m": _or_null(edge.limit_m),
+        "degeneracy": _or_null(edge.degeneracy),
+        "converged": edge.converged,
+        "iterations": edge.iterations,
+        "verification_m": _or_null(edge.verification_m),
+        "paths": edge.paths,
+        "chi2": _or_null(edge.chi2),
+        "decided_by": edge.decided_by,
+    }
+
+
+def _or_null(number: float) -> float | None:
+    return float(number) if math.isfinite(number) else None

@@ -1,0 +1,158 @@
+"""Pose graphs in the g2o text format, 3-D and 2-D.
+
+g2o puts the translation first; recon4 and gtsam the rotation. The rotation's information is taken
+as that of the rotation vector, as gtsam and most sets do.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from recon4.errors import CorruptFile
+from recon4.geometry.se3 import SE3, Array
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
+from recon4.pose_graph.relations import reverse
+
+_FIELDS = {"VERTEX_SE3:QUAT": 9, "EDGE_SE3:QUAT": 31, "VERTEX_SE2": 5, "EDGE_SE2": 12, "FIX": 2}
+"""How many words a line of each kind has."""
+_ROTATION_FIRST = [3, 4, 5, 0, 1, 2]
+_PLANAR_SD = 1e-3
+"""A 2-D relation knows height [m], roll and pitch [rad] this well once it is lifted to 3-D."""
+
+
+def write_g2o(path: Path, graph: PoseGraph) -> None:
+    """Write nodes and those edges that are in the graph; numbers so that they read back exactly."""
+    used = [edge for edge in graph.edges if edge.in_graph]
+    lines = [f"# recon4 vertices {len(graph)} edges {len(used)}"]
+    for row, (t, q) in enumerate(
+        zip(graph.T_map_body.t, graph.T_map_body.quat_xyzw(), strict=True)
+    ):
+        lines.append(f"VERTEX_SE3:QUAT {row} {_text([*t, *q])}")
+    upper = np.triu_indices(6)
+    for edge in used:
+        information = edge.information[np.ix_(_ROTATION_FIRST, _ROTATION_FIRST)][upper]
+        numbers = [*edge.T_i_j.t, *edge.T_i_j.quat_xyzw(), *information]
+        lines.append(f"EDGE_SE3:QUAT {edge.i} {edge.j} {_text(numbers)}")
+    path.write_text("\n".join(lines) + "\n", "ascii")
+
+
+def read_g2o(path: Path) -> PoseGraph:
+    """Read a graph; 2-D vertices and edges are lifted to 3-D.
+
+    Edges between consecutive nodes become odometry, all others loops; ``i < j`` by turning the
+    relation around where needed. Times are not in the file: the nodes get 0, 1, 2, … seconds.
+
+    Raises:
+        CorruptFile: Naming the line, if it is not of a known kind, has missing or surplus words,
+            a word that is no number, an edge names no vertex, or lines are missing at the end.
+    """
+    rows = _read_rows(path)
+    vertices = {int(words[0]): _vertex(tag, words) for _, tag, words in rows if "VERTEX" in tag}
+    if not vertices:
+        raise CorruptFile(f"{path.name}: there is no vertex")
+    if len(vertices) < sum("VERTEX" in tag for _, tag, _ in rows):
+        raise CorruptFile(f"{path.name}: a vertex is there twice")
+    ids = sorted(vertices)
+    row_of = {vertex: row for row, vertex in enumerate(ids)}
+    edges = []
+    for line, tag, words in rows:
+        if "EDGE" in tag:
+            if int(words[0]) not in row_of or int(words[1]) not in row_of:
+                raise CorruptFile(f"{path.name}, line {line}: an edge names a missing vertex")
+            edges.append(_edge(tag, words, row_of))
+    return PoseGraph(
+        np.array(ids, dtype=np.int64),
+        np.arange(len(ids), dtype=np.int64) * 1_000_000_000,
+        SE3.stack(vertices[vertex] for vertex in ids),
+        tuple(edges),
+    )
+
+
+def _text(numbers: list[float]) -> str:
+    return " ".join(repr(float(number)) for number in numbers)
+
+
+def _read_rows(path: Path) -> list[tuple[int, str, Array]]:
+    """Line number, tag and numbers of each line."""
+    try:
+        text = path.read_text("ascii")
+    except (OSError, UnicodeDecodeError) as error:
+        raise CorruptFile(f"{path.name}: cannot be read as text: {error}") from error
+    rows = []
+    lines = text.splitlines()
+    for number, line in enumerate(lines, start=1):
+        words = line.split()
+        if not words or words[0].startswith("#"):
+            continue
+        rows.append((number, words[0], _numbers(words, f"{path.name}, line {number}")))
+    if lines and lines[0].startswith("# recon4 vertices"):
+        _check_promise(lines[0], rows, path.name, complete=text.endswith("\n"))
+    return rows
+
+
+def _numbers(words: list[str], where: str) -> Array:
+    expected = _FIELDS.get(words[0])
+    if expected is None:
+        raise CorruptFile(f"{where}: expected one of {', '.join(_FIELDS)}, got {words[0]!r}")
+    if len(words) != expected:
+        raise CorruptFile(f"{where}: {words[0]} has {expected} words, got {len(words)}")
+    try:
+        numbers = np.array([float(word) for word in words[1:]])
+    except ValueError as error:
+        raise CorruptFile(f"{where}: {error}") from error
+    if not np.isfinite(numbers).all():
+        raise CorruptFile(f"{where}: a number is not finite")
+    return numbers
+
+
+def _check_promise(
+    head: str, rows: list[tuple[int, str, Array]], name: str, *, complete: bool
+) -> None:
+    """Our own files say how much is in them, so that a cut-off one is noticed."""
+    words = head.split()
+    tags = [tag for _, tag, _ in rows]
+    found = (sum("VERTEX" in tag for tag in tags), sum("EDGE" in tag for tag in tags))
+    if not complete or [str(count) for count in found] != [words[3], words[5]]:
+        raise CorruptFile(
+            f"{name}: expected {words[3]} vertices and {words[5]} edges and an end of line, "
+            f"got {found[0]} and {found[1]}"
+        )
+
+
+def _vertex(tag: str, words: Array) -> SE3:
+    return _motion(tag, words[1:])
+
+
+def _motion(tag: str, numbers: Array) -> SE3:
+    if tag.endswith("SE2"):
+        return SE3.from_rpy(0.0, 0.0, numbers[2], [numbers[0], numbers[1], 0.0])
+    return SE3.from_quat(numbers[3:7], numbers[:3])
+
+
+def _edge(tag: str, words: Array, row_of: dict[int, int]) -> Edge:
+    i, j = row_of[int(words[0])], row_of[int(words[1])]
+    T_i_j = _motion(tag, words[2:])
+    information = _information(tag, words[2:])
+    if i > j:
+        i, j = j, i
+        T_i_j, information = reverse(T_i_j, information)
+    kind = EdgeKind.ODOMETRY if j == i + 1 else EdgeKind.LOOP
+    return Edge(i=i, j=j, T_i_j=T_i_j, kind=kind, verdict=Verdict.ACCEPTED, information=information)
+
+
+def _information(tag: str, numbers: Array) -> Array:
+    """(6, 6), rotation first, of the upper triangle in the file."""
+    if tag.endswith("SE2"):
+        planar = _symmetric(numbers[3:], 3)
+        out = np.eye(6) / _PLANAR_SD**2
+        out[np.ix_([3, 4, 2], [3, 4, 2])] = planar
+        return out
+    return _symmetric(numbers[7:], 6)[np.ix_(_ROTATION_FIRST, _ROTATION_FIRST)]
+
+
+def _symmetric(upper: Array, size: int) -> Array:
+    out = np.zeros((size, size))
+    out[np.triu_indices(size)] = upper
+    return out + np.triu(out, 1).T
