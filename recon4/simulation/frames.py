@@ -1,0 +1,125 @@
+"""A simulated walk written straight into a frame store, without packets: for tests and studies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.model.multiframe import COLUMNS, Multiframe
+from recon4.model.rig import Rig, load_rig
+from recon4.progress import Progress, Silent
+from recon4.simulation.imu import simulate_imu
+from recon4.simulation.lidar import ELEVATION_DEG, HEIGHT_M, RESOLUTION_M, Firings
+from recon4.simulation.setup import EPOCH_NS, Models, Setup, prepare
+from recon4.simulation.truth import true_trajectory, write_tum
+from recon4.store.frames import FrameWriter
+
+FRAME_NS = 100_000_000
+_CHUNK_FRAMES = 10
+Columns = dict[str, NDArray[np.generic]]
+
+RING = np.argsort(np.argsort(ELEVATION_DEG)).astype(np.uint8)
+"""Ring of each laser in the order of firing, 0 = lowest."""
+
+
+def simulate_frames(
+    world: str,
+    folder: Path,
+    *,
+    seconds: float,
+    seed: int,
+    rig: Rig | None = None,
+    models: Models | None = None,
+    progress: Progress | None = None,
+) -> Setup:
+    """Write a frame store with ``imu.npz``, and ``truth.tum`` beside its columns.
+
+    The points are what an ideal decoder makes of the packets: azimuths are not rounded.
+
+    Raises:
+        ConfigError: If the world, the duration or the rig cannot be simulated.
+        StoreError: If the folder cannot be written.
+    """
+    watch = progress or Silent()
+    setup = prepare(
+        world,
+        seconds=seconds,
+        seed=seed,
+        rig=rig or load_rig("4recon"),
+        models=models or Models(),
+    )
+    imu = simulate_imu(
+        setup.walk, setup.rig.T_body_imu, setup.models.imu, epoch_ns=EPOCH_NS, rng=setup.rng(2)
+    )
+    with FrameWriter(folder, setup.rig) as writer:
+        watch.start("simulate", int(setup.walk.seconds), "s")
+        for chunk in _chunks(setup):
+            for frame in chunk:
+                writer.append(frame)
+            watch.advance()
+        writer.add(imu=imu, report={"derived": [], "counts": {"points": writer.points}})
+    write_tum(folder / "truth.tum", true_trajectory(setup.walk, epoch_ns=EPOCH_NS))
+    return setup
+
+
+def _chunks(setup: Setup) -> Iterator[list[Multiframe]]:
+    """Multiframes of one second each; the last incomplete frame is left out."""
+    frames = int(setup.walk.seconds * 1e9) // FRAME_NS
+    fired = [0] * len(setup.lidars)
+    waiting: list[Columns] = [{} for _ in setup.lidars]
+    for first in range(0, frames, _CHUNK_FRAMES):
+        last = min(first + _CHUNK_FRAMES, frames)
+        for row, lidar in enumerate(setup.lidars):
+            until = lidar.packets_before(last * FRAME_NS) + 1
+            rng = setup.rng(3, row, first)
+            shots = lidar.fire(range(fired[row], until), setup.walk, setup.surroundings, rng)
+            fired[row] = until
+            waiting[row] = _joined(waiting[row], _points(shots, row))
+        yield [_frame(k, waiting) for k in range(first, last)]
+        for row, columns in enumerate(waiting):
+            late = columns["t_ns"] >= last * FRAME_NS
+            waiting[row] = {name: column[late] for name, column in columns.items()}
+
+
+def _points(shots: Firings, row: int) -> Columns:
+    """Returns of one sensor in its own frame, in firing order."""
+    hit = shots.distance > 0
+    shape = shots.distance.shape
+    elevation = np.broadcast_to(np.deg2rad(ELEVATION_DEG), shape)[hit]
+    height = np.broadcast_to(HEIGHT_M, shape)[hit]
+    range_m, azimuth = RESOLUTION_M * shots.distance[hit], shots.azimuth_rad[hit]
+    flat = range_m * np.cos(elevation)
+    xyz = np.stack(
+        [
+            flat * np.cos(azimuth),
+            -flat * np.sin(azimuth),
+            range_m * np.sin(elevation) + height,
+        ],
+        axis=1,
+    )
+    return {
+        "t_ns": shots.t_ns[hit],
+        "xyz": xyz.astype(np.float32),
+        "intensity": shots.intensity[hit].astype(np.uint16),
+        "ring": np.broadcast_to(RING, shape)[hit],
+        "sensor": np.full(len(xyz), row, dtype=np.uint8),
+        "echo": np.zeros(len(xyz), dtype=np.uint8),
+    }
+
+
+def _joined(a: Columns, b: Columns) -> Columns:
+    return {name: np.concatenate([a[name], b[name]]) for name in b} if a else b
+
+
+def _frame(k: int, waiting: list[Columns]) -> Multiframe:
+    parts: list[Columns] = []
+    for columns in waiting:
+        start, stop = np.searchsorted(columns["t_ns"], [k * FRAME_NS, (k + 1) * FRAME_NS])
+        part = {name: column[start:stop] for name, column in columns.items()}
+        part["dt_ns"] = (part["t_ns"] - k * FRAME_NS).astype(np.int32)
+        parts.append(part)
+    merged = {name: np.concatenate([part[name] for part in parts]) for name in COLUMNS}
+    return Multiframe(k, EPOCH_NS + k * FRAME_NS, FRAME_NS, **merged)  # type: ignore[arg-type]

@@ -1,0 +1,173 @@
+"""From waypoints to the motion of a walking body: path, speed, turns, steps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from recon4.geometry.se3 import Array
+from recon4.simulation.walk import BODY_HEIGHT_M, Walk
+from recon4.simulation.world import Waypoint, World
+
+SPEED_M_S = 1.2
+_SLOWEST_M_S, _FASTEST_M_S = 1.0, 1.4
+_STAND_S = 1.5
+_RATE_HZ = 200.0
+_PATH_SIGMA_S = 0.2
+_HEADING_SIGMA_S = 0.12
+_FASTEST_TURN_DEG_S = 240.0
+
+
+@dataclass(slots=True)
+class _Timeline:
+    """Corners of piecewise linear functions of time, while they are being laid out."""
+
+    t_s: list[float] = field(default_factory=list)
+    place: list[tuple[float, float, float]] = field(default_factory=list)
+    heading_t_s: list[float] = field(default_factory=list)
+    heading_rad: list[float] = field(default_factory=list)
+
+    def stay(self, seconds: float) -> None:
+        self.move(self.place[-1], seconds)
+
+    def move(self, place: tuple[float, float, float], seconds: float) -> None:
+        self.t_s.append(self.t_s[-1] + seconds)
+        self.place.append(place)
+
+    def turn(self, angle_rad: float, start_s: float, seconds: float) -> None:
+        start = max(start_s, self.heading_t_s[-1])
+        self.heading_t_s += [start, start + seconds]
+        self.heading_rad += [self.heading_rad[-1], self.heading_rad[-1] + angle_rad]
+
+
+def plan_walk(world: World, *, seconds: float, rng: np.random.Generator) -> Walk:
+    """Walk rounds through a world for exactly so long, ending where it began.
+
+    A longer walk is more rounds, each by another way; their number and the places visited are
+    chosen so that the person walks at 1.0 to 1.4 m/s. Only a walk too short for the shortest
+    round is cut off on its way.
+    """
+    legs, speed_m_s = _fit(world, seconds, rng)
+    timeline = _lay_out(legs, speed_m_s)
+    count = int(round(seconds * _RATE_HZ)) + 1
+    t_s = np.arange(count) / _RATE_HZ
+    return Walk.through(_body(timeline, t_s, rng)[:: int(_RATE_HZ * 0.02)])
+
+
+def _fit(world: World, seconds: float, rng: np.random.Generator) -> tuple[list[Waypoint], float]:
+    """Waypoints of all rounds, and the speed at which they take the time there is [m/s]."""
+    full = _duration(world.route(np.random.default_rng(0), world.stops), SPEED_M_S)
+    rounds = max(1, round(seconds / full))
+    routes: list[Waypoint] = []
+    best = [Waypoint(0, 0)]
+    left = seconds
+    for k in range(rounds):
+        share = left / (rounds - k)
+        plans = [
+            world.route(np.random.default_rng(rng.integers(1 << 62)), stops + 1)
+            for stops in range(world.stops)
+        ]
+        best = min(plans, key=lambda plan: abs(_duration(plan, SPEED_M_S) - share))
+        routes += best if not routes else best[1:]
+        left -= _duration(best, SPEED_M_S)
+    low, high = _SLOWEST_M_S, _FASTEST_M_S
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if _duration(routes, middle) > seconds else (low, middle)
+    return routes, 0.5 * (low + high)
+
+
+def _duration(route: list[Waypoint], speed_m_s: float) -> float:
+    return _lay_out(route, speed_m_s).t_s[-1]
+
+
+def _lay_out(route: list[Waypoint], speed_m_s: float) -> _Timeline:
+    """When the person is where and looks whereto."""
+    points = np.array([[w.x_m, w.y_m, w.z_m] for w in route])
+    steps = np.diff(points, axis=0)
+    directions = np.arctan2(steps[:, 1], steps[:, 0])
+    line = _Timeline([0.0], [tuple(points[0])], [0.0], [float(directions[0])])
+    line.stay(_STAND_S)
+    for k, waypoint in enumerate(route[1:]):
+        line.move(tuple(points[k + 1]), _length(steps[k]) / (speed_m_s * waypoint.pace))
+        following = directions[k + 1] if k + 1 < len(directions) else directions[0]
+        angle = _wrap(following - line.heading_rad[-1])
+        _turn(line, waypoint, angle, at_end=k + 1 == len(directions))
+    line.stay(_STAND_S)
+    return line
+
+
+def _turn(line: _Timeline, waypoint: Waypoint, angle_rad: float, *, at_end: bool) -> None:
+    if not waypoint.stop and not at_end:
+        # On the way: half of the turn before the corner, half after it.
+        seconds = abs(angle_rad) / np.deg2rad(130.0)
+        line.turn(angle_rad, line.t_s[-1] - 0.5 * seconds, seconds)
+        return
+    look = np.deg2rad(waypoint.look_deg)
+    for angle in [look, _wrap(angle_rad - look)] if look else [angle_rad]:
+        # The larger the turn, the faster, as people do: 60 deg/s for small, 240 for 180 degrees.
+        rate = np.deg2rad(np.clip(60.0 + np.rad2deg(abs(angle)), 60.0, _FASTEST_TURN_DEG_S))
+        seconds = abs(angle) / rate
+        line.stay(0.15)
+        line.turn(angle, line.t_s[-1], seconds)
+        line.stay(seconds + 0.15)
+
+
+def _body(line: _Timeline, t_s: Array, rng: np.random.Generator) -> Array:
+    """x, y, z, roll, pitch, yaw of the body, (N,) -> (N, 6)."""
+    corners = np.array(line.place)
+    place = np.stack([np.interp(t_s, line.t_s, corners[:, k]) for k in range(3)], axis=1)
+    place = _smooth(place, _PATH_SIGMA_S)
+    yaw = _smooth(np.interp(t_s, line.heading_t_s, line.heading_rad), _HEADING_SIGMA_S)
+    steps = np.gradient(place, t_s, axis=0)
+    speed = np.hypot(steps[:, 0], steps[:, 1])
+    climb = np.abs(steps[:, 2])
+    turning = np.abs(np.gradient(yaw, t_s))
+    effort = _smooth(np.clip(np.maximum(speed + climb, 0.3 * turning) / SPEED_M_S, 0, 1.3), 0.3)
+    # Step frequency 1.6 to 2.0 Hz; phase in steps.
+    phase = np.cumsum((1.4 + 0.5 * effort) * (1 + 0.05 * _wander(rng, t_s, 2.0)) / _RATE_HZ)
+    calm = _calm_ends(t_s)
+    step, stride = 2.0 * np.pi * phase, np.pi * phase
+    side = effort * 0.022 * np.sin(stride) + calm * 0.012 * _wander(rng, t_s, 1.5)
+    ahead = effort * 0.012 * np.sin(step + 0.8)
+    bounce = effort * (0.024 * np.cos(step) + 0.005 * np.cos(2 * step + 0.4))
+    c, s = np.cos(yaw), np.sin(yaw)
+    sway = [c * ahead - s * side, s * ahead + c * side, BODY_HEIGHT_M + bounce]
+    degrees = [
+        effort * 2.0 * np.sin(stride + 0.3) + calm * 0.8 * _wander(rng, t_s, 1.0),
+        2.0 + effort * 1.5 * np.sin(step + 1.1) + calm * 1.2 * _wander(rng, t_s, 1.0),
+        effort * 2.5 * np.sin(stride + 1.2) + calm * 1.5 * _wander(rng, t_s, 1.0),
+    ]
+    angles = np.deg2rad(np.stack(degrees, axis=1))
+    angles[:, 2] += yaw
+    return np.hstack([place + np.stack(sway, axis=1), angles])
+
+
+def _smooth(values: Array, sigma_s: float) -> Array:
+    from scipy.ndimage import gaussian_filter1d
+
+    return np.asarray(gaussian_filter1d(values, sigma_s * _RATE_HZ, axis=0, mode="nearest"))
+
+
+def _wander(rng: np.random.Generator, t_s: Array, sigma_s: float) -> Array:
+    """Slow random motion of standard deviation 1 without steps."""
+    # White noise smoothed by a Gaussian has the variance 1 / (2 sqrt(pi) sigma) a sample.
+    scale = np.sqrt(2.0 * np.sqrt(np.pi) * sigma_s * _RATE_HZ)
+    return scale * _smooth(rng.standard_normal(len(t_s)), sigma_s)
+
+
+def _calm_ends(t_s: Array) -> Array:
+    """0 while the person stands at the start and the end, 1 between."""
+    rest = np.minimum(t_s, t_s[-1] - t_s)
+    x = np.clip((rest - 0.7 * _STAND_S) / 2.0, 0.0, 1.0)
+    return x**3 * (10.0 - 15.0 * x + 6.0 * x**2)
+
+
+def _length(step: Array) -> float:
+    """Of a leg on the ground [m]; a person climbs at the same horizontal pace."""
+    return max(float(np.hypot(step[0], step[1])), 1e-6)
+
+
+def _wrap(angle_rad: float) -> float:
+    return float((angle_rad + np.pi) % (2.0 * np.pi) - np.pi)

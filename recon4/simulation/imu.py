@@ -1,0 +1,81 @@
+"""An inertial measurement unit on a walking body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from recon4.geometry.se3 import SE3, Array
+from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.simulation.walk import Walk
+
+IMU_RATE_HZ = 200
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ImuModel:
+    """Errors of a MEMS unit; zeros make it perfect."""
+
+    gyro_noise_rad_s_hz: float = float(np.deg2rad(0.005))
+    """Noise density [rad/s/sqrt(Hz)]."""
+    gyro_bias_rad_s: float = float(np.deg2rad(0.2))
+    """Standard deviation of the bias at the start, each axis."""
+    gyro_walk_rad_s: float = float(np.deg2rad(0.002))
+    """Random walk of the bias [rad/s/sqrt(s)]."""
+    accel_noise_m_s2_hz: float = 100e-6 * STANDARD_GRAVITY_M_S2
+    """Noise density [m/s²/sqrt(Hz)]."""
+    accel_bias_m_s2: float = 10e-3 * STANDARD_GRAVITY_M_S2
+    """Standard deviation of the bias at the start, each axis."""
+    accel_walk_m_s2: float = 50e-6 * STANDARD_GRAVITY_M_S2
+    """Random walk of the bias [m/s²/sqrt(s)]."""
+
+    @staticmethod
+    def perfect() -> ImuModel:
+        """No noise, no bias."""
+        return ImuModel(
+            gyro_noise_rad_s_hz=0.0,
+            gyro_bias_rad_s=0.0,
+            gyro_walk_rad_s=0.0,
+            accel_noise_m_s2_hz=0.0,
+            accel_bias_m_s2=0.0,
+            accel_walk_m_s2=0.0,
+        )
+
+
+def simulate_imu(
+    walk: Walk, T_body_imu: SE3, model: ImuModel, *, epoch_ns: int, rng: np.random.Generator
+) -> ImuSamples:
+    """Specific force and angular rate at 200 Hz over the whole walk.
+
+    With the IMU at ``l`` in the body, ``f = R_imu_map (a + α × l + ω × (ω × l) - g)``.
+    """
+    period_ns = 1_000_000_000 // IMU_RATE_HZ
+    t_ns = np.arange(int(walk.seconds * IMU_RATE_HZ) + 1, dtype=np.int64) * period_ns
+    t_s = 1e-9 * t_ns
+    R_map_body = walk.poses(t_s).R
+    omega = walk.angular_rate(t_s)
+    # The angular acceleration only matters times the IMU's lever arm of centimeters.
+    step_s = 1e-4
+    alpha = (walk.angular_rate(t_s + step_s) - walk.angular_rate(t_s - step_s)) / (2.0 * step_s)
+    lever = np.broadcast_to(T_body_imu.t, omega.shape)
+    up = np.array([0.0, 0.0, STANDARD_GRAVITY_M_S2])
+    force = np.einsum("nji,nj->ni", R_map_body, walk.acceleration(t_s) + up)
+    force += np.cross(alpha, lever) + np.cross(omega, np.cross(omega, lever))
+    gyro, accel = omega @ T_body_imu.R, force @ T_body_imu.R
+    gyro += _errors(
+        rng, len(t_ns), model.gyro_noise_rad_s_hz, model.gyro_bias_rad_s, model.gyro_walk_rad_s
+    )
+    accel += _errors(
+        rng, len(t_ns), model.accel_noise_m_s2_hz, model.accel_bias_m_s2, model.accel_walk_m_s2
+    )
+    return ImuSamples(epoch_ns + t_ns, gyro, accel)
+
+
+def _errors(  # noqa: PLR0917 - one call a kind of sensor, three numbers each
+    rng: np.random.Generator, count: int, density: float, bias: float, walk: float
+) -> Array:
+    """White noise, a bias at the start and its random walk, (count, 3)."""
+    white = density * np.sqrt(IMU_RATE_HZ) * rng.standard_normal((count, 3))
+    steps = walk / np.sqrt(IMU_RATE_HZ) * rng.standard_normal((count, 3))
+    return white + bias * rng.standard_normal(3) + np.cumsum(steps, axis=0)

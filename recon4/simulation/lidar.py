@@ -1,0 +1,187 @@
+"""A Velodyne VLP-16 on a walking body: when it fires, whereto, and what it measures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import Array
+from recon4.kernels.simulation import hits_carrier, make_rays, measure
+from recon4.model.rig import Sensor
+from recon4.model.trajectory import Times
+from recon4.simulation.mesh import GLASS, Mesh
+from recon4.simulation.raycast import Scene
+from recon4.simulation.walk import Walk
+
+LASER_NS = 2_304
+"""From one laser of a firing sequence to the next [ns] (VLP-16 user manual, figure 9-1)."""
+SEQUENCE_NS = 55_296
+"""From one firing sequence of 16 lasers to the next [ns]."""
+SEQUENCES = 24
+"""Firing sequences in a packet."""
+PACKET_NS = SEQUENCES * SEQUENCE_NS
+LASERS = 16
+ELEVATION_DEG = np.array([-15, 1, -13, 3, -11, 5, -9, 7, -7, 9, -5, 11, -3, 13, -1, 15], float)
+"""Of each laser in the order of firing."""
+HEIGHT_M = 1e-3 * np.array(
+    [11.2, -0.7, 9.7, -2.2, 8.1, -3.7, 6.6, -5.1, 5.1, -6.6, 3.7, -8.1, 2.2, -9.7, 0.7, -11.2]
+)
+"""Where each beam leaves the spin axis above the sensor's origin [m] (user manual, table 9-1)."""
+RESOLUTION_M = 0.002
+CARRIER = np.array([0.24, 0.0, 0.21, -1.5, 0.12])
+"""The person: x, y, radius, bottom and top of an upright cylinder in the body [m]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LidarModel:
+    """What is not ideal about a sensor; zeros make it perfect."""
+
+    range_sd_m: float = 0.015
+    """Standard deviation of a range [m]."""
+    min_range_m: float = 0.4
+    max_range_m: float = 110.0
+    weakest_signal: float = 4e-5
+    """reflectivity x cos(incidence) / range² at which half of the shots return [1/m²]:
+    10 % reflectivity at 50 m."""
+    loss: float = 0.003
+    """Share of shots lost for no reason."""
+    divergence_rad: float = 0.003
+    """Full opening of a beam."""
+    mixed_step_m: float = 0.8
+    """Surfaces in one beam nearer to each other than this give one mixed range [m]."""
+    intensity_sd: float = 0.06
+    """Relative noise of the intensity."""
+    intensity_sd_counts: float = 1.5
+    """Absolute noise of the intensity."""
+    gain_spread: float = 0.25
+    """Beams differ in gain by up to this share."""
+    carrier: bool = True
+    """The person hides what is behind."""
+
+    @staticmethod
+    def perfect() -> LidarModel:
+        """No noise, no losses: for tests of exactness."""
+        return LidarModel(
+            range_sd_m=0.0,
+            weakest_signal=0.0,
+            loss=0.0,
+            divergence_rad=0.0,
+            intensity_sd=0.0,
+            intensity_sd_counts=0.0,
+            gain_spread=0.0,
+            carrier=False,
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Firings:
+    """Some packets of one sensor before they are packed. P packets, 24 sequences, 16 lasers."""
+
+    t_ns: Times
+    """Time of each shot since the start of the walk [ns], (P, 24, 16)."""
+    azimuth_rad: Array
+    """Azimuth of each shot, clockwise seen from above, (P, 24, 16)."""
+    distance: NDArray[np.uint16]
+    """In units of 2 mm, 0 = no return, (P, 24, 16)."""
+    intensity: NDArray[np.uint8]
+    """0..255, (P, 24, 16)."""
+    reflectivity: NDArray[np.uint8]
+    """Hundred times the true one, 0 = no return, (P, 24, 16)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Lidar:
+    """One sensor with its own clock phase, motor phase and beam gains."""
+
+    sensor: Sensor
+    model: LidarModel
+    first_packet_ns: int
+    """Time of its first shot since the start of the walk [ns]."""
+    azimuth_rad: float
+    """Azimuth at the start of the walk."""
+    turn_rate_hz: float
+    """Near 10 Hz; two sensors are not phase locked."""
+    gain: Array
+    """Of each laser, (16,)."""
+
+    @staticmethod
+    def drawn(sensor: Sensor, model: LidarModel, rng: np.random.Generator) -> Lidar:
+        """A sensor with phases and gains drawn at random."""
+        return Lidar(
+            sensor,
+            model,
+            int(rng.integers(0, PACKET_NS)),
+            float(rng.uniform(0.0, 2.0 * np.pi)),
+            10.0 * float(1.0 + 5e-4 * rng.uniform(-1.0, 1.0)),
+            1.0 + model.gain_spread * rng.uniform(-1.0, 1.0, LASERS),
+        )
+
+    def packets_before(self, t_ns: int) -> int:
+        """How many packets are complete at a time since the start of the walk [ns]."""
+        return max(0, (t_ns - self.first_packet_ns) // PACKET_NS)
+
+    def fire(
+        self, packets: range, walk: Walk, surroundings: Surroundings, rng: np.random.Generator
+    ) -> Firings:
+        """Measure from a walking body, every shot from its own pose."""
+        t_ns = self.first_packet_ns + (
+            PACKET_NS * np.arange(packets.start, packets.stop, dtype=np.int64)[:, None, None]
+            + SEQUENCE_NS * np.arange(SEQUENCES)[:, None]
+            + LASER_NS * np.arange(LASERS)
+        )
+        count = t_ns.size
+        t_s = 1e-9 * t_ns.ravel()
+        shot = np.empty((count, 5))
+        shot[:, 0] = self.azimuth_rad + 2.0 * np.pi * self.turn_rate_hz * t_s
+        shot[:, 1] = np.tile(np.deg2rad(ELEVATION_DEG), count // LASERS)
+        shot[:, 2] = np.tile(HEIGHT_M, count // LASERS)
+        half = 0.5 * self.model.divergence_rad
+        shot[:, 3:] = rng.uniform(-half, half, (count, 2))
+        mount = self.sensor.T_body_sensor
+        rays = np.empty((2 * count, 6), dtype=np.float32)
+        make_rays(walk.state(t_s), mount.R, mount.t, shot, rays)
+        blocked = np.zeros(count, dtype=np.bool_)
+        if self.model.carrier:
+            hits_carrier(shot, mount.R, mount.t, CARRIER, blocked)
+        out = self._measure(rays, blocked, surroundings, rng)
+        azimuth = np.mod(shot[:, 0], 2.0 * np.pi).reshape(t_ns.shape)
+        return Firings(t_ns, azimuth, *(column.reshape(t_ns.shape) for column in out))
+
+    def _measure(
+        self,
+        rays: NDArray[np.float32],
+        blocked: NDArray[np.bool_],
+        surroundings: Surroundings,
+        rng: np.random.Generator,
+    ) -> tuple[NDArray[np.uint16], NDArray[np.uint8], NDArray[np.uint8]]:
+        count = len(blocked)
+        hits = surroundings.scene.cast(rays)
+        noise = np.empty((count, 4), dtype=np.float32)
+        noise[:, :2] = rng.standard_normal((count, 2), dtype=np.float32)
+        noise[:, 2:] = rng.random((count, 2), dtype=np.float32)
+        distance = np.empty(count, dtype=np.uint16)
+        intensity, truth = np.empty(count, dtype=np.uint8), np.empty(count, dtype=np.uint8)
+        model = self.model
+        rules = np.array(
+            [
+                model.range_sd_m, model.min_range_m, model.max_range_m, model.weakest_signal,
+                model.mixed_step_m, model.loss, model.intensity_sd, model.intensity_sd_counts,
+                GLASS, RESOLUTION_M,
+            ]
+        )  # fmt: skip
+        gain = np.tile(self.gain, count // LASERS)
+        measure(
+            hits.range_m, hits.triangle, hits.normal, rays, surroundings.mesh.reflectivity, blocked,
+            gain, noise, rules, distance, intensity, truth,
+        )  # fmt: skip
+        return distance, intensity, truth
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Surroundings:
+    """A mesh and its ray caster."""
+
+    mesh: Mesh
+    scene: Scene

@@ -1,0 +1,66 @@
+"""What a world is: surfaces, survey markers and where one can walk."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from recon4.simulation.mesh import Mesh
+
+
+@dataclass(frozen=True, slots=True)
+class Waypoint:
+    """A place on the floor on the way of the person."""
+
+    x_m: float
+    y_m: float
+    z_m: float = 0.0
+    pace: float = 1.0
+    """Speed of the leg that ends here, as a share of the walk's speed (stairs: 0.5)."""
+    stop: bool = False
+    """Come to rest here and turn on the spot."""
+    look_deg: float = 0.0
+    """Turn by so much first, left positive, before turning to the next waypoint (needs `stop`)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Marker:
+    """A survey marker: a square of retro-reflective paint on a surface."""
+
+    name: str
+    x_m: float
+    y_m: float
+    z_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where the map's origin lies on the earth (WGS 84); the map's axes are east, north, up there."""
+
+    lat_deg: float
+    lon_deg: float
+    height_m: float
+
+
+BRNO = Origin(lat_deg=49.2265, lon_deg=16.5967, height_m=275.0)
+"""Origin of every world: near the faculty where the backpack of the thesis was built."""
+
+Route = Callable[[np.random.Generator, int], list[Waypoint]]
+"""One round with so many places visited (1..stops); it ends where it began."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class World:
+    """A place to walk and scan. Its geometry never changes; seeds change walks and noise."""
+
+    name: str
+    mesh: Mesh
+    route: Route
+    stops: int
+    """Most places a round can visit."""
+    markers: tuple[Marker, ...] = ()
+    outdoors: bool = False
+    """GNSS can be received."""
+    origin: Origin = BRNO
