@@ -1,0 +1,51 @@
+"""Hot loop of placing every point by the pose at its own time."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numba import njit
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def place_points(
+    xyz: Any, sensor: Any, dt_ns: Any, knot_ns: Any, R: Any, t: Any, out_xyz: Any, out_origin: Any
+) -> None:
+    """Move points from their sensors into the map.
+
+    Between two knots, rotation matrices and positions are blended linearly; with knots 1 ms
+    apart a matrix so blended is off from the SLERP by less than 3e-6 at 250 deg/s.
+
+    Args:
+        xyz: Points in the frames of their sensors [m], float32 (N, 3).
+        sensor: Row of the sensor, uint8 (N,).
+        dt_ns: Times, int32 (N,); every one within the knots.
+        knot_ns: Increasing times on the same clock, int64 (K,), K >= 2.
+        R: ``R_map_sensor`` at the knots, float64 (K, S, 3, 3).
+        t: ``t_map_sensor`` at the knots [m], float64 (K, S, 3).
+        out_xyz: Receives the points in the map, float64 (N, 3).
+        out_origin: Receives the sensor's position at that time, (N, 3) or (0, 3).
+    """
+    want_origin = len(out_origin) > 0
+    last = len(knot_ns) - 2
+    k = 0
+    for n in range(len(xyz)):
+        # Points come in firing order, so the right knot is this one or the next one.
+        while k < last and dt_ns[n] >= knot_ns[k + 1]:
+            k += 1
+        while k > 0 and dt_ns[n] < knot_ns[k]:
+            k -= 1
+        b = (dt_ns[n] - knot_ns[k]) / (knot_ns[k + 1] - knot_ns[k])
+        a = 1.0 - b
+        s = sensor[n]
+        x, y, z = xyz[n, 0], xyz[n, 1], xyz[n, 2]
+        for i in range(3):
+            origin = a * t[k, s, i] + b * t[k + 1, s, i]
+            out_xyz[n, i] = (
+                origin
+                + (a * R[k, s, i, 0] + b * R[k + 1, s, i, 0]) * x
+                + (a * R[k, s, i, 1] + b * R[k + 1, s, i, 1]) * y
+                + (a * R[k, s, i, 2] + b * R[k + 1, s, i, 2]) * z
+            )
+            if want_origin:
+                out_origin[n, i] = origin

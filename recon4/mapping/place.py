@@ -1,0 +1,102 @@
+"""Every point by the pose at its own time (V §2.6, Eq. 2.8; requirements A5)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from recon4.errors import ConfigError
+from recon4.geometry.se3 import SE3, Array
+from recon4.kernels.deskew import place_points
+from recon4.model.multiframe import Multiframe
+from recon4.model.rig import Rig
+from recon4.model.trajectory import Times, Trajectory
+
+KNOT_NS = 1_000_000
+"""Poses are interpolated exactly this often [ns], and at every pose of the trajectory."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Placed:
+    """The points of a multiframe in the frame of the trajectory."""
+
+    xyz_m: Array
+    """Points [m], (N, 3)."""
+    origin_m: Array
+    """Where the sensor was when it measured each of them [m], (N, 3)."""
+
+
+def place(
+    frame: Multiframe, trajectory: Trajectory, rig: Rig, *, slack_ns: int | None = None
+) -> Array:
+    """Points of a multiframe in the frame ``a`` of the trajectory, rolling shutter undone.
+
+    Args:
+        frame: Points in the frames of their sensors.
+        trajectory: ``T_a_body``.
+        rig: Where the sensors are on the body.
+        slack_ns: How far outside the trajectory a point may lie in time (the first or last motion
+            goes on); None = the duration of the frame, as a trajectory with one pose a frame needs.
+
+    Returns:
+        Points [m], float64 (N, 3).
+
+    Raises:
+        OutOfRange: If the trajectory does not cover the frame.
+        ConfigError: If the frame has points of a sensor the rig does not have.
+    """
+    out = np.empty((len(frame), 3))
+    _place(frame, trajectory, rig, out=out, origin=np.empty((0, 3)), slack_ns=slack_ns)
+    return out
+
+
+def place_with_origins(
+    frame: Multiframe, trajectory: Trajectory, rig: Rig, *, slack_ns: int | None = None
+) -> Placed:
+    """As `place`, with the position of the sensor at each point's time."""
+    placed = Placed(np.empty((len(frame), 3)), np.empty((len(frame), 3)))
+    _place(frame, trajectory, rig, out=placed.xyz_m, origin=placed.origin_m, slack_ns=slack_ns)
+    return placed
+
+
+def _place(
+    frame: Multiframe,
+    trajectory: Trajectory,
+    rig: Rig,
+    *,
+    out: Array,
+    origin: Array,
+    slack_ns: int | None,
+) -> None:
+    if len(frame) == 0:
+        return
+    if frame.sensor.max() >= len(rig.sensors):
+        raise ConfigError(
+            f"multiframe {frame.frame_id} has points of sensor {frame.sensor.max()}, "
+            f"but rig {rig.name!r} has {len(rig.sensors)} sensors, numbered from 0"
+        )
+    knot_ns = _knots(frame, trajectory.t_ns)
+    slack = frame.duration_ns if slack_ns is None else slack_ns
+    T_map_body = trajectory.at(knot_ns, slack_ns=slack)
+    T_map_sensor = SE3(T_map_body.R[:, None], T_map_body.t[:, None]) @ rig.T_body_sensor
+    place_points(
+        np.ascontiguousarray(frame.xyz),
+        np.ascontiguousarray(frame.sensor),
+        np.ascontiguousarray(frame.dt_ns),
+        knot_ns - frame.t_ns,
+        np.ascontiguousarray(T_map_sensor.R),
+        np.ascontiguousarray(T_map_sensor.t),
+        out,
+        origin,
+    )
+
+
+def _knots(frame: Multiframe, pose_ns: Times) -> Times:
+    """Times from the first to the last point, with the poses between them, at most 1 ms apart."""
+    first = frame.t_ns + int(frame.dt_ns.min())
+    last = max(frame.t_ns + int(frame.dt_ns.max()), first + 1)
+    steps = -(-(last - first) // KNOT_NS)
+    regular = first + (last - first) * np.arange(steps + 1, dtype=np.int64) // steps
+    a, b = np.searchsorted(pose_ns, [first, last])
+    return np.union1d(regular, pose_ns[a:b])
