@@ -1,0 +1,192 @@
+"""The command line: ``recon4 COMMAND --help``.
+
+Exit codes: 0 done, 1 a known error (said in one line), 2 wrong usage, 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+import recon4
+from recon4.errors import Cancelled, Recon4Error
+
+if TYPE_CHECKING:
+    from recon4.settings import Settings
+
+app = typer.Typer(
+    name="recon4",
+    help="From the recording of a LiDAR backpack to a verified, levelled, georeferenced map.",
+    invoke_without_command=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+PresetOption = Annotated[
+    str, typer.Option("--preset", help="Start from: indoor, staircase, outdoor, thesis.")
+]
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="GROUP.NAME=VALUE", help="Change one setting; repeatable."),
+]
+JsonOption = Annotated[bool, typer.Option("--json", help="Write JSON for programs.")]
+
+
+@app.command()
+def settings(
+    preset: PresetOption = "indoor",
+    assignments: SetOption = None,
+    as_json: JsonOption = False,
+    markdown: Annotated[bool, typer.Option("--markdown", help="Write docs/settings.md.")] = False,
+) -> None:
+    """Show every setting in force, with its meaning."""
+    from recon4.settings import to_json
+    from recon4.settings_help import markdown as settings_page
+
+    chosen = _settings(preset, assignments)
+    if markdown:
+        _write(settings_page(), end="")
+    elif as_json:
+        _write_json(to_json(chosen))
+    else:
+        _show_settings(chosen)
+
+
+@app.command()
+def verify(
+    project: Annotated[Path, typer.Argument(help="Folder that `recon4 process --out` made.")],
+    as_json: JsonOption = False,
+) -> None:
+    """Read every byte of a project again and compare it with the hashes kept."""
+    from dataclasses import asdict
+
+    from recon4.store.audit import audit
+    from recon4.terminal import watcher
+
+    with watcher() as progress:
+        found = audit(project, progress)
+    if as_json:
+        _write_json(asdict(found))
+    else:
+        for name in found.unknown:
+            _write(f"not of recon4, left alone: artifacts/{name}")
+        for what in found.damaged:
+            _write(f"damaged: {what}")
+        _write(f"{found.checked} checked, {len(found.damaged)} damaged")
+    if found.damaged:
+        raise typer.Exit(1)
+
+
+@app.command()
+def doctor(
+    folder: Annotated[Path, typer.Argument(help="Where projects are kept.")] = Path(),
+    as_json: JsonOption = False,
+) -> None:
+    """Look at versions, cores, memory, disk and threads of this machine."""
+    from dataclasses import asdict
+
+    from recon4.doctor import examine
+
+    checks = examine(folder)
+    if as_json:
+        _write_json([asdict(check) for check in checks])
+    else:
+        for check in checks:
+            mark = "ok " if check.ok else "NO "
+            _write(f"{mark} {check.what:<20} {check.found:<18} {check.advice}".rstrip())
+    if not all(check.ok for check in checks):
+        raise typer.Exit(1)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        _write(f"recon4 {recon4.__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _every_command(
+    context: typer.Context,
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_version, is_eager=True, help="Show the version."),
+    ] = False,
+) -> None:
+    if context.invoked_subcommand is None:
+        _write(context.get_help())
+        raise typer.Exit(2)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command and say how it ended."""
+    signal.signal(signal.SIGTERM, _interrupt)
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(
+            name, "1"
+        )  # small matrices: more threads only get in each other's way
+    given = None if arguments is None else list(arguments)
+    try:
+        result = app(args=given, prog_name="recon4", standalone_mode=False)
+    except (typer.Abort, KeyboardInterrupt):
+        _complain("interrupted; the same command resumes where it stopped")
+        return 130
+    except Cancelled as stop:
+        _complain(str(stop))
+        return 130
+    except Recon4Error as error:
+        _complain(str(error))
+        return 1
+    except typer.TyperException as error:
+        return _wrong_usage(error)
+    return result if isinstance(result, int) else 0
+
+
+def _wrong_usage(error: typer.TyperException) -> int:
+    context = getattr(error, "ctx", None)
+    command = context.command_path if context else "recon4"
+    _complain(f"{error.format_message()}\n{command} --help says what it takes")
+    return 2
+
+
+def _interrupt(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
+def _settings(preset_name: str, assignments: list[str] | None) -> Settings:
+    from recon4.settings import override, preset
+
+    try:
+        return override(preset(preset_name), assignments or [])
+    except Recon4Error as error:
+        raise typer.BadParameter(str(error)) from error
+
+
+def _show_settings(chosen: Settings) -> None:
+    from recon4.settings_help import describe_settings, differences
+
+    changed = differences(chosen)
+    for group in describe_settings():
+        _write(f"\n{group.name}: {group.text}")
+        for setting in group.settings:
+            value = getattr(getattr(chosen, group.name), setting.name)
+            mark = "*" if setting.path in changed else " "
+            _write(f" {mark} {setting.path:<36} {value!s:<14} {setting.text}".rstrip())
+
+
+def _write(text: str, end: str = "\n") -> None:
+    sys.stdout.write(text + end)
+
+
+def _write_json(value: Any) -> None:
+    _write(json.dumps(value, indent=1, ensure_ascii=False))
+
+
+def _complain(text: str) -> None:
+    sys.stderr.write(f"recon4: {text}\n")

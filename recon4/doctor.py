@@ -1,0 +1,88 @@
+"""What this machine has, and whether it is enough."""
+
+from __future__ import annotations
+
+import os
+import platform
+import shutil
+from dataclasses import dataclass
+from importlib import metadata
+from pathlib import Path
+
+import recon4
+
+_PACKAGES = (
+    ("numpy", "numbers"),
+    ("numba", "compiled loops"),
+    ("gtsam", "pose graph"),
+    ("open3d-cpu", "simulation"),
+    ("rosbags", "reading bags"),
+    ("laspy", "writing LAZ"),
+    ("lazrs", "writing LAZ"),
+    ("pyproj", "coordinate systems"),
+    ("viser", "3D viewer"),
+    ("fastapi", "server"),
+)
+_ELSEWHERE = {"open3d-cpu": "open3d"}
+_MEMORY_GB, _DISK_GB, _CORES = 4.0, 5.0, 2
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """One thing looked at."""
+
+    what: str
+    found: str
+    ok: bool
+    advice: str = ""
+    """What to do if it is not; empty when it is."""
+
+
+def examine(folder: Path) -> list[Check]:
+    """Look at versions, cores, memory, disk and threads.
+
+    Args:
+        folder: Where projects would be kept; its disk is looked at.
+    """
+    checks = [
+        Check("recon4", recon4.__version__, ok=True),
+        Check("Python", platform.python_version(), ok=True),
+        _at_least("cores", _cores(), _CORES, unit=""),
+        _at_least("memory", _memory_gb(), _MEMORY_GB, unit=" GB"),
+        _at_least("disk free", shutil.disk_usage(folder).free / 1e9, _DISK_GB, unit=" GB"),
+        Check(
+            "threads of BLAS", os.environ.get("OPENBLAS_NUM_THREADS", "as many as cores"), ok=True
+        ),
+        _kernel_cache(),
+    ]
+    return checks + [_package(name, purpose) for name, purpose in _PACKAGES]
+
+
+def _at_least(what: str, found: float, needed: float, *, unit: str) -> Check:
+    ok = found >= needed
+    advice = "" if ok else f"recon4 works best with {needed:g}{unit} or more"
+    return Check(what, f"{found:.3g}{unit}", ok, advice)
+
+
+def _package(name: str, purpose: str) -> Check:
+    for candidate in (name, _ELSEWHERE.get(name, name)):
+        try:
+            return Check(candidate, metadata.version(candidate), ok=True)
+        except metadata.PackageNotFoundError:
+            continue
+    return Check(name, "missing", ok=False, advice=f"needed for {purpose}: pip install {name}")
+
+
+def _kernel_cache() -> Check:
+    folder = Path(os.environ.get("NUMBA_CACHE_DIR", Path(__file__).parent / "kernels"))
+    writable = os.access(folder if folder.exists() else folder.parent, os.W_OK)
+    advice = "" if writable else "set NUMBA_CACHE_DIR to a writable folder, or each start compiles"
+    return Check("compiled loops kept", "yes" if writable else "no", writable, advice)
+
+
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _memory_gb() -> float:
+    return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 1e9

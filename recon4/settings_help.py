@@ -1,0 +1,130 @@
+"""Every setting with its meaning, read from the one place where it is declared."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+from dataclasses import dataclass, fields
+from itertools import pairwise
+from typing import Any, get_args, get_type_hints
+
+from recon4 import settings as declared
+from recon4.settings import PRESETS, Settings, to_json
+
+
+@dataclass(frozen=True, slots=True)
+class SettingHelp:
+    """One setting."""
+
+    group: str
+    name: str
+    kind: str
+    """What may be given, in words: ``int``, ``float``, ``text``, or the choices."""
+    default: Any
+    text: str
+    """Meaning and unit; empty where the name says all."""
+
+    @property
+    def path(self) -> str:
+        """What ``--set`` takes."""
+        return f"{self.group}.{self.name}"
+
+
+@dataclass(frozen=True, slots=True)
+class GroupHelp:
+    """The settings of one stage."""
+
+    name: str
+    text: str
+    settings: tuple[SettingHelp, ...]
+
+
+def describe_settings() -> tuple[GroupHelp, ...]:
+    """All groups in the order they are declared."""
+    texts = _texts_under_fields()
+    return tuple(_group(f.name, texts) for f in fields(Settings))
+
+
+def differences(settings: Settings) -> dict[str, Any]:
+    """``group.field`` -> value of what is not as by default."""
+    chosen, default = to_json(settings), to_json(Settings())
+    return {
+        f"{group}.{name}": value
+        for group, values in chosen.items()
+        for name, value in values.items()
+        if value != default[group][name]
+    }
+
+
+def markdown() -> str:
+    """``docs/settings.md``."""
+    parts = [
+        "# Settings",
+        "",
+        "Written by `recon4 settings --markdown` from `recon4/settings.py`; do not edit.",
+        "Change one with `--set group.name=value`, many with `--preset`.",
+        "",
+        "## Presets",
+        "",
+        "| preset | differs from the defaults in |",
+        "|---|---|",
+    ]
+    for name, settings in PRESETS.items():
+        changed = ", ".join(
+            f"`{path}={_shown(value)}`" for path, value in differences(settings).items()
+        )
+        parts.append(f"| `{name}` | {changed or 'nothing'} |")
+    for group in describe_settings():
+        parts += ["", f"## {group.name}", "", group.text, "", "| setting | value | default | |"]
+        parts.append("|---|---|---|---|")
+        for s in group.settings:
+            parts.append(f"| `{s.path}` | {s.kind} | `{_shown(s.default)}` | {_cell(s.text)} |")
+    return "\n".join(parts) + "\n"
+
+
+def _group(name: str, texts: dict[str, dict[str, str]]) -> GroupHelp:
+    kind = get_type_hints(Settings)[name]
+    hints = get_type_hints(kind)
+    settings = tuple(
+        SettingHelp(
+            name, f.name, _kind(hints[f.name]), f.default, texts[kind.__name__].get(f.name, "")
+        )
+        for f in fields(kind)
+    )
+    return GroupHelp(name, inspect.getdoc(kind) or "", settings)
+
+
+def _texts_under_fields() -> dict[str, dict[str, str]]:
+    """Class -> field -> the string that stands under it; Python itself does not keep those."""
+    module = ast.parse(inspect.getsource(declared))
+    return {
+        node.name: _texts_in(node.body) for node in module.body if isinstance(node, ast.ClassDef)
+    }
+
+
+def _texts_in(body: list[ast.stmt]) -> dict[str, str]:
+    found = {}
+    for field, below in pairwise(body):
+        match field, below:
+            case ast.AnnAssign(target=ast.Name(id=name)), ast.Expr(
+                value=ast.Constant(value=str(text))
+            ):
+                found[name] = " ".join(text.split())
+    return found
+
+
+def _kind(hint: Any) -> str:
+    choices = get_args(hint)
+    if choices:
+        return ", ".join(f"`{choice}`" for choice in choices)
+    return {"str": "text", "bool": "`true`, `false`"}.get(hint.__name__, hint.__name__)
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    return str(value) if value != "" else '""'
+
+
+def _cell(text: str) -> str:
+    return text.replace("``", "`").replace("|", "\\|")

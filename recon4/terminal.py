@@ -1,0 +1,193 @@
+"""Progress for a person at a terminal: bars, or plain lines when the output goes elsewhere."""
+
+from __future__ import annotations
+
+import sys
+import time
+from types import TracebackType
+from typing import TYPE_CHECKING, TextIO
+
+if TYPE_CHECKING:
+    from rich.progress import ProgressColumn, Task, TaskID
+
+_LINE_EVERY_S = 5.0
+_TOLD = {
+    "damaged": "an artifact was damaged and is made again",
+    "warning": "warning",
+    "repair": "repaired",
+}
+"""Events a person should see while a run goes on; the others end up in the results."""
+
+
+class PlainLines:
+    """A line when a piece of work begins, every five seconds and when it ends."""
+
+    def __init__(self, out: TextIO) -> None:
+        self._out = out
+        self._what, self._unit = "", ""
+        self._done, self._total = 0, 0
+        self._began_s, self._said_s = 0.0, 0.0
+
+    def start(self, what: str, total: int, unit: str) -> None:
+        """Begin a piece of work."""
+        self._finish()
+        self._what, self._unit, self._done, self._total = what, unit, 0, total
+        self._began_s = self._said_s = time.monotonic()
+
+    def advance(self, done: int = 1) -> None:
+        """Count; a line now and then."""
+        self._done += done
+        if time.monotonic() - self._said_s >= _LINE_EVERY_S:
+            self._say(self._line())
+            self._said_s = time.monotonic()
+
+    def event(self, kind: str, **facts: object) -> None:
+        """A line for what a person should know."""
+        text = describe_event(kind, facts)
+        if text:
+            self._finish()
+            self._say(text)
+
+    def __enter__(self) -> PlainLines:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        at: TracebackType | None,
+    ) -> None:
+        self._finish()
+
+    def _finish(self) -> None:
+        if self._what:
+            self._say(self._line())
+        self._what = ""
+
+    def _line(self) -> str:
+        seconds = time.monotonic() - self._began_s
+        return describe_progress(
+            self._what, self._done, self._total, unit=self._unit, seconds=seconds
+        )
+
+    def _say(self, text: str) -> None:
+        self._out.write(f"{text}\n")
+        self._out.flush()
+
+
+class Bars:
+    """A bar for each piece of work: percent, count, rate with its unit, time left."""
+
+    def __init__(self, out: TextIO) -> None:
+        from rich.console import Console
+        from rich.progress import BarColumn, TextColumn
+        from rich.progress import Progress as RichProgress
+
+        self._rich = RichProgress(
+            TextColumn("{task.description:<28}"),
+            BarColumn(bar_width=24),
+            _figures_column(),
+            console=Console(file=out),
+        )
+        self._task: TaskID | None = None
+
+    def start(self, what: str, total: int, unit: str) -> None:
+        """Begin a piece of work."""
+        self._finish()
+        self._task = self._rich.add_task(what, total=total or None, unit=unit)
+
+    def advance(self, done: int = 1) -> None:
+        """Move the bar."""
+        if self._task is not None:
+            self._rich.advance(self._task, done)
+
+    def event(self, kind: str, **facts: object) -> None:
+        """A line above the bars for what a person should know."""
+        text = describe_event(kind, facts)
+        if text:
+            self._rich.console.print(text, markup=False, highlight=False)
+
+    def __enter__(self) -> Bars:
+        self._rich.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        at: TracebackType | None,
+    ) -> None:
+        if error is None:
+            self._finish()
+        self._rich.stop()
+
+    def _finish(self) -> None:
+        if self._task is not None:
+            (task,) = [t for t in self._rich.tasks if t.id == self._task]
+            self._rich.update(self._task, total=task.completed or 1, completed=task.completed or 1)
+        self._task = None
+
+
+def watcher(out: TextIO = sys.stderr) -> PlainLines | Bars:
+    """What suits the place the progress is written to; a context manager and a `Progress`."""
+    return Bars(out) if out.isatty() else PlainLines(out)
+
+
+def describe_progress(what: str, done: int, total: int, *, unit: str, seconds: float) -> str:
+    """One line: percent, count, rate with unit, time left."""
+    share = (
+        f"{100 * done // total:3d} %  {_count(done, unit)}/{_count(total, unit)}" if total else ""
+    )
+    parts = [f"{what:<28}", share or _count(done, unit), unit if unit != "B" else ""]
+    if done and seconds > 0.0:
+        rate = done / seconds
+        parts.append(f"{_count(rate, unit)}/s" if unit == "B" else f"{rate:.1f} {unit}/s")
+        left_s = (total - done) / rate
+        parts.append(f"{left_s:.0f} s left" if left_s > 0.0 else f"{seconds:.1f} s")
+    return "  ".join(part for part in parts if part)
+
+
+def describe_event(kind: str, facts: dict[str, object]) -> str:
+    """A line for a person, or nothing if the event is none of his business just now."""
+    if kind == "stage":
+        return _describe_stage(facts)
+    if kind not in _TOLD:
+        return ""
+    return f"{_TOLD[kind]}: " + ", ".join(f"{name} {value}" for name, value in facts.items())
+
+
+def _describe_stage(facts: dict[str, object]) -> str:
+    match facts.get("state"):
+        case "reused":
+            return f"{facts['stage']}: already there"
+        case "done":
+            return f"{facts['stage']}: done in {facts['seconds']} s"
+    return ""
+
+
+def _figures_column() -> ProgressColumn:
+    from rich.progress import ProgressColumn
+    from rich.text import Text
+
+    class Figures(ProgressColumn):
+        def render(self, task: Task) -> Text:
+            line = describe_progress(
+                "",
+                int(task.completed),
+                int(task.total or 0),
+                unit=task.fields["unit"],
+                seconds=task.elapsed or 0.0,
+            )
+            return Text(line.strip())
+
+    return Figures()
+
+
+def _count(number: float, unit: str) -> str:
+    if unit != "B":
+        return f"{number:.0f}"
+    for prefix in ("", "k", "M"):
+        if number < 1000:
+            return f"{number:.0f} {prefix}B"
+        number /= 1000
+    return f"{number:.1f} GB"
