@@ -1,0 +1,213 @@
+"""Everything that can be said about a result when the truth is known: ``recon4 evaluate``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, fields, is_dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from recon4.evaluation.ate import AbsoluteError, PosePairs, absolute_error, pair_poses
+from recon4.evaluation.density import SurfaceDensity, surface_density
+from recon4.evaluation.floor import ErrorFloor, map_onto_model, relative_error_floor
+from recon4.evaluation.kitti import (
+    OFFICIAL_M,
+    THESIS_FRAMES,
+    WALK_M,
+    Drift,
+    official_drift,
+    thesis_drift,
+)
+from recon4.evaluation.mesh import Mesh, distance_to, read_mesh
+from recon4.evaluation.sharpness import Sharpness, sharpness, thin
+from recon4.evaluation.slices import RelativeError, relative_error, spread_slices
+from recon4.evaluation.text import evaluation_text
+from recon4.evaluation.trajectories import find_trajectory
+from recon4.geometry.se3 import SE3, Array
+from recon4.model.multiframe import Multiframe
+from recon4.model.rig import Rig
+from recon4.model.trajectory import Trajectory
+
+FRAME_NS = 100_000_000
+"""Dense trajectories are judged at one pose a multiframe of 10 Hz [ns]."""
+MapAlignment = Literal["icp", "trajectory", "none"]
+Chunks = Callable[[], Iterable[Array]]
+"""Makes a fresh pass over the points of the map [m], arrays of (N, 3)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class MapQuality:
+    """What the map looks like without any truth."""
+
+    density: SurfaceDensity
+    sharpness: Sharpness
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Evaluation:
+    """All figures of one result."""
+
+    estimate: str
+    """Name of what was judged."""
+    truth: str
+    """Name of what it was judged by."""
+    poses: int
+    covered_share: float
+    """Share of the estimate's poses that the truth covers, 0..1."""
+    way_m: float
+    """Length of the true way [m]."""
+    duration_s: float
+    aligned: AbsoluteError
+    """After the SVD fit of all positions."""
+    first_pose: AbsoluteError
+    """With the first poses made equal (L Eq. 9)."""
+    unaligned: AbsoluteError
+    """As it is: meaningful when estimate and truth share a frame."""
+    drift: tuple[Drift, ...]
+    relative: RelativeError | None = None
+    floor: ErrorFloor | None = None
+    quality: MapQuality | None = None
+
+    def table(self) -> str:
+        """The figures as text tables for a terminal."""
+        return evaluation_text(self)
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain JSON values; what is not a number becomes null, one row a pose is left out."""
+        plain = _plain(self)
+        assert isinstance(plain, dict)
+        return plain
+
+
+def evaluate(
+    project_or_trajectory: Path,
+    *,
+    truth: Path,
+    model: Path | None = None,
+    chunks: Chunks | None = None,
+    frames: Iterable[Multiframe] | None = None,
+    rig: Rig | None = None,
+    map_alignment: MapAlignment = "icp",
+    max_range_m: float = 60.0,
+) -> Evaluation:
+    """Judge a result by the truth.
+
+    Args:
+        project_or_trajectory: ``.tum`` or ``.npz`` file, or a project with ``trajectory.tum``.
+        truth: True trajectory in the same formats, at any rate and in any frame.
+        model: True model as a triangle mesh in the frame of ``truth``; gives e_r.
+        chunks: Function that makes a pass over the map's points, for example
+            ``lambda: TileSet.open(folder).points()``; needed for e_r and the map's quality.
+        frames: Multiframes (`FrameStore`); with ``rig`` and ``model`` they give e_r of the true
+            poses from the same points.
+        rig: Mountings for ``frames``.
+        map_alignment: How the map is laid onto the model: ``icp`` (V §3.2; starts from the
+            trajectory's fit), ``trajectory`` (SVD fit of the positions only) or ``none``.
+        max_range_m: Range limit of the map, for ``frames`` [m].
+
+    Raises:
+        OutOfRange: If the truth covers fewer than two poses.
+        Recon4Error: If a file cannot be read.
+    """
+    estimate, true = find_trajectory(project_or_trajectory), find_trajectory(truth)
+    pairs = pair_poses(at_frames(estimate), true)
+    aligned = absolute_error(pairs)
+    mesh = read_mesh(model) if model is not None else None
+    floor = None
+    if mesh is not None and frames is not None and rig is not None:
+        floor = relative_error_floor(
+            frames, rig, mesh, estimate=estimate, truth=true, max_range_m=max_range_m
+        )
+    relative = None
+    if mesh is not None and chunks is not None:
+        relative = _relative(chunks, mesh, aligned.T_true_map, map_alignment)
+    return Evaluation(
+        estimate=project_or_trajectory.name,
+        truth=truth.name,
+        poses=len(pairs),
+        covered_share=pairs.covered_share,
+        way_m=_way_m(pairs),
+        duration_s=float(pairs.t_ns[-1] - pairs.t_ns[0]) / 1e9,
+        aligned=aligned,
+        first_pose=absolute_error(pairs, alignment="first"),
+        unaligned=absolute_error(pairs, alignment="none"),
+        drift=drifts(pairs),
+        relative=relative,
+        floor=floor,
+        quality=map_quality(chunks) if chunks is not None else None,
+    )
+
+
+def at_frames(trajectory: Trajectory, *, period_ns: int = FRAME_NS) -> Trajectory:
+    """A denser trajectory at one pose a frame; a sparser one as it is."""
+    if len(trajectory) < 2 or np.median(np.diff(trajectory.t_ns)) > 0.75 * period_ns:
+        return trajectory
+    t_ns = np.arange(trajectory.t_ns[0], trajectory.t_ns[-1] + 1, period_ns, dtype=np.int64)
+    return Trajectory(t_ns, trajectory.at(t_ns))
+
+
+def drifts(pairs: PosePairs) -> tuple[Drift, ...]:
+    """V's metric and the official one, and the official one at lengths that fit into a house."""
+    return (
+        thesis_drift(pairs, lengths=THESIS_FRAMES),
+        official_drift(pairs, lengths_m=OFFICIAL_M),
+        official_drift(pairs, lengths_m=WALK_M),
+    )
+
+
+def map_quality(chunks: Chunks, *, places: int = 2000, seed: int = 0) -> MapQuality:
+    """Density and sharpness of a map at places drawn at random.
+
+    Args:
+        chunks: Makes a pass over the map's points.
+        places: How many places.
+        seed: Seed of the draw.
+    """
+    rng = np.random.default_rng(seed)
+    thinned = thin(chunks(), voxel_m=0.02)
+    where = thinned[
+        np.sort(rng.choice(len(thinned), size=min(places, len(thinned)), replace=False))
+    ]
+    return MapQuality(
+        density=surface_density(chunks(), where),
+        sharpness=sharpness(thinned, rng=rng, places=places),
+    )
+
+
+def _relative(chunks: Chunks, mesh: Mesh, start: SE3, map_alignment: MapAlignment) -> RelativeError:
+    T_model_map = SE3.identity() if map_alignment == "none" else start
+    if map_alignment == "icp":
+        rng = np.random.default_rng(0)
+        T_model_map = map_onto_model(chunks(), mesh, start=start, rng=rng)
+    words = {"icp": "ICP", "trajectory": "fit of the trajectory", "none": "none"}[map_alignment]
+    return relative_error(
+        chunks(),
+        spread_slices(mesh),
+        T_model_map=T_model_map,
+        distance=distance_to(mesh),
+        alignment=words,
+    )
+
+
+def _way_m(pairs: PosePairs) -> float:
+    return float(np.linalg.norm(np.diff(pairs.T_true_body.t, axis=0), axis=1).sum())
+
+
+_PER_POSE = {"position_errors_m", "rotation_errors_rad"}
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, SE3):
+        return {"quat_xyzw": _plain(value.quat_xyzw()), "t_m": _plain(value.t)}
+    if is_dataclass(value) and not isinstance(value, type):
+        names = [f.name for f in fields(value) if f.name not in _PER_POSE]
+        return {name: _plain(getattr(value, name)) for name in names}
+    if isinstance(value, np.ndarray):
+        return _plain(value.tolist())
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, float) and not np.isfinite(value):
+        return None
+    return value

@@ -1,0 +1,150 @@
+"""The true model: a triangle mesh, and how to lay a map onto it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from recon4.errors import CorruptFile, RecordingError
+from recon4.geometry.se3 import SE3, Array
+
+_KERNEL_M = 0.05
+"""Scale of the Cauchy kernel: points of moving people must not pull the map."""
+_MAX_SAMPLES = 400_000
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Mesh:
+    """Triangles in a frame of their own (``model``)."""
+
+    vertices_m: Array
+    """Corners [m], (V, 3)."""
+    triangles: NDArray[np.int64]
+    """Rows of ``vertices_m``, (T, 3)."""
+
+    @property
+    def corners(self) -> Array:
+        """Corners of every triangle [m], (T, 3, 3)."""
+        return self.vertices_m[self.triangles]
+
+    def bounds(self) -> tuple[Array, Array]:
+        """Lowest and highest coordinates of the triangles [m], (3,) each."""
+        used = self.vertices_m[np.unique(self.triangles)]
+        return used.min(axis=0), used.max(axis=0)
+
+
+def read_mesh(path: Path) -> Mesh:
+    """Read a triangle mesh (PLY, OBJ, STL).
+
+    Raises:
+        RecordingError: If the file cannot be opened.
+        CorruptFile: If it holds no triangles or is damaged.
+    """
+    import trimesh
+
+    if not path.is_file():
+        raise RecordingError(f"no model file {path.name}")
+    try:
+        loaded = trimesh.load(path, force="mesh", process=False)
+    except (ValueError, KeyError, IndexError, EOFError, TypeError, NotImplementedError) as error:
+        raise CorruptFile(f"{path.name}: expected a triangle mesh: {error}") from error
+    triangles = np.asarray(getattr(loaded, "faces", np.empty((0, 3))), dtype=np.int64)
+    vertices = np.asarray(getattr(loaded, "vertices", np.empty((0, 3))), dtype=np.float64)
+    if len(triangles) == 0 or not np.all(np.isfinite(vertices)):
+        raise CorruptFile(
+            f"{path.name}: expected a triangle mesh, found {len(triangles)} triangles"
+        )
+    return Mesh(vertices, triangles)
+
+
+def distance_to(mesh: Mesh) -> Callable[[Array], Array]:
+    """A function giving the distance of points (N, 3) to the nearest triangle [m], (N,)."""
+    from recon4.simulation.mesh import Mesh as RayMesh
+    from recon4.simulation.raycast import Scene
+
+    scene = Scene(
+        RayMesh(
+            mesh.vertices_m.astype(np.float32),
+            mesh.triangles.astype(np.uint32),
+            np.ones(len(mesh.triangles), dtype=np.float32),
+        )
+    )
+    return scene.distance
+
+
+def sample_mesh(mesh: Mesh, *, spacing_m: float, rng: np.random.Generator) -> tuple[Array, Array]:
+    """Points spread evenly at random over the triangles, with their normals.
+
+    Args:
+        mesh: The model.
+        spacing_m: One point in a square of this size on average [m]; coarser for big models.
+        rng: Source of randomness.
+
+    Returns:
+        Points (N, 3) [m] and unit normals (N, 3) of either sign.
+    """
+    a, b, c = np.moveaxis(mesh.corners, 1, 0)
+    cross = np.cross(b - a, c - a)
+    double_area = np.linalg.norm(cross, axis=1)
+    count = int(np.clip(double_area.sum() / 2.0 / spacing_m**2, 1000, _MAX_SAMPLES))
+    which = rng.choice(len(a), size=count, p=double_area / double_area.sum())
+    u, v = rng.random(count), rng.random(count)
+    over = u + v > 1.0
+    u[over], v[over] = 1.0 - u[over], 1.0 - v[over]
+    u, v = u[:, None], v[:, None]
+    points = a[which] + u * (b - a)[which] + v * (c - a)[which]
+    return points, cross[which] / double_area[which, None]
+
+
+def align_to_mesh(
+    p_map: Array,
+    mesh: Mesh,
+    *,
+    T_model_map: SE3,
+    rng: np.random.Generator,
+    rounds: int = 30,
+    max_distance_m: float = 0.5,
+) -> SE3:
+    """Lay points of the map onto the model: point-to-plane ICP against points sampled from it.
+
+    Args:
+        p_map: A few ten thousand points of the map [m], (N, 3).
+        mesh: The model.
+        T_model_map: Where to start, some decimetres and degrees off at most.
+        rng: Source of randomness.
+        rounds: Upper bound on rounds of matching.
+        max_distance_m: Farther points are not matched [m].
+
+    Returns:
+        ``T_model_map``; the start itself where fewer than 100 points match.
+    """
+    q, normals = sample_mesh(mesh, spacing_m=0.05, rng=rng)
+    tree = cKDTree(q)
+    for _ in range(rounds):
+        p = T_model_map @ p_map
+        distance, nearest = tree.query(p, distance_upper_bound=max_distance_m)
+        near = np.isfinite(distance)
+        if near.sum() < 100:
+            return T_model_map
+        step = _point_to_plane_step(p[near], q[nearest[near]], normals[nearest[near]])
+        T_model_map = step @ T_model_map
+        if np.linalg.norm(step.log()) < 1e-7:
+            break
+    return T_model_map
+
+
+def _point_to_plane_step(p: Array, q: Array, normals: Array) -> SE3:
+    """One Gauss-Newton step on the distances ``n · (p - q)``, Cauchy weights (Chen 1992)."""
+    center = p.mean(axis=0)
+    residual = np.einsum("ni,ni->n", normals, p - q)
+    J = np.concatenate([np.cross(p - center, normals), normals], axis=1)
+    weight = 1.0 / (1.0 + (residual / _KERNEL_M) ** 2)
+    H = (J * weight[:, None]).T @ J
+    xi = -np.linalg.lstsq(H, J.T @ (weight * residual), rcond=1e-9)[0]
+    to_center, back = SE3(np.eye(3), -center), SE3(np.eye(3), center)
+    return back @ SE3.exp(xi) @ to_center

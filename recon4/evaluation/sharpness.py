@@ -1,0 +1,127 @@
+"""How crisp a map is without any truth: mean map entropy and plane thickness.
+
+Mean map entropy: Droeschel, Behnke 2014, Razlaw et al. 2015, with a ball of 0.3 m. Both figures
+depend on how dense a map is, so it is first thinned to one point a voxel; compare only figures
+made with the same radius and voxel.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from recon4.geometry.se3 import Array
+
+_MIN_NEIGHBORS = 10
+_PLANAR = 0.1
+"""A place is a plane where the middle eigenvalue is at least 1/0.1 times the smallest
+and at least 0.1 times the largest."""
+_BATCH = 500
+
+
+@dataclass(frozen=True, slots=True)
+class Sharpness:
+    """Crispness of a map; smaller is crisper."""
+
+    entropy: float
+    """Mean of ``ln |2 pi e S| / 2`` over the places [nats]; NaN = no place has neighbors."""
+    plane_thickness_m: float
+    """Median standard deviation of the points across planar places [m]; NaN = none is planar."""
+    places: int
+    """Places with enough neighbors."""
+    planar_places: int
+    radius_m: float
+    voxel_m: float
+
+
+def sharpness(
+    points: Array,
+    *,
+    rng: np.random.Generator,
+    places: int = 5000,
+    radius_m: float = 0.3,
+    voxel_m: float = 0.02,
+) -> Sharpness:
+    """Mean map entropy and plane thickness at places drawn at random from the points.
+
+    Args:
+        points: Points of the map [m], (N, 3).
+        rng: Draws the places.
+        places: How many places to look at.
+        radius_m: Neighbors of a place are the points in a ball of this radius [m].
+        voxel_m: One point is kept in a cube of this size before anything else [m].
+    """
+    p = thin([points], voxel_m=voxel_m)
+    if not len(p):
+        return Sharpness(float("nan"), float("nan"), 0, 0, radius_m, voxel_m)
+    where = p[np.sort(rng.choice(len(p), size=min(places, len(p)), replace=False))]
+    tree = cKDTree(p)
+    parts = [
+        _covariances(tree, where[k : k + _BATCH], radius_m) for k in range(0, len(where), _BATCH)
+    ]
+    eigenvalues = np.linalg.eigvalsh(np.concatenate(parts))
+    usable = eigenvalues[:, 0] > 1e-12
+    variance = eigenvalues[usable]
+    entropy = 0.5 * np.log((2.0 * np.pi * np.e) ** 3 * variance.prod(axis=1))
+    planar = (variance[:, 0] < _PLANAR * variance[:, 1]) & (
+        variance[:, 1] > _PLANAR * variance[:, 2]
+    )
+    return Sharpness(
+        entropy=_or_nan(np.mean, entropy),
+        plane_thickness_m=_or_nan(np.median, np.sqrt(variance[planar, 0])),
+        places=len(variance),
+        planar_places=int(planar.sum()),
+        radius_m=radius_m,
+        voxel_m=voxel_m,
+    )
+
+
+def thin(chunks: Iterable[Array], *, voxel_m: float) -> Array:
+    """The first point in every voxel, in the order they come, (M, 3).
+
+    Args:
+        chunks: Points [m], arrays of (N, 3).
+        voxel_m: Edge of the voxels [m].
+    """
+    kept: list[Array] = []
+    for chunk in chunks:
+        both = np.concatenate([*kept, np.asarray(chunk, dtype=np.float64)])
+        kept = [both[_first_in_voxel(both, voxel_m)]]
+    return kept[0] if kept else np.empty((0, 3))
+
+
+def _first_in_voxel(p: Array, voxel_m: float) -> NDArray[np.intp]:
+    if not len(p):
+        return np.empty(0, dtype=np.intp)
+    cell = np.floor(p / voxel_m).astype(np.int64)
+    cell -= cell.min(axis=0)
+    size = cell.max(axis=0) + 1
+    key = (cell[:, 0] * size[1] + cell[:, 1]) * size[2] + cell[:, 2]
+    return np.sort(np.unique(key, return_index=True)[1])
+
+
+def _covariances(tree: cKDTree, where: Array, radius_m: float) -> Array:
+    """Sample covariances of the neighbors of each place that has enough, (<= M, 3, 3) [m²]."""
+    lists = tree.query_ball_point(where, radius_m)
+    counts = np.array([len(rows) for rows in lists])
+    enough = counts >= _MIN_NEIGHBORS
+    if not enough.any():
+        return np.empty((0, 3, 3))
+    rows = np.concatenate([lists[k] for k in np.flatnonzero(enough)]).astype(np.intp)
+    n = counts[enough]
+    start = np.concatenate([[0], np.cumsum(n)[:-1]])
+    d = tree.data[rows] - np.repeat(where[enough], n, axis=0)
+    mean = np.add.reduceat(d, start) / n[:, None]
+    square = np.add.reduceat(d[:, :, None] * d[:, None, :], start)
+    return (square - n[:, None, None] * mean[:, :, None] * mean[:, None, :]) / (n - 1)[
+        :, None, None
+    ]
+
+
+def _or_nan(statistic: object, values: Array) -> float:
+    assert callable(statistic)
+    return float(statistic(values)) if len(values) else float("nan")

@@ -1,0 +1,193 @@
+"""Relative error e_r: thin slices of the map against the true model (V §3.2, Table 3.2)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.evaluation.mesh import Mesh
+from recon4.geometry.se3 import SE3, Array
+
+Distance = Callable[[Array], Array]
+"""Points in the frame of the model (N, 3) -> distances to it (N,) [m]; see `mesh.distance_to`."""
+
+HISTOGRAM_STEP_M = 0.001
+"""Width of a class of the error histogram [m]."""
+_BATCH = 500_000
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Slice:
+    """A thin slab across the model."""
+
+    name: str
+    normal: Array
+    """Unit normal of its plane in the frame of the model, (3,)."""
+    offset_m: float
+    """``normal · p`` of its middle plane [m]."""
+    width_m: float = 0.02
+    """Thickness [m] (V: 2 cm)."""
+
+    def contains(self, p_model: Array) -> NDArray[np.bool_]:
+        """Which of the points (N, 3) lie in it, (N,)."""
+        distance_m = p_model @ self.normal - self.offset_m
+        return np.asarray(np.abs(distance_m) <= self.width_m / 2.0)
+
+
+@dataclass(frozen=True, slots=True)
+class SliceError:
+    """One row of V Table 3.2."""
+
+    name: str
+    points: int
+    """Points nearer to the model than the outlier limit; the figures below are of these."""
+    outliers: int
+    """Points farther away: people, mixed pixels, or a map that is wrong."""
+    mean_m: float
+    """Mean distance to the model [m]; NaN = no points."""
+    share_2cm: float
+    """Share of the points nearer than 2 cm, 0..1."""
+    share_5cm: float
+    """Share of the points nearer than 5 cm, 0..1."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RelativeError:
+    """e_r of a map."""
+
+    slices: tuple[SliceError, ...]
+    point_weighted: SliceError
+    """All slices thrown together: what V prints as average."""
+    plain_mean_m: float
+    """Mean of the slices' means [m]: what V's rows give by hand."""
+    outlier_m: float
+    """Points farther from the model are counted apart [m]."""
+    histogram: NDArray[np.int64]
+    """Points by distance in classes of `HISTOGRAM_STEP_M`, outliers left out (V Fig. 3.2)."""
+    alignment: str
+    """How the map was laid onto the model, in words."""
+
+
+def spread_slices(
+    mesh: Mesh, *, horizontal: int = 4, vertical: int = 4, width_m: float = 0.02
+) -> tuple[Slice, ...]:
+    """Slices spread evenly through the model: half of the vertical ones across x, half across y.
+
+    The k-th of n planes lies at ``(k + 1/2) / n`` of the model's extent.
+    """
+    low, high = mesh.bounds()
+    across_x = (vertical + 1) // 2
+    out: list[Slice] = []
+    for axis, count, word in (
+        (2, horizontal, "z"),
+        (0, across_x, "x"),
+        (1, vertical - across_x, "y"),
+    ):
+        normal = np.eye(3)[axis]
+        for k in range(count):
+            offset_m = float(low[axis] + (k + 0.5) / count * (high[axis] - low[axis]))
+            out.append(Slice(f"{word} = {offset_m:.2f} m", normal, offset_m, width_m))
+    return tuple(out)
+
+
+def relative_error(
+    chunks: Iterable[Array],
+    slices: Iterable[Slice],
+    *,
+    T_model_map: SE3,
+    distance: Distance,
+    outlier_m: float = 0.5,
+    alignment: str = "given",
+) -> RelativeError:
+    """Distances of the points in the slices to the model, in one pass with little memory.
+
+    Args:
+        chunks: Points of the map [m], arrays of (N, 3), of any length and number.
+        slices: Where to look, in the frame of the model.
+        T_model_map: Moves the map onto the model.
+        distance: Distance of points to the model.
+        outlier_m: Points farther from the model than this are counted, not averaged [m].
+        alignment: How ``T_model_map`` was found, in words.
+    """
+    tallies = [_Tally(s, distance, outlier_m) for s in slices]
+    for chunk in chunks:
+        p_model = T_model_map @ np.asarray(chunk, dtype=np.float64)
+        for tally in tallies:
+            tally.add(p_model)
+    rows = tuple(tally.row() for tally in tallies)
+    measured = [row.mean_m for row in rows if row.points]
+    histogram = np.sum([tally.histogram for tally in tallies], axis=0)
+    return RelativeError(
+        slices=rows,
+        point_weighted=_together(rows),
+        plain_mean_m=float(np.mean(measured)) if measured else float("nan"),
+        outlier_m=outlier_m,
+        histogram=histogram,
+        alignment=alignment,
+    )
+
+
+class _Tally:
+    """What was found in one slice so far; distances are taken batch by batch."""
+
+    def __init__(self, where: Slice, distance: Distance, outlier_m: float) -> None:
+        self.where = where
+        self.distance = distance
+        self.outlier_m = outlier_m
+        self.histogram = np.zeros(int(np.ceil(outlier_m / HISTOGRAM_STEP_M)), dtype=np.int64)
+        self.sum_m = 0.0
+        self.outliers = self.within_2cm = self.within_5cm = self.waiting_points = 0
+        self.waiting: list[Array] = []
+
+    def add(self, p_model: Array) -> None:
+        inside = p_model[self.where.contains(p_model)]
+        self.waiting.append(inside)
+        self.waiting_points += len(inside)
+        if self.waiting_points >= _BATCH:
+            self._measure()
+
+    def row(self) -> SliceError:
+        self._measure()
+        points = int(self.histogram.sum())
+        return SliceError(
+            name=self.where.name,
+            points=points,
+            outliers=self.outliers,
+            mean_m=_ratio(self.sum_m, points),
+            share_2cm=_ratio(self.within_2cm, points),
+            share_5cm=_ratio(self.within_5cm, points),
+        )
+
+    def _measure(self) -> None:
+        if not self.waiting_points:
+            return
+        points = np.ascontiguousarray(np.concatenate(self.waiting))
+        self.waiting, self.waiting_points = [], 0
+        distance_m = np.asarray(self.distance(points), dtype=np.float64)
+        near = distance_m[distance_m < self.outlier_m]
+        self.outliers += len(distance_m) - len(near)
+        self.sum_m += float(near.sum())
+        self.within_2cm += int((near < 0.02).sum())
+        self.within_5cm += int((near < 0.05).sum())
+        classes = np.minimum((near / HISTOGRAM_STEP_M).astype(np.int64), len(self.histogram) - 1)
+        self.histogram += np.bincount(classes, minlength=len(self.histogram))
+
+
+def _together(rows: tuple[SliceError, ...]) -> SliceError:
+    points = sum(row.points for row in rows)
+    used = [row for row in rows if row.points]
+    return SliceError(
+        name="all points",
+        points=points,
+        outliers=sum(row.outliers for row in rows),
+        mean_m=_ratio(sum(row.mean_m * row.points for row in used), points),
+        share_2cm=_ratio(sum(row.share_2cm * row.points for row in used), points),
+        share_5cm=_ratio(sum(row.share_5cm * row.points for row in used), points),
+    )
+
+
+def _ratio(part: float, whole: int) -> float:
+    return part / whole if whole else float("nan")

@@ -1,0 +1,155 @@
+"""An evaluation as tables for a terminal."""
+
+from __future__ import annotations
+
+from math import degrees
+from typing import TYPE_CHECKING
+
+from recon4.evaluation.ate import AbsoluteError, Spread
+from recon4.evaluation.floor import ErrorFloor
+from recon4.evaluation.kitti import Drift
+from recon4.evaluation.markers import MarkerTable
+from recon4.evaluation.slices import RelativeError, SliceError
+from recon4.evaluation.table import number, share, text_table
+
+if TYPE_CHECKING:
+    from recon4.evaluation.evaluate import Evaluation
+
+_CM = 100.0
+_DEG = degrees(1.0)
+
+
+def evaluation_text(found: Evaluation) -> str:
+    """All tables of an evaluation."""
+    head = (
+        f"{found.estimate} against {found.truth}: {found.poses} poses "
+        f"({share(found.covered_share)} covered by the truth), "
+        f"{found.duration_s:.1f} s, {found.way_m:.1f} m"
+    )
+    parts = [head, ate_text(found), *(drift_text(drift) for drift in found.drift)]
+    if found.relative is not None:
+        parts.append(relative_text(found.relative))
+    if found.floor is not None:
+        parts.append(floor_text(found.floor))
+    if found.quality is not None:
+        density, sharp = found.quality.density, found.quality.sharpness
+        parts.append(
+            f"Density: median {number(density.median_per_cm2)} points/cm² "
+            f"(10 % of places below {number(density.low_per_cm2)}, "
+            f"10 % above {number(density.high_per_cm2)}; radius {density.radius_m:g} m)\n"
+            f"Sharpness: mean map entropy {number(sharp.entropy, 3)} nats, "
+            f"plane thickness {number(sharp.plane_thickness_m, 2, _CM)} cm "
+            f"(radius {sharp.radius_m:g} m, voxel {sharp.voxel_m:g} m, {sharp.places} places)"
+        )
+    return "\n\n".join(parts)
+
+
+def ate_text(found: Evaluation) -> str:
+    """Absolute errors under the three alignments, in the form of L Table 2."""
+    rows = []
+    for words, error in (
+        ("SVD-aligned", found.aligned),
+        ("first pose", found.first_pose),
+        ("as it is", found.unaligned),
+    ):
+        rows += _error_rows(words, error)
+    table = text_table(("Absolute error", "RMSE", "mean", "median", "min", "max"), rows)
+    if found.aligned.determined:
+        return table
+    return table + "\n(the positions lie on a line or a point: the SVD fit leaves a turn open)"
+
+
+def drift_text(drift: Drift) -> str:
+    """One drift metric, a row a length."""
+    if not drift.pieces:
+        return f"Drift, {drift.metric}: the walk is too short"
+    rows = [
+        (
+            f"{row.length:g} {drift.unit}",
+            str(row.pieces),
+            number(row.translation, 3, 100.0),
+            number(row.rotation_rad_m, 4, _DEG),
+        )
+        for row in drift.rows
+        if row.pieces
+    ]
+    rows.append(
+        (
+            "all",
+            str(drift.pieces),
+            number(drift.translation, 3, 100.0),
+            number(drift.rotation_rad_m, 4, _DEG),
+        )
+    )
+    return text_table((f"Drift, {drift.metric}", "pieces", "%", "deg/m"), rows)
+
+
+def relative_text(error: RelativeError) -> str:
+    """e_r in the form of V Table 3.2."""
+    rows = [_slice_row(row) for row in (*error.slices, error.point_weighted)]
+    rows.append(("mean of slices", "", "", number(error.plain_mean_m, 2, _CM), "", ""))
+    far = f"> {error.outlier_m:g} m"
+    header = (f"e_r (aligned: {error.alignment})", "points", far, "mean cm", "< 2 cm", "< 5 cm")
+    return text_table(header, rows)
+
+
+def floor_text(floor: ErrorFloor) -> str:
+    """e_r of estimated and of true poses from the same points."""
+    pairs = (("estimated poses", floor.estimated), ("true poses", floor.true))
+    rows = [(words, *_slice_row(error.point_weighted)[1:]) for words, error in pairs]
+    header = (
+        f"Same points of {floor.frames} frames",
+        "points",
+        "far",
+        "mean cm",
+        "< 2 cm",
+        "< 5 cm",
+    )
+    return text_table(header, rows) + f"\nratio {number(floor.ratio, 3)}"
+
+
+def marker_text(table: MarkerTable) -> str:
+    """Errors at markers in the form of V Table 3.3."""
+    rows = [
+        (
+            f"{row.name} ({row.role})",
+            *(
+                number(value, 1, _CM)
+                for value in (row.dx_m, row.dy_m, row.horizontal_m, row.dz_m, row.total_m)
+            ),
+        )
+        for row in table.rows
+    ]
+    body = text_table(("Marker", "dX cm", "dY cm", "H cm", "dZ cm", "total cm"), rows)
+    verdict = "within" if table.within_limits else "NOT within"
+    return (
+        f"{body}\nby {table.judged_by} points: "
+        f"mean H {number(table.mean_horizontal_m, 1, _CM)} cm, "
+        f"mean V {number(table.mean_vertical_m, 1, _CM)} cm, "
+        f"max H {number(table.max_horizontal_m, 1, _CM)} cm, "
+        f"max V {number(table.max_vertical_m, 1, _CM)} cm: {verdict} the limits"
+    )
+
+
+def _error_rows(words: str, error: AbsoluteError) -> list[tuple[str, ...]]:
+    return [
+        (f"{words}: position [cm]", *_spread(error.position_m, _CM)),
+        (f"{words}: rotation [deg]", *_spread(error.rotation_rad, _DEG)),
+        (f"{words}: yaw only [deg]", *_spread(error.yaw_rad, _DEG)),
+    ]
+
+
+def _spread(spread: Spread, scale: float) -> tuple[str, ...]:
+    values = (spread.rmse, spread.mean, spread.median, spread.minimum, spread.maximum)
+    return tuple(number(value, 3, scale) for value in values)
+
+
+def _slice_row(row: SliceError) -> tuple[str, ...]:
+    return (
+        row.name,
+        str(row.points),
+        str(row.outliers),
+        number(row.mean_m, 2, _CM),
+        share(row.share_2cm),
+        share(row.share_5cm),
+    )
