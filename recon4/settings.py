@@ -196,11 +196,29 @@ class GraphSettings:
 class VerificationSettings:
     """Verification by alternative paths (V §2.8, requirements A7)."""
 
+    variant: Literal["paths", "cycle"] = "paths"
+    """``paths`` is the text; ``cycle`` takes triangles only and counts the edge itself as a path
+    without error, as the author's code does."""
     max_path_edges: int = 3
+    """Longest alternative path, 2 or 3 edges."""
     limit_m: float = 0.1
     """An edge whose median disagreement is above this is rejected [m] (A0 no. 1)."""
     robust: Literal["gnc", "cauchy", "none"] = "gnc"
-    """The final solve after verification."""
+    """The final solve after verification: ``gnc`` and ``cauchy`` also reject edges that do not fit
+    the whole graph, ``none`` is the text."""
+    inlier_probability: float = 0.999
+    """Share of correct edges that the robust solve keeps if their information is true."""
+
+    def __post_init__(self) -> None:
+        _require(
+            2 <= self.max_path_edges <= 3, "max_path_edges must be 2 or 3", self.max_path_edges
+        )
+        _require(self.limit_m > 0.0, "limit_m must be above 0", self.limit_m)
+        _require(
+            0.5 <= self.inlier_probability < 1.0,
+            "inlier_probability must be 0.5 to below 1",
+            self.inlier_probability,
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -235,9 +253,36 @@ class IntensitySettings:
     """Intensity normalization (V §2.10, Eq. 2.17, requirements A9)."""
 
     range_bin_m: float = 0.2
+    """Width of a bin of range [m]."""
     incidence_bin_deg: float = 1.0
+    """Width of a bin of incidence angle [deg]."""
+    max_range_m: float = 60.0
+    """Farther points share the last bin of range [m]."""
     min_count: int = 50
     """Bins with fewer points fall back to a coarser bin."""
+    normal_cell_m: float = 0.15
+    """Normals come from neighborhoods of three of these cells [m]."""
+    windows: int = 40
+    """At most so many stretches of the walk, ten multiframes each, are sampled."""
+    upper: Literal["raw", "twice_mean"] = "raw"
+    """Normalized values are clamped to 0 and the largest raw value, or twice the target mean as in
+    the author's code, which clips reflectors."""
+
+    def __post_init__(self) -> None:
+        _require(self.range_bin_m > 0.0, "range_bin_m must be above 0", self.range_bin_m)
+        _require(
+            0.1 <= self.incidence_bin_deg <= 90.0,
+            "incidence_bin_deg must be 0.1 to 90",
+            self.incidence_bin_deg,
+        )
+        _require(
+            self.max_range_m >= self.range_bin_m,
+            "max_range_m must be at least range_bin_m",
+            self.max_range_m,
+        )
+        _require(self.min_count >= 2, "min_count must be at least 2", self.min_count)
+        _require(self.normal_cell_m > 0.0, "normal_cell_m must be above 0", self.normal_cell_m)
+        _require(self.windows >= 1, "windows must be at least 1", self.windows)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -245,11 +290,37 @@ class MapSettings:
     """The point map and what is written of it."""
 
     voxel_m: float = 0.01
-    """Keep at most one point in a cube of this size [m]; 0 = keep all."""
+    """Keep at most one point in a cube of this size, that with the shortest range [m]; 0 = all."""
     max_range_m: float = 60.0
     """Points farther from the sensor are left out of the map [m]."""
-    tile_m: float = 10.0
-    """Edge length of the tiles in which the map is stored [m]."""
+    tile_m: float = 5.0
+    """Edge length of the tiles in which the map is made and stored [m]."""
+    normal_cell_m: float = 0.05
+    """Normals come from neighborhoods of three of these cells [m]."""
+    min_neighborhood: int = 2
+    """Points with fewer points in that neighborhood, themselves included, are noise; 1 = keep."""
+    far_ratio: float = 0.0
+    """Points measured from more than so many times the shortest range in their cubic meter are
+    left out (requirements A13 O-9: 2); 0 = keep."""
+
+    def __post_init__(self) -> None:
+        _require(0.0 <= self.voxel_m <= 1.0, "voxel_m must be 0 to 1", self.voxel_m)
+        _require(0.0 < self.max_range_m <= 130.0, "max_range_m must be 0 to 130", self.max_range_m)
+        _require(self.normal_cell_m >= 0.01, "normal_cell_m must be over 0.01", self.normal_cell_m)
+        _require(
+            1.0 <= self.tile_m <= 100.0
+            and self.tile_m >= 4 * max(self.normal_cell_m, self.voxel_m),
+            "tile_m must be 1 to 100 and at least four cells or voxels",
+            self.tile_m,
+        )
+        _require(
+            self.min_neighborhood >= 1, "min_neighborhood must be 1 or more", self.min_neighborhood
+        )
+        _require(
+            self.far_ratio == 0.0 or self.far_ratio > 1.0,
+            "far_ratio must be 0 or above 1",
+            self.far_ratio,
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -274,7 +345,9 @@ class Settings:
 PRESETS: dict[str, Settings] = {
     "indoor": Settings(),
     "staircase": Settings(),
-    "outdoor": Settings(map=MapSettings(voxel_m=0.03, max_range_m=100.0, tile_m=20.0)),
+    "outdoor": Settings(
+        map=MapSettings(voxel_m=0.03, max_range_m=100.0, tile_m=20.0, normal_cell_m=0.15)
+    ),
     "thesis": Settings(
         registration=RegistrationSettings(solver="svd", max_iterations=500),
         odometry=OdometrySettings(use_imu=False),

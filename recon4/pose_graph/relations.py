@@ -29,8 +29,8 @@ class Relations:
     """Rotation first, (E, 6, 6)."""
     in_graph: Flags
     """Whether the optimizer uses it, (E,)."""
-    odometry: Flags
-    """Whether it is protected, (E,)."""
+    protected: Flags
+    """Never turned down: odometry holds the graph together; what a person decided stays, (E,)."""
 
     def __len__(self) -> int:
         return len(self.i)
@@ -44,8 +44,12 @@ def relations(edges: Sequence[Edge]) -> Relations:
         T_i_j=SE3.stack(edge.T_i_j for edge in edges),
         information=np.array([edge.information for edge in edges]).reshape(-1, 6, 6),
         in_graph=np.array([edge.in_graph for edge in edges], dtype=np.bool_),
-        odometry=np.array([edge.kind is EdgeKind.ODOMETRY for edge in edges], dtype=np.bool_),
+        protected=np.array([_is_protected(edge) for edge in edges], dtype=np.bool_),
     )
+
+
+def _is_protected(edge: Edge) -> bool:
+    return edge.kind is EdgeKind.ODOMETRY or edge.decided_by != "auto"
 
 
 def squared_residuals(T_map_body: SE3, of: Relations) -> Array:

@@ -94,7 +94,7 @@ def optimize(
 
     Args:
         graph: Edges with a verdict of rejected are left out.
-        kernel: ``cauchy`` makes gross errors of edges (not of odometry) and positions pull little.
+        kernel: ``cauchy`` makes gross errors of free edges and of positions pull little.
         fixed: Rows of nodes that stay where they are. Empty only if the priors hold the map.
         priors: Poses and positions known from elsewhere.
 
@@ -109,7 +109,7 @@ def optimize(
     )
     edge_chi2 = squared_residuals(T_map_body, of)
     if kernel == "cauchy":
-        weights = np.where(of.odometry, weights, weights / (1.0 + edge_chi2 / CAUCHY_SD**2))
+        weights = np.where(of.protected, weights, weights / (1.0 + edge_chi2 / CAUCHY_SD**2))
     return Solution(
         T_map_body=T_map_body,
         chi2=float(edge_chi2[of.in_graph].sum()),
@@ -131,9 +131,8 @@ def optimize_gnc(
     """Graduated non-convexity with truncated least squares: each edge counts fully or not at all.
 
     Starts from the convex problem and hardens it round by round (Yang 2020, eqs. 12-14);
-    a few iterations a round are enough, as the next round goes on from there. Odometry always
-    counts. An edge is an outlier beyond the chi-square quantile, scaled by how noisy the edges of
-    this graph really are.
+    a few iterations a round are enough, as the next round goes on from there. Protected edges
+    always count. An edge is an outlier beyond `outlier_limit`.
 
     Args:
         graph: As for `optimize`.
@@ -147,9 +146,9 @@ def optimize_gnc(
     of = relations(graph.edges)
     problem = _Problem.check(graph.T_map_body, of, fixed=fixed, priors=priors)
     before = float(squared_residuals(graph.T_map_body, of)[of.in_graph].sum())
-    free = of.in_graph & ~of.odometry
+    free = of.in_graph & ~of.protected
     start = optimize(graph, kernel="cauchy", fixed=fixed, priors=priors)
-    limit = chi2_distribution.ppf(probability, 6) * _noise_scale(start.edge_chi2[free])
+    limit = outlier_limit(start.edge_chi2[free], probability=probability)
     weights, iterations = of.in_graph.astype(np.float64), start.iterations
     T_map_body = graph.T_map_body
     mu = 0.0
@@ -197,12 +196,14 @@ def initialize(graph: PoseGraph) -> SE3:
     return graph.T_map_body[0] @ T_free_body[0].inverse() @ T_free_body
 
 
-def _noise_scale(edge_chi2: Array) -> float:
-    """How much larger than stated the variance of the edges is, from their median."""
-    if len(edge_chi2) == 0:
-        return 1.0
-    ratio = float(np.median(edge_chi2)) / chi2_distribution.median(6)
-    return float(np.clip(ratio, 1.0, _MAX_NOISE_SCALE))
+def outlier_limit(edge_chi2: Array, *, probability: float) -> float:
+    """Squared residual beyond which an edge is an outlier.
+
+    The chi-square quantile of six numbers, times how much larger than stated the variance of these
+    edges is (from their median, at most tenfold): registrations tend to promise too much.
+    """
+    ratio = float(np.median(edge_chi2)) / chi2_distribution.median(6) if len(edge_chi2) else 1.0
+    return float(chi2_distribution.ppf(probability, 6) * np.clip(ratio, 1.0, _MAX_NOISE_SCALE))
 
 
 def _truncated_weights(edge_chi2: Array, *, limit: float, mu: float) -> Array:
@@ -276,7 +277,7 @@ class _Problem:
         i, j = of.i.tolist(), of.j.tolist()
         for row in np.flatnonzero(weights > 1e-9).tolist():
             model = gtsam.noiseModel.Gaussian.Information(scaled[row])
-            if robust and not of.odometry[row]:
+            if robust and not of.protected[row]:
                 model = _cauchy(model, CAUCHY_SD)
             out.add(gtsam.BetweenFactorPose3(i[row], j[row], self.measured[row], model))
         for node, p_map, p_body, sd_m in self.positions:
