@@ -14,7 +14,7 @@ import secrets
 import shutil
 import sqlite3
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from recon4.errors import NoSpace, StoreError
@@ -48,7 +48,8 @@ def atomic_file(path: Path) -> Iterator[Path]:
         raise_if_full(error, path)
         raise
     finally:
-        temporary.unlink(missing_ok=True)
+        with suppress(OSError):  # gone when renamed; what cannot be removed is swept later
+            temporary.unlink()
 
 
 @contextmanager

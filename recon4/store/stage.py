@@ -16,7 +16,7 @@ import recon4
 from recon4.errors import StoreError
 from recon4.progress import Progress
 from recon4.settings import Settings, to_json
-from recon4.store.atomic import atomic_folder, raise_if_full, write_json
+from recon4.store.atomic import atomic_folder, write_json
 from recon4.store.hashing import files_below, hash_file, hash_json
 from recon4.store.ledger import FinishedStage
 from recon4.store.project import Project
@@ -165,11 +165,7 @@ class StageRunner:
                 peak_bytes=meter.peak_bytes,
             )
             _write_manifest(folder, done, _recipe(stage, self._settings, inputs), figures or {})
-        try:
-            self._project.ledger.add(done)
-        except Exception as error:
-            raise_if_full(error, self._project.root)
-            raise
+        self._project.ledger.add(done)
         return done
 
 

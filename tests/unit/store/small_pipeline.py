@@ -1,0 +1,90 @@
+"""A pipeline of three small but real stages; run as a program it can be killed anywhere.
+
+``python small_pipeline.py PROJECT [N]`` runs it; with N the process kills itself, as ``kill -9``
+would, just before its Nth operation on a file of the project.
+"""
+
+import json
+import os
+import signal
+import sys
+from pathlib import Path
+
+from recon4.progress import Silent
+from recon4.settings import Settings
+from recon4.store.project import Project
+from recon4.store.stage import Artifact, Input, Stage, StageRunner
+
+FILE_OPERATIONS = {"open", "os.rename", "os.mkdir", "os.remove", "os.rmdir", "shutil.rmtree"}
+
+
+def count(*, out, settings, progress, text):
+    (out / "deep").mkdir()
+    (out / "deep" / "lengths.json").write_text(json.dumps([len(w) for w in text.split()]))
+    (out / "rate.txt").write_text(str(settings.ingest.rate_hz))
+    return {"words": len(text.split())}
+
+
+def scale(*, out, settings, progress, counted):
+    lengths = json.loads((counted / "deep" / "lengths.json").read_text())
+    for k, length in enumerate(lengths):
+        progress.advance()
+        (out / f"{k}.txt").write_text(f"{length * settings.map.voxel_m:.6f}")
+
+
+def total(*, out, settings, progress, counted, scaled):
+    rate_hz = float((counted / "rate.txt").read_text())
+    found = sum(
+        float(path.read_text()) for path in sorted(scaled.iterdir()) if path.suffix == ".txt"
+    )
+    (out / "total.txt").write_text(f"{found * rate_hz:.6f}")
+
+
+COUNT = Stage("count", 1, ("ingest",), count)
+SCALE = Stage("scale", 1, ("map",), scale)
+TOTAL = Stage("total", 1, (), total)
+TEXT = "a walk through an office and back"
+
+
+def run_all(root: Path, settings: Settings | None = None, progress=None) -> StageRunner:
+    with Project.open(root) as project:
+        runner = StageRunner(project, settings or Settings(), progress or Silent())
+        counted = runner.run(COUNT, text=Input(key=TEXT, value=TEXT))
+        scaled = runner.run(SCALE, counted=counted)
+        runner.run(TOTAL, counted=counted, scaled=scaled)
+    return runner
+
+
+def results(root: Path) -> dict[str, bytes]:
+    """Every byte of every finished artifact, but for the manifests' times."""
+    files = [path for path in (root / "artifacts").rglob("*") if path.is_file()]
+    return {
+        path.relative_to(root).as_posix(): path.read_bytes()
+        for path in files
+        if path.name != "manifest.json"
+    }
+
+
+def artifact_of(root: Path, runner: StageRunner, name: str) -> Artifact:
+    key = runner.runs[name].done.key
+    return Artifact(name, key, root / "artifacts" / key)
+
+
+def kill_before(operation: int, root: Path) -> None:
+    seen = 0
+
+    def watch(event, arguments):
+        nonlocal seen
+        if event in FILE_OPERATIONS and str(root) in str(arguments[0]):
+            seen += 1
+            if seen == operation:
+                os.kill(os.getpid(), signal.SIGKILL)
+
+    sys.addaudithook(watch)
+
+
+if __name__ == "__main__":
+    folder = Path(sys.argv[1])
+    if len(sys.argv) > 2:
+        kill_before(int(sys.argv[2]), folder)
+    run_all(folder)

@@ -1,0 +1,81 @@
+"""``kill -9`` at any moment, then the same command again: the same result, nothing done twice."""
+
+import random
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from recon4.progress import Silent
+from recon4.store.audit import audit
+from tests.unit.store.small_pipeline import results, run_all
+
+PROGRAM = [sys.executable, "-m", "tests.unit.store.small_pipeline"]
+ROOT = Path(__file__).parents[3]
+
+
+def killed_before(operation: int, root: Path) -> bool:
+    ended = subprocess.run([*PROGRAM, str(root), str(operation)], cwd=ROOT, check=False)
+    assert ended.returncode in {0, -signal.SIGKILL}
+    return ended.returncode != 0
+
+
+@pytest.fixture(scope="module")
+def expected(tmp_path_factory) -> dict[str, bytes]:
+    root = tmp_path_factory.mktemp("unbroken") / "project"
+    run_all(root)
+    return results(root)
+
+
+@pytest.mark.parametrize("part", range(4))
+def test_a_kill_before_any_file_operation_leaves_a_project_that_resumes(tmp_path, expected, part):
+    operation, kills = 1 + part, 0
+    while killed_before(operation, tmp_path / str(operation)):
+        root = tmp_path / str(operation)
+        run_all(root)
+
+        assert results(root) == expected
+        assert audit(root, Silent()).damaged == ()
+        assert [p for p in root.rglob(".tmp-*")] == []
+        operation, kills = operation + 4, kills + 1
+    assert kills >= 10
+
+
+def test_a_run_killed_again_and_again_still_gets_to_the_same_end(tmp_path, expected):
+    root = tmp_path / "project"
+    for operation in range(4, 40, 4):
+        killed_before(operation, root)
+
+    run_all(root)
+
+    assert results(root) == expected
+
+
+def test_kills_at_random_moments_lose_nothing(tmp_path, expected):
+    rng = random.Random(11)
+    for k in range(6):
+        root = tmp_path / str(k)
+        child = subprocess.Popen([*PROGRAM, str(root)], cwd=ROOT)
+        try:
+            child.wait(timeout=rng.uniform(0.05, 0.3))
+        except subprocess.TimeoutExpired:
+            child.kill()
+            child.wait()
+        run_all(root)
+
+        assert results(root) == expected
+        assert audit(root, Silent()).damaged == ()
+
+
+def test_an_artifact_renamed_but_not_yet_in_the_ledger_is_adopted_not_made_again(tmp_path):
+    first = run_all(tmp_path / "project")
+    (tmp_path / "project" / "ledger.sqlite").unlink()
+
+    second = run_all(tmp_path / "project")
+
+    assert {name: run.reused for name, run in second.runs.items()} == dict.fromkeys(
+        first.runs, True
+    )
+    assert second.runs["count"].done == first.runs["count"].done
