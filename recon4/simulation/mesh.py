@@ -51,6 +51,12 @@ class MeshBuilder:
         self._reflectivity.append(np.broadcast_to(np.asarray(reflectivity, float), len(triangles)))
         self._count += len(vertices_m)
 
+    def place(self, other: MeshBuilder, shift_m: ArrayLike) -> None:
+        """Add what another builder collected, moved by (3,) [m]."""
+        mesh = other.mesh()
+        moved = mesh.vertices_m + np.asarray(shift_m, dtype=np.float64)
+        self.add(moved, mesh.triangles.astype(np.int64), mesh.reflectivity)
+
     def mesh(self) -> Mesh:
         """Everything added so far."""
         return Mesh(

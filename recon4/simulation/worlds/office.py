@@ -111,7 +111,9 @@ def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:
     rows = [0, 1] if rng.random() < 0.5 else [1, 0]
     visits = [(rows[0], column) for column in range(ROOMS)]
     visits += [(rows[1], column) for column in reversed(range(ROOMS))]
-    chosen = sorted(rng.choice(len(visits), size=stops, replace=False))
+    # A short round stays near its start, so that it sees rooms and not only the corridor.
+    near = [k for k, (_, column) in enumerate(visits) if 2 * column < stops + 1]
+    chosen = sorted(rng.choice(near, size=stops, replace=False))
     way = [_in_corridor(0.9, rng, wiggle=0.0)]
     inside = False
     for order, place in enumerate(chosen):

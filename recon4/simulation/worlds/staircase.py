@@ -1,0 +1,235 @@
+"""A staircase of four storeys with half-landings and a hall on each floor.
+
+From above, one storey (it climbs along +x at the south, back along -x at the north)::
+
+        y
+    2.6 +--------+--+---------------+-------+
+        | hall   |  |  <-- up       |       |
+        |        D  |===== rails ===| half  |
+        |        |  |  up -->       |landing|
+    0.0 +--------+--+---------------+-------+  x
+      -4.1      0.0 1.6           4.21     5.8
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from recon4.simulation.mesh import MeshBuilder
+from recon4.simulation.world import Waypoint, World
+from recon4.simulation.worlds.furniture import chair, desk, lamp, radiator, shelf
+from recon4.simulation.worlds.walls import (
+    CEILING,
+    DARK,
+    LINOLEUM,
+    PAPER,
+    PLASTER,
+    STEEL,
+    WOOD,
+    Opening,
+    door,
+    wall,
+    window,
+)
+
+FLOORS = 4
+STOREY_M = 3.3
+RISERS = 10
+RISER_M = STOREY_M / (2 * RISERS)
+TREAD_M = 0.29
+FLIGHT_M = (RISERS - 1) * TREAD_M
+LANDING_M = 1.6
+LENGTH_M = 2 * LANDING_M + FLIGHT_M
+WIDTH_M = 2.6
+FLIGHT_WIDTH_M = 1.2
+HALL_M = 4.0
+_HALL_SOUTH_M, _HALL_NORTH_M = -1.2, 4.0
+_SLAB_M = 0.2
+_DOOR_Y_M = 1.3
+
+
+def build() -> World:
+    """The staircase; every floor is furnished in another way."""
+    builder = MeshBuilder()
+    rng = np.random.default_rng(1907)
+    _well(builder)
+    for floor in range(FLOORS):
+        z = floor * STOREY_M
+        builder.box([0, 0, z - _SLAB_M], [LANDING_M, WIDTH_M, z], LINOLEUM)
+        _hall(builder, floor, rng)
+        _signs(builder, floor)
+        if floor + 1 < FLOORS:
+            _flight(builder, z, up=True)
+            _flight(builder, z + STOREY_M / 2, up=False)
+            half = z + STOREY_M / 2
+            start = LENGTH_M - LANDING_M
+            builder.box([start, 0, half - _SLAB_M], [LENGTH_M, WIDTH_M, half], LINOLEUM)
+    _top_rail(builder)
+    return World(name="staircase", mesh=builder.mesh(), route=_route, stops=7)
+
+
+def _well(builder: MeshBuilder) -> None:
+    """The walls around the stairs, windows at the half-landings, ground and roof."""
+    top = (FLOORS - 1) * STOREY_M + 2.9
+    for y in (-0.15, WIDTH_M + 0.15):
+        wall(builder, (0, y), (LENGTH_M, y), height_m=top, thickness_m=0.3)
+    for storey in range(FLOORS):
+        bottom = storey * STOREY_M + STOREY_M / 2 if storey else 0.0
+        height = min(STOREY_M, top - bottom) if storey else STOREY_M * 1.5
+        sill = 0.9 if storey else STOREY_M / 2 + 0.9
+        view = Opening(WIDTH_M / 2, 1.4, sill, sill + 1.2, glazed=True)
+        if bottom + sill + 1.3 > top:
+            continue
+        x = LENGTH_M + 0.15
+        span = (0.0, STOREY_M * 1.5) if storey == 0 else (bottom, height)
+        wall(
+            builder,
+            (x, 0),
+            (x, WIDTH_M),
+            bottom_m=span[0],
+            height_m=span[1],
+            thickness_m=0.3,
+            openings=[view],
+        )
+    builder.quad([LANDING_M, 0, 0], [LENGTH_M - LANDING_M, 0, 0], [0, WIDTH_M, 0], LINOLEUM)
+    builder.quad([0, 0, top], [LENGTH_M, 0, 0], [0, WIDTH_M, 0], CEILING)
+    lamp(builder, 3.0, WIDTH_M / 2, top)
+
+
+def _flight(builder: MeshBuilder, z: float, *, up: bool) -> None:
+    """Ten risers with a sloping underside, a rail with balusters on its inner side."""
+    sign = 1.0 if up else -1.0
+    start = LANDING_M if up else LENGTH_M - LANDING_M
+    south = 0.0 if up else WIDTH_M - FLIGHT_WIDTH_M
+    north = south + FLIGHT_WIDTH_M
+    for k in range(RISERS - 1):
+        a, b = sorted([start + sign * k * TREAD_M, start + sign * (k + 1) * TREAD_M])
+        builder.box([a, south, z + k * RISER_M], [b, north, z + (k + 1) * RISER_M], LINOLEUM)
+    run, rise = sign * FLIGHT_M, (RISERS - 1) * RISER_M
+    builder.quad([start, south, z - 0.15], [run, 0, rise], [0, FLIGHT_WIDTH_M, 0], PLASTER)
+    inner = north if up else south
+    builder.quad([start, inner, z - 0.15], [run, 0, rise], [0, 0, 0.2], PLASTER)
+    _rail(builder, [start, inner, z + RISER_M], [start + run, inner, z + RISER_M + rise])
+
+
+def _rail(builder: MeshBuilder, start: list[float], end: list[float]) -> None:
+    a, b = np.array(start), np.array(end)
+    up = np.array([0.0, 0.0, 0.9])
+    builder.tube(a + up, b + up, 0.025, WOOD)
+    for share in np.linspace(0.0, 1.0, 10):
+        foot = a + share * (b - a)
+        builder.tube(foot, foot + up, 0.03 if share in {0.0, 1.0} else 0.009, STEEL, sides=4)
+
+
+def _top_rail(builder: MeshBuilder) -> None:
+    """Keeps people from falling into the well on the last floor."""
+    z = (FLOORS - 1) * STOREY_M
+    _rail(builder, [LANDING_M, 0.05, z], [LANDING_M, FLIGHT_WIDTH_M + 0.1, z])
+
+
+def _hall(builder: MeshBuilder, floor: int, rng: np.random.Generator) -> None:
+    """A furnished hall west of the stairs, open towards them by a door."""
+    z, height = floor * STOREY_M, 2.9
+    west, south, north = -HALL_M - 0.12, _HALL_SOUTH_M, _HALL_NORTH_M
+    builder.quad([west, south, z], [-west, 0, 0], [0, north - south, 0], LINOLEUM)
+    builder.quad([west, south, z + height], [-west, 0, 0], [0, north - south, 0], CEILING)
+    rise = STOREY_M if floor + 1 < FLOORS else height
+    wall(
+        builder,
+        (-0.06, south),
+        (-0.06, north),
+        bottom_m=z,
+        height_m=rise,
+        openings=[door(_DOOR_Y_M - south)],
+    )
+    wall(
+        builder,
+        (west, south),
+        (west, north),
+        bottom_m=z,
+        height_m=height,
+        thickness_m=0.3,
+        openings=[window(2.6)],
+    )
+    wall(builder, (west, south), (0, south), bottom_m=z, height_m=height)
+    wall(builder, (west, north), (0, north), bottom_m=z, height_m=height)
+    things = MeshBuilder()
+    radiator(things, -2.0, north - 0.12)
+    lamp(things, -2.0, 1.3, height)
+    if floor % 2 == 0:
+        desk(things, west + 0.6, north - 1.1, side=1.0, rng=rng)
+        shelf(things, -0.35, north - 0.7, height_m=1.8, rng=rng)
+    else:
+        shelf(things, west + 0.4, south + 0.8, height_m=2.0, rng=rng)
+        chair(things, -1.0, south + 0.5, yaw_rad=1.2)
+    if floor == 0:
+        things.block([-1.8, south + 0.2, 0.8], [1.6, 0.25, 0.8], STEEL)
+    builder.place(things, [0.0, 0.0, z])
+
+
+def _signs(builder: MeshBuilder, floor: int) -> None:
+    """So many bars as the floor's number, a notice board and an extinguisher that wander."""
+    z = floor * STOREY_M
+    for bar in range(floor + 1):
+        x = 0.3 + 0.12 * bar
+        builder.box([x, -0.001, z + 1.5], [x + 0.06, 0.004, z + 1.8], 0.95)
+    x = 0.2 + 0.3 * floor
+    builder.box([x, WIDTH_M - 0.02, z + 1.1], [x + 0.4 + 0.1 * floor, WIDTH_M, z + 1.7], PAPER)
+    if floor % 2:
+        builder.tube([0.15, 2.4, z + 0.4], [0.15, 2.4, z + 0.95], 0.08, DARK, sides=10)
+
+
+def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:
+    """From the hall at the bottom to an upper floor and back; on the way halls are visited."""
+    top = min(stops, FLOORS - 1)
+    between = [(floor, way) for floor in range(1, top) for way in (0, 1)]
+    picks = rng.choice(len(between), size=stops - top, replace=False) if stops > top else []
+    visits = {between[k] for k in picks}
+    way = [Waypoint(-2.2, _DOOR_Y_M)]
+    way += _door(0, outward=True)
+    for floor in range(top):
+        way += _climb(floor)
+        if floor + 1 == top or (floor + 1, 0) in visits:
+            way += _visit(floor + 1, rng)
+    for floor in range(top, 0, -1):
+        way += list(reversed(_climb(floor - 1, down=True)))
+        if floor > 1 and (floor - 1, 1) in visits:
+            way += _visit(floor - 1, rng)
+    return [*way, *_door(0, outward=False), Waypoint(-2.2, _DOOR_Y_M)]
+
+
+def _door(floor: int, *, outward: bool) -> list[Waypoint]:
+    z = floor * STOREY_M
+    way = [Waypoint(-0.7, _DOOR_Y_M, z), Waypoint(-0.06, _DOOR_Y_M, z), Waypoint(0.6, _DOOR_Y_M, z)]
+    return way if outward else way[::-1]
+
+
+def _visit(floor: int, rng: np.random.Generator) -> list[Waypoint]:
+    look = float(rng.choice([-120, -90, 90, 120]))
+    place = Waypoint(
+        -1.9 + rng.uniform(-0.4, 0.4),
+        _DOOR_Y_M + rng.uniform(-0.5, 0.5),
+        floor * STOREY_M,
+        stop=True,
+        look_deg=look,
+    )
+    return [*_door(floor, outward=False), place, *_door(floor, outward=True)]
+
+
+def _climb(floor: int, *, down: bool = False) -> list[Waypoint]:
+    """From the landing of a floor to the next one; reversed for the way down."""
+    z, half, top = floor * STOREY_M, (floor + 0.5) * STOREY_M, (floor + 1) * STOREY_M
+    south, north = FLIGHT_WIDTH_M / 2, WIDTH_M - FLIGHT_WIDTH_M / 2
+    near, far = LANDING_M - 0.15, LENGTH_M - LANDING_M + 0.15
+    # A pace belongs to the leg that ends at a waypoint: reversed ways need it at the other end.
+    stairs = 0.5
+    return [
+        Waypoint(0.8, south, z),
+        Waypoint(near, south, z, pace=stairs if down else 1.0),
+        Waypoint(far, south, half, pace=1.0 if down else stairs),
+        Waypoint(far + 0.6, south + 0.1, half, pace=0.8),
+        Waypoint(far + 0.6, north - 0.1, half, pace=0.8),
+        Waypoint(far, north, half, pace=stairs if down else 0.8),
+        Waypoint(near, north, top, pace=1.0 if down else stairs),
+        Waypoint(0.8, north, top),
+    ]
