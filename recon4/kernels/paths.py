@@ -40,7 +40,7 @@ def path_medians(
         start: Slots of node n are ``start[n]:start[n + 1]``, (N + 1,) int64; sorted by neighbor.
         neighbor: Node at the other end of each slot, (2 E,) int64.
         edge: Edge of each slot, (2 E,) int64.
-        slot_rotation: Rotation of the edge walked from the slot's node to the neighbor, (2 E, 3, 3).
+        slot_rotation: Rotation of the edge walked from its slot's node onward, (2 E, 3, 3).
         slot_translation: Translation of the same [m], (2 E, 3).
         alive: Edges that may be walked, (E,) bool.
         max_edges: Longest path, 1 to 3.

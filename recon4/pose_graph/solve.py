@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import gtsam
 import numpy as np
-from scipy.stats import chi2 as chi2_distribution
 
 from recon4.errors import GraphError
 from recon4.geometry.se3 import SE3, Array
@@ -25,14 +24,8 @@ CAUCHY_POSITION_SD = 3.0
 """The same for an absolute position (1.7)."""
 _GAUGE = 1e6
 """How much better than the best edge a fixed node is known."""
-_MAX_ITERATIONS = 100
+MAX_ITERATIONS = 100
 _RELATIVE_DECREASE = 1e-7
-_GNC_STEP = 2.0
-"""Growth of GNC's control parameter a round; gtsam takes 1.4."""
-_GNC_INNER_ITERATIONS = 3
-_GNC_MAX_ROUNDS = 60
-_MAX_NOISE_SCALE = 10.0
-"""Edges may be this much noisier (in variance) than they say before they count as outliers."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -102,80 +95,29 @@ def optimize(
         GraphError: If the graph cannot be solved (`checks`), or nothing holds it.
     """
     of = relations(graph.edges)
-    problem = _Problem.check(graph.T_map_body, of, fixed=fixed, priors=priors)
+    problem = Problem.check(graph.T_map_body, of, fixed=fixed, priors=priors)
     weights = of.in_graph.astype(np.float64)
-    T_map_body, iterations = problem.solve(
-        graph.T_map_body, weights=weights, kernel=kernel, max_iterations=_MAX_ITERATIONS
-    )
-    edge_chi2 = squared_residuals(T_map_body, of)
-    if kernel == "cauchy":
-        weights = np.where(of.protected, weights, weights / (1.0 + edge_chi2 / CAUCHY_SD**2))
-    return Solution(
-        T_map_body=T_map_body,
-        chi2=float(edge_chi2[of.in_graph].sum()),
-        chi2_before=float(squared_residuals(graph.T_map_body, of)[of.in_graph].sum()),
-        edge_chi2=edge_chi2,
-        weights=weights,
-        iterations=iterations,
-        converged=iterations < _MAX_ITERATIONS,
-    )
+    T_map_body, iterations = problem.solve(graph.T_map_body, weights=weights, kernel=kernel)
+    solution = solved(graph, of, T_map_body, weights=weights, iterations=iterations)
+    if kernel == "none":
+        return solution
+    softened = weights / (1.0 + solution.edge_chi2 / CAUCHY_SD**2)
+    return replace(solution, weights=np.where(of.protected, weights, softened))
 
 
-def optimize_gnc(
-    graph: PoseGraph,
-    *,
-    fixed: Sequence[int] = (0,),
-    priors: Sequence[Priors] = (),
-    probability: float = 0.999,
+def solved(
+    graph: PoseGraph, of: Relations, T_map_body: SE3, *, weights: Array, iterations: int
 ) -> Solution:
-    """Graduated non-convexity with truncated least squares: each edge counts fully or not at all.
-
-    Starts from the convex problem and hardens it round by round (Yang 2020, eqs. 12-14);
-    a few iterations a round are enough, as the next round goes on from there. Protected edges
-    always count. An edge is an outlier beyond `outlier_limit`.
-
-    Args:
-        graph: As for `optimize`.
-        fixed: As for `optimize`.
-        priors: As for `optimize`.
-        probability: Share of correct edges that stay if their information is true.
-
-    Raises:
-        GraphError: As `optimize`.
-    """
-    of = relations(graph.edges)
-    problem = _Problem.check(graph.T_map_body, of, fixed=fixed, priors=priors)
-    before = float(squared_residuals(graph.T_map_body, of)[of.in_graph].sum())
-    free = of.in_graph & ~of.protected
-    start = optimize(graph, kernel="cauchy", fixed=fixed, priors=priors)
-    limit = outlier_limit(start.edge_chi2[free], probability=probability)
-    weights, iterations = of.in_graph.astype(np.float64), start.iterations
-    T_map_body = graph.T_map_body
-    mu = 0.0
-    for _ in range(_GNC_MAX_ROUNDS):
-        T_map_body, used = problem.solve(
-            T_map_body, weights=weights, kernel="none", max_iterations=_GNC_INNER_ITERATIONS
-        )
-        iterations += used
-        edge_chi2 = squared_residuals(T_map_body, of)
-        largest = float(edge_chi2[free].max(initial=0.0))
-        mu = mu * _GNC_STEP if mu else limit / max(2.0 * largest - limit, 1e-3 * limit)
-        weights[free] = _truncated_weights(edge_chi2[free], limit=limit, mu=mu)
-        if np.all((weights < 1e-6) | (weights > 1.0 - 1e-6)):
-            break
-    weights = np.where(free, (weights > 0.5).astype(np.float64), weights)
-    T_map_body, used = problem.solve(
-        T_map_body, weights=weights, kernel="none", max_iterations=_MAX_ITERATIONS
-    )
+    """A solution with its residuals."""
     edge_chi2 = squared_residuals(T_map_body, of)
     return Solution(
         T_map_body=T_map_body,
         chi2=float(edge_chi2[weights > 0.0].sum()),
-        chi2_before=before,
+        chi2_before=float(squared_residuals(graph.T_map_body, of)[of.in_graph].sum()),
         edge_chi2=edge_chi2,
         weights=weights,
-        iterations=iterations + used,
-        converged=used < _MAX_ITERATIONS,
+        iterations=iterations,
+        converged=iterations < MAX_ITERATIONS,
     )
 
 
@@ -188,7 +130,7 @@ def initialize(graph: PoseGraph) -> SE3:
         GraphError: If the graph cannot be solved (`checks`).
     """
     of = relations(graph.edges)
-    problem = _Problem.check(graph.T_map_body, of, fixed=(0,), priors=())
+    problem = Problem.check(graph.T_map_body, of, fixed=(0,), priors=())
     factors = problem.factors(of.in_graph.astype(np.float64), kernel="none")
     # The chordal method wants a prior as its anchor; it is the last factor of the graph.
     values = gtsam.InitializePose3.initialize(factors)
@@ -196,25 +138,8 @@ def initialize(graph: PoseGraph) -> SE3:
     return graph.T_map_body[0] @ T_free_body[0].inverse() @ T_free_body
 
 
-def outlier_limit(edge_chi2: Array, *, probability: float) -> float:
-    """Squared residual beyond which an edge is an outlier.
-
-    The chi-square quantile of six numbers, times how much larger than stated the variance of these
-    edges is (from their median, at most tenfold): registrations tend to promise too much.
-    """
-    ratio = float(np.median(edge_chi2)) / chi2_distribution.median(6) if len(edge_chi2) else 1.0
-    return float(chi2_distribution.ppf(probability, 6) * np.clip(ratio, 1.0, _MAX_NOISE_SCALE))
-
-
-def _truncated_weights(edge_chi2: Array, *, limit: float, mu: float) -> Array:
-    """Yang 2020, eq. 14."""
-    middle = np.sqrt(limit * mu * (mu + 1.0) / np.maximum(edge_chi2, 1e-300)) - mu
-    certain = np.where(edge_chi2 <= limit * mu / (mu + 1.0), 1.0, middle)
-    return np.where(edge_chi2 >= limit * (mu + 1.0) / mu, 0.0, np.clip(certain, 0.0, 1.0))
-
-
 @dataclass(frozen=True, slots=True, eq=False)
-class _Problem:
+class Problem:
     """A checked graph in gtsam's terms; built once, solved with changing weights."""
 
     of: Relations
@@ -229,7 +154,7 @@ class _Problem:
     @staticmethod
     def check(
         T_map_body: SE3, of: Relations, *, fixed: Sequence[int], priors: Sequence[Priors]
-    ) -> _Problem:
+    ) -> Problem:
         check_relations(T_map_body, of)
         if not len(fixed) and not priors:
             raise GraphError("nothing holds the graph: no fixed node and no prior")
@@ -247,12 +172,27 @@ class _Problem:
                 rows = zip(prior.node, prior.p_map, prior.p_body, prior.sd_m, strict=True)
                 positions += [(int(node), *row) for node, *row in rows]
         measured = [_pose(of.T_i_j, row) for row in range(len(of))]
-        return _Problem(of, measured, always, positions, len(T_map_body))
+        return Problem(of, measured, always, positions, len(T_map_body))
 
     def solve(
-        self, T_map_body: SE3, *, weights: Array, kernel: Kernel, max_iterations: int
+        self,
+        T_map_body: SE3,
+        *,
+        weights: Array,
+        kernel: Kernel = "none",
+        max_iterations: int = MAX_ITERATIONS,
     ) -> tuple[SE3, int]:
-        """Poses and how many iterations it took."""
+        """Poses found from ``T_map_body``, and how many iterations it took.
+
+        Args:
+            T_map_body: Where to start.
+            weights: Factor on the information of each edge, (E,); 0 = not used.
+            kernel: As in `optimize`.
+            max_iterations: Stop there, wherever it is.
+
+        Raises:
+            GraphError: If a number is not finite.
+        """
         values = gtsam.Values()
         for node in range(self.nodes):
             values.insert(node, _pose(T_map_body, node))
@@ -263,11 +203,11 @@ class _Problem:
         optimizer = gtsam.LevenbergMarquardtOptimizer(
             self.factors(weights, kernel=kernel), values, parameters
         )
-        solved = _poses(optimizer.optimize(), self.nodes)
+        found = _poses(optimizer.optimize(), self.nodes)
         # A NaN inside gtsam leaves the poses alone and shows in the error only.
-        if not np.isfinite(optimizer.error()) or not np.isfinite(solved.t).all():
+        if not np.isfinite(optimizer.error()) or not np.isfinite(found.t).all():
             raise GraphError("the optimizer met a number that is not finite")
-        return solved, int(optimizer.iterations())
+        return found, int(optimizer.iterations())
 
     def factors(self, weights: Array, *, kernel: Kernel) -> Any:
         """The ``gtsam.NonlinearFactorGraph`` of the edges that count."""

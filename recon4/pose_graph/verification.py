@@ -12,7 +12,8 @@ from recon4.model.pose_graph import Edge, PoseGraph, Reason, Verdict
 from recon4.pose_graph.checks import check_relations
 from recon4.pose_graph.paths import PathIndex, reject_worst_first
 from recon4.pose_graph.relations import Relations, relations, squared_residuals
-from recon4.pose_graph.solve import Solution, optimize, optimize_gnc, outlier_limit
+from recon4.pose_graph.robust import optimize_gnc, outlier_limit
+from recon4.pose_graph.solve import Solution, optimize
 from recon4.progress import Progress, Silent
 from recon4.settings import VerificationSettings
 

@@ -1,0 +1,153 @@
+"""The robust solve: every edge counts fully or not at all.
+
+What is minimized is the truncated sum of squares: the squared residuals, none above a limit.
+That is not convex, so several starts compete and the lowest sum wins.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+from scipy.stats import chi2 as chi2_distribution
+
+from recon4.geometry.se3 import SE3, Array
+from recon4.model.pose_graph import PoseGraph
+from recon4.pose_graph.relations import Flags, Relations, relations, squared_residuals
+from recon4.pose_graph.solve import Priors, Problem, Solution, solved
+
+_STEP = 2.0
+"""Growth of GNC's control parameter a round; gtsam takes 1.4."""
+_INNER_ITERATIONS = 3
+"""Iterations a round; gtsam goes on to convergence."""
+_MAX_ROUNDS = 60
+_MAX_SETTLING = 10
+_MAX_NOISE = 10.0
+"""Edges may be this much noisier (in variance) than they say before they count as outliers."""
+_LOOP_NODES = 10
+"""Edges across fewer nodes are no loops."""
+_GROUP_NODES = 3
+"""Loops whose ends lie at most so many nodes apart form a group."""
+_MAX_GROUPS = 4
+
+
+def optimize_gnc(
+    graph: PoseGraph,
+    *,
+    fixed: Sequence[int] = (0,),
+    priors: Sequence[Priors] = (),
+    probability: float = 0.999,
+) -> Solution:
+    """Truncated least squares: poses, and weights that are 0 or 1.
+
+    The starts: a Cauchy solve; graduated non-convexity from the convex problem (Yang 2020,
+    eqs. 12-14); and the odometry with only one of the largest groups of neighboring loops, which
+    is what finds the truth when loops are few, alone and mostly false. Protected edges always
+    count. The same graph gives the same bits.
+
+    Args:
+        graph: As for `solve.optimize`.
+        fixed: As for `solve.optimize`.
+        priors: As for `solve.optimize`.
+        probability: Share of correct edges that stay if their information is true.
+
+    Raises:
+        GraphError: As `solve.optimize`.
+    """
+    of = relations(graph.edges)
+    problem = Problem.check(graph.T_map_body, of, fixed=fixed, priors=priors)
+    everything = of.in_graph.astype(np.float64)
+    T_cauchy, _ = problem.solve(graph.T_map_body, weights=everything, kernel="cauchy")
+    chi2 = squared_residuals(T_cauchy, of)
+    limit = outlier_limit(chi2[of.in_graph & ~of.protected], probability=probability)
+    best, lowest = None, np.inf
+    for T_start in _starts(problem, graph.T_map_body, T_cauchy, limit=limit):
+        T_map_body, weights, used = _settle(problem, T_start, limit=limit)
+        cost = _truncated_cost(of, squared_residuals(T_map_body, of), limit=limit)
+        if cost < lowest * (1.0 - 1e-9):
+            best, lowest = (T_map_body, weights, used), cost
+    assert best is not None
+    return solved(graph, of, best[0], weights=best[1], iterations=best[2])
+
+
+def outlier_limit(edge_chi2: Array, *, probability: float) -> float:
+    """Squared residual beyond which an edge is an outlier.
+
+    The chi-square quantile of six numbers, times how much larger than stated the variance of these
+    edges is (from their median, at most tenfold): registrations tend to promise too much.
+    """
+    ratio = float(np.median(edge_chi2)) / chi2_distribution.median(6) if len(edge_chi2) else 1.0
+    return float(chi2_distribution.ppf(probability, 6) * np.clip(ratio, 1.0, _MAX_NOISE))
+
+
+def _starts(problem: Problem, T_map_body: SE3, T_cauchy: SE3, *, limit: float) -> Iterator[SE3]:
+    yield T_cauchy
+    yield _graduate(problem, T_map_body, limit=limit)
+    of = problem.of
+    short = of.in_graph & (of.protected | (np.abs(of.j - of.i) < _LOOP_NODES))
+    for group in _groups(of, of.in_graph & ~short):
+        weights = (short | group).astype(np.float64)
+        yield problem.solve(T_map_body, weights=weights)[0]
+
+
+def _graduate(problem: Problem, T_map_body: SE3, *, limit: float) -> SE3:
+    """Harden the convex problem round by round; each goes on from the one before."""
+    of = problem.of
+    free, weights, mu = of.in_graph & ~of.protected, of.in_graph.astype(np.float64), 0.0
+    for _ in range(_MAX_ROUNDS):
+        T_map_body, _ = problem.solve(T_map_body, weights=weights, max_iterations=_INNER_ITERATIONS)
+        chi2 = squared_residuals(T_map_body, of)[free]
+        largest = float(chi2.max(initial=0.0))
+        mu = mu * _STEP if mu else limit / max(2.0 * largest - limit, 1e-3 * limit)
+        weights[free] = _truncated_weights(chi2, limit=limit, mu=mu)
+        if np.all((weights < 1e-6) | (weights > 1.0 - 1e-6)):
+            break
+    return T_map_body
+
+
+def _truncated_weights(chi2: Array, *, limit: float, mu: float) -> Array:
+    """Yang 2020, eq. 14."""
+    middle = np.sqrt(limit * mu * (mu + 1.0) / np.maximum(chi2, 1e-300)) - mu
+    certain = np.where(chi2 <= limit * mu / (mu + 1.0), 1.0, middle)
+    return np.where(chi2 >= limit * (mu + 1.0) / mu, 0.0, np.clip(certain, 0.0, 1.0))
+
+
+def _settle(problem: Problem, T_map_body: SE3, *, limit: float) -> tuple[SE3, Array, int]:
+    """Solve with the edges below the limit until they are the same as before."""
+    of = problem.of
+    weights, iterations = np.zeros(len(of)), 0
+    for _ in range(_MAX_SETTLING):
+        fits = of.in_graph & (of.protected | (squared_residuals(T_map_body, of) < limit))
+        if np.array_equal(fits, weights > 0.0):
+            break
+        weights = fits.astype(np.float64)
+        T_map_body, used = problem.solve(T_map_body, weights=weights)
+        iterations = max(iterations, used)
+    return T_map_body, weights, iterations
+
+
+def _truncated_cost(of: Relations, chi2: Array, *, limit: float) -> float:
+    used = np.where(of.protected, chi2, np.minimum(chi2, limit))
+    return float(used[of.in_graph].sum())
+
+
+def _groups(of: Relations, loops: Flags) -> list[Flags]:
+    """The largest groups of loops that join the same two stretches of the walk."""
+    rows = np.flatnonzero(loops)
+    if len(rows) == 0:
+        return []
+    ends = np.stack([of.i[rows], of.j[rows]], 1)
+    near = cKDTree(ends).query_pairs(_GROUP_NODES, p=np.inf, output_type="ndarray")
+    links = coo_array((np.ones(len(near)), (near[:, 0], near[:, 1])), shape=(len(rows), len(rows)))
+    _, label = connected_components(links, directed=False)
+    size = np.bincount(label)
+    largest = np.argsort(-size, kind="stable")[:_MAX_GROUPS]
+    groups = []
+    for group in largest[2 * size[largest] >= size.max()]:
+        chosen = np.zeros(len(of), dtype=np.bool_)
+        chosen[rows[label == group]] = True
+        groups.append(chosen)
+    return groups
