@@ -21,8 +21,8 @@ def _require(holds: bool, rule: str, value: object) -> None:
 class IngestSettings:
     """Reading a recording into multiframes."""
 
-    rate_hz: float = 10.0
-    """Multiframes per second. 0 = the rotation rate of the first LiDAR."""
+    rate_hz: float = 0.0
+    """Multiframes per second. 0 = one a revolution of the slowest LiDAR, as measured."""
     reorder_window_s: float = 0.2
     """Packets out of order by at most this are put back in order [s]."""
     min_range_m: float = 0.7
@@ -90,10 +90,13 @@ class OverlapSettings:
 class RegistrationSettings:
     """Registration of two sets of collar line segments (V §2.4, requirements A3)."""
 
-    solver: Literal["common_normal", "svd"] = "common_normal"
-    """``svd`` is the documents' closed form on closest points; ``common_normal`` is ours."""
-    max_iterations: int = 12
+    solver: Literal["planes", "common_normal", "svd"] = "planes"
+    """``svd`` is the documents' closed form on closest points of lines, ``common_normal`` moves
+    along the common normals of lines, ``planes`` holds segments against a map of small planes."""
+    max_iterations: int = 20
     """Upper bound on match-and-solve rounds (thesis: 500)."""
+    max_move_m: float = 2.5
+    """A solution farther from its guess counts as not converged [m, rotation as at 5 m]."""
     converged_step_m: float = 5e-4
     """Stop once a round moves a point at 5 m by less than this [m] (``common_normal``)."""
     max_distance_m: float = 1.0
@@ -120,11 +123,11 @@ class PlaneSettings:
     """Sizes of cubes, each twice the one before."""
     min_points: int = 8
     """A cube with fewer points has no plane."""
-    max_sd_m: float = 0.05
+    max_sd_m: float = 0.03
     """Points of one plane scatter by at most this across it [m]."""
     point_sd_m: float = 0.02
     """Standard deviation of one measured point [m]."""
-    kernel_m: float = 0.04
+    kernel_m: float = 0.02
     """Scale of the Cauchy kernel on the distance from the plane [m]."""
 
 
@@ -179,17 +182,33 @@ class GraphSettings:
     revisits: int = 6
     """At most so many pairs of a node with earlier visits of the same place."""
     revisit_radius_m: float = 4.0
-    """Nodes farther apart are not revisits of one place [m]."""
+    """Nodes farther apart are not revisits of one place [m] …"""
+    drift_share: float = 0.005
+    """… plus this share of the distance walked in between, for the drift not yet closed."""
+    source_reach: int = 2
+    """Multiframes before and after a node that it brings to a pair."""
+    source_segments: int = 6000
+    """Segments of them that are used."""
+    target_reach: int = 5
+    """Multiframes before and after the other node that make the target."""
+    workers: int = 2
+    """Threads that register pairs; the result does not depend on it."""
+    min_share: float = 0.4
+    """A pair of which a smaller share of segments finds a match is rejected."""
+    min_degeneracy: float = 0.005
+    """A pair held less than this along one direction is rejected (0 = free, 1/3 = held alike)."""
     error_relative: float = 0.01
     """t_r of the acceptance limit ``median_range * t_r + t_a`` (A0 no. 12)."""
     error_absolute_m: float = 0.05
     """t_a of that limit [m]."""
-    odometry_sd_m: float = 0.01
-    """Standard deviation of an odometry edge per node step [m]."""
-    odometry_sd_rad: float = 0.002
-    loop_sd_m: float = 0.01
-    """Standard deviation of an accepted edge [m]."""
-    loop_sd_rad: float = 0.002
+    odometry_sd_m: float = 0.005
+    """Standard deviation of an odometry edge [m]."""
+    odometry_sd_rad: float = 0.0007
+    """The same for its rotation [rad]."""
+    loop_sd_m: float = 0.008
+    """Smallest standard deviation of a registered edge [m]."""
+    loop_sd_rad: float = 0.001
+    """The same for its rotation [rad]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -41,6 +41,7 @@ class Reason(StrEnum):
     OVERLAP = "overlap < t_o"
     ERROR = "error > limit"
     NOT_CONVERGED = "not converged"
+    FEW_MATCHES = "too few segments match"
     DEGENERATE = "degenerate"
     VERIFICATION = "verification median > limit"
     ROBUST = "outlier in the robust solution"

@@ -10,6 +10,7 @@ from recon4.geometry.se3 import SE3, Array, so3_exp
 from recon4.kernels.imu import propagate
 from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.trajectory import Times
 from recon4.settings import OdometrySettings
 
 _SLOT_S = 0.02
@@ -82,6 +83,11 @@ class ImuMotion:
         vector[14] = -STANDARD_GRAVITY_M_S2 if self._has_accel else 0.0
         return MotionState(t_ns, _level(up_body), vector, np.diag(sd**2))
 
+    def turn(self, start_ns: int, end_ns: int) -> Array:
+        """Rotation from the body at one time to the body at another by the gyroscope, (3, 3)."""
+        state = MotionState(start_ns, np.eye(3), np.zeros(15), np.zeros((18, 18)))
+        return self.predict(state, end_ns).end.R
+
     def predict(self, state: MotionState, end_ns: int) -> Prediction:
         """Integrate from the state's time to ``end_ns``."""
         first, last = np.searchsorted(self._t_ns, [state.t_ns + 1, end_ns])
@@ -122,7 +128,7 @@ Motion = ImuMotion | FreeMotion
 
 
 def _predict(
-    state: MotionState, t_ns: Array, gyro: Array, accel: Array, noise: Array
+    state: MotionState, t_ns: Times, gyro: Array, accel: Array, noise: Array
 ) -> Prediction:
     t_s = (t_ns - t_ns[0]) * 1e-9
     R, p, v, Phi, P = propagate(t_s, gyro, accel, state.R, state.vector, state.P, noise)
@@ -143,7 +149,7 @@ def _in_body(imu: ImuSamples, rig: Rig) -> tuple[Array, Array]:
     return np.ascontiguousarray(gyro), np.ascontiguousarray(accel)
 
 
-def _at(t_ns: Array, sample_t_ns: Array, values: Array) -> Array:
+def _at(t_ns: Times, sample_t_ns: Times, values: Array) -> Array:
     """Linear interpolation of samples (N, 3) at other times, the ends held."""
     # float64 holds nanoseconds exactly only after taking the start away.
     t = (t_ns - t_ns[0]).astype(np.float64)

@@ -6,7 +6,6 @@ from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array, interpolate, so3_exp
 from recon4.kernels.imu import place_points
@@ -119,7 +118,7 @@ class Odometry:
         duration_s = prediction.t_s[-1]
         T_dense = _correct(prediction, delta, center)
         converged, rounds = False, 0
-        for rounds in range(1, o.rounds + 1):  # noqa: B007
+        for rounds in range(1, o.rounds + 1):
             p_odom = place_points(prediction.t_s, T_dense.R, T_dense.t, mid_s, mid_body)
             gate_m = _GATES_M[min(rounds - 1 + (0 if coarse else 1), len(_GATES_M) - 1)]
             match = self._map.match(
@@ -176,8 +175,9 @@ def _correct(prediction: Prediction, delta: Array, center: Array) -> SE3:
     omega = (1.0 - s) * delta[:3] + s * delta[6:9]
     shift = (1.0 - s) * delta[3:6] + s * delta[9:12]
     R = so3_exp(omega)
-    T = prediction.T_odom_body
-    return SE3(R @ T.R, center + np.einsum("nij,nj->ni", R, T.t - center) + shift)
+    predicted = prediction.T_odom_body
+    arm = np.einsum("nij,nj->ni", R, predicted.t - center)
+    return SE3(R @ predicted.R, center + arm + shift)
 
 
 def _largest_move(step: Array) -> float:

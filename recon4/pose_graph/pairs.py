@@ -1,0 +1,180 @@
+"""Trying one pair of nodes: overlap, registration, acceptance."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+
+from recon4.geometry.lines import Lines
+from recon4.geometry.se3 import SE3, Array
+from recon4.kernels.overlap import share_inside
+from recon4.model.pose_graph import Edge, EdgeKind, Reason, Verdict
+from recon4.progress import Progress
+from recon4.registration.collar_lines import LineTarget, register_lines
+from recon4.registration.plane_map import PlaneMap
+from recon4.registration.planes import register_to_planes
+from recon4.registration.result import Registration
+from recon4.registration.submap import Ends, NodeViews, Submaps, median_range_m
+from recon4.settings import Settings
+
+_CHUNK = 8
+"""Target nodes a worker takes at a time; neighbors share their multiframes."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """Two nodes to be tried, with the pose that is believed so far."""
+
+    i: int
+    j: int
+    kind: EdgeKind
+    T_i_j: SE3
+
+
+SubmapFactory = Callable[[], Submaps]
+
+
+class PairRegistrar:
+    """Tries pairs on several threads; the answer does not depend on how many."""
+
+    def __init__(self, make_submaps: SubmapFactory, views: NodeViews, settings: Settings) -> None:
+        self._make_submaps, self._views, self._settings = make_submaps, views, settings
+
+    def prepare(self, nodes: int, progress: Progress) -> None:
+        """Make the views of all nodes."""
+        progress.start("view volumes", nodes, "node")
+        chunks = [range(k, min(k + _CHUNK, nodes)) for k in range(0, nodes, _CHUNK)]
+        with ThreadPoolExecutor(self._settings.graph.workers) as pool:
+            fills = pool.map(lambda chunk: self._views.fill(self._make_submaps(), chunk), chunks)
+            for chunk, _ in zip(chunks, fills, strict=True):
+                progress.advance(len(chunk))
+
+    def register(self, pairs: Sequence[Pair], progress: Progress) -> list[Edge]:
+        """Try pairs; edges come back in the order of the pairs."""
+        order = sorted(range(len(pairs)), key=lambda k: (pairs[k].i, pairs[k].j, k))
+        groups = _by_target(order, pairs)
+        chunks = [groups[k : k + _CHUNK] for k in range(0, len(groups), _CHUNK)]
+        edges: dict[int, Edge] = {}
+        progress.start("pairs", len(pairs), "pair")
+        with ThreadPoolExecutor(self._settings.graph.workers) as pool:
+            for done in pool.map(lambda chunk: self._try_chunk(chunk, pairs), chunks):
+                edges.update(done)
+                progress.advance(len(done))
+        return [edges[k] for k in range(len(pairs))]
+
+    def _try_chunk(self, groups: list[list[int]], pairs: Sequence[Pair]) -> dict[int, Edge]:
+        submaps = self._make_submaps()
+        return {k: edge for group in groups for k, edge in self._try_group(submaps, group, pairs)}
+
+    def _try_group(
+        self, submaps: Submaps, group: list[int], pairs: Sequence[Pair]
+    ) -> list[tuple[int, Edge]]:
+        """All pairs of one target node; its map is built at most once, if any pair needs it."""
+        target: PlaneMap | LineTarget | None = None
+        out = []
+        for k in group:
+            pair = pairs[k]
+            ends = self._views.ends(pair.j)
+            share = self._overlap(pair, ends)
+            if share < self._settings.overlap.threshold:
+                out.append((k, _edge(pair, share, Reason.OVERLAP)))
+                continue
+            if target is None:
+                target = self._target(submaps, pair.i)
+            out.append((k, self._judge(pair, share, self._solve(target, ends, pair, share), ends)))
+        return out
+
+    def _overlap(self, pair: Pair, ends: Ends) -> float:
+        o = self._settings.overlap
+        return float(
+            share_inside(
+                self._views.nearest_m(pair.i),
+                ends.reshape(-1, 3),
+                pair.T_i_j.R,
+                pair.T_i_j.t,
+                o.relative_tolerance,
+                o.absolute_tolerance_m,
+            )  # fmt: skip
+        )
+
+    def _target(self, submaps: Submaps, node: int) -> PlaneMap | LineTarget:
+        ends = submaps.around(node, self._settings.graph.target_reach)
+        if self._settings.registration.solver != "planes":
+            return LineTarget(Lines.through(ends[:, 0], ends[:, 1]))
+        target = PlaneMap(self._settings.planes)
+        target.add(np.ascontiguousarray(ends.reshape(-1, 3)))
+        return target
+
+    def _solve(
+        self, target: PlaneMap | LineTarget, ends: Ends, pair: Pair, share: float
+    ) -> Registration:
+        settings = self._settings.registration
+        if isinstance(target, LineTarget):
+            source = Lines.through(ends[:, 0], ends[:, 1])
+            return register_lines(
+                target, source, guess=pair.T_i_j, portion=share, settings=settings
+            )
+        return register_to_planes(
+            target, ends.mean(axis=1), guess=pair.T_i_j, planes=self._settings.planes,
+            settings=settings,
+        )  # fmt: skip
+
+    def _judge(self, pair: Pair, share: float, found: Registration, ends: Ends) -> Edge:
+        """Accept or reject (V Algorithm 2.1 line 8; A0 no. 12)."""
+        g = self._settings.graph
+        limit_m = median_range_m(ends) * g.error_relative + g.error_absolute_m
+        reason = Reason.NONE
+        if not found.converged:
+            reason = Reason.NOT_CONVERGED
+        elif not found.error_m <= limit_m:
+            reason = Reason.ERROR
+        elif found.share < g.min_share:
+            reason = Reason.FEW_MATCHES
+        elif found.degeneracy < g.min_degeneracy:
+            reason = Reason.DEGENERATE
+        return _edge(pair, share, reason).evolve(
+            T_i_j=found.T_target_source,
+            error_m=found.error_m,
+            limit_m=limit_m,
+            degeneracy=found.degeneracy,
+            converged=found.converged,
+            iterations=found.iterations,
+            information=_information(found, self._settings),
+        )
+
+
+def _edge(pair: Pair, share: float, reason: Reason) -> Edge:
+    verdict = Verdict.REJECTED if reason else Verdict.ACCEPTED
+    return Edge(
+        i=pair.i, j=pair.j, T_i_j=pair.T_i_j, kind=pair.kind, verdict=verdict, reason=reason,
+        overlap=share,
+    )  # fmt: skip
+
+
+def _information(found: Registration, settings: Settings) -> Array:
+    """Inverse covariance of the tangent of ``T_i_j``: what the matches say, no better than a floor.
+
+    A correction (omega, v) on the left about the source's origin is (R^T omega, R^T v) on the
+    right, so the normal equations are turned into the source's axes.
+    """
+    g = settings.graph
+    floor = np.diag(np.repeat([g.loop_sd_rad, g.loop_sd_m], 3) ** 2)
+    if settings.registration.solver != "planes" or not found.converged:
+        return np.linalg.inv(floor)
+    A = np.kron(np.eye(2), found.T_target_source.R)
+    H = A.T @ found.information @ A * settings.odometry.information_scale
+    covariance = np.linalg.inv(H + 1e-3 * np.eye(6)) + floor
+    information = np.linalg.inv(covariance)
+    return 0.5 * (information + information.T)
+
+
+def _by_target(order: list[int], pairs: Sequence[Pair]) -> list[list[int]]:
+    groups: list[list[int]] = []
+    for k in order:
+        if not groups or pairs[groups[-1][0]].i != pairs[k].i:
+            groups.append([])
+        groups[-1].append(k)
+    return groups

@@ -1,0 +1,73 @@
+"""Registration of collar line segments to a map of planes: rigid, coarse to fine."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from recon4.geometry.se3 import SE3, Array, so3_exp
+from recon4.registration.plane_map import Match, PlaneMap
+from recon4.registration.result import Registration, StopReason
+from recon4.settings import PlaneSettings, RegistrationSettings
+
+_GATES_M = (1.0, 0.7, 0.5, 0.3, 0.2, 0.15)
+_MIN_MATCHES = 100
+
+
+def register_to_planes(
+    target: PlaneMap,
+    source: Array,
+    *,
+    guess: SE3,
+    planes: PlaneSettings,
+    settings: RegistrationSettings,
+) -> Registration:
+    """Estimate ``T_target_source`` by Gauss-Newton on the distances from the target's planes.
+
+    Args:
+        target: Planes in the target frame.
+        source: Midpoints of segments in the source frame [m], (N, 3).
+        guess: First ``T_target_source``; large cubes and a wide gate come first, so that it may
+            be off by up to a meter.
+        planes: How many sizes of cubes there are.
+        settings: Stop rules.
+    """
+    T_target_source = guess
+    zero = np.zeros(len(source))
+    stop, rounds = StopReason.LIMIT, 0
+    match = _empty(len(source))
+    for rounds in range(1, settings.max_iterations + 1):
+        last_gate = rounds >= len(_GATES_M)
+        match = target.match(
+            T_target_source @ source,
+            zero,
+            center=T_target_source.t,
+            finest=max(planes.levels - rounds, 0),
+            gate_m=_GATES_M[min(rounds, len(_GATES_M)) - 1],
+        )
+        if match.matches < _MIN_MATCHES:
+            stop = StopReason.TOO_FEW
+            break
+        H, g = match.H[:6, :6], match.g[:6]
+        step = -np.linalg.solve(H + 1e-6 * np.trace(H) / 6 * np.eye(6), g)
+        T_target_source = SE3(so3_exp(step[:3]) @ T_target_source.R, T_target_source.t + step[3:])
+        if not np.isfinite(step).all() or _moved(guess, T_target_source) > settings.max_move_m:
+            stop = StopReason.UNSTABLE
+            break
+        small = 5.0 * np.linalg.norm(step[:3]) + np.linalg.norm(step[3:])
+        if last_gate and small < settings.converged_step_m:
+            stop = StopReason.SMALL_STEP
+            break
+    return Registration(
+        T_target_source, stop, rounds, match.mean_m, 0.0, match.share, match.H[:6, :6],
+        match.degeneracy,
+    )  # fmt: skip
+
+
+def _moved(guess: SE3, T_target_source: SE3) -> float:
+    delta = guess.inverse() @ T_target_source
+    return float(np.linalg.norm(delta.t)) + 5.0 * float(delta.angle())
+
+
+def _empty(count: int) -> Match:
+    nan = np.full(count, np.nan)
+    return Match(np.zeros((12, 12)), np.zeros(12), nan, 0, float("nan"), 0.0, 0.0)

@@ -1,0 +1,75 @@
+"""The stage ``odometry``: all multiframes through one `Odometry`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from recon4.geometry.se3 import SE3
+from recon4.model.trajectory import Trajectory
+from recon4.progress import Progress, track
+from recon4.registration.odometry import OdometryStep
+from recon4.registration.select import make_odometry
+from recon4.settings import Settings
+from recon4.store.arrays import save_trajectory
+from recon4.store.frames import FrameStore
+
+_DENSE_NS = 9_000_000
+"""Poses of the dense trajectory are at least this far apart [ns] (at most about 100 Hz)."""
+
+
+def run_odometry(
+    frames: FrameStore, out: Path, *, settings: Settings, progress: Progress
+) -> dict[str, object]:
+    """Register all multiframes in order.
+
+    Args:
+        frames: The multiframes with their rig and IMU.
+        out: Receives ``trajectory.npz`` (``T_odom_body``, dense) and ``steps.npz``
+            (a row a multiframe).
+        settings: Uses segments, planes, registration and odometry.
+        progress: Counts multiframes; tracking that is lost is an event.
+    """
+    odometry = make_odometry(frames.rig, settings, frames.imu)
+    steps: list[OdometryStep] = []
+    for frame in track(frames, progress, what="odometry", unit="multiframe"):
+        step = odometry.push(frame)
+        if step.lost:
+            progress.event("lost", frame_id=step.frame_id, t_ns=step.t_mid_ns)
+        steps.append(step)
+    save_trajectory(out / "trajectory.npz", dense_trajectory(steps))
+    _save_steps(out / "steps.npz", steps)
+    lost = sum(step.lost for step in steps)
+    return {"multiframes": len(steps), "lost": lost, "imu": frames.imu is not None}
+
+
+def dense_trajectory(steps: list[OdometryStep]) -> Trajectory:
+    """The dense poses of all steps on one time line, at most about 100 Hz."""
+    t_ns = np.concatenate([step.t_ns for step in steps])
+    R = np.concatenate([step.T_dense.R for step in steps])
+    t_m = np.concatenate([step.T_dense.t for step in steps])
+    # The first pose of a frame is the newer word on the last pose of the frame before.
+    newest = len(t_ns) - 1 - np.unique(t_ns[::-1], return_index=True)[1]
+    t_ns, R, t_m = t_ns[newest], R[newest], t_m[newest]
+    slot = (t_ns - t_ns[0]) // _DENSE_NS
+    kept = np.append(np.diff(slot) > 0, True)
+    return Trajectory(t_ns[kept], SE3(R[kept], t_m[kept]))
+
+
+def _save_steps(path: Path, steps: list[OdometryStep]) -> None:
+    T = SE3.stack(step.T_odom_body for step in steps)
+    np.savez(
+        path,
+        frame_id=np.array([s.frame_id for s in steps]),
+        t_mid_ns=np.array([s.t_mid_ns for s in steps], np.int64),
+        quat_xyzw=T.quat_xyzw(),
+        t_m=T.t,
+        error_m=np.array([s.error_m for s in steps]),
+        share=np.array([s.share for s in steps]),
+        rounds=np.array([s.rounds for s in steps]),
+        converged=np.array([s.converged for s in steps]),
+        degeneracy=np.array([s.degeneracy for s in steps]),
+        gap_m=np.array([s.gap_m for s in steps]),
+        lost=np.array([s.lost for s in steps]),
+    )
