@@ -1,0 +1,35 @@
+"""What the routes share: the parts of the running server."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from fastapi import Depends
+from starlette.requests import HTTPConnection
+
+from app.jobs.store import JobStore
+from app.jobs.supervisor import Supervisor
+from app.projects.store import ProjectStore
+from app.settings import ServerSettings
+from app.viewer.pool import ViewerPool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Parts:
+    """One of each for a server."""
+
+    settings: ServerSettings
+    projects: ProjectStore
+    jobs: JobStore
+    supervisor: Supervisor
+    viewers: ViewerPool
+
+
+def parts(connection: HTTPConnection) -> Parts:
+    """The parts of the server a request or WebSocket came to."""
+    found: Parts = connection.app.state.parts
+    return found
+
+
+Server = Annotated[Parts, Depends(parts)]

@@ -1,0 +1,90 @@
+"""Errors of the server, and the one place where errors become HTTP.
+
+    AppError
+    ├── NotFound             404  no such project, job or file
+    ├── Conflict             409  not possible in the present state
+    │   └── IllegalTransition     a job cannot go from its state to that one
+    ├── Refused              403  outside of what the server may touch
+    └── ViewerFailed         503  the 3-D viewer does not start
+
+A `Recon4Error` of the library is the fault of the input: 422.
+"""
+
+from __future__ import annotations
+
+import logging
+import secrets
+from typing import ClassVar
+
+from fastapi import FastAPI, Request
+from fastapi.responses import JSONResponse
+from pydantic import BaseModel
+
+from recon4.errors import Recon4Error
+
+log = logging.getLogger(__name__)
+
+
+class AppError(Exception):
+    """Base of the tree above; the message is fit to be shown."""
+
+    status: ClassVar[int] = 500
+
+
+class NotFound(AppError):
+    """There is no such thing."""
+
+    status = 404
+
+
+class Conflict(AppError):
+    """Not possible in the present state."""
+
+    status = 409
+
+
+class IllegalTransition(Conflict):
+    """A job cannot go from its state to that one."""
+
+
+class Refused(AppError):
+    """Outside of what the server may touch."""
+
+    status = 403
+
+
+class ViewerFailed(AppError):
+    """The 3-D viewer does not start."""
+
+    status = 503
+
+
+class Problem(BaseModel):
+    """What every error answers."""
+
+    error: str
+    """Name of the error."""
+    detail: str
+    """What is wrong and what to do, for people."""
+
+
+def install(app: FastAPI) -> None:
+    """Answer every error as a `Problem`."""
+
+    @app.exception_handler(AppError)
+    async def known(_: Request, error: AppError) -> JSONResponse:
+        return _problem(error.status, type(error).__name__, str(error))
+
+    @app.exception_handler(Recon4Error)
+    async def wrong_input(_: Request, error: Recon4Error) -> JSONResponse:
+        return _problem(422, type(error).__name__, str(error))
+
+    @app.exception_handler(Exception)
+    async def our_own(request: Request, error: Exception) -> JSONResponse:
+        number = secrets.token_hex(4)
+        log.error("error %s in %s", number, request.scope["path"], exc_info=error)
+        return _problem(500, "InternalError", f"the server failed; the log says why under {number}")
+
+
+def _problem(status: int, error: str, detail: str) -> JSONResponse:
+    return JSONResponse(Problem(error=error, detail=detail).model_dump(), status_code=status)

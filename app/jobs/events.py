@@ -1,0 +1,93 @@
+"""``events.jsonl``: what a worker says of its progress, a line a saying, and who reads it.
+
+    {"t": s, "kind": "run"}                                     a worker began
+    {"t": s, "kind": "progress", "what", "done", "total", "unit", "seconds"}
+    {"t": s, "kind": EVENT, …}                                  any event of a stage, with its facts
+
+``t`` is in seconds since 1970. The file is appended to and not needed to resume.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from pathlib import Path
+from typing import Any
+
+from recon4.errors import Cancelled
+
+EVERY_S = 0.25
+"""Counts are written, and the wish to stop is read, at most this often [s]."""
+
+
+class EventWriter:
+    """A `recon4.progress.Progress` that writes lines, and stops the run once a file appears."""
+
+    def __init__(self, events: Path, stop: Path) -> None:
+        self._file = events.open("ab", buffering=0)
+        self._file.write(b"\n")  # ends a line that a killed worker left half written
+        self._stop = stop
+        self._what, self._unit = "", ""
+        self._done, self._total = 0, 0
+        self._began_s = self._due_s = 0.0
+        self._write("run", {})
+
+    def start(self, what: str, total: int, unit: str) -> None:
+        """Begin a piece of work of ``total`` units (0 = unknown)."""
+        self._what, self._unit, self._done, self._total = what, unit, 0, total
+        self._began_s = time.monotonic()
+        self._tell()
+
+    def advance(self, done: int = 1) -> None:
+        """Say that ``done`` more units are finished.
+
+        Raises:
+            Cancelled: If the server asked to stop.
+        """
+        self._done += done
+        if time.monotonic() >= self._due_s or self._done == self._total:
+            self._tell()
+
+    def event(self, kind: str, **facts: object) -> None:
+        """Say what was found."""
+        self._write(kind, facts)
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+    def _tell(self) -> None:
+        now_s = time.monotonic()
+        self._due_s = now_s + EVERY_S
+        facts = {"what": self._what, "done": self._done, "total": self._total, "unit": self._unit}
+        self._write("progress", {**facts, "seconds": round(now_s - self._began_s, 3)})
+        if self._stop.exists():
+            raise Cancelled("stopped on request; finished stages are kept")
+
+    def _write(self, kind: str, facts: dict[str, Any]) -> None:
+        line = json.dumps({"t": round(time.time(), 3), **facts, "kind": kind}, default=str)
+        self._file.write(line.encode() + b"\n")
+
+
+def read_events(path: Path, offset: int) -> tuple[list[dict[str, Any]], int]:
+    """Events written since a byte offset, and the offset to ask from next time.
+
+    A line still being written is left for the next call; one cut by a kill is skipped.
+    """
+    try:
+        with path.open("rb") as file:
+            file.seek(offset)
+            data = file.read()
+    except FileNotFoundError:
+        return [], offset
+    whole = data[: data.rfind(b"\n") + 1]
+    found = (_event(line) for line in whole.splitlines())
+    return [event for event in found if event is not None], offset + len(whole)
+
+
+def _event(line: bytes) -> dict[str, Any] | None:
+    try:
+        event = json.loads(line)
+    except ValueError:
+        return None
+    return event if isinstance(event, dict) else None

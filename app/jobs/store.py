@@ -1,0 +1,131 @@
+"""The queue on disk: SQLite, written only by the server process."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import sqlalchemy as sa
+from alembic import command
+from alembic.config import Config
+from sqlalchemy.exc import IntegrityError
+
+from app.errors import Conflict, NotFound
+from app.jobs.model import Inputs, Job, JobState
+
+METADATA = sa.MetaData()
+JOBS = sa.Table(
+    "jobs",
+    METADATA,
+    sa.Column("number", sa.Integer, primary_key=True),
+    sa.Column("id", sa.String, unique=True, nullable=False),
+    sa.Column("project", sa.String, nullable=False),
+    sa.Column("inputs", sa.JSON, nullable=False),
+    sa.Column("created", sa.String, nullable=False),
+    sa.Column("state", sa.String, nullable=False),
+    sa.Column("attempt", sa.Integer, nullable=False),
+    sa.Column("started", sa.String, nullable=False),
+    sa.Column("finished", sa.String, nullable=False),
+    sa.Column("note", sa.String, nullable=False),
+)
+"""The table as the newest migration leaves it; ``number`` is the order of the queue."""
+
+ACTIVE = (JobState.QUEUED, JobState.RUNNING)
+
+
+class JobStore:
+    """All jobs there ever were."""
+
+    def __init__(self, path: Path) -> None:
+        self._engine = sa.create_engine(f"sqlite:///{path}")
+        sa.event.listen(self._engine, "connect", _durable)
+        with self._engine.begin() as connection:
+            _migrate(connection)
+
+    def close(self) -> None:
+        """Let go of the file."""
+        self._engine.dispose()
+
+    def add(self, job: Job) -> Job:
+        """Append a job to the queue.
+
+        Raises:
+            Conflict: If the project has a job that waits or runs.
+        """
+        try:
+            with self._engine.begin() as connection:
+                connection.execute(JOBS.insert().values(**_row(job)))
+        except IntegrityError as error:
+            raise Conflict(
+                f"project {job.project} already has a job that waits or runs; cancel it first"
+            ) from error
+        return job
+
+    def change(self, before: Job, after: Job) -> Job:
+        """Store the next state of a job.
+
+        Raises:
+            Conflict: If the job is no longer in the state of ``before``.
+        """
+        mine = (JOBS.c.id == before.id) & (JOBS.c.state == before.state)
+        with self._engine.begin() as connection:
+            if connection.execute(JOBS.update().where(mine).values(**_row(after))).rowcount != 1:
+                raise Conflict(f"job {before.id} is no longer {before.state}")
+        return after
+
+    def get(self, job_id: str) -> Job:
+        """One job.
+
+        Raises:
+            NotFound: If there is no such job.
+        """
+        found = self._select(JOBS.select().where(JOBS.c.id == job_id))
+        if not found:
+            raise NotFound(f"no job {job_id}")
+        return found[0]
+
+    def in_state(self, *states: JobState) -> list[Job]:
+        """Jobs in any of the states, oldest first."""
+        return self._select(JOBS.select().where(JOBS.c.state.in_(states)).order_by(JOBS.c.number))
+
+    def latest(self) -> dict[str, Job]:
+        """The newest job of each project."""
+        newest = sa.select(sa.func.max(JOBS.c.number)).group_by(JOBS.c.project)
+        jobs = self._select(JOBS.select().where(JOBS.c.number.in_(newest)))
+        return {job.project: job for job in jobs}
+
+    def of_project(self, project: str) -> list[Job]:
+        """Jobs of one project, newest first."""
+        mine = JOBS.select().where(JOBS.c.project == project)
+        return self._select(mine.order_by(JOBS.c.number.desc()))
+
+    def _select(self, query: sa.Select[Any]) -> list[Job]:
+        with self._engine.connect() as connection:
+            return [_job(row) for row in connection.execute(query).mappings()]
+
+
+def _durable(connection: Any, _: object) -> None:
+    """What was acknowledged survives a power cut."""
+    for pragma in ("journal_mode=WAL", "synchronous=FULL", "busy_timeout=5000"):
+        connection.execute(f"PRAGMA {pragma}").close()
+
+
+def _migrate(connection: sa.Connection) -> None:
+    config = Config()
+    config.set_main_option("script_location", str(Path(__file__).parent / "migrations"))
+    config.attributes["connection"] = connection
+    command.upgrade(config, "head")
+
+
+def _row(job: Job) -> dict[str, Any]:
+    return asdict(job)
+
+
+def _job(row: sa.RowMapping) -> Job:
+    inputs = dict(row["inputs"] if isinstance(row["inputs"], dict) else json.loads(row["inputs"]))
+    tuples: dict[str, Sequence[str]] = {n: tuple(inputs[n]) for n in ("recordings", "settings")}
+    fields = {name: row[name] for name in row if name not in ("number", "inputs", "state")}
+    return Job(**fields, inputs=Inputs(**{**inputs, **tuples}), state=JobState(row["state"]))

@@ -1,0 +1,210 @@
+"""Gives waiting jobs a worker and watches the workers there are, also those of a server before.
+
+Whether a worker lives is asked of the kernel (the lock it holds), how far it is of its files.
+Files make no noise on every system, so they are looked at four times a second.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import subprocess
+import sys
+from datetime import UTC, datetime
+from pathlib import Path
+
+from app.errors import Conflict
+from app.jobs.events import read_events
+from app.jobs.folder import JobFolder, Outcome
+from app.jobs.model import Job, JobState
+from app.jobs.status import Status, after
+from app.jobs.store import JobStore
+from app.settings import ServerSettings, worker_environment
+
+log = logging.getLogger(__name__)
+
+LOOK_EVERY_S = 0.25
+
+
+class Tail:
+    """What a job's events say so far."""
+
+    def __init__(self, folder: JobFolder) -> None:
+        self.status = Status()
+        self._path = folder.path / "events.jsonl"
+        self._offset = 0
+
+    def read(self) -> bool:
+        """Take in what was appended; whether that changed the status."""
+        before = self.status
+        events, self._offset = read_events(self._path, self._offset)
+        for event in events:
+            self.status = after(self.status, event)
+        return self.status != before
+
+
+class Supervisor:
+    """The queue's engine; one a server."""
+
+    def __init__(self, store: JobStore, settings: ServerSettings) -> None:
+        self._store = store
+        self._settings = settings
+        self._workers: dict[str, subprocess.Popen[bytes]] = {}
+        self._tails: dict[str, Tail] = {}
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._wake = asyncio.Event()
+        self._news = asyncio.Event()
+        self.version = 0
+        """Counts whatever happened to any job."""
+
+    # -- asked by routes
+
+    def folder(self, job_id: str) -> JobFolder:
+        """Where a job's files are."""
+        return JobFolder(self._settings.state / "jobs" / job_id)
+
+    def status(self, job: Job) -> Status:
+        """How far a job is."""
+        if job.state is JobState.QUEUED:
+            return Status()
+        return self._tail(job).status
+
+    def wake(self) -> None:
+        """Something was changed: look at the queue now. From any thread."""
+        if self._loop is not None:
+            self._loop.call_soon_threadsafe(self._wake.set)
+
+    async def news(self, version: int, *, timeout_s: float) -> None:
+        """Wait until there is a later version than that, at most so long."""
+        if version == self.version:
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(self._news.wait(), timeout_s)
+
+    def cancel(self, job: Job) -> Job:
+        """Take a job out of the queue, or ask its worker to stop.
+
+        Raises:
+            Conflict: If it is over already.
+        """
+        if job.over:
+            raise Conflict(f"job {job.id} is {job.state} already")
+        if job.state is JobState.QUEUED:
+            job = self._store.change(job, job.to(JobState.CANCELLED, finished=now()))
+        else:
+            self.folder(job.id).ask_to_stop()
+        self.wake()
+        return job
+
+    # -- the engine
+
+    async def run(self) -> None:
+        """Watch until cancelled."""
+        self._loop = asyncio.get_running_loop()
+        while True:
+            asked = self._wake.is_set()
+            self._wake.clear()
+            try:
+                changed = await asyncio.to_thread(self.step)
+            except Exception:
+                log.exception("the queue could not be looked after; trying again")
+                changed = False
+            if changed or asked:
+                self.version += 1
+                self._news.set()
+                self._news = asyncio.Event()
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(self._wake.wait(), LOOK_EVERY_S)
+
+    def step(self) -> bool:
+        """Look at every worker and the queue once; whether anything changed."""
+        running = self._store.in_state(JobState.RUNNING)
+        changed = any([self._watch(job) for job in running])
+        free = self._settings.running_jobs - len(self._store.in_state(JobState.RUNNING))
+        waiting = self._store.in_state(JobState.QUEUED)[: max(0, free)]
+        for job in waiting:
+            self._start(job)
+        return changed or bool(waiting)
+
+    def close(self) -> None:
+        """Leave the workers alone: they go on and the next server adopts them."""
+        for worker in self._workers.values():
+            if worker.poll() is None:
+                worker.returncode = 0  # not ours to wait for any more
+        self._workers.clear()
+
+    def _tail(self, job: Job) -> Tail:
+        """Its events, read from the beginning when nobody has yet."""
+        if job.id not in self._tails:
+            self._tails[job.id] = Tail(self.folder(job.id))
+            self._tails[job.id].read()
+        return self._tails[job.id]
+
+    def _start(self, job: Job) -> None:
+        folder = self.folder(job.id)
+        folder.prepare(job.inputs, self._settings.root.resolve() / job.project)
+        with folder.try_lock() as lock:
+            # The state comes first: a server killed between the two lines finds a running job
+            # without a worker, which is the case it knows how to repair.
+            started = job.started or now()
+            attempt = job.attempt + 1
+            self._store.change(job, job.to(JobState.RUNNING, attempt=attempt, started=started))
+            if lock is not None:
+                self._workers[job.id] = _spawn(folder.path, lock)
+
+    def _watch(self, job: Job) -> bool:
+        changed = self._tail(job).read()
+        if (worker := self._workers.get(job.id)) is not None:
+            worker.poll()  # so that a dead one does not stay a zombie
+        folder = self.folder(job.id)
+        if folder.alive():
+            self._end_if_stuck(folder)
+            return changed
+        ended = self._ended(job, folder.outcome(), self._tail(job).status)
+        self._tail(job).read()
+        self._store.change(job, ended)
+        self._workers.pop(job.id, None)
+        return True
+
+    def _end_if_stuck(self, folder: JobFolder) -> None:
+        asked_s = folder.asked_to_stop_s()
+        if asked_s is not None and asked_s > self._settings.stop_within_s:
+            folder.kill()
+        elif folder.silent_s() > self._settings.hung_after_s:
+            log.warning("worker %s gives no sign of life: killed", folder.path.name)
+            folder.kill()
+
+    def _ended(self, job: Job, outcome: Outcome | None, status: Status) -> Job:
+        """The job after its worker is gone."""
+        if outcome is not None:
+            return job.to(JobState(outcome.state), finished=now(), note=outcome.note)
+        where = f"in {status.what}" if status.what else "before it began"
+        if self.folder(job.id).asked_to_stop_s() is not None:
+            return job.to(JobState.CANCELLED, finished=now(), note="stopped on request")
+        if job.attempt < self._settings.attempts:
+            note = f"the worker died {where}; it goes on after the last finished stage"
+            return job.to(JobState.QUEUED, note=note)
+        note = (
+            f"the worker died {job.attempt} times, last {where}; often the memory was not enough "
+            "or the recording is damaged: see the log, then retry"
+        )
+        return job.to(JobState.FAILED, finished=now(), note=note)
+
+
+def now() -> str:
+    """This moment, UTC, ISO 8601."""
+    return datetime.now(UTC).isoformat(timespec="seconds")
+
+
+def _spawn(folder: Path, lock: int) -> subprocess.Popen[bytes]:
+    """Start a worker that holds the lock from its first moment and survives the server."""
+    with (folder / "log.txt").open("ab") as output:
+        return subprocess.Popen(
+            [sys.executable, "-m", "app.jobs.worker", str(folder)],
+            stdin=subprocess.DEVNULL,
+            stdout=output,
+            stderr=subprocess.STDOUT,
+            env=worker_environment(),
+            pass_fds=(lock,),
+            start_new_session=True,
+        )

@@ -1,0 +1,70 @@
+"""A project as the pages show it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+RESULTS: dict[str, str] = {
+    "report.html": "Quality report",
+    "map.laz": "Map, LAZ 1.4",
+    "trajectory.tum": "Trajectory, TUM",
+    "odometry.tum": "Trajectory before the graph, TUM",
+    "edges.json": "All pairs tried, with verdicts",
+    "graph.g2o": "Pose graph, g2o",
+    "summary.json": "Figures, settings and hashes",
+}
+"""Files of a project that may be downloaded, and nothing else, with what they are."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ResultFile:
+    """A finished result."""
+
+    name: str
+    words: str
+    bytes: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FinishedStage:
+    """A row of the project's ledger."""
+
+    stage: str
+    seconds: float
+    peak_bytes: int
+    finished: str
+    """UTC, ISO 8601."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Project:
+    """What is known of a project without opening its arrays."""
+
+    id: str
+    """Name of its folder."""
+    name: str
+    finished: bool
+    """Whether a run came to its end."""
+    updated: str
+    """When its newest file changed, UTC, ISO 8601."""
+    bytes: int
+    """Size of the whole folder."""
+    preset: str
+    rig: str
+    files: tuple[ResultFile, ...]
+    stages: tuple[FinishedStage, ...]
+    viewable: bool
+    """Whether there is something to show in 3-D."""
+    summary: dict[str, Any]
+    """``summary.json`` as the run wrote it; empty before."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Entry:
+    """A file or folder a recording may be picked from."""
+
+    name: str
+    path: str
+    folder: bool
+    bytes: int

@@ -1,0 +1,82 @@
+"""Settings of the server. The only place of ``app`` that reads the environment."""
+
+from __future__ import annotations
+
+import ipaddress
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from recon4.errors import ConfigError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ServerSettings:
+    """What a server is started with."""
+
+    root: Path
+    """Folder that holds the project folders."""
+    host: str = "127.0.0.1"
+    """Address to listen on. Loopback only: there is no login yet."""
+    port: int = 8000
+    """Port to listen on; 0 = any free one."""
+    recordings: tuple[Path, ...] = ()
+    """Folders a job may read recordings from, besides ``root``."""
+    running_jobs: int = 1
+    """Jobs that run at the same time; the others wait."""
+    attempts: int = 3
+    """A job whose worker died this often is given up."""
+    hung_after_s: float = 120.0
+    """A worker without a heartbeat for this long is killed [s]."""
+    stop_within_s: float = 10.0
+    """A worker asked to stop is killed after this long [s]."""
+    viewer_idle_s: float = 600.0
+    """A viewer nobody looks at ends after this long [s]."""
+    max_body_bytes: int = 1 << 20
+    """Larger request bodies are refused [bytes]."""
+
+    def __post_init__(self) -> None:
+        _refuse_open_network(self.host)
+        if not self.root.is_dir():
+            raise ConfigError(f"no folder {self.root}: give the folder that holds the projects")
+        if (self.root / "project.json").exists():
+            raise ConfigError(
+                f"{self.root} is a project itself: give the folder that holds it, "
+                f"{self.root.resolve().parent}"
+            )
+        if not 0 <= self.port <= 65535:
+            raise ConfigError(f"port must be 0 to 65535, got {self.port}")
+
+    @property
+    def state(self) -> Path:
+        """Folder of the server's own files: jobs, locks, pictures."""
+        return self.root / ".recon4"
+
+    @property
+    def import_roots(self) -> tuple[Path, ...]:
+        """Folders recordings may lie in, resolved."""
+        return tuple(dict.fromkeys(path.resolve() for path in (self.root, *self.recordings)))
+
+
+def recordings_from_environment() -> tuple[Path, ...]:
+    """Folders named in ``RECON4_RECORDINGS``, else the folder the server was started in."""
+    named = os.environ.get("RECON4_RECORDINGS", "")
+    return tuple(Path(part) for part in named.split(os.pathsep) if part) or (Path.cwd(),)
+
+
+def worker_environment() -> dict[str, str]:
+    """What a worker inherits: one thread a library, so that two workers do not fight."""
+    one = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+    return {**os.environ, **one}
+
+
+def _refuse_open_network(host: str) -> None:
+    try:
+        loopback = host == "localhost" or ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        loopback = False
+    if not loopback:
+        raise ConfigError(
+            f"will not listen on {host!r}: without TLS and login only loopback (127.0.0.1) is "
+            "allowed; from another computer use: ssh -L 8000:127.0.0.1:8000 THIS-HOST"
+        )

@@ -1,0 +1,90 @@
+"""The viewer's page: viser's own client, served under the project's path with a few repairs."""
+
+from __future__ import annotations
+
+import html
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
+
+from fastapi import APIRouter, Request
+from fastapi.responses import HTMLResponse, RedirectResponse, Response
+
+from app.deps import Server
+from app.projects.model import Project
+
+router = APIRouter()
+
+SHIMS = """
+<script>
+// Taps on the scene: viser skips captured pointers, and browsers capture touch by themselves.
+addEventListener('pointerdown', (event) => {
+  if (event.pointerType === 'touch' && event.target.hasPointerCapture?.(event.pointerId))
+    event.target.releasePointerCapture(event.pointerId);
+}, true);
+// Reconnecting: viser does so only with focus, which an iframe that was not tapped never has.
+Document.prototype.hasFocus = function () { return !document.hidden; };
+document.addEventListener('visibilitychange', () =>
+  dispatchEvent(new Event(document.hidden ? 'blur' : 'focus')));
+</script>
+<style>
+#frame-words { position: fixed; left: 0; bottom: 0; z-index: 5; padding: 4px 10px;
+  font: 12px/1.5 system-ui, sans-serif; color: #e8edf2; background: rgb(16 20 24 / 72%);
+  pointer-events: none; border-top-right-radius: 6px; }
+</style>
+"""
+
+
+@router.get("/projects/{project_id}/viewer/", response_class=HTMLResponse, include_in_schema=False)
+def viewer_page(project_id: str, request: Request, server: Server) -> Response:
+    """Serve the page; its WebSocket goes to the same path without the trailing slash.
+
+    viser obeys ``?websocket=`` and ``?playbackPath=`` to foreign servers: no query is served.
+    """
+    project = server.projects.get(project_id)
+    path = request.scope["path"]
+    if request.scope["query_string"]:
+        return RedirectResponse(path, status_code=307)
+    policy = {"Content-Security-Policy": policy_for(request.headers["host"])}
+    return HTMLResponse(with_shims(client(), frame_words(project)), headers=policy)
+
+
+@router.get("/projects/{project_id}/viewer", include_in_schema=False)
+def viewer_without_slash(project_id: str, server: Server) -> Response:
+    """Lead to the page."""
+    return RedirectResponse(f"/projects/{server.projects.get(project_id).id}/viewer/")
+
+
+@cache
+def client() -> str:
+    """Viser's client: one self-contained file of its wheel."""
+    found = find_spec("viser")
+    assert found is not None and found.origin is not None
+    page = Path(found.origin).parent / "client" / "build" / "index.html"
+    return page.read_text("utf-8")
+
+
+def with_shims(page: str, words: str) -> str:
+    """The page with our repairs, and with words about units and frame always on it."""
+    head, body = page.find("<head>"), page.rfind("</body>")
+    assert 0 <= head < body
+    head += len("<head>")
+    badge = f'<div id="frame-words">{html.escape(words)}</div>'
+    return page[:head] + SHIMS + page[head:body] + badge + page[body:]
+
+
+def policy_for(host: str) -> str:
+    """Content security policy of the viewer: its inline code, and no server but ours."""
+    return (
+        "default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval' blob: data:; "
+        "worker-src blob: data:; style-src 'unsafe-inline'; img-src 'self' data: blob:; "
+        f"font-src data:; connect-src 'self' ws://{host} wss://{host} blob: data:; "
+        "base-uri 'none'; form-action 'none'; frame-ancestors 'self'"
+    )
+
+
+def frame_words(project: Project) -> str:
+    """What the coordinates on screen mean."""
+    crs = project.summary.get("crs")
+    place = f"local map frame of {crs}" if isinstance(crs, str) and crs else "map frame"
+    return f"{place} · z up · metres"

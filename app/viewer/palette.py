@@ -1,0 +1,56 @@
+"""Numbers to colors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Rgb = tuple[int, int, int]
+Palette = Literal["viridis", "turbo", "grey"]
+
+SENSOR_COLORS: tuple[Rgb, ...] = (
+    (86, 180, 233),
+    (230, 159, 0),
+    (0, 158, 115),
+    (204, 121, 167),
+    (240, 228, 66),
+)
+"""Told apart also by people who see few colors (Okabe and Ito 2008)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Range:
+    """What the ends of a palette stand for."""
+
+    low: float
+    high: float
+
+
+@cache
+def table(palette: Palette) -> NDArray[np.uint8]:
+    """256 colors, (256, 3)."""
+    import matplotlib
+
+    name = "gray" if palette == "grey" else palette
+    rgba = matplotlib.colormaps[name](np.arange(256), bytes=True)
+    return np.ascontiguousarray(rgba[:, :3])
+
+
+def paint(values: NDArray[Any], span: Range, palette: Palette) -> NDArray[np.uint8]:
+    """Colors of values, (N,) -> (N, 3); what is outside the range gets the color of its end."""
+    width = max(span.high - span.low, 1e-12)
+    scaled = (values.astype(np.float32) - np.float32(span.low)) * np.float32(255.0 / width)
+    return table(palette)[np.nan_to_num(scaled).clip(0.0, 255.0).astype(np.uint8)]
+
+
+def usual_range(values: NDArray[Any]) -> Range:
+    """From the 2nd to the 98th percentile, so that a few bright points do not darken the rest."""
+    known = values[np.isfinite(values)]
+    if len(known) == 0:
+        return Range(0.0, 1.0)
+    low, high = np.percentile(known[:: max(1, len(known) // 100_000)], [2.0, 98.0])
+    return Range(float(low), float(high))

@@ -1,0 +1,134 @@
+"""A small genuine project: a walk around a room, written by the real writers."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from recon4.geometry.se3 import SE3
+from recon4.mapping.tile import FIELDS
+from recon4.mapping.tiles import TileWriter
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.model.trajectory import Trajectory
+from recon4.pose_graph.files import save_graph
+from recon4.progress import Progress, Silent
+from recon4.settings import Settings
+from recon4.store.arrays import save_trajectory
+from recon4.store.project import Project
+from recon4.store.stage import Input, Stage, StageRunner
+
+ROOM_M = (16.0, 10.0, 3.0)
+TILE_M = 10.0
+BEGAN_NS = 1_700_000_000_000_000_000
+
+
+def build_project(root: Path, *, points: int = 60_000, with_map: bool = True) -> None:
+    """Make a finished project in an empty folder (or one that has come as far as odometry)."""
+    with Project.open(root) as project:
+        project.describe(preset="indoor", rig="4RECON")
+        runner = StageRunner(project, Settings(), Silent())
+        walk = Input("walk", loop_walk())
+        runner.run(Stage("odometry", 1, (), _odometry), walk=walk)
+        if not with_map:
+            return
+        runner.run(Stage("verification", 1, (), _verification), walk=walk)
+        runner.run(Stage("level", 1, (), _level), walk=walk)
+        runner.run(Stage("map", 1, (), _map), points=Input(f"points {points}", points))
+    (root / "trajectory.tum").write_text("0 0 0 0 0 0 0 1\n")
+    (root / "report.html").write_text("<!doctype html><title>Report</title><h1>Report</h1>")
+    (root / "summary.json").write_text("{}")
+
+
+def loop_walk() -> Trajectory:
+    """Two rounds through the room at 10 Hz, looking ahead."""
+    s = np.linspace(0.0, 4.0 * np.pi, 600)
+    t_m = np.stack([8.0 + 6.0 * np.cos(s), 5.0 + 3.0 * np.sin(s), 1.2 + 0.0 * s], axis=1)
+    half = (s + np.pi / 2.0) / 2.0
+    quat = np.stack([0.0 * s, 0.0 * s, np.sin(half), np.cos(half)], axis=1)
+    t_ns = BEGAN_NS + np.arange(600, dtype=np.int64) * 100_000_000
+    return Trajectory(t_ns, SE3.from_quat(quat, t_m))
+
+
+def verified_graph(walk: Trajectory) -> PoseGraph:
+    """A node every 10 poses; odometry, neighbors, loops between the rounds, and turned down ones."""
+    rows = np.arange(0, len(walk), 10)
+    T, n = walk.T_a_b[rows], len(rows)
+    pairs = [(k, k + 1, EdgeKind.ODOMETRY) for k in range(n - 1)]
+    pairs += [(k, k + 3, EdgeKind.NEIGHBOR) for k in range(0, n - 3, 2)]
+    pairs += [(k, k + n // 2, EdgeKind.LOOP) for k in range(n // 2)]
+    pairs += [(k, n - 1 - k, EdgeKind.LOOP) for k in range(0, n // 3, 3)]
+    edges = tuple(_edge(T, i, j, kind) for i, j, kind in pairs)
+    return PoseGraph(rows.astype(np.int64), walk.t_ns[rows], T, edges)
+
+
+def _edge(T: SE3, i: int, j: int, kind: EdgeKind) -> Edge:
+    near = np.linalg.norm(T.t[i] - T.t[j]) < 2.0
+    verdict, reason = Verdict.ACCEPTED, Reason.NONE
+    if kind is EdgeKind.LOOP and not near:
+        verdict = Verdict.REJECTED
+        reason = Reason.VERIFICATION if i % 2 else Reason.OVERLAP
+    elif kind is EdgeKind.LOOP and i % 7 == 0:
+        verdict = Verdict.UNVERIFIED
+    T_i_j = T[i].inverse() @ T[j]
+    return Edge(i=i, j=j, T_i_j=T_i_j, kind=kind, verdict=verdict, reason=reason, overlap=0.7)
+
+
+def room_points(rng: np.random.Generator, count: int) -> np.ndarray:
+    """Points on floor, ceiling-high walls and a row of pillars [m], (N, 3)."""
+    size = np.array(ROOM_M)
+    p = rng.uniform(size=(count, 3)) * size
+    face = rng.choice(5, size=count, p=[0.4, 0.15, 0.15, 0.15, 0.15])
+    p[face == 0, 2] = 0.0
+    p[face == 1, 0], p[face == 2, 0] = 0.0, size[0]
+    p[face == 3, 1], p[face == 4, 1] = 0.0, size[1]
+    pillar = rng.random(count) < 0.1
+    angle = rng.uniform(0.0, 2.0 * np.pi, count)
+    x = rng.choice([4.0, 8.0, 12.0], count)
+    p[pillar, 0] = (x + 0.3 * np.cos(angle))[pillar]
+    p[pillar, 1] = (5.0 + 0.3 * np.sin(angle))[pillar]
+    return p
+
+
+def _odometry(*, out: Path, settings: Settings, progress: Progress, walk: Trajectory) -> None:
+    drift = np.linspace(0.0, 1.0, len(walk))[:, None] * [0.4, -0.3, 0.1]
+    save_trajectory(
+        out / "trajectory.npz", Trajectory(walk.t_ns, SE3(walk.T_a_b.R, walk.T_a_b.t + drift))
+    )
+
+
+def _verification(*, out: Path, settings: Settings, progress: Progress, walk: Trajectory) -> None:
+    save_graph(out, verified_graph(walk))
+
+
+def _level(*, out: Path, settings: Settings, progress: Progress, walk: Trajectory) -> None:
+    save_trajectory(out / "trajectory.npz", walk)
+    save_graph(out, verified_graph(walk))
+
+
+def _map(*, out: Path, settings: Settings, progress: Progress, points: int) -> None:
+    rng = np.random.default_rng(7)
+    p = room_points(rng, points)
+    with TileWriter(out, list(FIELDS), tile_m=TILE_M) as writer:
+        writer.facts = {"voxel_m": 0.01, "crs": None}
+        ijk = np.floor(p / TILE_M).astype(np.int64)
+        for key in np.unique(ijk, axis=0):
+            mine = p[np.all(ijk == key, axis=1)]
+            writer.append(tuple(int(k) for k in key), _columns(mine - key * TILE_M, rng))
+
+
+def _columns(xyz: np.ndarray, rng: np.random.Generator) -> dict[str, np.ndarray]:
+    n = len(xyz)
+    bright = 0.3 + 0.3 * np.sin(2.0 * xyz[:, 0]) * np.sin(2.0 * xyz[:, 1])
+    known = {
+        "xyz": xyz,
+        "intensity": 10.0 + 80.0 * bright * rng.uniform(0.3, 1.0, n),
+        "intensity_normalized": bright,
+        "sensor": rng.integers(0, 2, n),
+        "t_ns": BEGAN_NS + (rng.random(n) * 60e9).astype(np.int64),
+    }
+    empty = {
+        name: np.zeros((n, width) if width > 1 else n, dtype)
+        for name, (dtype, width) in FIELDS.items()
+    }
+    return empty | {name: values.astype(FIELDS[name][0]) for name, values in known.items()}

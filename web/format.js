@@ -1,0 +1,52 @@
+// Numbers and states as words. No DOM, no network.
+
+const NARROW = "\u202f";
+
+export const count = (n) => Math.round(n).toString().replace(/\B(?=(\d{3})+$)/g, NARROW);
+
+export function bytes(n) {
+  const units = ["B", "kB", "MB", "GB", "TB"];
+  let k = 0;
+  while (n >= 1000 && k < units.length - 1) [n, k] = [n / 1000, k + 1];
+  return `${k && n < 10 ? n.toFixed(1) : Math.round(n)} ${units[k]}`;
+}
+
+export function seconds(s) {
+  if (s < 10) return `${s.toFixed(1)} s`;
+  if (s < 60) return `${Math.round(s)} s`;
+  const minutes = Math.round(s / 60);
+  if (minutes < 60) return `${Math.floor(s / 60)} min ${Math.round(s % 60)} s`;
+  return `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
+}
+
+export const when = (iso) =>
+  new Date(iso).toLocaleString("en-GB", { dateStyle: "medium", timeStyle: "short" });
+
+export const STATES = {
+  queued: { mark: "◷", word: "Waiting" },
+  running: { mark: "▶", word: "Running" },
+  succeeded: { mark: "✓", word: "Finished" },
+  failed: { mark: "✕", word: "Failed" },
+  cancelled: { mark: "■", word: "Cancelled" },
+  finished: { mark: "✓", word: "Finished" },
+  unfinished: { mark: "◌", word: "Not finished" },
+};
+
+/** State of a project: that of its job while it matters, else what the folder says. */
+export function stateOf(project, view) {
+  const state = view?.job.state;
+  if (state && state !== "succeeded") return state;
+  return project?.finished || state === "succeeded" ? "finished" : "unfinished";
+}
+
+/** A running job in one line: what, how far, how fast, how long still. */
+export function progressWords({ status, fraction }) {
+  if (!status.what) return "Starting";
+  const parts = [fraction === null ? `${count(status.done)} ${status.unit}` : `${Math.round(fraction * 100)} %`];
+  if (status.rate_per_s > 0) {
+    const rate = status.rate_per_s;
+    parts.push(`${rate < 10 ? rate.toFixed(1) : count(rate)} ${status.unit}/s`);
+  }
+  if (status.eta_s !== null) parts.push(`${seconds(status.eta_s)} left`);
+  return parts.join(" · ");
+}

@@ -1,0 +1,110 @@
+// One project: the map, the figures, the results, the job.
+
+import { ApiError, fileUrl, readLog, readProject, reportUrl, viewerUrl, watchJobs } from "./api.js";
+import { fill, make } from "./dom.js";
+import { figures } from "./figures.js";
+import { bytes, seconds, stateOf, when } from "./format.js";
+import { badge } from "./job_status.js";
+
+const id = decodeURIComponent(location.pathname.split("/")[2]);
+const byId = (name) => document.getElementById(name);
+const status = document.querySelector("job-status");
+const STAGE_WORDS = { done: "✓ Done", reused: "✓ Kept from before", running: "▶ Running" };
+let project = null;
+let view = null;
+
+function draw() {
+  const name = project?.name ?? id;
+  document.title = `${name} · recon4`;
+  byId("name").textContent = name;
+  byId("title").textContent = name;
+  const facts = project
+    ? [project.preset && `preset ${project.preset}`, project.rig && `rig ${project.rig}`, bytes(project.bytes), when(project.updated)]
+    : [];
+  fill(byId("state"), badge(stateOf(project, view)), make("p", { className: "quiet" }, facts.filter(Boolean).join(" · ")));
+  status.hidden = !view || view.job.state === "succeeded";
+  if (view) status.view = view;
+  drawFigures();
+  drawFiles();
+  drawStages();
+  showMap();
+}
+
+function drawFigures() {
+  const rows = figures(project?.summary ?? {});
+  byId("figures").hidden = rows.length === 0;
+  fill(byId("figures").querySelector("dl"), ...rows.map(([words, value]) => make("div", {}, make("dt", {}, words), make("dd", {}, value))));
+}
+
+function drawFiles() {
+  const files = project?.files ?? [];
+  byId("files").hidden = files.length === 0;
+  const row = (file) => {
+    const report = file.name === "report.html";
+    const link = report
+      ? make("a", { href: reportUrl(id), target: "_blank", rel: "noopener" }, file.words)
+      : make("a", { href: fileUrl(id, file.name), download: "" }, file.words);
+    return make("li", {}, link, make("small", {}, `${file.name}, ${bytes(file.bytes)}`));
+  };
+  fill(byId("files").querySelector("ul"), ...files.map(row));
+}
+
+function drawStages() {
+  const done = new Map((project?.stages ?? []).map((row) => [row.stage, row]));
+  const live = view?.job.state === "running" ? view.status.stages : [];
+  const rows = live.length
+    ? live.map((row) => [row.stage, STAGE_WORDS[row.state] ?? row.state, row.seconds, done.get(row.stage)?.peak_bytes])
+    : [...done.values()].map((row) => [row.stage, STAGE_WORDS.done, row.seconds, row.peak_bytes]);
+  byId("stages").hidden = rows.length === 0;
+  const cells = ([stage, state, time, memory]) =>
+    make(
+      "tr", {},
+      make("th", { scope: "row" }, stage),
+      make("td", {}, state),
+      make("td", { className: "number" }, typeof time === "number" ? seconds(time) : ""),
+      make("td", { className: "number" }, memory ? bytes(memory) : ""),
+    );
+  fill(byId("stages").querySelector("tbody"), ...rows.map(cells));
+}
+
+function showMap() {
+  if (!project?.viewable || byId("viewer").querySelector("iframe")) return;
+  byId("viewer").replaceChildren(make("iframe", { src: viewerUrl(id), title: "Map in 3-D" }));
+}
+
+async function drawLog() {
+  const log = byId("log");
+  log.hidden = !view;
+  if (!view || !log.open) return;
+  const pre = log.querySelector("pre");
+  pre.textContent = await readLog(view.job.id);
+  pre.scrollTop = pre.scrollHeight;
+}
+
+async function reload() {
+  try {
+    project = await readProject(id);
+    byId("message").textContent = "";
+  } catch (error) {
+    // A waiting job's project has no folder yet.
+    const expected = error instanceof ApiError && error.status === 404 && view;
+    if (!expected) byId("message").textContent = error.message;
+  }
+  draw();
+}
+
+function onJob(fresh) {
+  if (fresh.job.project !== id) return;
+  const before = view;
+  view = fresh;
+  const stagesDone = (one) => one?.status.stages.filter((row) => row.state !== "running").length;
+  if (before?.job.state !== view.job.state || stagesDone(before) !== stagesDone(view)) reload();
+  else draw();
+  drawLog();
+}
+
+byId("log").addEventListener("toggle", drawLog);
+watchJobs(onJob, (linked) => {
+  byId("link").textContent = linked ? "" : "Connection lost, trying again";
+});
+reload();
