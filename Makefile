@@ -1,0 +1,73 @@
+# Two commands for people: `make demo` and `make test`. Each does its own set-up on a machine that
+# has python3.11 to 3.13 and make. The others are parts of them, or for developers.
+#
+#   make demo [HEADLESS=1]   simulate a walk, map it, serve it in the browser
+#   make test                everything that has to hold; `make unit`, `make lint`, … are its parts
+#   make bench               benchmarks, by hand: they need a quiet machine
+#   make docs                write the generated pages of docs/
+#   make constraints         pin the versions that are installed now
+
+SHELL := /bin/sh
+VENV := .venv
+BIN := $(VENV)/bin
+PYTHON ?= $(shell for python in python3 python3.13 python3.12 python3.11; do \
+	$$python -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))' 2>/dev/null \
+	&& echo $$python && break; done)
+export PYTHON
+
+.PHONY: demo test format lint types unit web e2e bench docs constraints clean
+.DELETE_ON_ERROR:
+
+demo: $(VENV)/installed-run
+	$(BIN)/recon4 demo --out demo $(if $(HEADLESS),--headless)
+
+test: format lint types web unit e2e
+
+format: $(VENV)/installed-dev
+	$(BIN)/ruff format --check .
+
+lint: $(VENV)/installed-dev
+	$(BIN)/ruff check .
+
+types: $(VENV)/installed-dev
+	$(BIN)/mypy
+
+unit: $(VENV)/installed-dev
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m 'not e2e' --durations=10
+
+e2e: $(VENV)/installed-dev
+	$(BIN)/python -m pytest -m e2e --durations=10
+
+web:
+	@if command -v node >/dev/null; then \
+		find web -name '*.js' -exec node --check {} \; ; \
+	else echo 'recon4: no node here: the pages are checked in the browser only'; fi
+
+bench: $(VENV)/installed-dev
+	@for file in tests/benchmarks/[a-z]*.py; do \
+		echo "== $$(basename $$file .py)"; \
+		$(BIN)/python -m tests.benchmarks.$$(basename $$file .py) || exit 1; \
+	done
+
+docs: $(VENV)/installed-dev
+	$(BIN)/recon4 settings --markdown > docs/settings.md
+
+constraints: $(VENV)/installed-dev
+	$(BIN)/pip freeze --exclude-editable | grep '==' > constraints.txt
+
+clean:
+	rm -rf $(VENV) demo .mypy_cache .ruff_cache .pytest_cache
+
+$(VENV)/bin/python:
+	@test -n '$(PYTHON)' || { echo 'recon4: needs Python 3.11, 3.12 or 3.13 (found: '"$$(python3 --version 2>&1)"'); name one with make PYTHON=…' >&2; exit 1; }
+	.ci/apt run
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/installed-run: $(VENV)/bin/python pyproject.toml constraints.txt
+	$(BIN)/python -m pip install -q -c constraints.txt -e .
+	@touch $@
+
+$(VENV)/installed-dev: $(VENV)/bin/python pyproject.toml constraints.txt
+	.ci/apt run test
+	$(BIN)/python -m pip install -q -c constraints.txt -e '.[dev]'
+	@touch $@ $(VENV)/installed-run

@@ -1,0 +1,45 @@
+"""Every pair tried is kept, whatever became of it."""
+
+import math
+
+import numpy as np
+
+from recon4.geometry.se3 import SE3
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+
+
+def edge(verdict: Verdict, reason: Reason = Reason.NONE) -> Edge:
+    return Edge(i=0, j=1, T_i_j=SE3.identity(), kind=EdgeKind.LOOP, verdict=verdict, reason=reason)
+
+
+def test_only_a_rejected_edge_is_out_of_the_graph():
+    in_graph = {verdict: edge(verdict).in_graph for verdict in Verdict}
+
+    assert in_graph == {Verdict.ACCEPTED: True, Verdict.UNVERIFIED: True, Verdict.REJECTED: False}
+
+
+def test_what_was_not_measured_is_nan_not_zero():
+    tried = edge(Verdict.ACCEPTED)
+
+    assert all(math.isnan(v) for v in (tried.overlap, tried.error_m, tried.verification_m))
+
+
+def test_changing_an_edge_makes_a_new_one():
+    tried = edge(Verdict.ACCEPTED)
+
+    rejected = tried.evolve(verdict=Verdict.REJECTED, reason=Reason.VERIFICATION)
+
+    assert (tried.verdict, rejected.verdict) == (Verdict.ACCEPTED, Verdict.REJECTED)
+    assert str(rejected.reason) == "verification median > limit"
+
+
+def test_a_graph_keeps_its_nodes_when_edges_or_poses_change():
+    graph = PoseGraph(np.array([0, 5]), np.array([10, 20]), SE3.identity(2), ())
+
+    with_edges = graph.with_edges((edge(Verdict.REJECTED),))
+    moved = with_edges.with_poses(SE3(np.stack([np.eye(3)] * 2), np.ones((2, 3))))
+
+    assert len(moved) == 2
+    assert len(moved.edges) == 1
+    assert moved.T_map_body.t.tolist() == [[1, 1, 1], [1, 1, 1]]
+    assert graph.edges == ()

@@ -1,0 +1,100 @@
+"""Rig files: what is right is read exactly, what is wrong is named."""
+
+import numpy as np
+import pytest
+
+from recon4.errors import ConfigError
+from recon4.geometry.se3 import SE3
+from recon4.model.rig import format_rig, load_rig, parse_rig, rig_presets
+
+ONE = '[[sensor]]\nname = "a"\n'
+
+
+def test_the_shipped_rigs_can_be_read():
+    assert {"4recon", "single-vlp16", "single-hdl32e"} <= set(rig_presets())
+
+    for name in rig_presets():
+        assert load_rig(name).sensors
+
+
+def test_the_vertical_lidar_of_the_4recon_looks_across_the_walking_direction():
+    rig = load_rig("4recon")
+    T_body_vertical = rig.sensors[1].T_body_sensor
+
+    spin_axis = T_body_vertical.R @ np.array([0.0, 0.0, 1.0])
+
+    assert [s.name for s in rig.sensors] == ["horizontal", "vertical"]
+    assert np.allclose(spin_axis, [1.0, 0.0, 0.0])
+    assert np.allclose(T_body_vertical.t, [-0.12, 0.0, 0.0])
+    assert len(rig.T_body_sensor) == 2
+
+
+def test_angles_are_degrees_and_may_be_given_as_a_quaternion():
+    by_angles = parse_rig(ONE + "rpy_deg = [0, 0, 90]", where="x").sensors[0]
+    by_quaternion = parse_rig(
+        ONE + "quat_xyzw = [0, 0, 0.7071067811865476, 0.7071067811865476]", where="x"
+    ).sensors[0]
+
+    assert np.allclose(by_angles.T_body_sensor.R, by_quaternion.T_body_sensor.R)
+    assert np.allclose(by_angles.T_body_sensor @ np.array([1.0, 0, 0]), [0.0, 1.0, 0.0])
+
+
+@pytest.mark.parametrize("name", ["4recon", "single-vlp16", "single-hdl32e"])
+def test_a_rig_written_and_read_again_is_the_same(name):
+    rig = load_rig(name)
+
+    again = parse_rig(format_rig(rig), where="again")
+
+    assert format_rig(again) == format_rig(parse_rig(format_rig(again), where="twice"))
+    for before, after in zip(rig.sensors, again.sensors, strict=True):
+        assert np.allclose(before.T_body_sensor.matrix(), after.T_body_sensor.matrix(), atol=1e-15)
+        assert (before.name, before.model, before.port) == (after.name, after.model, after.port)
+    assert np.allclose(rig.p_body_antenna, again.p_body_antenna)
+
+
+def test_lever_arm_and_time_offsets_are_kept():
+    text = ONE + "time_offset_s = 0.05\n[imu]\nxyz_m = [1, 2, 3]\ntime_offset_s = -0.01\n"
+
+    rig = parse_rig(text + "[gnss]\nlever_arm_m = [0, 0, 0.5]\n", where="x")
+
+    assert (rig.sensors[0].time_offset_s, rig.imu_time_offset_s) == (0.05, -0.01)
+    assert isinstance(rig.T_body_imu, SE3)
+    assert np.allclose(rig.T_body_imu.t, [1, 2, 3])
+    assert np.allclose(rig.p_body_antenna, [0, 0, 0.5])
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", r"x: a rig needs at least one \[\[sensor\]\]"),
+        ("sensor = [", "x: not a TOML file"),
+        (ONE + "colour = 1", r"x: sensor 0: unknown \['colour'\]; known: "),
+        ('[[sensor]]\nname = "a"\nmodel = "VLP-17"', "model must be one of .*got 'VLP-17'"),
+        ("[[sensor]]\nport = 1", "x: sensor 0: name must be a text, got None"),
+        (ONE + ONE, "sensor names must differ"),
+        (ONE + "xyz_m = [1, 2]", r"xyz_m must be 3 finite numbers, got \[1, 2\]"),
+        (ONE + "xyz_m = [1, 2, nan]", "xyz_m must be 3 finite numbers"),
+        (ONE + 'rpy_deg = ["a", 0, 0]', "rpy_deg must be 3 finite numbers"),
+        (ONE + "quat_xyzw = [0, 0, 0, 2]", "quat_xyzw must have length 1"),
+        (ONE + "time_offset_s = true", "time_offset_s must be a finite number, got True"),
+        (ONE + "[gnss]\nlever = [0, 0, 0]", r"x: gnss: unknown \['lever'\]"),
+        (ONE + "[imu]\nxyz_m = 1", "x: imu: xyz_m must be 3 finite numbers"),
+        ("wheels = 4\n" + ONE, r"x: unknown \['wheels'\]"),
+    ],
+)
+def test_what_is_wrong_with_a_rig_is_named(text, message):
+    with pytest.raises(ConfigError, match=message):
+        parse_rig(text, where="x")
+
+
+def test_a_rig_nobody_knows_is_refused_with_those_that_are_known():
+    with pytest.raises(ConfigError, match=r"no rig named '5recon'; shipped: .*4recon"):
+        load_rig("5recon")
+
+
+def test_a_rig_file_that_is_missing_or_not_text_is_refused(tmp_path):
+    (tmp_path / "bad.toml").write_bytes(b"\xff\xfe\x00")
+
+    for name in ("missing.toml", "bad.toml"):
+        with pytest.raises(ConfigError, match=f"cannot read rig file {name}"):
+            load_rig(tmp_path / name)
