@@ -1,0 +1,238 @@
+"""Tables of cloud fields, from a message or a file, to shots: aliases, units, what is missing.
+
+What a cloud does not say is worked out and said so: ring from elevation, time from azimuth.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import CorruptFile, UnknownFormat
+from recon4.model.trajectory import Times
+from recon4.recording.cloud_files import Table
+from recon4.recording.report import ImportReport
+from recon4.recording.shots import Shots
+from recon4.recording.velodyne_models import MODELS
+
+TIME_FIELDS = ("t", "time", "timestamp", "time_stamp", "offset_time", "time_offset", "t_us")
+RING_FIELDS = ("ring", "channel", "line", "laser_id", "beam")
+INTENSITY_FIELDS = ("intensity", "i", "reflectivity", "signal", "scalar_intensity")
+
+_BANDS = 64
+_ABSOLUTE = ((1e17, 1.0), (1e14, 1e3), (1e11, 1e6), (1e8, 1e9))
+"""From this value on a time is absolute; nanoseconds of one unit."""
+_FLOAT_UNITS = ((2.0, 1e9), (2e3, 1e6), (2e6, 1e3), (2e9, 1.0))
+"""Up to this span a fractional time is in units of so many nanoseconds."""
+_TURN_S = (0.01, 0.6)
+"""A full revolution takes between these [s]: tells the unit of whole-number times."""
+
+
+def find_field(names: Any, aliases: tuple[str, ...]) -> str:
+    """The first alias that is among the names; empty = none."""
+    return next((alias for alias in aliases if alias in names), "")
+
+
+class CloudDecoder:
+    """Turns the clouds of one sensor into shots; what was worked out once is kept for all."""
+
+    def __init__(self, sensor_row: int, name: str, model: str, report: ImportReport) -> None:
+        self._row, self._name, self._model, self._report = sensor_row, name, model, report
+        self._ring_of: NDArray[np.uint8] | None = None
+        self.absolute = False
+        """The last cloud's points carried absolute times."""
+
+    def decode(self, table: Table, *, t_ns: int, period_ns: int) -> Shots:
+        """Points of one cloud in order of time.
+
+        Args:
+            table: Its fields by lower-case name.
+            t_ns: The cloud's stamp [ns]: the start, when the points only have azimuths.
+            period_ns: Length of a revolution, used when times are worked out [ns].
+
+        Raises:
+            UnknownFormat: If there is no x, y or z.
+            CorruptFile: If a field is not numeric.
+        """
+        xyz = _xyz(table, self._name)
+        valid = np.flatnonzero(np.all(np.isfinite(xyz), axis=1) & np.any(xyz != 0.0, axis=1))
+        self._report.count("points_invalid", len(xyz) - len(valid))
+        table = {key: column[valid] for key, column in table.items()}
+        xyz = xyz[valid]
+        times = self._times(table, xyz, t_ns, period_ns)
+        order = np.argsort(times, kind="stable")
+        return Shots(
+            self._row,
+            times[order],
+            xyz[order],
+            self._intensity(table, len(xyz))[order],
+            self._rings(table, xyz)[order],
+            np.zeros(len(xyz), np.uint8),
+        )
+
+    # -- intensity
+
+    def _intensity(self, table: Table, count: int) -> NDArray[np.uint16]:
+        key = find_field(table, INTENSITY_FIELDS)
+        if not key:
+            self._report.derive(f"{self._name}: no intensity field, 0 is stored")
+            return np.zeros(count, np.uint16)
+        values = table[key]
+        if values.dtype.kind == "f":
+            finite = np.nan_to_num(values, nan=0.0, posinf=65535.0, neginf=0.0)
+            if len(finite) and finite.max() <= 1.0 and np.any(finite % 1.0):
+                self._report.derive(f"{self._name}: intensity 0..1 is stored times 255")
+                finite = finite * 255.0
+            values = np.rint(finite)
+        outside = int(np.count_nonzero((values < 0) | (values > 65535)))
+        if outside:
+            self._report.count("intensity_clipped", outside)
+            self._report.warn(f"{self._name}: intensities outside 0..65535 are clipped")
+        return np.clip(values, 0, 65535).astype(np.uint16)
+
+    # -- ring
+
+    def _rings(self, table: Table, xyz: NDArray[np.float32]) -> NDArray[np.uint8]:
+        key = find_field(table, RING_FIELDS)
+        elevation = np.arctan2(xyz[:, 2], np.hypot(xyz[:, 0], xyz[:, 1]))
+        if not key:
+            return self._rings_from_elevation(elevation)
+        rings = np.clip(table[key], 0, 255).astype(np.uint8)
+        if self._ring_of is None and len(rings):
+            self._ring_of = _upwards(rings, elevation)
+            if np.any(self._ring_of[: int(rings.max()) + 1] != np.arange(int(rings.max()) + 1)):
+                self._report.derive(f"{self._name}: {key} renumbered, 0 = lowest elevation")
+        return rings if self._ring_of is None else self._ring_of[rings]
+
+    def _rings_from_elevation(self, elevation: NDArray[np.floating]) -> NDArray[np.uint8]:
+        beams = _beams(self._model, elevation)
+        if beams is None:
+            self._report.derive(f"{self._name}: no ring field, {_BANDS} bands of elevation instead")
+            beams = np.deg2rad(np.linspace(-25.0, 15.0, _BANDS))
+        else:
+            self._report.derive(f"{self._name}: no ring field, ring from elevation")
+        middles = (beams[1:] + beams[:-1]) / 2.0
+        return np.searchsorted(middles, elevation).astype(np.uint8)
+
+    # -- time
+
+    def _times(self, table: Table, xyz: NDArray[np.float32], t_ns: int, period_ns: int) -> Times:
+        azimuth = np.arctan2(xyz[:, 1], xyz[:, 0])
+        key = find_field(table, TIME_FIELDS)
+        self.absolute = False
+        if key and len(xyz):
+            times = self._given_times(table[key], azimuth, t_ns)
+            if times is not None:
+                return times
+            self._report.warn(f"{self._name}: the times in field {key!r} make no sense, not used")
+        if not _covers_turn(azimuth):
+            self._report.derive(f"{self._name}: no time per point, all points at the stamp")
+            return np.full(len(xyz), t_ns, np.int64)
+        turn, how = _turn_from_order(azimuth)
+        self._report.derive(f"{self._name}: no time per point, time from azimuth, {how}")
+        return t_ns + np.rint(np.clip(turn, 0.0, 1.0) * (period_ns - 1)).astype(np.int64)
+
+    def _given_times(
+        self, values: NDArray[Any], azimuth: NDArray[np.floating], t_ns: int
+    ) -> Times | None:
+        """Absolute times [ns] of a time field; None when it says nothing."""
+        if values.dtype.kind not in "fiu":
+            raise CorruptFile(f"{self._name}: time field of type {values.dtype}")
+        numbers = values.astype(np.float64)
+        if not np.all(np.isfinite(numbers)):
+            return None
+        low, high = float(numbers.min()), float(numbers.max())
+        if high == low and len(numbers) > 1 and _covers_turn(azimuth):
+            return None
+        unit = next((unit for least, unit in _ABSOLUTE if low >= least), 0.0)
+        if unit and not (values.dtype.itemsize < 8 and unit != 1.0):
+            return self._absolute_times(values, unit, t_ns)
+        unit = _relative_unit(values.dtype, high - low, _covers_turn(azimuth))
+        if not unit or max(abs(low), abs(high)) * unit > 10e9:
+            return None
+        return t_ns + np.rint(numbers * unit).astype(np.int64)
+
+    def _absolute_times(self, values: NDArray[Any], unit: float, t_ns: int) -> Times:
+        whole = values.astype(np.int64)
+        part = np.rint((values - whole) * unit) if values.dtype.kind == "f" else 0
+        times = np.asarray(whole * int(unit) + part, dtype=np.int64)
+        if t_ns and abs(int(times[0]) - t_ns) > 10_000_000_000:
+            self._report.derive(
+                f"{self._name}: the points' clock is not the stamps' clock; stamp = first point"
+            )
+            return times - times.min() + t_ns
+        self.absolute = True
+        return times
+
+
+def _xyz(table: Table, name: str) -> NDArray[np.float32]:
+    missing = [key for key in ("x", "y", "z") if key not in table]
+    if missing:
+        raise UnknownFormat(f"{name}: a cloud needs x, y and z; it has {sorted(table)}")
+    with np.errstate(over="ignore", invalid="ignore"):
+        return np.column_stack([table[k] for k in ("x", "y", "z")]).astype(np.float32)
+
+
+def _upwards(rings: NDArray[np.uint8], elevation: NDArray[np.floating]) -> NDArray[np.uint8]:
+    """Table from the given ring to the ring counted from the lowest elevation.
+
+    Rings that are no cones (a cloud already turned into another frame) are left as they are.
+    """
+    same = np.arange(256, dtype=np.uint8)
+    known = np.unique(rings)
+    parts = [elevation[rings == ring] for ring in known]
+    middle = np.array([np.median(part) for part in parts])
+    spread = np.array([np.median(np.abs(part - m)) for part, m in zip(parts, middle, strict=True)])
+    if np.median(spread) > np.deg2rad(0.3):
+        return same
+    if np.all(np.diff(middle) > -np.deg2rad(0.1)):
+        return same
+    if np.all(np.diff(middle) < np.deg2rad(0.1)):
+        highest = int(known.max())
+        same[: highest + 1] = same[: highest + 1][::-1]
+        return same
+    same[known[np.argsort(middle, kind="stable")]] = np.arange(len(known), dtype=np.uint8)
+    return same
+
+
+def _beams(model: str, elevation: NDArray[np.floating]) -> NDArray[np.float64] | None:
+    """Elevations of the beams [rad], ascending: the model's, or of one that the points fit."""
+    if model in MODELS:
+        return np.sort(MODELS[model].elevation_rad)
+    for name in ("VLP-16", "HDL-32E"):
+        beams = np.sort(MODELS[name].elevation_rad)
+        step = float(np.median(np.diff(beams)))
+        off = np.abs(elevation[:, None] - beams[None, :]).min(axis=1) if len(elevation) else None
+        if off is not None and np.percentile(off, 80) < 0.12 * step:
+            return beams
+    return None
+
+
+def _covers_turn(azimuth: NDArray[np.floating]) -> bool:
+    """Whether the points are spread over more than half of a revolution."""
+    cells = np.unique(((azimuth + np.pi) * (36 / (2 * np.pi))).astype(np.int64))
+    return len(cells) > 18
+
+
+def _relative_unit(dtype: np.dtype[Any], span: float, full_turn: bool) -> float:
+    """Nanoseconds of one unit of a relative time; 0 = no unit makes sense."""
+    if dtype.kind == "f":
+        return next((unit for most, unit in _FLOAT_UNITS if span <= most), 0.0)
+    if not full_turn:
+        return 1.0
+    fits = [u for u in (1.0, 1e3, 1e6) if _TURN_S[0] <= span * u * 1e-9 <= _TURN_S[1]]
+    return fits[0] if fits else 0.0
+
+
+def _turn_from_order(azimuth: NDArray[np.floating]) -> tuple[NDArray[np.float64], str]:
+    """Share of the revolution at which each point was measured, 0..1, and how it was found."""
+    swept = np.unwrap(azimuth.astype(np.float64))
+    total = float(swept[-1] - swept[0])
+    if np.deg2rad(270.0) < abs(total) < np.deg2rad(450.0):
+        turn = (swept - swept[0]) * np.sign(total) / max(2.0 * np.pi, abs(total))
+        return turn, "points are in firing order"
+    return (np.pi - azimuth.astype(np.float64)) / (
+        2.0 * np.pi
+    ), "taken as one clockwise turn from the rear"

@@ -1,0 +1,121 @@
+"""IMU and GNSS samples as CSV files (``docs/recordings.md`` has the headers)."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+
+import numpy as np
+
+from recon4.errors import CorruptFile, EmptyRecording, UnknownFormat
+from recon4.geometry.se3 import Array
+from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
+from recon4.model.trajectory import Times
+
+IMU_HEADER = ("t_ns", "gx_rad_s", "gy_rad_s", "gz_rad_s", "ax_m_s2", "ay_m_s2", "az_m_s2")
+GNSS_HEADER = (
+    *("t_ns", "lat_deg", "lon_deg", "height_m", "sd_e_m", "sd_n_m", "sd_u_m", "quality"),
+    *("roll_deg", "pitch_deg", "heading_deg"),
+)
+_OPTIONAL = {*IMU_HEADER[4:], *GNSS_HEADER[3:]}
+_SEPARATORS = ";\t,"
+
+
+def read_imu_csv(path: Path) -> ImuSamples:
+    """Read IMU samples; columns in any order, ``;`` and decimal commas welcome.
+
+    Raises:
+        CorruptFile: Naming the line and column of what is no number.
+        UnknownFormat: If a column is missing.
+        EmptyRecording: If there is no line under the header.
+    """
+    t_ns, columns = _read(path, IMU_HEADER)
+    gyro = np.column_stack([columns[name] for name in IMU_HEADER[1:4]])
+    accel = np.column_stack([columns[name] for name in IMU_HEADER[4:]])
+    return ImuSamples(t_ns, gyro, accel)
+
+
+def read_gnss_csv(path: Path) -> GnssSamples:
+    """Read GNSS positions, and attitudes if there are; an empty cell is not measured.
+
+    Raises:
+        CorruptFile, UnknownFormat, EmptyRecording: As `read_imu_csv`.
+    """
+    t_ns, columns = _read(path, GNSS_HEADER)
+    lat, lon = columns["lat_deg"], columns["lon_deg"]
+    outside = np.flatnonzero((np.abs(lat) > 90.0) | (np.abs(lon) > 360.0))
+    if len(outside):
+        row = int(outside[0])
+        raise CorruptFile(
+            f"{path.name}: sample {row + 1}: latitude and longitude must be in degrees, "
+            f"got {lat[row]:g}, {lon[row]:g}"
+        )
+    quality = np.nan_to_num(columns["quality"], nan=float(GnssQuality.SINGLE))
+    return GnssSamples(
+        t_ns,
+        np.deg2rad(lat),
+        np.deg2rad(lon),
+        columns["height_m"],
+        np.column_stack([columns[name] for name in GNSS_HEADER[4:7]]),
+        np.clip(quality, 0, 255).astype(np.uint8),
+        np.deg2rad(np.column_stack([columns[name] for name in GNSS_HEADER[8:]])),
+    )
+
+
+def csv_header(path: Path) -> list[str]:
+    """Names of the columns; empty when the first line is no text."""
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            line = file.readline(4096)
+    except (OSError, UnicodeDecodeError):
+        return []
+    return [cell.strip().strip('"').lower() for cell in line.split(_separator(line))]
+
+
+def _separator(header: str) -> str:
+    return next((sign for sign in _SEPARATORS if sign in header), ",")
+
+
+def _read(path: Path, known: tuple[str, ...]) -> tuple[Times, dict[str, Array]]:
+    header = csv_header(path)
+    missing = [name for name in known if name not in header and name not in _OPTIONAL]
+    if missing:
+        raise UnknownFormat(
+            f"{path.name}: missing columns {', '.join(missing)}; expected header: {','.join(known)}"
+        )
+    at = [header.index(name) if name in header else -1 for name in known]
+    times: list[int] = []
+    values: list[list[float]] = []
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        separator = _separator(file.readline())
+        for number, row in enumerate(csv.reader(file, delimiter=separator), start=2):
+            if not any(row):
+                continue
+            where = f"{path.name}: line {number}"
+            if len(row) != len(header):
+                raise CorruptFile(f"{where}: expected {len(header)} cells, got {len(row)}")
+            times.append(_time(row[at[0]], where))
+            values.append([_value(row[k], where) if k >= 0 else math.nan for k in at[1:]])
+    if not times:
+        raise EmptyRecording(f"{path.name}: no samples under the header")
+    table = np.array(values, dtype=np.float64)
+    return np.array(times, np.int64), {name: table[:, k] for k, name in enumerate(known[1:])}
+
+
+def _time(text: str, where: str) -> int:
+    """Whole nanoseconds; read as text because a float cannot hold them."""
+    try:
+        t_ns = int(text)
+    except ValueError as error:
+        raise CorruptFile(f"{where}: t_ns must be whole nanoseconds, got {text!r}") from error
+    if not 0 <= t_ns < 2**63:
+        raise CorruptFile(f"{where}: t_ns must be 0 to 2^63, got {text}")
+    return t_ns
+
+
+def _value(text: str, where: str) -> float:
+    try:
+        return float(text.replace(",", ".")) if text.strip() else math.nan
+    except ValueError as error:
+        raise CorruptFile(f"{where}: expected a number, got {text!r}") from error

@@ -1,0 +1,60 @@
+"""How fast a LiDAR turns, measured from its points."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import Array
+from recon4.model.trajectory import Times
+
+_SLOWEST_HZ, _FASTEST_HZ = 2.0, 30.0
+_POINTS = 3000
+_CLEAR = 0.6
+"""Length of the mean phasor above which the azimuth follows a rotation."""
+_SNAP = 0.02
+
+
+def rotation_rate(t_ns: Times, xyz: NDArray[np.float32]) -> float:
+    """Revolutions per second, or NaN when the points do not turn evenly.
+
+    The azimuth of a turning sensor is ``a0 +- 2 pi f t``. The rate is the ``f`` at which the
+    phasors ``exp(i (a -+ 2 pi f t))`` agree best: neither holes in the view nor the order matter.
+
+    Args:
+        t_ns: Times of the points [ns], (N,); half a second of them is enough.
+        xyz: Points in the frame of the sensor [m], (N, 3).
+    """
+    if len(t_ns) < 50:
+        return float("nan")
+    rows = np.linspace(0, len(t_ns) - 1, min(_POINTS, len(t_ns))).astype(np.intp)
+    t_s = (t_ns[rows] - t_ns[0]) * 1e-9
+    span_s = float(np.ptp(t_s))
+    if span_s < 0.03:
+        return float("nan")
+    azimuth = np.arctan2(xyz[rows, 1], xyz[rows, 0]).astype(np.float64)
+    step = min(0.1, 0.2 / span_s)
+    rates = np.arange(_SLOWEST_HZ, _FASTEST_HZ, step)
+    best, clear = max((_strongest(azimuth * sign, t_s, rates) for sign in (1.0, -1.0)), key=_clear)
+    return best if clear > _CLEAR else float("nan")
+
+
+def nominal(rate_hz: float) -> float:
+    """The whole number of revolutions per second it was set to, when it is that within 2 %."""
+    whole = max(1.0, float(round(rate_hz)))
+    return whole if abs(rate_hz / whole - 1.0) < _SNAP else rate_hz
+
+
+def _clear(found: tuple[float, float]) -> float:
+    return found[1]
+
+
+def _strongest(azimuth: Array, t_s: Array, rates_hz: Array) -> tuple[float, float]:
+    """Rate with the longest mean phasor, refined by a parabola, and that length."""
+    phasors = np.exp(1j * azimuth)
+    length = np.array([abs(np.mean(phasors * np.exp(-2j * np.pi * f * t_s))) for f in rates_hz])
+    k = int(np.clip(np.argmax(length), 1, len(length) - 2))
+    left, middle, right = length[k - 1 : k + 2]
+    bend = left - 2.0 * middle + right
+    shift = 0.5 * (left - right) / bend if bend < 0.0 else 0.0
+    return float(rates_hz[k] + shift * (rates_hz[1] - rates_hz[0])), float(length[k])
