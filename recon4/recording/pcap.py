@@ -2,15 +2,37 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import IO
 
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.errors import EmptyRecording, UnknownFormat
 from recon4.model.trajectory import Times
 from recon4.recording.report import ImportReport
+
+_CLASSIC = {
+    b"\xd4\xc3\xb2\xa1": ("<", 1000),
+    b"\xa1\xb2\xc3\xd4": (">", 1000),
+    b"\x4d\x3c\xb2\xa1": ("<", 1),
+    b"\xa1\xb2\x3c\x4d": (">", 1),
+}
+"""First four bytes to byte order and nanoseconds a unit of the stamps."""
+_PCAPNG = b"\x0a\x0d\x0d\x0a"
+_ETHERTYPE_AT = {1: 12, 113: 14, 276: 0}
+"""Link type (Ethernet, Linux cooked 1 and 2) to the place of the ethertype in a packet."""
+_IP_AT = {1: 14, 113: 16, 276: 20, 101: 0, 228: 0, 0: 4, 108: 4}
+"""Link type to the place of the IP header; without an ethertype the packet is IP anyway."""
+_RECORD_HEADER = 16
+_LONGEST_RECORD = 262_144
+"""The largest capture length in use: a longer one means that the bytes are not a record."""
+_CHUNK = 4 << 20
+_MARGIN = 2048
+"""Zeros behind the buffer, so that a short payload at its end can be viewed at full size."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,14 +50,32 @@ class Datagrams:
     start: NDArray[np.int64]
     """Where each payload starts in ``buffer``, (N,)."""
     buffer: NDArray[np.uint8]
-    """Bytes of the file around the payloads, at least one packet longer than the last, (B,)."""
+    """Bytes of the file around the payloads, with zeros behind, (B,)."""
 
     def __len__(self) -> int:
         return len(self.t_ns)
 
     def payloads(self, rows: NDArray[np.integer], size: int) -> NDArray[np.uint8]:
-        """First ``size`` bytes of the payloads of some rows, (M, size); zeros beyond the end."""
-        raise NotImplementedError
+        """First ``size`` (at most 2048) bytes from the start of the payloads of some rows.
+
+        Rows are expected to be at least that long: what follows a shorter payload is not blanked.
+
+        Returns:
+            A copy, (M, size).
+        """
+        windows = np.lib.stride_tricks.sliding_window_view(self.buffer, size)
+        return windows[self.start[rows]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Records:
+    """Captured packets as they lie in a buffer."""
+
+    t_ns: Times
+    start: NDArray[np.int64]
+    length: NDArray[np.int64]
+    buffer: NDArray[np.uint8]
+    link_type: int
 
 
 def address_text(source: int) -> str:
@@ -46,11 +86,181 @@ def address_text(source: int) -> str:
 def read_pcap(path: Path, report: ImportReport) -> Iterator[Datagrams]:
     """Stream the UDP datagrams of a pcap (µs or ns, either byte order) or pcapng file.
 
-    Other packets, IP fragments and records that do not fit are counted in the report. A file
+    Counts ``records`` and, of them, those that are no datagrams for us: ``records_not_udp``,
+    ``records_fragment`` (an IP fragment), ``records_cut`` (longer than what was captured). A file
     that ends inside a record yields all before it, and ``report.outcome`` becomes ``lossy``.
 
     Raises:
-        UnknownFormat: If the file is not a capture of Ethernet or raw IP packets.
+        UnknownFormat: If the file is not a capture of Ethernet, Linux cooked or raw IP packets.
         EmptyRecording: If it holds no packet at all.
     """
-    raise NotImplementedError
+    found = 0
+    with path.open("rb") as file:
+        for records in _records(file, path.name, report):
+            found += len(records.t_ns)
+            report.count("records", len(records.t_ns))
+            yield _datagrams(records, report)
+    if not found:
+        raise EmptyRecording(f"{path.name}: a capture file without any packet")
+
+
+def is_pcap(path: Path) -> bool:
+    """Whether the first bytes are those of a pcap or pcapng file."""
+    with path.open("rb") as file:
+        magic = file.read(4)
+    return magic in _CLASSIC or magic == _PCAPNG
+
+
+def _records(file: IO[bytes], name: str, report: ImportReport) -> Iterator[_Records]:
+    magic = file.read(4)
+    if not magic:
+        raise EmptyRecording(f"{name}: the file is empty (0 bytes)")
+    if magic == _PCAPNG:
+        file.seek(0)
+        yield from _next_generation(file, name, report)
+    elif magic in _CLASSIC:
+        yield from _classic(file, name, _CLASSIC[magic], report)
+    else:
+        raise UnknownFormat(
+            f"{name}: expected a capture file (pcap or pcapng), got first bytes {magic.hex(' ')}"
+        )
+
+
+def _classic(
+    file: IO[bytes], name: str, kind: tuple[str, int], report: ImportReport
+) -> Iterator[_Records]:
+    order, unit_ns = kind
+    header = file.read(20)
+    if len(header) < 20:
+        raise EmptyRecording(f"{name}: cut inside the file header, no packet is left")
+    link_type = struct.unpack(f"{order}I", header[16:])[0] & 0x0FFF_FFFF
+    _require_link_type(link_type, name)
+    rest = b""
+    while chunk := file.read(_CHUNK):
+        data = rest + chunk
+        stamps, end, broken = _walk(data, order)
+        if stamps:
+            yield _batch(stamps, data, unit_ns, link_type)
+        rest = data[end:]
+        if broken:
+            _salvaged(report, name, "a record header makes no sense; what follows is not read")
+            return
+    if rest:
+        _salvaged(report, name, f"it ends inside a packet; the last {len(rest)} bytes are dropped")
+
+
+def _walk(data: bytes, order: str) -> tuple[list[tuple[int, int, int, int]], int, bool]:
+    """Whole records in ``data``: (seconds, fraction, captured length, start), end, broken."""
+    unpack = struct.Struct(f"{order}III").unpack_from
+    rows: list[tuple[int, int, int, int]] = []
+    at, size = 0, len(data)
+    while at + _RECORD_HEADER <= size:
+        seconds, fraction, captured = unpack(data, at)
+        if captured > _LONGEST_RECORD:
+            return rows, at, True
+        start = at + _RECORD_HEADER
+        if start + captured > size:
+            break
+        rows.append((seconds, fraction, captured, start))
+        at = start + captured
+    return rows, at, False
+
+
+def _batch(
+    rows: list[tuple[int, int, int, int]], data: bytes, unit_ns: int, link_type: int
+) -> _Records:
+    seconds, fraction, length, start = np.array(rows, dtype=np.int64).T
+    t_ns = seconds * 1_000_000_000 + fraction * unit_ns
+    return _Records(t_ns, start, length, _with_margin(data), link_type)
+
+
+def _next_generation(file: IO[bytes], name: str, report: ImportReport) -> Iterator[_Records]:
+    import dpkt
+
+    try:
+        reader = dpkt.pcapng.Reader(file)
+        link_type = reader.datalink()
+        _require_link_type(link_type, name)
+        packets = iter(reader)
+        while batch := _take(packets, 2048):
+            yield _joined(batch, link_type)
+    except (dpkt.UnpackError, ValueError, struct.error) as error:
+        _salvaged(report, name, f"it ends inside a packet or is damaged there ({error})")
+
+
+def _take(packets: Iterator[tuple[float, bytes]], count: int) -> list[tuple[float, bytes]]:
+    return [packet for packet, _ in zip(packets, range(count), strict=False)]
+
+
+def _joined(packets: list[tuple[float, bytes]], link_type: int) -> _Records:
+    length = np.array([len(data) for _, data in packets], dtype=np.int64)
+    t_ns = np.array([round(float(t) * 1e6) * 1000 for t, _ in packets], dtype=np.int64)
+    buffer = _with_margin(b"".join(data for _, data in packets))
+    return _Records(t_ns, np.cumsum(length) - length, length, buffer, link_type)
+
+
+def _with_margin(data: bytes) -> NDArray[np.uint8]:
+    buffer = np.zeros(len(data) + _MARGIN, dtype=np.uint8)
+    buffer[: len(data)] = np.frombuffer(data, dtype=np.uint8)
+    return buffer
+
+
+def _require_link_type(link_type: int, name: str) -> None:
+    if link_type not in _IP_AT:
+        raise UnknownFormat(
+            f"{name}: expected a capture of Ethernet, Linux cooked or raw IP packets, "
+            f"got link type {link_type}"
+        )
+
+
+def _salvaged(report: ImportReport, name: str, why: str) -> None:
+    report.outcome = "lossy"
+    report.count("files_cut")
+    report.warn(f"{name}: salvaged: {why}")
+
+
+def _datagrams(records: _Records, report: ImportReport) -> Datagrams:
+    """The UDP datagrams among the records; the others are counted."""
+    at, is_ip = _ip_header(records)
+    end = records.start + records.length
+    fits = is_ip & (at + 28 <= end)
+    is_udp = fits & (_byte(records, at) >> 4 == 4) & (_byte(records, at + 9) == 17)
+    whole = (_word(records, at + 6) & 0x3FFF) == 0
+    udp = at + 4 * (_byte(records, at) & 15)
+    length = _word(records, udp + 4) - 8
+    inside = (length >= 0) & (udp + 8 + length <= end)
+    report.count("records_not_udp", int(np.count_nonzero(~is_udp)))
+    report.count("records_fragment", int(np.count_nonzero(is_udp & ~whole)))
+    report.count("records_cut", int(np.count_nonzero(is_udp & whole & ~inside)))
+    kept = np.flatnonzero(is_udp & whole & inside)
+    at, udp = at[kept], udp[kept]
+    source = (_word(records, at + 12) << 16) | _word(records, at + 14)
+    return Datagrams(
+        t_ns=records.t_ns[kept],
+        source=source.astype(np.uint32),
+        port=_word(records, udp + 2).astype(np.uint16),
+        length=length[kept],
+        start=udp + 8,
+        buffer=records.buffer,
+    )
+
+
+def _ip_header(records: _Records) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+    """Where the IP header of each record would start, and whether there is one."""
+    at = records.start + _IP_AT[records.link_type]
+    if records.link_type not in _ETHERTYPE_AT:
+        return at, np.ones(len(at), dtype=np.bool_)
+    ethertype = _word(records, records.start + _ETHERTYPE_AT[records.link_type])
+    for _ in range(2):
+        tagged = (ethertype == 0x8100) | (ethertype == 0x88A8)
+        ethertype = np.where(tagged, _word(records, at + 2), ethertype)
+        at = at + 4 * tagged
+    return at, ethertype == 0x0800
+
+
+def _byte(records: _Records, at: NDArray[np.int64]) -> NDArray[np.int64]:
+    return records.buffer[np.minimum(at, len(records.buffer) - 1)].astype(np.int64)
+
+
+def _word(records: _Records, at: NDArray[np.int64]) -> NDArray[np.int64]:
+    return (_byte(records, at) << 8) | _byte(records, at + 1)

@@ -3,6 +3,10 @@
 Sources: VLP-16 user manual 63-9243 rev. D (§6, §9, appendix C), VLP-32C user manual 63-9325
 (§9.3, appendix D), HDL-32E user manual 63-9113 (appendix B and E).
 The order of the lasers is the order on the wire; ring 0 is the lowest.
+The beams of one model cross in a focal point at the distance f from the axis of rotation while
+ranges count from the axis; so a beam of elevation e leaves the axis at the height ``-f tan e``.
+The VLP-16's manual lists these heights (f = 41.8 mm); for the others f is that of the optical
+drawings, 42.4 mm and 28.96 mm.
 """
 
 from __future__ import annotations
@@ -117,20 +121,22 @@ _VLP16 = VelodyneModel(
     sequence_s=55.296e-6,
 )
 
+_VLP32C_ELEVATION_RAD = np.deg2rad(
+    np.ravel(
+        [
+            [-25.0, -1, -1.667, -15.639, -11.31, 0, -0.667, -8.843],
+            [-7.254, 0.333, -0.333, -6.148, -5.333, 1.333, 0.667, -4],
+            [-4.667, 1.667, 1, -3.667, -3.333, 3.333, 2.333, -2.667],
+            [-3, 7, 4.667, -2.333, -2, 15, 10.333, -1.333],
+        ]
+    )
+)
+
 _VLP32C = VelodyneModel(
     name="VLP-32C",
     product=0x28,
     distance_unit_m=0.004,
-    elevation_rad=np.deg2rad(
-        np.ravel(
-            [
-                [-25.0, -1, -1.667, -15.639, -11.31, 0, -0.667, -8.843],
-                [-7.254, 0.333, -0.333, -6.148, -5.333, 1.333, 0.667, -4],
-                [-4.667, 1.667, 1, -3.667, -3.333, 3.333, 2.333, -2.667],
-                [-3, 7, 4.667, -2.333, -2, 15, 10.333, -1.333],
-            ]
-        )
-    ),
+    elevation_rad=_VLP32C_ELEVATION_RAD,
     azimuth_offset_cdeg=np.array(
         [
             [140, -420, 140, -140, 140, -140, 420, -140],
@@ -140,22 +146,22 @@ _VLP32C = VelodyneModel(
         ],
         dtype=np.int32,
     ).ravel(),
-    height_m=np.zeros(32),
+    height_m=-0.0424 * np.tan(_VLP32C_ELEVATION_RAD),
     laser_time_s=2.304e-6 * (np.arange(32.0) // 2),
     sequence_s=55.296e-6,
+)
+
+_HDL32E_ELEVATION_RAD = np.deg2rad(
+    np.column_stack([np.linspace(-92.0, -32.0, 16) / 3, np.linspace(-28.0, 32.0, 16) / 3]).ravel()
 )
 
 _HDL32E = VelodyneModel(
     name="HDL-32E",
     product=0x21,
     distance_unit_m=0.002,
-    elevation_rad=np.deg2rad(
-        np.column_stack(
-            [np.linspace(-92.0, -32.0, 16) / 3, np.linspace(-28.0, 32.0, 16) / 3]
-        ).ravel()
-    ),
+    elevation_rad=_HDL32E_ELEVATION_RAD,
     azimuth_offset_cdeg=np.zeros(32, dtype=np.int32),
-    height_m=np.zeros(32),
+    height_m=-0.02896 * np.tan(_HDL32E_ELEVATION_RAD),
     laser_time_s=1.152e-6 * np.arange(32.0),
     sequence_s=46.08e-6,
 )
@@ -164,6 +170,11 @@ MODELS = {model.name: model for model in (_VLP16, _VLP32C, _HDL32E)}
 """Models whose packets are decoded, by name."""
 PRODUCTS = {model.product: model.name for model in MODELS.values()}
 """Product byte to name."""
+
+
+def product_text(product: int) -> str:
+    """``HDL-32E (0x21)`` for 0x21."""
+    return f"{PRODUCTS.get(product, 'unknown product')} ({product:#04x})"
 
 
 def velodyne_model(name: str) -> VelodyneModel:

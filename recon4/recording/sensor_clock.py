@@ -1,0 +1,214 @@
+"""The clock of a Velodyne: microseconds past the hour, made absolute."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.model.trajectory import Times
+from recon4.recording.report import ImportReport
+
+SECOND_NS = 1_000_000_000
+HOUR_NS = 3600 * SECOND_NS
+
+_SAME_CLOCK_NS = SECOND_NS // 2
+"""A sensor that is this near to the recorder's clock is synchronized with it."""
+_JUMP_NS = SECOND_NS
+"""Clocks that move against each other by more than this have jumped."""
+_CONFIRM = 8
+"""So many packets must agree on a jump; fewer are damaged packets and are dropped."""
+_PAUSE_NS = 60 * SECOND_NS
+_TRACK_NS = 10 * SECOND_NS
+_MAX_RATE = 2e-4
+"""Two free-running quartz clocks differ by less than this."""
+
+
+def nearest_hour(t_us: NDArray[np.integer], near_ns: Times | int) -> Times:
+    """Absolute times [ns] that are ``t_us`` past an hour and nearest to given times."""
+    past_ns = np.asarray(t_us, dtype=np.int64) * 1000
+    near = np.asarray(near_ns, dtype=np.int64)
+    return past_ns + (near - past_ns + HOUR_NS // 2) // HOUR_NS * HOUR_NS
+
+
+class SensorClock:
+    """Makes the stamps of one sensor absolute with the help of the times of arrival.
+
+    The stamp tells the time within the hour, the time of arrival tells the hour. Then
+
+    - a sensor that is synchronized by GPS (its position packets prove it) or that agrees with
+      the recorder's clock within half a second keeps its own time;
+    - any other sensor runs freely, its stamps count from when it was switched on: they are
+      shifted to the recorder's clock, by the packet that traveled fastest, and the shift follows
+      the drift of the two clocks from one 10 s to the next. The report says so.
+
+    A jump of either clock (GPS lock won, recorder's clock set) leaves the output continuous, is
+    counted (``clock_jumps``) and warned of. Single packets off by more than a second are dropped.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        packet_s: float,
+        report: ImportReport,
+        utc_offset_ns: int | None = None,
+    ) -> None:
+        """Start without any time.
+
+        Args:
+            name: Of the sensor, for messages.
+            packet_s: Time from the first shot of a packet to when it is sent [s].
+            report: Where jumps and derived times are noted.
+            utc_offset_ns: UTC minus time of arrival [ns] when GPS is known to drive the sensor.
+        """
+        self.utc_offset_ns = utc_offset_ns
+        self._name = name
+        self._report = report
+        self._packet_ns = round(packet_s * SECOND_NS)
+        self._offset_ns: int | None = None
+        self._shift_ns = 0
+        self._rate = 0.0
+        self._since_ns = 0
+        self._window: list[int] = []
+        self._host_jump_ns = 0
+        self._free_running = False
+        self._last = (0, 0)
+        self._run, self._run_ns = 0, 0
+
+    @property
+    def is_utc(self) -> bool:
+        """Whether GPS drives the sensor, so that its time is UTC."""
+        return self.utc_offset_ns is not None
+
+    def push(
+        self, t_arrival_ns: Times, t_us: NDArray[np.integer]
+    ) -> tuple[Times, NDArray[np.bool_]]:
+        """Absolute times of data packets, and which of them can be trusted.
+
+        Args:
+            t_arrival_ns: Times of arrival [ns], (N,).
+            t_us: Stamps [µs past the hour], (N,).
+
+        Returns:
+            Times [ns], (N,), and a mask, (N,); the others are counted as ``packets_wrong_clock``.
+        """
+        if not len(t_us):
+            return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.bool_)
+        offset = self._offset_ns if self._offset_ns is not None else self._start(t_arrival_ns, t_us)
+        expected = t_arrival_ns + offset
+        t_sensor = nearest_hour(t_us, expected)
+        if not np.any(self._odd(t_us, t_sensor, t_sensor - expected)):
+            self._follow(t_arrival_ns, t_sensor, t_sensor - expected)
+            return t_sensor + self._shift(t_sensor), np.ones(len(t_us), dtype=np.bool_)
+        return self._push_one_by_one(t_arrival_ns, t_us)
+
+    def at(self, t_arrival_ns: Times, t_us: NDArray[np.integer]) -> Times:
+        """Absolute times of other packets of the sensor [ns], (N,); learns nothing from them."""
+        if not len(t_us):
+            return np.zeros(0, dtype=np.int64)
+        offset = self._offset_ns if self._offset_ns is not None else self._start(t_arrival_ns, t_us)
+        t_sensor = nearest_hour(t_us, t_arrival_ns + offset)
+        return t_sensor + self._shift(t_sensor)
+
+    def _start(self, t_arrival_ns: Times, t_us: NDArray[np.integer]) -> int:
+        ahead = nearest_hour(t_us, t_arrival_ns) - t_arrival_ns
+        around = (ahead - ahead[0] + HOUR_NS // 2) % HOUR_NS - HOUR_NS // 2
+        offset = int(ahead[0] + np.median(around))
+        if self.utc_offset_ns is not None:
+            offset += round((self.utc_offset_ns - offset) / HOUR_NS) * HOUR_NS
+            self._report.derive(
+                f"{self._name}: the hour is from its GPS; the recorder's clock is "
+                f"{-offset / SECOND_NS:+.3f} s off UTC"
+            )
+        elif abs(offset) > _SAME_CLOCK_NS:
+            self._free_running = True
+            good = np.abs(around - np.median(around)) < _JUMP_NS
+            self._shift_ns = int(np.min(-ahead[good])) - self._packet_ns
+            self._report.warn(
+                f"{self._name}: its clock is {offset / SECOND_NS:+.3f} s off the recorder's and no "
+                "GPS drives it: its times are shifted to the recorder's clock"
+            )
+        self._offset_ns = offset
+        first = int(nearest_hour(t_us[:1], t_arrival_ns[:1] + offset)[0])
+        self._since_ns, self._last = first, (int(t_arrival_ns[0]), first)
+        return offset
+
+    def _odd(
+        self, t_us: NDArray[np.integer], t_sensor: Times, deviation: Times
+    ) -> NDArray[np.bool_]:
+        """Packets at which one of the clocks seems to have jumped, also by whole hours."""
+        going_on = nearest_hour(t_us, self._last[1])
+        by_hours = (going_on != t_sensor) & (np.abs(going_on - self._last[1]) < _PAUSE_NS)
+        return (np.abs(deviation) > _JUMP_NS) | by_hours
+
+    def _follow(self, t_arrival_ns: Times, t_sensor: Times, deviation: Times) -> None:
+        """Let the offset drift with the clocks, and the shift of a free-running sensor too."""
+        assert self._offset_ns is not None
+        self._offset_ns += int(0.1 * np.median(deviation))
+        self._last = (int(t_arrival_ns[-1]), int(t_sensor[-1]))
+        if not self._free_running:
+            return
+        self._window.append(int(np.min(t_arrival_ns - t_sensor)))
+        now = int(t_sensor[-1])
+        if now - self._since_ns >= _TRACK_NS:
+            self._shift_ns = int(self._shift(now))
+            error = min(self._window) - self._host_jump_ns - self._packet_ns - self._shift_ns
+            self._rate = float(np.clip(error / _TRACK_NS, -_MAX_RATE, _MAX_RATE))
+            self._since_ns, self._window = now, []
+
+    def _shift(self, t_sensor: Times | int) -> Times:
+        drift = self._rate * (np.asarray(t_sensor) - self._since_ns)
+        return self._shift_ns + np.rint(drift).astype(np.int64)
+
+    def _push_one_by_one(
+        self, t_arrival_ns: Times, t_us: NDArray[np.integer]
+    ) -> tuple[Times, NDArray[np.bool_]]:
+        t_ns = np.zeros(len(t_us), dtype=np.int64)
+        kept = np.zeros(len(t_us), dtype=np.bool_)
+        for row, arrival in enumerate(t_arrival_ns.tolist()):
+            stamp = t_us[row : row + 1]
+            kept[row] = self._accept(arrival, stamp)
+            assert self._offset_ns is not None
+            t_sensor = nearest_hour(stamp, arrival + self._offset_ns)
+            t_ns[row] = (t_sensor + self._shift(t_sensor))[0]
+            if kept[row]:
+                self._last = (arrival, int(t_sensor[0]))
+        self._report.count("packets_wrong_clock", int((~kept).sum()))
+        return t_ns, kept
+
+    def _accept(self, arrival: int, stamp: NDArray[np.integer]) -> bool:
+        assert self._offset_ns is not None
+        t_sensor = nearest_hour(stamp, arrival + self._offset_ns)
+        deviation = t_sensor - (arrival + self._offset_ns)
+        if not self._odd(stamp, t_sensor, deviation)[0]:
+            self._run = 0
+            return True
+        off = int(deviation[0])
+        self._run = self._run + 1 if self._run and abs(off - self._run_ns) < _JUMP_NS else 1
+        self._run_ns = off
+        if self._run < _CONFIRM:
+            return False
+        self._jump(arrival, stamp, off)
+        return True
+
+    def _jump(self, arrival: int, stamp: NDArray[np.integer], off_ns: int) -> None:
+        """Take the new relation of the two clocks; whichever went on evenly is believed."""
+        assert self._offset_ns is not None
+        going_on = int(nearest_hour(stamp, self._last[1])[0])
+        if abs(going_on - self._last[1]) < _JUMP_NS:
+            jump_ns = (arrival - self._last[0]) - (going_on - self._last[1])
+            self._offset_ns = going_on - arrival
+            self._host_jump_ns += jump_ns
+            self._tell_jump("the recorder's clock", jump_ns)
+        else:
+            self._offset_ns += off_ns
+            self._shift_ns = int(self._shift(going_on)) - off_ns
+            self._rate = 0.0
+            self._tell_jump("its clock", off_ns)
+        self._since_ns, self._window, self._run = going_on, [], 0
+
+    def _tell_jump(self, whose: str, jump_ns: int) -> None:
+        self._report.count("clock_jumps")
+        self._report.warn(
+            f"{self._name}: {whose} jumped by {jump_ns / SECOND_NS:+.3f} s; times go on without it"
+        )
