@@ -9,20 +9,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.model.multiframe import COLUMNS, Multiframe
-from recon4.model.rig import Rig, load_rig
+from recon4.model.rig import Rig
 from recon4.progress import Progress, Silent
+from recon4.simulation.gnss import simulate_gnss
 from recon4.simulation.imu import simulate_imu
-from recon4.simulation.lidar import ELEVATION_DEG, HEIGHT_M, RESOLUTION_M, Firings
-from recon4.simulation.setup import EPOCH_NS, Models, Setup, prepare
+from recon4.recording.velodyne_models import MODELS
+from recon4.simulation.lidar import Firings
+from recon4.simulation.setup import Models, Setup, prepare
 from recon4.simulation.truth import true_trajectory, write_tum
 from recon4.store.frames import FrameWriter
 
 FRAME_NS = 100_000_000
 _CHUNK_FRAMES = 10
 Columns = dict[str, NDArray[np.generic]]
-
-RING = np.argsort(np.argsort(ELEVATION_DEG)).astype(np.uint8)
-"""Ring of each laser in the order of firing, 0 = lowest."""
 
 
 def simulate_frames(
@@ -44,24 +43,28 @@ def simulate_frames(
         StoreError: If the folder cannot be written.
     """
     watch = progress or Silent()
-    setup = prepare(
-        world,
-        seconds=seconds,
-        seed=seed,
-        rig=rig or load_rig("4recon"),
-        models=models or Models(),
-    )
+    setup = prepare(world, seconds=seconds, seed=seed, rig=rig, models=models)
     imu = simulate_imu(
-        setup.walk, setup.rig.T_body_imu, setup.models.imu, epoch_ns=EPOCH_NS, rng=setup.rng(2)
+        setup.walk, setup.rig, setup.models.imu, epoch_ns=setup.epoch_ns, rng=setup.rng(2)
     )
+    gnss = None
+    if setup.world.outdoors:
+        gnss = simulate_gnss(
+            setup.walk,
+            setup.rig,
+            setup.models.gnss,
+            origin=setup.world.origin,
+            epoch_ns=setup.epoch_ns,
+            rng=setup.rng(5),
+        )
     with FrameWriter(folder, setup.rig) as writer:
         watch.start("simulate", int(setup.walk.seconds), "s")
         for chunk in _chunks(setup):
             for frame in chunk:
                 writer.append(frame)
             watch.advance()
-        writer.add(imu=imu, report={"derived": [], "counts": {"points": writer.points}})
-    write_tum(folder / "truth.tum", true_trajectory(setup.walk, epoch_ns=EPOCH_NS))
+        writer.add(imu=imu, gnss=gnss, report={"derived": [], "counts": {"points": writer.points}})
+    write_tum(folder / "truth.tum", true_trajectory(setup.walk, epoch_ns=setup.epoch_ns))
     return setup
 
 
@@ -78,7 +81,7 @@ def _chunks(setup: Setup) -> Iterator[list[Multiframe]]:
             shots = lidar.fire(range(fired[row], until), setup.walk, setup.surroundings, rng)
             fired[row] = until
             waiting[row] = _joined(waiting[row], _points(shots, row))
-        yield [_frame(k, waiting) for k in range(first, last)]
+        yield [_frame(k, waiting, setup.epoch_ns) for k in range(first, last)]
         for row, columns in enumerate(waiting):
             late = columns["t_ns"] >= last * FRAME_NS
             waiting[row] = {name: column[late] for name, column in columns.items()}
@@ -86,11 +89,12 @@ def _chunks(setup: Setup) -> Iterator[list[Multiframe]]:
 
 def _points(shots: Firings, row: int) -> Columns:
     """Returns of one sensor in its own frame, in firing order."""
+    tables = MODELS["VLP-16"]
     hit = shots.distance > 0
     shape = shots.distance.shape
-    elevation = np.broadcast_to(np.deg2rad(ELEVATION_DEG), shape)[hit]
-    height = np.broadcast_to(HEIGHT_M, shape)[hit]
-    range_m, azimuth = RESOLUTION_M * shots.distance[hit], shots.azimuth_rad[hit]
+    elevation = np.broadcast_to(tables.elevation_rad, shape)[hit]
+    height = np.broadcast_to(tables.height_m, shape)[hit]
+    range_m, azimuth = tables.distance_unit_m * shots.distance[hit], shots.azimuth_rad[hit]
     flat = range_m * np.cos(elevation)
     xyz = np.stack(
         [
@@ -104,7 +108,7 @@ def _points(shots: Firings, row: int) -> Columns:
         "t_ns": shots.t_ns[hit],
         "xyz": xyz.astype(np.float32),
         "intensity": shots.intensity[hit].astype(np.uint16),
-        "ring": np.broadcast_to(RING, shape)[hit],
+        "ring": np.broadcast_to(tables.ring, shape)[hit],
         "sensor": np.full(len(xyz), row, dtype=np.uint8),
         "echo": np.zeros(len(xyz), dtype=np.uint8),
     }
@@ -114,7 +118,7 @@ def _joined(a: Columns, b: Columns) -> Columns:
     return {name: np.concatenate([a[name], b[name]]) for name in b} if a else b
 
 
-def _frame(k: int, waiting: list[Columns]) -> Multiframe:
+def _frame(k: int, waiting: list[Columns], epoch_ns: int) -> Multiframe:
     parts: list[Columns] = []
     for columns in waiting:
         start, stop = np.searchsorted(columns["t_ns"], [k * FRAME_NS, (k + 1) * FRAME_NS])
@@ -122,4 +126,4 @@ def _frame(k: int, waiting: list[Columns]) -> Multiframe:
         part["dt_ns"] = (part["t_ns"] - k * FRAME_NS).astype(np.int32)
         parts.append(part)
     merged = {name: np.concatenate([part[name] for part in parts]) for name in COLUMNS}
-    return Multiframe(k, EPOCH_NS + k * FRAME_NS, FRAME_NS, **merged)  # type: ignore[arg-type]
+    return Multiframe(k, epoch_ns + k * FRAME_NS, FRAME_NS, **merged)  # type: ignore[arg-type]

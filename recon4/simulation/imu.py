@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from recon4.geometry.se3 import SE3, Array
+from recon4.geometry.se3 import Array
+from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
 from recon4.simulation.walk import Walk
 
@@ -44,12 +45,13 @@ class ImuModel:
 
 
 def simulate_imu(
-    walk: Walk, T_body_imu: SE3, model: ImuModel, *, epoch_ns: int, rng: np.random.Generator
+    walk: Walk, rig: Rig, model: ImuModel, *, epoch_ns: int, rng: np.random.Generator
 ) -> ImuSamples:
     """Specific force and angular rate at 200 Hz over the whole walk.
 
     With the IMU at ``l`` in the body, ``f = R_imu_map (a + α × l + ω × (ω × l) - g)``.
     """
+    T_body_imu = rig.T_body_imu
     period_ns = 1_000_000_000 // IMU_RATE_HZ
     t_ns = np.arange(int(walk.seconds * IMU_RATE_HZ) + 1, dtype=np.int64) * period_ns
     t_s = 1e-9 * t_ns
@@ -69,7 +71,8 @@ def simulate_imu(
     accel += _errors(
         rng, len(t_ns), model.accel_noise_m_s2_hz, model.accel_bias_m_s2, model.accel_walk_m_s2
     )
-    return ImuSamples(epoch_ns + t_ns, gyro, accel)
+    offset_ns = round(1e9 * rig.imu_time_offset_s)
+    return ImuSamples(epoch_ns + t_ns - offset_ns, gyro, accel)
 
 
 def _errors(  # noqa: PLR0917 - one call a kind of sensor, three numbers each

@@ -11,25 +11,21 @@ from recon4.geometry.se3 import Array
 from recon4.kernels.simulation import hits_carrier, make_rays, measure
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times
+from recon4.recording.velodyne_models import BLOCKS, MODELS
 from recon4.simulation.mesh import GLASS, Mesh
 from recon4.simulation.raycast import Scene
 from recon4.simulation.walk import Walk
 
-LASER_NS = 2_304
-"""From one laser of a firing sequence to the next [ns] (VLP-16 user manual, figure 9-1)."""
-SEQUENCE_NS = 55_296
-"""From one firing sequence of 16 lasers to the next [ns]."""
-SEQUENCES = 24
+_VLP16 = MODELS["VLP-16"]
+LASER_NS = round(1e9 * _VLP16.laser_time_s[1])
+"""From one laser of a firing sequence to the next [ns]."""
+SEQUENCE_NS = round(1e9 * _VLP16.sequence_s)
+"""From one firing sequence to the next [ns]."""
+SEQUENCES = BLOCKS * _VLP16.sequences_per_block
 """Firing sequences in a packet."""
 PACKET_NS = SEQUENCES * SEQUENCE_NS
-LASERS = 16
-ELEVATION_DEG = np.array([-15, 1, -13, 3, -11, 5, -9, 7, -7, 9, -5, 11, -3, 13, -1, 15], float)
-"""Of each laser in the order of firing."""
-HEIGHT_M = 1e-3 * np.array(
-    [11.2, -0.7, 9.7, -2.2, 8.1, -3.7, 6.6, -5.1, 5.1, -6.6, 3.7, -8.1, 2.2, -9.7, 0.7, -11.2]
-)
-"""Where each beam leaves the spin axis above the sensor's origin [m] (user manual, table 9-1)."""
-RESOLUTION_M = 0.002
+LASERS = _VLP16.lasers
+RESOLUTION_M = _VLP16.distance_unit_m
 CARRIER = np.array([0.24, 0.0, 0.21, -1.5, 0.12])
 """The person: x, y, radius, bottom and top of an upright cylinder in the body [m]."""
 
@@ -135,8 +131,8 @@ class Lidar:
         t_s = 1e-9 * t_ns.ravel()
         shot = np.empty((count, 5))
         shot[:, 0] = self.azimuth_rad + 2.0 * np.pi * self.turn_rate_hz * t_s
-        shot[:, 1] = np.tile(np.deg2rad(ELEVATION_DEG), count // LASERS)
-        shot[:, 2] = np.tile(HEIGHT_M, count // LASERS)
+        shot[:, 1] = np.tile(_VLP16.elevation_rad, count // LASERS)
+        shot[:, 2] = np.tile(_VLP16.height_m, count // LASERS)
         half = 0.5 * self.model.divergence_rad
         shot[:, 3:] = rng.uniform(-half, half, (count, 2))
         mount = self.sensor.T_body_sensor

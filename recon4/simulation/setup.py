@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from recon4.errors import ConfigError
-from recon4.model.rig import Rig
+from recon4.model.rig import Rig, load_rig
 from recon4.simulation.gait import plan_walk
+from recon4.simulation.gnss import GnssModel
 from recon4.simulation.imu import ImuModel
 from recon4.simulation.lidar import Lidar, LidarModel, Surroundings
 from recon4.simulation.raycast import Scene
@@ -26,11 +27,12 @@ class Models:
 
     lidar: LidarModel = LidarModel()
     imu: ImuModel = ImuModel()
+    gnss: GnssModel = GnssModel()
 
     @staticmethod
     def perfect() -> Models:
         """Sensors without errors."""
-        return Models(lidar=LidarModel.perfect(), imu=ImuModel.perfect())
+        return Models(lidar=LidarModel.perfect(), imu=ImuModel.perfect(), gnss=GnssModel.perfect())
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,31 +46,71 @@ class Setup:
     lidars: tuple[Lidar, ...]
     surroundings: Surroundings
     seed: int
+    epoch_ns: int
+    """UTC of the first moment [ns]."""
 
     def rng(self, *purpose: int) -> np.random.Generator:
         """A generator of its own for each purpose, so that parts can be left out or reordered."""
         return np.random.default_rng([self.seed, *purpose])
 
 
-def prepare(world: str, *, seconds: float, seed: int, rig: Rig, models: Models) -> Setup:
+def prepare(
+    world: str,
+    *,
+    seconds: float,
+    seed: int,
+    rig: Rig | None = None,
+    models: Models | None = None,
+    epoch_ns: int = EPOCH_NS,
+) -> Setup:
     """Build a world, plan the walk and mount the sensors.
 
+    Args:
+        world: One of `recon4.simulation.worlds.WORLDS`.
+        seconds: Length of the walk, at least 5; rounded to 20 ms.
+        seed: Draws the walk and all noise.
+        rig: VLP-16s and their mounting; None = 4RECON. Addresses and topics that are
+            missing are filled in.
+        models: Errors of the sensors; None = those of the real ones.
+        epoch_ns: UTC of the first moment [ns].
+
     Raises:
-        ConfigError: If there is no such world, the walk is shorter than 5 s or the rig has a
-            sensor other than a VLP-16.
+        ConfigError: If there is no such world, the walk is shorter than 5 s, the seed is
+            negative or the rig has a sensor other than a VLP-16.
     """
-    if seconds < 5.0:
-        raise ConfigError(f"a walk takes at least 5 s, got {seconds}")
+    if not 5.0 <= seconds < 1e6:
+        raise ConfigError(f"a walk takes 5 s to 1e6 s, got {seconds}")
     if seed < 0:
         raise ConfigError(f"the seed must not be negative, got {seed}")
-    for sensor in rig.sensors:
+    used, errors = _addressed(rig or load_rig("4recon")), models or Models()
+    for sensor in used.sensors:
         if sensor.model != "VLP-16":
             raise ConfigError(f"only VLP-16 can be simulated, got {sensor.model} ({sensor.name})")
     place = build_world(world)
-    walk = plan_walk(place, seconds=seconds, rng=np.random.default_rng([seed, 0]))
     lidars = tuple(
-        Lidar.drawn(sensor, models.lidar, np.random.default_rng([seed, 1, row]))
+        Lidar.drawn(sensor, errors.lidar, np.random.default_rng([seed, 1, row]))
+        for row, sensor in enumerate(used.sensors)
+    )
+    return Setup(
+        place,
+        plan_walk(place, seconds=seconds, rng=np.random.default_rng([seed, 0])),
+        used,
+        errors,
+        lidars,
+        Surroundings(place.mesh, Scene(place.mesh)),
+        seed,
+        epoch_ns,
+    )
+
+
+def _addressed(rig: Rig) -> Rig:
+    """A rig whose sensors can be told apart by address and by topic."""
+    sensors = tuple(
+        replace(
+            sensor,
+            address=sensor.address or f"192.168.1.{201 + row}",
+            topic=sensor.topic or f"/{sensor.name}/velodyne_packets",
+        )
         for row, sensor in enumerate(rig.sensors)
     )
-    surroundings = Surroundings(place.mesh, Scene(place.mesh))
-    return Setup(place, walk, rig, models, lidars, surroundings, seed)
+    return replace(rig, sensors=sensors)

@@ -1,0 +1,126 @@
+"""A simulated recording as a rosbag2: packets, IMU and GNSS as a ROS driver would publish them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.model.rig import Rig
+from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
+from recon4.model.trajectory import Times
+
+PACKETS_IN_SCAN = 76
+"""What the ROS driver collects into one message: a little more than a revolution."""
+_PACKET_TEXT = "builtin_interfaces/Time stamp\nuint8[1206] data\n"
+_SCAN_TEXT = "std_msgs/Header header\nvelodyne_msgs/VelodynePacket[] packets\n"
+_NO_FIX, _FIX, _AUGMENTED = -1, 0, 2
+
+
+@contextmanager
+def open_bag(folder: Path, rig: Rig) -> Iterator[BagWriter]:
+    """Create a bag; it is complete when the block ends."""
+    from rosbags.rosbag2 import StoragePlugin, Writer
+
+    with Writer(folder, version=9, storage_plugin=StoragePlugin.SQLITE3) as writer:
+        bag = BagWriter(writer, rig)
+        yield bag
+        bag.flush()
+
+
+class BagWriter:
+    """Writes messages of a few types; packets are collected to scans sensor by sensor."""
+
+    def __init__(self, writer: Any, rig: Rig) -> None:
+        from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+        self._writer = writer
+        self._rig = rig
+        self._store = get_typestore(Stores.ROS2_HUMBLE)
+        self._store.register(get_types_from_msg(_PACKET_TEXT, "velodyne_msgs/msg/VelodynePacket"))
+        self._store.register(get_types_from_msg(_SCAN_TEXT, "velodyne_msgs/msg/VelodyneScan"))
+        self._scans = [
+            self._connect(sensor.topic, "velodyne_msgs/msg/VelodyneScan") for sensor in rig.sensors
+        ]
+        self._waiting: list[list[Any]] = [[] for _ in rig.sensors]
+        self._connections: dict[str, Any] = {}
+
+    def packets(self, row: int, t_ns: Times, payloads: NDArray[np.uint8]) -> None:
+        """Append packets of a sensor, times of arrival (N,) and payloads (N, 1206)."""
+        packet = self._store.types["velodyne_msgs/msg/VelodynePacket"]
+        for t, data in zip(t_ns, payloads, strict=True):
+            self._waiting[row].append(packet(stamp=self._time(int(t)), data=data))
+            if len(self._waiting[row]) == PACKETS_IN_SCAN:
+                self._write_scan(row)
+
+    def imu(self, samples: ImuSamples) -> None:
+        """Append IMU samples on ``/imu/data``."""
+        types = self._store.types
+        vector, turn = types["geometry_msgs/msg/Vector3"], types["geometry_msgs/msg/Quaternion"]
+        unknown = np.zeros(9)
+        for t, gyro, accel in zip(
+            samples.t_ns, samples.gyro_rad_s, samples.accel_m_s2, strict=True
+        ):
+            message = types["sensor_msgs/msg/Imu"](
+                header=self._header(int(t), "imu"),
+                orientation=turn(x=0.0, y=0.0, z=0.0, w=1.0),
+                orientation_covariance=np.array([-1.0, *unknown[1:]]),
+                angular_velocity=vector(*(float(v) for v in gyro)),
+                angular_velocity_covariance=unknown,
+                linear_acceleration=vector(*(float(v) for v in accel)),
+                linear_acceleration_covariance=unknown,
+            )
+            self._write("/imu/data", "sensor_msgs/msg/Imu", int(t), message)
+
+    def gnss(self, samples: GnssSamples) -> None:
+        """Append positions on ``/gnss/fix``."""
+        types = self._store.types
+        status, service = types["sensor_msgs/msg/NavSatStatus"], 1
+        levels = {GnssQuality.INVALID: _NO_FIX, GnssQuality.SINGLE: _FIX}
+        for k, t in enumerate(samples.t_ns):
+            level = levels.get(GnssQuality(int(samples.quality[k])), _AUGMENTED)
+            message = types["sensor_msgs/msg/NavSatFix"](
+                header=self._header(int(t), "gnss"),
+                status=status(status=level, service=service),
+                latitude=float(np.rad2deg(samples.lat_rad[k])),
+                longitude=float(np.rad2deg(samples.lon_rad[k])),
+                altitude=float(samples.height_m[k]),
+                position_covariance=np.diag(samples.sd_enu_m[k] ** 2).ravel(),
+                position_covariance_type=2,
+            )
+            self._write("/gnss/fix", "sensor_msgs/msg/NavSatFix", int(t), message)
+
+    def flush(self) -> None:
+        """Write the last scans, which are shorter than the others."""
+        for row, waiting in enumerate(self._waiting):
+            if waiting:
+                self._write_scan(row)
+
+    def _write_scan(self, row: int) -> None:
+        packets, self._waiting[row] = self._waiting[row], []
+        last = packets[-1].stamp
+        t_ns = last.sec * 1_000_000_000 + last.nanosec
+        scan = self._store.types["velodyne_msgs/msg/VelodyneScan"](
+            header=self._header(t_ns, self._rig.sensors[row].name), packets=packets
+        )
+        data = self._store.serialize_cdr(scan, "velodyne_msgs/msg/VelodyneScan")
+        self._writer.write(self._scans[row], t_ns, data)
+
+    def _write(self, topic: str, kind: str, t_ns: int, message: Any) -> None:
+        if topic not in self._connections:
+            self._connections[topic] = self._connect(topic, kind)
+        self._writer.write(self._connections[topic], t_ns, self._store.serialize_cdr(message, kind))
+
+    def _connect(self, topic: str, kind: str) -> Any:
+        return self._writer.add_connection(topic, kind, typestore=self._store)
+
+    def _time(self, t_ns: int) -> Any:
+        seconds, nanoseconds = divmod(t_ns, 1_000_000_000)
+        return self._store.types["builtin_interfaces/msg/Time"](sec=seconds, nanosec=nanoseconds)
+
+    def _header(self, t_ns: int, frame: str) -> Any:
+        return self._store.types["std_msgs/msg/Header"](stamp=self._time(t_ns), frame_id=frame)
