@@ -1,0 +1,105 @@
+"""What intensity depends on, before and after normalization (V Fig. 2.13)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from recon4.geometry.se3 import Array
+from recon4.intensity.table import IntensityTable
+from recon4.store.arrays import load_record, save_record
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Diagnostics:
+    """Count, mean and deviation of intensity by channel, by range and by incidence angle.
+
+    Channel ``c`` is beam ``c % rings`` of sensor ``c // rings``. Bins without points hold NaN.
+    They are made of multiframes the table was not learned from; the clamp is not applied.
+    """
+
+    rings: Array
+    """Beams a sensor, ()."""
+    range_m: Array
+    """Middle of each bin [m], (R,)."""
+    incidence_deg: Array
+    """Middle of each bin [deg], (I,)."""
+    channel_count: Array
+    channel_before: Array
+    """Mean and deviation of raw intensity by channel, (2, C)."""
+    channel_after: Array
+    range_count: Array
+    range_before: Array
+    """Mean and deviation of raw intensity by range, (2, R)."""
+    range_after: Array
+    incidence_count: Array
+    incidence_before: Array
+    """Mean and deviation of raw intensity by incidence, (2, I)."""
+    incidence_after: Array
+    all_before: Array
+    """Mean and deviation over all points, (2,)."""
+    all_after: Array
+
+    def save(self, path: Path) -> None:
+        """Write ``diagnostics.npz``."""
+        save_record(path, self)
+
+    @staticmethod
+    def load(path: Path) -> Diagnostics:
+        """Read what `save` wrote.
+
+        Raises:
+            StoreError: If the file is missing or damaged.
+        """
+        return load_record(path, Diagnostics)
+
+
+def spread(count: Array, curve: Array, *, min_count: int = 1) -> float:
+    """Largest minus smallest mean of a dependency curve (2, N), sparse bins left out."""
+    means = curve[0, count >= min_count]
+    return float(means.max() - means.min()) if len(means) else 0.0
+
+
+def diagnose(table: IntensityTable, sums: Array) -> Diagnostics:
+    """Dependency curves of some points under a table.
+
+    Args:
+        table: What normalizes.
+        sums: Count, sum and sum of squares of each bin's raw intensities, (S, B, I, R, 3).
+    """
+    after = _normalized_sums(table, sums)
+    curves: dict[str, Array] = {}
+    for name, axes in {"channel": (2, 3), "range": (0, 1, 2), "incidence": (0, 1, 3)}.items():
+        marginal = sums.sum(axis=axes).reshape(-1, 3)
+        if name == "incidence":
+            marginal = marginal[:-1]
+        normalized = after.sum(axis=axes).reshape(-1, 3)[: len(marginal)]
+        curves[f"{name}_count"] = marginal[:, 0]
+        curves[f"{name}_before"], curves[f"{name}_after"] = _curve(marginal), _curve(normalized)
+    _, rings, incidences, ranges, _ = sums.shape
+    return Diagnostics(
+        rings=np.array(float(rings)),
+        range_m=(np.arange(ranges) + 0.5) * table.range_bin_m,
+        incidence_deg=np.rad2deg((np.arange(incidences - 1) + 0.5) * table.incidence_bin_rad),
+        all_before=_curve(sums.sum(axis=(0, 1, 2, 3))[None])[:, 0],
+        all_after=_curve(after.sum(axis=(0, 1, 2, 3))[None])[:, 0],
+        **curves,
+    )
+
+
+def _normalized_sums(table: IntensityTable, sums: Array) -> Array:
+    """Sums of ``g x + o`` from the sums of ``x``: normalization is linear inside a bin."""
+    g, o = table.gain.astype(np.float64), table.offset.astype(np.float64)
+    count, first, second = sums[..., 0], sums[..., 1], sums[..., 2]
+    return np.stack(
+        [count, g * first + o * count, g**2 * second + 2.0 * g * o * first + o**2 * count], axis=-1
+    )
+
+
+def _curve(sums: Array) -> Array:
+    """Mean and deviation, NaN without points, (N, 3) -> (2, N)."""
+    count = np.where(sums[:, 0] > 0, sums[:, 0], np.nan)
+    mean = sums[:, 1] / count
+    return np.stack([mean, np.sqrt(np.maximum(sums[:, 2] / count - mean**2, 0.0))])

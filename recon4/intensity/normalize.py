@@ -1,0 +1,140 @@
+"""The stage ``intensity``: learn the table from samples of the walk, and show what it does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import Array
+from recon4.intensity.diagnostics import Diagnostics, diagnose
+from recon4.intensity.table import IntensityTable
+from recon4.kernels.intensity import accumulate
+from recon4.kernels.voxels import face_sensor
+from recon4.mapping.frames import Frames
+from recon4.mapping.normals import local_normals
+from recon4.mapping.place import place_with_origins
+from recon4.model.trajectory import Trajectory
+from recon4.progress import Progress, Silent, track
+from recon4.settings import IntensitySettings
+
+SAMPLES = 10
+"""Multiframes in a window."""
+STRIDE = 10
+"""Multiframes from one sample to the next: a window is 10 s long."""
+HELD_OUT = 5
+"""Every so many-th sample is not learned from; the diagnostics are made of these."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class IntensitySample:
+    """Points of which everything is known that their intensity depends on."""
+
+    intensity: NDArray[np.uint16]
+    sensor: NDArray[np.uint8]
+    ring: NDArray[np.uint8]
+    incidence_rad: NDArray[np.float32]
+    """NaN without a normal, (N,)."""
+    range_m: NDArray[np.float32]
+
+
+def learn_intensity(
+    frames: Frames,
+    trajectory: Trajectory,
+    *,
+    settings: IntensitySettings,
+    progress: Progress | None = None,
+) -> tuple[IntensityTable, Diagnostics]:
+    """The table of a walk, and what intensity depends on before and after it.
+
+    Some windows of ten seconds are sampled, ten multiframes each; normals come from the points of
+    a window together. Memory follows the window.
+
+    Args:
+        frames: The points in the frames of their sensors.
+        trajectory: ``T_map_body``, dense.
+        settings: Bins and how much is sampled.
+        progress: Who watches.
+
+    Raises:
+        ConfigError: If there are no points to learn from.
+        OutOfRange: If the trajectory does not cover the frames.
+    """
+    progress = progress or Silent()
+    windows = sample_windows(len(frames), settings.windows)
+    rings = 1 + max(
+        (int(frames[k].ring.max(initial=0)) for window in windows for k in window), default=0
+    )
+    learned, held_out = (_no_sums(len(frames.rig.sensors), rings, settings) for _ in range(2))
+    largest = 0
+    for window in track(windows, progress, what="learn intensities", unit="windows"):
+        for k, sample in enumerate(_sample(frames, trajectory, window, settings.normal_cell_m)):
+            largest = max(largest, int(sample.intensity.max(initial=0)))
+            add_sample(held_out if k % HELD_OUT == HELD_OUT - 1 else learned, sample, settings)
+    table = IntensityTable.of_sums(learned, settings=settings, largest=float(largest))
+    return table, diagnose(table, held_out if held_out[..., 0].any() else learned)
+
+
+def write_intensity(
+    frames: Frames,
+    trajectory: Trajectory,
+    out: Path,
+    *,
+    settings: IntensitySettings,
+    progress: Progress | None = None,
+) -> None:
+    """Write ``table.npz`` and ``diagnostics.npz``: the stage as the pipeline runs it."""
+    table, diagnostics = learn_intensity(frames, trajectory, settings=settings, progress=progress)
+    table.save(out / "table.npz")
+    diagnostics.save(out / "diagnostics.npz")
+
+
+def add_sample(sums: Array, sample: IntensitySample, settings: IntensitySettings) -> None:
+    """Add points to the sums of their bins, ``(S, B, I, R, 3)``, in place."""
+    channel = sample.sensor.astype(np.int64) * sums.shape[1] + sample.ring
+    accumulate(
+        sample.intensity,
+        channel,
+        sample.incidence_rad,
+        sample.range_m,
+        float(np.deg2rad(settings.incidence_bin_deg)),
+        settings.range_bin_m,
+        sums.reshape(-1, *sums.shape[2:]),
+    )
+
+
+def sample_windows(frames: int, windows: int) -> list[list[int]]:
+    """Rows of the sampled multiframes, window by window, spread evenly over the walk."""
+    stride = max(1, min(STRIDE, frames // SAMPLES))
+    length = stride * SAMPLES
+    count = min(windows, -(-frames // length))
+    starts = np.linspace(0, max(0, frames - length), count).astype(int)
+    return [list(range(start, min(start + length, frames), stride)) for start in starts]
+
+
+def _no_sums(sensors: int, rings: int, settings: IntensitySettings) -> Array:
+    incidences = int(np.ceil(90.0 / settings.incidence_bin_deg)) + 1
+    ranges = int(np.ceil(settings.max_range_m / settings.range_bin_m))
+    return np.zeros((sensors, rings, incidences, ranges, 3))
+
+
+def _sample(
+    frames: Frames, trajectory: Trajectory, rows: list[int], cell_m: float
+) -> Iterator[IntensitySample]:
+    """The samples of one window, with normals from all of its points."""
+    enabled = np.array([sensor.enabled for sensor in frames.rig.sensors])
+    kept = [frames[k].take(np.flatnonzero(enabled[frames[k].sensor])) for k in rows]
+    placed = [place_with_origins(frame, trajectory, frames.rig) for frame in kept]
+    if not any(map(len, kept)):
+        return
+    xyz = np.concatenate([p.xyz_m for p in placed])
+    normals = local_normals((xyz - xyz[0]).astype(np.float32), cell_m).normal
+    ends = np.cumsum([len(frame) for frame in kept])
+    for frame, place, normal in zip(kept, placed, np.split(normals, ends[:-1]), strict=True):
+        range_m, incidence = np.empty((2, len(frame)), np.float32)
+        to_sensor = (place.origin_m - place.xyz_m).astype(np.float32)
+        face_sensor(np.ascontiguousarray(normal), to_sensor, range_m, incidence)
+        yield IntensitySample(frame.intensity, frame.sensor, frame.ring, incidence, range_m)

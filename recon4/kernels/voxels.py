@@ -1,0 +1,302 @@
+"""Hot loops of the map: points into tiles, one point a voxel.
+
+`recon4.mapping.records.RECORD` says how a point lies in a record of 32 bytes; a kernel gets that
+memory as arrays of several types, one row a record.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+PER_METER = 250.0
+"""Vectors to the sensor are stored as int16 in steps of 4 mm, so 131 m at most."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def choose(
+    xyz: Any,
+    origin: Any,
+    sensor: Any,
+    enabled: Any,
+    max_range_m: float,
+    out: Any,
+    low: Any,
+    high: Any,
+) -> int:
+    """Which points belong in the map: enabled sensor, near enough.
+
+    Args:
+        xyz: Points [m], float64 (N, 3).
+        origin: Positions of the sensor [m], float64 (N, 3).
+        sensor: uint8 (N,).
+        enabled: bool (S,).
+        max_range_m: Farther points are left out, and so are those that are not finite [m].
+        out: Receives the choice, bool (N,).
+        low: Receives the smallest coordinates of the chosen, float64 (3,).
+        high: Receives their largest coordinates, float64 (3,).
+
+    Returns:
+        How many were chosen.
+    """
+    count = 0
+    low[:] = np.inf
+    high[:] = -np.inf
+    for n in range(len(xyz)):
+        squared = 0.0
+        for d in range(3):
+            squared += (origin[n, d] - xyz[n, d]) ** 2
+        out[n] = enabled[sensor[n]] and squared <= max_range_m * max_range_m
+        if out[n]:
+            count += 1
+            for d in range(3):
+                low[d] = min(low[d], xyz[n, d])
+                high[d] = max(high[d], xyz[n, d])
+    return count
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def tile_spread(x: float, tile_m: float, halo_m: float) -> Any:
+    """Tile of a coordinate, and the first and last tile it touches with its halo."""
+    tile = np.int64(np.floor(x / tile_m))
+    inside = x - tile * tile_m
+    first = tile - 1 if inside < halo_m else tile
+    last = tile + 1 if inside >= tile_m - halo_m else tile
+    return tile, first, last
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def count_tiles(xyz: Any, chosen: Any, tile_m: float, halo_m: float, low: Any, counts: Any) -> None:
+    """Add to ``counts (I, J, K)`` how many records each tile of a box will get."""
+    for n in range(len(xyz)):
+        if not chosen[n]:
+            continue
+        _, i0, i1 = tile_spread(xyz[n, 0], tile_m, halo_m)
+        _, j0, j1 = tile_spread(xyz[n, 1], tile_m, halo_m)
+        _, k0, k1 = tile_spread(xyz[n, 2], tile_m, halo_m)
+        for i in range(i0, i1 + 1):
+            for j in range(j0, j1 + 1):
+                for k in range(k0, k1 + 1):
+                    counts[i - low[0], j - low[1], k - low[2]] += 1
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def fill_tiles(
+    xyz: Any,
+    origin: Any,
+    chosen: Any,
+    bytes_in: Any,
+    intensity: Any,
+    dt_ns: Any,
+    frame: int,
+    tile_m: float,
+    halo_m: float,
+    low: Any,
+    ends: Any,
+    f4: Any,
+    i4: Any,
+    i2: Any,
+    u1: Any,
+) -> None:
+    """Write the records, those of a tile behind each other.
+
+    Args:
+        xyz: Points in the map [m], float64 (N, 3).
+        origin: Positions of the sensor [m], float64 (N, 3).
+        chosen: Of `choose`, (N,).
+        bytes_in: Ring, sensor and echo, three arrays uint8 (N,).
+        intensity: uint16 (N,).
+        dt_ns: int32 (N,).
+        frame: Row of the multiframe.
+        tile_m: Edge of a tile [m].
+        halo_m: Points this near to a tile are written to it as well, marked as halo [m].
+        low: First tile of the box, (3,).
+        ends: Where the next record of each tile goes, int64 (I, J, K); counted up.
+        f4: The records as float32, (M, 8).
+        i4: The records as int32, (M, 8).
+        i2: The records as int16, (M, 16).
+        u1: The records as uint8, (M, 32).
+    """
+    for n in range(len(xyz)):
+        if not chosen[n]:
+            continue
+        ti, i0, i1 = tile_spread(xyz[n, 0], tile_m, halo_m)
+        tj, j0, j1 = tile_spread(xyz[n, 1], tile_m, halo_m)
+        tk, k0, k1 = tile_spread(xyz[n, 2], tile_m, halo_m)
+        for i in range(i0, i1 + 1):
+            for j in range(j0, j1 + 1):
+                for k in range(k0, k1 + 1):
+                    row = ends[i - low[0], j - low[1], k - low[2]]
+                    ends[i - low[0], j - low[1], k - low[2]] = row + 1
+                    f4[row, 0] = xyz[n, 0] - i * tile_m
+                    f4[row, 1] = xyz[n, 1] - j * tile_m
+                    f4[row, 2] = xyz[n, 2] - k * tile_m
+                    i4[row, 3] = frame
+                    i4[row, 4] = dt_ns[n]
+                    for d in range(3):
+                        i2[row, 10 + d] = np.rint(PER_METER * (origin[n, d] - xyz[n, d]))
+                    i2[row, 13] = intensity[n]
+                    for b in range(3):
+                        u1[row, 28 + b] = bytes_in[b][n]
+                    u1[row, 31] = not (i == ti and j == tj and k == tk)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def voxel_keys(
+    f4: Any, voxel_m: float, cell_voxels: int, side_cells: int, shift: int, out: Any
+) -> None:
+    """Cell and voxel of each record, with its row in the lower ``shift`` bits, int64 (N,).
+
+    Args:
+        f4: The records as float32, (N, 8).
+        voxel_m: Edge of a voxel [m].
+        cell_voxels: Voxels along a cell; the halo is one cell wide.
+        side_cells: Cells of tile and halo along an edge.
+        shift: Bits of the row.
+        out: Receives the keys.
+    """
+    for n in range(len(f4)):
+        cell: Any = np.int64(0)
+        inside: Any = np.int64(0)
+        for d in range(2, -1, -1):
+            v: Any = np.int64(np.floor(f4[n, d] / voxel_m)) + cell_voxels
+            v = min(max(v, 0), side_cells * cell_voxels - 1)
+            c = v // cell_voxels
+            cell = cell * side_cells + c
+            inside = inside * cell_voxels + (v - c * cell_voxels)
+        out[n] = ((cell * cell_voxels**3 + inside) << shift) | n
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def nearest_in_voxels(order: Any, shift: int, i2: Any, rows: Any) -> int:
+    """Row of the record with the shortest range in each voxel; of equal ones the first.
+
+    Args:
+        order: Sorted result of `voxel_keys`, (N,).
+        shift: As given to it.
+        i2: The records as int16, (N, 16).
+        rows: Receives the rows, voxel by voxel, int64 (N,).
+
+    Returns:
+        How many voxels there are.
+    """
+    mask = (np.int64(1) << shift) - 1
+    count = -1
+    best = np.int64(0)
+    voxel = np.int64(-1)
+    for n in range(len(order)):
+        row = order[n] & mask
+        x, y, z = np.int64(i2[row, 10]), np.int64(i2[row, 11]), np.int64(i2[row, 12])
+        squared = x * x + y * y + z * z
+        if order[n] >> shift != voxel:
+            voxel = order[n] >> shift
+            count += 1
+            best = squared
+            rows[count] = row
+        elif squared < best:
+            best = squared
+            rows[count] = row
+    return count + 1
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def seen_from_far(xyz: Any, range_m: Any, cell_m: float, ratio: float, keep: Any) -> None:
+    """Clear ``keep`` where the range is over ``ratio`` times the shortest in a coarse cell.
+
+    Args:
+        xyz: Points from the tile's origin [m], 0 or more, float32 (N, 3).
+        range_m: float32 (N,).
+        cell_m: Edge of a coarse cell [m].
+        ratio: Larger than 1.
+        keep: bool (N,); points with False neither count nor change.
+    """
+    size: Any = 1
+    for n in range(len(xyz)):
+        for d in range(3):
+            size = max(size, np.int64(xyz[n, d] / cell_m) + 1)
+    nearest = np.full((size, size, size), np.inf, np.float32)
+    for n in range(len(xyz)):
+        if keep[n]:
+            i, j, k = (
+                np.int64(xyz[n, 0] / cell_m),
+                np.int64(xyz[n, 1] / cell_m),
+                np.int64(xyz[n, 2] / cell_m),
+            )
+            nearest[i, j, k] = min(nearest[i, j, k], range_m[n])
+    for n in range(len(xyz)):
+        if keep[n]:
+            i, j, k = (
+                np.int64(xyz[n, 0] / cell_m),
+                np.int64(xyz[n, 1] / cell_m),
+                np.int64(xyz[n, 2] / cell_m),
+            )
+            keep[n] = range_m[n] <= ratio * nearest[i, j, k]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def face_sensor(normals: Any, to_sensor: Any, range_m: Any, incidence: Any) -> None:
+    """Turn normals towards the sensor, in place; range and incidence angle of each point.
+
+    Args:
+        normals: Unit normals or zeros, float32 (N, 3).
+        to_sensor: From the point to the sensor [m], float32 (N, 3).
+        range_m: Receives its length [m], float32 (N,).
+        incidence: Receives the angle to the normal [rad], 0..pi/2; NaN without a normal, (N,).
+    """
+    for n in range(len(normals)):
+        squared = np.float32(0.0)
+        dot = np.float32(0.0)
+        known = False
+        for d in range(3):
+            squared += to_sensor[n, d] * to_sensor[n, d]
+            dot += normals[n, d] * to_sensor[n, d]
+            known |= normals[n, d] != 0.0
+        range_m[n] = np.sqrt(squared)
+        incidence[n] = np.arccos(min(np.float32(1.0), abs(dot) / range_m[n])) if known else np.nan
+        if dot < 0.0:
+            for d in range(3):
+                normals[n, d] = -normals[n, d]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def unpack(
+    rows: Any,
+    f4: Any,
+    i4: Any,
+    i2: Any,
+    u1: Any,
+    frame_ns: Any,
+    xyz: Any,
+    intensity: Any,
+    small: Any,
+    frame: Any,
+    t_ns: Any,
+    to_sensor: Any,
+) -> None:
+    """Unpack some records into columns.
+
+    Args:
+        rows: Records wanted, in the order of the columns, (M,).
+        f4: The records as float32, (N, 8).
+        i4: The records as int32, (N, 8).
+        i2: The records as int16, (N, 16).
+        u1: The records as uint8, (N, 32).
+        frame_ns: Start of each multiframe [ns], int64 (F,).
+        xyz: float32 (M, 3).
+        intensity: uint16 (M,).
+        small: Ring, sensor, echo, three arrays uint8 (M,).
+        frame: uint32 (M,).
+        t_ns: int64 (M,).
+        to_sensor: float32 (M, 3).
+    """
+    for m in range(len(rows)):
+        n = rows[m]
+        for d in range(3):
+            xyz[m, d] = f4[n, d]
+            to_sensor[m, d] = i2[n, 10 + d] * np.float32(1.0 / PER_METER)
+            small[d][m] = u1[n, 28 + d]
+        intensity[m] = i2[n, 13]
+        frame[m] = i4[n, 3]
+        t_ns[m] = frame_ns[i4[n, 3]] + i4[n, 4]

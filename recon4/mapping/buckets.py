@@ -1,0 +1,81 @@
+"""Records of each tile collected on disk: written in bursts, thinned before each of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+
+from recon4.mapping.grid import Grid
+from recon4.mapping.records import RECORD, Records, Tile, in_voxel_order
+
+BURST = 6_000_000
+"""Records held in memory before they are thinned and written (192 MB)."""
+PART = 2_000_000
+"""Records of a tile read at once (64 MB)."""
+
+
+class Buckets:
+    """One file a tile in a folder; holds at most `BURST` records in memory."""
+
+    def __init__(self, folder: Path, grid: Grid, *, burst: int = BURST) -> None:
+        self._folder = folder
+        self._grid = grid
+        self._burst = burst
+        self._pending: dict[Tile, list[Records]] = {}
+        self._held = 0
+        self._tiles: set[Tile] = set()
+
+    def add(self, parts: dict[Tile, Records], pool: ThreadPoolExecutor) -> None:
+        """Take the records of a multiframe; write when enough have come together."""
+        for tile, records in parts.items():
+            self._pending.setdefault(tile, []).append(records)
+            self._held += len(records)
+        if self._held >= self._burst:
+            self.flush(pool)
+
+    def flush(self, pool: ThreadPoolExecutor) -> None:
+        """Thin what is held and write it."""
+        pending, self._pending, self._held = self._pending, {}, 0
+        for tile, records in zip(pending, pool.map(self._thinned, pending.values()), strict=True):
+            self._tiles.add(tile)
+            with self._path(tile).open("ab") as file:
+                file.write(records.data)
+
+    def tiles(self) -> list[Tile]:
+        """The tiles that have points, in a fixed order."""
+        return sorted(self._tiles)
+
+    def read(self, tile: Tile, *, part: int = PART) -> Records:
+        """All records of a tile in the order of their voxels, thinned.
+
+        Read and thinned part by part: memory follows what stays, not how often a place was seen.
+        """
+        kept: list[Records] = []
+        fresh, limit = 0, part
+        for records in self._parts(tile, part):
+            kept.append(records)
+            fresh += len(records)
+            if self._grid.thin and fresh >= limit:
+                kept = [in_voxel_order(np.concatenate(kept), self._grid)]
+                fresh, limit = 0, max(part, len(kept[0]))
+        records = kept[0] if len(kept) == 1 else np.concatenate(kept)
+        return in_voxel_order(records, self._grid)
+
+    def drop(self, tile: Tile) -> None:
+        """Remove the file of a tile that is done."""
+        self._path(tile).unlink()
+
+    def _thinned(self, parts: list[Records]) -> Records:
+        records = np.concatenate(parts)
+        return in_voxel_order(records, self._grid) if self._grid.thin else records
+
+    def _parts(self, tile: Tile, part: int) -> Iterator[Records]:
+        with self._path(tile).open("rb") as file:
+            while len(records := np.fromfile(file, RECORD, part)):
+                yield records
+
+    def _path(self, tile: Tile) -> Path:
+        return self._folder / "{}_{}_{}".format(*tile)

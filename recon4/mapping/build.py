@@ -1,0 +1,149 @@
+"""The stage ``map``: every point in its place, thinned, described, stored in tiles."""
+
+from __future__ import annotations
+
+from collections import Counter, deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TypeVar
+
+import numpy as np
+
+from recon4.intensity.table import IntensityTable
+from recon4.mapping.buckets import BURST, Buckets
+from recon4.mapping.frames import Frames
+from recon4.mapping.grid import Grid
+from recon4.mapping.place import place_with_origins
+from recon4.mapping.records import Records, Tile, split_into_tiles
+from recon4.mapping.tile import FIELDS, MadeTile, Recipe, make_tile
+from recon4.mapping.tiles import MapCrs, TileSet, TileWriter
+from recon4.model.trajectory import Trajectory
+from recon4.progress import Progress, Silent, track
+from recon4.settings import MapSettings
+
+WORKERS = 2
+"""Threads; the kernels do not hold Python's lock."""
+
+Item = TypeVar("Item")
+Made = TypeVar("Made")
+
+
+def build_map(
+    frames: Frames,
+    trajectory: Trajectory,
+    intensity: IntensityTable | None,
+    out: Path,
+    *,
+    settings: MapSettings,
+    crs: MapCrs | None = None,
+    progress: Progress | None = None,
+    burst: int = BURST,
+) -> TileSet:
+    """Write ``tiles/`` and ``tiles.json`` into a folder.
+
+    First every multiframe is placed and its points are dealt out to the tiles, on disk; then each
+    tile is thinned, cleaned and described on its own. Memory follows the largest tile, not the
+    walk.
+
+    Args:
+        frames: The points in the frames of their sensors.
+        trajectory: ``T_map_body``, dense.
+        intensity: Normalizes intensities; None = the map gets no normalized ones.
+        out: The stage's folder; needs room for 32 bytes a point placed.
+        settings: Of the map.
+        crs: Where the map lies, when that is known.
+        progress: Who watches.
+        burst: Points dealt out before a write; for tests.
+
+    Raises:
+        OutOfRange: If the trajectory does not cover the frames.
+        StoreError: If the folder cannot be written (`NoSpace` when the disk is full).
+    """
+    progress = progress or Silent()
+    grid = Grid.of(settings)
+    t_ns = np.array([frames[k].t_ns for k in range(len(frames))], dtype=np.int64)
+    recipe = Recipe(grid, settings, intensity, t_ns)
+    fields = [name for name in FIELDS if intensity or name != "intensity_normalized"]
+    with (
+        TemporaryDirectory(dir=out, prefix="buckets-") as folder,
+        ThreadPoolExecutor(WORKERS) as pool,
+        TileWriter(out, fields, tile_m=grid.tile_m) as writer,
+    ):
+        buckets = Buckets(Path(folder), grid, burst=burst)
+        _deal_out(frames, trajectory, buckets, settings=settings, pool=pool, progress=progress)
+        removed = _finish_tiles(buckets, recipe, writer, pool=pool, progress=progress)
+        writer.facts = {
+            "voxel_m": settings.voxel_m,
+            "crs": crs and {"wkt": crs.wkt, "origin_m": list(crs.origin_m)},
+            "sensors": [sensor.name for sensor in frames.rig.sensors],
+            "removed": dict(removed),
+        }
+    made = TileSet.open(out)
+    progress.event("map", points=len(made), removed=dict(removed))
+    return made
+
+
+def _deal_out(
+    frames: Frames,
+    trajectory: Trajectory,
+    buckets: Buckets,
+    *,
+    settings: MapSettings,
+    pool: ThreadPoolExecutor,
+    progress: Progress,
+) -> None:
+    grid, rig = Grid.of(settings), frames.rig
+    enabled = np.array([sensor.enabled for sensor in rig.sensors])
+
+    def split(k: int) -> dict[Tile, Records]:
+        placed = place_with_origins(frames[k], trajectory, rig)
+        return split_into_tiles(
+            frames[k], placed, grid, enabled=enabled, max_range_m=settings.max_range_m
+        )
+
+    parts = _in_order(pool, split, range(len(frames)))
+    for part in track(parts, progress, what="place points", unit="frames", total=len(frames)):
+        buckets.add(part, pool)
+    buckets.flush(pool)
+
+
+def _finish_tiles(
+    buckets: Buckets,
+    recipe: Recipe,
+    writer: TileWriter,
+    *,
+    pool: ThreadPoolExecutor,
+    progress: Progress,
+) -> Counter[str]:
+    removed: Counter[str] = Counter()
+
+    def make(tile: Tile) -> MadeTile:
+        made = make_tile(buckets.read(tile), recipe)
+        buckets.drop(tile)
+        return made
+
+    tiles = buckets.tiles()
+    made_tiles = zip(tiles, _in_order(pool, make, tiles), strict=True)
+    for tile, made in track(made_tiles, progress, what="map", unit="tiles", total=len(tiles)):
+        writer.append(tile, made.columns)
+        removed += made.removed
+    return removed
+
+
+def _in_order(
+    pool: ThreadPoolExecutor, work: Callable[[Item], Made], items: Iterable[Item]
+) -> Iterator[Made]:
+    """Results in the order of the items, at most one item a worker ahead."""
+    waiting: deque[Future[Made]] = deque()
+    try:
+        for item in items:
+            waiting.append(pool.submit(work, item))
+            if len(waiting) > WORKERS:
+                yield waiting.popleft().result()
+        while waiting:
+            yield waiting.popleft().result()
+    finally:
+        for future in waiting:
+            future.cancel()

@@ -1,0 +1,49 @@
+"""How space is cut: voxels make cells, cells make tiles, without a rest."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from recon4.settings import MapSettings
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """Edge lengths; every cell border is a voxel border and every tile border a cell border."""
+
+    voxel_m: float
+    """Edge of a voxel [m]. When all points are kept it only sorts them."""
+    cell_voxels: int
+    """Voxels along a cell."""
+    tile_cells: int
+    """Cells along a tile."""
+    thin: bool
+    """Whether one point a voxel is kept, or all."""
+
+    @staticmethod
+    def of(settings: MapSettings) -> Grid:
+        """The grid nearest to the settings: cells and tiles are rounded to multiples."""
+        voxel_m = settings.voxel_m or 0.01
+        cell_voxels = max(1, round(settings.normal_cell_m / voxel_m))
+        tile_cells = max(1, round(settings.tile_m / (cell_voxels * voxel_m)))
+        return Grid(voxel_m, cell_voxels, tile_cells, settings.voxel_m > 0.0)
+
+    @property
+    def cell_m(self) -> float:
+        """Edge of a cell; also the width of the halo around a tile [m]."""
+        return self.voxel_m * self.cell_voxels
+
+    @property
+    def tile_m(self) -> float:
+        """Edge of a tile [m]."""
+        return self.voxel_m * self.cell_voxels * self.tile_cells
+
+    @property
+    def side_cells(self) -> int:
+        """Cells along a tile with its halo."""
+        return self.tile_cells + 2
+
+    @property
+    def key_bits(self) -> int:
+        """Bits of the number of a voxel in a tile with its halo."""
+        return int((self.cell_voxels * self.side_cells) ** 3).bit_length()

@@ -1,0 +1,123 @@
+"""A point on its way into the map: 32 bytes, sorted into tiles, thinned voxel by voxel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.kernels.sorting import radix_sort
+from recon4.kernels.voxels import (
+    PER_METER,
+    choose,
+    count_tiles,
+    fill_tiles,
+    nearest_in_voxels,
+    voxel_keys,
+)
+from recon4.mapping.grid import Grid
+from recon4.mapping.place import Placed
+from recon4.model.multiframe import Multiframe
+
+RECORD = np.dtype(
+    [
+        ("xyz", "<f4", 3),  # from the tile's origin [m]
+        ("frame", "<u4"),  # row of the multiframe
+        ("dt_ns", "<i4"),
+        ("to_sensor", "<i2", 3),  # in steps of 1 / PER_METER
+        ("intensity", "<u2"),
+        ("ring", "|u1"),
+        ("sensor", "|u1"),
+        ("echo", "|u1"),
+        ("halo", "|u1"),  # 1 = belongs to a neighboring tile, here for the normals only
+    ]
+)
+Records = NDArray[np.void]
+Tile = tuple[int, int, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Views:
+    """The same records as arrays of plain types, for the kernels."""
+
+    f4: NDArray[np.float32]
+    i4: NDArray[np.int32]
+    i2: NDArray[np.int16]
+    u1: NDArray[np.uint8]
+
+    @staticmethod
+    def of(records: Records) -> Views:
+        """Views, (N, 8), (N, 8), (N, 16) and (N, 32)."""
+        n = len(records)
+        flat = np.ascontiguousarray(records).view(np.uint8).reshape(n, RECORD.itemsize)
+        return Views(flat.view(np.float32), flat.view(np.int32), flat.view(np.int16), flat)
+
+
+def split_into_tiles(
+    frame: Multiframe, placed: Placed, grid: Grid, *, enabled: NDArray[np.bool_], max_range_m: float
+) -> dict[Tile, Records]:
+    """Records of a multiframe's points, tile by tile, halos included."""
+    chosen = np.empty(len(frame), np.bool_)
+    least, most = np.empty(3), np.empty(3)
+    xyz, origin = placed.xyz_m, placed.origin_m
+    if not choose(xyz, origin, frame.sensor, enabled, max_range_m, chosen, least, most):
+        return {}
+    low = np.floor(least / grid.tile_m).astype(np.int64) - 1
+    high = np.floor(most / grid.tile_m).astype(np.int64) + 1
+    counts = np.zeros(high - low + 1, np.int64)
+    count_tiles(xyz, chosen, grid.tile_m, grid.cell_m, low, counts)
+    ends = np.cumsum(counts.ravel()).reshape(counts.shape)
+    starts = ends - counts
+    records = np.zeros(int(counts.sum()), RECORD)
+    views = Views.of(records)
+    fill_tiles(
+        xyz,
+        origin,
+        chosen,
+        (frame.ring, frame.sensor, frame.echo),
+        frame.intensity,
+        frame.dt_ns,
+        frame.frame_id,
+        grid.tile_m,
+        grid.cell_m,
+        low,
+        starts.copy(),
+        views.f4,
+        views.i4,
+        views.i2,
+        views.u1,
+    )
+    found = np.argwhere(counts)
+    return {
+        (int(i + low[0]), int(j + low[1]), int(k + low[2])): records[
+            starts[i, j, k] : ends[i, j, k]
+        ]
+        for i, j, k in found
+    }
+
+
+def in_voxel_order(records: Records, grid: Grid) -> Records:
+    """The records sorted by voxel and, when thinning, only the nearest of each voxel.
+
+    Thinning a part first, and the whole later, gives the same as thinning the whole at once.
+    """
+    n = len(records)
+    if n == 0:
+        return records
+    views = Views.of(records)
+    shift = n.bit_length()
+    order = np.empty(n, np.int64)
+    voxel_keys(views.f4, grid.voxel_m, grid.cell_voxels, grid.side_cells, shift, order)
+    spare = np.empty(n, np.int64)
+    order = radix_sort(order, shift, shift + grid.key_bits, spare)
+    if not grid.thin:
+        return np.take(records, order & ((1 << shift) - 1))
+    rows = np.empty(n, np.int64)
+    count = nearest_in_voxels(order, shift, views.i2, rows)
+    return np.take(records, rows[:count])
+
+
+def to_sensor_m(records: Records) -> NDArray[np.float32]:
+    """Vectors from the points to the sensor [m], (N, 3), to 2 mm."""
+    return records["to_sensor"].astype(np.float32) / np.float32(PER_METER)

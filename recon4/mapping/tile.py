@@ -1,0 +1,147 @@
+"""From the records of one tile to its columns in the map."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.intensity.table import IntensityTable
+from recon4.kernels.voxels import face_sensor, seen_from_far, unpack
+from recon4.mapping.grid import Grid
+from recon4.mapping.normals import local_normals
+from recon4.mapping.records import Records, Views, to_sensor_m
+from recon4.model.trajectory import Times
+from recon4.settings import MapSettings
+
+FIELDS: dict[str, tuple[str, int]] = {
+    "xyz": ("<f4", 3),
+    "intensity": ("<u2", 1),
+    "intensity_normalized": ("<f4", 1),
+    "ring": ("|u1", 1),
+    "sensor": ("|u1", 1),
+    "echo": ("|u1", 1),
+    "frame_id": ("<u4", 1),
+    "t_ns": ("<i8", 1),
+    "normal": ("<f2", 3),
+    "range_m": ("<f4", 1),
+    "incidence_rad": ("<f4", 1),
+}
+"""Name -> (dtype, width). ``intensity_normalized`` is there only when there was a table."""
+
+STRATA = 64
+"""A tile is stored as so many uniform samples of itself, one behind the other."""
+FAR_CELL_M = 1.0
+"""Size of the cubes of ``MapSettings.far_ratio`` [m]."""
+
+Columns = dict[str, NDArray[Any]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Recipe:
+    """What every tile is made with."""
+
+    grid: Grid
+    settings: MapSettings
+    intensity: IntensityTable | None
+    t_ns: Times
+    """Start of each multiframe [ns], (F,)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MadeTile:
+    """Columns of a tile in the order they are stored, and what was left out."""
+
+    columns: Columns
+    removed: Counter[str]
+
+
+def make_tile(records: Records, recipe: Recipe) -> MadeTile:
+    """Clean the records of a tile and describe what stays.
+
+    Args:
+        records: In the order of their voxels, thinned, with the halo.
+        recipe: How.
+    """
+    settings = recipe.settings
+    removed: Counter[str] = Counter()
+    if settings.far_ratio > 0.0:
+        records, removed["far"] = _without_far(records, settings.far_ratio)
+    normals = local_normals(np.ascontiguousarray(records["xyz"]), recipe.grid.cell_m)
+    own = records["halo"] == 0
+    lonely = own & (normals.support < settings.min_neighborhood)
+    removed["lonely"] = int(lonely.sum())
+    rows = progressive(np.flatnonzero(own & ~lonely))
+    return MadeTile(_columns(records, rows, normals.normal, recipe), removed)
+
+
+def _without_far(records: Records, ratio: float) -> tuple[Records, int]:
+    own = records["halo"] == 0
+    keep = own.copy()
+    range_m = np.linalg.norm(to_sensor_m(records), axis=1)
+    seen_from_far(np.ascontiguousarray(records["xyz"]), range_m, FAR_CELL_M, ratio, keep)
+    return np.compress(keep | ~own, records), int(own.sum() - keep.sum())
+
+
+def progressive(rows: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Reorder rows given in spatial order so that every prefix samples all of them evenly.
+
+    Stratum ``s`` holds every 64th row from the ``s``-th on, and the strata follow each other in
+    bit-reversed order, so that halves, quarters and eighths are regular samples too. Inside a
+    stratum the order stays spatial, which compresses well. `spatial_order` undoes it.
+    """
+    return rows[np.concatenate([np.arange(s, len(rows), STRATA) for s in _strata()])]
+
+
+def spatial_order(count: int) -> NDArray[np.intp]:
+    """Places of the points of a tile of ``count`` points in spatial order."""
+    inverse = np.empty(count, np.intp)
+    inverse[progressive(np.arange(count))] = np.arange(count)
+    return inverse
+
+
+def _strata() -> list[int]:
+    bits = STRATA.bit_length() - 1
+    return [int(f"{s:0{bits}b}"[::-1], 2) for s in range(STRATA)]
+
+
+def _columns(
+    records: Records, rows: NDArray[np.intp], normals: NDArray[np.float32], recipe: Recipe
+) -> Columns:
+    n = len(rows)
+    columns: Columns = {
+        name: np.empty((n, width) if width > 1 else n, dtype)
+        for name, (dtype, width) in FIELDS.items()
+        if name not in {"normal", "intensity_normalized"}
+    }
+    to_sensor = np.empty((n, 3), np.float32)
+    views = Views.of(records)
+    unpack(
+        rows,
+        views.f4,
+        views.i4,
+        views.i2,
+        views.u1,
+        recipe.t_ns,
+        columns["xyz"],
+        columns["intensity"],
+        (columns["ring"], columns["sensor"], columns["echo"]),
+        columns["frame_id"],
+        columns["t_ns"],
+        to_sensor,
+    )
+    normal = np.take(normals, rows, axis=0)
+    face_sensor(normal, to_sensor, columns["range_m"], columns["incidence_rad"])
+    columns["normal"] = normal.astype(np.float16)
+    if recipe.intensity is not None:
+        columns["intensity_normalized"] = recipe.intensity.apply(
+            columns["intensity"],
+            sensor=columns["sensor"],
+            ring=columns["ring"],
+            incidence_rad=columns["incidence_rad"],
+            range_m=columns["range_m"],
+        )
+    return columns

@@ -1,0 +1,252 @@
+"""The map on disk: one ``.npy`` file a field, tile behind tile, and ``tiles.json``.
+
+    tiles.json           what there is: fields, bounds, CRS, and rows and origin of each tile
+    tiles/<field>.npy    one row a point
+
+Rows ``start`` to ``stop`` belong to a tile; any first part of them is an even sample of the tile.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Any, BinaryIO, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import StoreError
+from recon4.geometry.se3 import Array
+from recon4.mapping.tile import FIELDS, Columns, spatial_order
+from recon4.store.atomic import raise_if_full, write_json
+
+FORMAT = 1
+_HEADER_BYTES = 128
+
+
+@dataclass(frozen=True, slots=True)
+class MapCrs:
+    """Where the map's frame lies on Earth."""
+
+    wkt: str
+    """The CRS as WKT."""
+    origin_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Coordinates of the map's origin in it [m]; the axes are parallel."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tile:
+    """One cube of the map."""
+
+    folder: Path
+    """Where the columns lie."""
+    fields: tuple[str, ...]
+    ijk: tuple[int, int, int]
+    """Its place among the tiles."""
+    origin_m: tuple[float, float, float]
+    """Its corner in the map [m]; ``xyz`` counts from there."""
+    start: int
+    stop: int
+    low_m: tuple[float, float, float]
+    """Smallest coordinates of its points in the map [m]."""
+    high_m: tuple[float, float, float]
+    """Largest coordinates of its points in the map [m]."""
+
+    def __len__(self) -> int:
+        return self.stop - self.start
+
+    def read(self, fields: Sequence[str], *, limit: int | None = None) -> Columns:
+        """Some fields, memory-mapped and read-only.
+
+        Args:
+            fields: Names of `FIELDS`.
+            limit: At most so many points, an even sample of the tile; None = all.
+
+        Raises:
+            StoreError: If the map does not have a field, or a file is damaged.
+        """
+        unknown = sorted(set(fields) - set(self.fields))
+        if unknown:
+            raise StoreError(f"the map has no field {unknown}; it has {list(self.fields)}")
+        count = len(self) if limit is None else min(limit, len(self))
+        return {name: _map_rows(self.folder, name, self.start, count) for name in fields}
+
+    def xyz_m(self, *, limit: int | None = None) -> Array:
+        """Points in the map [m], float64 (N, 3)."""
+        return self.read(["xyz"], limit=limit)["xyz"].astype(np.float64) + self.origin_m
+
+    def spatial_order(self) -> NDArray[np.intp]:
+        """Rows of the tile such that neighbors follow each other, (N,)."""
+        return spatial_order(len(self))
+
+
+@dataclass(frozen=True, slots=True)
+class TileSet:
+    """A finished map."""
+
+    tiles: tuple[Tile, ...]
+    fields: tuple[str, ...]
+    crs: MapCrs | None
+    facts: dict[str, Any]
+    """The rest of ``tiles.json``: ``points``, ``bounds_m``, ``tile_m``, ``voxel_m``, ``removed``."""
+
+    @staticmethod
+    def open(folder: Path) -> TileSet:
+        """Open the artifact of the stage ``map``.
+
+        Raises:
+            StoreError: If it is missing, damaged or of another version.
+        """
+        path = folder / "tiles.json"
+        try:
+            facts = json.loads(path.read_text("utf-8"))
+            if facts["format"] != FORMAT:
+                raise StoreError(f"{path.name}: expected format {FORMAT}, got {facts['format']}")
+            fields = tuple(str(name) for name in facts["fields"])
+            tiles = tuple(_tile(folder / "tiles", fields, row) for row in facts.pop("tiles"))
+            crs = facts["crs"] and MapCrs(facts["crs"]["wkt"], tuple(facts["crs"]["origin_m"]))
+            points = int(facts["points"])
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            raise StoreError(f"{path} is not the list of a map's tiles: {error!r}") from error
+        _check_columns(folder / "tiles", fields, points)
+        if points != sum(map(len, tiles)):
+            raise StoreError(f"{path.name}: {points} points, but the tiles do not add up to them")
+        return TileSet(tiles, fields, crs or None, facts)
+
+    def __len__(self) -> int:
+        return int(self.facts["points"])
+
+    def __iter__(self) -> Iterator[Tile]:
+        return iter(self.tiles)
+
+    @property
+    def bounds_m(self) -> tuple[Array, Array]:
+        """Smallest and largest coordinates in the map [m], (3,) each; NaN without points."""
+        if not self.tiles:
+            return np.full(3, np.nan), np.full(3, np.nan)
+        low = np.min([tile.low_m for tile in self.tiles], axis=0)
+        return low, np.max([tile.high_m for tile in self.tiles], axis=0)
+
+
+class TileWriter:
+    """Writes tiles behind each other; ``tiles.json`` comes last, when the block ends well."""
+
+    def __init__(self, folder: Path, fields: Sequence[str], *, tile_m: float) -> None:
+        self._folder = folder
+        self._fields = list(fields)
+        self._tile_m = tile_m
+        self._rows: list[dict[str, Any]] = []
+        self._points = 0
+        self._files: dict[str, BinaryIO] = {}
+        self.facts: dict[str, Any] = {}
+        """More to write into ``tiles.json``."""
+
+    def __enter__(self) -> Self:
+        (self._folder / "tiles").mkdir(parents=True)
+        for name in self._fields:
+            self._files[name] = (self._folder / "tiles" / f"{name}.npy").open("wb")
+            self._files[name].write(_header(name, 0))
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None
+    ) -> None:
+        try:
+            for name, file in self._files.items():
+                with file:
+                    file.seek(0)
+                    file.write(_header(name, self._points))
+        except OSError as failed:
+            raise_if_full(failed, self._folder)
+            raise StoreError(f"cannot write {self._folder}: {failed.strerror}") from failed
+        if kind is None:
+            self._write_list()
+
+    def append(self, ijk: tuple[int, int, int], columns: Columns) -> None:
+        """Write the points of one tile, in the order given; an empty tile is left out."""
+        count = len(columns["xyz"])
+        if count == 0:
+            return
+        for name in self._fields:
+            column = np.ascontiguousarray(columns[name], dtype=FIELDS[name][0])
+            assert column.shape == _shape(name, count), f"{name}: {column.shape}"
+            self._files[name].write(column.data)
+        origin = np.array(ijk) * self._tile_m
+        self._rows.append(
+            {
+                "ijk": list(ijk),
+                "origin_m": origin.tolist(),
+                "start": self._points,
+                "stop": self._points + count,
+                "low_m": (origin + columns["xyz"].min(axis=0)).tolist(),
+                "high_m": (origin + columns["xyz"].max(axis=0)).tolist(),
+            }
+        )
+        self._points += count
+
+    def _write_list(self) -> None:
+        rows = self._rows
+        bounds = [
+            np.min([row["low_m"] for row in rows], axis=0).tolist() if rows else None,
+            np.max([row["high_m"] for row in rows], axis=0).tolist() if rows else None,
+        ]
+        facts = {"format": FORMAT, "points": self._points, "bounds_m": bounds} | self.facts
+        facts |= {"tile_m": self._tile_m, "fields": self._fields, "tiles": rows}
+        write_json(self._folder / "tiles.json", facts)
+
+
+def _tile(folder: Path, fields: tuple[str, ...], row: dict[str, Any]) -> Tile:
+    return Tile(
+        folder,
+        fields,
+        tuple(row["ijk"]),
+        tuple(row["origin_m"]),
+        int(row["start"]),
+        int(row["stop"]),
+        tuple(row["low_m"]),
+        tuple(row["high_m"]),
+    )
+
+
+def _shape(name: str, rows: int) -> tuple[int, ...]:
+    width = FIELDS[name][1]
+    return (rows, width) if width > 1 else (rows,)
+
+
+def _header(name: str, rows: int) -> bytes:
+    """The header of a version 1.0 ``.npy`` file, always of the same size so it can be patched."""
+    shape = _shape(name, rows)
+    text = f"{{'descr': '{FIELDS[name][0]}', 'fortran_order': False, 'shape': {shape}, }}"
+    body = text.encode("latin1").ljust(_HEADER_BYTES - 11) + b"\n"
+    return b"\x93NUMPY\x01\x00" + len(body).to_bytes(2, "little") + body
+
+
+def _map_rows(folder: Path, name: str, start: int, count: int) -> NDArray[Any]:
+    dtype, width = np.dtype(FIELDS[name][0]), FIELDS[name][1]
+    if count == 0:
+        return np.empty(_shape(name, 0), dtype)
+    offset = _HEADER_BYTES + start * dtype.itemsize * width
+    try:
+        mapped = np.memmap(
+            folder / f"{name}.npy", dtype, mode="r", offset=offset, shape=_shape(name, count)
+        )
+    except (OSError, ValueError) as error:
+        raise StoreError(f"{folder.name}/{name}.npy cannot be read: {error}") from error
+    return mapped.view(np.ndarray)
+
+
+def _check_columns(folder: Path, fields: Sequence[str], points: int) -> None:
+    for name in fields:
+        if name not in FIELDS:
+            raise StoreError(f"tiles.json: unknown field {name!r}; known: {list(FIELDS)}")
+        path = folder / f"{name}.npy"
+        expected = _HEADER_BYTES + points * np.dtype(FIELDS[name][0]).itemsize * FIELDS[name][1]
+        found = path.stat().st_size if path.is_file() else -1
+        if found != expected:
+            raise StoreError(
+                f"{folder.name}/{name}.npy: expected {expected} bytes for {points} points, "
+                f"got {found if found >= 0 else 'no file'}"
+            )
