@@ -29,6 +29,9 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
+_INTERRUPTED = 130
+"""What shells give a program that Ctrl-C ended; typer turns the interrupt into this code."""
+
 PresetOption = Annotated[
     str, typer.Option("--preset", help="Start from: indoor, staircase, outdoor, thesis.")
 ]
@@ -133,19 +136,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
         )  # small matrices: more threads only get in each other's way
     given = None if arguments is None else list(arguments)
     try:
-        result = app(args=given, prog_name="recon4", standalone_mode=False)
+        code = app(args=given, prog_name="recon4", standalone_mode=False) or 0
     except (typer.Abort, KeyboardInterrupt):
-        _complain("interrupted; the same command resumes where it stopped")
-        return 130
+        code = _INTERRUPTED
     except Cancelled as stop:
         _complain(str(stop))
-        return 130
+        return _INTERRUPTED
     except Recon4Error as error:
         _complain(str(error))
         return 1
     except typer.TyperException as error:
         return _wrong_usage(error)
-    return result if isinstance(result, int) else 0
+    if code == _INTERRUPTED:
+        _complain("interrupted; the same command resumes where it stopped")
+    return int(code)
 
 
 def _wrong_usage(error: typer.TyperException) -> int:

@@ -1,0 +1,156 @@
+"""The command line: what it says, where it says it, and how it ends."""
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import recon4
+from recon4.cli import main
+from recon4.doctor import examine
+from recon4.settings import preset, to_json
+from tests.unit.store.small_pipeline import artifact_of, run_all
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(autouse=True)
+def keep_signals():
+    before = signal.getsignal(signal.SIGTERM)
+    yield
+    signal.signal(signal.SIGTERM, before)
+
+
+def test_help_answers_well_under_a_second():
+    began = time.perf_counter()
+    best = min(_seconds_of("--help") for _ in range(3))
+
+    assert best < 0.9
+    assert time.perf_counter() - began < 20
+
+
+def _seconds_of(argument: str) -> float:
+    began = time.perf_counter()
+    subprocess.run(
+        [sys.executable, "-m", "recon4", argument], check=True, capture_output=True, cwd=ROOT
+    )
+    return time.perf_counter() - began
+
+
+def test_the_version_is_said(capsys):
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out == f"recon4 {recon4.__version__}\n"
+
+
+def test_no_command_shows_the_help_and_is_wrong_usage(capsys):
+    assert main([]) == 2
+    assert "doctor" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["fly"], "No such command 'fly'"),
+        (["settings", "--loud"], "No such option: --loud"),
+        (["verify"], "Missing argument"),
+        (["settings", "--set", "map.voxel=1"], "no setting 'map.voxel'"),
+        (["settings", "--preset", "forest"], "no preset named 'forest'"),
+    ],
+)
+def test_wrong_usage_ends_with_2_and_says_what_is_wrong(capsys, arguments, message):
+    assert main(arguments) == 2
+
+    said = capsys.readouterr()
+    assert said.err.startswith("recon4: ")
+    assert message in said.err
+    assert "--help says what it takes" in said.err
+    assert said.out == ""
+
+
+def test_settings_as_json_are_those_in_force(capsys):
+    assert main(["settings", "--preset", "thesis", "--set", "map.voxel_m=0.25", "--json"]) == 0
+
+    found = json.loads(capsys.readouterr().out)
+    assert found["map"]["voxel_m"] == 0.25
+    assert found["registration"] == to_json(preset("thesis"))["registration"]
+
+
+def test_settings_for_people_mark_what_was_changed(capsys):
+    main(["settings", "--set", "map.voxel_m=0.25"])
+
+    lines = capsys.readouterr().out.splitlines()
+    (line,) = [line for line in lines if "map.voxel_m" in line]
+    assert line.startswith(" * map.voxel_m")
+    assert "0.25" in line
+    assert sum(line.startswith(" * ") for line in lines) == 1
+
+
+def test_verify_says_all_is_well(tmp_path, capsys):
+    run_all(tmp_path / "p")
+
+    assert main(["verify", str(tmp_path / "p")]) == 0
+    assert capsys.readouterr().out == "3 checked, 0 damaged\n"
+
+
+def test_verify_names_damage_and_ends_with_1(tmp_path, capsys):
+    runner = run_all(tmp_path / "p")
+    (artifact_of(tmp_path / "p", runner, "total").folder / "total.txt").write_text("?")
+
+    assert main(["verify", str(tmp_path / "p")]) == 1
+    assert "total.txt has another size" in capsys.readouterr().out
+
+
+def test_a_known_error_is_one_line_on_stderr_and_ends_with_1(tmp_path, capsys):
+    assert main(["verify", str(tmp_path)]) == 1
+
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err == f"recon4: {tmp_path} is not a recon4 project: it has no project.json\n"
+
+
+def test_the_doctor_looks_at_the_machine(tmp_path, capsys):
+    code = main(["doctor", str(tmp_path), "--json"])
+
+    checks = {check["what"]: check for check in json.loads(capsys.readouterr().out)}
+    assert {"recon4", "Python", "cores", "memory", "disk free", "gtsam"} <= set(checks)
+    assert code == (0 if all(check["ok"] for check in checks.values()) else 1)
+
+
+def test_the_doctor_says_what_to_do_about_what_is_missing(tmp_path, monkeypatch):
+    monkeypatch.setattr("recon4.doctor._PACKAGES", (("no-such-package", "flying"),))
+
+    check = examine(tmp_path)[-1]
+
+    assert not check.ok
+    assert check.advice == "needed for flying: pip install no-such-package"
+
+
+STUCK = """
+import sys, recon4.cli, recon4.store.audit
+def wait(*a, **k):
+    print("running", flush=True)
+    sys.stdin.readline()
+recon4.store.audit.audit = wait
+sys.exit(recon4.cli.main(["verify", "."]))
+"""
+
+
+@pytest.mark.parametrize("stop", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_command_ends_with_130_and_says_that_it_resumes(stop):
+    with subprocess.Popen(
+        [sys.executable, "-c", STUCK],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        cwd=ROOT,
+    ) as child:
+        assert child.stdout.readline() == b"running\n"
+        child.send_signal(stop)
+        _, err = child.communicate(timeout=20)
+
+    assert child.returncode == 130
+    assert err == b"recon4: interrupted; the same command resumes where it stopped\n"

@@ -1,0 +1,145 @@
+"""The architecture as a test: who may import whom, and where heavy packages live.
+
+The table in ``docs/architecture.md`` says the same in words.
+"""
+
+import ast
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+BASE = {"recon4.errors", "recon4.progress", "recon4.settings"}
+MODEL = BASE | {"recon4.geometry", "recon4.model"}
+STAGE = MODEL | {"recon4.kernels", "recon4.store"}
+
+MAY_IMPORT = {
+    "recon4/errors.py": set(),
+    "recon4/progress.py": {"recon4.errors"},
+    "recon4/settings.py": {"recon4.errors"},
+    "recon4/geometry": {"recon4.geometry"},
+    "recon4/model": MODEL,
+    "recon4/kernels": {"recon4.kernels"},
+    "recon4/store": MODEL | {"recon4.store"},
+    "recon4/recording": STAGE | {"recon4.recording"},
+    "recon4/registration": STAGE | {"recon4.registration"},
+    "recon4/pose_graph": STAGE | {"recon4.registration", "recon4.pose_graph"},
+    "recon4/semi_rigid": STAGE | {"recon4.registration", "recon4.pose_graph", "recon4.semi_rigid"},
+    "recon4/georeference": STAGE | {"recon4.pose_graph", "recon4.georeference"},
+    "recon4/intensity": STAGE | {"recon4.mapping", "recon4.intensity"},
+    "recon4/mapping": STAGE | {"recon4.intensity", "recon4.mapping"},
+    "recon4/export": STAGE | {"recon4.mapping", "recon4.pose_graph", "recon4.export"},
+    "recon4/evaluation": STAGE
+    | {"recon4.mapping", "recon4.export", "recon4.evaluation", "recon4.simulation"},
+    "recon4/report": {"recon4"},
+    "recon4/simulation": STAGE | {"recon4.recording", "recon4.export", "recon4.simulation"},
+    "recon4": {"recon4"},
+    "recon4/cli.py": {"recon4", "app"},
+    "app": {"app", "recon4"},
+}
+"""Place -> prefixes of our own modules it may import; the longest place that fits counts."""
+
+NOBODY_IMPORTS = {"recon4.cli": {"recon4/__main__.py"}, "recon4.pipeline": {"recon4/cli.py", "app"}}
+"""The two ends of the program, and who may call them."""
+
+ONLY_HERE = {
+    "gtsam": {"recon4/pose_graph/solve.py"},
+    "open3d": {"recon4/simulation/raycast.py"},
+    "laspy": {"recon4/export/laz.py"},
+    "viser": {"app/viewer/show.py", "app/viewer/panels.py"},
+    "matplotlib": {"recon4/report", "app/viewer/palette.py"},
+    "fastapi": {"app"},
+    "uvicorn": {"app"},
+    "typer": {"recon4/cli.py"},
+    "rich": {"recon4/terminal.py"},
+    "sqlite3": {"recon4/store", "recon4/recording", "app"},
+}
+"""Heavy or telling packages -> where alone they may be imported."""
+
+NEVER = {"pickle", "marshal", "shelve", "yaml", "cPickle", "dill", "cloudpickle"}
+"""Loading these from a file of unknown origin runs its code."""
+
+SOURCES = [
+    path.relative_to(ROOT) for top in ("recon4", "app") for path in (ROOT / top).rglob("*.py")
+]
+
+
+@cache
+def imported(path: Path) -> frozenset[str]:
+    """Modules a file imports anywhere in it; ``from x import y`` is ``x.y`` if that is a module."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse((ROOT / path).read_text("utf-8"))):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: relative import"
+            names |= {_module(node.module or "", alias.name) for alias in node.names}
+    return frozenset(names)
+
+
+def _module(package: str, name: str) -> str:
+    whole = ROOT.joinpath(*package.split("."), name)
+    return f"{package}.{name}" if whole.with_suffix(".py").exists() or whole.is_dir() else package
+
+
+def under(path: Path, places: set[str]) -> bool:
+    text = path.as_posix()
+    return any(text == place or text.startswith(f"{place}/") for place in places)
+
+
+def allowed(name: str, prefixes: set[str]) -> bool:
+    # The package itself holds nothing but its version.
+    return name == "recon4" or any(
+        name == prefix or name.startswith(f"{prefix}.") for prefix in prefixes
+    )
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=str)
+def test_imports_follow_the_layers(path):
+    layer = max((place for place in MAY_IMPORT if under(path, {place})), key=len)
+    ours = {name for name in imported(path) if name.split(".")[0] in {"recon4", "app", "web"}}
+
+    assert {name for name in ours if not allowed(name, MAY_IMPORT[layer])} == set()
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=str)
+def test_heavy_packages_stay_in_their_home(path):
+    used = {name.split(".")[0] for name in imported(path)} & ONLY_HERE.keys()
+
+    assert {package for package in used if not under(path, ONLY_HERE[package])} == set()
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=str)
+def test_the_ends_of_the_program_are_called_from_outside_only(path):
+    used = imported(path) & NOBODY_IMPORTS.keys()
+
+    assert {module for module in used if not under(path, NOBODY_IMPORTS[module])} == set()
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=str)
+def test_nothing_that_runs_code_from_files_is_imported(path):
+    assert {name for name in imported(path) if name.split(".")[0] in NEVER} == set()
+
+
+def test_the_command_line_starts_without_the_heavy_packages():
+    heavy = [
+        "numpy",
+        "scipy",
+        "numba",
+        "gtsam",
+        "open3d",
+        "matplotlib",
+        "viser",
+        "fastapi",
+        "rosbags",
+    ]
+    program = f"import sys, recon4.cli; print([n for n in {heavy} if n in sys.modules])"
+
+    found = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=ROOT
+    )
+
+    assert found.stdout == "[]\n"

@@ -1,0 +1,154 @@
+"""Settings: declared once, changed by text, refused in words."""
+
+import ast
+import inspect
+import typing
+from dataclasses import FrozenInstanceError, fields, is_dataclass
+from pathlib import Path
+
+import pytest
+
+from recon4 import settings as declared
+from recon4.errors import ConfigError
+from recon4.settings import PRESETS, Settings, canonical, override, preset, to_json
+from recon4.settings_help import describe_settings, differences, markdown
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_one_text_changes_one_setting():
+    changed = override(Settings(), ["map.voxel_m=0.05"])
+
+    assert differences(changed) == {"map.voxel_m": 0.05}
+
+
+def test_texts_are_applied_in_order_and_blanks_do_not_matter():
+    changed = override(Settings(), ["map.voxel_m = 0.05", " map.voxel_m=0.02 "])
+
+    assert changed.map.voxel_m == 0.02
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("graph.node_stride=3", 3),
+        ("graph.exhaustive=true", True),
+        ("graph.exhaustive=False", False),
+        ("graph.mode=10", "10"),
+        ("map.voxel_m=1e-2", 0.01),
+        ("gnss.crs=EPSG:5514+8357", "EPSG:5514+8357"),
+    ],
+)
+def test_every_kind_of_value_is_understood(text, value):
+    changed = override(Settings(), [text])
+
+    group, name = text.split("=")[0].split(".")
+    assert getattr(getattr(changed, group), name) == value
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("map.voxel_m", r"expected group\.field=value, got 'map\.voxel_m'"),
+        ("voxel_m=1", r"expected group\.field=value"),
+        ("maps.voxel_m=1", r"no setting group 'maps'; known: .*'map'"),
+        ("map.voxel=1", r"no setting 'map\.voxel'; known in map: .*'voxel_m'"),
+        ("map.voxel_m=thick", r"map\.voxel_m must be float, got 'thick'"),
+        ("graph.node_stride=2.5", r"graph\.node_stride must be int, got '2\.5'"),
+        ("graph.exhaustive=yes", r"graph\.exhaustive must be true or false, got 'yes'"),
+        (
+            "graph.mode=11",
+            r"graph\.mode must be one of 10, overlap, verification, beyond, got '11'",
+        ),
+        ("ingest.rate_hz=1000", "rate_hz must be 0 to 100, got 1000"),
+        ("__class__.x=1", "no setting group '__class__'"),
+    ],
+)
+def test_a_wrong_text_is_refused_with_what_was_expected(text, message):
+    with pytest.raises(ConfigError, match=message):
+        override(Settings(), [text])
+
+
+def test_an_unknown_preset_is_refused_with_those_there_are():
+    with pytest.raises(ConfigError, match="there are: indoor, outdoor, staircase, thesis"):
+        preset("forest")
+
+
+def test_the_thesis_preset_is_the_documents_algorithm():
+    thesis = preset("thesis")
+
+    assert thesis.registration.solver == "svd"
+    assert thesis.registration.max_iterations == 500
+    assert thesis.graph.mode == "verification"
+    assert not thesis.odometry.use_imu
+
+
+def test_settings_cannot_be_changed_behind_anyones_back():
+    with pytest.raises(FrozenInstanceError):
+        Settings().map.voxel_m = 1.0
+
+
+def test_equal_settings_have_one_text_and_different_ones_two():
+    a = override(Settings(), ["map.voxel_m=0.5", "graph.node_stride=2"])
+    b = override(Settings(), ["graph.node_stride=2", "map.voxel_m=0.5"])
+
+    assert canonical(a) == canonical(b)
+    assert canonical(a) != canonical(Settings())
+    assert to_json(a)["map"]["voxel_m"] == 0.5
+
+
+def test_every_numeric_setting_either_says_its_unit_or_explains_itself():
+    units = ("_m", "_s", "_hz", "_rad", "_deg", "_ns", "_m_s2", "_rad_s", "_bins")
+    silent = [
+        setting.path
+        for group in describe_settings()
+        for setting in group.settings
+        if not setting.text and not setting.name.endswith(units)
+    ]
+
+    assert silent == []
+
+
+def test_the_help_knows_every_setting_and_the_text_under_it():
+    found = {s.path: s for group in describe_settings() for s in group.settings}
+    all_paths = {
+        f"{group.name}.{f.name}"
+        for group in fields(Settings)
+        for f in fields(typing.get_type_hints(Settings)[group.name])
+    }
+
+    assert set(found) == all_paths
+    assert "``EPSG:5514+8357``. Empty = UTM zone" in found["gnss.crs"].text
+    assert found["map.voxel_m"].default == Settings().map.voxel_m
+    assert found["graph.mode"].kind == "`10`, `overlap`, `verification`, `beyond`"
+
+
+def test_no_text_stands_under_the_wrong_field():
+    source = ast.parse(inspect.getsource(declared))
+    for node in source.body:
+        if isinstance(node, ast.ClassDef) and is_dataclass(getattr(declared, node.name)):
+            strings = [
+                below
+                for below in node.body[1:]
+                if isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant)
+            ]
+            after = {
+                id(b)
+                for a, b in zip(node.body, node.body[1:], strict=False)
+                if isinstance(a, ast.AnnAssign)
+            }
+            assert all(id(string) in after for string in strings), node.name
+
+
+def test_the_page_about_settings_is_up_to_date():
+    page = (ROOT / "docs" / "settings.md").read_text("utf-8")
+
+    assert page == markdown(), "run `make docs`"
+
+
+def test_the_page_names_every_preset_and_what_it_changes():
+    page = markdown()
+
+    for name, settings in PRESETS.items():
+        assert f"| `{name}` |" in page
+        assert all(f"`{path}=" in page for path in differences(settings))

@@ -1,0 +1,80 @@
+"""What a person sees while a run goes on."""
+
+import io
+
+import pytest
+
+from recon4.progress import track
+from recon4.terminal import Bars, PlainLines, describe_event, describe_progress, watcher
+
+
+class Tty(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def test_a_line_has_percent_count_rate_with_unit_and_time_left():
+    line = describe_progress("odometry", 200, 800, unit="multiframes", seconds=5.0)
+
+    assert line.split() == (
+        [
+            "odometry",
+            "25",
+            "%",
+            "200/800",
+            "multiframes",
+            "40.0",
+            "multiframes/s",
+            "15",
+            "s",
+            "left",
+        ]
+    )
+
+
+def test_bytes_are_shown_in_units_a_person_reads():
+    line = describe_progress("hash", 1_500_000, 3_000_000_000, unit="B", seconds=1.0)
+
+    assert "2 MB/3.0 GB" in line
+    assert "2 MB/s" in line
+
+
+@pytest.mark.parametrize(("done", "total"), [(0, 0), (0, 10), (5, 0)])
+def test_an_unknown_total_or_no_progress_yet_is_no_division_by_zero(done, total):
+    assert describe_progress("x", done, total, unit="y", seconds=0.0)
+
+
+def test_not_at_a_terminal_there_are_plain_lines_one_when_each_piece_ends():
+    out = io.StringIO()
+
+    with watcher(out) as progress:
+        list(track(range(3), progress, what="reading", unit="packets"))
+        list(track(range(2), progress, what="matching", unit="pairs"))
+
+    first, second = out.getvalue().splitlines()
+    assert isinstance(progress, PlainLines)
+    assert first.startswith("reading")
+    assert "100 %  3/3  packets" in first
+    assert second.startswith("matching")
+
+
+def test_at_a_terminal_there_are_bars_with_the_same_figures():
+    out = Tty()
+
+    with watcher(out) as progress:
+        list(track(range(3), progress, what="reading", unit="packets"))
+        progress.event("stage", stage="frames", state="done", seconds=1.5)
+
+    assert isinstance(progress, Bars)
+    assert "reading" in out.getvalue()
+    assert "3/3" in out.getvalue()
+    assert "frames: done in 1.5 s" in out.getvalue()
+
+
+def test_a_person_hears_of_stages_and_damage_not_of_every_edge():
+    assert describe_event("stage", {"stage": "map", "state": "reused"}) == "map: already there"
+    assert describe_event("stage", {"stage": "map", "state": "running"}) == ""
+    assert describe_event("edge", {"i": 1, "j": 2}) == ""
+    assert describe_event("damaged", {"stage": "map"}) == (
+        "an artifact was damaged and is made again: stage map"
+    )
