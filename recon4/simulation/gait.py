@@ -124,7 +124,7 @@ def _body(line: _Timeline, t_s: Array, rng: np.random.Generator) -> Array:
     speed = np.hypot(steps[:, 0], steps[:, 1])
     climb = np.abs(steps[:, 2])
     turning = np.abs(np.gradient(yaw, t_s))
-    effort = _smooth(np.clip(np.maximum(speed + climb, 0.3 * turning) / SPEED_M_S, 0, 1.3), 0.3)
+    effort = _smooth(np.clip(np.maximum(speed + climb, 0.3 * turning) / SPEED_M_S, 0, 1.15), 0.3)
     # Step frequency 1.6 to 2.0 Hz; phase in steps.
     phase = np.cumsum((1.4 + 0.5 * effort) * (1 + 0.05 * _wander(rng, t_s, 2.0)) / _RATE_HZ)
     calm = _calm_ends(t_s)

@@ -153,7 +153,7 @@ def _look_around(row: int, column: int, rng: np.random.Generator) -> Waypoint:
     """A place in the free middle of a room where the person turns to look."""
     west, east, south, north = _room(row, column)
     x = 0.5 * (west + east) + rng.uniform(-0.5, 0.5)
-    depth = rng.uniform(3.2, 5.4)
+    depth = rng.uniform(3.4, 6.0)
     y = south + depth if row == 0 else north - depth
     return Waypoint(x, y, stop=True, look_deg=float(rng.choice([-180, -120, -90, 90, 120, 180])))
 

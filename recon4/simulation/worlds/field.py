@@ -1,0 +1,188 @@
+"""Open fields with a power line: little to hold on to, but GNSS is received.
+
+A path of some 500 m leads around under the wires; survey markers lie beside it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from recon4.geometry.se3 import Array
+from recon4.simulation.mesh import MeshBuilder
+from recon4.simulation.world import Marker, Waypoint, World
+from recon4.simulation.worlds.outdoors import (
+    CONCRETE,
+    GRASS,
+    bush,
+    follow,
+    ground_marker,
+    tree,
+    wire,
+)
+from recon4.simulation.worlds.walls import STEEL, WOOD
+
+CORNERS = 10
+_HALF_LENGTH_M, _HALF_WIDTH_M = 95.0, 62.0
+_CLEAR_M = 3.0
+_PYLONS = ((-110.0, 18.0), (-8.0, 10.0), (105.0, 2.0))
+_ARMS = ((15.0, 4.5), (19.0, 3.2))
+"""Height and half length of the cross-arms of a pylon [m]."""
+
+
+def build() -> World:
+    """The field; trees and bushes are drawn once and for all."""
+    builder = MeshBuilder()
+    rng = np.random.default_rng(1907)
+    _ground(builder, rng)
+    _power_line(builder)
+    _village_line(builder)
+    _barn(builder, -30.0, -40.0)
+    for grow, count in ((tree, 45), (bush, 60)):
+        for x, y in _free_places(rng, count):
+            grow(builder, x, y, ground=height, rng=rng)
+    markers = _markers(builder)
+    return World(
+        name="field",
+        mesh=builder.mesh(),
+        route=_route,
+        stops=CORNERS - 1,
+        markers=markers,
+        outdoors=True,
+    )
+
+
+def height(x_m: ArrayLike, y_m: ArrayLike) -> Array:
+    """Height of the ground [m]: gentle undulation and a ditch."""
+    x, y = np.asarray(x_m, dtype=np.float64), np.asarray(y_m, dtype=np.float64)
+    waves = 1.2 * np.sin(x / 37.0 + 0.4) + 0.9 * np.sin(y / 29.0 - x / 61.0)
+    small = 0.12 * np.sin(x / 5.3 + 1.0) * np.sin(y / 4.7) + 0.01 * x
+    ditch = -0.5 * np.exp(-(((y + 0.15 * x - 34.0) / 1.2) ** 2))
+    return np.asarray(waves + small + ditch)
+
+
+def _ground(builder: MeshBuilder, rng: np.random.Generator) -> None:
+    x, y = np.arange(-170.0, 170.1, 1.25), np.arange(-130.0, 130.1, 1.25)
+    grid_x, grid_y = np.meshgrid(x, y)
+    # Tufts: far corners of the mesh are a little off the smooth ground.
+    z = height(grid_x, grid_y) + 0.012 * rng.standard_normal(grid_x.shape)
+    strips = np.where((grid_y[1:, 1:] // 16) % 2 == 0, GRASS, 0.7 * GRASS)
+    builder.terrain(x, y, z, strips)
+
+
+def _power_line(builder: MeshBuilder) -> None:
+    """Lattice pylons and six wires."""
+    for x, y in _PYLONS:
+        _pylon(builder, x, y)
+    for (x0, y0), (x1, y1) in zip(_PYLONS[:-1], _PYLONS[1:], strict=True):
+        z0, z1 = float(height(x0, y0)), float(height(x1, y1))
+        for level, half in _ARMS:
+            for side in (-half, 0.55 * -half, half):
+                start = [x0, y0 + side, z0 + level - 0.6]
+                end = [x1, y1 + side, z1 + level - 0.6]
+                wire(builder, start, end, sag_m=3.5, radius_m=0.02)
+
+
+def _pylon(builder: MeshBuilder, x: float, y: float) -> None:
+    z = float(height(x, y))
+    levels = np.array([-0.5, 4.0, 8.0, 11.5, 15.0, 19.0, 22.0])
+    halves = np.interp(levels, [0.0, 15.0, 22.0], [1.8, 0.6, 0.15])
+    signs = [(-1, -1), (1, -1), (1, 1), (-1, 1)]
+    corner = [
+        [np.array([x + sx * h, y + sy * h, z + level]) for sx, sy in signs]
+        for level, h in zip(levels, halves, strict=True)
+    ]
+    for low, high in zip(corner[:-1], corner[1:], strict=True):
+        for k in range(4):
+            builder.tube(low[k], high[k], 0.06, STEEL, sides=4)
+            builder.tube(low[k], high[(k + 1) % 4], 0.03, STEEL, sides=4)
+            builder.tube(high[k], high[(k + 1) % 4], 0.03, STEEL, sides=4)
+    for level, half in _ARMS:
+        a, b = [x, y - half, z + level], [x, y + half, z + level]
+        builder.tube(a, b, 0.08, STEEL, sides=4)
+        builder.tube([x, y, z + level + 1.2], a, 0.04, STEEL, sides=4)
+        builder.tube([x, y, z + level + 1.2], b, 0.04, STEEL, sides=4)
+        for side in (-half, 0.55 * -half, half):
+            top = [x, y + side, z + level]
+            builder.tube(top, [x, y + side, z + level - 0.6], 0.07, 0.5, sides=6)
+
+
+def _village_line(builder: MeshBuilder) -> None:
+    """Wooden poles with two wires along the southern edge."""
+    places = [(-120.0 + 34.0 * k, -80.0 - 3.0 * np.sin(k)) for k in range(8)]
+    for x, y in places:
+        z = float(height(x, y))
+        builder.tube([x, y, z - 0.5], [x, y, z + 8.0], 0.13, WOOD, sides=8, end_radius_m=0.09)
+        builder.tube([x, y - 0.8, z + 7.6], [x, y + 0.8, z + 7.6], 0.05, WOOD, sides=4)
+    for (x0, y0), (x1, y1) in zip(places[:-1], places[1:], strict=True):
+        for side in (-0.7, 0.7):
+            start = [x0, y0 + side, float(height(x0, y0)) + 7.7]
+            end = [x1, y1 + side, float(height(x1, y1)) + 7.7]
+            wire(builder, start, end, sag_m=0.7, radius_m=0.012)
+
+
+def _barn(builder: MeshBuilder, x: float, y: float) -> None:
+    z = float(height(x, y))
+    builder.block([x, y, z - 0.6], [11.0, 7.0, 4.0], WOOD, yaw_rad=0.35)
+    builder.block([x, y, z + 3.4], [12.0, 8.0, 0.25], STEEL, yaw_rad=0.35)
+    builder.block([x + 9.0, y + 4.0, z - 0.2], [1.5, 1.5, 1.4], CONCRETE, yaw_rad=0.7)
+
+
+def _corner(k: int) -> Array:
+    """A corner of the path around; number 0 is where the walk starts."""
+    angle = 2.0 * np.pi * k / CORNERS - 0.5 * np.pi
+    squash = 1.0 + 0.12 * np.sin(3.0 * angle)
+    return np.array(
+        [_HALF_LENGTH_M * squash * np.cos(angle), _HALF_WIDTH_M * squash * np.sin(angle)]
+    )
+
+
+def _free_places(rng: np.random.Generator, count: int) -> list[tuple[float, float]]:
+    """Random places away from every way that a round can take, and from the pylons."""
+    corners = np.array([_corner(k) for k in range(CORNERS)])
+    ways = [(corners[k], corners[(k + 1) % CORNERS]) for k in range(CORNERS)]
+    ways += [(corners[k], corners[0]) for k in range(2, CORNERS - 1)]
+    ways += [(np.array(p), np.array(p) + 0.01) for p in (*_PYLONS, (-30.0, -40.0))]
+    places: list[tuple[float, float]] = []
+    while len(places) < count:
+        p = rng.uniform([-150.0, -110.0], [150.0, 110.0])
+        if (
+            min(_distance(p, a, b) for a, b in ways[: -len(_PYLONS) - 1]) > _CLEAR_M + 2.5
+            and min(_distance(p, a, b) for a, b in ways[-len(_PYLONS) - 1 :]) > 8.0
+        ):
+            places.append((float(p[0]), float(p[1])))
+    return places
+
+
+def _distance(p: Array, a: Array, b: Array) -> float:
+    """From a point to a segment [m]."""
+    along = np.clip((p - a) @ (b - a) / ((b - a) @ (b - a)), 0.0, 1.0)
+    return float(np.linalg.norm(p - a - along * (b - a)))
+
+
+def _markers(builder: MeshBuilder) -> tuple[Marker, ...]:
+    """Plates of half a meter, 1.6 m inside of the path's corners."""
+    markers = []
+    for k in range(CORNERS):
+        corner = _corner(k)
+        inside = corner * (1.0 - 1.8 / np.linalg.norm(corner)) + np.array([2.0, 0.0])
+        place = (float(inside[0]), float(inside[1]))
+        markers.append(ground_marker(builder, f"M{k + 1}", place, ground=height, size_m=0.5))
+    return tuple(markers)
+
+
+def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:
+    """From corner to corner, straight back from the last one; all around with 9 of them."""
+    order = list(range(1, stops + 1))
+    if rng.random() < 0.5:
+        order = [CORNERS - k for k in order]
+    start = Waypoint(*_corner(0))
+    way = [start]
+    for k in order:
+        x, y = _corner(k) + rng.uniform(-0.6, 0.6, 2)
+        if rng.random() < 0.3:
+            look = float(rng.choice([-90.0, 90.0]))
+            way.append(Waypoint(x, y, stop=True, look_deg=look))
+        else:
+            way.append(Waypoint(x, y))
+    return follow([*way, start], height, rng, stray_m=0.6)

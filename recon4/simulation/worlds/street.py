@@ -1,0 +1,264 @@
+"""A block of houses 60 m x 36 m with a street around it, on a slope of two percent.
+
+Distances ``d`` are measured outwards from the block's facades: sidewalk to 2.5 m, roadway to
+9.5 m, sidewalk to 12 m, then the facades of the houses opposite.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from recon4.geometry.se3 import Array
+from recon4.simulation.mesh import MeshBuilder
+from recon4.simulation.world import Marker, Waypoint, World
+from recon4.simulation.worlds.outdoors import (
+    ASPHALT,
+    CONCRETE,
+    car,
+    follow,
+    ground_marker,
+    pole,
+    sign,
+    tree,
+)
+from recon4.simulation.worlds.walls import PLASTER, STEEL, WOOD, Opening, wall
+
+LENGTH_M, WIDTH_M = 60.0, 36.0
+KERB_M, FAR_KERB_M, FAR_FACADE_M = 2.5, 9.5, 12.0
+NEAR_WALK_M, FAR_WALK_M = 1.2, 10.9
+_KERB_HEIGHT_M = 0.12
+_STOREY_M = 3.4
+_BOTTOM_M = -2.5
+"""Houses reach down to here, below the lowest ground."""
+
+
+def build() -> World:
+    """The block; houses, cars and trees are drawn once and for all."""
+    builder = MeshBuilder()
+    rng = np.random.default_rng(1907)
+    _ground(builder)
+    far = FAR_FACADE_M
+    for low, high, near in [(0.0, LENGTH_M, True), (-far, LENGTH_M + far, False)]:
+        out = 0.0 if near else far
+        _row(builder, (low, -out), high - low, along=0, facing=-1 if near else 1, rng=rng)
+        _row(builder, (low, WIDTH_M + out), high - low, along=0, facing=1 if near else -1, rng=rng)
+        span = WIDTH_M + 2 * out
+        _row(builder, (-out, -out), span, along=1, facing=-1 if near else 1, rng=rng)
+        _row(builder, (LENGTH_M + out, -out), span, along=1, facing=1 if near else -1, rng=rng)
+    for side in range(4):
+        _furnish_side(builder, side, rng)
+    markers = _markers(builder)
+    return World(
+        name="street",
+        mesh=builder.mesh(),
+        route=_route,
+        stops=8,
+        markers=markers,
+        outdoors=True,
+    )
+
+
+def height(x_m: ArrayLike, y_m: ArrayLike) -> Array:
+    """Height of the ground [m]: a slope, a slow wave, kerbs."""
+    x, y = np.asarray(x_m, dtype=np.float64), np.asarray(y_m, dtype=np.float64)
+    out = np.maximum(np.maximum(-x, x - LENGTH_M), np.maximum(-y, y - WIDTH_M))
+    road = (out > KERB_M) & (out < FAR_KERB_M)
+    slope = 0.02 * (x - 30.0) + 0.008 * (y + NEAR_WALK_M) + 0.15 * np.sin(x / 17.0) - 0.147
+    return np.asarray(slope - np.where(road, _KERB_HEIGHT_M, 0.0))
+
+
+def _ground(builder: MeshBuilder) -> None:
+    def lines(size_m: float) -> Array:
+        kerbs = [edge for d in (KERB_M, FAR_KERB_M) for edge in (-d, size_m + d)]
+        steps = np.array([[k - 0.01, k + 0.01] for k in kerbs]).ravel()
+        even = np.arange(-16.0, size_m + 16.1, 2.0)
+        return np.union1d(steps, even)
+
+    x, y = lines(LENGTH_M), lines(WIDTH_M)
+    grid_x, grid_y = np.meshgrid(x, y)
+    middle_x, middle_y = np.meshgrid((x[1:] + x[:-1]) / 2, (y[1:] + y[:-1]) / 2)
+    out = np.maximum(
+        np.maximum(-middle_x, middle_x - LENGTH_M), np.maximum(-middle_y, middle_y - WIDTH_M)
+    )
+    road = (out > KERB_M) & (out < FAR_KERB_M)
+    builder.terrain(x, y, height(grid_x, grid_y), np.where(road, ASPHALT, CONCRETE))
+
+
+def _row(
+    builder: MeshBuilder,
+    start: tuple[float, float],
+    length_m: float,
+    *,
+    along: int,
+    facing: int,
+    rng: np.random.Generator,
+) -> None:
+    """Houses in a row, each of its own width, height and rhythm of windows."""
+    at = 0.0
+    while at < length_m - 0.1:
+        width = rng.uniform(8.0, 14.0)
+        width = length_m - at if length_m - at - width < 6.0 else width
+        corner = np.array(start)
+        corner[along] += at
+        _house(builder, corner, width, along=along, facing=facing, rng=rng)
+        at += width
+
+
+def _house(
+    builder: MeshBuilder,
+    corner: Array,
+    width_m: float,
+    *,
+    along: int,
+    facing: int,
+    rng: np.random.Generator,
+) -> None:
+    """One facade: a door, windows with recesses, cornice, perhaps a balcony and a downpipe."""
+    across = 1 - along
+    corner = corner.copy()
+    corner[across] -= facing * (0.15 + rng.choice([0.0, 0.1, 0.3]))
+    end = corner.copy()
+    end[along] += width_m
+    storeys = int(rng.integers(2, 5))
+    base = float(height(*((corner + end) / 2)))
+    step = rng.uniform(2.0, 2.9)
+    places = np.arange(step / 2 + 0.3, width_m - step / 2, step)
+    door_at = rng.integers(len(places))
+    value = PLASTER * rng.uniform(0.5, 1.3)
+    wide, tall = rng.uniform(0.9, 1.3), rng.uniform(1.4, 1.9)
+    for storey in range(storeys):
+        bottom = _BOTTOM_M if storey == 0 else base + storey * _STOREY_M
+        top = base + (storey + 1) * _STOREY_M
+        zero = base + storey * _STOREY_M - bottom
+        holes = [
+            Opening(float(p), wide, zero + 1.0, zero + 1.0 + tall, glazed=True)
+            for k, p in enumerate(places)
+            if storey or k != door_at
+        ]
+        wall(
+            builder,
+            (float(corner[0]), float(corner[1])),
+            (float(end[0]), float(end[1])),
+            bottom_m=bottom,
+            height_m=top - bottom,
+            thickness_m=0.3,
+            openings=holes,
+            reflectivity=value,
+        )
+    reach = (corner[across] + facing * 0.13, corner[across] + facing * 0.45)
+    roof = base + storeys * _STOREY_M
+    _slab(builder, along, (corner[along], end[along]), reach, (roof - 0.25, roof), value)
+    door = corner[along] + places[door_at]
+    face = corner[across] + facing * 0.15
+    shut = (face - 0.02, face + 0.02)
+    _slab(builder, along, (door - 0.5, door + 0.5), shut, (base, base + 2.2), WOOD)
+    if rng.random() < 0.4:
+        floor = base + _STOREY_M
+        balcony = (door - 1.0, door + 1.0)
+        _slab(builder, along, balcony, (face, face + facing * 1.0), (floor, floor + 0.15), CONCRETE)
+        rail = (face + facing * 0.95, face + facing * 1.0)
+        _slab(builder, along, balcony, rail, (floor + 0.15, floor + 1.1), STEEL)
+    pipe = corner.copy()
+    pipe[along] += 0.2
+    pipe[across] = face + facing * 0.06
+    builder.tube([*pipe, base - 0.3], [*pipe, roof], 0.05, STEEL, sides=8)
+
+
+def _slab(
+    builder: MeshBuilder,
+    along: int,
+    span: tuple[float, float],
+    reach: tuple[float, float],
+    level: tuple[float, float],
+    reflectivity: float,
+) -> None:
+    """A box given by its extent along the facade, across it and in height."""
+    corners = np.empty((2, 3))
+    corners[:, along] = span
+    corners[:, 1 - along] = sorted(reach)
+    corners[:, 2] = level
+    builder.box(corners[0], corners[1], reflectivity)
+
+
+def _place(side: int, along_m: float, d_m: float) -> tuple[float, float]:
+    """A point ``along_m`` counter-clockwise on a side of the block, ``d_m`` outside of it."""
+    return (
+        (along_m, -d_m),
+        (LENGTH_M + d_m, along_m),
+        (LENGTH_M - along_m, WIDTH_M + d_m),
+        (-d_m, WIDTH_M - along_m),
+    )[side]
+
+
+def _length(side: int) -> float:
+    return LENGTH_M if side % 2 == 0 else WIDTH_M
+
+
+def _furnish_side(builder: MeshBuilder, side: int, rng: np.random.Generator) -> None:
+    """Parked cars, trees, lamps and signs; the middle of the side stays free to cross."""
+    length = _length(side)
+    yaw = 0.5 * np.pi * side
+    outward = np.array(_place(side, 0.0, 1.0)) - np.array(_place(side, 0.0, 0.0))
+    forward = np.array(_place(side, 1.0, 0.0)) - np.array(_place(side, 0.0, 0.0))
+    for d, turn in ((KERB_M + 1.15, 0.0), (FAR_KERB_M - 1.15, np.pi)):
+        for along in np.arange(3.0, length - 2.0, 6.0):
+            if rng.random() < 0.65 and abs(along - length / 2) > 5.0:
+                x, y = _place(side, along, d)
+                angle = yaw + turn + rng.uniform(-0.03, 0.03)
+                car(builder, x, y, yaw_rad=angle, ground=height, rng=rng)
+    for along in np.arange(7.0, length, 12.0):
+        if abs(along - length / 2) > 3.0:
+            x, y = _place(side, along, KERB_M - 0.35)
+            tree(builder, x, y, ground=height, rng=rng)
+        x, y = _place(side, along + 4.0, FAR_KERB_M + 0.4)
+        pole(builder, x, y, ground=height, arm=-1.6 * outward)
+    for along in (4.5, length - 4.5):
+        x, y = _place(side, along, FAR_KERB_M + 0.45)
+        sign(builder, x, y, ground=height, along=outward if along < 10 else forward)
+
+
+def _markers(builder: MeshBuilder) -> tuple[Marker, ...]:
+    places = [
+        _place(side, share * _length(side), 0.55) for side in range(4) for share in (0.3, 0.8)
+    ]
+    return tuple(
+        ground_marker(builder, f"M{k + 1}", place, ground=height, size_m=0.3)
+        for k, place in enumerate(places)
+    )
+
+
+def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:
+    """Around the block (8), or a way along it and back."""
+    middle = 0.5 * LENGTH_M
+    start = Waypoint(*_place(0, middle, NEAR_WALK_M))
+    if stops < 8:
+        reach = stops * 9.0
+        corners = [start]
+        for side, length in ((0, middle), (1, WIDTH_M + 2 * NEAR_WALK_M), (2, LENGTH_M)):
+            begin = middle if side == 0 else -NEAR_WALK_M
+            part = min(reach, length)
+            corners.append(Waypoint(*_place(side, begin + part, NEAR_WALK_M)))
+            reach -= part
+            if reach < 3.0:
+                break
+        turn = corners[-1]
+        corners[-1] = Waypoint(turn.x_m, turn.y_m, stop=True, look_deg=90.0)
+        return follow([*corners, *corners[-2::-1]], height, rng, stray_m=0.12)
+    corners = [start, *_around(rng), start]
+    return follow(corners if rng.random() < 0.5 else corners[::-1], height, rng, stray_m=0.12)
+
+
+def _around(rng: np.random.Generator) -> list[Waypoint]:
+    """Corners of a round; on some sides by the sidewalk opposite."""
+    lanes = [NEAR_WALK_M, *rng.choice([NEAR_WALK_M, FAR_WALK_M], 3, p=[0.7, 0.3]), NEAR_WALK_M]
+    way: list[Waypoint] = []
+    for side in range(4):
+        way.append(Waypoint(*_place(side, _length(side) + lanes[side], lanes[side])))
+        after = (side + 1) % 4
+        if lanes[side] != lanes[side + 1]:
+            # Along the next side in the old lane, and across the street in its middle.
+            cross = 0.5 * _length(after)
+            way.append(Waypoint(*_place(after, cross, lanes[side])))
+            way.append(Waypoint(*_place(after, cross, lanes[side + 1])))
+    return way
