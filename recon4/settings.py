@@ -201,9 +201,9 @@ class GraphSettings:
     """t_r of the acceptance limit ``median_range * t_r + t_a`` (A0 no. 12)."""
     error_absolute_m: float = 0.05
     """t_a of that limit [m]."""
-    odometry_sd_m: float = 0.005
+    odometry_sd_m: float = 0.003
     """Standard deviation of an odometry edge [m]."""
-    odometry_sd_rad: float = 0.0007
+    odometry_sd_rad: float = 0.0004
     """The same for its rotation [rad]."""
     loop_sd_m: float = 0.008
     """Smallest standard deviation of a registered edge [m]."""
@@ -265,6 +265,29 @@ class GnssSettings:
     crs: str = ""
     """EPSG code of the map's horizontal (and vertical) CRS, as ``EPSG:5514+8357``.
     Empty = UTM zone of the place with ellipsoidal heights."""
+    min_quality: Literal["single", "differential", "float", "fixed"] = "single"
+    """Fixes of lower quality are not used."""
+    correlation_s: float = 10.0
+    """Errors of fixes nearer in time than this are alike; so many count as one [s]. Larger leaves
+    more of the shape of the map to SLAM."""
+    min_sd_m: float = 0.01
+    """No fix is better than this, whatever it promises [m]."""
+    gate_m: float = 1.0
+    """A fix farther than this plus ``gate_relative`` from the track laid rigidly over all fixes is
+    an outlier [m]."""
+    gate_relative: float = 0.02
+    """Drift of SLAM that may hide in that distance, per metre of track."""
+    tilt_sd_rad: float = 0.005
+    """How well the levelled map is horizontal [rad]."""
+    min_extent_m: float = 3.0
+    """Fixes must span at least this for a heading [m]."""
+    seed: int = 4
+    """Seed of the draws that find the first alignment."""
+
+    def __post_init__(self) -> None:
+        _require(self.correlation_s >= 0.0, "correlation_s must be 0 or more", self.correlation_s)
+        _require(self.min_sd_m > 0.0, "min_sd_m must be above 0", self.min_sd_m)
+        _require(self.tilt_sd_rad > 0.0, "tilt_sd_rad must be above 0", self.tilt_sd_rad)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -38,18 +38,25 @@ def _slot(keys: Any, key: Any) -> Any:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def add_points(keys: Any, sums: Any, state: Any, sizes: Any, p: Any, sign: float) -> int:
-    """Add (``sign`` 1) or take away (-1) points, (N, 3). Returns how many cubes are new."""
-    fresh = 0
-    for level in range(len(sizes)):
-        size = sizes[level]
-        for k in range(len(p)):
+def add_points(
+    keys: Any, sums: Any, state: Any, sizes: Any, p: Any, first: int, used: int, sign: float
+) -> Any:
+    """Add (``sign`` 1) or take away (-1) points, (N, 3), beginning with row ``first``.
+
+    Stops early when the tables are half full; returns the row to go on with and the cubes used.
+    """
+    levels = len(sizes)
+    for k in range(first, len(p)):
+        if 2 * (used + levels) > len(keys):
+            return k, used
+        for level in range(levels):
+            size = sizes[level]
             x, y, z = p[k, 0], p[k, 1], p[k, 2]
             key = _key(level, x, y, z, size)
             row = _slot(keys, key)
             if keys[row] == EMPTY:
                 keys[row] = key
-                fresh += 1
+                used += 1
             # Moments about the cube's center: small numbers, so that taking away is exact enough.
             x -= (np.floor(x / size) + 0.5) * size
             y -= (np.floor(y / size) + 0.5) * size
@@ -66,7 +73,7 @@ def add_points(keys: Any, sums: Any, state: Any, sizes: Any, p: Any, sign: float
             s[8] += sign * y * z
             s[9] += sign * z * z
             state[row] = DIRTY
-    return fresh
+    return len(p), used
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -66,15 +66,17 @@ class PairRegistrar:
         return [edges[k] for k in range(len(pairs))]
 
     def _try_chunk(self, groups: list[list[int]], pairs: Sequence[Pair]) -> dict[int, Edge]:
-        submaps = self._make_submaps()
-        return {k: edge for group in groups for k, edge in self._try_group(submaps, group, pairs)}
+        submaps, planes = self._make_submaps(), PlaneMap(self._settings.planes)
+        edges = [self._try_group(submaps, planes, group, pairs) for group in groups]
+        return {k: edge for tried in edges for k, edge in tried}
 
     def _try_group(
-        self, submaps: Submaps, group: list[int], pairs: Sequence[Pair]
+        self, submaps: Submaps, planes: PlaneMap, group: list[int], pairs: Sequence[Pair]
     ) -> list[tuple[int, Edge]]:
         """All pairs of one target node; its map is built at most once, if any pair needs it."""
         target: PlaneMap | LineTarget | None = None
         out = []
+        reach = self._settings.graph.target_reach
         for k in group:
             pair = pairs[k]
             ends = self._views.ends(pair.j)
@@ -83,7 +85,7 @@ class PairRegistrar:
                 out.append((k, _edge(pair, share, Reason.OVERLAP)))
                 continue
             if target is None:
-                target = self._target(submaps, pair.i)
+                target = self._target(submaps.around(pair.i, reach), planes)
             out.append((k, self._judge(pair, share, self._solve(target, ends, pair, share), ends)))
         return out
 
@@ -100,13 +102,12 @@ class PairRegistrar:
             )  # fmt: skip
         )
 
-    def _target(self, submaps: Submaps, node: int) -> PlaneMap | LineTarget:
-        ends = submaps.around(node, self._settings.graph.target_reach)
+    def _target(self, ends: Ends, planes: PlaneMap) -> PlaneMap | LineTarget:
         if self._settings.registration.solver != "planes":
             return LineTarget(Lines.through(ends[:, 0], ends[:, 1]))
-        target = PlaneMap(self._settings.planes)
-        target.add(np.ascontiguousarray(ends.reshape(-1, 3)))
-        return target
+        planes.clear()
+        planes.add(np.ascontiguousarray(ends.reshape(-1, 3)))
+        return planes
 
     def _solve(
         self, target: PlaneMap | LineTarget, ends: Ends, pair: Pair, share: float

@@ -230,6 +230,6 @@ def _try(
 def edge_facts(edge: Edge) -> dict[str, object]:
     """What a watcher is told of an edge, as plain JSON values."""
     return {
-        "i": edge.i, "j": edge.j, "kind": edge.kind.value, "verdict": edge.verdict.value,
+        "i": edge.i, "j": edge.j, "edge_kind": edge.kind.value, "verdict": edge.verdict.value,
         "reason": edge.reason.value, "overlap": edge.overlap, "error_m": edge.error_m,
     }  # fmt: skip

@@ -11,6 +11,8 @@ from recon4.geometry.se3 import Array
 from recon4.kernels import planes
 from recon4.settings import PlaneSettings
 
+_FIRST_CAPACITY = 1 << 16
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Match:
@@ -41,34 +43,46 @@ class PlaneMap:
     def __init__(self, settings: PlaneSettings) -> None:
         self._settings = settings
         self._sizes = settings.finest_m * 2.0 ** np.arange(settings.levels)
-        self._allocate(1 << 14)
+        self._keys = np.full(_FIRST_CAPACITY, planes.EMPTY, np.int64)
+        self._sums = np.zeros((_FIRST_CAPACITY, 10))
         self._used = 0
-
-    def _allocate(self, capacity: int) -> None:
-        self._keys = np.full(capacity, planes.EMPTY, np.int64)
-        self._sums = np.zeros((capacity, 10))
-        self._fits = np.zeros((capacity, 9))
-        self._state = np.zeros(capacity, np.uint8)
+        self._make_room_for_fits()
 
     def add(self, p_map: Array) -> None:
         """Take in points [m], (N, 3)."""
-        self._reserve(len(p_map) * len(self._sizes))
-        self._used += planes.add_points(
-            self._keys, self._sums, self._state, self._sizes, p_map, 1.0
-        )
+        self._sum(p_map, 1.0)
 
     def remove(self, p_map: Array) -> None:
         """Take away points that were added before, bit for bit the same."""
-        planes.add_points(self._keys, self._sums, self._state, self._sizes, p_map, -1.0)
+        self._sum(p_map, -1.0)
 
-    def _reserve(self, more: int) -> None:
-        if 2 * (self._used + more) < len(self._keys):
-            return
+    def clear(self) -> None:
+        """Forget everything but keep the memory."""
+        self._keys.fill(planes.EMPTY)
+        self._sums.fill(0.0)
+        self._state.fill(0)
+        self._used = 0
+
+    def _sum(self, p_map: Array, sign: float) -> None:
+        row = 0
+        while True:
+            row, self._used = planes.add_points(
+                self._keys, self._sums, self._state, self._sizes, p_map, row, self._used, sign
+            )
+            if row == len(p_map):
+                return
+            self._grow()
+
+    def _grow(self) -> None:
+        """Drop cubes that became empty; double the tables if that is not enough."""
         alive = int(np.count_nonzero(self._sums[:, 0] > 0.5))
-        capacity = 1 << int(np.ceil(np.log2(max(4 * (alive + more), 1 << 14))))
+        capacity = len(self._keys) * (2 if 4 * alive > len(self._keys) else 1)
         self._keys, self._sums, self._used = planes.rehash(self._keys, self._sums, capacity)
-        self._fits = np.zeros((capacity, 9))
-        self._state = np.zeros(capacity, np.uint8)
+        self._make_room_for_fits()
+
+    def _make_room_for_fits(self) -> None:
+        self._fits = np.empty((len(self._keys), 9))
+        self._state = np.zeros(len(self._keys), np.uint8)
 
     def match(
         self,
