@@ -118,7 +118,7 @@ class Assembler:
             stream.shift_ns += step
             last += step
         if stream.shift_ns:
-            shots = _moved(shots, stream.shift_ns)
+            shots = moved(shots, stream.shift_ns)
         self._note_inner_gaps(stream, shots, gap_ns)
         stream.first_ns = int(shots.t_ns[0]) if stream.first_ns is None else stream.first_ns
         stream.last_ns = last if stream.last_ns is None else max(last, stream.last_ns)
@@ -295,7 +295,8 @@ def _rows(shots: Shots, rows: NDArray[np.bool_]) -> Shots:
     )
 
 
-def _moved(shots: Shots, shift_ns: int) -> Shots:
+def moved(shots: Shots, shift_ns: int) -> Shots:
+    """The same shots at later times."""
     return Shots(
         shots.sensor,
         shots.t_ns + shift_ns,

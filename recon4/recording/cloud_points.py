@@ -63,6 +63,7 @@ class CloudDecoder:
         xyz = xyz[valid]
         times = self._times(table, xyz, t_ns, period_ns)
         order = np.argsort(times, kind="stable")
+        self._report.count("points", len(xyz))
         return Shots(
             self._row,
             times[order],
@@ -71,6 +72,12 @@ class CloudDecoder:
             self._rings(table, xyz)[order],
             np.zeros(len(xyz), np.uint8),
         )
+
+    def nothing(self) -> Shots:
+        """No shots of this sensor."""
+        none = np.zeros(0, np.uint8)
+        xyz = np.zeros((0, 3), np.float32)
+        return Shots(self._row, none.astype(np.int64), xyz, none.astype(np.uint16), none, none)
 
     # -- intensity
 
@@ -167,6 +174,14 @@ class CloudDecoder:
         return times
 
 
+def model_of_points(table: Table) -> str:
+    """The Velodyne model whose beams the points lie on, or ``generic``."""
+    xyz = _xyz(table, "cloud")
+    valid = np.all(np.isfinite(xyz), axis=1) & np.any(xyz != 0.0, axis=1)
+    x, y, z = xyz[valid].T
+    return _fitting_model(np.arctan2(z, np.hypot(x, y))) or "generic"
+
+
 def _xyz(table: Table, name: str) -> NDArray[np.float32]:
     missing = [key for key in ("x", "y", "z") if key not in table]
     if missing:
@@ -199,15 +214,20 @@ def _upwards(rings: NDArray[np.uint8], elevation: NDArray[np.floating]) -> NDArr
 
 def _beams(model: str, elevation: NDArray[np.floating]) -> NDArray[np.float64] | None:
     """Elevations of the beams [rad], ascending: the model's, or of one that the points fit."""
-    if model in MODELS:
-        return np.sort(MODELS[model].elevation_rad)
+    name = model if model in MODELS else _fitting_model(elevation)
+    return np.sort(MODELS[name].elevation_rad) if name else None
+
+
+def _fitting_model(elevation: NDArray[np.floating]) -> str:
+    if not len(elevation):
+        return ""
     for name in ("VLP-16", "HDL-32E"):
         beams = np.sort(MODELS[name].elevation_rad)
         step = float(np.median(np.diff(beams)))
-        off = np.abs(elevation[:, None] - beams[None, :]).min(axis=1) if len(elevation) else None
-        if off is not None and np.percentile(off, 80) < 0.12 * step:
-            return beams
-    return None
+        off = np.abs(elevation[:, None] - beams[None, :]).min(axis=1)
+        if np.percentile(off, 80) < 0.12 * step:
+            return name
+    return ""
 
 
 def _covers_turn(azimuth: NDArray[np.floating]) -> bool:

@@ -1,0 +1,328 @@
+"""A bag as a recording: which topics are the LiDARs, the IMU and the positions, and their data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import CorruptFile, EmptyRecording, RecordingError
+from recon4.geometry.se3 import SE3
+from recon4.model.rig import Rig
+from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
+from recon4.model.trajectory import Times, Trajectory
+from recon4.recording.assemble import moved
+from recon4.recording.bags import CLOUD, FIX, IMU, ODOMETRY, SCAN, Bag, BagMessage, BagTopic
+from recon4.recording.cloud_files import Table
+from recon4.recording.cloud_points import CloudDecoder, model_of_points
+from recon4.recording.report import ImportReport
+from recon4.recording.rig_choice import Stream, assign_topics, choose_rig
+from recon4.recording.shots import Shots
+from recon4.recording.velodyne import PacketDecoder
+from recon4.recording.velodyne_models import PRODUCTS, model_of_interval
+from recon4.settings import IngestSettings
+
+Item = Shots | ImuSamples | GnssSamples | Trajectory
+
+_BATCH = 500
+"""Samples of the IMU are handed on so many at a time."""
+_PERIOD_NS = 100_000_000
+_FIELD_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
+_FIX_QUALITY = {0: GnssQuality.SINGLE, 1: GnssQuality.DIFFERENTIAL, 2: GnssQuality.RTK_FIXED}
+
+
+class BagRecording:
+    """Streams shots and samples of one bag, or of several that follow each other."""
+
+    def __init__(
+        self,
+        paths: Sequence[Path],
+        rig: Rig | None,
+        *,
+        settings: IngestSettings,
+        report: ImportReport,
+    ) -> None:
+        """Look at the head of the bag and settle the rig.
+
+        Raises:
+            RecordingError: If the bag cannot be read or has no LiDAR data.
+            ConfigError: If the rig does not fit.
+        """
+        self._paths, self._settings, self._report = paths, settings, report
+        with Bag(paths, report) as bag:
+            self.seconds = bag.seconds
+            self.topics = bag.topics
+            self.streams = lidar_streams(bag, report)
+        if not self.streams:
+            names = ", ".join(f"{t.name} ({t.type})" for t in self.topics)
+            raise EmptyRecording(f"{paths[0].name}: no LiDAR data; topics: {names}")
+        chosen = rig or choose_rig(self.streams, report)
+        self.rig = assign_topics(chosen, self.streams, report)
+        self.imu_topic = _most(self.topics, IMU, report)
+        self.fix_topic = _most(self.topics, FIX, report)
+        self.odometry_topic = _most(self.topics, ODOMETRY, report)
+
+    def read(self) -> Iterator[Item]:
+        """Stream the bag once; what belongs together comes in order of time."""
+        # What opening had to say was said when the head was looked at.
+        with Bag(self._paths, ImportReport()) as bag:
+            bag.report = self._report
+            yield from self._read(bag)
+
+    def _read(self, bag: Bag) -> Iterator[Item]:
+        lidars = self._lidars(bag)
+        samples = {
+            self.imu_topic: _Batch(imu_row, join_imu, self._report),
+            self.fix_topic: _Batch(fix_row, join_fixes, self._report),
+            self.odometry_topic: _Batch(pose_row, join_poses, self._report),
+        }
+        wanted = {*lidars, *samples} - {""}
+        for message in bag.messages(wanted):
+            self._report.count("messages")
+            content = bag.decode(message)
+            if content is None:
+                continue
+            if message.topic in lidars:
+                shots = lidars[message.topic].push(message, content)
+                if shots is not None and len(shots):
+                    yield shots
+            else:
+                yield from samples[message.topic].push(message, content)
+        for lidar in lidars.values():
+            if len(shots := lidar.flush()):
+                yield shots
+        for batch in samples.values():
+            yield from batch.flush()
+
+    def _lidars(self, bag: Bag) -> dict[str, _Scans | _Clouds]:
+        kinds = {topic.name: topic for topic in bag.topics}
+        found: dict[str, _Scans | _Clouds] = {}
+        for row, sensor in enumerate(self.rig.sensors):
+            topic = kinds.get(sensor.topic)
+            if topic is not None and topic.type == SCAN:
+                decoder = PacketDecoder(row, sensor, settings=self._settings, report=self._report)
+                found[sensor.topic] = _Scans(decoder)
+            elif topic is not None:
+                clouds = CloudDecoder(row, sensor.name, sensor.model, self._report)
+                period = _period_ns(topic, bag.seconds)
+                found[sensor.topic] = _Clouds(clouds, sensor.time_offset_s, period, self._report)
+        return found
+
+
+def lidar_streams(bag: Bag, report: ImportReport) -> list[Stream]:
+    """LiDARs of a bag: raw packets where there are any, else clouds."""
+    scans = [t for t in bag.topics if t.type == SCAN and t.messages]
+    clouds = [t for t in bag.topics if t.type == CLOUD and t.messages]
+    if scans and clouds:
+        report.derive(f"raw packets are read, not {', '.join(t.name for t in clouds)}")
+    return [Stream(t.name, _model(bag, t), topic=t.name) for t in (scans or clouds)]
+
+
+def _model(bag: Bag, topic: BagTopic) -> str:
+    """What sensor a topic is from, by its first readable message."""
+    for message in bag.messages([topic.name]):
+        content = bag.decode(message)
+        if content is None:
+            continue
+        if topic.type == SCAN and len(content.packets) > 1:
+            return _model_of_packets(np.stack([p.data for p in content.packets]))
+        if topic.type == CLOUD and content.width * content.height:
+            try:
+                return model_of_points(cloud_table(content))
+            except RecordingError:
+                continue
+    return "generic"
+
+
+def _model_of_packets(payloads: NDArray[np.uint8]) -> str:
+    """By the interval of the packets, which no wrong product byte can spoil; else by that byte."""
+    stamps_us = payloads[:, 1200:1204].copy().view("<u4")[:, 0].astype(np.int64)
+    interval_s = float(np.median(np.diff(stamps_us))) * 1e-6
+    by_interval = model_of_interval(interval_s, int(payloads[0, 1204]))
+    return by_interval or PRODUCTS.get(int(payloads[0, 1205]), "generic")
+
+
+def _most(topics: Sequence[BagTopic], kind: str, report: ImportReport) -> str:
+    """The topic of a kind with the most messages; empty = none."""
+    found = sorted((t for t in topics if t.type == kind and t.messages), key=_messages)
+    if len(found) > 1:
+        others = ", ".join(t.name for t in found[:-1])
+        report.derive(f"{found[-1].name} is used, not {others}")
+    return found[-1].name if found else ""
+
+
+def _messages(topic: BagTopic) -> int:
+    return topic.messages
+
+
+def _period_ns(topic: BagTopic, seconds: float) -> int:
+    """Usual time from one message to the next [ns], at most a quarter of a second."""
+    period = seconds * 1e9 / max(1, topic.messages - 1)
+    return round(period) if 1e6 < period < 250e6 else _PERIOD_NS
+
+
+# -- LiDARs
+
+
+class _Scans:
+    """Messages of raw packets."""
+
+    def __init__(self, decoder: PacketDecoder) -> None:
+        self._decoder = decoder
+
+    def push(self, message: BagMessage, scan: Any) -> Shots | None:
+        if not scan.packets:
+            return None
+        payloads = np.stack([packet.data for packet in scan.packets])
+        t_ns = np.array([_stamp(packet.stamp) for packet in scan.packets], np.int64)
+        return self._decoder.push(np.where(t_ns > 0, t_ns, message.t_ns), payloads)
+
+    def flush(self) -> Shots:
+        return self._decoder.flush()
+
+
+class _Clouds:
+    """Messages of points."""
+
+    def __init__(
+        self, decoder: CloudDecoder, offset_s: float, period_ns: int, report: ImportReport
+    ) -> None:
+        self._decoder, self._period_ns, self._report = decoder, period_ns, report
+        self._offset_ns = round(offset_s * 1e9)
+
+    def push(self, message: BagMessage, cloud: Any) -> Shots | None:
+        t_ns = _stamp(cloud.header.stamp)
+        if t_ns <= 0:
+            t_ns = message.t_ns
+            self._report.count("stamps_missing")
+            self._report.derive("clouds without a stamp: the time of recording is used")
+        try:
+            table = cloud_table(cloud)
+            shots = self._decoder.decode(table, t_ns=t_ns, period_ns=self._period_ns)
+        except CorruptFile as error:
+            self._report.count("messages_corrupt")
+            self._report.warn(f"{message.topic}: left out: {error}")
+            return None
+        return moved(shots, self._offset_ns)
+
+    def flush(self) -> Shots:
+        return self._decoder.nothing()
+
+
+def cloud_table(cloud: Any) -> Table:
+    """Fields of a ``PointCloud2`` by lower-case name.
+
+    Raises:
+        CorruptFile: If the data are shorter than the layout says.
+    """
+    order = ">" if cloud.is_bigendian else "<"
+    known = [f for f in cloud.fields if f.datatype in _FIELD_TYPES]
+    step, width, height = int(cloud.point_step), int(cloud.width), int(cloud.height)
+    row_step = int(cloud.row_step) or step * width
+    data: NDArray[np.uint8] = np.asarray(cloud.data, np.uint8)
+    if step <= 0 or row_step < step * width or len(data) < row_step * height:
+        raise CorruptFile(
+            f"a cloud of {width} x {height} points of {step} bytes in rows of {row_step} "
+            f"does not fit into {len(data)} bytes"
+        )
+    dtype = _point_dtype(known, step, order)
+    rows = data[: row_step * height].reshape(height, row_step)[:, : step * width]
+    points = np.ascontiguousarray(rows).reshape(-1).view(dtype)
+    return {
+        field.name.lower(): points[field.name].astype(points[field.name].dtype.newbyteorder("="))
+        for field in known
+    }
+
+
+def _point_dtype(fields: Sequence[Any], step: int, order: str) -> np.dtype[np.void]:
+    try:
+        return np.dtype(
+            {
+                "names": [f.name for f in fields],
+                "formats": [order + _FIELD_TYPES[f.datatype] for f in fields],
+                "offsets": [int(f.offset) for f in fields],
+                "itemsize": step,
+            }
+        )
+    except ValueError as error:
+        raise CorruptFile(f"the fields of a cloud do not fit into {step} bytes: {error}") from error
+
+
+# -- samples
+
+
+class _Batch:
+    """Rows of one topic, handed on many at a time."""
+
+    def __init__(self, row: Any, join: Any, report: ImportReport) -> None:
+        self._row, self._join, self._report = row, join, report
+        self._rows: list[tuple[float, ...]] = []
+        self._t_ns: list[int] = []
+
+    def push(self, message: BagMessage, content: Any) -> Iterator[Any]:
+        t_ns = _stamp(content.header.stamp)
+        self._t_ns.append(t_ns if t_ns > 0 else message.t_ns)
+        self._rows.append(self._row(content))
+        if len(self._rows) >= _BATCH:
+            yield from self.flush()
+
+    def flush(self) -> Iterator[Any]:
+        rows, t_ns = self._rows, self._t_ns
+        self._rows, self._t_ns = [], []
+        if rows:
+            yield self._join(np.array(t_ns, np.int64), np.array(rows, np.float64))
+
+
+def _stamp(stamp: Any) -> int:
+    return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
+
+
+def imu_row(message: Any) -> tuple[float, ...]:
+    """Six numbers of a ``sensor_msgs/Imu``."""
+    w, a = message.angular_velocity, message.linear_acceleration
+    return w.x, w.y, w.z, a.x, a.y, a.z
+
+
+def join_imu(t_ns: Times, rows: NDArray[np.float64]) -> ImuSamples:
+    """Samples of rows of `imu_row`."""
+    return ImuSamples(t_ns, rows[:, :3], rows[:, 3:])
+
+
+def fix_row(message: Any) -> tuple[float, ...]:
+    """Seven numbers of a ``sensor_msgs/NavSatFix``."""
+    variance = np.asarray(message.position_covariance, np.float64)[[0, 4, 8]]
+    known = message.position_covariance_type > 0
+    sd = np.sqrt(np.where(variance >= 0, variance, np.nan)) if known else np.full(3, np.nan)
+    quality = _FIX_QUALITY.get(int(message.status.status), GnssQuality.INVALID)
+    return message.latitude, message.longitude, message.altitude, *sd.tolist(), float(quality)
+
+
+def join_fixes(t_ns: Times, rows: NDArray[np.float64]) -> GnssSamples:
+    """Samples of rows of `fix_row`."""
+    return GnssSamples(
+        t_ns,
+        np.deg2rad(rows[:, 0]),
+        np.deg2rad(rows[:, 1]),
+        rows[:, 2],
+        rows[:, 3:6],
+        rows[:, 6].astype(np.uint8),
+        np.full((len(rows), 3), np.nan),
+    )
+
+
+def pose_row(message: Any) -> tuple[float, ...]:
+    """Position and quaternion of a ``nav_msgs/Odometry``."""
+    p, q = message.pose.pose.position, message.pose.pose.orientation
+    return p.x, p.y, p.z, q.x, q.y, q.z, q.w
+
+
+def join_poses(t_ns: Times, rows: NDArray[np.float64]) -> Trajectory:
+    """Poses of rows of `pose_row`, those that are poses and follow each other in time."""
+    length = np.linalg.norm(rows[:, 3:], axis=1)
+    good = np.all(np.isfinite(rows), axis=1) & (np.abs(length - 1.0) < 0.01)
+    t_ns, rows = t_ns[good], rows[good]
+    later = np.diff(np.maximum.accumulate(t_ns), prepend=np.int64(-1)) > 0
+    return Trajectory(t_ns[later], SE3.from_quat(rows[later, 3:], rows[later, :3]))

@@ -1,0 +1,121 @@
+"""Which rig a recording belongs to, and which of its streams is which sensor of the rig."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from recon4.errors import ConfigError
+from recon4.geometry.se3 import SE3
+from recon4.model.rig import Rig, Sensor, load_rig
+from recon4.recording.report import ImportReport
+
+THESIS_RIG = "4recon"
+
+
+@dataclass(frozen=True, slots=True)
+class Stream:
+    """One LiDAR's data in a recording, whatever the kind."""
+
+    label: str
+    """Topic, or address and port: what a person sees."""
+    model: str
+    """`SENSOR_MODELS`; ``generic`` when unknown."""
+    address: str = ""
+    port: int = 0
+    topic: str = ""
+
+
+def choose_rig(streams: Sequence[Stream], report: ImportReport) -> Rig:
+    """The rig of a recording for which none was given; said in the report.
+
+    Raises:
+        ConfigError: If there are several LiDARs whose mounting nobody can know.
+    """
+    if len(streams) == 1:
+        rig = single_rig(streams[0])
+        report.derive(f"no rig given: one {streams[0].model}, its frame is the body's")
+        return rig
+    thesis = load_rig(THESIS_RIG)
+    if _is_thesis(streams, thesis):
+        report.derive(
+            f"no rig given: {_names(streams)} match the preset {thesis.name}, its mounting is used"
+        )
+        return thesis
+    raise ConfigError(
+        f"{len(streams)} LiDARs ({_names(streams)}) and no rig: how they are mounted is unknown; "
+        "give a rig file (--rig FILE, or --rig 4recon for the rig of the thesis)"
+    )
+
+
+def single_rig(stream: Stream) -> Rig:
+    """One LiDAR whose frame is the body's."""
+    sensor = Sensor(
+        name="lidar",
+        model=stream.model,
+        T_body_sensor=SE3.identity(),
+        port=stream.port or 2368,
+        topic=stream.topic,
+    )
+    return Rig(
+        name=f"single {stream.model}",
+        sensors=(sensor,),
+        T_body_imu=SE3.identity(),
+        imu_time_offset_s=0.0,
+        p_body_antenna=np.zeros(3),
+        gnss_time_offset_s=0.0,
+    )
+
+
+def assign_topics(rig: Rig, streams: Sequence[Stream], report: ImportReport) -> Rig:
+    """The rig with the topic of every sensor filled in; a sensor without one is missing.
+
+    In this order: the topic the rig names; a topic with the sensor's name in it; as many topics
+    left as sensors, in their order.
+
+    Raises:
+        ConfigError: If no sensor of the rig is in the recording.
+    """
+    free = [stream.topic for stream in streams]
+    chosen: dict[str, str] = {}
+    for sensor in rig.sensors:
+        if sensor.topic in free:
+            chosen[sensor.name] = sensor.topic
+            free.remove(sensor.topic)
+    for sensor in rig.sensors:
+        named = [topic for topic in free if sensor.name.lower() in topic.lower()]
+        if sensor.name not in chosen and not sensor.topic and len(named) == 1:
+            chosen[sensor.name] = named[0]
+            free.remove(named[0])
+    open_ends = [s for s in rig.sensors if s.name not in chosen and not s.topic]
+    if open_ends and len(open_ends) == len(free):
+        for sensor, topic in zip(open_ends, list(free), strict=True):
+            chosen[sensor.name] = topic
+            free.remove(topic)
+            report.derive(f"{sensor.name} is topic {topic}: the rig names none")
+    if not chosen:
+        raise ConfigError(
+            f"no LiDAR of the rig {rig.name!r} is in the recording; it has {_names(streams)}"
+        )
+    for sensor in rig.sensors:
+        if sensor.name not in chosen:
+            report.warn(f"sensor {sensor.name} of the rig is not in the recording")
+    for topic in free:
+        report.warn(f"topic {topic} belongs to no sensor of the rig and is not read")
+    sensors = [replace(s, topic=chosen.get(s.name, s.topic)) for s in rig.sensors]
+    return replace(rig, sensors=tuple(sensors))
+
+
+def _is_thesis(streams: Sequence[Stream], thesis: Rig) -> bool:
+    if len(streams) != len(thesis.sensors) or any(s.model != "VLP-16" for s in streams):
+        return False
+    if sorted(s.port for s in streams) == sorted(s.port for s in thesis.sensors):
+        return True
+    topics = [stream.topic.lower() for stream in streams]
+    return all(sum(s.name in topic for topic in topics) == 1 for s in thesis.sensors)
+
+
+def _names(streams: Sequence[Stream]) -> str:
+    return ", ".join(f"{s.label} {s.model}" for s in streams)
