@@ -1,0 +1,165 @@
+"""From the local frame of a map to a coordinate reference system, and back (requirements A10)."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from recon4.errors import GeoreferenceError
+from recon4.geometry.se3 import Array
+
+_ENU_OF_NED = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where a local frame (x east, y north, z up) touches the earth: WGS 84, ellipsoidal."""
+
+    lat_rad: float
+    lon_rad: float
+    height_m: float
+
+
+def enu_of_ned(v: Array) -> Array:
+    """North-east-down as east-north-up (and back: it is its own inverse), (..., 3)."""
+    return v @ _ENU_OF_NED.T
+
+
+def to_enu(origin: Origin, lat_rad: Array, lon_rad: Array, *, height_m: Array) -> Array:
+    """Geodetic positions in the local frame [m], (N, 3)."""
+    east, north, up = _topocentric(origin).transform(lon_rad, lat_rad, height_m, radians=True)
+    return np.stack([east, north, up], axis=-1)
+
+
+def to_geodetic(origin: Origin, p_enu: Array) -> tuple[Array, Array, Array]:
+    """Latitude [rad], longitude [rad] and ellipsoidal height [m] of local positions (N, 3)."""
+    lon, lat, height = _topocentric(origin).transform(
+        *np.asarray(p_enu, dtype=np.float64).T, direction="INVERSE", radians=True
+    )
+    return lat, lon, height
+
+
+def default_crs(origin: Origin) -> str:
+    """UTM zone of the place on WGS 84; heights stay ellipsoidal."""
+    zone = int((np.rad2deg(origin.lon_rad) + 180.0) // 6.0) % 60 + 1
+    return f"EPSG:{32600 + zone if origin.lat_rad >= 0.0 else 32700 + zone}"
+
+
+class CrsTransform:
+    """Carries points of the map into a coordinate reference system.
+
+    A horizontal system alone leaves heights ellipsoidal; with a vertical one (``EPSG:5514+8357``)
+    heights follow its quasi-geoid. Easting comes first whatever the system's own order.
+    """
+
+    def __init__(self, origin: Origin, crs: str = "") -> None:
+        """Find the best operation at this place.
+
+        Args:
+            origin: Of the map's local frame.
+            crs: EPSG code or codes; empty = `default_crs`.
+
+        Raises:
+            GeoreferenceError: If there is no such system, or the operation it takes needs a grid
+                that is not installed (PROJ would silently leave the height out).
+        """
+        self.origin = origin
+        self.crs = crs or default_crs(origin)
+        self._target = _system(self.crs)
+        self.has_heights = len(self._target.axis_info) == 3
+        self._transformer = _best_transformer(origin, self._target, self.crs)
+        here = self.to_crs(np.zeros((1, 3)))[0]
+        self.offset = np.round(here / 1000.0) * 1000.0
+        """Multiple of 1 000 m near the origin: what files subtract to keep small numbers, (3,)."""
+
+    @property
+    def wkt(self) -> str:
+        """The system as WKT 1, which LAS 1.4 asks for."""
+        return str(self._target.to_wkt("WKT1_GDAL"))
+
+    @property
+    def operation(self) -> str:
+        """What PROJ does, in words."""
+        return str(self._transformer.description)
+
+    @property
+    def accuracy_m(self) -> float:
+        """What the operation promises [m]; NaN if it promises nothing."""
+        accuracy = self._transformer.accuracy
+        return float(accuracy) if accuracy >= 0.0 else float("nan")
+
+    def to_crs(self, p_map: Array) -> Array:
+        """Easting, northing, height of points of the map [m], (N, 3) -> (N, 3).
+
+        Each point for itself, so the projection's scale is in it; about 1 us a point. Call it
+        tile by tile.
+
+        Raises:
+            GeoreferenceError: If a point lies outside what the system covers.
+        """
+        lat, lon, height = to_geodetic(self.origin, p_map)
+        if self.has_heights:
+            out = self._transformer.transform(lon, lat, height, radians=True)
+        else:
+            out = (*self._transformer.transform(lon, lat, radians=True), height)
+        p_crs = np.stack(out, axis=-1)
+        if not np.isfinite(p_crs).all():
+            raise GeoreferenceError(f"{self.crs} does not cover this place")
+        return p_crs
+
+
+def _topocentric(origin: Origin) -> Any:
+    from pyproj import Transformer
+
+    return Transformer.from_pipeline(
+        "+proj=pipeline +step +proj=cart +ellps=WGS84 +step +proj=topocentric +ellps=WGS84 "
+        f"+lon_0={float(np.rad2deg(origin.lon_rad))!r} "
+        f"+lat_0={float(np.rad2deg(origin.lat_rad))!r} +h_0={float(origin.height_m)!r}"
+    )
+
+
+def _system(name: str) -> Any:
+    from pyproj import CRS
+    from pyproj.exceptions import CRSError
+
+    try:
+        system = CRS.from_user_input(name)
+    except CRSError as error:
+        raise GeoreferenceError(f"no coordinate reference system {name!r}: {error}") from error
+    if not (system.is_projected or (system.is_compound and system.sub_crs_list[0].is_projected)):
+        raise GeoreferenceError(f"{name} is not a map projection in metres: {system.name}")
+    if any(axis.unit_name != "metre" for axis in system.axis_info):
+        raise GeoreferenceError(f"{name} is not in metres")
+    return system
+
+
+def _best_transformer(origin: Origin, target: Any, name: str) -> Any:
+    from pyproj.aoi import AreaOfInterest
+    from pyproj.transformer import TransformerGroup
+
+    lat, lon = float(np.rad2deg(origin.lat_rad)), float(np.rad2deg(origin.lon_rad))
+    place: Any = AreaOfInterest(lon - 0.01, lat - 0.01, lon + 0.01, lat + 0.01)
+    source = "EPSG:4979" if len(target.axis_info) == 3 else "EPSG:4326"
+    with warnings.catch_warnings():
+        # The missing grid is our own error below; pyproj only warns of it.
+        warnings.simplefilter("ignore", UserWarning)
+        group = TransformerGroup(
+            source,
+            target,
+            always_xy=True,
+            area_of_interest=place,
+            allow_ballpark=False,
+        )
+    if not group.best_available or not group.transformers:
+        grids = [
+            grid.short_name
+            for operation in group.unavailable_operations[:1]
+            for grid in operation.grids
+            if not grid.available
+        ]
+        needs = f"needs the grid {', '.join(grids)}" if grids else "has no operation for this place"
+        raise GeoreferenceError(f"{name} {needs}; heights or positions would be wrong without")
+    return group.transformers[0]

@@ -1,0 +1,228 @@
+"""A pose graph laid over GNSS positions (V §2.7, Fig. 2.10b; requirements A10)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import SE3, Array, align_points
+from recon4.georeference.crs import Origin
+from recon4.georeference.fixes import Fixes, correlated_sd, one_a_node, usable_fixes
+from recon4.model.pose_graph import PoseGraph
+from recon4.model.rig import Rig
+from recon4.model.samples import GnssSamples
+from recon4.model.trajectory import Times, Trajectory
+from recon4.pose_graph.solve import PosePriors, PositionPriors, optimize
+from recon4.settings import GnssSettings
+
+_DRAWS = 400
+_MIN_FIXES = 5
+_OUTLIER_SD = 5.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GeoreferenceResult:
+    """A graph in the local frame at `origin`, or the graph as it was and the reason why."""
+
+    graph: PoseGraph
+    """``T_map_body`` with x east, y north, z up at the origin, if there is one."""
+    origin: Origin | None
+    """None: the map stays in a local frame of its own and has no place on earth."""
+    reason: str
+    """Why there is no origin; empty if there is one."""
+    T_enu_map: SE3
+    """First, rigid alignment: heading and shift only."""
+    t_ns: Times
+    """Times of the usable fixes [ns], (M,)."""
+    residual_m: Array
+    """Measured minus solved position of the antenna, east, north, up [m], (M, 3)."""
+    used: NDArray[np.bool_]
+    """False: outlier, (M,)."""
+    samples: int
+    """How many fixes there were in the recording."""
+
+    @property
+    def rmse_m(self) -> Array:
+        """Root mean square residual of the fixes used, east, north, up [m], (3,)."""
+        if not self.used.any():
+            return np.full(3, np.nan)
+        return np.sqrt(np.mean(self.residual_m[self.used] ** 2, axis=0))
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain JSON values for ``georeference.json``."""
+        if self.origin is None:
+            return {"georeferenced": False, "reason": self.reason, "fixes": self.samples}
+        return {
+            "georeferenced": True,
+            "frame": "x east, y north, z up; WGS 84, ellipsoidal height",
+            "origin": {
+                "lat_deg": float(np.rad2deg(self.origin.lat_rad)),
+                "lon_deg": float(np.rad2deg(self.origin.lon_rad)),
+                "height_m": self.origin.height_m,
+            },
+            "fixes": self.samples,
+            "fixes_usable": len(self.used),
+            "fixes_used": int(self.used.sum()),
+            "rmse_enu_m": self.rmse_m.tolist(),
+            "t_ns": self.t_ns.tolist(),
+            "residual_enu_m": np.round(self.residual_m, 4).tolist(),
+            "used": self.used.tolist(),
+        }
+
+
+def georeference(
+    graph: PoseGraph,
+    trajectory: Trajectory,
+    gnss: GnssSamples | None,
+    rig: Rig,
+    *,
+    settings: GnssSettings,
+) -> GeoreferenceResult:
+    """Lay a levelled graph over its GNSS positions.
+
+    A rigid alignment (heading and shift, most fixes agreeing) leaves out gross outliers; then
+    every fix becomes a factor on its node, with the lever arm, a Cauchy kernel and a standard
+    deviation that leaves frame-to-frame motion to SLAM; fixes that do not fit are left out and
+    the graph is solved once more. The fixes hold position and heading, the levelling the tilt.
+
+    Args:
+        graph: Verified and levelled (z up).
+        trajectory: Dense poses of the body in any frame, covering the walk.
+        gnss: Positions, or None.
+        rig: Lever arm and time offset of the antenna.
+        settings: Qualities, gates and weights.
+
+    Returns:
+        Without enough agreeing positions the graph comes back as it was, with the reason.
+
+    Raises:
+        GraphError: If the graph itself cannot be solved.
+    """
+    if gnss is None or not settings.enabled:
+        why = "no GNSS in the recording" if gnss is None else "switched off (gnss.enabled)"
+        return _local(graph, why, samples=0)
+    fixes, origin = usable_fixes(graph, trajectory, gnss, rig, settings=settings)
+    if origin is None or len(fixes) < _MIN_FIXES:
+        return _local(graph, f"{len(fixes)} usable fixes of {len(gnss)}", samples=len(gnss))
+    p_map = graph.T_map_body[fixes.node] @ fixes.p_node_antenna
+    T_enu_map, near = align_heading(p_map, fixes, settings=settings)
+    extent = float(np.linalg.norm(np.ptp(p_map[near, :2], axis=0))) if near.any() else 0.0
+    if near.sum() < _MIN_FIXES or extent < settings.min_extent_m:
+        why = f"{near.sum()} agreeing fixes over {extent:.1f} m"
+        return _local(graph, why, samples=len(gnss))
+    graph = graph.with_poses(T_enu_map @ graph.T_map_body)
+    graph, used = _solve(graph, fixes, near, settings=settings)
+    return GeoreferenceResult(
+        graph=graph,
+        origin=origin,
+        reason="",
+        T_enu_map=T_enu_map,
+        t_ns=fixes.t_ns,
+        residual_m=_residuals(graph, fixes),
+        used=used,
+        samples=len(gnss),
+    )
+
+
+def align_heading(
+    p_map: Array, fixes: Fixes, *, settings: GnssSettings
+) -> tuple[SE3, NDArray[np.bool_]]:
+    """Heading and shift that most fixes agree with.
+
+    Args:
+        p_map: Antenna in the levelled map at each fix [m], (M, 3).
+        fixes: The same in the local frame on earth.
+        settings: Gate and seed.
+
+    Returns:
+        ``T_enu_map``, and which fixes lie inside the gate, (M,).
+    """
+    rng = np.random.default_rng(settings.seed)
+    steps = np.linalg.norm(np.diff(p_map, axis=0), axis=1)
+    gate = settings.gate_m + settings.gate_relative * steps.sum() + 3.0 * fixes.sd_m[:, :2].max(1)
+    far_enough = max(settings.min_extent_m, 0.3 * float(np.linalg.norm(np.ptp(p_map, axis=0))))
+    best = (SE3.identity(), np.zeros(len(fixes), dtype=np.bool_))
+    for _ in range(_DRAWS):
+        a, b = rng.integers(0, len(fixes), 2)
+        if np.linalg.norm(p_map[a, :2] - p_map[b, :2]) < far_enough:
+            continue
+        pair = [a, b]
+        T_enu_map = _heading_fit(p_map[pair], fixes.p_enu[pair], fixes.sd_m[pair])
+        near = _near(T_enu_map, p_map, fixes, gate)
+        if near.sum() > best[1].sum():
+            best = (T_enu_map, near)
+    for _ in range(5 if best[1].any() else 0):
+        near = best[1]
+        T_enu_map = _heading_fit(p_map[near], fixes.p_enu[near], fixes.sd_m[near])
+        best = (T_enu_map, _near(T_enu_map, p_map, fixes, gate))
+    return best
+
+
+def _heading_fit(p_map: Array, p_enu: Array, sd_m: Array) -> SE3:
+    weights = 1.0 / sd_m.max(1) ** 2
+    flat = np.array([1.0, 1.0, 0.0])
+    R = align_points(p_enu * flat, p_map * flat, weights).R
+    yaw = np.arctan2(R[1, 0], R[0, 0])
+    turn = SE3.from_rpy(0.0, 0.0, float(yaw), [0.0, 0.0, 0.0])
+    shift = np.average(p_enu - turn @ p_map, axis=0, weights=weights)
+    return SE3(turn.R, shift)
+
+
+def _near(T_enu_map: SE3, p_map: Array, fixes: Fixes, gate: Array) -> NDArray[np.bool_]:
+    off = fixes.p_enu - T_enu_map @ p_map
+    vertical = gate + 3.0 * fixes.sd_m[:, 2]
+    return (np.hypot(off[:, 0], off[:, 1]) < gate) & (np.abs(off[:, 2]) < vertical)
+
+
+def _solve(
+    graph: PoseGraph, fixes: Fixes, near: NDArray[np.bool_], *, settings: GnssSettings
+) -> tuple[PoseGraph, NDArray[np.bool_]]:
+    """Solve with the fixes near, then once more without those that do not fit."""
+    used, tilt = near, _tilt_priors(graph, sd_rad=settings.tilt_sd_rad)
+    for _ in range(2):
+        chosen = one_a_node(fixes.take(used))
+        sd_m = correlated_sd(chosen, correlation_s=settings.correlation_s)
+        positions = PositionPriors(chosen.node, chosen.p_enu, chosen.p_node_antenna, sd_m)
+        solution = optimize(graph, kernel="cauchy", fixed=(), priors=(positions, tilt))
+        graph = graph.with_poses(solution.T_map_body)
+        off = np.abs(_residuals(graph, fixes)) / fixes.sd_m
+        scale = np.maximum(1.4826 * np.median(off[used], axis=0), 1.0)
+        used = near & np.all(off < _OUTLIER_SD * scale, axis=1)
+    return graph, used
+
+
+def _tilt_priors(graph: PoseGraph, *, sd_rad: float) -> PosePriors:
+    """Keep the map as level as it is: all nodes together count as one measurement of the tilt.
+
+    Without it a straight track could roll about itself, as no position would notice.
+    """
+    R = graph.T_map_body.R
+    up = R[:, 2, :]
+    information = np.zeros((len(graph), 6, 6))
+    weight = 1.0 / (sd_rad**2 * len(graph))
+    information[:, :3, :3] = weight * (np.eye(3) - np.einsum("ni,nj->nij", up, up))
+    # Heading and position stay free; gtsam wants a positive definite matrix.
+    information += 1e-6 * weight * np.eye(6)
+    information[:, 3:, 3:] = 1e-9 * np.eye(3)
+    return PosePriors(np.arange(len(graph)), graph.T_map_body, information)
+
+
+def _residuals(graph: PoseGraph, fixes: Fixes) -> Array:
+    return fixes.p_enu - graph.T_map_body[fixes.node] @ fixes.p_node_antenna
+
+
+def _local(graph: PoseGraph, reason: str, *, samples: int) -> GeoreferenceResult:
+    empty = np.zeros(0, dtype=np.int64)
+    return GeoreferenceResult(
+        graph=graph,
+        origin=None,
+        reason=reason,
+        T_enu_map=SE3.identity(),
+        t_ns=empty,
+        residual_m=np.zeros((0, 3)),
+        used=empty.astype(np.bool_),
+        samples=samples,
+    )

@@ -1,0 +1,209 @@
+"""Horizontal alignment: which way is up in a map (V §2.9, requirements A8)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from recon4.geometry.se3 import SE3, Array, mean_rotation, so3_exp
+from recon4.model.rig import Rig
+from recon4.model.samples import GnssSamples, ImuSamples
+from recon4.model.trajectory import Trajectory
+
+_WINDOW_NS = 1_000_000_000
+"""Accelerations are averaged over this: half a dozen steps of a walk."""
+_SPEED_NS = 200_000_000
+"""Speed at the border of a window is taken over this to either side."""
+_WINDOW_SD_M_S2 = 0.1
+_BIAS_SD_M_S2 = 0.1
+"""How far an accelerometer's bias may be from zero."""
+_TRIM = 4.0
+"""Pairs farther off than this many robust standard deviations are left out."""
+_MIN_PAIRS = 3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Levelling:
+    """How a map has to be tilted to be horizontal."""
+
+    T_level_odom: SE3
+    """A rotation about a horizontal axis: no heading, no shift."""
+    source: str
+    """``ins``, ``imu``, ``floor`` or ``none``."""
+    pairs: int
+    """Measurements used: (SLAM, IMU) pairs, or patches of floor."""
+    trimmed: int
+    """Measurements left out as outliers."""
+    spread_rad: float
+    """Root mean square angle of a single measurement against the result; NaN without any."""
+
+    @property
+    def tilt_rad(self) -> float:
+        """How far the map was from horizontal [rad]."""
+        return float(np.arccos(np.clip(self.T_level_odom.R[2, 2], -1.0, 1.0)))
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain JSON values, angles in degrees."""
+        roll, pitch, _ = np.rad2deg(self.T_level_odom.rpy()).tolist()
+        return {
+            "source": self.source,
+            "roll_deg": roll,
+            "pitch_deg": pitch,
+            "tilt_deg": float(np.rad2deg(self.tilt_rad)),
+            "spread_deg": float(np.rad2deg(self.spread_rad)) if self.pairs else None,
+            "pairs": self.pairs,
+            "trimmed": self.trimmed,
+        }
+
+
+NOT_LEVELLED = Levelling(SE3.identity(), "none", 0, 0, float("nan"))
+
+
+def level(
+    trajectory: Trajectory, imu: ImuSamples | None, rig: Rig, *, gnss: GnssSamples | None = None
+) -> Levelling:
+    """Level a map by what the IMU says, or say that it cannot (``source == "none"``).
+
+    Attitudes of an INS come first, then the accelerometer. Without either, ask
+    `floor.level_by_floor`.
+
+    Args:
+        trajectory: ``T_odom_body``, dense.
+        imu: Accelerometer and gyroscope, or None.
+        rig: Mounting and time offsets.
+        gnss: May hold attitudes.
+    """
+    if gnss is not None:
+        levelling = level_by_attitude(trajectory, gnss, rig)
+        if levelling.pairs >= _MIN_PAIRS:
+            return levelling
+    if imu is not None:
+        levelling = level_by_gravity(trajectory, imu, rig)
+        if levelling.pairs >= _MIN_PAIRS:
+            return levelling
+    return NOT_LEVELLED
+
+
+def tilt_to(up_odom: Array) -> SE3:
+    """Rotation without heading that turns ``up_odom`` (3,) to (0, 0, 1)."""
+    x, y, z = up_odom
+    return SE3.from_rpy(
+        float(np.arctan2(y, z)), float(np.arctan2(-x, np.hypot(y, z))), 0.0, [0] * 3
+    )
+
+
+def level_by_attitude(trajectory: Trajectory, gnss: GnssSamples, rig: Rig) -> Levelling:
+    """Average roll and pitch of an INS over the walk (V Eq. 2.13-2.16).
+
+    The heading is that of the SLAM pose; as it has to be read in the levelled frame, it is taken
+    again after each average until the tilt stays (A0, A8).
+    """
+    t_ns = gnss.t_ns + round(rig.gnss_time_offset_s * 1e9)
+    rows = _covered(trajectory, t_ns) & np.isfinite(gnss.rpy_ned_rad[:, :2]).all(1)
+    if rows.sum() < _MIN_PAIRS:
+        return NOT_LEVELLED
+    R_odom_imu = trajectory.at(t_ns[rows]).R @ rig.T_body_imu.R
+    roll, pitch = gnss.rpy_ned_rad[rows, 0], gnss.rpy_ned_rad[rows, 1]
+    # Seen with y left and z up, a pitch about y right (nose up) turns the other way.
+    R_flat_imu = so3_exp(_about(1, -pitch)) @ so3_exp(_about(0, roll))
+    T_level_odom, kept = SE3.identity(), np.ones(len(roll), dtype=np.bool_)
+    for _ in range(20):
+        yaw = SE3(T_level_odom.R @ R_odom_imu, np.zeros((len(roll), 3))).rpy()[:, 2]
+        R_level_odom = so3_exp(_about(2, yaw)) @ R_flat_imu @ np.swapaxes(R_odom_imu, 1, 2)
+        ups = R_level_odom[:, 2, :]
+        before, T_level_odom = T_level_odom, tilt_to(mean_rotation(R_level_odom[kept])[2])
+        kept = _trimmed(_angles(ups, T_level_odom.R[2]))
+        if np.abs(T_level_odom.R - before.R).max() < 1e-7:
+            break
+    angles = _angles(ups, T_level_odom.R[2])
+    return _result(T_level_odom, "ins", angles, kept)
+
+
+def level_by_gravity(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> Levelling:
+    """Gravity from the accelerometer, freed of the walker's own acceleration.
+
+    Over each second the mean specific force, turned into the odometry's frame, is gravity's
+    reaction plus the change of speed (known from the odometry) plus the bias in the IMU's frame:
+
+        mean(R f) - (v1 - v0) / dt  =  g up  +  mean(R) b
+
+    One robust least-squares fit over all seconds gives ``g up`` and ``b``.
+    """
+    windows = _windows(trajectory, imu, rig)
+    if windows is None:
+        return NOT_LEVELLED
+    force, R_mean = windows
+    kept = np.ones(len(force), dtype=np.bool_)
+    for _ in range(10):
+        gravity, bias = _fit_gravity(force[kept], R_mean[kept])
+        angles = _angles(force - R_mean @ bias, gravity)
+        before, kept = kept, _trimmed(angles)
+        if np.array_equal(before, kept):
+            break
+    return _result(tilt_to(gravity / np.linalg.norm(gravity)), "imu", angles, kept)
+
+
+def _windows(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> tuple[Array, Array] | None:
+    """Mean force without motion [m/s²], (W, 3), and mean rotation, (W, 3, 3), of each second."""
+    t_ns = imu.t_ns + round(rig.imu_time_offset_s * 1e9)
+    rows = np.flatnonzero(_covered(trajectory, t_ns) & np.isfinite(imu.accel_m_s2).all(1))
+    if len(rows) == 0:
+        return None
+    edges = np.arange(t_ns[rows[0]], t_ns[rows[-1]] + 1, _WINDOW_NS)
+    R_odom_imu = trajectory.at(t_ns[rows]).R @ rig.T_body_imu.R
+    force = np.einsum("nij,nj->ni", R_odom_imu, imu.accel_m_s2[rows])
+    at = np.searchsorted(t_ns[rows], edges)
+    count = np.diff(at)
+    full = count >= 0.8 * np.median(count) if len(count) else np.zeros(0, dtype=np.bool_)
+    if full.sum() < _MIN_PAIRS:
+        return None
+    mean_force = np.add.reduceat(force, at[:-1])[full] / count[full, None]
+    R_mean = np.add.reduceat(R_odom_imu, at[:-1])[full] / count[full, None, None]
+    speed = _speed(trajectory, rig, edges)
+    return mean_force - (np.diff(speed, axis=0) / (_WINDOW_NS / 1e9))[full], R_mean
+
+
+def _speed(trajectory: Trajectory, rig: Rig, t_ns: Any) -> Array:
+    """Velocity of the IMU in the odometry's frame [m/s], (M, 3)."""
+    first, last = trajectory.t_ns[0], trajectory.t_ns[-1]
+    before = np.clip(t_ns - _SPEED_NS, first, last)
+    after = np.clip(t_ns + _SPEED_NS, first, last)
+    p_imu = rig.T_body_imu.t
+    moved = trajectory.at(after) @ p_imu - trajectory.at(before) @ p_imu
+    return moved / ((after - before) / 1e9)[:, None]
+
+
+def _fit_gravity(force: Array, R_mean: Array) -> tuple[Array, Array]:
+    J = np.concatenate([np.broadcast_to(np.eye(3), R_mean.shape), R_mean], axis=2).reshape(-1, 6)
+    H = J.T @ J / _WINDOW_SD_M_S2**2
+    H[3:, 3:] += np.eye(3) / _BIAS_SD_M_S2**2
+    x = np.linalg.solve(H, J.T @ force.reshape(-1) / _WINDOW_SD_M_S2**2)
+    return x[:3], x[3:]
+
+
+def _covered(trajectory: Trajectory, t_ns: Any) -> Any:
+    return (t_ns >= trajectory.t_ns[0]) & (t_ns <= trajectory.t_ns[-1])
+
+
+def _about(axis: int, angle_rad: Array) -> Array:
+    out = np.zeros((len(angle_rad), 3))
+    out[:, axis] = angle_rad
+    return out
+
+
+def _angles(directions: Array, axis: Array) -> Array:
+    """Angles between (N, 3) and (3,) [rad]; exact also for small ones."""
+    cross = np.linalg.norm(np.cross(directions, axis), axis=1)
+    return np.arctan2(cross, directions @ axis)
+
+
+def _trimmed(angles: Array) -> Any:
+    # The angle of a two-dimensional normal error has its median at 1.18 standard deviations.
+    return angles <= np.maximum(_TRIM * np.median(angles) / 1.1774, 1e-9)
+
+
+def _result(T_level_odom: SE3, source: str, angles: Array, kept: Any) -> Levelling:
+    spread = float(np.sqrt(np.mean(angles[kept] ** 2)))
+    return Levelling(T_level_odom, source, int(kept.sum()), int((~kept).sum()), spread)
