@@ -30,7 +30,8 @@ def sound_packets(payloads: Payloads, report: ImportReport) -> NDArray[np.intp]:
 
     Counts ``packets`` and what is dropped: ``packets_wrong_length`` (not 1206 bytes),
     ``packets_hdl64`` (blocks of the lower lasers of an HDL-64E), ``packets_wrong_flag`` (any of
-    the 12 blocks without 0xEEFF), ``packets_wrong_azimuth`` (above 360°, which itself is sent for 0°) and ``packets_wrong_time`` (past the end of the hour).
+    the 12 blocks without 0xEEFF), ``packets_wrong_azimuth`` (above 360°, which itself is sent now
+    and then for 0°) and ``packets_wrong_time`` (past the end of the hour).
     """
     report.count("packets", len(payloads))
     if payloads.ndim != 2 or payloads.shape[1] != DATA_SIZE:

@@ -221,8 +221,7 @@ class PacketDecoder:
             )
         if product != model.product:
             self._report.warn(
-                f"{name}: its packets say {product_text(product)}, decoded as {model.name} as the "
-                "rig says"
+                f"{name}: its packets say {product_text(product)}; decoded as {model.name}"
             )
 
     def _shots(self, t_ns: Times, payloads: Payloads) -> Shots:

@@ -2,62 +2,47 @@
 
 from __future__ import annotations
 
+import heapq
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from recon4.model.rig import Rig
-from recon4.recording.positions import PositionSamples
+import numpy as np
+
+from recon4.errors import EmptyRecording
+from recon4.geometry.se3 import SE3
+from recon4.model.rig import Rig, Sensor
+from recon4.recording.packet_streams import PacketStream, address_number, scan_pcap
+from recon4.recording.pcap import Datagrams, read_pcap
+from recon4.recording.positions import PositionDecoder, PositionSamples
 from recon4.recording.report import ImportReport
+from recon4.recording.sensor_clock import SensorClock
 from recon4.recording.shots import Shots
+from recon4.recording.velodyne import PacketDecoder
+from recon4.recording.velodyne_models import DATA_SIZE, POSITION_SIZE, velodyne_model
 from recon4.settings import IngestSettings
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PacketStream:
-    """Datagrams of one sender to one port, as far as they were scanned."""
-
-    file: Path
-    source: str
-    """IPv4 address of the sender."""
-    port: int
-    """Destination port."""
-    kind: str
-    """``data``, ``position`` or ``other``."""
-    packets: int
-    t_first_ns: int
-    t_last_ns: int
-    model: str
-    """What the sensor is: by its packet interval, else by its product byte; empty = unknown."""
-    product: int
-    """Product byte; 0 for other kinds."""
-    return_mode: int
-    """0x37 strongest, 0x38 last, 0x39 dual; 0 for other kinds."""
-    rotation_hz: float
-    """Measured; NaN for other kinds."""
-    remarks: tuple[str, ...]
-    """What a person should know, for example a product byte that the data contradict."""
+__all__ = ["PacketStream", "VelodynePcap", "scan_pcap"]
 
 
-def scan_pcap(path: Path, *, max_packets: int = 4000) -> list[PacketStream]:
-    """Look at the head of a capture file: data streams first, in order of appearance.
+@dataclass(frozen=True, slots=True, eq=False)
+class _Channel:
+    """One sensor of the rig and where its packets are."""
 
-    Raises:
-        UnknownFormat: If it is not a capture file.
-        EmptyRecording: If it holds no packet.
-    """
-    raise NotImplementedError
+    sensor: Sensor
+    streams: tuple[PacketStream, ...]
+    """Its data streams: one, or one a file if the recording was cut into files."""
+    data: PacketDecoder
+    positions: PositionDecoder
 
 
 class VelodynePcap:
-    """The recording in one or several capture files, each sensor on one clock.
+    """The recording in one or several capture files, all sensors on one clock.
 
-    ``rig`` is the one given, with sensors that have no packets warned of; without one, a rig with
-    one sensor a data stream, all mounted at the origin.
+    ``rig`` is the one given; without one, a rig with one sensor a data stream, all mounted at the
+    origin. Streams go to the sensors of a given rig by address and port; a sensor left over gets a
+    stream left over, in order, and the report says so.
     """
-
-    rig: Rig
-    streams: list[PacketStream]
 
     def __init__(
         self,
@@ -67,8 +52,165 @@ class VelodynePcap:
         settings: IngestSettings,
         report: ImportReport,
     ) -> None:
-        raise NotImplementedError
+        """Scan the heads of the files and assign streams to sensors.
+
+        Args:
+            paths: Capture files; the same stream in files that follow each other is one sensor,
+                in files of the same time it is two.
+            rig: The rig, or None to make one of what is found.
+            settings: Range limits and reorder window.
+            report: Takes counts, warnings and what was derived.
+
+        Raises:
+            UnknownFormat: If a file is not a capture file.
+            EmptyRecording: If there is no Velodyne data packet in the heads of the files.
+            ConfigError: If the model of a sensor is not decoded from packets.
+        """
+        self._report = report
+        self.streams = [stream for path in paths for stream in scan_pcap(path)]
+        groups = _sensors_of(self.streams)
+        if not groups:
+            seen = ", ".join(f"{s.packets} packets to port {s.port}" for s in self.streams)
+            raise EmptyRecording(
+                f"{paths[0].name}: no Velodyne data packets (1206 bytes of UDP payload); "
+                f"found: {seen or 'no UDP datagrams'}"
+            )
+        for stream in self.streams:
+            for remark in stream.remarks if rig is None else ():
+                report.warn(f"{stream.label}: {remark}")
+        self.rig = rig or _rig_of(groups)
+        self._channels = self._assign(groups, settings)
+        self._paths = list(paths)
 
     def read(self) -> Iterator[Shots | PositionSamples]:
-        """Stream the whole recording once; shots of a sensor come in order of time."""
-        raise NotImplementedError
+        """Stream the whole recording once; the shots of one sensor come in order of time."""
+        batches = (self._batches(path) for path in self._paths)
+        for path, datagrams in heapq.merge(*batches, key=lambda batch: int(batch[1].t_ns[0])):
+            for channel in self._channels:
+                yield from self._decode(channel, path, datagrams)
+        for channel in self._channels:
+            yield channel.data.flush()
+        fragments = self._report.counts["records_fragment"]
+        if fragments:
+            self._report.warn(
+                f"{fragments} IP fragments: they are not put together, their packets are lost"
+            )
+
+    @property
+    def rotation_hz(self) -> dict[str, float]:
+        """Measured rotation rate by the name of the sensor [Hz]; complete after reading."""
+        return {channel.sensor.name: channel.data.rotation_hz for channel in self._channels}
+
+    def _batches(self, path: Path) -> Iterator[tuple[Path, Datagrams]]:
+        return ((path, batch) for batch in read_pcap(path, self._report) if len(batch))
+
+    def _decode(
+        self, channel: _Channel, path: Path, datagrams: Datagrams
+    ) -> Iterator[Shots | PositionSamples]:
+        stream = next((s for s in channel.streams if s.file == path), None)
+        if stream is None:
+            return
+        from_sensor = datagrams.source == address_number(stream.source)
+        to_data = from_sensor & (datagrams.port == stream.port)
+        whole = to_data & (datagrams.length == DATA_SIZE)
+        self._report.count("packets_wrong_length", int((to_data & ~whole).sum()))
+        for size, chosen in (
+            (POSITION_SIZE, from_sensor & ~to_data & (datagrams.length == POSITION_SIZE)),
+            (DATA_SIZE, whole),
+        ):
+            rows = np.flatnonzero(chosen)
+            if len(rows):
+                decoder = channel.positions if size == POSITION_SIZE else channel.data
+                yield decoder.push(datagrams.t_ns[rows], datagrams.payloads(rows, size))
+
+    def _assign(
+        self, groups: list[tuple[PacketStream, ...]], settings: IngestSettings
+    ) -> list[_Channel]:
+        chosen = _match(self.rig.sensors, groups, self._report)
+        channels = []
+        for row, sensor in enumerate(self.rig.sensors):
+            if row not in chosen:
+                self._report.warn(
+                    f"{sensor.name}: no packets from {sensor.address or 'any address'} "
+                    f"to port {sensor.port}"
+                )
+                continue
+            channels.append(self._channel(row, chosen[row], settings))
+        return channels
+
+    def _channel(
+        self, row: int, streams: tuple[PacketStream, ...], settings: IngestSettings
+    ) -> _Channel:
+        sensor = self.rig.sensors[row]
+        clock = SensorClock(
+            sensor.name,
+            packet_s=velodyne_model(sensor.model).packet_s(streams[0].return_mode),
+            report=self._report,
+            utc_offset_ns=streams[0].utc_offset_ns,
+        )
+        data = PacketDecoder(row, sensor, settings=settings, report=self._report, clock=clock)
+        positions = PositionDecoder(sensor, clock=clock, report=self._report)
+        return _Channel(sensor, streams, data, positions)
+
+
+def _sensors_of(streams: list[PacketStream]) -> list[tuple[PacketStream, ...]]:
+    """Data streams of one sensor together: same sender and port, files that do not overlap."""
+    groups: list[list[PacketStream]] = []
+    for stream in sorted((s for s in streams if s.kind == "data"), key=lambda s: s.t_first_ns):
+        for group in groups:
+            same = (group[-1].source, group[-1].port) == (stream.source, stream.port)
+            if same and stream.t_first_ns >= group[-1].t_end_ns:
+                group.append(stream)
+                break
+        else:
+            groups.append([stream])
+    order = {id(stream): place for place, stream in enumerate(streams)}
+    return sorted((tuple(group) for group in groups), key=lambda group: order[id(group[0])])
+
+
+def _rig_of(groups: list[tuple[PacketStream, ...]]) -> Rig:
+    sensors = tuple(
+        Sensor(
+            name=f"lidar{number}",
+            model=streams[0].model or "generic",
+            T_body_sensor=SE3.identity(),
+            address=streams[0].source,
+            port=streams[0].port,
+        )
+        for number, streams in enumerate(groups)
+    )
+    return Rig(
+        name="found in the recording",
+        sensors=sensors,
+        T_body_imu=SE3.identity(),
+        imu_time_offset_s=0.0,
+        p_body_antenna=np.zeros(3),
+        gnss_time_offset_s=0.0,
+    )
+
+
+def _match(
+    sensors: Sequence[Sensor], groups: list[tuple[PacketStream, ...]], report: ImportReport
+) -> dict[int, tuple[PacketStream, ...]]:
+    """Row of the sensor to its streams."""
+    chosen: dict[int, tuple[PacketStream, ...]] = {}
+    left = list(groups)
+    for row in sorted(range(len(sensors)), key=lambda row: not sensors[row].address):
+        sensor = sensors[row]
+        for streams in left:
+            fits = sensor.address in {"", streams[0].source} and sensor.port == streams[0].port
+            if fits:
+                chosen[row] = streams
+                left.remove(streams)
+                break
+    empty = [row for row in range(len(sensors)) if row not in chosen]
+    for row, streams in zip(empty, list(left), strict=False):
+        chosen[row] = streams
+        left.remove(streams)
+        report.derive(
+            f"{sensors[row].name}: taken from {streams[0].label}, the rig expects "
+            f"{sensors[row].address or 'any address'} to port {sensors[row].port}"
+        )
+    for streams in left:
+        report.warn(f"{streams[0].label}: the rig has no sensor for these packets; not read")
+    return chosen
