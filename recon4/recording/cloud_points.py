@@ -26,6 +26,7 @@ _ABSOLUTE = ((1e17, 1.0), (1e14, 1e3), (1e11, 1e6), (1e8, 1e9))
 """From this value on a time is absolute; nanoseconds of one unit."""
 _FLOAT_UNITS = ((2.0, 1e9), (2e3, 1e6), (2e6, 1e3), (2e9, 1.0))
 """Up to this span a fractional time is in units of so many nanoseconds."""
+_OTHER_CLOCK_NS = 10_000_000_000
 _TURN_S = (0.01, 0.6)
 """A full revolution takes between these [s]: tells the unit of whole-number times."""
 
@@ -38,8 +39,27 @@ def find_field(names: Any, aliases: tuple[str, ...]) -> str:
 class CloudDecoder:
     """Turns the clouds of one sensor into shots; what was worked out once is kept for all."""
 
-    def __init__(self, sensor_row: int, name: str, model: str, report: ImportReport) -> None:
+    def __init__(
+        self,
+        sensor_row: int,
+        name: str,
+        model: str,
+        report: ImportReport,
+        *,
+        points_lead: bool = False,
+    ) -> None:
+        """Start without having seen a cloud.
+
+        Args:
+            sensor_row: Row in ``Rig.sensors``.
+            name: What the sensor is called in the report.
+            model: Its model, for rings that are not given.
+            report: Told what was worked out.
+            points_lead: Absolute times of points count, however far they are from the stamps
+                (file names in local time); otherwise the stamps do (one clock for a whole bag).
+        """
         self._row, self._name, self._model, self._report = sensor_row, name, model, report
+        self._points_lead = points_lead
         self._ring_of: NDArray[np.uint8] | None = None
         self.absolute = False
         """The last cloud's points carried absolute times."""
@@ -165,7 +185,9 @@ class CloudDecoder:
         whole = values.astype(np.int64)
         part = np.rint((values - whole) * unit) if values.dtype.kind == "f" else 0
         times = np.asarray(whole * int(unit) + part, dtype=np.int64)
-        if t_ns and abs(int(times[0]) - t_ns) > 10_000_000_000:
+        if self._points_lead:
+            self._report.derive(f"{self._name}: times are those of the points")
+        elif abs(int(times[0]) - t_ns) > _OTHER_CLOCK_NS:
             self._report.derive(
                 f"{self._name}: the points' clock is not the stamps' clock; stamp = first point"
             )

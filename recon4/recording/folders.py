@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -23,8 +23,8 @@ from recon4.settings import IngestSettings
 
 CLOUD_SUFFIXES = (".pcd", ".ply", ".bin")
 _PERIOD_NS = 100_000_000
-_LONGEST_NS = 250_000_000
-"""Frames farther apart are key frames: each is still one revolution of `_PERIOD_NS`."""
+_SHORTEST_NS, _LONGEST_NS = 20_000_000, 250_000_000
+"""Frames nearer or farther than that do not follow each other: each is still one revolution."""
 _DATE = re.compile(r"(\d{4})-(\d\d)-(\d\d)[-_T](\d\d)[-:](\d\d)[-:](\d\d)[-.](\d{1,9})$")
 
 
@@ -64,7 +64,10 @@ def list_frames(path: Path) -> FrameFiles:
     steps = np.diff(stamps)
     period = int(np.median(steps)) if len(steps) else _PERIOD_NS
     return FrameFiles(
-        tuple(found), stamps, period if 0 < period <= _LONGEST_NS else _PERIOD_NS, source
+        tuple(found),
+        stamps,
+        period if _SHORTEST_NS <= period <= _LONGEST_NS else _PERIOD_NS,
+        source,
     )
 
 
@@ -76,7 +79,7 @@ def read_frames(
     Raises:
         RecordingError: If not one of the files can be read.
     """
-    decoder = CloudDecoder(0, sensor.name, sensor.model, report)
+    decoder = CloudDecoder(0, sensor.name, sensor.model, report, points_lead=True)
     if not frames.times_from:
         rate = 1e9 / frames.period_ns
         report.derive(f"no times in the file names, frames every 1/{rate:g} s from 0")
@@ -92,11 +95,18 @@ def read_frames(
             report.outcome = "lossy"
             report.warn(f"left out: {error}")
             continue
+        start_ns = int(stamp) + offset_ns
+        if len(shots) and (decoder.absolute or shots.t_ns[0] < start_ns):
+            start_ns = int(shots.t_ns[0])
         shots = drop_invalid(shots, settings=settings, report=report)
         if not len(shots):
             report.count("frames_empty")
             continue
-        frame = _frame(shots, frame_id, frames.period_ns, last_ns)
+        frame = _multiframe(shots, frame_id, start_ns, frames.period_ns)
+        if last_ns is not None and start_ns <= last_ns:
+            report.count("frames_moved")
+            report.warn("frames that do not follow each other in time are put one after the other")
+            frame = replace(frame, t_ns=last_ns + frames.period_ns)
         last_ns, frame_id = frame.t_ns, frame_id + 1
         yield frame
     if not frame_id and failed is not None:
@@ -123,12 +133,8 @@ def _shots(decoder: CloudDecoder, file: Path, stamp_ns: int, period_ns: int) -> 
         raise CorruptFile(f"{file.name}: {error}") from error
 
 
-def _frame(shots: Shots, frame_id: int, period_ns: int, last_ns: int | None) -> Multiframe:
-    """The whole cloud as one multiframe that starts after the one before."""
-    start_ns = int(shots.t_ns[0])
-    if last_ns is not None and start_ns <= last_ns:
-        start_ns = last_ns + period_ns
-    dt_ns = shots.t_ns - shots.t_ns[0]
+def _multiframe(shots: Shots, frame_id: int, start_ns: int, period_ns: int) -> Multiframe:
+    """The whole cloud as one multiframe."""
     return Multiframe(
         frame_id,
         start_ns,
@@ -138,7 +144,7 @@ def _frame(shots: Shots, frame_id: int, period_ns: int, last_ns: int | None) -> 
         shots.ring,
         np.zeros(len(shots), np.uint8),
         shots.echo,
-        np.minimum(dt_ns, 2**31 - 1).astype(np.int32),
+        np.clip(shots.t_ns - start_ns, 0, 2**31 - 1).astype(np.int32),
     )
 
 

@@ -78,34 +78,39 @@ def assign_topics(rig: Rig, streams: Sequence[Stream], report: ImportReport) -> 
     Raises:
         ConfigError: If no sensor of the rig is in the recording.
     """
-    free = [stream.topic for stream in streams]
-    chosen: dict[str, str] = {}
-    for sensor in rig.sensors:
-        if sensor.topic in free:
-            chosen[sensor.name] = sensor.topic
-            free.remove(sensor.topic)
-    for sensor in rig.sensors:
-        named = [topic for topic in free if sensor.name.lower() in topic.lower()]
-        if sensor.name not in chosen and not sensor.topic and len(named) == 1:
-            chosen[sensor.name] = named[0]
-            free.remove(named[0])
-    open_ends = [s for s in rig.sensors if s.name not in chosen and not s.topic]
-    if open_ends and len(open_ends) == len(free):
-        for sensor, topic in zip(open_ends, list(free), strict=True):
+    topics = [stream.topic for stream in streams]
+    chosen = {s.name: s.topic for s in rig.sensors if s.topic in topics}
+    unnamed = [s for s in rig.sensors if not s.topic]
+    for sensor in unnamed:
+        alike = [t for t in _free(topics, chosen) if sensor.name.lower() in t.lower()]
+        if len(alike) == 1:
+            chosen[sensor.name] = alike[0]
+    left = [s for s in unnamed if s.name not in chosen]
+    if len(left) == len(_free(topics, chosen)):
+        for sensor, topic in zip(left, _free(topics, chosen), strict=True):
             chosen[sensor.name] = topic
-            free.remove(topic)
             report.derive(f"{sensor.name} is topic {topic}: the rig names none")
     if not chosen:
         raise ConfigError(
             f"no LiDAR of the rig {rig.name!r} is in the recording; it has {_names(streams)}"
         )
+    _say_what_is_left(rig, chosen, _free(topics, chosen), report)
+    sensors = [replace(s, topic=chosen.get(s.name, s.topic)) for s in rig.sensors]
+    return replace(rig, sensors=tuple(sensors))
+
+
+def _free(topics: Sequence[str], chosen: dict[str, str]) -> list[str]:
+    return [topic for topic in topics if topic not in chosen.values()]
+
+
+def _say_what_is_left(
+    rig: Rig, chosen: dict[str, str], free: Sequence[str], report: ImportReport
+) -> None:
     for sensor in rig.sensors:
         if sensor.name not in chosen:
             report.warn(f"sensor {sensor.name} of the rig is not in the recording")
     for topic in free:
         report.warn(f"topic {topic} belongs to no sensor of the rig and is not read")
-    sensors = [replace(s, topic=chosen.get(s.name, s.topic)) for s in rig.sensors]
-    return replace(rig, sensors=tuple(sensors))
 
 
 def _is_thesis(streams: Sequence[Stream], thesis: Rig) -> bool:

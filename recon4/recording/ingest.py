@@ -1,0 +1,283 @@
+"""The stage ``frames``: a recording to a frame store."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import ConfigError, EmptyRecording
+from recon4.geometry.se3 import SE3
+from recon4.model.multiframe import Multiframe
+from recon4.model.rig import Rig
+from recon4.model.samples import GnssSamples, ImuSamples
+from recon4.model.trajectory import Trajectory
+from recon4.progress import Progress
+from recon4.recording.assemble import Assembler
+from recon4.recording.csv_samples import read_gnss_csv, read_imu_csv
+from recon4.recording.open import Kind, Recording, open_recording, recognize
+from recon4.recording.poses import write_tum
+from recon4.recording.report import ImportReport
+from recon4.recording.samples import clean_gnss, clean_imu, join
+from recon4.recording.shots import Shots
+from recon4.settings import IngestSettings
+from recon4.store.frames import FrameWriter
+
+Span = tuple[int, int]
+"""Start of the first and end of the last multiframe [ns]."""
+Samples = TypeVar("Samples", ImuSamples, GnssSamples)
+
+_GAPS_LISTED = 1000
+
+
+@dataclass(slots=True)
+class _Samples:
+    """What comes beside the points."""
+
+    imu: list[ImuSamples] = field(default_factory=list)
+    gnss: list[GnssSamples] = field(default_factory=list)
+    poses: list[Trajectory] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class _Written:
+    """What was written of the points."""
+
+    t_first_ns: int
+    duration_ns: int
+    t_last_ns: int = 0
+    points: NDArray[np.int64] = field(default_factory=lambda: np.zeros(256, np.int64))
+    """Of each sensor."""
+
+    @property
+    def span(self) -> Span:
+        return self.t_first_ns, self.t_last_ns
+
+
+def ingest(
+    recordings: Sequence[Path],
+    out: Path,
+    *,
+    rig: Rig | None,
+    imu: Path | None,
+    gnss: Path | None,
+    settings: IngestSettings,
+    progress: Progress,
+) -> None:
+    """Read a recording into a frame store.
+
+    Args:
+        recordings: The recording; CSV files of IMU and GNSS samples may be among the paths.
+        out: Folder of the store.
+        rig: Sensors and mountings; None = chosen from what is in the recording, and said.
+        imu: IMU samples that replace the recording's.
+        gnss: GNSS samples that replace the recording's.
+        settings: How to read.
+        progress: Told of multiframes written, gaps and warnings.
+
+    Raises:
+        RecordingError: If the recording cannot be read or has no points.
+        ConfigError: If rig, clocks or units are wrong.
+        StoreError: If the store cannot be written.
+    """
+    report = ImportReport()
+    paths, imu, gnss = _sort_out(recordings, imu, gnss)
+    given = _Samples(
+        imu=[read_imu_csv(imu)] if imu else [], gnss=[read_gnss_csv(gnss)] if gnss else []
+    )
+    recording = open_recording(paths, rig, settings=settings, report=report)
+    assembler = Assembler(recording.rig, settings=settings, report=report)
+    found = _Samples()
+    with FrameWriter(out, recording.rig) as writer:
+        frames = _multiframes(recording, assembler, found)
+        written = _write_frames(writer, frames, recording.seconds, progress)
+        if written is None:
+            counted = ", ".join(f"{name} {n}" for name, n in sorted(report.counts.items()))
+            raise EmptyRecording(f"{paths[0].name}: no usable points ({counted or 'nothing read'})")
+        rig, span = recording.rig, written.span
+        jumps = [-round(gap.seconds * 1e9) for gap in assembler.gaps if gap.seconds < 0]
+        kept_imu = _imu(given, found, (rig, span, jumps), report)
+        kept_gnss = _gnss(given, found, (rig, span), report)
+        _write_poses(out, found.poses, report)
+        about = _summary(recording, assembler, written, report)
+        about |= {"recordings": [path.name for path in paths]}
+        about |= {"frames": len(writer), "points": writer.points}
+        about |= {"imu": _about(kept_imu), "gnss": _about(kept_gnss)}
+        writer.add(imu=kept_imu, gnss=kept_gnss, report=about)
+    for text in report.warnings:
+        progress.event("warning", text=text)
+
+
+def _sort_out(
+    recordings: Sequence[Path], imu: Path | None, gnss: Path | None
+) -> tuple[list[Path], Path | None, Path | None]:
+    """Recordings, IMU file and GNSS file, whichever way they were given."""
+    kinds = {path: recognize(path) for path in recordings}
+    for path, kind in kinds.items():
+        if kind is Kind.IMU_CSV and imu is None and len(kinds) > 1:
+            imu = path
+        if kind is Kind.GNSS_CSV and gnss is None and len(kinds) > 1:
+            gnss = path
+    return [path for path in recordings if path not in (imu, gnss)], imu, gnss
+
+
+def _multiframes(
+    recording: Recording, assembler: Assembler, found: _Samples
+) -> Iterator[Multiframe]:
+    for item in recording.read():
+        if isinstance(item, Shots):
+            yield from assembler.push(item)
+        elif isinstance(item, Multiframe):
+            yield item
+        elif isinstance(item, ImuSamples):
+            found.imu.append(item)
+        elif isinstance(item, GnssSamples):
+            found.gnss.append(item)
+        else:
+            found.poses.append(item)
+    yield from assembler.flush()
+
+
+def _write_frames(
+    writer: FrameWriter, frames: Iterator[Multiframe], seconds: float, progress: Progress
+) -> _Written | None:
+    """Write them all; None if there is none."""
+    written: _Written | None = None
+    for frame in frames:
+        if written is None:
+            progress.start("frames", round(seconds * 1e9 / frame.duration_ns), "multiframe")
+            written = _Written(frame.t_ns, frame.duration_ns)
+        writer.append(frame)
+        written.t_last_ns = frame.t_ns + frame.duration_ns
+        written.points += np.bincount(frame.sensor, minlength=256)
+        progress.advance()
+    return written
+
+
+# -- samples
+
+
+def _imu(
+    given: _Samples, found: _Samples, about: tuple[Rig, Span, list[int]], report: ImportReport
+) -> ImuSamples | None:
+    rig, span, jumps = about
+    samples = join(given.imu or found.imu)
+    if samples is None:
+        report.warn("no IMU: motion inside a frame is guessed from the points alone")
+        return None
+    if given.imu and found.imu:
+        report.derive("IMU samples are those of the CSV file, not the recording's")
+    offset_s = rig.imu_time_offset_s
+    clean = clean_imu(samples, offset_s=offset_s, jumps_ns=jumps, report=report)
+    return _covering(clean, span, bool(given.imu), report)
+
+
+def _gnss(
+    given: _Samples, found: _Samples, about: tuple[Rig, Span], report: ImportReport
+) -> GnssSamples | None:
+    rig, span = about
+    samples = join(given.gnss or found.gnss)
+    if samples is None:
+        return None
+    if given.gnss and found.gnss:
+        report.derive("GNSS samples are those of the CSV file, not the recording's")
+    clean = clean_gnss(samples, offset_s=rig.gnss_time_offset_s, report=report)
+    return _covering(clean, span, bool(given.gnss), report)
+
+
+def _covering(
+    samples: Samples | None, span: Span, asked_for: bool, report: ImportReport
+) -> Samples | None:
+    """The samples, unless their times have nothing to do with the points'.
+
+    Raises:
+        ConfigError: If they were given as a file: then somebody wants them used.
+    """
+    if samples is None:
+        return None
+    what = "IMU" if isinstance(samples, ImuSamples) else "GNSS"
+    first, last = int(samples.t_ns[0]), int(samples.t_ns[-1])
+    margin_ns = 1_000_000_000
+    if last < span[0] - margin_ns or first > span[1] + margin_ns:
+        text = (
+            f"{what} samples cover {first / 1e9:.3f} … {last / 1e9:.3f} s, the points "
+            f"{span[0] / 1e9:.3f} … {span[1] / 1e9:.3f} s: are the clocks the same?"
+        )
+        if asked_for:
+            raise ConfigError(text)
+        report.warn(f"{text} They are not used")
+        return None
+    late_s, early_s = (first - span[0]) / 1e9, (span[1] - last) / 1e9
+    if what == "IMU" and max(late_s, early_s) > 1.0:
+        report.warn(
+            f"IMU samples begin {late_s:+.1f} s after and end {early_s:+.1f} s before the points"
+        )
+    return samples
+
+
+def _write_poses(out: Path, parts: Sequence[Trajectory], report: ImportReport) -> None:
+    """Keep the poses of an ``Odometry`` topic beside the frames; nothing is computed from them."""
+    parts = [part for part in parts if len(part)]
+    if not parts:
+        return
+    t_ns = np.concatenate([part.t_ns for part in parts])
+    T = SE3(
+        np.concatenate([part.T_a_b.R for part in parts]),
+        np.concatenate([part.T_a_b.t for part in parts]),
+    )
+    later = np.diff(np.maximum.accumulate(t_ns), prepend=np.int64(-1)) > 0
+    report.count("poses", int(np.count_nonzero(later)))
+    report.derive("poses of the recording are kept in poses.tum for comparison, not used")
+    write_tum(out / "poses.tum", Trajectory(t_ns[later], T[later]))
+
+
+# -- report
+
+
+def _summary(recording: Recording, assembler: Assembler, report: ImportReport) -> dict[str, Any]:
+    gaps = [*recording.gaps, *assembler.gaps]
+    return {
+        "kind": str(recording.kind),
+        "outcome": report.outcome,
+        "rig": recording.rig.name,
+        "sensors": [
+            {
+                "name": sensor.name,
+                "model": sensor.model,
+                "topic": sensor.topic,
+                "address": sensor.address,
+                "port": sensor.port,
+                "points": int(written.points[row]),
+                "rotation_hz": _number(assembler.rotation_hz.get(sensor.name)),
+            }
+            for row, sensor in enumerate(recording.rig.sensors)
+        ],
+        "duration_ns": written.duration_ns,
+        "t_first_ns": written.t_first_ns,
+        "t_last_ns": written.t_last_ns,
+        "counts": dict(sorted(report.counts.items())),
+        "gaps": [asdict(gap) for gap in gaps[:_GAPS_LISTED]],
+        "derived": report.derived,
+        "warnings": report.warnings,
+    }
+
+
+def _number(value: float | None) -> float | None:
+    return None if value is None or not np.isfinite(value) else round(float(value), 4)
+
+
+def _about(samples: ImuSamples | GnssSamples | None) -> dict[str, Any] | None:
+    if samples is None:
+        return None
+    span_s = float(samples.t_ns[-1] - samples.t_ns[0]) / 1e9
+    rate = (len(samples) - 1) / span_s if span_s > 0 else None
+    return {
+        "samples": len(samples),
+        "rate_hz": _number(rate),
+        "t_first_ns": int(samples.t_ns[0]),
+        "t_last_ns": int(samples.t_ns[-1]),
+    }

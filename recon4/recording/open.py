@@ -1,0 +1,264 @@
+"""What a path is, by its content, and the recording in it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import partial
+from pathlib import Path
+
+from recon4.errors import ConfigError, EmptyRecording, RecordingError, UnknownFormat
+from recon4.model.multiframe import Multiframe
+from recon4.model.rig import Rig
+from recon4.model.samples import GnssSamples, ImuSamples
+from recon4.model.trajectory import Trajectory
+from recon4.recording.assemble import Gap
+from recon4.recording.bag_recording import BagRecording
+from recon4.recording.bags import STORAGE_SUFFIXES
+from recon4.recording.cloud_files import is_cloud_file, read_cloud
+from recon4.recording.cloud_points import model_of_points
+from recon4.recording.csv_samples import GNSS_HEADER, IMU_HEADER, csv_header
+from recon4.recording.folders import CLOUD_SUFFIXES, folder_gaps, list_frames, natural, read_frames
+from recon4.recording.pcap import is_pcap
+from recon4.recording.poses import pose_format
+from recon4.recording.positions import PositionSamples
+from recon4.recording.report import ImportReport
+from recon4.recording.rig_choice import Stream, choose_rig
+from recon4.recording.shots import Shots
+from recon4.recording.velodyne_pcap import PacketStream, VelodynePcap, scan_pcap
+from recon4.settings import IngestSettings
+
+Item = Shots | Multiframe | ImuSamples | GnssSamples | Trajectory
+
+
+class Kind(StrEnum):
+    """What recon4 reads; the value is shown to people."""
+
+    PCAP = "Velodyne pcap"
+    BAG1 = "rosbag1"
+    BAG2 = "rosbag2"
+    FRAMES = "frames (PCD, PLY or KITTI BIN)"
+    IMU_CSV = "IMU samples (CSV)"
+    GNSS_CSV = "GNSS samples (CSV)"
+    POSES = "poses (TUM or KITTI)"
+
+
+RECORDINGS = (Kind.PCAP, Kind.BAG1, Kind.BAG2, Kind.FRAMES)
+"""Kinds that hold points."""
+
+_OTHERS = {
+    b"\xff\xd8\xff": "a JPEG image",
+    b"\x89PNG": "a PNG image",
+    b"PK\x03\x04": "a zip archive: unpack it first",
+    b"\x1f\x8b": "gzip compressed: unpack it first",
+    b"\xfd7zXZ": "xz compressed: unpack it first",
+    b"\x28\xb5\x2f\xfd": "zstd compressed: unpack it first",
+    b"BZh": "bzip2 compressed: unpack it first",
+    b"7z\xbc\xaf": "a 7z archive: unpack it first",
+    b"%PDF": "a PDF document",
+    b"LASF": "a LAS/LAZ point cloud: a finished map, not a recording",
+    b"ASTM-E57": "an E57 point cloud: a finished scan, not a recording",
+    b"\x7fELF": "a program",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """A recording that can be streamed once."""
+
+    kind: Kind
+    rig: Rig
+    read: Callable[[], Iterator[Item]]
+    """Shots are still to be assembled; multiframes are whole frames of files."""
+    seconds: float = 0.0
+    """How long it is, roughly [s]; 0 = unknown."""
+    gaps: tuple[Gap, ...] = ()
+    """Those known before reading."""
+
+
+def recognize(path: Path) -> Kind:
+    """Guess what a path is.
+
+    Raises:
+        UnknownFormat: If no reader knows it; the message lists the known kinds.
+        EmptyRecording: If the file or folder is empty.
+        RecordingError: If there is no such path.
+    """
+    if not path.exists():
+        raise RecordingError(f"{path} does not exist")
+    try:
+        return _folder_kind(path) if path.is_dir() else _file_kind(path)
+    except OSError as error:
+        raise RecordingError(f"{path} cannot be read: {error.strerror or error}") from error
+
+
+def open_recording(
+    paths: Sequence[Path], rig: Rig | None, *, settings: IngestSettings, report: ImportReport
+) -> Recording:
+    """Look at the head of a recording and settle its rig.
+
+    Args:
+        paths: One recording, or several files of one kind that belong together.
+        rig: The rig; None = chosen from what is in the recording.
+        settings: How to read.
+        report: Told what was found and worked out.
+
+    Raises:
+        RecordingError: If it cannot be read.
+        ConfigError: If the rig is wrong or cannot be chosen.
+    """
+    if not paths:
+        raise ConfigError("no recording given")
+    kinds = [recognize(path) for path in paths]
+    kind = kinds[0]
+    if kind not in RECORDINGS:
+        raise UnknownFormat(f"{paths[0].name}: {kind} alone is no recording: it has no points")
+    if any(other is not kind for other in kinds):
+        names = ", ".join(f"{path.name} ({k})" for path, k in zip(paths, kinds, strict=True))
+        raise UnknownFormat(f"recordings of one kind expected, got {names}")
+    if kind is Kind.PCAP:
+        return _open_pcap([f for path in paths for f in pcap_files(path)], rig, settings, report)
+    if kind is Kind.FRAMES:
+        return _open_frames(paths, rig, settings, report)
+    bag = BagRecording(
+        [f for path in paths for f in bag_paths(path)], rig, settings=settings, report=report
+    )
+    return Recording(kind, bag.rig, bag.read, bag.seconds)
+
+
+def bag_paths(path: Path) -> list[Path]:
+    """A bag file or rosbag2 folder itself; of a folder of rosbag1 files, those."""
+    if path.is_file() or not list(path.glob("*.bag")):
+        return [path]
+    return sorted(path.glob("*.bag"), key=natural)
+
+
+def pcap_files(path: Path) -> list[Path]:
+    """The file itself, or the capture files of a folder."""
+    if path.is_file():
+        return [path]
+    return sorted((f for f in path.iterdir() if f.is_file() and is_pcap(f)), key=natural)
+
+
+def lidar_of_packets(streams: Sequence[PacketStream]) -> list[Stream]:
+    """The LiDARs among the streams of capture files, each once."""
+    found: dict[tuple[str, int], Stream] = {}
+    for stream in streams:
+        if stream.kind == "data":
+            label = f"{stream.source}:{stream.port}"
+            lidar = Stream(label, stream.model or "generic", stream.source, stream.port)
+            found.setdefault((stream.source, stream.port), lidar)
+    return list(found.values())
+
+
+def _file_kind(path: Path) -> Kind:
+    with path.open("rb") as file:
+        head = file.read(4096)
+    if not head:
+        raise EmptyRecording(f"{path.name}: the file is empty (0 bytes)")
+    if is_pcap(path):
+        return Kind.PCAP
+    if head.startswith(b"#ROSBAG V"):
+        return Kind.BAG1
+    if head.startswith((b"SQLite format 3\0", b"\x89MCAP")):
+        return Kind.BAG2
+    if is_cloud_file(path):
+        return Kind.FRAMES
+    columns = csv_header(path)
+    if set(IMU_HEADER[:4]) <= set(columns):
+        return Kind.IMU_CSV
+    if set(GNSS_HEADER[:3]) <= set(columns):
+        return Kind.GNSS_CSV
+    if pose_format(path):
+        return Kind.POSES
+    what = next((text for magic, text in _OTHERS.items() if head.startswith(magic)), "")
+    looks = f"looks like {what}" if what else f"first bytes {head[:8].hex(' ')}"
+    raise UnknownFormat(f"{path.name}: no reader recognizes it ({looks}); {_known()}")
+
+
+def _folder_kind(path: Path) -> Kind:
+    names = sorted(child.name for child in path.iterdir())
+    if not names:
+        raise EmptyRecording(f"{path.name}: the folder is empty")
+    suffixes = {Path(name).suffix.lower() for name in names}
+    if "metadata.yaml" in names or suffixes & set(STORAGE_SUFFIXES):
+        return Kind.BAG2
+    if suffixes & set(CLOUD_SUFFIXES):
+        return Kind.FRAMES
+    if ".bag" in suffixes:
+        return Kind.BAG1
+    if any(is_pcap(child) for child in path.iterdir() if child.is_file()):
+        return Kind.PCAP
+    raise UnknownFormat(
+        f"{path.name}: no recording in this folder; it has {', '.join(names[:8])}"
+        f"{' …' if len(names) > 8 else ''}; {_known()}"
+    )
+
+
+def _known() -> str:
+    return f"known: {', '.join(Kind)}"
+
+
+def _open_pcap(
+    files: Sequence[Path], rig: Rig | None, settings: IngestSettings, report: ImportReport
+) -> Recording:
+    streams = [stream for file in files for stream in scan_pcap(file)]
+    lidars = lidar_of_packets(streams)
+    if not lidars:
+        raise EmptyRecording(f"{files[0].name}: no LiDAR packets in it")
+    chosen = rig or choose_rig(lidars, report)
+    pcap = VelodynePcap(files, chosen, settings=settings, report=report)
+    seconds = sum(pcap_seconds(f, [s for s in streams if s.file == f]) for f in files)
+    return Recording(Kind.PCAP, pcap.rig, partial(_read_pcap, pcap), seconds)
+
+
+def pcap_seconds(file: Path, streams: Sequence[PacketStream]) -> float:
+    """Length of a capture file [s], from its size and what its head says."""
+    data = [s for s in streams if s.kind == "data"]
+    if not data:
+        return 0.0
+    head_s = max(1e-3, max(s.t_last_ns for s in data) / 1e9 - min(s.t_first_ns for s in data) / 1e9)
+    head_bytes = sum(s.packets * (1264 if s.kind == "data" else 570) for s in streams)
+    return head_s * max(1.0, file.stat().st_size / max(1, head_bytes))
+
+
+def _read_pcap(pcap: VelodynePcap) -> Iterator[Item]:
+    for item in pcap.read():
+        if not isinstance(item, PositionSamples):
+            yield item
+            continue
+        if item.imu is not None:
+            yield item.imu
+        if item.gnss is not None:
+            yield item.gnss
+
+
+def _open_frames(
+    paths: Sequence[Path], rig: Rig | None, settings: IngestSettings, report: ImportReport
+) -> Recording:
+    if len(paths) > 1:
+        raise UnknownFormat("give the folder of the frames, not several files or folders")
+    frames = list_frames(paths[0])
+    if rig is None:
+        rig = choose_rig([Stream(paths[0].name, frames_model(frames.files))], report)
+    elif len(rig.sensors) > 1:
+        raise ConfigError(
+            f"a folder of frames is one LiDAR, the rig {rig.name!r} has {len(rig.sensors)}"
+        )
+    gaps = folder_gaps(frames, rig.sensors[0].name, settings.gap_s)
+    for gap in gaps[:20]:
+        report.warn(f"{gap.sensor}: {gap.seconds:.3f} s from one frame to the next")
+    read = partial(read_frames, frames, rig.sensors[0], settings=settings, report=report)
+    seconds = len(frames.files) * frames.period_ns / 1e9
+    return Recording(Kind.FRAMES, rig, read, seconds, tuple(gaps))
+
+
+def frames_model(files: Sequence[Path]) -> str:
+    """The sensor the first readable file is from."""
+    for file in files[:3]:
+        try:
+            return model_of_points(read_cloud(file))
+        except RecordingError:
+            continue
+    return "generic"
