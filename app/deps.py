@@ -10,6 +10,7 @@ from starlette.requests import HTTPConnection
 
 from app.jobs.store import JobStore
 from app.jobs.supervisor import Supervisor
+from app.projects.picture import Pictures
 from app.projects.store import ProjectStore
 from app.settings import ServerSettings
 from app.viewer.pool import ViewerPool
@@ -21,6 +22,7 @@ class Parts:
 
     settings: ServerSettings
     projects: ProjectStore
+    pictures: Pictures
     jobs: JobStore
     supervisor: Supervisor
     viewers: ViewerPool

@@ -23,6 +23,7 @@ from app.jobs import routes as job_routes
 from app.jobs.store import JobStore
 from app.jobs.supervisor import Supervisor
 from app.projects import routes as project_routes
+from app.projects.picture import Pictures
 from app.projects.store import ProjectStore
 from app.settings import ServerSettings, recordings_from_environment
 from app.viewer import page, proxy
@@ -62,6 +63,7 @@ def serve(
     port: int = 8000,
     open_project: str | None = None,
     on_ready: Callable[[str], None] = lambda url: None,
+    worker: str = "app.jobs.worker",
 ) -> None:
     """Run the server until it is interrupted.
 
@@ -71,13 +73,18 @@ def serve(
         port: Port; 0 = any free one.
         open_project: The project whose page the URL leads to; None = the list.
         on_ready: Called once with the URL, as soon as the server listens.
+        worker: Module run for a job.
 
     Raises:
         ConfigError: If it cannot listen there, or ``root`` does not hold projects.
         StoreError: If another server runs on the same folder.
     """
     settings = ServerSettings(
-        root=root, host=host, port=port, recordings=recordings_from_environment()
+        root=root,
+        host=host,
+        port=port,
+        recordings=recordings_from_environment(),
+        worker=worker,
     )
     with _only_one(settings), _listening(settings) as listener:
         name, bound = listener.getsockname()[:2]
@@ -123,6 +130,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
     app.state.parts = Parts(
         settings=settings,
         projects=ProjectStore(settings.root, settings.import_roots),
+        pictures=Pictures(settings.state / "pictures"),
         jobs=jobs,
         supervisor=supervisor,
         viewers=viewers,

@@ -51,7 +51,7 @@ def loop_walk() -> Trajectory:
 
 
 def verified_graph(walk: Trajectory) -> PoseGraph:
-    """A node every 10 poses; odometry, neighbors, loops between the rounds, and turned down ones."""
+    """A node every 10 poses; odometry, neighbors, loops of the two rounds, some turned down."""
     rows = np.arange(0, len(walk), 10)
     T, n = walk.T_a_b[rows], len(rows)
     pairs = [(k, k + 1, EdgeKind.ODOMETRY) for k in range(n - 1)]

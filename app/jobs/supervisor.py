@@ -43,6 +43,11 @@ class Tail:
             self.status = after(self.status, event)
         return self.status != before
 
+    def forget(self) -> None:
+        """Start anew: what was said so far was another worker's."""
+        self.read()
+        self.status = Status()
+
 
 class Supervisor:
     """The queue's engine; one a server."""
@@ -143,6 +148,7 @@ class Supervisor:
     def _start(self, job: Job) -> None:
         folder = self.folder(job.id)
         folder.prepare(job.inputs, self._settings.root.resolve() / job.project)
+        self._tail(job).forget()
         with folder.try_lock() as lock:
             # The state comes first: a server killed between the two lines finds a running job
             # without a worker, which is the case it knows how to repair.
@@ -150,7 +156,7 @@ class Supervisor:
             attempt = job.attempt + 1
             self._store.change(job, job.to(JobState.RUNNING, attempt=attempt, started=started))
             if lock is not None:
-                self._workers[job.id] = _spawn(folder.path, lock)
+                self._workers[job.id] = _spawn(self._settings.worker, folder.path, lock)
 
     def _watch(self, job: Job) -> bool:
         changed = self._tail(job).read()
@@ -196,11 +202,11 @@ def now() -> str:
     return datetime.now(UTC).isoformat(timespec="seconds")
 
 
-def _spawn(folder: Path, lock: int) -> subprocess.Popen[bytes]:
+def _spawn(worker: str, folder: Path, lock: int) -> subprocess.Popen[bytes]:
     """Start a worker that holds the lock from its first moment and survives the server."""
     with (folder / "log.txt").open("ab") as output:
         return subprocess.Popen(
-            [sys.executable, "-m", "app.jobs.worker", str(folder)],
+            [sys.executable, "-m", worker, str(folder)],
             stdin=subprocess.DEVNULL,
             stdout=output,
             stderr=subprocess.STDOUT,

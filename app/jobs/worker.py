@@ -9,6 +9,7 @@ import logging
 import os
 import sys
 import threading
+from collections.abc import Callable
 from pathlib import Path
 
 from app.jobs.events import EventWriter
@@ -19,24 +20,27 @@ from recon4.progress import Progress
 log = logging.getLogger("recon4.job")
 
 
-def main(path: Path) -> None:
+Work = Callable[[JobFolder, Progress], None]
+
+
+def main(path: Path, work: Work) -> None:
     """Run the job of a folder and write its outcome."""
     folder = JobFolder(path)
     (path / "pid").write_text(str(os.getpid()))
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(message)s", datefmt="%H:%M:%S")
     over = threading.Event()
     threading.Thread(target=_beat, args=(path / "heartbeat", over), daemon=True).start()
-    outcome = run(folder)
+    outcome = run(folder, work)
     log.info("%s %s", outcome.state, outcome.note)
     folder.finish(outcome)
     over.set()
 
 
-def run(folder: JobFolder) -> Outcome:
-    """Process the recording; what happened in words."""
+def run(folder: JobFolder, work: Work) -> Outcome:
+    """Do the work; what happened in words."""
     events = EventWriter(folder.path / "events.jsonl", folder.path / "cancel")
     try:
-        process(folder, events)
+        work(folder, events)
     except Cancelled as stop:
         return Outcome(state="cancelled", note=str(stop))
     except Recon4Error as error:
@@ -55,7 +59,6 @@ def run(folder: JobFolder) -> Outcome:
 def process(folder: JobFolder, progress: Progress) -> None:
     """Call the pipeline as ``recon4 process`` does."""
     from recon4.pipeline import process as run_pipeline
-
     from recon4.settings import override, preset
 
     project, inputs = folder.request()
@@ -79,4 +82,4 @@ def _beat(heartbeat: Path, over: threading.Event) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    main(Path(sys.argv[1]), process)

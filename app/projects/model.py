@@ -16,6 +16,20 @@ RESULTS: dict[str, str] = {
 }
 """Files of a project that may be downloaded, and nothing else, with what they are."""
 
+STAGE_ORDER = (
+    "frames",
+    "odometry",
+    "graph",
+    "verification",
+    "refine",
+    "level",
+    "intensity",
+    "map",
+    "export",
+    "report",
+)
+"""As in docs/architecture.md; a stage not named here is shown last."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ResultFile:
@@ -56,6 +70,8 @@ class Project:
     stages: tuple[FinishedStage, ...]
     viewable: bool
     """Whether there is something to show in 3-D."""
+    pictured: bool
+    """Whether there is a map to draw a picture of."""
     summary: dict[str, Any]
     """``summary.json`` as the run wrote it; empty before."""
 

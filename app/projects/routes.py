@@ -44,6 +44,12 @@ def report(project_id: str, server: Server) -> FileResponse:
     return FileResponse(path, media_type="text/html; charset=utf-8", headers=policy)
 
 
+@router.get("/projects/{project_id}/picture", response_class=FileResponse)
+async def picture(project_id: str, server: Server) -> FileResponse:
+    """The map from above, PNG; drawn when it is asked for the first time."""
+    return FileResponse(await server.pictures.of(server.projects.map_artifact(project_id)))
+
+
 @router.get("/recordings", responses={403: {"model": Problem}})
 def browse(server: Server, folder: str = "") -> list[Entry]:
     """Files and folders of this computer a recording may be picked from."""

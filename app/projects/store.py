@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from app.errors import NotFound, Refused
-from app.projects.model import RESULTS, Entry, FinishedStage, Project, ResultFile
+from app.projects.model import RESULTS, STAGE_ORDER, Entry, FinishedStage, Project, ResultFile
 from recon4.errors import StoreError
 from recon4.store.project import is_project, read_artifacts, read_stages
 
@@ -60,6 +60,17 @@ class ProjectStore:
         if name not in RESULTS or not _is_result(folder, name):
             raise NotFound(f"project {project_id} has no file {name[:64]!r}")
         return folder / name
+
+    def map_artifact(self, project_id: str) -> Path:
+        """The artifact of the stage ``map`` of the latest run.
+
+        Raises:
+            NotFound: If there is none yet.
+        """
+        artifacts = _artifacts(self.folder(project_id))
+        if "map" not in artifacts:
+            raise NotFound(f"project {project_id} has no map yet")
+        return artifacts["map"]
 
     def importable(self, path: str) -> Path:
         """A recording's path, if the server may read it.
@@ -112,6 +123,7 @@ class ProjectStore:
             files=tuple(_results(folder)),
             stages=stages,
             viewable=any(stage.stage in ("odometry", "map") for stage in stages),
+            pictured=any(stage.stage == "map" for stage in stages),
             summary=_json(folder / "summary.json"),
         )
 
@@ -138,20 +150,26 @@ def _results(folder: Path) -> list[ResultFile]:
     ]
 
 
-def _stages(folder: Path) -> tuple[FinishedStage, ...]:
-    """Stages of the latest run in the order they finished; none when the ledger is unreadable."""
-    if not (folder / "ledger.sqlite").exists():
-        return ()
+def _artifacts(folder: Path) -> dict[str, Path]:
+    """Stage -> its artifact in the latest run; none when the ledger is missing or damaged."""
     try:
-        current = {path.name for path in read_artifacts(folder).values()}
-        rows = [row for row in read_stages(folder) if row.key in current]
+        return read_artifacts(folder) if (folder / "ledger.sqlite").exists() else {}
     except StoreError:
+        return {}
+
+
+def _stages(folder: Path) -> tuple[FinishedStage, ...]:
+    """Stages of the latest run in the order of the pipeline."""
+    current = {path.name for path in _artifacts(folder).values()}
+    if not current:
         return ()
+    order = {stage: k for k, stage in enumerate(STAGE_ORDER)}
+    rows = [row for row in read_stages(folder) if row.key in current]
     return tuple(
         FinishedStage(
             stage=row.stage, seconds=row.seconds, peak_bytes=row.peak_bytes, finished=row.finished
         )
-        for row in rows
+        for row in sorted(rows, key=lambda row: order.get(row.stage, len(order)))
     )
 
 

@@ -26,11 +26,17 @@ addEventListener('pointerdown', (event) => {
 Document.prototype.hasFocus = function () { return !document.hidden; };
 document.addEventListener('visibilitychange', () =>
   dispatchEvent(new Event(document.hidden ? 'blur' : 'focus')));
+// On a phone the controls would cover half of the map: fold them up once.
+if (innerWidth < 576) new MutationObserver((_, watch) => {
+  const title = [...document.querySelectorAll('#root div')].find((one) =>
+    !one.firstElementChild && one.textContent === 'Connected');
+  if (title) { watch.disconnect(); title.click(); }
+}).observe(document, { childList: true, subtree: true, characterData: true });
 </script>
 <style>
-#frame-words { position: fixed; left: 0; bottom: 0; z-index: 5; padding: 4px 10px;
+#frame-words { position: fixed; left: 0; top: 0; z-index: 5; padding: 4px 10px;
   font: 12px/1.5 system-ui, sans-serif; color: #e8edf2; background: rgb(16 20 24 / 72%);
-  pointer-events: none; border-top-right-radius: 6px; }
+  pointer-events: none; border-bottom-right-radius: 6px; }
 </style>
 """
 

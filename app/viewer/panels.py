@@ -22,7 +22,7 @@ class Panel:
     ) -> None:
         self._gui = gui
         self._on_change = on_change
-        self._legend = gui.add_html("")
+        self._legend = gui.add_html("", order=0.0)
         self._folders: list[viser.GuiFolderHandle] = []
         self._chosen: dict[str, bool] = {}
         self.view = View()
@@ -80,8 +80,7 @@ class Panel:
         return folder
 
     def _add_box(self, layer: Layer) -> None:
-        count = f" ({layer.count:,})".replace(",", " ") if layer.count else ""
-        box = self._gui.add_checkbox(layer.words + count, self._chosen[layer.key])
+        box = self._gui.add_checkbox(_counted(layer), self._chosen[layer.key])
 
         def publish(_: object) -> None:
             self._chosen[layer.key] = box.value
@@ -99,7 +98,7 @@ class Panel:
 
 def legend_html(legend: Legend) -> str:
     """The legend as HTML; viser does not escape it, so every word is escaped here."""
-    rows = [_swatch(layer.words, layer.rgb, line=True) for layer in legend.layers]
+    rows = [_swatch(_counted(layer), layer.rgb, line=True) for layer in legend.layers]
     points = ""
     if legend.color_by is not None:
         points = f"<b>Points by {html.escape(legend.color_by)}</b>{_scale(legend)}"
@@ -129,6 +128,10 @@ def _swatch(words: str, rgb: Rgb, *, line: bool) -> str:
 
 def _css(rgb: tuple[int, ...]) -> str:
     return f"rgb({rgb[0]},{rgb[1]},{rgb[2]})"
+
+
+def _counted(layer: Layer) -> str:
+    return f"{layer.words} ({_count(layer.count)})" if layer.count else layer.words
 
 
 def _count(number: int) -> str:

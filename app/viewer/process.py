@@ -74,14 +74,15 @@ class Seats:
 
 def main(project: Path, idle_s: float) -> None:
     """Serve one project until nobody needs it."""
+    answer, sys.stdout = sys.stdout, sys.stderr  # viser greets people on it
     logging.basicConfig(level=logging.WARNING, format="%(asctime)s %(name)s %(message)s")
     over = threading.Event()
     threading.Thread(target=_wait_for_end_of_input, args=(over,), daemon=True).start()
     source = ProjectSource(project)
     seats = Seats(source)
     viewer = Viewer(on_client=seats.take, on_leave=seats.leave)
-    sys.stdout.write(json.dumps({"port": viewer.port}) + "\n")
-    sys.stdout.flush()
+    answer.write(json.dumps({"port": viewer.port}) + "\n")
+    answer.flush()
     while not over.wait(LOOK_EVERY_S) and viewer.idle_s < idle_s:
         if source.changed():
             seats.refresh()

@@ -52,6 +52,7 @@ async def relay(browser: WebSocket, project_id: str) -> None:
     try:
         port = await server.viewers.port(server.projects.folder(project_id))
     except AppError as error:
+        log.warning("%s", error)
         await browser.close(1008, reason=str(error)[:120])
         return
     offered = [Subprotocol(name) for name in browser.scope["subprotocols"]]

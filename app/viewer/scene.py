@@ -34,6 +34,8 @@ FINAL = Layer("trajectory", "Trajectory", (255, 179, 0))
 ODOMETRY = Layer("odometry", "Trajectory before the graph", (128, 110, 200), shown=False)
 FRAMES = Layer("frames", "Body frames at the nodes", (144, 164, 174), shown=False)
 GRID = Layer("grid", "Grid", (96, 108, 118))
+CLOSED_M = 2.0
+"""Start and end nearer than this share a label [m]."""
 MOST_FRAMES = 1000
 """More body frames than this are thinned out."""
 
@@ -207,7 +209,7 @@ def legend(content: Content, view: View) -> Legend:
         sensors=tuple(
             (name, SENSOR_COLORS[k % len(SENSOR_COLORS)]) for k, name in enumerate(content.sensors)
         ),
-        layers=content.layers,
+        layers=tuple(layer for layer in content.layers if layer.key in view.layers),
         points=sum(len(tile.p_tile) for tile in content.tiles),
         points_in_map=content.points_in_map,
         grid_cell_m=grid_cell_m(bounds(content)),
@@ -282,10 +284,16 @@ def _path(layer: Layer, line: Trajectory, visible: bool) -> LinesNode:
 
 
 def _ends(line: Trajectory, visible: bool) -> Iterator[LabelNode]:
-    for text, row in (("start", 0), ("end", -1)):
-        yield LabelNode(
-            path=f"/labels/{text}", position_m=line.T_a_b.t[row], text=text, visible=visible
-        )
+    first_m, last_m = line.T_a_b.t[0], line.T_a_b.t[-1]
+    apart = np.linalg.norm(last_m - first_m) > CLOSED_M
+    yield _label("start" if apart else "start and end", first_m, visible)
+    if apart:
+        yield _label("end", last_m, visible)
+
+
+def _label(text: str, p_map: Array, visible: bool) -> LabelNode:
+    path = f"/labels/{text.replace(' ', '-')}"
+    return LabelNode(path=path, position_m=p_map, text=text, visible=visible)
 
 
 def _edges(graph: PoseGraph, view: View) -> Iterator[LinesNode]:

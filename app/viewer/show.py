@@ -137,8 +137,9 @@ class Viewer:
         self._server._websock_server.unregister_handler(_messages.ShareUrlRequest)
         self._server.scene.set_up_direction("+z")
         self._server.gui.configure_theme(
-            dark_mode=True, show_logo=False, show_share_button=False, control_layout="collapsible"
+            dark_mode=True, show_logo=False, show_share_button=False, control_width="small"
         )
+        self._server.gui.main_panel.dock_right()  # beside the map, not over it
         self._left_s = time.monotonic()
         self._server.on_client_connect(on_client)
         self._server.on_client_disconnect(self._left)

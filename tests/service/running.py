@@ -1,0 +1,127 @@
+"""Real servers for tests, in a thread or in a process that may be killed."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import socket
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import httpx
+
+from app.main import AnnouncingServer, create_app, serve, uvicorn_config
+from app.settings import ServerSettings
+
+ROOT = Path(__file__).parents[2]
+SLOW = "tests.service.slow_worker"
+
+
+@dataclass(frozen=True)
+class Running:
+    url: str
+    root: Path
+
+    def get(self, path: str, **options: Any) -> httpx.Response:
+        return httpx.get(self.url + path, timeout=30.0, **options)
+
+    def post(self, path: str, **options: Any) -> httpx.Response:
+        return httpx.post(self.url + path, timeout=30.0, **options)
+
+    def start(self, project: str, recording: Path) -> str:
+        answer = self.post("/api/jobs", json={"project": project, "recordings": [str(recording)]})
+        assert answer.status_code == 201, answer.text
+        return answer.json()["job"]["id"]
+
+    def wait(self, job_id: str, met: Callable[[dict[str, Any]], bool]) -> dict[str, Any]:
+        """The first view of the job, from the event stream, that meets a condition."""
+        with httpx.stream("GET", f"{self.url}/api/events", timeout=30.0) as stream:
+            for line in stream.iter_lines():
+                if line.startswith("data:"):
+                    view = json.loads(line[5:])
+                    if view["job"]["id"] == job_id and met(view):
+                        return view
+        raise AssertionError("the event stream ended")
+
+    def wait_state(self, job_id: str, state: str) -> dict[str, Any]:
+        return self.wait(job_id, lambda view: view["job"]["state"] == state)
+
+    def wait_at_gate(self, job_id: str, attempt: int = 1) -> dict[str, Any]:
+        return self.wait(
+            job_id,
+            lambda view: view["status"]["what"] == "Odometry" and view["job"]["attempt"] == attempt,
+        )
+
+    def worker_pid(self, job_id: str) -> int:
+        return int((self.root / ".recon4" / "jobs" / job_id / "pid").read_text())
+
+
+@contextmanager
+def server_thread(root: Path, **settings: Any) -> Iterator[Running]:
+    """A server on a free port, in this process."""
+    app = create_app(ServerSettings(root=root, **settings))
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        ready = threading.Event()
+        server = AnnouncingServer(uvicorn_config(app), ready.set)
+        thread = threading.Thread(target=lambda: asyncio.run(server.serve([listener])))
+        thread.start()
+        try:
+            assert ready.wait(20.0)
+            yield Running(f"http://127.0.0.1:{listener.getsockname()[1]}", root)
+        finally:
+            server.should_exit = True
+            thread.join(20.0)
+    assert not thread.is_alive()
+
+
+@contextmanager
+def server_process(root: Path) -> Iterator[tuple[Running, subprocess.Popen[str]]]:
+    """A server in a process of its own, with the slow worker."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "tests.service.running", str(root)],
+        stdout=subprocess.PIPE,
+        text=True,
+        cwd=ROOT,
+        env={**os.environ, "RECON4_RECORDINGS": str(root)},
+    )
+    assert process.stdout is not None
+    with process, process.stdout:
+        try:
+            yield Running(process.stdout.readline().strip().rstrip("/"), root), process
+        finally:
+            process.terminate()
+
+
+def recording_with_gate(folder: Path) -> Path:
+    """A folder the slow worker takes for a recording."""
+    folder.mkdir()
+    os.mkfifo(folder / "gate")
+    return folder
+
+
+def open_gate(recording: Path) -> int:
+    """Let the slow worker through; the descriptor keeps the gate open until closed."""
+    gate = os.open(recording / "gate", os.O_RDWR)
+    os.write(gate, b"go")
+    return gate
+
+
+def ran(recording: Path) -> list[str]:
+    """What the slow worker's stages noted."""
+    return (recording / "ran").read_text().split()
+
+
+if __name__ == "__main__":
+    serve(
+        Path(sys.argv[1]),
+        port=0,
+        on_ready=lambda url: sys.stdout.write(url + "\n") and sys.stdout.flush(),
+        worker=SLOW,
+    )

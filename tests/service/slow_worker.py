@@ -1,0 +1,59 @@
+"""A worker with real stages of which the second waits at a gate (a FIFO) the test opens."""
+
+from __future__ import annotations
+
+import os
+import select
+import sys
+from pathlib import Path
+
+from app.jobs.folder import JobFolder
+from app.jobs.worker import main
+from recon4.errors import EmptyRecording
+from recon4.progress import Progress
+from recon4.settings import Settings
+from recon4.store.project import Project
+from recon4.store.stage import Input, Stage, StageRunner
+
+
+def work(folder: JobFolder, progress: Progress) -> None:
+    root, inputs = folder.request()
+    recording = Path(inputs.recordings[0])
+    if recording.is_file():
+        raise EmptyRecording(f"{recording.name} holds no points; record again")
+    with Project.open(root) as project:
+        runner = StageRunner(project, Settings(), progress)
+        given = Input(str(recording), recording)
+        frames = runner.run(Stage("frames", 1, (), _frames), recording=given)
+        runner.run(Stage("odometry", 1, (), _odometry), recording=given, frames=frames)
+    (root / "summary.json").write_text("{}")
+
+
+def _frames(*, out: Path, settings: Settings, progress: Progress, recording: Path) -> None:
+    _note(recording, "frames")
+    progress.start("Reading", 10, "frames")
+    progress.advance(10)
+    (out / "report.json").write_text("{}")
+
+
+def _odometry(
+    *, out: Path, settings: Settings, progress: Progress, recording: Path, frames: Path
+) -> None:
+    _note(recording, "odometry")
+    progress.start("Odometry", 100, "multiframes")
+    gate = os.open(recording / "gate", os.O_RDWR)
+    while not select.select([gate], [], [], 0.02)[0]:
+        progress.advance(0)
+    os.close(gate)
+    progress.advance(100)
+    _note(recording, "finished")
+    (out / "done.txt").write_text("done")
+
+
+def _note(recording: Path, what: str) -> None:
+    with (recording / "ran").open("a") as file:
+        file.write(f"{what}\n")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), work)

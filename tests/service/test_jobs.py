@@ -1,0 +1,194 @@
+"""The life of a job, with real workers, kills and servers."""
+
+import os
+import signal
+
+import pytest
+
+from tests.service.running import (
+    SLOW,
+    open_gate,
+    ran,
+    recording_with_gate,
+    server_process,
+    server_thread,
+)
+
+
+@pytest.fixture
+def recording(tmp_path):
+    return recording_with_gate(tmp_path / "walk")
+
+
+@pytest.fixture
+def server(tmp_path):
+    with server_thread(tmp_path, worker=SLOW) as running:
+        yield running
+
+
+def test_a_job_runs_tells_its_progress_and_ends(server, recording):
+    job = server.start("office", recording)
+
+    waiting = server.wait_at_gate(job)
+    gate = open_gate(recording)
+    done = server.wait_state(job, "succeeded")
+
+    os.close(gate)
+    assert waiting["job"]["state"] == "running"
+    assert waiting["fraction"] == 0.0
+    assert [row["stage"] for row in done["status"]["stages"]] == ["frames", "odometry"]
+    assert server.get("/api/projects/office").json()["finished"]
+    assert "succeeded" in server.get(f"/api/jobs/{job}/log").text
+
+
+def test_an_error_of_the_recording_is_told_in_its_own_words(server, tmp_path):
+    (tmp_path / "empty.pcap").write_bytes(b"")
+
+    job = server.start("office", tmp_path / "empty.pcap")
+    view = server.wait_state(job, "failed")
+
+    assert view["job"]["note"] == "empty.pcap holds no points; record again"
+
+
+def test_a_killed_worker_is_replaced_and_no_finished_stage_runs_twice(server, recording):
+    job = server.start("office", recording)
+    server.wait_at_gate(job)
+
+    os.kill(server.worker_pid(job), signal.SIGKILL)
+    server.wait_at_gate(job, attempt=2)
+    gate = open_gate(recording)
+    view = server.wait_state(job, "succeeded")
+
+    os.close(gate)
+    assert view["job"]["attempt"] == 2
+    assert view["status"]["stages"][0]["state"] == "reused"
+    assert ran(recording) == ["frames", "odometry", "odometry", "finished"]
+
+
+def test_a_worker_that_dies_three_times_is_given_up_with_words(server, recording):
+    job = server.start("office", recording)
+    for attempt in (1, 2, 3):
+        server.wait_at_gate(job, attempt)
+        os.kill(server.worker_pid(job), signal.SIGKILL)
+
+    view = server.wait_state(job, "failed")
+
+    assert "died 3 times, last in Odometry" in view["job"]["note"]
+
+
+def test_a_running_job_stops_on_request_and_resumes_as_a_new_one(server, recording):
+    job = server.start("office", recording)
+    server.wait_at_gate(job)
+
+    server.post(f"/api/jobs/{job}/cancel")
+    view = server.wait_state(job, "cancelled")
+    again = server.post(f"/api/jobs/{job}/retry").json()["job"]["id"]
+    server.wait_at_gate(again)
+    gate = open_gate(recording)
+    done = server.wait_state(again, "succeeded")
+
+    os.close(gate)
+    assert view["job"]["note"] == "stopped on request; finished stages are kept"
+    assert done["status"]["stages"][0]["state"] == "reused"
+
+
+def test_a_worker_that_does_not_stop_is_killed(tmp_path, recording):
+    with server_thread(tmp_path, worker=SLOW, stop_within_s=0.2) as server:
+        job = server.start("office", recording)
+        server.wait_at_gate(job)
+        os.kill(server.worker_pid(job), signal.SIGSTOP)
+
+        server.post(f"/api/jobs/{job}/cancel")
+
+        assert server.wait_state(job, "cancelled")["job"]["note"] == "stopped on request"
+
+
+def test_a_worker_without_a_heartbeat_is_killed_and_replaced(tmp_path, recording):
+    with server_thread(tmp_path, worker=SLOW, hung_after_s=2.5) as server:
+        job = server.start("office", recording)
+        server.wait_at_gate(job)
+
+        os.kill(server.worker_pid(job), signal.SIGSTOP)
+        server.wait_at_gate(job, attempt=2)
+
+        server.post(f"/api/jobs/{job}/cancel")
+        server.wait_state(job, "cancelled")
+
+
+def test_jobs_wait_for_their_turn_and_a_project_has_one_at_a_time(server, tmp_path, recording):
+    first = server.start("office", recording)
+    second = server.start("staircase", recording_with_gate(tmp_path / "other"))
+    server.wait_at_gate(first)
+
+    refused = server.post("/api/jobs", json={"project": "office", "recordings": [str(recording)]})
+    waiting = server.get(f"/api/jobs/{second}").json()
+    cancelled = server.post(f"/api/jobs/{second}/cancel").json()
+    twice = server.post(f"/api/jobs/{second}/cancel")
+
+    assert refused.status_code == 409
+    assert "already has a job" in refused.json()["detail"]
+    assert waiting["job"]["state"] == "queued"
+    assert cancelled["job"]["state"] == "cancelled"
+    assert twice.status_code == 409
+    server.post(f"/api/jobs/{first}/cancel")
+    server.wait_state(first, "cancelled")
+
+
+def test_a_worker_outlives_a_killed_server_and_is_adopted_by_the_next(tmp_path, recording):
+    with server_process(tmp_path) as (server, process):
+        job = server.start("office", recording)
+        server.wait_at_gate(job)
+        pid = server.worker_pid(job)
+        process.kill()
+        process.wait()
+
+    with server_process(tmp_path) as (server, _):
+        server.wait_at_gate(job)
+        gate = open_gate(recording)
+        view = server.wait_state(job, "succeeded")
+        os.close(gate)
+
+    assert view["job"]["attempt"] == 1
+    assert server.worker_pid(job) == pid
+    assert ran(recording) == ["frames", "odometry", "finished"]
+
+
+def test_what_happened_while_no_server_ran_is_found_out(tmp_path, recording):
+    with server_process(tmp_path) as (server, process):
+        job = server.start("office", recording)
+        server.wait_at_gate(job)
+        process.kill()
+        process.wait()
+    os.kill(server.worker_pid(job), signal.SIGKILL)
+
+    with server_process(tmp_path) as (server, _):
+        server.wait_at_gate(job, attempt=2)
+        gate = open_gate(recording)
+        server.wait_state(job, "succeeded")
+        os.close(gate)
+
+    assert ran(recording) == ["frames", "odometry", "odometry", "finished"]
+
+
+@pytest.mark.parametrize(
+    ("change", "status", "words"),
+    [
+        ({"project": "../evil"}, 422, "pattern"),
+        ({"recordings": ["/etc/passwd"]}, 403, "may only lie in"),
+        ({"recordings": ["walk/../../.."]}, 403, "may only lie in"),
+        ({"recordings": []}, 422, "at least 1"),
+        ({"preset": "underwater"}, 422, "no preset named 'underwater'"),
+        ({"rig": "/etc/passwd"}, 403, "may only lie in"),
+        ({"settings": ["map.voxel_m=tiny"]}, 422, "voxel_m"),
+        ({"settings": ["map.nothing=1"]}, 422, "no setting 'map.nothing'"),
+        ({"surprise": 1}, 422, "Extra inputs"),
+    ],
+)
+def test_a_wrong_request_is_refused_with_the_reason(server, recording, change, status, words):
+    request = {"project": "office", "recordings": [str(recording)]} | change
+
+    answer = server.post("/api/jobs", json=request)
+
+    assert answer.status_code == status
+    assert words in answer.text
+    assert server.get("/api/jobs").json() == []
