@@ -63,12 +63,9 @@ def list_frames(path: Path) -> FrameFiles:
     stamps, source = _stamps(path, found)
     steps = np.diff(stamps)
     period = int(np.median(steps)) if len(steps) else _PERIOD_NS
-    return FrameFiles(
-        tuple(found),
-        stamps,
-        period if _SHORTEST_NS <= period <= _LONGEST_NS else _PERIOD_NS,
-        source,
-    )
+    if not _SHORTEST_NS <= period <= _LONGEST_NS:
+        period = _PERIOD_NS
+    return FrameFiles(tuple(found), stamps, period, source)
 
 
 def read_frames(

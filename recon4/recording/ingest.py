@@ -238,7 +238,9 @@ def _write_poses(out: Path, parts: Sequence[Trajectory], report: ImportReport) -
 # -- report
 
 
-def _summary(recording: Recording, assembler: Assembler, report: ImportReport) -> dict[str, Any]:
+def _summary(
+    recording: Recording, assembler: Assembler, written: _Written, report: ImportReport
+) -> dict[str, Any]:
     gaps = [*recording.gaps, *assembler.gaps]
     return {
         "kind": str(recording.kind),
