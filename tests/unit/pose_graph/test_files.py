@@ -1,0 +1,190 @@
+import json
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from recon4.errors import CorruptFile, StoreError
+from recon4.geometry.se3 import SE3
+from recon4.model.pose_graph import Edge, PoseGraph, Reason, Verdict
+from recon4.pose_graph.files import load_graph, save_graph
+from recon4.pose_graph.g2o import read_g2o, write_g2o
+from recon4.pose_graph.relations import relations, squared_residuals
+from tests.benchmarks.false_loops import office_graph
+
+
+def sample() -> PoseGraph:
+    graph, _ = office_graph(np.random.default_rng(1), nodes=12)
+    rng = np.random.default_rng(2)
+    root = rng.normal(size=(6, 6))
+    odd = graph.edges[3].evolve(
+        information=root @ root.T + np.eye(6),
+        overlap=0.61,
+        error_m=0.1 + 0.2,
+        verification_m=1 / 3,
+        paths=4,
+        decided_by="Žofie",
+        verdict=Verdict.REJECTED,
+        reason=Reason.OPERATOR,
+        converged=False,
+        iterations=12,
+    )
+    return graph.with_edges((*graph.edges[:3], odd, *graph.edges[4:]))
+
+
+def same(a: Edge, b: Edge) -> None:
+    for field in fields(Edge):
+        x, y = getattr(a, field.name), getattr(b, field.name)
+        if isinstance(x, SE3):
+            np.testing.assert_array_equal(x.R, y.R)
+            np.testing.assert_array_equal(x.t, y.t)
+        else:
+            assert type(x) is type(y)
+            np.testing.assert_array_equal(x, y)
+
+
+def test_a_saved_graph_comes_back_bit_for_bit(tmp_path: Path) -> None:
+    graph = sample()
+
+    save_graph(tmp_path, graph)
+    back = load_graph(tmp_path)
+
+    np.testing.assert_array_equal(back.T_map_body.R, graph.T_map_body.R)
+    np.testing.assert_array_equal(back.T_map_body.t, graph.T_map_body.t)
+    np.testing.assert_array_equal(back.t_ns, graph.t_ns)
+    assert len(back.edges) == len(graph.edges)
+    for a, b in zip(graph.edges, back.edges, strict=True):
+        same(a, b)
+
+
+def test_saving_twice_writes_the_same_bytes(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        (tmp_path / name).mkdir()
+        save_graph(tmp_path / name, sample())
+
+    for file in ("graph.npz", "edges.json"):
+        assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes()
+
+
+def test_a_graph_without_edges_is_saved(tmp_path: Path) -> None:
+    graph = sample().with_edges(())
+
+    save_graph(tmp_path, graph)
+
+    assert load_graph(tmp_path).edges == ()
+    assert json.loads((tmp_path / "edges.json").read_text("utf-8"))["edges"] == []
+
+
+def test_the_json_holds_every_pair_and_null_for_what_nobody_knows(tmp_path: Path) -> None:
+    graph = sample()
+
+    save_graph(tmp_path, graph)
+
+    text = (tmp_path / "edges.json").read_text("utf-8")
+    records = json.loads(text)["edges"]
+    assert len(records) == len(graph.edges)
+    assert "NaN" not in text
+    odd = records[3]
+    assert odd["frames"] == [15, 20]
+    assert odd["decided_by"] == "Žofie"
+    assert odd["reason"] == "operator"
+    assert odd["chi2"] is None
+    back = SE3.from_quat(odd["T_a_b"]["quaternion_xyzw"], odd["T_a_b"]["translation"])
+    np.testing.assert_allclose(back.matrix(), graph.edges[3].T_i_j.matrix(), atol=1e-12)
+
+
+def test_a_damaged_file_is_refused(tmp_path: Path) -> None:
+    save_graph(tmp_path, sample())
+    path = tmp_path / "graph.npz"
+    path.write_bytes(path.read_bytes()[:2000])
+
+    with pytest.raises(StoreError, match=r"graph\.npz"):
+        load_graph(tmp_path)
+
+
+def test_g2o_keeps_poses_edges_and_residuals(tmp_path: Path) -> None:
+    graph = sample()
+
+    write_g2o(tmp_path / "graph.g2o", graph)
+    back = read_g2o(tmp_path / "graph.g2o")
+
+    used = graph.with_edges(tuple(edge for edge in graph.edges if edge.in_graph))
+    assert len(back.edges) == len(used.edges) == len(graph.edges) - 1
+    np.testing.assert_allclose(back.T_map_body.matrix(), graph.T_map_body.matrix(), atol=1e-14)
+    np.testing.assert_allclose(
+        squared_residuals(back.T_map_body, relations(back.edges)),
+        squared_residuals(used.T_map_body, relations(used.edges)),
+        rtol=1e-9,
+        atol=1e-9,
+    )
+
+
+def test_g2o_is_translation_first(tmp_path: Path) -> None:
+    graph = sample()
+    first = graph.edges[0].evolve(information=np.diag([1.0, 2, 3, 4, 5, 6]))
+
+    write_g2o(tmp_path / "graph.g2o", graph.with_edges((first,)))
+
+    words = (tmp_path / "graph.g2o").read_text("ascii").splitlines()[-1].split()
+    assert [float(words[k]) for k in (10, 16, 21, 25, 28, 30)] == [4, 5, 6, 1, 2, 3]
+
+
+def test_gtsam_reads_our_file_and_agrees_about_the_error(tmp_path: Path) -> None:
+    gtsam = pytest.importorskip("gtsam")
+    graph = sample()
+
+    write_g2o(tmp_path / "graph.g2o", graph)
+    factors, values = gtsam.readG2o(str(tmp_path / "graph.g2o"), True)
+
+    of = relations(graph.edges)
+    ours = squared_residuals(graph.T_map_body, of)[of.in_graph].sum()
+    assert 2.0 * factors.error(values) == pytest.approx(ours, rel=1e-6)
+
+
+@settings(max_examples=60, deadline=None)
+@given(share=st.floats(0.0, 0.9999))
+def test_a_cut_off_g2o_file_is_never_taken_for_a_whole_one(
+    tmp_path_factory: pytest.TempPathFactory, share: float
+) -> None:
+    path = tmp_path_factory.mktemp("cut") / "graph.g2o"
+    write_g2o(path, sample())
+    whole = path.read_bytes()
+    path.write_bytes(whole[: int(share * len(whole))])
+
+    with pytest.raises(CorruptFile):
+        read_g2o(path)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "no vertex"),
+        ("VERTEX_SE2 0 0 0 0\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n", "line 2: .* missing vertex"),
+        ("VERTEX_SE2 0 0 0\n", "line 1: VERTEX_SE2 has 5 words, got 4"),
+        ("VERTEX_SE2 0 0 0 x\n", "line 1: could not convert"),
+        ("VERTEX_SE2 0 0 0 nan\n", "line 1: a number is not finite"),
+        ("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 0 0 0 0\n", "a vertex is there twice"),
+        ("LANDMARK 0 0 0\n", "line 1: expected one of"),
+        ("ply\nformat ascii 1.0\n", "line 1: expected one of"),
+    ],
+)
+def test_what_is_no_g2o_file_is_refused(tmp_path: Path, text: str, message: str) -> None:
+    (tmp_path / "graph.g2o").write_text(text)
+
+    with pytest.raises(CorruptFile, match=message):
+        read_g2o(tmp_path / "graph.g2o")
+
+
+def test_an_edge_backwards_is_turned_around(tmp_path: Path) -> None:
+    lines = ["VERTEX_SE2 0 0 0 0", "VERTEX_SE2 1 1 0 1.5", "EDGE_SE2 1 0 -1 0.5 -1.4 9 1 2 8 3 7"]
+    (tmp_path / "graph.g2o").write_text("\n".join(lines) + "\n")
+
+    edge = read_g2o(tmp_path / "graph.g2o").edges[0]
+
+    assert (edge.i, edge.j) == (0, 1)
+    expected = SE3.from_rpy(0, 0, -1.4, [-1.0, 0.5, 0.0]).inverse()
+    np.testing.assert_allclose(edge.T_i_j.matrix(), expected.matrix(), atol=1e-12)
+    assert np.linalg.eigvalsh(edge.information)[0] > 0.0

@@ -1,0 +1,214 @@
+from itertools import permutations
+
+import numpy as np
+import pytest
+
+from recon4.geometry.se3 import SE3
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.pose_graph.paths import PathIndex
+from recon4.pose_graph.relations import relations
+from recon4.pose_graph.verification import verify
+from recon4.settings import VerificationSettings
+from tests.benchmarks.false_loops import inject_random, inject_shifted, office_graph
+
+PATHS_ONLY = VerificationSettings(robust="none")
+
+
+def line(*loops: tuple[int, int, float], nodes: int = 6, turn: float = 0.0) -> PoseGraph:
+    """Steps of 1 m along x, and loops that are wrong by so many metres sideways."""
+    steps = [SE3.from_rpy(0, 0, turn, [1.0, 0.0, 0.0])] * (nodes - 1)
+    poses = [SE3.identity()]
+    for step in steps:
+        poses.append(poses[-1] @ step)
+    T_map_body = SE3.stack(poses)
+    edges = [
+        Edge(i=k, j=k + 1, T_i_j=steps[k], kind=EdgeKind.ODOMETRY, verdict=Verdict.ACCEPTED)
+        for k in range(nodes - 1)
+    ]
+    for i, j, error in loops:
+        T_i_j = poses[i].inverse() @ poses[j]
+        T_i_j = SE3(T_i_j.R, T_i_j.t + np.array([0.0, error, 0.0]))
+        edges.append(Edge(i=i, j=j, T_i_j=T_i_j, kind=EdgeKind.LOOP, verdict=Verdict.ACCEPTED))
+    rows = np.arange(nodes, dtype=np.int64)
+    return PoseGraph(rows, rows, T_map_body, tuple(edges))
+
+
+def slow_medians(graph: PoseGraph, max_edges: int) -> tuple[np.ndarray, np.ndarray]:
+    """The definition, spelled out: all simple paths by trying all sequences of edges."""
+    medians, counts = [], []
+    for row, asked in enumerate(graph.edges):
+        others = [edge for k, edge in enumerate(graph.edges) if k != row]
+        errors = []
+        for length in range(1, max_edges + 1):
+            for walk in permutations(others, length):
+                T, nodes = SE3.identity(), [asked.i]
+                for edge in walk:
+                    if edge.i == nodes[-1]:
+                        T, nodes = T @ edge.T_i_j, [*nodes, edge.j]
+                    elif edge.j == nodes[-1]:
+                        T, nodes = T @ edge.T_i_j.inverse(), [*nodes, edge.i]
+                    else:
+                        break
+                else:
+                    if nodes[-1] == asked.j and len(set(nodes)) == len(nodes):
+                        errors.append(np.linalg.norm((asked.T_i_j.inverse() @ T).t))
+        medians.append(np.median(errors) if errors else np.nan)
+        counts.append(len(errors))
+    return np.array(medians), np.array(counts)
+
+
+def test_a_loop_beside_two_steps_is_compared_with_them() -> None:
+    graph = line((0, 2, 0.3))
+
+    verified = verify(graph, settings=PATHS_ONLY).graph
+
+    assert verified.edges[5].verification_m == pytest.approx(0.3)
+    assert verified.edges[5].paths == 1
+    assert verified.edges[5].verdict is Verdict.REJECTED
+    assert verified.edges[5].reason is Reason.VERIFICATION
+
+
+def test_the_edge_is_rejected_above_the_limit_not_below() -> None:
+    graph = line((0, 2, 0.09))
+
+    verified = verify(graph, settings=PATHS_ONLY).graph
+
+    assert verified.edges[5].verdict is Verdict.ACCEPTED
+
+
+@pytest.mark.parametrize("max_edges", [2, 3])
+def test_medians_are_those_of_all_simple_paths(max_edges: int) -> None:
+    graph = line(
+        (0, 2, 0.1), (0, 3, -0.2), (1, 3, 0.3), (1, 4, 0.4), (0, 3, 0.6), nodes=5, turn=0.7
+    )
+
+    index = PathIndex.build(relations(graph.edges), nodes=5, max_edges=max_edges)
+
+    medians, counts = slow_medians(graph, max_edges)
+    np.testing.assert_array_equal(index.count, counts)
+    np.testing.assert_allclose(index.median_m, medians, atol=1e-12)
+
+
+def test_removing_edges_gives_the_same_as_starting_without_them() -> None:
+    graph, _ = office_graph(np.random.default_rng(1), nodes=80)
+    of = relations(graph.edges)
+    gone = np.random.default_rng(2).choice(np.flatnonzero(~of.protected), 40, replace=False)
+    edges = list(graph.edges)
+    for row in gone:
+        edges[row] = edges[row].evolve(verdict=Verdict.REJECTED)
+
+    index = PathIndex.build(of, nodes=80, max_edges=3)
+    index.remove(gone)
+
+    fresh = PathIndex.build(relations(edges), nodes=80, max_edges=3)
+    alive = index.alive
+    np.testing.assert_array_equal(index.count[alive], fresh.count[alive])
+    np.testing.assert_array_equal(index.median_m[alive], fresh.median_m[alive])
+
+
+def test_an_edge_without_a_path_is_unverified_and_stays() -> None:
+    graph = line((0, 5, 0.0), nodes=6)
+
+    verified = verify(graph, settings=PATHS_ONLY).graph
+
+    assert verified.edges[5].verdict is Verdict.UNVERIFIED
+    assert verified.edges[5].paths == 0
+    assert np.isnan(verified.edges[5].verification_m)
+    assert verified.edges[5].in_graph
+
+
+def test_the_worst_goes_first_and_takes_its_victims_error_with_it() -> None:
+    # (0, 2) is right, but two of its three paths run over wrong loops.
+    graph = line((0, 2, 0.0), (1, 3, 5.0), (0, 3, 2.0), nodes=4)
+
+    result = verify(graph, settings=PATHS_ONLY)
+
+    assert [edge.in_graph for edge in result.graph.edges[3:]] == [True, False, False]
+    assert len(result.rounds) > 1
+
+
+def test_false_edges_far_apart_go_in_one_round() -> None:
+    graph = line((0, 2, 1.0), (20, 22, 2.0), nodes=30)
+
+    result = verify(graph, settings=PATHS_ONLY)
+
+    assert result.rounds == ((30, 29),)
+
+
+def test_odometry_that_disagrees_is_flagged_but_never_rejected() -> None:
+    graph = line((0, 2, 0.0), (1, 3, 0.0), (0, 3, 0.0), nodes=4)
+    wrong = graph.edges[1].evolve(T_i_j=SE3(np.eye(3), np.array([1.0, 1.0, 0.0])))
+    approved = [edge.evolve(decided_by="Ada") for edge in graph.edges[3:]]
+    graph = graph.with_edges((graph.edges[0], wrong, graph.edges[2], *approved))
+
+    result = verify(graph, settings=PATHS_ONLY)
+
+    assert 1 in result.flagged
+    assert result.rounds == ()
+    assert result.graph.edges[1].verdict is Verdict.ACCEPTED
+    assert result.graph.edges[1].verification_m == pytest.approx(1.0)
+
+
+def test_what_a_person_decided_stays_and_persists() -> None:
+    graph = line((0, 2, 3.0), (2, 4, 0.0))
+    approved = graph.edges[5].evolve(decided_by="Ada")
+    refused = graph.edges[6].evolve(
+        decided_by="Ada", verdict=Verdict.REJECTED, reason=Reason.OPERATOR
+    )
+    graph = graph.with_edges((*graph.edges[:5], approved, refused))
+
+    edges = verify(graph, settings=VerificationSettings()).graph.edges
+
+    assert edges[5].verdict is Verdict.ACCEPTED
+    assert edges[6].verdict is Verdict.REJECTED
+    assert edges[6].reason is Reason.OPERATOR
+
+
+def test_verifying_twice_is_verifying_once() -> None:
+    clean, _ = office_graph(np.random.default_rng(3), nodes=100)
+    graph = inject_shifted(clean, np.random.default_rng(4), 5)
+
+    once = verify(graph, settings=VerificationSettings()).graph
+    twice = verify(once, settings=VerificationSettings()).graph
+
+    assert [edge.verdict for edge in twice.edges] == [edge.verdict for edge in once.edges]
+    assert [edge.reason for edge in twice.edges] == [edge.reason for edge in once.edges]
+
+
+@pytest.mark.parametrize("robust", ["gnc", "cauchy"])
+def test_a_false_loop_no_path_reaches_falls_to_the_robust_solve(robust: str) -> None:
+    clean, truth = office_graph(np.random.default_rng(5), nodes=150)
+    graph = inject_random(clean, np.random.default_rng(6), 8)
+    settings = VerificationSettings(robust=robust)  # type: ignore[arg-type]
+
+    result = verify(graph, settings=settings)
+
+    assert not any(edge.in_graph for edge in result.graph.edges[-8:])
+    assert all(result.graph.edges[row].reason is Reason.ROBUST for row in result.outliers)
+    assert len(result.outliers) > 0
+    assert result.chi2_after < result.chi2_before
+    assert np.linalg.norm(result.graph.T_map_body.t - truth.t, axis=1).max() < 0.05
+
+
+def test_the_cycle_variant_counts_the_edge_itself_as_a_path_without_error() -> None:
+    graph = line((0, 2, 0.3))
+
+    result = verify(graph, settings=VerificationSettings(variant="cycle", robust="none"))
+
+    assert result.graph.edges[5].verification_m == pytest.approx(0.15)
+
+
+def test_the_record_is_plain_json_and_names_the_rejected() -> None:
+    import json
+
+    told = json.loads(json.dumps(verify(line((0, 2, 0.3)), settings=PATHS_ONLY).to_json()))
+
+    assert told["edges"] == {"accepted": 0, "rejected": 1, "unverified": 5}
+    assert told["rounds"][0][0]["nodes"] == [0, 2]
+
+
+def test_a_graph_without_loops_is_fine() -> None:
+    result = verify(line(), settings=VerificationSettings())
+
+    assert all(edge.verdict is Verdict.UNVERIFIED for edge in result.graph.edges)
+    assert result.rounds == ()
