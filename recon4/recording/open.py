@@ -26,7 +26,7 @@ from recon4.recording.positions import PositionSamples
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream, choose_rig
 from recon4.recording.shots import Shots
-from recon4.recording.velodyne_pcap import PacketStream, VelodynePcap, scan_pcap
+from recon4.recording.velodyne_pcap import PacketStream, VelodynePcap
 from recon4.settings import IngestSettings
 
 Item = Shots | Multiframe | ImuSamples | GnssSamples | Trajectory
@@ -141,15 +141,16 @@ def pcap_files(path: Path) -> list[Path]:
     return sorted((f for f in path.iterdir() if f.is_file() and is_pcap(f)), key=natural)
 
 
-def lidar_of_packets(streams: Sequence[PacketStream]) -> list[Stream]:
-    """The LiDARs among the streams of capture files, each once."""
-    found: dict[tuple[str, int], Stream] = {}
-    for stream in streams:
-        if stream.kind == "data":
-            label = f"{stream.source}:{stream.port}"
-            lidar = Stream(label, stream.model or "generic", stream.source, stream.port)
-            found.setdefault((stream.source, stream.port), lidar)
-    return list(found.values())
+def lidars_of_packets(
+    files: Sequence[Path], settings: IngestSettings, report: ImportReport
+) -> list[Stream]:
+    """The LiDARs in capture files that belong together.
+
+    Raises:
+        EmptyRecording: If there is none.
+    """
+    found = VelodynePcap(files, None, settings=settings, report=report).rig.sensors
+    return [Stream(f"{s.address}:{s.port}", s.model, s.address, s.port) for s in found]
 
 
 def _file_kind(path: Path) -> Kind:
@@ -203,12 +204,10 @@ def _known() -> str:
 def _open_pcap(
     files: Sequence[Path], rig: Rig | None, settings: IngestSettings, report: ImportReport
 ) -> Recording:
-    streams = [stream for file in files for stream in scan_pcap(file)]
-    lidars = lidar_of_packets(streams)
-    if not lidars:
-        raise EmptyRecording(f"{files[0].name}: no LiDAR packets in it")
-    chosen = rig or choose_rig(lidars, report)
-    pcap = VelodynePcap(files, chosen, settings=settings, report=report)
+    if rig is None:
+        rig = choose_rig(lidars_of_packets(files, settings, report), report)
+    pcap = VelodynePcap(files, rig, settings=settings, report=report)
+    streams = pcap.streams
     seconds = sum(pcap_seconds(f, [s for s in streams if s.file == f]) for f in files)
     return Recording(Kind.PCAP, pcap.rig, partial(_read_pcap, pcap), seconds)
 

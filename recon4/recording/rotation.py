@@ -12,7 +12,7 @@ _SLOWEST_HZ, _FASTEST_HZ = 2.0, 30.0
 _POINTS = 3000
 _CLEAR = 0.6
 """Length of the mean phasor above which the azimuth follows a rotation."""
-_SNAP = 0.02
+_SNAP = 0.005
 
 
 def rotation_rate(t_ns: Times, xyz: NDArray[np.float32]) -> float:
@@ -40,7 +40,7 @@ def rotation_rate(t_ns: Times, xyz: NDArray[np.float32]) -> float:
 
 
 def nominal(rate_hz: float) -> float:
-    """The whole number of revolutions per second it was set to, when it is that within 2 %."""
+    """The whole number of revolutions per second it was set to, when it is that within 0.5 %."""
     whole = max(1.0, float(round(rate_hz)))
     return whole if abs(rate_hz / whole - 1.0) < _SNAP else rate_hz
 

@@ -48,7 +48,7 @@ def clean_imu(
     finite &= (whole == 3) | (whole == 0)
     report.count("imu_nan", int(np.count_nonzero(~finite)))
     imu = _sorted(_take(imu, finite), offset_s, "imu", report)
-    report.count("imu_samples", len(imu))
+    report.count("imu_kept", len(imu))
     if not len(imu):
         report.warn("no usable IMU sample")
         return None
@@ -64,7 +64,7 @@ def clean_gnss(gnss: GnssSamples, *, offset_s: float, report: ImportReport) -> G
     invalid = place & (gnss.quality == GnssQuality.INVALID)
     report.count("gnss_no_fix", int(np.count_nonzero(invalid)))
     gnss = _sorted(_take(gnss, place & ~invalid), offset_s, "gnss", report)
-    report.count("gnss_samples", len(gnss))
+    report.count("gnss_kept", len(gnss))
     if not len(gnss):
         report.warn("no usable GNSS position")
         return None
