@@ -114,7 +114,7 @@ def allowed(data: bytes) -> bool:
     except (msgspec.DecodeError, RecursionError):
         return False
     kind = message.get("type") if isinstance(message, dict) else None
-    if kind not in ALLOWED:
+    if not isinstance(kind, str) or kind not in ALLOWED:
         log.warning("dropped a message of kind %.40r from a browser", kind)
         return False
     return len(data) <= MAX_MESSAGE_BYTES or kind == "GetRenderResponseMessage"

@@ -1,0 +1,89 @@
+"""Projects, results and pages over HTTP."""
+
+import httpx
+import pytest
+
+from app.main import serve
+from recon4.errors import StoreError
+from tests.project_builder import build_project
+from tests.service.running import server_process, server_thread
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    root = tmp_path_factory.mktemp("projects")
+    build_project(root / "office", points=20_000)
+    build_project(root / "half", with_map=False)
+    (root / "not a project").mkdir()
+    (root / "broken").mkdir()
+    (root / "broken" / "project.json").write_text("{")
+    (root / "broken" / "ledger.sqlite").write_bytes(b"no database" * 100)
+    with server_thread(root) as running:
+        yield running
+
+
+def test_the_list_shows_every_project_also_a_damaged_one(server):
+    found = {project["id"]: project for project in server.get("/api/projects").json()}
+
+    assert found.keys() == {"office", "half", "broken"}
+    assert found["office"]["finished"] and not found["half"]["finished"]
+    assert [row["stage"] for row in found["office"]["stages"]] == [
+        "odometry",
+        "verification",
+        "level",
+        "map",
+    ]
+    assert found["half"]["viewable"] and not found["half"]["pictured"]
+    assert not found["broken"]["viewable"]
+
+
+def test_a_result_is_downloaded_as_an_attachment(server):
+    answer = server.get("/api/projects/office/files/trajectory.tum")
+
+    assert answer.text.startswith("0 0 0")
+    assert answer.headers["content-type"] == "application/octet-stream"
+    assert answer.headers["content-disposition"] == 'attachment; filename="office-trajectory.tum"'
+
+
+def test_the_picture_shows_the_map_and_a_project_without_one_has_none(server):
+    picture = server.get("/api/projects/office/picture")
+
+    assert picture.content.startswith(b"\x89PNG")
+    assert server.get("/api/projects/half/picture").status_code == 404
+
+
+def test_errors_are_told_in_words(server):
+    answer = server.get("/api/projects/nowhere")
+
+    assert answer.status_code == 404
+    assert answer.json() == {"error": "NotFound", "detail": "no project 'nowhere'"}
+
+
+def test_folders_come_before_files_and_hidden_ones_not_at_all(server):
+    entries = server.get("/api/recordings", params={"folder": str(server.root / "office")}).json()
+
+    assert [entry["name"] for entry in entries][:1] == ["artifacts"]
+    assert not any(entry["name"].startswith(".") for entry in entries)
+
+
+def test_every_route_is_in_the_api_description(server):
+    paths = server.get("/openapi.json").json()["paths"]
+
+    assert {"/api/projects", "/api/jobs", "/api/jobs/{job_id}/cancel", "/api/events"} <= set(paths)
+    for methods in paths.values():
+        for operation in methods.values():
+            assert operation.get("description"), operation["operationId"]
+
+
+def test_two_servers_do_not_share_a_folder(tmp_path):
+    with server_process(tmp_path) as (server, _):
+        assert httpx.get(f"{server.url}/healthz").status_code == 200
+
+        with pytest.raises(StoreError, match="another server runs"):
+            serve(tmp_path, port=0)
+
+
+def test_a_taken_port_is_told(tmp_path):
+    with server_process(tmp_path) as (server, _), pytest.raises(StoreError, match="is in use"):
+        (tmp_path / "other").mkdir()
+        serve(tmp_path / "other", port=int(server.url.rsplit(":", 1)[1]))
