@@ -18,8 +18,6 @@ from recon4.settings import IngestSettings
 
 _HEAD_NS = 1_000_000_000
 """So much of every sensor is looked at before the first cut."""
-_WAIT_NS = 2_000_000_000
-"""A sensor silent for so long while another delivers no longer holds the frames up."""
 _SLACK_NS = 20_000_000
 """A sensor has passed a time once it is so far beyond: messages of one sensor may overlap."""
 _CLOCKS_NS = 10_000_000_000
@@ -60,8 +58,20 @@ class Assembler:
     `Gap`); jumps forward stay and are a `Gap`; frames without any point are left out.
     """
 
-    def __init__(self, rig: Rig, *, settings: IngestSettings, report: ImportReport) -> None:
+    def __init__(
+        self, rig: Rig, *, settings: IngestSettings, report: ImportReport, wait_s: float = 10.0
+    ) -> None:
+        """Start empty.
+
+        Args:
+            rig: Its sensors are the rows that shots name.
+            settings: Rate, range limits and what a gap is.
+            report: Told of everything that is dropped.
+            wait_s: A sensor that is silent for so long while another delivers no longer holds the
+                frames up [s]. Readers hand on several seconds of one sensor at a time.
+        """
         self._settings, self._report = settings, report
+        self._wait_ns = int(wait_s * 1e9)
         self._streams = [_Stream(sensor.name) for sensor in rig.sensors]
         self._start_ns: int | None = None
         self._next = 0
@@ -156,7 +166,7 @@ class Assembler:
     def _head_complete(self) -> bool:
         ends = [s.last_ns - s.first_ns for s in self._streams if s.last_ns and s.first_ns]
         everyone = len(ends) == len(self._streams) and min(ends, default=0) >= _HEAD_NS
-        return everyone or max(ends, default=0) >= _HEAD_NS + _WAIT_NS
+        return everyone or max(ends, default=0) >= _HEAD_NS + self._wait_ns
 
     def _begin(self) -> None:
         seen = [stream for stream in self._streams if stream.waiting]
@@ -212,7 +222,7 @@ class Assembler:
         """Whether no sensor can still bring points before ``end_ns``, or one is overdue."""
         reached = [s.last_ns for s in self._streams if s.last_ns is not None]
         everyone = len(reached) == len(self._streams) and min(reached) >= end_ns + _SLACK_NS
-        return everyone or max(reached) >= end_ns + _WAIT_NS
+        return everyone or max(reached) >= end_ns + self._wait_ns
 
     def _skip_empty(self) -> None:
         assert self._start_ns is not None
