@@ -266,16 +266,13 @@ class Assembler:
     def _take_out(self, stream: _Stream, start_ns: int, end_ns: int) -> list[Shots]:
         taken, left = [], []
         for shots in stream.waiting:
-            inside = shots.t_ns < end_ns
-            late = shots.t_ns < start_ns
-            stream.late += int(np.count_nonzero(late))
-            if not inside.any():
-                left.append(shots)
-                continue
-            if not inside.all():
-                left.append(_rows(shots, ~inside))
-            if (now := inside & ~late).any():
-                taken.append(shots if now.all() else _rows(shots, now))
+            # Slices, not masks: a reader may hand on many frames at a time.
+            start, end = np.searchsorted(shots.t_ns, [start_ns, end_ns]).tolist()
+            stream.late += start
+            if end > start:
+                taken.append(_rows(shots, slice(start, end)))
+            if end < len(shots):
+                left.append(_rows(shots, slice(end, None)))
         stream.waiting = left
         return taken
 
@@ -294,7 +291,7 @@ def drop_invalid(shots: Shots, *, settings: IngestSettings, report: ImportReport
     return _rows(shots, ~drop) if drop.any() else shots
 
 
-def _rows(shots: Shots, rows: NDArray[np.bool_]) -> Shots:
+def _rows(shots: Shots, rows: NDArray[np.bool_] | slice) -> Shots:
     return Shots(
         shots.sensor,
         shots.t_ns[rows],
