@@ -81,8 +81,8 @@ def diagnose(table: IntensityTable, sums: Array) -> Diagnostics:
     _, rings, incidences, ranges, _ = sums.shape
     return Diagnostics(
         rings=np.array(float(rings)),
-        range_m=(np.arange(ranges) + 0.5) * table.range_bin_m,
-        incidence_deg=np.rad2deg((np.arange(incidences - 1) + 0.5) * table.incidence_bin_rad),
+        range_m=table.range_bin_m * np.arange(0.5, ranges),
+        incidence_deg=np.rad2deg(table.incidence_bin_rad * np.arange(0.5, incidences - 1)),
         all_before=_curve(sums.sum(axis=(0, 1, 2, 3))[None])[:, 0],
         all_after=_curve(after.sum(axis=(0, 1, 2, 3))[None])[:, 0],
         **curves,

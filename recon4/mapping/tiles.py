@@ -91,7 +91,7 @@ class TileSet:
     fields: tuple[str, ...]
     crs: MapCrs | None
     facts: dict[str, Any]
-    """The rest of ``tiles.json``: ``points``, ``bounds_m``, ``tile_m``, ``voxel_m``, ``removed``."""
+    """The rest of ``tiles.json``: ``points``, ``bounds_m``, ``time_ns``, ``removed`` …"""
 
     @staticmethod
     def open(folder: Path) -> TileSet:
@@ -183,6 +183,7 @@ class TileWriter:
                 "stop": self._points + count,
                 "low_m": (origin + columns["xyz"].min(axis=0)).tolist(),
                 "high_m": (origin + columns["xyz"].max(axis=0)).tolist(),
+                "time_ns": [int(columns["t_ns"].min()), int(columns["t_ns"].max())],
             }
         )
         self._points += count
@@ -193,7 +194,9 @@ class TileWriter:
             np.min([row["low_m"] for row in rows], axis=0).tolist() if rows else None,
             np.max([row["high_m"] for row in rows], axis=0).tolist() if rows else None,
         ]
+        times = [t for row in rows for t in row["time_ns"]]
         facts = {"format": FORMAT, "points": self._points, "bounds_m": bounds} | self.facts
+        facts["time_ns"] = [min(times), max(times)] if times else None
         facts |= {"tile_m": self._tile_m, "fields": self._fields, "tiles": rows}
         write_json(self._folder / "tiles.json", facts)
 

@@ -9,22 +9,9 @@ from recon4.errors import ConfigError, OutOfRange
 from recon4.geometry.se3 import SE3
 from recon4.mapping.place import place, place_with_origins
 from recon4.model.multiframe import Multiframe
-from recon4.model.rig import Rig, Sensor, load_rig
+from recon4.model.rig import load_rig
 from recon4.model.trajectory import Trajectory
-
-
-def rig_of(*T_body_sensor):
-    sensors = tuple(
-        Sensor(name=f"s{k}", model="generic", T_body_sensor=T) for k, T in enumerate(T_body_sensor)
-    )
-    return Rig(
-        name="test",
-        sensors=sensors,
-        T_body_imu=SE3.identity(),
-        imu_time_offset_s=0.0,
-        p_body_antenna=np.zeros(3),
-        gnss_time_offset_s=0.0,
-    )
+from tests.room_walks import rig_of
 
 
 def frame_of(xyz, dt_ns, sensor=None, t_ns=1_700_000_000_000_000_000):

@@ -1,0 +1,221 @@
+"""The map as LAZ 1.4, point format 6 (the only place that imports laspy).
+
+lazrs keeps a pool of threads that does not survive a fork: a worker process that writes LAZ must be
+spawned.
+"""
+
+from __future__ import annotations
+
+import io
+import uuid
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import laspy
+import lazrs  # type: ignore[import-untyped]
+import numpy as np
+import pyproj
+from numpy.typing import NDArray
+
+import recon4
+from recon4.errors import ConfigError, GeoreferenceError, StoreError
+from recon4.export.gps_time import day_of, is_absolute, point_time_s
+from recon4.export.points import Block, ToCrs, blocks, center, into_crs
+from recon4.mapping.tiles import TileSet
+from recon4.progress import Progress, Silent
+from recon4.store.atomic import atomic_file
+
+SCALE_M = 0.001
+"""Resolution of the coordinates [m]."""
+NORMALIZED_STEP = 1.0 / 16.0
+"""Normalized intensities are rounded to this: finer than the raw step, and it compresses."""
+FIELDS = ["intensity", "ring", "sensor", "echo", "frame_id", "t_ns"]
+"""What is read beside the coordinates, and ``intensity_normalized`` when there is any."""
+
+
+@dataclass(slots=True)
+class _Written:
+    """What the file must turn out to hold."""
+
+    count: int = 0
+    low: NDArray[np.int64] = field(default_factory=lambda: np.full(3, np.iinfo(np.int64).max))
+    high: NDArray[np.int64] = field(default_factory=lambda: np.full(3, np.iinfo(np.int64).min))
+    first: Any = None
+    last: Any = None
+
+
+class _Watched(io.BufferedWriter):
+    """Remembers why a write failed: lazrs only says that it did."""
+
+    failed: OSError | None = None
+
+    def write(self, data: Any) -> int:
+        try:
+            return super().write(data)
+        except OSError as error:
+            self.failed = error
+            raise
+
+
+def export_laz(
+    folder: Path,
+    path: Path,
+    *,
+    crs: str | None = None,
+    to_crs: ToCrs | None = None,
+    progress: Progress | None = None,
+) -> int:
+    """Write a map as LAZ, streaming, and check the file before it gets its name.
+
+    Intensity is the raw one; ``intensity_normalized``, ``ring`` and ``frame_id`` are extra bytes,
+    the point source is the sensor's row + 1, the return number is 2 for a further echo. Times
+    are adjusted standard GPS time, or seconds of the recording's clock if that is not UTC.
+
+    Args:
+        folder: Artifact of the stage ``map``.
+        path: File to write, ``.laz``.
+        crs: WKT or code of the CRS; None = that of the map, if it has one.
+        to_crs: Map coordinates to those of ``crs``; None = the shift by the map's origin in it.
+        progress: Who watches.
+
+    Returns:
+        How many points were written.
+
+    Raises:
+        ConfigError: If the map has no points.
+        GeoreferenceError: If the CRS is not understood, or coordinates do not fit.
+        StoreError: If the file cannot be written or does not read back (`NoSpace`: disk full).
+    """
+    tiles = TileSet.open(folder)
+    if path.suffix.lower() != ".laz":
+        raise ConfigError(f"a LAZ file must be named .laz, got {path.name}")
+    transform = into_crs(tiles, to_crs)
+    header = _header(tiles, center(tiles, transform), crs or (tiles.crs and tiles.crs.wkt) or None)
+    fields = [name for name in [*FIELDS, "intensity_normalized"] if name in tiles.fields]
+    stream = blocks(tiles, fields, to_crs=transform, progress=progress or Silent())
+    with atomic_file(path) as temporary, _Watched(io.FileIO(temporary, "wb")) as file:
+        try:
+            written = _write(file, header, stream)
+            file.flush()
+            _check(temporary, written, header)
+        except (laspy.errors.LaspyException, lazrs.LazrsError) as error:
+            if file.failed:
+                raise file.failed from error
+            raise StoreError(f"cannot write {path}: {error}") from error
+    return written.count
+
+
+def _header(tiles: TileSet, offset: NDArray[np.float64], crs: str | None) -> Any:
+    header = laspy.LasHeader(version="1.4", point_format=6)
+    header.scales, header.offsets = np.full(3, SCALE_M), offset
+    header.generating_software = f"recon4 {recon4.__version__}"
+    header.system_identifier = "MERGE"
+    # The same map gives the same bytes: neither the day nor the name is drawn anew.
+    header.uuid = uuid.UUID(int=0)
+    first_ns = int(tiles.facts["time_ns"][0])
+    header.creation_date = day_of(max(first_ns, 0))
+    header.global_encoding.gps_time_type = (
+        laspy.header.GpsTimeType.STANDARD
+        if is_absolute(first_ns)
+        else laspy.header.GpsTimeType.WEEK_TIME
+    )
+    extra = [("ring", "u1", "beam, 0 = lowest"), ("frame_id", "u4", "multiframe")]
+    if "intensity_normalized" in tiles.fields:
+        extra.append(("intensity_normalized", "f4", "V Eq. 2.17"))
+    header.add_extra_dims([laspy.ExtraBytesParams(*row) for row in extra])
+    header.global_encoding.wkt = True
+    if crs is not None:
+        header.vlrs.append(laspy.vlrs.known.WktCoordinateSystemVlr(_wkt(crs)))
+    return header
+
+
+def _wkt(crs: str) -> str:
+    """The WKT that LAS 1.4 asks for (version 1), or the newer one for a CRS it cannot express."""
+    try:
+        known = pyproj.CRS.from_user_input(crs)
+    except pyproj.exceptions.CRSError as error:
+        raise GeoreferenceError(f"not a CRS: {crs[:80]!r}: {error}") from error
+    try:
+        return str(known.to_wkt("WKT1_GDAL"))
+    except pyproj.exceptions.CRSError:
+        return str(known.to_wkt())
+
+
+def _write(file: _Watched, header: Any, stream: Iterable[Block]) -> _Written:
+    written = _Written()
+    absolute = header.global_encoding.gps_time_type == laspy.header.GpsTimeType.STANDARD
+    with laspy.open(
+        file,
+        mode="w",
+        header=header,
+        laz_backend=laspy.LazBackend.LazrsParallel,
+        closefd=False,
+    ) as out:
+        for block in stream:
+            points = _points(block, header, absolute=absolute)
+            out.write_points(points)
+            steps = np.stack([points.X, points.Y, points.Z]).astype(np.int64)
+            written.count += len(points)
+            written.low = np.minimum(written.low, steps.min(axis=1))
+            written.high = np.maximum(written.high, steps.max(axis=1))
+            written.last = points.array[-1].copy()
+            written.first = points.array[0].copy() if written.first is None else written.first
+    return written
+
+
+def _points(block: Block, header: Any, *, absolute: bool) -> Any:
+    steps = np.rint((block.xyz - header.offsets) / SCALE_M)
+    if not (np.abs(steps) < 2**31 - 1).all():
+        raise GeoreferenceError("the map is wider than 4000 km or has coordinates without meaning")
+    points = laspy.ScaleAwarePointRecord.zeros(len(steps), header=header)
+    columns = block.columns
+    points.X[:], points.Y[:], points.Z[:] = steps.T.astype(np.int32)
+    points.intensity[:] = columns["intensity"]
+    points.return_number = columns["echo"] + 1
+    points.number_of_returns = columns["echo"] + 1
+    points.point_source_id[:] = columns["sensor"].astype(np.uint16) + 1
+    points.gps_time[:] = point_time_s(columns["t_ns"], absolute=absolute)
+    points["ring"][:] = columns["ring"]
+    points["frame_id"][:] = columns["frame_id"]
+    if "intensity_normalized" in columns:
+        fine = columns["intensity_normalized"]
+        points["intensity_normalized"][:] = np.rint(fine / NORMALIZED_STEP) * NORMALIZED_STEP
+    return points
+
+
+def _check(path: Path, written: _Written, header: Any) -> None:
+    """Read back count, bounds, CRS, and the first and last point.
+
+    Raises:
+        StoreError: If the file says something else than what was written.
+    """
+    with laspy.open(path) as file:
+        found = file.header
+        if found.point_count != written.count:
+            raise StoreError(
+                f"{path.name} reads back wrong: {found.point_count} points, "
+                f"expected {written.count}"
+            )
+        low = np.rint((found.mins - header.offsets) / SCALE_M)
+        high = np.rint((found.maxs - header.offsets) / SCALE_M)
+        first = file.read_points(1).array[0]
+        file.seek(written.count - 1)
+        last = file.read_points(1).array[0]
+        pairs = {
+            "bounds": ((*written.low, *written.high), (*low, *high)),
+            "CRS": (_crs_text(header), _crs_text(found)),
+            "first point": (written.first.tobytes(), first.tobytes()),
+            "last point": (written.last.tobytes(), last.tobytes()),
+        }
+    for what, (expected, got) in pairs.items():
+        if expected != got:
+            raise StoreError(
+                f"{path.name} reads back wrong: {what}: expected {expected}, got {got}"
+            )
+
+
+def _crs_text(header: Any) -> str:
+    found = header.vlrs.get("WktCoordinateSystemVlr")
+    return str(found[0].string).rstrip("\0") if found else ""

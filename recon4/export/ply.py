@@ -1,0 +1,103 @@
+"""The map as a binary PLY file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from recon4.errors import ConfigError, StoreError
+from recon4.export.gps_time import is_absolute, point_time_s
+from recon4.export.points import Block, ToCrs, blocks, center, into_crs
+from recon4.mapping.tiles import TileSet
+from recon4.progress import Progress, Silent
+from recon4.store.atomic import atomic_file
+
+_PROPERTIES = {"<f8": "double", "<f4": "float", "<u4": "uint", "<u2": "ushort", "|u1": "uchar"}
+_COLUMNS = {
+    "intensity": "<u2",
+    "intensity_normalized": "<f4",
+    "ring": "|u1",
+    "sensor": "|u1",
+    "echo": "|u1",
+    "frame_id": "<u4",
+    "range_m": "<f4",
+    "incidence_rad": "<f4",
+}
+
+
+def export_ply(
+    folder: Path,
+    path: Path,
+    *,
+    to_crs: ToCrs | None = None,
+    progress: Progress | None = None,
+) -> int:
+    """Write a map as little-endian PLY with all its fields, streaming.
+
+    Coordinates are doubles in the map's CRS (or the map's frame if it has none); normals stay in
+    the map's frame; ``gps_time`` is as in `recon4.export.laz.export_laz`.
+
+    Args:
+        folder: Artifact of the stage ``map``.
+        path: File to write, ``.ply``.
+        to_crs: Map coordinates to those wanted; None = the shift by the map's origin in its CRS.
+        progress: Who watches.
+
+    Returns:
+        How many points were written.
+
+    Raises:
+        ConfigError: If the map has no points.
+        StoreError: If the file cannot be written (`NoSpace`: disk full) or has a wrong length.
+    """
+    tiles = TileSet.open(folder)
+    if path.suffix.lower() != ".ply":
+        raise ConfigError(f"a PLY file must be named .ply, got {path.name}")
+    transform = into_crs(tiles, to_crs)
+    center(tiles, transform)
+    fields = [name for name in _COLUMNS if name in tiles.fields]
+    row = _row(fields)
+    absolute = is_absolute(int(tiles.facts["time_ns"][0]))
+    stream = blocks(
+        tiles, [*fields, "normal", "t_ns"], to_crs=transform, progress=progress or Silent()
+    )
+    with atomic_file(path) as temporary:
+        head = _head(row, len(tiles), tiles.crs.wkt if tiles.crs else "")
+        with temporary.open("wb") as file:
+            file.write(head)
+            for block in stream:
+                file.write(_rows(block, row, fields, absolute=absolute).data)
+        expected, found = len(head) + len(tiles) * row.itemsize, temporary.stat().st_size
+        if found != expected:
+            raise StoreError(f"{path.name}: expected {expected} bytes, got {found}")
+    return len(tiles)
+
+
+def _row(fields: list[str]) -> np.dtype[np.void]:
+    columns = [(axis, "<f8") for axis in ("x", "y", "z")]
+    columns += [(axis, "<f4") for axis in ("nx", "ny", "nz")]
+    columns += [(name, _COLUMNS[name]) for name in fields]
+    return np.dtype([*columns, ("gps_time", "<f8")])
+
+
+def _head(row: np.dtype[np.void], count: int, wkt: str) -> bytes:
+    lines = ["ply", "format binary_little_endian 1.0", "comment recon4 map"]
+    if wkt:
+        lines.append(f"comment crs {' '.join(wkt.split())}")
+    lines.append(f"element vertex {count}")
+    lines += [f"property {_PROPERTIES[row[name].str]} {name}" for name in row.names or ()]
+    return ("\n".join([*lines, "end_header"]) + "\n").encode("ascii", "replace")
+
+
+def _rows(
+    block: Block, row: np.dtype[np.void], fields: list[str], *, absolute: bool
+) -> np.ndarray[tuple[int], np.dtype[np.void]]:
+    out = np.zeros(len(block.xyz), row)
+    for axis in range(3):
+        out["xyz"[axis]] = block.xyz[:, axis]
+        out[("nx", "ny", "nz")[axis]] = block.columns["normal"][:, axis]
+    for name in fields:
+        out[name] = block.columns[name]
+    out["gps_time"] = point_time_s(block.columns["t_ns"], absolute=absolute)
+    return out

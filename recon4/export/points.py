@@ -1,0 +1,68 @@
+"""The points of a map, block by block, in spatial order and in the coordinates of the export."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import ConfigError
+from recon4.geometry.se3 import Array
+from recon4.mapping.tile import Columns
+from recon4.mapping.tiles import TileSet
+from recon4.progress import Progress
+
+BLOCK = 1_000_000
+"""Points in memory at once."""
+
+ToCrs = Callable[[Array], Array]
+"""Map coordinates [m], (N, 3), to those of the CRS, (N, 3)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Block:
+    """Some points."""
+
+    xyz: Array
+    """Coordinates of the export, float64 (N, 3)."""
+    columns: Columns
+    """The other fields asked for."""
+
+
+def into_crs(tiles: TileSet, to_crs: ToCrs | None) -> ToCrs:
+    """How to get from the map to the export: as given, or by the origin of the map's CRS."""
+    if to_crs is not None:
+        return to_crs
+    shift = np.array(tiles.crs.origin_m if tiles.crs else (0.0, 0.0, 0.0))
+    return lambda xyz_m: xyz_m + shift
+
+
+def blocks(
+    tiles: TileSet, fields: list[str], *, to_crs: ToCrs, progress: Progress
+) -> Iterator[Block]:
+    """All points, tile by tile; neighbors follow each other."""
+    progress.start("export", len(tiles), "points")
+    for tile in tiles:
+        columns = tile.read(["xyz", *fields])
+        order = tile.spatial_order()
+        for first in range(0, len(tile), BLOCK):
+            rows = order[first : first + BLOCK]
+            xyz = np.take(columns["xyz"], rows, axis=0) + np.array(tile.origin_m)
+            yield Block(
+                to_crs(xyz), {name: np.take(columns[name], rows, axis=0) for name in fields}
+            )
+            progress.advance(len(rows))
+
+
+def center(tiles: TileSet, to_crs: ToCrs) -> NDArray[np.float64]:
+    """Whole meters near the middle of the map in the coordinates of the export, (3,).
+
+    Raises:
+        ConfigError: If the map has no points.
+    """
+    if not len(tiles):
+        raise ConfigError("the map has no points, there is nothing to export")
+    low, high = tiles.bounds_m
+    return np.round(to_crs(((low + high) / 2.0)[None])[0])

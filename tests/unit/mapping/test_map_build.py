@@ -1,0 +1,272 @@
+"""The stage ``map``: from multiframes to tiles."""
+
+import hashlib
+import json
+import tracemalloc
+
+import numpy as np
+import pytest
+
+from recon4.errors import OutOfRange, StoreError
+from recon4.mapping.build import build_map
+from recon4.mapping.grid import Grid
+from recon4.mapping.place import place
+from recon4.mapping.tile import FIELDS
+from recon4.mapping.tiles import MapCrs, TileSet
+from recon4.progress import Silent
+from recon4.settings import MapSettings
+from tests.room_walks import FRAME_NS, T0_NS, Walk, room_walk
+
+ALL = MapSettings(voxel_m=0.0, min_neighborhood=1)
+
+
+def build(walk, folder, settings, **options):
+    folder.mkdir()
+    return build_map(walk, walk.trajectory, None, folder, settings=settings, **options)
+
+
+def points(tiles, field):
+    return np.concatenate([tile.read([field])[field] for tile in tiles])
+
+
+def everything(tiles):
+    return np.concatenate([tile.xyz_m() for tile in tiles])
+
+
+def digest(folder):
+    names = sorted(path for path in folder.rglob("*") if path.is_file())
+    return {p.name: hashlib.sha256(p.read_bytes()).hexdigest() for p in names}
+
+
+def test_without_thinning_every_point_is_in_the_map_once_with_its_own_facts(tmp_path):
+    walk = room_walk(frames=6, points=800)
+
+    tiles = build(walk, tmp_path / "map", ALL)
+
+    expected = np.concatenate([place(frame, walk.trajectory, walk.rig) for frame in walk.frames])
+    facts = {
+        name: np.concatenate([getattr(frame, name) for frame in walk.frames])
+        for name in ("intensity", "ring", "sensor", "echo")
+    }
+    facts["t_ns"] = np.concatenate([f.t_ns + f.dt_ns.astype(np.int64) for f in walk.frames])
+    facts["frame_id"] = np.repeat(np.arange(6), 800)
+    facts["range_m"] = np.concatenate([np.linalg.norm(f.xyz, axis=1) for f in walk.frames])
+    found = everything(tiles)
+    t_mine, t_theirs = points(tiles, "t_ns"), facts["t_ns"]
+    mine = np.lexsort((points(tiles, "intensity"), points(tiles, "ring"), t_mine))
+    theirs = np.lexsort((facts["intensity"], facts["ring"], t_theirs))
+    assert len(tiles) == len(expected) == 4800
+    np.testing.assert_allclose(found[mine], expected[theirs], atol=1e-5)
+    for name in ("intensity", "ring", "sensor", "echo", "t_ns", "frame_id"):
+        np.testing.assert_array_equal(points(tiles, name)[mine], facts[name][theirs])
+    np.testing.assert_allclose(points(tiles, "range_m")[mine], facts["range_m"][theirs], atol=0.005)
+
+
+def test_no_two_points_share_a_voxel_and_the_nearest_one_stays(tmp_path):
+    walk = room_walk(frames=15, points=4000)
+    settings = MapSettings(voxel_m=0.1, normal_cell_m=0.2, min_neighborhood=1)
+
+    tiles = build(walk, tmp_path / "thin", settings)
+    full = build(walk, tmp_path / "full", ALL)
+
+    voxel = np.floor(everything(tiles) / 0.1 + 1e-6).astype(int)
+    assert len(np.unique(voxel, axis=0)) == len(tiles)
+    nearest = {}
+    for key, range_m in zip(
+        map(tuple, np.floor(everything(full) / 0.1 + 1e-6).astype(int)),
+        points(full, "range_m"),
+        strict=True,
+    ):
+        nearest[key] = min(nearest.get(key, np.inf), range_m)
+    assert len(nearest) == len(tiles)
+    np.testing.assert_allclose(points(tiles, "range_m"), [nearest[tuple(v)] for v in voxel])
+
+
+def test_the_same_walk_gives_the_same_bytes_however_often_it_is_written_out(tmp_path):
+    walk = room_walk(frames=15)
+    settings = MapSettings(voxel_m=0.05)
+
+    for name, burst in {"once": 10**9, "again": 10**9, "streamed": 5000}.items():
+        build(walk, tmp_path / name, settings, burst=burst)
+
+    assert digest(tmp_path / "once") == digest(tmp_path / "again")
+    assert digest(tmp_path / "once") == digest(tmp_path / "streamed")
+    assert not list((tmp_path / "streamed").glob("buckets-*"))
+
+
+def test_normals_of_walls_point_at_the_sensor_and_do_not_see_tile_borders(tmp_path):
+    walk = room_walk(frames=20, points=20_000, noise_m=0.002)
+    settings = MapSettings(voxel_m=0.02, tile_m=1.0, normal_cell_m=0.1)
+
+    tiles = build(walk, tmp_path / "small", settings)
+    large = build(
+        walk, tmp_path / "large", MapSettings(voxel_m=0.02, tile_m=4.0, normal_cell_m=0.1)
+    )
+
+    xyz, normal = everything(tiles), points(tiles, "normal").astype(float)
+    floor = (np.abs(xyz[:, 2] + 1.4) < 0.01) & (np.abs(xyz[:, :2]) < 2.0).all(axis=1)
+    assert floor.sum() > 5000
+    assert np.median(normal[floor, 2]) > 0.999
+    assert (normal[floor, 2] > 0.95).mean() > 0.99
+    incidence = points(tiles, "incidence_rad")[floor]
+    height = 1.4 + 0.2 * (points(tiles, "sensor")[floor] == 0)
+    expected = np.arccos(np.minimum(height / points(tiles, "range_m")[floor], 1.0))
+    assert np.median(np.abs(incidence - expected)) < np.deg2rad(1.5)
+    # A point on a border may lie in either voxel, so a handful of them differ.
+    t_a, t_b = points(tiles, "t_ns"), points(large, "t_ns")
+    _, a, b = np.intersect1d(t_a, t_b, return_indices=True)
+    assert len(a) > 0.999 * len(tiles)
+    difference = np.abs(normal[a] - points(large, "normal").astype(float)[b]).max(axis=1)
+    assert (difference > 0.01).mean() < 0.001
+
+
+def test_any_first_part_of_a_tile_samples_it_evenly(tmp_path):
+    tiles = build(room_walk(frames=10, points=8000), tmp_path / "map", ALL)
+    tile = max(tiles, key=len)
+
+    part = tile.xyz_m(limit=len(tile) // 10)
+
+    assert len(part) == len(tile) // 10
+    whole = tile.xyz_m()
+    for axis in range(3):
+        edges = np.quantile(whole[:, axis], np.linspace(0, 1, 9))
+        edges[[0, -1]] = -np.inf, np.inf
+        share = np.histogram(part[:, axis], edges)[0] / len(part)
+        expected = np.histogram(whole[:, axis], edges)[0] / len(whole)
+        assert np.abs(share - expected).max() < 0.02
+    ordered = tile.spatial_order()
+    assert np.array_equal(np.sort(ordered), np.arange(len(tile)))
+    steps = np.linalg.norm(np.diff(whole[ordered], axis=0), axis=1)
+    assert np.median(steps) < 0.2 < np.median(np.linalg.norm(np.diff(whole, axis=0), axis=1))
+
+
+def test_disabled_sensors_and_far_points_are_left_out(tmp_path):
+    tiles = build(room_walk(frames=5, enabled=(True, False)), tmp_path / "one", ALL)
+    near = build(
+        room_walk(frames=5),
+        tmp_path / "near",
+        MapSettings(voxel_m=0, max_range_m=3.0, min_neighborhood=1),
+    )
+
+    assert set(points(tiles, "sensor")) == {0}
+    assert 0 < len(near) < 15_000
+    assert points(near, "range_m").max() <= 3.005
+
+
+def test_lonely_points_are_removed_and_counted(tmp_path):
+    walk = room_walk(frames=10, points=5000)
+    walk.frames[3].xyz[7] = [1.0, 0.5, 0.3]
+
+    tiles = build(walk, tmp_path / "map", MapSettings(voxel_m=0.0, normal_cell_m=0.2))
+    kept = build(walk, tmp_path / "kept", ALL)
+
+    assert tiles.facts["removed"]["lonely"] >= 1
+    assert len(tiles) == len(kept) - tiles.facts["removed"]["lonely"]
+    assert not (points(tiles, "frame_id") == 3)[
+        np.linalg.norm(everything(tiles) - [1.35, 0.5, 0.5], axis=1) < 0.15
+    ].any()
+
+
+def test_points_seen_from_far_go_where_there_are_near_ones(tmp_path):
+    walk = room_walk(frames=20)
+    settings = MapSettings(voxel_m=0.0, far_ratio=1.5, min_neighborhood=1)
+
+    tiles = build(walk, tmp_path / "map", settings)
+
+    cell = np.floor(everything(tiles)).astype(int)
+    _, group = np.unique(cell, axis=0, return_inverse=True)
+    nearest = np.full(group.max() + 1, np.inf)
+    np.minimum.at(nearest, group, points(tiles, "range_m"))
+    assert tiles.facts["removed"]["far"] + len(tiles) == 20 * 3000
+    assert tiles.facts["removed"]["far"] > 100
+    assert (points(tiles, "range_m") <= 1.5 * nearest[group] + 1e-4).all()
+
+
+def test_the_list_of_tiles_says_where_everything_is(tmp_path):
+    crs = MapCrs('LOCAL_CS["x"]', (500_000.0, 5_400_000.0, 200.0))
+
+    tiles = build(room_walk(frames=3), tmp_path / "map", ALL, crs=crs)
+
+    listed = json.loads((tmp_path / "map" / "tiles.json").read_text())
+    assert tiles.crs == crs
+    assert listed["fields"] == [name for name in FIELDS if name != "intensity_normalized"]
+    assert listed["points"] == len(tiles) == sum(map(len, tiles))
+    low, high = tiles.bounds_m
+    np.testing.assert_allclose(low, everything(tiles).min(axis=0), atol=1e-6)
+    np.testing.assert_allclose(high, everything(tiles).max(axis=0), atol=1e-6)
+    assert T0_NS <= listed["time_ns"][0] < listed["time_ns"][1] < T0_NS + 3 * FRAME_NS
+    for tile in tiles:
+        xyz = tile.read(["xyz"])["xyz"]
+        assert (xyz >= 0).all() and (xyz <= listed["tile_m"]).all()
+    np.testing.assert_array_equal(np.load(tmp_path / "map/tiles/ring.npy"), points(tiles, "ring"))
+
+
+def test_a_walk_without_points_gives_a_map_without_tiles(tmp_path):
+    walk = room_walk(frames=2)
+    empty = Walk([f.take(slice(0, 0)) for f in walk.frames], walk.rig, walk.trajectory)
+
+    tiles = build(empty, tmp_path / "map", MapSettings())
+
+    assert len(tiles) == 0 and list(tiles) == []
+    assert np.isnan(tiles.bounds_m[0]).all()
+
+
+def test_memory_does_not_grow_with_the_walk(tmp_path):
+    settings = MapSettings(voxel_m=0.1, normal_cell_m=0.2)
+    peaks = []
+    walk = room_walk(frames=40, points=5000)
+    for frames in (40, 160):
+        longer = walk.repeated(frames)
+        tracemalloc.start()
+        build(longer, tmp_path / f"{frames}", settings, burst=40_000)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+
+    assert peaks[1] < 1.3 * peaks[0], peaks
+
+
+def test_a_trajectory_that_ends_early_is_refused_and_nothing_is_listed(tmp_path):
+    walk = room_walk(frames=10)
+    walk.trajectory = walk.trajectory[:5]
+
+    with pytest.raises(OutOfRange):
+        build(walk, tmp_path / "map", MapSettings())
+
+    with pytest.raises(StoreError, match=r"tiles\.json is not the list"):
+        TileSet.open(tmp_path / "map")
+
+
+def test_damaged_maps_are_refused(tmp_path):
+    tiles = build(room_walk(frames=2), tmp_path / "map", MapSettings())
+    with pytest.raises(StoreError, match="no field"):
+        tiles.tiles[0].read(["color"])
+
+    column = tmp_path / "map" / "tiles" / "ring.npy"
+    column.write_bytes(column.read_bytes()[:-1])
+    with pytest.raises(StoreError, match=r"ring\.npy: expected \d+ bytes"):
+        TileSet.open(tmp_path / "map")
+
+    (tmp_path / "map" / "tiles.json").write_text('{"format": 99}')
+    with pytest.raises(StoreError, match="expected format 1, got 99"):
+        TileSet.open(tmp_path / "map")
+
+
+def test_progress_is_told_and_can_stop_it(tmp_path):
+    class Stop(Silent):
+        def advance(self, done=1):
+            raise KeyboardInterrupt
+
+    silent = Silent()
+    build(room_walk(frames=2), tmp_path / "a", MapSettings(), progress=silent)
+    assert silent.events[-1][0] == "map"
+
+    with pytest.raises(KeyboardInterrupt):
+        build(room_walk(frames=30), tmp_path / "b", MapSettings(), progress=Stop())
+    assert not list((tmp_path / "b").glob("buckets-*"))
+
+
+def test_cells_and_tiles_are_whole_numbers_of_voxels():
+    grid = Grid.of(MapSettings(voxel_m=0.03, tile_m=20.0, normal_cell_m=0.1))
+
+    assert grid.cell_m == pytest.approx(0.09)
+    assert grid.tile_m == pytest.approx(0.09 * round(20 / 0.09))
