@@ -26,7 +26,7 @@ def evaluate_polynomials(
     """
     intervals, terms, width = coefficients.shape
     for i in range(len(t_s)):
-        k = min(max(int(math.floor(t_s[i] / step_s)), 0), intervals - 1)
+        k = min(max(math.floor(t_s[i] / step_s), 0), intervals - 1)
         h = t_s[i] - (k + 0.5) * step_s
         for j in range(width):
             value = 0.0
@@ -163,7 +163,7 @@ def measure(
         if abs(gap) < rules[4]:
             r += (0.5 * noise[i, 2]) * gap
         measured = r + rules[0] * noise[i, 0]
-        units = int(round(measured / rules[9]))
+        units = round(measured / rules[9])
         if measured < rules[1] or measured > rules[2] or units <= 0 or units > 65535:
             continue
         near = 1.0 - math.exp(-r / 0.8)

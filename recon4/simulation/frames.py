@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,9 +12,9 @@ from numpy.typing import NDArray
 from recon4.model.multiframe import COLUMNS, Multiframe
 from recon4.model.rig import Rig
 from recon4.progress import Progress, Silent
+from recon4.recording.velodyne_models import MODELS
 from recon4.simulation.gnss import simulate_gnss
 from recon4.simulation.imu import simulate_imu
-from recon4.recording.velodyne_models import MODELS
 from recon4.simulation.lidar import Firings
 from recon4.simulation.setup import Models, Setup, prepare
 from recon4.simulation.truth import true_trajectory, write_tum
@@ -21,7 +22,7 @@ from recon4.store.frames import FrameWriter
 
 FRAME_NS = 100_000_000
 _CHUNK_FRAMES = 10
-Columns = dict[str, NDArray[np.generic]]
+Columns = dict[str, NDArray[Any]]
 
 
 def simulate_frames(
@@ -126,4 +127,4 @@ def _frame(k: int, waiting: list[Columns], epoch_ns: int) -> Multiframe:
         part["dt_ns"] = (part["t_ns"] - k * FRAME_NS).astype(np.int32)
         parts.append(part)
     merged = {name: np.concatenate([part[name] for part in parts]) for name in COLUMNS}
-    return Multiframe(k, epoch_ns + k * FRAME_NS, FRAME_NS, **merged)  # type: ignore[arg-type]
+    return Multiframe(k, epoch_ns + k * FRAME_NS, FRAME_NS, **merged)

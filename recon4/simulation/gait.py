@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from recon4.geometry.se3 import Array
-from recon4.simulation.walk import BODY_HEIGHT_M, Walk
+from recon4.simulation.walk import BODY_HEIGHT_M, KNOT_S, Walk
 from recon4.simulation.world import Waypoint, World
 
 SPEED_M_S = 1.2
 _SLOWEST_M_S, _FASTEST_M_S = 1.0, 1.4
+_LONGEST = 1.12
+"""A round may take so much longer than a full one at the usual speed."""
 _STAND_S = 1.5
-_RATE_HZ = 200.0
+_RATE_HZ = 4.0 / KNOT_S
 _PATH_SIGMA_S = 0.2
 _HEADING_SIGMA_S = 0.12
 _FASTEST_TURN_DEG_S = 240.0
@@ -50,32 +53,36 @@ def plan_walk(world: World, *, seconds: float, rng: np.random.Generator) -> Walk
     """
     legs, speed_m_s = _fit(world, seconds, rng)
     timeline = _lay_out(legs, speed_m_s)
-    count = int(round(seconds * _RATE_HZ)) + 1
+    count = 4 * round(seconds / KNOT_S) + 1
     t_s = np.arange(count) / _RATE_HZ
-    return Walk.through(_body(timeline, t_s, rng)[:: int(_RATE_HZ * 0.02)])
+    return Walk.through(_body(timeline, t_s, rng)[::4])
 
 
 def _fit(world: World, seconds: float, rng: np.random.Generator) -> tuple[list[Waypoint], float]:
     """Waypoints of all rounds, and the speed at which they take the time there is [m/s]."""
     full = _duration(world.route(np.random.default_rng(0), world.stops), SPEED_M_S)
-    rounds = max(1, round(seconds / full))
+    rounds = max(1, math.ceil(seconds / (_LONGEST * full)))
     routes: list[Waypoint] = []
-    best = [Waypoint(0, 0)]
-    left = seconds
-    for k in range(rounds):
-        share = left / (rounds - k)
-        plans = [
-            world.route(np.random.default_rng(rng.integers(1 << 62)), stops + 1)
-            for stops in range(world.stops)
-        ]
-        best = min(plans, key=lambda plan: abs(_duration(plan, SPEED_M_S) - share))
-        routes += best if not routes else best[1:]
-        left -= _duration(best, SPEED_M_S)
+    for _ in range(rounds):
+        route = _round(world, seconds / rounds, rng)
+        routes += route[1:] if routes else route
     low, high = _SLOWEST_M_S, _FASTEST_M_S
     for _ in range(50):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if _duration(routes, middle) > seconds else (low, middle)
     return routes, 0.5 * (low + high)
+
+
+def _round(world: World, seconds: float, rng: np.random.Generator) -> list[Waypoint]:
+    """One round that takes about so long and at most so long at the fastest speed."""
+    seeds = rng.integers(1 << 62, size=world.stops)
+    plans = [
+        world.route(np.random.default_rng(seed), stops + 1) for stops, seed in enumerate(seeds)
+    ]
+    fitting = [plan for plan in plans if _duration(plan, _FASTEST_M_S) <= seconds]
+    if not fitting:
+        return min(plans, key=lambda plan: _duration(plan, SPEED_M_S))
+    return min(fitting, key=lambda plan: abs(_duration(plan, SPEED_M_S) - seconds))
 
 
 def _duration(route: list[Waypoint], speed_m_s: float) -> float:
@@ -131,7 +138,7 @@ def _body(line: _Timeline, t_s: Array, rng: np.random.Generator) -> Array:
     step, stride = 2.0 * np.pi * phase, np.pi * phase
     side = effort * 0.022 * np.sin(stride) + calm * 0.012 * _wander(rng, t_s, 1.5)
     ahead = effort * 0.012 * np.sin(step + 0.8)
-    bounce = effort * (0.024 * np.cos(step) + 0.005 * np.cos(2 * step + 0.4))
+    bounce = effort * (0.024 * np.cos(step) + 0.002 * np.cos(2 * step + 0.4))
     c, s = np.cos(yaw), np.sin(yaw)
     sway = [c * ahead - s * side, s * ahead + c * side, BODY_HEIGHT_M + bounce]
     degrees = [

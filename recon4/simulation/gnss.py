@@ -89,7 +89,8 @@ def geodetic(p_enu_m: Array, origin: Origin) -> tuple[Array, Array, Array]:
         f"+proj=pipeline +step +inv +proj=topocentric +ellps=WGS84 {place} "
         "+step +inv +proj=cart +ellps=WGS84"
     )
-    lon, lat, height = to_geodetic.transform(*np.asarray(p_enu_m, dtype=np.float64).T, radians=True)
+    east, north, up = np.asarray(p_enu_m, dtype=np.float64).T
+    lon, lat, height = to_geodetic.transform(east, north, up, radians=True)
     return np.asarray(lat), np.asarray(lon), np.asarray(height)
 
 

@@ -54,7 +54,7 @@ class MeshBuilder:
     def place(self, other: MeshBuilder, shift_m: ArrayLike) -> None:
         """Add what another builder collected, moved by (3,) [m]."""
         mesh = other.mesh()
-        moved = mesh.vertices_m + np.asarray(shift_m, dtype=np.float64)
+        moved = mesh.vertices_m.astype(np.float64) + np.asarray(shift_m, dtype=np.float64)
         self.add(moved, mesh.triangles.astype(np.int64), mesh.reflectivity)
 
     def mesh(self) -> Mesh:
@@ -136,7 +136,7 @@ class MeshBuilder:
         self.add(corners, _grid_triangles(rows, columns, wrap=True), reflectivity)
 
     def terrain(self, x_m: Array, y_m: Array, z_m: Array, reflectivity: ArrayLike) -> None:
-        """A height field: x (M,), y (N,), z (N, M) [m]; one reflectivity or one a cell (N-1, M-1)."""
+        """A height field: x (M,), y (N,), z (N, M) [m]; reflectivity: one, or (N-1, M-1) cells."""
         grid_x, grid_y = np.meshgrid(x_m, y_m)
         corners = np.stack([grid_x, grid_y, z_m], axis=-1).reshape(-1, 3)
         triangles = _grid_triangles(len(y_m), len(x_m), wrap=False)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -25,9 +25,9 @@ EPOCH_NS = 1_780_308_000_000_000_000
 class Models:
     """How imperfect the sensors are."""
 
-    lidar: LidarModel = LidarModel()
-    imu: ImuModel = ImuModel()
-    gnss: GnssModel = GnssModel()
+    lidar: LidarModel = field(default_factory=LidarModel)
+    imu: ImuModel = field(default_factory=ImuModel)
+    gnss: GnssModel = field(default_factory=GnssModel)
 
     @staticmethod
     def perfect() -> Models:

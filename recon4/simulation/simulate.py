@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from contextlib import ExitStack
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
@@ -28,9 +29,10 @@ from recon4.simulation.truth import true_trajectory, write_tum
 from recon4.store.atomic import atomic_folder
 
 _SECOND_NS = 1_000_000_000
+Samples = TypeVar("Samples", ImuSamples, GnssSamples)
 
 
-def simulate(
+def simulate(  # noqa: PLR0913 - every part of a recording can be chosen
     world: str,
     out: Path,
     *,
@@ -149,10 +151,10 @@ def _receive(setup: Setup) -> GnssSamples | None:
     )
 
 
-def _during(samples, start_ns: int):  # type: ignore[no-untyped-def]
+def _during(samples: Samples, start_ns: int) -> Samples:
     """Samples of the second that starts then."""
     first, last = np.searchsorted(samples.t_ns, [start_ns, start_ns + _SECOND_NS])
-    columns = [getattr(samples, name)[first:last] for name in samples.__dataclass_fields__]
+    columns = [getattr(samples, column.name)[first:last] for column in fields(samples)]
     return type(samples)(*columns)
 
 

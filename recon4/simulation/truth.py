@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.model.trajectory import Times, Trajectory
+from recon4.model.trajectory import Trajectory
 from recon4.simulation.walk import Walk
 
 TRUTH_RATE_HZ = 200

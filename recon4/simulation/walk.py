@@ -17,7 +17,8 @@ from recon4.kernels.simulation import evaluate_polynomials
 BODY_HEIGHT_M = 1.5
 """Of the body frame (the INS in the backpack) above the floor."""
 
-_KNOT_S = 0.02
+KNOT_S = 0.02
+"""Between two knots of the splines [s]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,9 +35,9 @@ class Walk:
         from scipy.interpolate import make_interp_spline
 
         values = np.asarray(samples, dtype=np.float64)
-        t_s = _KNOT_S * np.arange(len(values))
+        t_s = KNOT_S * np.arange(len(values))
         spline = make_interp_spline(t_s, values, k=5)
-        middles = t_s[:-1] + 0.5 * _KNOT_S
+        middles = t_s[:-1] + 0.5 * KNOT_S
         factorial = [1.0, 1.0, 2.0, 6.0, 24.0, 120.0]
         terms = [spline(middles, nu=order) / factorial[order] for order in range(6)]
         return Walk(float(t_s[-1]), np.ascontiguousarray(np.stack(terms, axis=1)))
@@ -45,7 +46,7 @@ class Walk:
         """x, y, z [m], roll, pitch, yaw [rad] or a derivative of them, (N,) -> (N, 6)."""
         t = np.ascontiguousarray(np.atleast_1d(t_s), dtype=np.float64)
         out = np.empty((len(t), 6))
-        evaluate_polynomials(self.coefficients, _KNOT_S, t, derivative, out)
+        evaluate_polynomials(self.coefficients, KNOT_S, t, derivative, out)
         return out
 
     def poses(self, t_s: ArrayLike) -> SE3:

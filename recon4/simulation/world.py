@@ -37,7 +37,7 @@ class Marker:
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Where the map's origin lies on the earth (WGS 84); the map's axes are east, north, up there."""
+    """Where the map's origin lies on the earth (WGS 84); its axes are east, north and up there."""
 
     lat_deg: float
     lon_deg: float

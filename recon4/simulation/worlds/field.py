@@ -5,6 +5,8 @@ A path of some 500 m leads around under the wires; survey markers lie beside it.
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -25,6 +27,8 @@ from recon4.simulation.worlds.walls import STEEL, WOOD
 CORNERS = 10
 _HALF_LENGTH_M, _HALF_WIDTH_M = 95.0, 62.0
 _CLEAR_M = 3.0
+_SHORT_STOPS = 4
+"""So many of the possible rounds do not even reach the first corner."""
 _PYLONS = ((-110.0, 18.0), (-8.0, 10.0), (105.0, 2.0))
 _ARMS = ((15.0, 4.5), (19.0, 3.2))
 """Height and half length of the cross-arms of a pylon [m]."""
@@ -46,7 +50,7 @@ def build() -> World:
         name="field",
         mesh=builder.mesh(),
         route=_route,
-        stops=CORNERS - 1,
+        stops=_SHORT_STOPS + CORNERS - 1,
         markers=markers,
         outdoors=True,
     )
@@ -74,7 +78,7 @@ def _power_line(builder: MeshBuilder) -> None:
     """Lattice pylons and six wires."""
     for x, y in _PYLONS:
         _pylon(builder, x, y)
-    for (x0, y0), (x1, y1) in zip(_PYLONS[:-1], _PYLONS[1:], strict=True):
+    for (x0, y0), (x1, y1) in pairwise(_PYLONS):
         z0, z1 = float(height(x0, y0)), float(height(x1, y1))
         for level, half in _ARMS:
             for side in (-half, 0.55 * -half, half):
@@ -92,7 +96,7 @@ def _pylon(builder: MeshBuilder, x: float, y: float) -> None:
         [np.array([x + sx * h, y + sy * h, z + level]) for sx, sy in signs]
         for level, h in zip(levels, halves, strict=True)
     ]
-    for low, high in zip(corner[:-1], corner[1:], strict=True):
+    for low, high in pairwise(corner):
         for k in range(4):
             builder.tube(low[k], high[k], 0.06, STEEL, sides=4)
             builder.tube(low[k], high[(k + 1) % 4], 0.03, STEEL, sides=4)
@@ -114,7 +118,7 @@ def _village_line(builder: MeshBuilder) -> None:
         z = float(height(x, y))
         builder.tube([x, y, z - 0.5], [x, y, z + 8.0], 0.13, WOOD, sides=8, end_radius_m=0.09)
         builder.tube([x, y - 0.8, z + 7.6], [x, y + 0.8, z + 7.6], 0.05, WOOD, sides=4)
-    for (x0, y0), (x1, y1) in zip(places[:-1], places[1:], strict=True):
+    for (x0, y0), (x1, y1) in pairwise(places):
         for side in (-0.7, 0.7):
             start = [x0, y0 + side, float(height(x0, y0)) + 7.7]
             end = [x1, y1 + side, float(height(x1, y1)) + 7.7]
@@ -172,12 +176,16 @@ def _markers(builder: MeshBuilder) -> tuple[Marker, ...]:
 
 
 def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:
-    """From corner to corner, straight back from the last one; all around with 9 of them."""
-    order = list(range(1, stops + 1))
+    """Part of the way to the first corner and back, or from corner to corner and straight back."""
+    order = list(range(1, max(stops - _SHORT_STOPS, 0) + 1))
     if rng.random() < 0.5:
         order = [CORNERS - k for k in order]
     start = Waypoint(*_corner(0))
     way = [start]
+    if stops <= _SHORT_STOPS:
+        share = stops / (_SHORT_STOPS + 1)
+        x, y = _corner(0) + share * (_corner(int(rng.choice([1, -1]))) - _corner(0))
+        way.append(Waypoint(x, y, stop=True, look_deg=90.0))
     for k in order:
         x, y = _corner(k) + rng.uniform(-0.6, 0.6, 2)
         if rng.random() < 0.3:

@@ -13,7 +13,7 @@ Box = tuple[float, float, float, float]
 def furnish(
     builder: MeshBuilder, room: Box, *, north: bool, kind: int, rng: np.random.Generator
 ) -> None:
-    """Fill a room along its sides; its middle and the 2.6 m next to the corridor stay free.
+    """Fill a room along its sides; its middle and the 3.6 m next to the corridor stay free.
 
     Args:
         builder: Receives the furniture.
@@ -29,8 +29,8 @@ def furnish(
         radiator(builder, x, far + 0.12 * inward)
     for row in (0.3, 0.7):
         for x in (west + 1.3, east - 1.3):
-            lamp(builder, x, south + row * (north_y - south), 2.9)
-    reach = abs(far - near) - 3.0
+            lamp(builder, x, south + row * (north_y - south), ceiling_m=2.9)
+    reach = abs(far - near) - 3.7
     for side, wall_x in ((1.0, west), (-1.0, east)):
         along = 0.45
         while along < reach - 0.9:
@@ -119,6 +119,7 @@ def lamp(
     builder: MeshBuilder,
     x: float,
     y: float,
+    *,
     ceiling_m: float,
     size: tuple[float, float] = (1.2, 0.3),
 ) -> None:
@@ -135,12 +136,12 @@ def board(builder: MeshBuilder, x: float, y: float, *, length_m: float) -> None:
 
 def corridor_things(builder: MeshBuilder, length_m: float, width_m: float, height_m: float) -> None:
     """Extinguisher, notice boards, exit signs, bins and a cable duct: no two places look alike."""
-    builder.tube([9.4, 0.1, 0.5], [9.4, 0.1, 1.05], 0.08, STEEL, sides=10)
-    builder.block([6.9, width_m - 0.03, 0.9], [1.2, 0.03, 0.9], 0.25)
+    builder.tube([10.1, 0.1, 0.5], [10.1, 0.1, 1.05], 0.08, STEEL, sides=10)
+    builder.block([8.3, width_m - 0.03, 0.9], [1.2, 0.03, 0.9], 0.25)
     builder.block([17.3, 0.03, 1.0], [1.6, 0.03, 0.8], 0.3)
     for k in range(5):
         builder.block(
-            [6.45 + 0.22 * k, width_m - 0.05, 1.1 + 0.1 * (k % 3)], [0.16, 0.004, 0.22], PAPER
+            [7.85 + 0.22 * k, width_m - 0.05, 1.1 + 0.1 * (k % 3)], [0.16, 0.004, 0.22], PAPER
         )
     for x in (5.0, 14.7, 21.9):
         builder.block([x, width_m / 2, height_m - 0.3], [0.03, 0.4, 0.2], 1.6)

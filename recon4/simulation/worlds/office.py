@@ -90,12 +90,12 @@ def _shell(builder: MeshBuilder) -> None:
         south = door(-0.12 - SOUTH_M - _PASSAGE_AT_M)
         wall(builder, (x, SOUTH_M), (x, -0.12), openings=[south])
     for x in (ROOM_M * 0.5, ROOM_M * 1.7, ROOM_M * 2.6, ROOM_M * 3.5, ROOM_M * 4.4):
-        lamp(builder, x, CORRIDOR_M / 2, CORRIDOR_HEIGHT_M, size=(1.2, 0.15))
+        lamp(builder, x, CORRIDOR_M / 2, ceiling_m=CORRIDOR_HEIGHT_M, size=(1.2, 0.15))
 
 
 def _markers(builder: MeshBuilder) -> tuple[Marker, ...]:
     """Retro-reflective squares on walls of the corridor and rooms."""
-    places = [(4.2, 0.002, 1.4), (11.9, CORRIDOR_M - 0.002, 1.5), (24.6, 0.002, 1.6)]
+    places = [(4.8, 0.002, 1.4), (13.2, CORRIDOR_M - 0.002, 1.5), (22.9, 0.002, 1.6)]
     for x, y, z in places:
         builder.box([x - 0.1, y - 0.002, z - 0.1], [x + 0.1, y + 0.002, z + 0.1], 2.2)
     for x in (2.9, 8.1, 13.3, 18.5, 23.7):
@@ -152,7 +152,7 @@ def _leave(row: int, column: int, rng: np.random.Generator) -> list[Waypoint]:
 def _look_around(row: int, column: int, rng: np.random.Generator) -> Waypoint:
     """A place in the free middle of a room where the person turns to look."""
     west, east, south, north = _room(row, column)
-    x = 0.5 * (west + east) + rng.uniform(-0.5, 0.5)
+    x = 0.5 * (west + east) + rng.uniform(-0.35, 0.35)
     depth = rng.uniform(3.4, 6.0)
     y = south + depth if row == 0 else north - depth
     return Waypoint(x, y, stop=True, look_deg=float(rng.choice([-180, -120, -90, 90, 120, 180])))

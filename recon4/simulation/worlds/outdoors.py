@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,16 +25,18 @@ def tree(
 ) -> None:
     """A trunk, two boughs and a bumpy crown."""
     z = float(ground(x, y))
-    height = rng.uniform(2.2, 3.4)
+    crown = rng.uniform(1.3, 2.3)
+    height = rng.uniform(2.3, 3.2) + 0.5 * crown
     top = np.array([x + rng.uniform(-0.2, 0.2), y + rng.uniform(-0.2, 0.2), z + height])
     builder.tube([x, y, z - 0.3], top, 0.16, WOOD, sides=8, end_radius_m=0.1)
-    crown = rng.uniform(1.3, 2.3)
     for _ in range(2):
         angle = rng.uniform(0.0, 2.0 * np.pi)
-        bough = top + [np.cos(angle), np.sin(angle), 1.2]
+        bough = top + np.array([np.cos(angle), np.sin(angle), 1.2])
         builder.tube(top - [0, 0, 0.4], bough, 0.07, WOOD, sides=5, end_radius_m=0.03)
     bumps = rng.uniform(0.75, 1.15, (7, 12))
-    builder.ball(top + [0, 0, 0.8 * crown], [crown, crown, 1.1 * crown], LEAVES, bumps=bumps)
+    builder.ball(
+        top + np.array([0, 0, 0.8 * crown]), [crown, crown, 1.1 * crown], LEAVES, bumps=bumps
+    )
 
 
 def bush(
@@ -96,7 +99,7 @@ def wire(
     share = np.linspace(0.0, 1.0, 17)[:, None]
     points = a + share * (b - a)
     points[:, 2:] -= 4.0 * sag_m * share * (1.0 - share)
-    for p, q in zip(points[:-1], points[1:], strict=True):
+    for p, q in pairwise(points):
         builder.tube(p, q, radius_m, STEEL, sides=5)
 
 
@@ -115,7 +118,7 @@ def follow(
 ) -> list[Waypoint]:
     """Legs of some 2 m on the ground between waypoints, straying a little as people do."""
     way = [_grounded(corners[0], ground)]
-    for start, end in zip(corners[:-1], corners[1:], strict=True):
+    for start, end in pairwise(corners):
         a, b = np.array([start.x_m, start.y_m]), np.array([end.x_m, end.y_m])
         length = float(np.linalg.norm(b - a))
         side = np.array([a[1] - b[1], b[0] - a[0]]) / max(length, 1e-9)

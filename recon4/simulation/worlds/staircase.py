@@ -65,7 +65,7 @@ def build() -> World:
             start = LENGTH_M - LANDING_M
             builder.box([start, 0, half - _SLAB_M], [LENGTH_M, WIDTH_M, half], LINOLEUM)
     _top_rail(builder)
-    return World(name="staircase", mesh=builder.mesh(), route=_route, stops=7)
+    return World(name="staircase", mesh=builder.mesh(), route=_route, stops=10)
 
 
 def _well(builder: MeshBuilder) -> None:
@@ -93,7 +93,7 @@ def _well(builder: MeshBuilder) -> None:
         )
     builder.quad([LANDING_M, 0, 0], [LENGTH_M - LANDING_M, 0, 0], [0, WIDTH_M, 0], LINOLEUM)
     builder.quad([0, 0, top], [LENGTH_M, 0, 0], [0, WIDTH_M, 0], CEILING)
-    lamp(builder, 3.0, WIDTH_M / 2, top)
+    lamp(builder, 3.0, WIDTH_M / 2, ceiling_m=top)
 
 
 def _flight(builder: MeshBuilder, z: float, *, up: bool) -> None:
@@ -155,7 +155,7 @@ def _hall(builder: MeshBuilder, floor: int, rng: np.random.Generator) -> None:
     wall(builder, (west, north), (0, north), bottom_m=z, height_m=height)
     things = MeshBuilder()
     radiator(things, -2.0, north - 0.12)
-    lamp(things, -2.0, 1.3, height)
+    lamp(things, -2.0, 1.3, ceiling_m=height)
     if floor % 2 == 0:
         desk(things, west + 0.6, north - 1.1, side=1.0, rng=rng)
         shelf(things, -0.35, north - 0.7, height_m=1.8, rng=rng)
@@ -180,22 +180,31 @@ def _signs(builder: MeshBuilder, floor: int) -> None:
 
 
 def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:
-    """From the hall at the bottom to an upper floor and back; on the way halls are visited."""
-    top = min(stops, FLOORS - 1)
+    """So many half-storeys up and down again; beyond six, halls are visited on the way."""
+    halves = min(stops, 2 * (FLOORS - 1))
+    top = halves // 2
     between = [(floor, way) for floor in range(1, top) for way in (0, 1)]
-    picks = rng.choice(len(between), size=stops - top, replace=False) if stops > top else []
+    picks = rng.permutation(len(between))[: stops - halves]
     visits = {between[k] for k in picks}
-    way = [Waypoint(-2.2, _DOOR_Y_M)]
-    way += _door(0, outward=True)
+    way = [Waypoint(-2.2, _DOOR_Y_M), *_door(0, outward=True)]
     for floor in range(top):
         way += _climb(floor)
-        if floor + 1 == top or (floor + 1, 0) in visits:
+        if (floor + 1, 0) in visits:
             way += _visit(floor + 1, rng)
+    way += _turn_back(top) if halves % 2 else _visit(top, rng)
     for floor in range(top, 0, -1):
-        way += list(reversed(_climb(floor - 1, down=True)))
-        if floor > 1 and (floor - 1, 1) in visits:
+        way += _climb(floor - 1, down=True)[::-1]
+        if (floor - 1, 1) in visits:
             way += _visit(floor - 1, rng)
     return [*way, *_door(0, outward=False), Waypoint(-2.2, _DOOR_Y_M)]
+
+
+def _turn_back(floor: int) -> list[Waypoint]:
+    """Up to the half-landing above a floor, a look around, and down by the same flight."""
+    up, down = _climb(floor)[:3], _climb(floor, down=True)[:3]
+    half = (floor + 0.5) * STOREY_M
+    place = Waypoint(LENGTH_M - 0.8, 0.7, half, pace=0.8, stop=True, look_deg=90.0)
+    return [*up, place, *down[::-1]]
 
 
 def _door(floor: int, *, outward: bool) -> list[Waypoint]:

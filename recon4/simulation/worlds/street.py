@@ -6,6 +6,8 @@ Distances ``d`` are measured outwards from the block's facades: sidewalk to 2.5 
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -22,12 +24,13 @@ from recon4.simulation.worlds.outdoors import (
     sign,
     tree,
 )
-from recon4.simulation.worlds.walls import PLASTER, STEEL, WOOD, Opening, wall
+from recon4.simulation.worlds.walls import PLASTER, STEEL, WOOD, Opening, slab, wall
 
 LENGTH_M, WIDTH_M = 60.0, 36.0
 KERB_M, FAR_KERB_M, FAR_FACADE_M = 2.5, 9.5, 12.0
 NEAR_WALK_M, FAR_WALK_M = 1.2, 10.9
 _KERB_HEIGHT_M = 0.12
+_STOPS = 10
 _STOREY_M = 3.4
 _BOTTOM_M = -2.5
 """Houses reach down to here, below the lowest ground."""
@@ -53,7 +56,7 @@ def build() -> World:
         name="street",
         mesh=builder.mesh(),
         route=_route,
-        stops=8,
+        stops=_STOPS,
         markers=markers,
         outdoors=True,
     )
@@ -105,6 +108,59 @@ def _row(
         at += width
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Facade:
+    """One house towards the street."""
+
+    builder: MeshBuilder
+    along: int
+    start_m: float
+    end_m: float
+    middle_m: float
+    """Of the wall, across the facade."""
+    facing: int
+    base_m: float
+    """Ground in front of it."""
+    reflectivity: float
+
+    @property
+    def face_m(self) -> float:
+        """Its outer surface."""
+        return self.middle_m + 0.15 * self.facing
+
+    def slab(
+        self,
+        span: tuple[float, float],
+        depth: tuple[float, float],
+        level: tuple[float, float],
+        value: float,
+    ) -> None:
+        """A box before the face; depths and levels from the face and the ground [m]."""
+        reach = (self.face_m + self.facing * depth[0], self.face_m + self.facing * depth[1])
+        levels = (self.base_m + level[0], self.base_m + level[1])
+        slab(self.builder, span, reach, levels, along=self.along, reflectivity=value)
+
+    def storey(self, number: int, openings: list[Opening]) -> None:
+        """The wall of a storey; the lowest one reaches into the ground."""
+        low = _BOTTOM_M - self.base_m if number == 0 else number * _STOREY_M
+        shift = number * _STOREY_M - low
+        corners = np.full((2, 2), self.middle_m)
+        corners[:, self.along] = self.start_m, self.end_m
+        wall(
+            self.builder,
+            (float(corners[0, 0]), float(corners[0, 1])),
+            (float(corners[1, 0]), float(corners[1, 1])),
+            bottom_m=self.base_m + low,
+            height_m=_STOREY_M + shift,
+            thickness_m=0.3,
+            openings=[
+                replace(hole, bottom_m=hole.bottom_m + shift, top_m=hole.top_m + shift)
+                for hole in openings
+            ],
+            reflectivity=self.reflectivity,
+        )
+
+
 def _house(
     builder: MeshBuilder,
     corner: Array,
@@ -114,71 +170,31 @@ def _house(
     facing: int,
     rng: np.random.Generator,
 ) -> None:
-    """One facade: a door, windows with recesses, cornice, perhaps a balcony and a downpipe."""
-    across = 1 - along
-    corner = corner.copy()
-    corner[across] -= facing * (0.15 + rng.choice([0.0, 0.1, 0.3]))
-    end = corner.copy()
-    end[along] += width_m
+    """A door, windows with recesses, a cornice, a downpipe and perhaps a balcony."""
+    middle = float(corner[1 - along] - facing * (0.15 + rng.choice([0.0, 0.1, 0.3])))
+    start, end = float(corner[along]), float(corner[along] + width_m)
+    center = np.full(2, middle)
+    center[along] = 0.5 * (start + end)
+    base = float(height(*center))
+    value = PLASTER * rng.uniform(0.5, 1.3)
+    facade = _Facade(builder, along, start, end, middle, facing, base, value)
     storeys = int(rng.integers(2, 5))
-    base = float(height(*((corner + end) / 2)))
     step = rng.uniform(2.0, 2.9)
     places = np.arange(step / 2 + 0.3, width_m - step / 2, step)
-    door_at = rng.integers(len(places))
-    value = PLASTER * rng.uniform(0.5, 1.3)
+    door = int(rng.integers(len(places)))
     wide, tall = rng.uniform(0.9, 1.3), rng.uniform(1.4, 1.9)
-    for storey in range(storeys):
-        bottom = _BOTTOM_M if storey == 0 else base + storey * _STOREY_M
-        top = base + (storey + 1) * _STOREY_M
-        zero = base + storey * _STOREY_M - bottom
-        holes = [
-            Opening(float(p), wide, zero + 1.0, zero + 1.0 + tall, glazed=True)
-            for k, p in enumerate(places)
-            if storey or k != door_at
-        ]
-        wall(
-            builder,
-            (float(corner[0]), float(corner[1])),
-            (float(end[0]), float(end[1])),
-            bottom_m=bottom,
-            height_m=top - bottom,
-            thickness_m=0.3,
-            openings=holes,
-            reflectivity=value,
-        )
-    reach = (corner[across] + facing * 0.13, corner[across] + facing * 0.45)
-    roof = base + storeys * _STOREY_M
-    _slab(builder, along, (corner[along], end[along]), reach, (roof - 0.25, roof), value)
-    door = corner[along] + places[door_at]
-    face = corner[across] + facing * 0.15
-    shut = (face - 0.02, face + 0.02)
-    _slab(builder, along, (door - 0.5, door + 0.5), shut, (base, base + 2.2), WOOD)
+    windows = [Opening(float(p), wide, 1.0, 1.0 + tall, glazed=True) for p in places]
+    for number in range(storeys):
+        facade.storey(number, windows if number else windows[:door] + windows[door + 1 :])
+    top = storeys * _STOREY_M
+    facade.slab((start, end), (-0.02, 0.3), (top - 0.25, top), value)
+    at = start + float(places[door])
+    facade.slab((at - 0.5, at + 0.5), (-0.02, 0.02), (0.0, 2.2), WOOD)
+    facade.slab((start + 0.15, start + 0.25), (0.01, 0.11), (-0.3, top - 0.25), STEEL)
     if rng.random() < 0.4:
-        floor = base + _STOREY_M
-        balcony = (door - 1.0, door + 1.0)
-        _slab(builder, along, balcony, (face, face + facing * 1.0), (floor, floor + 0.15), CONCRETE)
-        rail = (face + facing * 0.95, face + facing * 1.0)
-        _slab(builder, along, balcony, rail, (floor + 0.15, floor + 1.1), STEEL)
-    pipe = corner.copy()
-    pipe[along] += 0.2
-    pipe[across] = face + facing * 0.06
-    builder.tube([*pipe, base - 0.3], [*pipe, roof], 0.05, STEEL, sides=8)
-
-
-def _slab(
-    builder: MeshBuilder,
-    along: int,
-    span: tuple[float, float],
-    reach: tuple[float, float],
-    level: tuple[float, float],
-    reflectivity: float,
-) -> None:
-    """A box given by its extent along the facade, across it and in height."""
-    corners = np.empty((2, 3))
-    corners[:, along] = span
-    corners[:, 1 - along] = sorted(reach)
-    corners[:, 2] = level
-    builder.box(corners[0], corners[1], reflectivity)
+        balcony = (at - 1.0, at + 1.0)
+        facade.slab(balcony, (0.0, 1.0), (_STOREY_M, _STOREY_M + 0.15), CONCRETE)
+        facade.slab(balcony, (0.95, 1.0), (_STOREY_M + 0.15, _STOREY_M + 1.1), STEEL)
 
 
 def _place(side: int, along_m: float, d_m: float) -> tuple[float, float]:
@@ -229,24 +245,29 @@ def _markers(builder: MeshBuilder) -> tuple[Marker, ...]:
 
 
 def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:
-    """Around the block (8), or a way along it and back."""
-    middle = 0.5 * LENGTH_M
-    start = Waypoint(*_place(0, middle, NEAR_WALK_M))
-    if stops < 8:
-        reach = stops * 9.0
-        corners = [start]
-        for side, length in ((0, middle), (1, WIDTH_M + 2 * NEAR_WALK_M), (2, LENGTH_M)):
-            begin = middle if side == 0 else -NEAR_WALK_M
-            part = min(reach, length)
-            corners.append(Waypoint(*_place(side, begin + part, NEAR_WALK_M)))
-            reach -= part
-            if reach < 3.0:
-                break
-        turn = corners[-1]
-        corners[-1] = Waypoint(turn.x_m, turn.y_m, stop=True, look_deg=90.0)
-        return follow([*corners, *corners[-2::-1]], height, rng, stray_m=0.12)
-    corners = [start, *_around(rng), start]
-    return follow(corners if rng.random() < 0.5 else corners[::-1], height, rng, stray_m=0.12)
+    """A way along the block and back, or around it when all stops are asked for."""
+    start = Waypoint(*_place(0, 0.5 * LENGTH_M, NEAR_WALK_M))
+    if stops < _STOPS:
+        out = [start, *_along(9.0 * stops)]
+        corners = [*out, *out[-2::-1]]
+    else:
+        corners = [start, *_around(rng), start]
+        corners = corners if rng.random() < 0.5 else corners[::-1]
+    return follow(corners, height, rng, stray_m=0.12)
+
+
+def _along(reach_m: float) -> list[Waypoint]:
+    """Corners on the way so far along the block, where the person turns back."""
+    way: list[Waypoint] = []
+    begin = 0.5 * LENGTH_M
+    for side in range(4):
+        end = min(begin + reach_m, _length(side) + NEAR_WALK_M)
+        way.append(Waypoint(*_place(side, end, NEAR_WALK_M)))
+        reach_m -= end - begin
+        if reach_m < 2.0:
+            break
+        begin = -NEAR_WALK_M
+    return [*way[:-1], replace(way[-1], stop=True, look_deg=90.0)]
 
 
 def _around(rng: np.random.Generator) -> list[Waypoint]:

@@ -54,35 +54,62 @@ def wall(
     """An axis-parallel wall whose middle line runs from start to end [m]; recesses come out."""
     along = 0 if abs(end[0] - start[0]) > abs(end[1] - start[1]) else 1
     assert start[1 - along] == end[1 - along] and start[along] < end[along]
-
-    def brick(a: float, b: float, low: float, high: float, depth: float, value: float) -> None:
-        if b - a < 1e-6 or high - low < 1e-6:
-            return
-        corners = np.empty((2, 3))
-        corners[:, along] = a, b
-        corners[:, 1 - along] = start[1 - along] - depth / 2, start[1 - along] + depth / 2
-        corners[:, 2] = bottom_m + low, bottom_m + high
-        builder.box(corners[0], corners[1], value)
-
-    at = start[along]
+    bricks = _Bricks(builder, along, start[1 - along], bottom_m)
+    full, at = (0.0, height_m), start[along]
     for hole in sorted(openings, key=lambda opening: opening.at_m):
         left = start[along] + hole.at_m - hole.width_m / 2
         right = left + hole.width_m
-        brick(at, left, 0.0, height_m, thickness_m, reflectivity)
-        brick(left, right, 0.0, hole.bottom_m, thickness_m, reflectivity)
-        brick(left, right, hole.top_m, height_m, thickness_m, reflectivity)
+        bricks.lay((at, left), full, thickness_m, reflectivity)
+        bricks.lay((left, right), (0.0, hole.bottom_m), thickness_m, reflectivity)
+        bricks.lay((left, right), (hole.top_m, height_m), thickness_m, reflectivity)
         if hole.glazed:
-            _glaze(brick, left, right, hole)
+            _glaze(bricks, left, right, hole)
         at = right
-    brick(at, end[along], 0.0, height_m, thickness_m, reflectivity)
+    bricks.lay((at, end[along]), full, thickness_m, reflectivity)
 
 
-def _glaze(brick, left: float, right: float, hole: Opening) -> None:  # type: ignore[no-untyped-def]
+@dataclass(frozen=True, slots=True, eq=False)
+class _Bricks:
+    """Boxes centered on the middle line of one wall."""
+
+    builder: MeshBuilder
+    along: int
+    middle_m: float
+    bottom_m: float
+
+    def lay(
+        self, span: tuple[float, float], level: tuple[float, float], depth: float, value: float
+    ) -> None:
+        """One box, unless there is nothing of it."""
+        if span[1] - span[0] < 1e-6 or level[1] - level[0] < 1e-6:
+            return
+        reach = (self.middle_m - depth / 2, self.middle_m + depth / 2)
+        levels = (self.bottom_m + level[0], self.bottom_m + level[1])
+        slab(self.builder, span, reach, levels, along=self.along, reflectivity=value)
+
+
+def slab(
+    builder: MeshBuilder,
+    span: tuple[float, float],
+    reach: tuple[float, float],
+    level: tuple[float, float],
+    *,
+    along: int,
+    reflectivity: float,
+) -> None:
+    """A box given by its extent along a facade (axis 0 or 1), across it and in height [m]."""
+    corners = np.empty((2, 3))
+    corners[:, along] = span
+    corners[:, 1 - along] = sorted(reach)
+    corners[:, 2] = level
+    builder.box(corners[0], corners[1], reflectivity)
+
+
+def _glaze(bricks: _Bricks, left: float, right: float, hole: Opening) -> None:
     """Pane and frame with a mullion."""
-    brick(left, right, hole.bottom_m, hole.top_m, 0.01, PANE)
-    frame = 0.06
-    middle = 0.5 * (left + right)
+    full, frame, middle = (hole.bottom_m, hole.top_m), 0.06, 0.5 * (left + right)
+    bricks.lay((left, right), full, 0.01, PANE)
     for a, b in [(left, left + frame), (right - frame, right), (middle - 0.03, middle + 0.03)]:
-        brick(a, b, hole.bottom_m, hole.top_m, 0.07, PAPER)
-    brick(left, right, hole.bottom_m, hole.bottom_m + frame, 0.07, PAPER)
-    brick(left, right, hole.top_m - frame, hole.top_m, 0.07, PAPER)
+        bricks.lay((a, b), full, 0.07, PAPER)
+    bricks.lay((left, right), (hole.bottom_m, hole.bottom_m + frame), 0.07, PAPER)
+    bricks.lay((left, right), (hole.top_m - frame, hole.top_m), 0.07, PAPER)
