@@ -245,7 +245,21 @@ class RefineSettings:
     """Semi-rigid refinement of every multiframe (requirements A12 L-4; mode ``beyond`` only)."""
 
     rounds: int = 3
-    """Rounds of matching against the whole map and solving for all multiframes at once."""
+    """At most so many rounds of building the map and moving all multiframes onto it."""
+    map_stride: int = 2
+    """Every so many multiframes are built into the map; all of them are moved."""
+    gate_m: float = 0.1
+    """Segments farther from their plane do not match [m]."""
+    step_sd_m: float = 0.001
+    """How much the correction may change from one multiframe to the next [m] …"""
+    step_sd_rad: float = 2e-4
+    """… and its rotation [rad]: how well odometry knows the motion in between."""
+    total_sd_m: float = 0.02
+    """How much a multiframe may move in all [m]: how well the pose graph knows it."""
+    total_sd_rad: float = 0.005
+    """The same for its rotation [rad]."""
+    converged_step_m: float = 2e-3
+    """Stop once no multiframe moves farther than this [m]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -267,7 +281,7 @@ class GnssSettings:
     Empty = UTM zone of the place with ellipsoidal heights."""
     min_quality: Literal["single", "differential", "float", "fixed"] = "single"
     """Fixes of lower quality are not used."""
-    correlation_s: float = 10.0
+    correlation_s: float = 5.0
     """Errors of fixes nearer in time than this are alike; so many count as one [s]. Larger leaves
     more of the shape of the map to SLAM."""
     min_sd_m: float = 0.01

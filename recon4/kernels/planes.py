@@ -164,6 +164,20 @@ def _fit(key: Any, s: Any, size: Any, min_points: Any, max_sd: Any, f: Any, work
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def fit_all(
+    keys: Any, sums: Any, fits: Any, state: Any, sizes: Any, min_points: float, max_sd: float
+) -> None:
+    """Fit every cube now, so that several threads may match without writing."""
+    work = np.empty((7, 3))
+    for row in range(len(keys)):
+        if keys[row] != EMPTY and state[row] == DIRTY:
+            level = keys[row] >> 60
+            state[row] = _fit(
+                keys[row], sums[row], sizes[level], min_points, max_sd, fits[row], work
+            )
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def accumulate(
     keys: Any,
     sums: Any,

@@ -63,6 +63,14 @@ class PlaneMap:
         self._state.fill(0)
         self._used = 0
 
+    def fit(self) -> None:
+        """Fit all planes now, so that several threads may call `match` at once."""
+        s = self._settings
+        planes.fit_all(
+            self._keys, self._sums, self._fits, self._state, self._sizes, float(s.min_points),
+            s.max_sd_m,
+        )  # fmt: skip
+
     def _sum(self, p_map: Array, sign: float) -> None:
         row = 0
         while True:

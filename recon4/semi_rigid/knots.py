@@ -1,0 +1,76 @@
+"""Corrections of a trajectory at knots in time, solved for all at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import solveh_banded
+
+from recon4.geometry.se3 import SE3, Array, so3_exp
+from recon4.model.trajectory import Times, Trajectory
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class KnotSystem:
+    """Normal equations of corrections at N + 1 knots; frame k lies between knots k and k + 1."""
+
+    H: Array
+    """Information of the correction at start and end of each frame, (N, 12, 12)."""
+    g: Array
+    """Its gradient, (N, 12)."""
+
+
+def solve_knots(system: KnotSystem, done: Array, *, step_sd: Array, total_sd: Array) -> Array:
+    """Steps of the corrections at all knots.
+
+    Two neighboring knots are held together, because odometry knows the motion between them well,
+    and all of them weakly to where they began, because nothing else fixes the map as a whole.
+
+    Args:
+        system: What the matches say.
+        done: Corrections applied in earlier rounds, (N + 1, 6).
+        step_sd: Standard deviation of the difference of neighboring corrections, (6,).
+        total_sd: Standard deviation of a correction, (6,).
+
+    Returns:
+        (N + 1, 6), rotation first.
+    """
+    knots = len(system.H) + 1
+    chain, anchor = step_sd**-2.0, total_sd**-2.0
+    diagonal = np.tile(np.diag(anchor), (knots, 1, 1))
+    diagonal[:-1] += system.H[:, :6, :6] + np.diag(chain)
+    diagonal[1:] += system.H[:, 6:, 6:] + np.diag(chain)
+    lower = system.H[:, 6:, :6] - np.diag(chain)
+    gradient = anchor * done
+    gradient[:-1] += system.g[:, :6] - chain * np.diff(done, axis=0)
+    gradient[1:] += system.g[:, 6:] + chain * np.diff(done, axis=0)
+    banded = _lower_band(diagonal, lower)
+    return -solveh_banded(banded, gradient.ravel(), lower=True).reshape(knots, 6)
+
+
+def _lower_band(diagonal: Array, lower: Array) -> Array:
+    """Block-tridiagonal matrix in the form scipy wants: ``out[r - c, c]``, (12, 6 M)."""
+    knots = len(diagonal)
+    out = np.zeros((12, 6 * knots))
+    for row in range(6):
+        for column in range(6):
+            if row >= column:
+                out[row - column, column::6] = diagonal[:, row, column]
+            out[6 + row - column, column : 6 * (knots - 1) : 6] = lower[:, row, column]
+    return out
+
+
+def apply_knots(trajectory: Trajectory, knot_ns: Times, correction: Array) -> Trajectory:
+    """Turn and shift each pose by the correction interpolated at its time.
+
+    Args:
+        trajectory: Poses at any times; before the first and after the last knot these hold.
+        knot_ns: Times of the knots [ns], (M,).
+        correction: Rotation about the pose's own position, then shift, in the map's axes, (M, 6).
+    """
+    t = (trajectory.t_ns - knot_ns[0]) * 1e-9
+    knots = (knot_ns - knot_ns[0]) * 1e-9
+    at = np.stack([np.interp(t, knots, correction[:, k]) for k in range(6)], axis=1)
+    moved = SE3(so3_exp(at[:, :3]) @ trajectory.T_a_b.R, trajectory.T_a_b.t + at[:, 3:])
+    return replace(trajectory, T_a_b=moved)

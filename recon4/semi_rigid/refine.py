@@ -1,0 +1,205 @@
+"""Semi-rigid refinement: every multiframe moves, and bends, onto the map that all of them make.
+
+The pose graph corrected nodes; between them only odometry spoke. Here all segments of the walk
+make one map of planes, each multiframe is held against it, and one banded system moves all of
+them at once (requirements A12 L-4: global matching in sections, continuous in time).
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import Array
+from recon4.model.corrections import apply_corrections
+from recon4.model.pose_graph import PoseGraph
+from recon4.model.trajectory import Times, Trajectory
+from recon4.pose_graph.files import load_graph
+from recon4.progress import Progress
+from recon4.registration.plane_map import PlaneMap
+from recon4.registration.segments import sample_segments
+from recon4.registration.submap import place_segments
+from recon4.semi_rigid.knots import KnotSystem, apply_knots, solve_knots
+from recon4.settings import Settings
+from recon4.store.arrays import load_arrays, load_trajectory, save_trajectory
+from recon4.store.frames import FrameStore
+
+Result = TypeVar("Result")
+
+_CHUNK = 16
+"""Multiframes a thread takes at a time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Round:
+    """How one round went."""
+
+    mean_m: float
+    """Mean distance of the matched segments from the planes [m], before the step."""
+    share: float
+    """Matched share."""
+    largest_step_m: float
+    """Largest shift of a multiframe in this round [m]."""
+
+
+def refine(
+    frames: FrameStore,
+    odometry: Path,
+    graph: Path,
+    out: Path,
+    *,
+    settings: Settings,
+    progress: Progress,
+) -> dict[str, object]:
+    """The stage ``refine``.
+
+    Args:
+        frames: The multiframes.
+        odometry: Folder of the stage ``odometry``.
+        graph: Folder of the verified graph.
+        out: Receives ``trajectory.npz`` (``T_map_body``, dense) and ``refine.json``.
+        settings: Uses segments, planes and refine; only mode ``beyond`` refines.
+        progress: Counts multiframes.
+    """
+    dense = load_trajectory(odometry / "trajectory.npz")
+    lost = load_arrays(odometry / "steps.npz", ["lost"])["lost"]
+    start = corrected_by_graph(dense, load_graph(graph))
+    done: list[Round] = []
+    if settings.graph.mode == "beyond":
+        start, done = refine_trajectory(frames, start, lost, settings=settings, progress=progress)
+    save_trajectory(out / "trajectory.npz", start)
+    facts = {"rounds": [asdict(one) for one in done]}
+    (out / "refine.json").write_text(json.dumps(facts, indent=1))
+    return facts
+
+
+def corrected_by_graph(odometry: Trajectory, graph: PoseGraph) -> Trajectory:
+    """The dense odometry moved along with the nodes of the graph: ``T_map_body``."""
+    before = odometry.at(graph.t_ns)
+    return apply_corrections(odometry, graph.t_ns, T_before=before, T_after=graph.T_map_body)
+
+
+def refine_trajectory(
+    frames: FrameStore,
+    start: Trajectory,
+    lost: NDArray[np.bool_],
+    *,
+    settings: Settings,
+    progress: Progress,
+) -> tuple[Trajectory, list[Round]]:
+    """Rounds of building the map of planes and moving all multiframes onto it.
+
+    Args:
+        frames: The multiframes.
+        start: ``T_map_body``, dense.
+        lost: Multiframes that must not take part, (number of multiframes,).
+        settings: Uses segments, planes and refine.
+        progress: Counts multiframes, twice a round.
+    """
+    r = settings.refine
+    knot_ns = _knots(frames)
+    correction = np.zeros((len(knot_ns), 6))
+    trajectory, rounds = start, []
+    step_sd = np.repeat([r.step_sd_rad, r.step_sd_m], 3)
+    total_sd = np.repeat([r.total_sd_rad, r.total_sd_m], 3)
+    for _ in range(r.rounds):
+        progress.start("refine", len(frames) // r.map_stride + len(frames), "multiframe")
+        sweep = _Sweep(frames, trajectory, lost, settings, progress)
+        system, mean_m, share = sweep.match(sweep.build())
+        step = solve_knots(system, correction, step_sd=step_sd, total_sd=total_sd)
+        correction = correction + step
+        trajectory = apply_knots(trajectory, knot_ns, step)
+        largest_m = float(np.linalg.norm(step[:, 3:], axis=1).max())
+        rounds.append(Round(mean_m, share, largest_m))
+        progress.event("refine", mean_m=mean_m, share=share, largest_step_m=largest_m)
+        if largest_m < r.converged_step_m:
+            break
+    return trajectory, rounds
+
+
+class _Sweep:
+    """One pass over all multiframes to build the map, one to match them."""
+
+    def __init__(
+        self,
+        frames: FrameStore,
+        trajectory: Trajectory,
+        lost: NDArray[np.bool_],
+        settings: Settings,
+        progress: Progress,
+    ) -> None:
+        self._frames, self._trajectory, self._lost = frames, trajectory, lost
+        self._settings, self._progress = settings, progress
+
+    def build(self) -> PlaneMap:
+        """All segments of the walk in one map; added in order, so always the same map."""
+        planes = PlaneMap(self._settings.planes)
+        for placed in self._in_order(self._ends, self._settings.refine.map_stride):
+            if placed is not None:
+                planes.add(placed)
+        planes.fit()
+        return planes
+
+    def match(self, planes: PlaneMap) -> tuple[KnotSystem, float, float]:
+        """Normal equations of every multiframe against the map."""
+        count = len(self._frames)
+        H, g = np.zeros((count, 12, 12)), np.zeros((count, 12))
+        distances: list[float] = []
+        shares: list[float] = []
+        results = self._in_order(lambda row: self._match_one(planes, row), 1)
+        for row, found in enumerate(results):
+            if found is not None:
+                H[row], g[row], mean_m, share = found
+                distances.append(mean_m)
+                shares.append(share)
+        return KnotSystem(H, g), float(np.mean(distances)), float(np.mean(shares))
+
+    def _ends(self, row: int) -> Array | None:
+        if self._lost[row]:
+            return None
+        frame = self._frames[row]
+        segments = sample_segments(frame, self._frames.rig, self._settings.segments)
+        ends = place_segments(segments, frame.t_ns, frame.duration_ns, self._trajectory)
+        return np.ascontiguousarray(ends.reshape(-1, 3))
+
+    def _match_one(self, planes: PlaneMap, row: int) -> tuple[Array, Array, float, float] | None:
+        if self._lost[row]:
+            return None
+        frame = self._frames[row]
+        segments = sample_segments(frame, self._frames.rig, self._settings.segments)
+        ends = place_segments(segments, frame.t_ns, frame.duration_ns, self._trajectory)
+        fraction = 0.5 * (segments.a_s + segments.b_s) / (frame.duration_ns * 1e-9)
+        center = self._trajectory.at(np.array([frame.t_mid_ns])).t[0]
+        found = planes.match(
+            ends.mean(axis=1),
+            fraction,
+            center=center,
+            finest=0,
+            gate_m=self._settings.refine.gate_m,
+        )
+        if found.matches == 0:
+            return None
+        scale = self._settings.odometry.information_scale
+        return scale * found.H, scale * found.g, found.mean_m, found.share
+
+    def _in_order(self, work: Callable[[int], Result], stride: int) -> Iterator[Result]:
+        """What ``work`` makes of the multiframes, a few at a time on several threads."""
+        rows = range(0, len(self._frames), stride)
+        with ThreadPoolExecutor(self._settings.graph.workers) as pool:
+            for first in range(0, len(rows), _CHUNK):
+                chunk = rows[first : first + _CHUNK]
+                yield from pool.map(work, chunk)
+                self._progress.advance(len(chunk))
+
+
+def _knots(frames: FrameStore) -> Times:
+    """Starts of all multiframes and the end of the last one [ns], (N + 1,)."""
+    index = frames.index
+    return np.append(index["t_ns"], index["t_ns"][-1] + index["duration_ns"][-1]).astype(np.int64)
