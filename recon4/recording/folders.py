@@ -110,6 +110,12 @@ def read_frames(
         raise failed
 
 
+def frames_label(frames: FrameFiles) -> str:
+    """What the files are, for example ``PCD files, times from times.txt``."""
+    kind = frames.files[0].suffix[1:].upper()
+    return f"{kind} files, times from {frames.times_from}" if frames.times_from else f"{kind} files"
+
+
 def folder_gaps(frames: FrameFiles, name: str, gap_s: float) -> list[Gap]:
     """Holes between the stamps longer than ``gap_s`` beyond the usual step."""
     if len(frames.t_ns) < 2:
@@ -155,7 +161,7 @@ def _stamps(path: Path, files: list[Path]) -> tuple[Times, str]:
     named = [name_time_ns(file.stem) for file in files]
     known = [t for t in named if t is not None]
     if len(known) == len(files) and (np.all(np.diff(known) > 0)):
-        return np.array(known, np.int64), "file names"
+        return np.array(known, np.int64), "the file names"
     for beside in (path / "times.txt", path.parent / "times.txt"):
         if path.is_dir() and beside.is_file():
             seconds = np.loadtxt(beside, ndmin=1)

@@ -207,19 +207,14 @@ def _open_pcap(
     if rig is None:
         rig = choose_rig(lidars_of_packets(files, settings, report), report)
     pcap = VelodynePcap(files, rig, settings=settings, report=report)
-    streams = pcap.streams
-    seconds = sum(pcap_seconds(f, [s for s in streams if s.file == f]) for f in files)
-    return Recording(Kind.PCAP, pcap.rig, partial(_read_pcap, pcap), seconds)
+    return Recording(Kind.PCAP, pcap.rig, partial(_read_pcap, pcap), stream_seconds(pcap.streams))
 
 
-def pcap_seconds(file: Path, streams: Sequence[PacketStream]) -> float:
-    """Length of a capture file [s], from its size and what its head says."""
-    data = [s for s in streams if s.kind == "data"]
-    if not data:
+def stream_seconds(streams: Sequence[PacketStream]) -> float:
+    """From the first packet of capture files to the last [s], estimated for big files."""
+    if not streams:
         return 0.0
-    head_s = max(1e-3, max(s.t_last_ns for s in data) / 1e9 - min(s.t_first_ns for s in data) / 1e9)
-    head_bytes = sum(s.packets * (1264 if s.kind == "data" else 570) for s in streams)
-    return head_s * max(1.0, file.stat().st_size / max(1, head_bytes))
+    return (max(s.t_end_ns for s in streams) - min(s.t_first_ns for s in streams)) / 1e9
 
 
 def _read_pcap(pcap: VelodynePcap) -> Iterator[Item]:

@@ -1,0 +1,387 @@
+"""What is inside a recording, without reading it all: what ``recon4 info`` shows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import numpy as np
+
+from recon4.errors import ConfigError, RecordingError
+from recon4.model.multiframe import Multiframe
+from recon4.model.rig import Rig
+from recon4.model.samples import GnssSamples, ImuSamples
+from recon4.model.trajectory import Times
+from recon4.recording.assemble import Gap
+from recon4.recording.bag_recording import cloud_table, lidar_streams
+from recon4.recording.bags import CLOUD, FIX, IMU, ODOMETRY, Bag, BagTopic
+from recon4.recording.cloud_files import cloud_fields
+from recon4.recording.cloud_points import INTENSITY_FIELDS, RING_FIELDS, TIME_FIELDS, find_field
+from recon4.recording.csv_samples import read_gnss_csv, read_imu_csv
+from recon4.recording.folders import folder_gaps, frames_label, list_frames
+from recon4.recording.open import (
+    RECORDINGS,
+    Kind,
+    Recording,
+    bag_paths,
+    frames_model,
+    open_recording,
+    pcap_files,
+    recognize,
+)
+from recon4.recording.packet_streams import PacketStream, scan_pcap
+from recon4.recording.poses import pose_format, read_tum
+from recon4.recording.report import ImportReport
+from recon4.recording.rotation import rotation_rate
+from recon4.recording.shots import Shots
+from recon4.recording.velodyne_models import RETURN_MODES
+from recon4.settings import IngestSettings
+
+_WHOLE_BYTES = 64 << 20
+"""Files up to this size are looked through to the end."""
+_HEAD_PACKETS = 4000
+_EARLIEST_NS = 300_000_000 * 1_000_000_000
+"""Times before 1979 are counted from something else than 1970."""
+_HEAD_ITEMS = 40
+_HEAD_NS = 1_000_000_000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SensorInfo:
+    """One LiDAR of a recording."""
+
+    label: str
+    """Address and port, topic, or folder."""
+    model: str
+    content: str
+    """``packets``, ``clouds`` or ``files``."""
+    count: int
+    """How many; of a big capture file an estimate."""
+    rate_hz: float
+    """How many a second; NaN = unknown."""
+    rotation_hz: float = float("nan")
+    """Measured at the head; NaN = unknown."""
+    fields: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RecordingInfo:
+    """What a look at a recording found."""
+
+    path: str
+    kind: str
+    bytes: int
+    t_first_ns: int = 0
+    t_last_ns: int = 0
+    """0 and 0 = the recording has no times."""
+    estimated: bool = False
+    """Only the head of a big file was read: counts and the end are estimates."""
+    sensors: tuple[SensorInfo, ...] = ()
+    samples: tuple[str, ...] = ()
+    """IMU, GNSS and poses, in words with their rates."""
+    gaps: tuple[Gap, ...] = ()
+    derived: tuple[str, ...] = ()
+    """What will be worked out."""
+    missing: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def seconds(self) -> float:
+        """How long it is [s]."""
+        return (self.t_last_ns - self.t_first_ns) / 1e9
+
+    def lines(self) -> list[str]:
+        """The same in words."""
+        about = "about " if self.estimated else ""
+        lines = [f"{self.path}: {self.kind}, {self.bytes / 1e6:.1f} MB"]
+        if self.t_last_ns > self.t_first_ns:
+            start = "no absolute times"
+        if self.t_first_ns > _EARLIEST_NS:
+            start = f"{utc(self.t_first_ns)} UTC"
+        lines.append(f"time      {start}, {about}{self.seconds:.2f} s")
+        for sensor in self.sensors:
+            lines += _sensor_lines(sensor, about)
+        lines += [f"samples   {text}" for text in self.samples]
+        for gap in self.gaps[:10]:
+            since_s = (gap.t_ns - self.t_first_ns) / 1e9
+            lines.append(f"gap       {gap.sensor}: {gap.seconds:.3f} s at {since_s:.2f} s")
+        if len(self.gaps) > 10:
+            lines.append(f"gap       … {len(self.gaps)} in all")
+        lines += [f"derived   {text}" for text in self.derived]
+        lines += [f"missing   {text}" for text in self.missing]
+        lines += [f"warning   {text}" for text in self.warnings]
+        return lines
+
+
+def describe(path: Path, *, settings: IngestSettings | None = None) -> RecordingInfo:
+    """Look at a recording: the whole of a small one, head and directory of a big one.
+
+    Raises:
+        RecordingError: If it cannot be read or is nothing that recon4 knows.
+    """
+    settings = settings or IngestSettings()
+    kind = recognize(path)
+    info = RecordingInfo(path=path.name, kind=str(kind), bytes=_size(path))
+    if kind not in RECORDINGS:
+        return _describe_samples(info, path, kind)
+    report = ImportReport()
+    if kind is Kind.PCAP:
+        info = _describe_pcap(info, path)
+    elif kind is Kind.FRAMES:
+        info = _describe_frames(info, path, settings)
+    else:
+        info = _describe_bag(info, path, report)
+    return _with_head(info, path, settings, report)
+
+
+def utc(t_ns: int) -> str:
+    """A time in words, to the millisecond."""
+    moment = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(milliseconds=t_ns // 1_000_000)
+    return moment.strftime("%Y-%m-%d %H:%M:%S.%f")[:-3]
+
+
+def _size(path: Path) -> int:
+    files = [path] if path.is_file() else [f for f in path.iterdir() if f.is_file()]
+    return sum(file.stat().st_size for file in files)
+
+
+def _sensor_lines(sensor: SensorInfo, about: str) -> list[str]:
+    rate = f", {sensor.rate_hz:.1f} a second" if np.isfinite(sensor.rate_hz) else ""
+    turns = f", {sensor.rotation_hz:.2f} revolutions a second" * bool(
+        np.isfinite(sensor.rotation_hz)
+    )
+    text = f"{sensor.label} {sensor.model}: {about}{sensor.count} {sensor.content}{rate}{turns}"
+    lines = [f"lidar     {text}"]
+    if sensor.fields:
+        lines.append(f"fields    {', '.join(sensor.fields)}")
+    return lines + [f"remark    {sensor.label}: {remark}" for remark in sensor.remarks]
+
+
+# -- capture files
+
+
+def _describe_pcap(info: RecordingInfo, path: Path) -> RecordingInfo:
+    files = pcap_files(path)
+    most = 1 << 40 if info.bytes <= _WHOLE_BYTES else _HEAD_PACKETS
+    streams = [stream for file in files for stream in scan_pcap(file, max_packets=most)]
+    positions = [s for s in streams if s.kind == "position"]
+    return replace(
+        info,
+        t_first_ns=min((s.t_first_ns for s in streams), default=0),
+        t_last_ns=max((s.t_end_ns for s in streams), default=0),
+        estimated=not all(s.whole for s in streams),
+        sensors=tuple(_packet_sensor(s) for s in streams if s.kind == "data"),
+        samples=tuple(f"{s.source}:{s.port}: {_total(s)} position packets" for s in positions),
+    )
+
+
+def _total(stream: PacketStream) -> int:
+    """Packets in the file, as many a second as in its head."""
+    head_s = (stream.t_last_ns - stream.t_first_ns) / 1e9
+    all_s = (stream.t_end_ns - stream.t_first_ns) / 1e9
+    return stream.packets if stream.whole or head_s <= 0 else round(stream.packets * all_s / head_s)
+
+
+def _packet_sensor(stream: PacketStream) -> SensorInfo:
+    span_s = (stream.t_last_ns - stream.t_first_ns) / 1e9
+    mode = RETURN_MODES.get(stream.return_mode, f"return mode 0x{stream.return_mode:02x}")
+    return SensorInfo(
+        label=f"{stream.source}:{stream.port}",
+        model=stream.model or "unknown model",
+        content=f"packets ({mode} return)",
+        count=_total(stream),
+        rate_hz=(stream.packets - 1) / span_s if span_s > 0 else float("nan"),
+        rotation_hz=stream.rotation_hz,
+        remarks=stream.remarks,
+    )
+
+
+# -- bags
+
+
+def _describe_bag(info: RecordingInfo, path: Path, report: ImportReport) -> RecordingInfo:
+    with Bag(bag_paths(path), report) as bag:
+        streams = lidar_streams(bag, report)
+        topics = {topic.name: topic for topic in bag.topics}
+        sensors = tuple(_bag_sensor(bag, topics[stream.topic], stream.model) for stream in streams)
+        gaps = _bag_gaps(bag, [s.topic for s in streams]) if info.bytes <= _WHOLE_BYTES else ()
+        known = {s.topic for s in streams}
+        other = [t for t in bag.topics if t.name not in known]
+        return replace(
+            info,
+            t_first_ns=bag.t_first_ns,
+            t_last_ns=bag.t_last_ns,
+            sensors=sensors,
+            samples=tuple(_topic_line(t, bag.seconds) for t in other if t.messages),
+            gaps=gaps,
+            missing=() if streams else ("LiDAR data",),
+        )
+
+
+def _bag_sensor(bag: Bag, topic: BagTopic, model: str) -> SensorInfo:
+    return SensorInfo(
+        label=topic.name,
+        model=model,
+        content="clouds" if topic.type == CLOUD else "scans of packets",
+        count=topic.messages,
+        rate_hz=(topic.messages - 1) / bag.seconds if bag.seconds > 0 else float("nan"),
+        fields=_message_fields(bag, topic) if topic.type == CLOUD else (),
+    )
+
+
+def _message_fields(bag: Bag, topic: BagTopic) -> tuple[str, ...]:
+    for message in bag.messages([topic.name]):
+        cloud = bag.decode(message)
+        if cloud is not None:
+            try:
+                return tuple(f"{k} ({v.dtype})" for k, v in cloud_table(cloud).items())
+            except RecordingError:
+                continue
+    return ()
+
+
+def _bag_gaps(bag: Bag, topics: Sequence[str]) -> tuple[Gap, ...]:
+    """Holes between messages, as recorded, of more than twice the usual step."""
+    times: dict[str, list[int]] = {topic: [] for topic in topics}
+    for message in bag.messages(topics):
+        times[message.topic].append(message.t_ns)
+    return tuple(gap for topic, t_ns in times.items() for gap in _gaps(topic, np.array(t_ns)))
+
+
+def _gaps(name: str, t_ns: Times) -> list[Gap]:
+    steps = np.diff(t_ns)
+    if not len(steps):
+        return []
+    wide = np.flatnonzero(steps > 2 * np.median(steps) + 100_000_000)
+    return [Gap(name, int(t_ns[k]), float(steps[k]) / 1e9) for k in wide]
+
+
+def _topic_line(topic: BagTopic, seconds: float) -> str:
+    names = {IMU: "IMU", FIX: "GNSS positions", ODOMETRY: "poses (kept for comparison)"}
+    rate = f", {topic.messages / seconds:.1f} a second" if seconds > 0 else ""
+    return (
+        f"{topic.name}: {names.get(topic.type, f'{topic.type}, not read')}, {topic.messages}{rate}"
+    )
+
+
+# -- frames
+
+
+def _describe_frames(info: RecordingInfo, path: Path, settings: IngestSettings) -> RecordingInfo:
+    frames = list_frames(path)
+    fields = tuple(cloud_fields(frames.files[0]))
+    absent = [
+        text
+        for text, aliases in (
+            ("intensity", INTENSITY_FIELDS),
+            ("ring", RING_FIELDS),
+            ("time per point", TIME_FIELDS),
+        )
+        if not find_field(fields, aliases)
+    ]
+    sensor = SensorInfo(
+        label=path.name,
+        model=frames_model(frames.files),
+        content=frames_label(frames),
+        count=len(frames.files),
+        rate_hz=1e9 / frames.period_ns,
+        fields=fields,
+    )
+    return replace(
+        info,
+        t_first_ns=int(frames.t_ns[0]),
+        t_last_ns=int(frames.t_ns[-1]) + frames.period_ns,
+        sensors=(sensor,),
+        gaps=tuple(folder_gaps(frames, path.name, settings.gap_s)),
+        missing=tuple(f"field: {text}" for text in absent),
+    )
+
+
+# -- samples
+
+
+def _describe_samples(info: RecordingInfo, path: Path, kind: Kind) -> RecordingInfo:
+    if kind is Kind.IMU_CSV:
+        t_ns, what = read_imu_csv(path).t_ns, "IMU samples"
+    elif kind is Kind.GNSS_CSV:
+        t_ns, what = read_gnss_csv(path).t_ns, "GNSS samples"
+    elif pose_format(path) == "tum":
+        t_ns, what = read_tum(path).t_ns, "poses (TUM)"
+    else:
+        return replace(info, samples=("poses (KITTI)",), missing=("times of the poses",))
+    first, last = int(t_ns.min()), int(t_ns.max())
+    rate = f", {(len(t_ns) - 1) * 1e9 / (last - first):.1f} a second" if last > first else ""
+    text = f"{len(t_ns)} {what}{rate}"
+    return replace(info, t_first_ns=first, t_last_ns=last, samples=(text,))
+
+
+# -- head
+
+
+def _with_head(
+    info: RecordingInfo, path: Path, settings: IngestSettings, report: ImportReport
+) -> RecordingInfo:
+    """Add what opening and reading the first second says."""
+    rates: dict[int, float] = {}
+    has_imu = has_gnss = False
+    missing = list(info.missing)
+    rig: Rig | None = None
+    try:
+        recording = open_recording([path], None, settings=settings, report=report)
+        rig = recording.rig
+        rates, has_imu, has_gnss = _read_head(recording)
+    except ConfigError as error:
+        missing.append(f"rig: {error}")
+    except RecordingError as error:
+        missing.append(str(error))
+    samples = [*info.samples]
+    texts = " ".join(samples)
+    if has_imu and "IMU" not in texts:
+        samples.append("IMU in the position packets")
+    if rig is not None and not has_imu and "IMU" not in texts:
+        missing.append("IMU (an IMU file can be given beside it)")
+    if not has_gnss and "GNSS" not in texts:
+        missing.append("GNSS positions")
+    sensors = info.sensors
+    if rig is not None and len(sensors) == len(rig.sensors):
+        sensors = tuple(
+            s if np.isfinite(s.rotation_hz) else replace(s, rotation_hz=rates.get(k, float("nan")))
+            for k, s in enumerate(sensors)
+        )
+    return replace(
+        info,
+        sensors=sensors,
+        samples=tuple(samples),
+        missing=tuple(missing),
+        derived=tuple(report.derived),
+        warnings=tuple(report.warnings),
+    )
+
+
+def _read_head(recording: Recording) -> tuple[dict[int, float], bool, bool]:
+    """Rotation rate of each sensor row, whether there are IMU samples and positions."""
+    shots: dict[int, list[Shots]] = {}
+    has_imu = has_gnss = False
+    start_ns: int | None = None
+    for number, item in enumerate(recording.read()):
+        has_imu |= isinstance(item, ImuSamples)
+        has_gnss |= isinstance(item, GnssSamples)
+        if isinstance(item, Shots) and len(item):
+            shots.setdefault(item.sensor, []).append(item)
+            start_ns = int(item.t_ns[0]) if start_ns is None else start_ns
+            if int(item.t_ns[-1]) - start_ns > _HEAD_NS and len(shots) == len(
+                recording.rig.sensors
+            ):
+                break
+        if isinstance(item, Multiframe) or number >= _HEAD_ITEMS:
+            break
+    rates = {
+        row: rotation_rate(
+            np.concatenate([p.t_ns for p in parts]), np.concatenate([p.xyz for p in parts])
+        )
+        for row, parts in shots.items()
+    }
+    return rates, has_imu, has_gnss
