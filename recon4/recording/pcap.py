@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import IO
 
@@ -179,17 +180,24 @@ def _next_generation(file: IO[bytes], name: str, report: ImportReport) -> Iterat
 
     try:
         reader = dpkt.pcapng.Reader(file)
-        link_type = reader.datalink()
-        _require_link_type(link_type, name)
-        packets = iter(reader)
-        while batch := _take(packets, 2048):
-            yield _joined(batch, link_type)
     except (dpkt.UnpackError, ValueError, struct.error) as error:
-        _salvaged(report, name, f"it ends inside a packet or is damaged there ({error})")
+        raise EmptyRecording(f"{name}: cut inside the file header, no packet is left") from error
+    link_type = reader.datalink()
+    _require_link_type(link_type, name)
+    packets = _until_damaged(iter(reader), name, report)
+    while batch := list(islice(packets, 2048)):
+        yield _joined(batch, link_type)
 
 
-def _take(packets: Iterator[tuple[float, bytes]], count: int) -> list[tuple[float, bytes]]:
-    return [packet for packet, _ in zip(packets, range(count), strict=False)]
+def _until_damaged(
+    packets: Iterator[tuple[float, bytes]], name: str, report: ImportReport
+) -> Iterator[tuple[float, bytes]]:
+    import dpkt
+
+    try:
+        yield from packets
+    except (dpkt.UnpackError, ValueError, struct.error) as error:
+        _salvaged(report, name, f"it ends inside a packet or is damaged ({error!r})")
 
 
 def _joined(packets: list[tuple[float, bytes]], link_type: int) -> _Records:

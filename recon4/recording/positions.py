@@ -171,9 +171,9 @@ class PositionDecoder:
         words = np.ascontiguousarray(payloads[:, 14:38]).view("<u2").reshape(-1, 3, 4)
         later = t_ns > np.maximum.accumulate(np.concatenate([[self._imu_ns], t_ns[:-1]]))
         kept = later & words.any(axis=(1, 2))
+        self._report.count("positions_out_of_order", int((~later).sum()))
         if not kept.any():
             return None
-        self._report.count("positions_out_of_order", int((~later).sum()))
         value = ((words[kept].astype(np.int64) & 0xFFF) + 2048) % 4096 - 2048
         x, y = value[:, :, 2], value[:, :, 3]
         accel = np.column_stack([-y[:, 1] - y[:, 2], y[:, 0] - x[:, 2], x[:, 0] + x[:, 1]]) / 2

@@ -74,13 +74,14 @@ def _decode(
 ) -> tuple[NDArray[np.generic], ...]:
     model, settings = how
     unit = model.distance_unit_m
-    limits = np.array([np.ceil(settings.min_range_m / unit), settings.max_range_m // unit])
+    rounding = np.array([-1e-6, 1e-6])  # so that a limit of 100 m keeps 50000 units of 2 mm
+    limits = np.array([settings.min_range_m, settings.max_range_m]) / unit + rounding
     return kernel.decode(
         payloads,
         t_ns,
         pair,
         np.float32(unit),
-        limits.astype(np.int64),
+        np.array([np.ceil(limits[0]), np.floor(limits[1])], dtype=np.int64),
         *_tables(model, pair),
     )
 

@@ -1,0 +1,188 @@
+"""Microseconds past the hour become absolute times, whatever the clocks do."""
+
+import numpy as np
+import pytest
+
+from recon4.recording.report import ImportReport
+from recon4.recording.sensor_clock import HOUR_NS, SECOND_NS, SensorClock, nearest_hour
+from tests.unit.recording.packet_builders import LATENCY_NS, T0_NS
+
+PACKET_NS = 1_327_104
+
+
+def packets(count, *, t0_ns=T0_NS, off_ns=0, drift=0.0):
+    """True times, times of arrival, and stamps of a clock that is off and drifts."""
+    t_ns = t0_ns + PACKET_NS * np.arange(count)
+    jitter = np.random.default_rng(0).integers(0, 400_000, count)
+    sensor_ns = t_ns + off_ns + np.rint(drift * (t_ns - t0_ns)).astype(np.int64)
+    return t_ns, t_ns + LATENCY_NS + jitter, sensor_ns % HOUR_NS // 1000
+
+
+def push_all(clock, arrival, stamps, *, batch=75):
+    parts = [
+        clock.push(arrival[at : at + batch], stamps[at : at + batch])
+        for at in range(0, len(stamps), batch)
+    ]
+    t_ns, kept = (np.concatenate(column) for column in zip(*parts, strict=True))
+    return t_ns, kept
+
+
+def a_clock(report=None, **fields):
+    return SensorClock("lidar", packet_s=PACKET_NS / 1e9, report=report or ImportReport(), **fields)
+
+
+def test_the_hour_nearest_to_the_arrival_is_taken():
+    assert nearest_hour(
+        np.array([0, 3_599_999_999]), np.array([HOUR_NS - 5, HOUR_NS + 5])
+    ).tolist() == [
+        HOUR_NS,
+        HOUR_NS - 1000,
+    ]
+
+
+def test_a_synchronized_sensor_keeps_its_own_time_to_the_microsecond():
+    t_ns, arrival, stamps = packets(1000)
+    report = ImportReport()
+
+    out, kept = push_all(a_clock(report), arrival, stamps)
+
+    assert kept.all()
+    np.testing.assert_array_equal(out, t_ns // 1000 * 1000)
+    assert not report.warnings
+
+
+def test_the_stamp_may_wrap_at_the_full_hour():
+    hour = (T0_NS // HOUR_NS + 1) * HOUR_NS
+    t_ns, arrival, stamps = packets(1000, t0_ns=hour - 500 * PACKET_NS)
+
+    out, kept = push_all(a_clock(), arrival, stamps)
+
+    assert kept.all()
+    assert stamps[0] > stamps[-1]
+    np.testing.assert_array_equal(out, t_ns // 1000 * 1000)
+
+
+def test_a_free_running_sensor_is_shifted_to_the_clock_of_the_recorder():
+    t_ns, arrival, stamps = packets(1000, off_ns=-1_430_577_000_000)
+    report = ImportReport()
+
+    out, kept = push_all(a_clock(report), arrival, stamps)
+
+    assert kept.all()
+    # Known up to the shortest way of a packet: 1.5 ms here, of which 1.327 are the packet itself.
+    assert np.abs(out - t_ns - (LATENCY_NS - PACKET_NS)).max() < 50_000
+    np.testing.assert_array_equal(np.diff(out), np.diff(stamps) * 1000)
+    assert report.warnings == [
+        "lidar: its clock is -1430.579 s off the recorder's and no GPS drives it: its times are "
+        "shifted to the recorder's clock"
+    ]
+
+
+def test_two_free_running_sensors_agree_after_the_shift():
+    out = [
+        push_all(a_clock(), *packets(1000, off_ns=off)[1:])[0]
+        for off in (-1_430_577_000_000, 777_000_050_000)
+    ]
+
+    assert np.abs(out[0] - out[1]).max() < 100_000
+
+
+def test_the_drift_of_a_free_running_sensor_is_followed():
+    t_ns, arrival, stamps = packets(100_000, off_ns=50 * SECOND_NS, drift=6e-5)
+
+    out, kept = push_all(a_clock(), arrival, stamps)
+
+    error = out - t_ns
+    assert kept.all()
+    assert np.all(np.diff(out) > 0)
+    # Without following it would be 8 ms after these 133 s.
+    assert np.abs(error[20_000:] - (LATENCY_NS - PACKET_NS)).max() < 1_500_000
+    assert abs(error[-1] - error[60_000]) < 300_000
+
+
+def test_gps_tells_the_hour_when_the_recorder_is_hours_off():
+    t_ns, arrival, stamps = packets(500)
+    late = 2 * HOUR_NS + 123 * SECOND_NS
+    report = ImportReport()
+    clock = a_clock(report, utc_offset_ns=-late)
+
+    out, kept = push_all(clock, arrival + late, stamps)
+
+    assert kept.all()
+    np.testing.assert_array_equal(out, t_ns // 1000 * 1000)
+    assert clock.is_utc
+    assert "+7323.002 s off UTC" in report.derived[0]
+
+
+@pytest.mark.parametrize("jump_s", [-7200.0, -1234.5, -3.0, 3.0, 3600.0, 5000.0])
+def test_a_jump_of_the_recorders_clock_is_not_taken_over(jump_s):
+    t_ns, arrival, stamps = packets(1000)
+    arrival[500:] += round(jump_s * 1e9)
+    report = ImportReport()
+
+    out, kept = push_all(a_clock(report), arrival, stamps)
+
+    assert np.flatnonzero(~kept).tolist() == list(range(500, 507))
+    np.testing.assert_array_equal(out[kept], (t_ns // 1000 * 1000)[kept])
+    assert report.counts["clock_jumps"] == 1
+    assert report.counts["packets_wrong_clock"] == 7
+    assert "the recorder's clock jumped" in report.warnings[0]
+
+
+@pytest.mark.parametrize("jump_s", [-600.0, -1.5, 1.5, 900.0])
+def test_a_jump_of_the_sensors_clock_leaves_the_times_continuous(jump_s):
+    t_ns, arrival, stamps = packets(1000)
+    stamps[500:] = (stamps[500:] + round(jump_s * 1e6)) % 3_600_000_000
+    report = ImportReport()
+
+    out, kept = push_all(a_clock(report), arrival, stamps)
+
+    assert kept.sum() == 993
+    assert np.abs(out - t_ns)[kept].max() < 1_000_000
+    assert np.all(np.diff(out[kept]) > 0)
+    assert report.counts["clock_jumps"] == 1
+    assert "its clock jumped" in report.warnings[0]
+
+
+def test_single_damaged_stamps_are_dropped_without_moving_the_clock():
+    t_ns, arrival, stamps = packets(1000)
+    rows = np.arange(30, 1000, 90)
+    stamps[rows] = np.random.default_rng(5).integers(0, 3_600_000_000, len(rows))
+    report = ImportReport()
+
+    out, kept = push_all(a_clock(report), arrival, stamps)
+
+    assert np.flatnonzero(~kept).tolist() == rows.tolist()
+    np.testing.assert_array_equal(out[kept], (t_ns // 1000 * 1000)[kept])
+    assert report.counts["clock_jumps"] == 0
+
+
+def test_a_pause_of_45_minutes_is_a_pause():
+    _, arrival, stamps = packets(1000)
+    pause = 45 * 60 * SECOND_NS
+    arrival[500:] += pause
+    stamps[500:] = (stamps[500:] + pause // 1000) % 3_600_000_000
+
+    out, kept = push_all(a_clock(), arrival, stamps)
+
+    assert kept.all()
+    assert out[500] - out[499] == pytest.approx(pause + PACKET_NS, abs=2000)
+
+
+def test_a_damaged_first_packet_does_not_set_the_clock():
+    t_ns, arrival, stamps = packets(300)
+    stamps[0] = (stamps[0] + 1_700_000_000) % 3_600_000_000
+
+    out, kept = push_all(a_clock(), arrival, stamps)
+
+    assert kept[1:].all()
+    np.testing.assert_array_equal(out[1:], (t_ns // 1000 * 1000)[1:])
+
+
+def test_one_packet_at_a_time_as_from_a_socket_gives_the_same():
+    t_ns, arrival, stamps = packets(200)
+
+    out, kept = push_all(a_clock(), arrival, stamps, batch=1)
+
+    assert kept.all()
+    np.testing.assert_array_equal(out, t_ns // 1000 * 1000)

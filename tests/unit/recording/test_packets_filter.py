@@ -1,0 +1,178 @@
+"""What becomes of damaged, repeated, shuffled and foreign packets."""
+
+import numpy as np
+import pytest
+
+from recon4.recording.packets import PacketOrder
+from recon4.recording.report import ImportReport
+from recon4.recording.velodyne import PacketDecoder
+from recon4.settings import IngestSettings
+from tests.unit.recording.packet_builders import T0_NS, decode_all, sensor, spin
+
+
+@pytest.fixture(scope="module")
+def clean():
+    t_ns, payloads = spin(1500)
+    shots, report = decode_all(t_ns, payloads)
+    assert report.counts["points"] == len(shots["t_ns"]) == 1500 * 384
+    return t_ns, payloads, shots
+
+
+def assert_same_points(shots, clean_shots):
+    for name, column in clean_shots.items():
+        np.testing.assert_array_equal(shots[name], column, err_msg=name)
+
+
+def test_ten_percent_garbage_is_dropped_and_counted(clean):
+    t_ns, payloads, expected = clean
+    rng = np.random.default_rng(1)
+    places = np.sort(rng.integers(0, len(t_ns), 150))
+    garbage = rng.integers(0, 256, (150, 1206), dtype=np.uint8)
+
+    shots, report = decode_all(
+        np.insert(t_ns, places, t_ns[places]), np.insert(payloads, places, garbage, axis=0)
+    )
+
+    assert_same_points(shots, expected)
+    assert report.counts["packets_wrong_flag"] == 150
+
+
+def test_garbage_with_sound_flags_does_not_spoil_the_rest(clean):
+    t_ns, payloads, expected = clean
+    rng = np.random.default_rng(2)
+    places = np.sort(rng.choice(len(t_ns), 150, replace=False))
+    garbage = rng.integers(0, 256, (150, 1206), dtype=np.uint8)
+    for block in range(12):
+        garbage[:, 100 * block : 100 * block + 2] = (0xFF, 0xEE)
+
+    shots, report = decode_all(
+        np.insert(t_ns, places, t_ns[places]), np.insert(payloads, places, garbage, axis=0)
+    )
+
+    assert_same_points(shots, expected)
+    dropped = {k: v for k, v in report.counts.items() if k.startswith("packets_")}
+    assert sum(dropped.values()) == 150
+
+
+@pytest.mark.parametrize("apart", [1, 40, 300])
+def test_a_packet_that_comes_twice_is_decoded_once(clean, apart):
+    t_ns, payloads, expected = clean
+    again = np.arange(0, len(t_ns) - apart, 5)
+    order = np.argsort(np.concatenate([np.arange(len(t_ns)), again + apart + 0.5]), kind="stable")
+    rows = np.concatenate([np.arange(len(t_ns)), again])[order]
+
+    shots, report = decode_all(t_ns[rows], payloads[rows])
+
+    assert_same_points(shots, expected)
+    assert report.counts["packets_duplicate"] + report.counts["packets_late"] == len(again)
+    assert report.counts["packets_late"] == 0
+
+
+def test_packets_shuffled_within_the_window_are_put_in_order(clean):
+    t_ns, payloads, expected = clean
+    rng = np.random.default_rng(3)
+    # 140 packets of 1.327 ms are 186 ms.
+    rows = np.argsort(np.arange(len(t_ns)) + rng.uniform(0, 140, len(t_ns)), kind="stable")
+
+    shots, report = decode_all(t_ns[rows], payloads[rows])
+
+    assert_same_points(shots, expected)
+    assert report.counts["packets_out_of_order"] > 500
+    assert report.counts["packets_late"] == 0
+
+
+def test_garbage_duplicates_and_shuffle_together_change_nothing(clean):
+    t_ns, payloads, expected = clean
+    rng = np.random.default_rng(4)
+    rows = np.concatenate([np.arange(1500), rng.integers(0, 1500, 150)])
+    rows = rows[np.argsort(rows + rng.uniform(0, 140, len(rows)), kind="stable")]
+    places = np.sort(rng.integers(0, len(rows), 160))
+    garbage = rng.integers(0, 256, (160, 1206), dtype=np.uint8)
+
+    shots, _ = decode_all(
+        np.insert(t_ns[rows], places, t_ns[rows[places]]),
+        np.insert(payloads[rows], places, garbage, axis=0),
+    )
+
+    assert_same_points(shots, expected)
+
+
+def test_a_packet_that_is_later_than_the_window_is_dropped_and_counted(clean):
+    t_ns, payloads, expected = clean
+    rows = np.concatenate([np.delete(np.arange(1000), 10), [10], np.arange(1000, 1500)])
+
+    shots, report = decode_all(t_ns[rows], payloads[rows])
+
+    assert report.counts["packets_late"] == 1
+    assert len(shots["t_ns"]) == len(expected["t_ns"]) - 384
+    assert np.all(np.diff(shots["t_ns"]) >= 0)
+
+
+def test_lost_packets_are_counted(clean):
+    t_ns, payloads, _ = clean
+    rows = np.delete(np.arange(len(t_ns)), [100, 101, 102, 700])
+
+    _, report = decode_all(t_ns[rows], payloads[rows])
+
+    assert report.counts["packets_missing"] == 4
+
+
+def test_packets_of_another_length_are_dropped_and_counted():
+    report = ImportReport()
+    decoder = PacketDecoder(0, sensor(), settings=IngestSettings(), report=report)
+
+    shots = decoder.push(np.arange(5), np.zeros((5, 1248), np.uint8))
+
+    assert len(shots) == 0
+    assert report.counts == {"packets": 5, "packets_wrong_length": 5}
+
+
+def test_packets_of_an_hdl64_are_named_as_such():
+    t_ns, payloads = spin(3)
+    for block in range(1, 12, 2):
+        payloads[:, 100 * block + 1] = 0xDD
+
+    _, report = decode_all(t_ns, payloads)
+
+    assert report.counts["packets_hdl64"] == 3
+
+
+def test_a_stranger_among_the_packets_is_dropped_by_its_product_byte(clean):
+    t_ns, payloads, _ = clean
+    payloads = payloads[:200].copy()
+    payloads[50:60, -1] = 0x28
+
+    shots, report = decode_all(t_ns[:200], payloads)
+
+    assert report.counts["packets_other_product"] == 10
+    assert len(shots["t_ns"]) == 190 * 384
+
+
+def test_a_wrong_product_byte_does_not_change_the_points_but_is_told(clean):
+    t_ns, payloads, expected = clean
+    payloads = payloads.copy()
+    payloads[:, -1] = 0x21
+
+    shots, report = decode_all(t_ns, payloads)
+
+    assert_same_points(shots, expected)
+    assert any("HDL-32E (0x21); decoded as VLP-16" in text for text in report.warnings)
+
+
+def test_a_model_that_the_firing_pattern_contradicts_is_warned_of(clean):
+    t_ns, payloads, _ = clean
+
+    _, report = decode_all(t_ns, payloads, model="HDL-32E")
+
+    assert any("is what a VLP-16 sends" in text for text in report.warnings)
+
+
+def test_the_order_gives_nothing_before_the_window_has_passed():
+    order = PacketOrder(200_000_000, ImportReport())
+    payload = np.zeros((1, 1206), np.uint8)
+
+    early, _ = order.push(np.array([T0_NS]), payload)
+    later, _ = order.push(np.array([T0_NS + 200_000_001]), payload)
+
+    assert (early.tolist(), later.tolist()) == ([], [T0_NS])
+    assert order.flush()[0].tolist() == [T0_NS + 200_000_001]
