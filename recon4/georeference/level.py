@@ -135,13 +135,16 @@ def level_by_gravity(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> Level
     if windows is None:
         return NOT_LEVELLED
     force, R_mean = windows
-    kept = np.ones(len(force), dtype=np.bool_)
+    gravity, bias = np.median(force, axis=0), np.zeros(3)
+    kept = np.zeros(len(force), dtype=np.bool_)
     for _ in range(10):
-        gravity, bias = _fit_gravity(force[kept], R_mean[kept])
-        angles = _angles(force - R_mean @ bias, gravity)
-        before, kept = kept, _trimmed(angles)
+        off = np.linalg.norm(force - R_mean @ bias - gravity, axis=1)
+        # The length of a three-dimensional normal error has its median at 1.54 deviations.
+        before, kept = kept, off <= np.maximum(_TRIM * np.median(off) / 1.538, 1e-9)
         if np.array_equal(before, kept):
             break
+        gravity, bias = _fit_gravity(force[kept], R_mean[kept])
+    angles = _angles(force - R_mean @ bias, gravity)
     return _result(tilt_to(gravity / np.linalg.norm(gravity)), "imu", angles, kept)
 
 

@@ -1,0 +1,230 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.geometry.se3 import SE3
+from recon4.georeference.crs import Origin, to_enu, to_geodetic
+from recon4.georeference.gnss import GeoreferenceResult, georeference
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
+from recon4.model.rig import load_rig
+from recon4.model.samples import GnssSamples
+from recon4.model.trajectory import Trajectory
+from recon4.settings import GnssSettings
+
+PLACE = Origin(np.deg2rad(49.2), np.deg2rad(16.6), 250.0)
+RIG = replace(load_rig("4recon"), p_body_antenna=np.array([-0.3, 0.1, 0.8]))
+START = SE3.from_rpy(0.0, 0.0, 2.2, [40.0, -15.0, 3.0])
+"""T_odom_enu: the map's own frame is level, but turned and shifted."""
+
+
+def track(seconds: float, *, straight: bool = False) -> Trajectory:
+    """True poses in ENU at 10 Hz: 1.3 m/s through a field."""
+    t = np.arange(0.0, seconds, 0.1)
+    yaw = 0.3 * np.ones_like(t) if straight else 1.2 * np.sin(0.02 * t) + 0.2 * np.sin(0.3 * t)
+    step = 0.13 * np.stack([np.cos(yaw), np.sin(yaw), 0.02 * np.sin(0.01 * t)], 1)
+    T = SE3.stack(
+        SE3.from_rpy(0.04 * np.sin(3 * a), 0.03, b, c)
+        for a, b, c in zip(t, yaw, np.cumsum(step, axis=0), strict=True)
+    )
+    return Trajectory((t * 1e9).astype(np.int64) + 10**18, T)
+
+
+def slam(true: Trajectory, rng: np.random.Generator) -> tuple[PoseGraph, Trajectory]:
+    """A drifting graph with a node each second, and the dense odometry it came from."""
+    sd = np.array([1e-4, 1e-4, 1e-4, 1e-3, 1e-3, 1e-3])
+    steps = (
+        true.T_a_b[:-1].inverse()
+        @ true.T_a_b[1:]
+        @ SE3.exp(sd * rng.normal(size=(len(true) - 1, 6)))
+    )
+    poses = [START @ true.T_a_b[0]]
+    for k in range(len(steps)):
+        poses.append(poses[-1] @ steps[k])
+    dense = Trajectory(true.t_ns, SE3.stack(poses))
+    rows = np.arange(0, len(true), 10)
+    T = dense.T_a_b[rows]
+    edges = []
+    for d in (1, 2, 4):
+        for k in range(len(rows) - d):
+            kind = EdgeKind.ODOMETRY if d == 1 else EdgeKind.NEIGHBOR
+            information = np.diag(1.0 / (sd**2 * 10 * d))
+            edges.append(
+                Edge(
+                    i=k,
+                    j=k + d,
+                    T_i_j=T[k].inverse() @ T[k + d],
+                    kind=kind,
+                    verdict=Verdict.ACCEPTED,
+                    information=information,
+                )
+            )
+    return PoseGraph(rows, dense.t_ns[rows], T, tuple(edges)), dense
+
+
+def receiver(true: Trajectory, rng: np.random.Generator, *, sd_m: float = 0.02) -> GnssSamples:
+    """Fixes at 5 Hz, off the frame grid, errors alike over some 10 s."""
+    t_ns = true.t_ns[0] + np.arange(30_000_000, int(true.t_ns[-1] - true.t_ns[0]), 200_000_000)
+    T = true.at(t_ns)
+    slow = np.zeros((len(t_ns), 3))
+    keep = np.exp(-0.2 / 10.0)
+    for k in range(1, len(slow)):
+        slow[k] = keep * slow[k - 1] + np.sqrt(1 - keep**2) * sd_m * rng.normal(size=3)
+    p = T @ np.tile(RIG.p_body_antenna, (len(t_ns), 1)) + slow
+    lat, lon, height = to_geodetic(PLACE, p)
+    n = len(t_ns)
+    return GnssSamples(
+        t_ns,
+        lat,
+        lon,
+        height,
+        np.full((n, 3), sd_m),
+        np.full(n, 4, dtype=np.uint8),
+        np.full((n, 3), np.nan),
+    )
+
+
+def rows_of(gnss: GnssSamples, rows: np.ndarray) -> GnssSamples:
+    return GnssSamples(*(getattr(gnss, name)[rows] for name in GnssSamples.__slots__))
+
+
+def worst_m(result: GeoreferenceResult, true: Trajectory) -> float:
+    """Largest error of a node on earth."""
+    assert result.origin is not None
+    lat, lon, height = to_geodetic(result.origin, result.graph.T_map_body.t)
+    p = to_enu(PLACE, lat, lon, height_m=height)
+    return float(np.linalg.norm(p - true.at(result.graph.t_ns).t, axis=1).max())
+
+
+def run(true: Trajectory, gnss: GnssSamples | None, **changes: object) -> GeoreferenceResult:
+    graph, dense = slam(true, np.random.default_rng(1))
+    settings = GnssSettings(**changes)  # type: ignore[arg-type]
+    return georeference(graph, dense, gnss, RIG, settings=settings)
+
+
+@pytest.fixture(scope="module")
+def true() -> Trajectory:
+    return track(240.0)
+
+
+@pytest.fixture(scope="module")
+def gnss(true: Trajectory) -> GnssSamples:
+    return receiver(true, np.random.default_rng(2))
+
+
+def test_a_drifting_walk_is_laid_over_its_positions(true: Trajectory, gnss: GnssSamples) -> None:
+    result = run(true, gnss)
+
+    assert worst_m(result, true) < 0.08
+    assert result.used.mean() > 0.98
+    assert np.all(result.rmse_m < 0.04)
+    assert result.reason == ""
+
+
+def test_exact_positions_pull_a_drifting_walk_to_the_truth(true: Trajectory) -> None:
+    exact = receiver(true, np.random.default_rng(3), sd_m=0.0)
+    exact.sd_enu_m[:] = 0.02
+
+    result = run(true, exact)
+
+    # What is left is drift that the edges insist on: they promise more than they keep.
+    assert worst_m(result, true) < 0.06
+
+
+def test_the_lever_arm_matters(true: Trajectory, gnss: GnssSamples) -> None:
+    graph, dense = slam(true, np.random.default_rng(1))
+    bare = replace(RIG, p_body_antenna=np.zeros(3))
+
+    result = georeference(graph, dense, gnss, bare, settings=GnssSettings())
+
+    assert worst_m(result, true) > 0.5
+
+
+def test_outliers_of_every_kind_are_left_out(true: Trajectory, gnss: GnssSamples) -> None:
+    rng = np.random.default_rng(4)
+    bad = rows_of(gnss, np.arange(len(gnss)))
+    single = rng.choice(len(gnss), 60, replace=False)
+    bad.lat_rad[single] += rng.normal(0, 50, 60) / 6.4e6
+    bad.lon_rad[400:450] += 8.0 / 4.2e6  # ten seconds of multipath
+    bad.height_m[700:730] += 3.0
+    bad.lat_rad[900:930], bad.lon_rad[900:930] = bad.lat_rad[900], bad.lon_rad[900]  # frozen
+    bad.quality[1000:1050] = 0
+    bad.lat_rad[1000:1050] = 0.1
+
+    result = run(true, bad)
+
+    assert worst_m(result, true) < 0.08
+    wrong = np.isin(result.t_ns, np.r_[bad.t_ns[400:450], bad.t_ns[700:730]])
+    assert not result.used[wrong].any()
+    assert not np.isin(result.t_ns, bad.t_ns[1000:1050]).any()
+
+
+def test_a_gap_of_a_minute_costs_little(true: Trajectory, gnss: GnssSamples) -> None:
+    s = (gnss.t_ns - gnss.t_ns[0]) / 1e9
+    whole = run(true, gnss)
+
+    result = run(true, rows_of(gnss, np.flatnonzero((s < 90) | (s > 150))))
+
+    assert worst_m(result, true) < max(1.5 * worst_m(whole, true), 0.08)
+
+
+def test_float_and_single_fixes_weigh_less_than_fixed_ones(true: Trajectory) -> None:
+    good, poor = (
+        receiver(true, np.random.default_rng(k), sd_m=sd) for k, sd in ((5, 0.02), (6, 1.5))
+    )
+    mixed = rows_of(good, np.arange(len(good)))
+    rows = np.arange(400, 700)
+    for name in ("lat_rad", "lon_rad", "height_m"):
+        getattr(mixed, name)[rows] = getattr(poor, name)[rows]
+    mixed.sd_enu_m[:] = np.nan
+    mixed.quality[rows] = 1
+
+    result = run(true, mixed)
+
+    assert worst_m(result, true) < 0.1
+
+
+def test_a_straight_line_does_not_roll() -> None:
+    line = track(120.0, straight=True)
+
+    result = run(line, receiver(line, np.random.default_rng(7)))
+
+    assert result.origin is not None
+    up = result.graph.T_map_body.R[:, 2, :]
+    tilt = np.arccos(np.clip(np.sum(up * line.at(result.graph.t_ns).R[:, 2, :], axis=1), -1, 1))
+    assert np.rad2deg(tilt.max()) < 0.5
+    assert worst_m(result, line) < 0.08
+
+
+@pytest.mark.parametrize("kept", [0, 3])
+def test_too_few_fixes_leave_a_local_frame_without_a_place_on_earth(
+    true: Trajectory, gnss: GnssSamples, kept: int
+) -> None:
+    graph, dense = slam(true, np.random.default_rng(1))
+
+    result = georeference(
+        graph, dense, rows_of(gnss, np.arange(kept)), RIG, settings=GnssSettings()
+    )
+
+    assert result.origin is None
+    assert f"{kept} usable fixes" in result.reason
+    assert result.graph is graph
+    assert result.to_json()["georeferenced"] is False
+
+
+def test_standing_still_gives_no_heading_and_says_so(true: Trajectory, gnss: GnssSamples) -> None:
+    result = run(true, rows_of(gnss, np.arange(8)))
+
+    assert result.origin is None
+    assert "agreeing fixes" in result.reason
+
+
+def test_no_receiver_and_switched_off_are_named(true: Trajectory, gnss: GnssSamples) -> None:
+    assert "no GNSS" in run(true, None).reason
+    assert "switched off" in run(true, gnss, enabled=False).reason
+
+
+def test_the_same_input_gives_the_same_bits(true: Trajectory, gnss: GnssSamples) -> None:
+    first, second = run(true, gnss), run(true, gnss)
+
+    np.testing.assert_array_equal(first.graph.T_map_body.t, second.graph.T_map_body.t)
