@@ -9,7 +9,8 @@ import json
 import os
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -19,6 +20,7 @@ import recon4
 from recon4.errors import Cancelled, Recon4Error
 
 if TYPE_CHECKING:
+    from recon4.geometry.se3 import Array
     from recon4.settings import Settings
 
 app = typer.Typer(
@@ -40,6 +42,106 @@ SetOption = Annotated[
     typer.Option("--set", metavar="GROUP.NAME=VALUE", help="Change one setting; repeatable."),
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Write JSON for programs.")]
+
+
+@app.command()
+def process(
+    recordings: Annotated[list[Path], typer.Argument(help="pcap, bag or folder of clouds.")],
+    *,
+    out: Annotated[Path, typer.Option(help="Project folder; the results end up in it.")],
+    rig: Annotated[str, typer.Option(help="Rig preset or .toml; default: worked out.")] = "",
+    imu: Annotated[Path | None, typer.Option(help="IMU samples as CSV.")] = None,
+    gnss: Annotated[Path | None, typer.Option(help="GNSS/INS samples as CSV.")] = None,
+    preset: PresetOption = "indoor",
+    assignments: SetOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Make a map of a recording; started again, it goes on where it stopped."""
+    chosen = _settings(preset, assignments)
+
+    from recon4.model.rig import load_rig
+    from recon4.pipeline import process as run
+    from recon4.terminal import describe_summary, watcher
+
+    with watcher() as progress:
+        summary = run(
+            recordings,
+            out,
+            rig=load_rig(rig) if rig else None,
+            imu=imu,
+            gnss=gnss,
+            settings=chosen,
+            preset=preset,
+            progress=progress,
+        )
+    if as_json:
+        _write_json(summary.to_json())
+    else:
+        _write(describe_summary(summary.to_json(), out))
+
+
+@app.command()
+def simulate(
+    world: Annotated[str, typer.Argument(help="office, staircase, street or field.")],
+    out: Annotated[Path, typer.Argument(help="New folder for the recording and its truth.")],
+    *,
+    seconds: Annotated[float, typer.Option(help="Length of the walk [s].")] = 60.0,
+    seed: Annotated[int, typer.Option(help="Draws the walk and the noise.")] = 1,
+    rig: Annotated[str, typer.Option(help="Rig preset or .toml file.")] = "4recon",
+    bag: Annotated[bool, typer.Option(help="Also write a rosbag2.")] = True,
+) -> None:
+    """Simulate a walk: packets, IMU, GNSS, and the truth they can be judged by."""
+    from recon4.model.rig import load_rig
+    from recon4.simulation.simulate import simulate as run
+    from recon4.terminal import watcher
+
+    with watcher() as progress:
+        run(world, out, seconds=seconds, seed=seed, rig=load_rig(rig), bag=bag, progress=progress)
+    _write(f"{out}")
+
+
+@app.command()
+def evaluate(
+    result: Annotated[Path, typer.Argument(help="Project folder, .tum or .npz trajectory.")],
+    *,
+    truth: Annotated[Path, typer.Option(help="True trajectory, .tum or .npz.")],
+    model: Annotated[Path | None, typer.Option(help="True model, .ply; gives e_r.")] = None,
+    floor: Annotated[
+        bool, typer.Option("--floor", help="Also e_r of the same points with the true poses.")
+    ] = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Judge a result by the truth: ATE, KITTI drift, e_r in slices, density."""
+    from recon4.evaluation.evaluate import evaluate as judge
+    from recon4.store.project import is_project, read_artifacts
+
+    given: dict[str, Any] = {}
+    artifacts = read_artifacts(result) if is_project(result) else {}
+    if "map" in artifacts:
+        given["chunks"] = _map_chunks(artifacts["map"])
+    if floor and "frames" in artifacts:
+        from recon4.store.frames import FrameStore
+
+        frames = FrameStore.open(artifacts["frames"])
+        given |= {"frames": frames, "rig": frames.rig}
+    found = judge(result, truth=truth, model=model, **given)
+    if as_json:
+        _write_json(found.to_json())
+    else:
+        _write(found.table())
+
+
+@app.command()
+def serve(
+    root: Annotated[Path, typer.Argument(help="Folder that holds project folders.")] = Path(),
+    host: Annotated[str, typer.Option(help="Address to listen on; loopback only.")] = "127.0.0.1",
+    port: Annotated[int, typer.Option(help="Port; 0 = any free one.")] = 8000,
+) -> None:
+    """Show projects in the browser: results, jobs, 3D viewer. Ctrl-C ends it."""
+    from app.main import serve as run
+
+    with suppress(KeyboardInterrupt):
+        run(root, host=host, port=port, on_ready=_say_url)
 
 
 @app.command()
@@ -170,6 +272,17 @@ def _settings(preset_name: str, assignments: list[str] | None) -> Settings:
         return override(preset(preset_name), assignments or [])
     except Recon4Error as error:
         raise typer.BadParameter(str(error)) from error
+
+
+def _map_chunks(folder: Path) -> Callable[[], Iterator[Array]]:
+    from recon4.mapping.tiles import TileSet
+
+    return lambda: (tile.xyz_m() for tile in TileSet.open(folder))
+
+
+def _say_url(url: str) -> None:
+    _write(f"Serving at {url} (Ctrl-C ends it)")
+    sys.stdout.flush()
 
 
 def _show_settings(chosen: Settings) -> None:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Mapping
+from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 if TYPE_CHECKING:
     from rich.progress import ProgressColumn, Task, TaskID
@@ -128,8 +130,13 @@ class Bars:
         self._task = None
 
 
-def watcher(out: TextIO = sys.stderr) -> PlainLines | Bars:
-    """What suits the place the progress is written to; a context manager and a `Progress`."""
+def watcher(out: TextIO | None = None) -> PlainLines | Bars:
+    """What suits the place the progress is written to; a context manager and a `Progress`.
+
+    Args:
+        out: Where to write; None = standard error.
+    """
+    out = out or sys.stderr
     return Bars(out) if out.isatty() else PlainLines(out)
 
 
@@ -154,6 +161,22 @@ def describe_event(kind: str, facts: dict[str, object]) -> str:
     if kind not in _TOLD:
         return ""
     return f"{_TOLD[kind]}: " + ", ".join(f"{name} {value}" for name, value in facts.items())
+
+
+def describe_summary(summary: Mapping[str, Any], folder: Path) -> str:
+    """What a finished run came to, and where its results are."""
+    edges = ", ".join(f"{count} {verdict}" for verdict, count in summary["edges"].items())
+    lines = [
+        f"{summary['duration_s']:.1f} s, {summary['way_m']:.1f} m, "
+        f"{summary['multiframes']} multiframes ({summary['lost']} lost)",
+        f"{sum(summary['edges'].values())} pairs tried: {edges}",
+        f"{summary['points']} points in the map",
+        f"{summary['seconds']:.1f} s of work, {summary['peak_bytes'] / 1e9:.2f} GB at most",
+        *(f"warning: {text}" for text in summary["warnings"]),
+        f"map     {folder / 'map.laz'}",
+        f"report  {folder / 'report.html'}",
+    ]
+    return "\n".join(lines)
 
 
 def _describe_stage(facts: dict[str, object]) -> str:

@@ -37,3 +37,10 @@ def files_below(folder: Path) -> list[str]:
     """Relative names of all files below a folder, sorted, with forward slashes."""
     found = [Path(root, name) for root, _, names in os.walk(folder) for name in names]
     return sorted(path.relative_to(folder).as_posix() for path in found)
+
+
+def size_of(path: Path) -> int:
+    """Bytes of a file, or of all files below a folder."""
+    if path.is_dir():
+        return sum((path / name).stat().st_size for name in files_below(path))
+    return path.stat().st_size

@@ -75,6 +75,7 @@ class Artifact:
 class StageRun:
     """How a stage went in this run."""
 
+    artifact: Artifact
     done: FinishedStage
     """What it took when it really ran."""
     reused: bool
@@ -112,7 +113,7 @@ class StageRunner:
         if done is None:
             done = self._make(stage, artifact, inputs)
         self._project.ledger.set_current(stage.name, key)
-        self.runs[stage.name] = StageRun(done, reused, artifact.manifest()["figures"])
+        self.runs[stage.name] = StageRun(artifact, done, reused, artifact.manifest()["figures"])
         state = "reused" if reused else "done"
         self._progress.event(
             "stage", stage=stage.name, key=key, state=state, seconds=round(done.seconds, 3)

@@ -1,10 +1,10 @@
 """The command line: what it says, where it says it, and how it ends."""
 
 import json
+import resource
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -13,7 +13,7 @@ import recon4
 from recon4.cli import main
 from recon4.doctor import examine
 from recon4.settings import preset, to_json
-from tests.unit.store.small_pipeline import artifact_of, run_all
+from tests.unit.store.small_pipeline import run_all
 
 ROOT = Path(__file__).parents[2]
 
@@ -26,19 +26,16 @@ def keep_signals():
 
 
 def test_help_answers_well_under_a_second():
-    began = time.perf_counter()
-    best = min(_seconds_of("--help") for _ in range(3))
-
-    assert best < 0.9
-    assert time.perf_counter() - began < 20
+    # Processor time: other tests run at the same moment.
+    assert min(_processor_seconds("--help") for _ in range(3)) < 0.8
 
 
-def _seconds_of(argument: str) -> float:
-    began = time.perf_counter()
-    subprocess.run(
-        [sys.executable, "-m", "recon4", argument], check=True, capture_output=True, cwd=ROOT
-    )
-    return time.perf_counter() - began
+def _processor_seconds(argument: str) -> float:
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    command = [sys.executable, "-m", "recon4", argument]
+    subprocess.run(command, check=True, capture_output=True, cwd=ROOT)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
 def test_the_version_is_said(capsys):
@@ -98,7 +95,7 @@ def test_verify_says_all_is_well(tmp_path, capsys):
 
 def test_verify_names_damage_and_ends_with_1(tmp_path, capsys):
     runner = run_all(tmp_path / "p")
-    (artifact_of(tmp_path / "p", runner, "total").folder / "total.txt").write_text("?")
+    (runner.runs["total"].artifact.folder / "total.txt").write_text("?")
 
     assert main(["verify", str(tmp_path / "p")]) == 1
     assert "total.txt has another size" in capsys.readouterr().out

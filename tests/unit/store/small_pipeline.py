@@ -13,7 +13,7 @@ from pathlib import Path
 from recon4.progress import Silent
 from recon4.settings import Settings
 from recon4.store.project import Project
-from recon4.store.stage import Artifact, Input, Stage, StageRunner
+from recon4.store.stage import Input, Stage, StageRunner
 
 FILE_OPERATIONS = {"open", "os.rename", "os.mkdir", "os.remove", "os.rmdir", "shutil.rmtree"}
 
@@ -21,7 +21,7 @@ FILE_OPERATIONS = {"open", "os.rename", "os.mkdir", "os.remove", "os.rmdir", "sh
 def count(*, out, settings, progress, text):
     (out / "deep").mkdir()
     (out / "deep" / "lengths.json").write_text(json.dumps([len(w) for w in text.split()]))
-    (out / "rate.txt").write_text(str(settings.ingest.rate_hz))
+    (out / "range.txt").write_text(str(settings.ingest.max_range_m))
     return {"words": len(text.split())}
 
 
@@ -33,11 +33,11 @@ def scale(*, out, settings, progress, counted):
 
 
 def total(*, out, settings, progress, counted, scaled):
-    rate_hz = float((counted / "rate.txt").read_text())
+    range_m = float((counted / "range.txt").read_text())
     found = sum(
         float(path.read_text()) for path in sorted(scaled.iterdir()) if path.suffix == ".txt"
     )
-    (out / "total.txt").write_text(f"{found * rate_hz:.6f}")
+    (out / "total.txt").write_text(f"{found * range_m:.6f}")
 
 
 COUNT = Stage("count", 1, ("ingest",), count)
@@ -63,11 +63,6 @@ def results(root: Path) -> dict[str, bytes]:
         for path in files
         if path.name != "manifest.json"
     }
-
-
-def artifact_of(root: Path, runner: StageRunner, name: str) -> Artifact:
-    key = runner.runs[name].done.key
-    return Artifact(name, key, root / "artifacts" / key)
 
 
 def kill_before(operation: int, root: Path) -> None:

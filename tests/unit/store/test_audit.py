@@ -8,7 +8,7 @@ from recon4.errors import StoreError
 from recon4.progress import Silent
 from recon4.store.audit import audit
 from recon4.store.hashing import hash_file
-from tests.unit.store.small_pipeline import artifact_of, run_all
+from tests.unit.store.small_pipeline import run_all
 
 
 def test_an_untouched_project_is_whole(tmp_path):
@@ -21,7 +21,7 @@ def test_an_untouched_project_is_whole(tmp_path):
 
 def test_one_flipped_bit_is_found_and_named(tmp_path):
     runner = run_all(tmp_path / "p")
-    path = artifact_of(tmp_path / "p", runner, "scale").folder / "2.txt"
+    path = runner.runs["scale"].artifact.folder / "2.txt"
     data = bytearray(path.read_bytes())
     data[0] ^= 1
     path.write_bytes(data)
@@ -34,10 +34,10 @@ def test_one_flipped_bit_is_found_and_named(tmp_path):
 
 def test_missing_and_added_files_and_artifacts_are_found(tmp_path):
     runner = run_all(tmp_path / "p")
-    scale = artifact_of(tmp_path / "p", runner, "scale").folder
+    scale = runner.runs["scale"].artifact.folder
     (scale / "0.txt").unlink()
     (scale / "new.txt").write_text("x")
-    total = artifact_of(tmp_path / "p", runner, "total").folder
+    total = runner.runs["total"].artifact.folder
     total.rename(tmp_path / "taken away")
 
     damaged = " ".join(audit(tmp_path / "p", Silent()).damaged)

@@ -7,10 +7,10 @@ import pytest
 
 from recon4.errors import Recon4Error
 from recon4.progress import Silent
-from recon4.settings import Settings, override
+from recon4.settings import Settings, override, to_json
 from recon4.store.project import Project, read_artifacts, read_stages
 from recon4.store.stage import Input, Stage, StageRunner, stage_key, versions
-from tests.unit.store.small_pipeline import COUNT, TEXT, artifact_of, results, run_all
+from tests.unit.store.small_pipeline import COUNT, TEXT, results, run_all
 
 SETTINGS = Settings()
 TEXT_INPUT = Input(key=TEXT, value=TEXT)
@@ -53,7 +53,7 @@ def test_going_back_to_the_old_setting_finds_the_old_artifacts(tmp_path):
     back = run_all(tmp_path / "p")
 
     assert all(reused(back).values())
-    scale = artifact_of(tmp_path / "p", back, "scale")
+    scale = back.runs["scale"].artifact
     assert read_artifacts(tmp_path / "p")["scale"] == scale.folder
 
 
@@ -109,7 +109,7 @@ def test_a_stage_that_fails_leaves_nothing_and_keeps_what_was_finished(tmp_path)
 
 def test_a_damaged_artifact_is_set_aside_and_made_again(tmp_path):
     first = run_all(tmp_path / "p")
-    broken = artifact_of(tmp_path / "p", first, "scale")
+    broken = first.runs["scale"].artifact
     (broken.folder / "0.txt").write_text("longer than it was")
     progress = Silent()
 
@@ -123,7 +123,7 @@ def test_a_damaged_artifact_is_set_aside_and_made_again(tmp_path):
 
 def test_an_artifact_somebody_deleted_is_made_again(tmp_path):
     first = run_all(tmp_path / "p")
-    gone = artifact_of(tmp_path / "p", first, "count")
+    gone = first.runs["count"].artifact
     for path in sorted(gone.folder.rglob("*"), reverse=True):
         path.rmdir() if path.is_dir() else path.unlink()
     gone.folder.rmdir()
@@ -136,12 +136,12 @@ def test_an_artifact_somebody_deleted_is_made_again(tmp_path):
 def test_the_manifest_tells_what_the_artifact_is_made_of(tmp_path):
     runner = run_all(tmp_path / "p")
 
-    manifest = artifact_of(tmp_path / "p", runner, "count").manifest()
+    manifest = runner.runs["count"].artifact.manifest()
 
     assert manifest["recipe"]["inputs"] == {"text": TEXT}
-    assert manifest["recipe"]["settings"]["ingest"]["rate_hz"] == 10.0
+    assert manifest["recipe"]["settings"]["ingest"] == to_json(SETTINGS.ingest)
     assert manifest["figures"] == {"words": 7}
-    assert set(manifest["files"]) == {"deep/lengths.json", "rate.txt"}
+    assert set(manifest["files"]) == {"deep/lengths.json", "range.txt"}
     assert manifest["versions"] == versions()
     assert manifest["done"]["seconds"] > 0.0
     assert manifest["done"]["peak_bytes"] > 1_000_000

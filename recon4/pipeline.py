@@ -1,0 +1,93 @@
+"""The data flow on one screen: from recordings to a finished project folder."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from recon4 import stages
+from recon4.errors import RecordingError
+from recon4.model.rig import Rig, format_rig
+from recon4.progress import Progress, Silent
+from recon4.results import About, Summary, publish
+from recon4.settings import Settings
+from recon4.settings import preset as settings_of
+from recon4.store.hashing import hash_json, size_of
+from recon4.store.inputs import input_file, input_files
+from recon4.store.project import Project, read_description
+from recon4.store.stage import Input, StageRunner
+
+
+def process(
+    recordings: Sequence[Path],
+    out: Path,
+    *,
+    rig: Rig | None = None,
+    imu: Path | None = None,
+    gnss: Path | None = None,
+    settings: Settings | None = None,
+    preset: str = "indoor",
+    progress: Progress | None = None,
+) -> Summary:
+    """Make a map of recordings, or go on where an earlier call stopped.
+
+    Args:
+        recordings: Files or folders of one walk: pcap, bags, folders of clouds.
+        out: Project folder; made when missing. Results end up in it (see ``docs/stages.md``).
+        rig: What was on the backpack; None = worked out from the recording.
+        imu: CSV file, in place of the recording's IMU.
+        gnss: CSV file, in place of the recording's positions.
+        settings: All settings; None = those of the preset.
+        preset: Name of the preset they started from.
+        progress: Who watches.
+
+    Returns:
+        Figures, timings and hashes, as in ``summary.json``.
+
+    Raises:
+        RecordingError: If a recording cannot be read.
+        StoreError: If ``out`` is in use, damaged or cannot be written (`NoSpace`: disk full).
+        Recon4Error: Whatever else stops a stage.
+        Cancelled: If the watcher asked to stop; the next call goes on from there.
+    """
+    if not recordings:
+        raise RecordingError("no recording given")
+    progress = progress or Silent()
+    settings = settings or settings_of(preset)
+    with Project.open(out) as project:
+        files = [*recordings, *(path for path in (imu, gnss) if path)]
+        keys = {path: input_file(path, project.ledger, progress).key for path in files}
+        project.describe(
+            preset=preset,
+            rig=rig.name if rig else "",
+            inputs=[{"name": p.name, "bytes": size_of(p), "sha256": keys[p]} for p in files],
+        )
+        runner = StageRunner(project, settings, progress)
+        run_stages(
+            runner,
+            recordings=input_files(recordings, project.ledger, progress),
+            rig=Input(hash_json(format_rig(rig)), rig) if rig else None,
+            imu=Input(keys[imu], imu) if imu else None,
+            gnss=Input(keys[gnss], gnss) if gnss else None,
+        )
+        about = About(read_description(out), settings)
+        return publish(out, runner.runs, about, progress=progress)
+
+
+def run_stages(
+    runner: StageRunner,
+    *,
+    recordings: Input,
+    rig: Input | None,
+    imu: Input | None,
+    gnss: Input | None,
+) -> None:
+    """Every stage in order; each is skipped when its artifact is there."""
+    run = runner.run
+    frames = run(stages.FRAMES, recordings=recordings, rig=rig, imu=imu, gnss=gnss)
+    odometry = run(stages.ODOMETRY, frames=frames)
+    searched = run(stages.GRAPH, frames=frames, odometry=odometry)
+    graph = run(stages.VERIFICATION, graph=searched)
+    trajectory = run(stages.CARRIED, odometry=odometry, graph=graph)
+    intensity = run(stages.INTENSITY, frames=frames, trajectory=trajectory)
+    run(stages.MAP, frames=frames, trajectory=trajectory, intensity=intensity)

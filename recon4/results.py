@@ -1,0 +1,193 @@
+"""What a finished run leaves in the project folder for people."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from recon4.pose_graph.files import load_graph
+from recon4.pose_graph.g2o import write_g2o
+from recon4.progress import Progress, track
+from recon4.recording.poses import write_tum
+from recon4.report.artifacts import way_m
+from recon4.report.facts import InputFile, ReportFacts, StageTiming
+from recon4.report.html import write_report
+from recon4.settings import Settings, to_json
+from recon4.store.arrays import load_trajectory
+from recon4.store.atomic import atomic_file, copy_file, write_json
+from recon4.store.hashing import hash_file
+from recon4.store.stage import StageRun, versions
+
+SUMMARY = "summary.json"
+RESULTS = (
+    "trajectory.tum",
+    "odometry.tum",
+    "map.laz",
+    "edges.json",
+    "graph.g2o",
+    "report.html",
+)
+"""Files of a finished run, beside its summary."""
+
+_TRAJECTORIES = ("level", "refine", "carried")
+_GRAPHS = ("level", "verification")
+
+
+@dataclass(frozen=True, slots=True)
+class About:
+    """What a run was asked to do."""
+
+    project: Mapping[str, Any]
+    """``project.json``: name, preset, inputs."""
+    settings: Settings
+    """In force."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Summary:
+    """What ``summary.json`` says; the fields are its keys."""
+
+    name: str
+    """Of the project."""
+    created: str
+    """When the run ended, ISO 8601 UTC."""
+    preset: str
+    """What the settings started from."""
+    rig: str
+    """Name of the rig that was used."""
+    duration_s: float
+    """Time covered by the trajectory [s]."""
+    way_m: float
+    """Length of the way, in steps of half a second [m]."""
+    multiframes: int
+    lost: int
+    """Multiframes the odometry could not place."""
+    points: int
+    """In the map."""
+    edges: Mapping[str, int]
+    """Pairs tried by verdict."""
+    warnings: tuple[str, ...]
+    seconds: float
+    """Wall clock of all stages, of the earlier run where reused [s]."""
+    peak_bytes: int
+    """Largest resident memory of any stage [bytes]."""
+    stages: tuple[dict[str, Any], ...]
+    """How each stage went, in order: key, version, times, memory, reused, figures."""
+    versions: Mapping[str, str]
+    settings: Mapping[str, Any]
+    hashes: Mapping[str, Mapping[str, str]]
+    """SHA-256 of ``inputs`` and of ``results``, by file name."""
+    folder: Path
+    """The project; not written, so that it may be moved."""
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain JSON values."""
+        return {name: value for name, value in asdict(self).items() if name != "folder"}
+
+
+def publish(
+    root: Path, runs: Mapping[str, StageRun], about: About, *, progress: Progress
+) -> Summary:
+    """Write the results; ``summary.json`` comes last and vouches for the others.
+
+    Args:
+        root: The project folder.
+        runs: How the stages went, in order.
+        about: What it was asked to do.
+        progress: Counts the files.
+
+    Raises:
+        StoreError: If an artifact is damaged or the folder cannot be written.
+    """
+    (root / SUMMARY).unlink(missing_ok=True)
+    created = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
+    trajectory = load_trajectory(_final(runs) / "trajectory.npz")
+    facts = _facts(runs, about, created=created)
+    for write in track(_writers(root, runs, facts), progress, what="results", unit="files"):
+        write()
+    summary = Summary(
+        name=about.project["name"],
+        created=created,
+        preset=about.project["preset"],
+        rig=runs["frames"].figures["rig"],
+        duration_s=round(int(trajectory.t_ns[-1] - trajectory.t_ns[0]) / 1e9, 3),
+        way_m=round(float(way_m(trajectory)[-1]), 3),
+        multiframes=runs["frames"].figures["multiframes"],
+        lost=runs["odometry"].figures["lost"],
+        points=runs["map"].figures["points"],
+        edges=runs["verification"].figures["edges"],
+        warnings=tuple(runs["frames"].figures["warnings"]),
+        seconds=round(sum(run.done.seconds for run in runs.values()), 3),
+        peak_bytes=max(run.done.peak_bytes for run in runs.values()),
+        stages=tuple(_stage(run) for run in runs.values()),
+        versions=versions(),
+        settings=to_json(about.settings),
+        hashes={
+            "inputs": {file["name"]: file["sha256"] for file in about.project["inputs"]},
+            "results": {name: hash_file(root / name) for name in RESULTS},
+        },
+        folder=root,
+    )
+    write_json(root / SUMMARY, summary.to_json())
+    return summary
+
+
+def _final(runs: Mapping[str, StageRun]) -> Path:
+    """Folder of the last stage that made the trajectory better."""
+    return next(runs[name].artifact.folder for name in _TRAJECTORIES if name in runs)
+
+
+def _writers(
+    root: Path, runs: Mapping[str, StageRun], facts: ReportFacts
+) -> list[Callable[[], None]]:
+    """One function a file of `RESULTS`."""
+    folder = {name: run.artifact.folder for name, run in runs.items()}
+    graph = next(folder[name] for name in _GRAPHS if name in folder)
+    return [
+        lambda: _write_trajectory(_final(runs), root / "trajectory.tum"),
+        lambda: _write_trajectory(folder["odometry"], root / "odometry.tum"),
+        lambda: copy_file(folder["map"] / "map.laz", root / "map.laz"),
+        lambda: copy_file(graph / "edges.json", root / "edges.json"),
+        lambda: _write_g2o(graph, root / "graph.g2o"),
+        lambda: write_report(root / "report.html", facts=facts),
+    ]
+
+
+def _write_trajectory(artifact: Path, path: Path) -> None:
+    with atomic_file(path) as temporary:
+        write_tum(temporary, load_trajectory(artifact / "trajectory.npz"))
+
+
+def _write_g2o(artifact: Path, path: Path) -> None:
+    with atomic_file(path) as temporary:
+        write_g2o(temporary, load_graph(artifact))
+
+
+def _facts(runs: Mapping[str, StageRun], about: About, *, created: str) -> ReportFacts:
+    return ReportFacts(
+        title=about.project["name"],
+        created=created,
+        preset=about.project["preset"],
+        settings=about.settings,
+        artifacts={name: run.artifact.folder for name, run in runs.items()},
+        stages=tuple(
+            StageTiming(
+                name, run.done.seconds, run.done.cpu_seconds, run.done.peak_bytes, run.reused
+            )
+            for name, run in runs.items()
+        ),
+        inputs=tuple(
+            InputFile(file["name"], file["bytes"], file["sha256"])
+            for file in about.project["inputs"]
+        ),
+        versions=versions(),
+        rig=runs["frames"].figures["rig"],
+    )
+
+
+def _stage(run: StageRun) -> dict[str, Any]:
+    told = asdict(run.done) | {"reused": run.reused, "figures": dict(run.figures)}
+    return {name: round(v, 3) if isinstance(v, float) else v for name, v in told.items()}

@@ -1,0 +1,141 @@
+"""The stages as the pipeline runs them: what each reads, and which version its code has.
+
+A version goes up whenever the same inputs give another result than before.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from recon4.model.rig import Rig
+from recon4.progress import Progress
+from recon4.settings import Settings
+from recon4.store.stage import Stage
+
+_MATCHING = ("segments", "overlap", "registration", "planes", "odometry", "graph")
+
+
+def _frames(
+    *,
+    out: Path,
+    settings: Settings,
+    progress: Progress,
+    recordings: tuple[Path, ...],
+    rig: Rig | None,
+    imu: Path | None,
+    gnss: Path | None,
+) -> dict[str, Any]:
+    from recon4.recording.ingest import ingest
+    from recon4.store.frames import FrameStore
+
+    ingest(
+        recordings, out, rig=rig, imu=imu, gnss=gnss, settings=settings.ingest, progress=progress
+    )
+    store = FrameStore.open(out)
+    return {
+        "multiframes": len(store),
+        "points": store.points,
+        "rig": store.rig.name,
+        "imu": store.imu is not None,
+        "gnss": store.gnss is not None,
+        "outcome": store.report.get("outcome", "complete"),
+        "warnings": store.report.get("warnings", []),
+    }
+
+
+def _odometry(*, out: Path, settings: Settings, progress: Progress, frames: Path) -> dict[str, Any]:
+    from recon4.registration.stage import run_odometry
+    from recon4.store.frames import FrameStore
+
+    return run_odometry(FrameStore.open(frames), out, settings=settings, progress=progress)
+
+
+def _graph(
+    *, out: Path, settings: Settings, progress: Progress, frames: Path, odometry: Path
+) -> dict[str, Any]:
+    from recon4.pose_graph.search import build_graph
+    from recon4.store.frames import FrameStore
+
+    return build_graph(FrameStore.open(frames), odometry, out, settings=settings, progress=progress)
+
+
+def _verification(
+    *, out: Path, settings: Settings, progress: Progress, graph: Path
+) -> dict[str, Any]:
+    from recon4.pose_graph.files import load_graph, save_graph
+    from recon4.pose_graph.verification import verify
+    from recon4.store.atomic import write_json
+
+    found = verify(load_graph(graph), settings=settings.verification, progress=progress)
+    save_graph(out, found.graph)
+    told = found.to_json()
+    write_json(out / "verification.json", told)
+    return {name: told[name] for name in ("edges", "chi2_before", "chi2_after")}
+
+
+def _carried(
+    *, out: Path, settings: Settings, progress: Progress, odometry: Path, graph: Path
+) -> None:
+    """The dense trajectory of the odometry, moved along with the nodes of the verified graph."""
+    from recon4.model.corrections import apply_corrections
+    from recon4.pose_graph.files import load_graph
+    from recon4.store.arrays import load_trajectory, save_trajectory
+
+    dense, nodes = load_trajectory(odometry / "trajectory.npz"), load_graph(graph)
+    moved = apply_corrections(
+        dense, nodes.t_ns, T_before=dense.at(nodes.t_ns), T_after=nodes.T_map_body
+    )
+    save_trajectory(out / "trajectory.npz", moved)
+
+
+def _intensity(
+    *, out: Path, settings: Settings, progress: Progress, frames: Path, trajectory: Path
+) -> None:
+    from recon4.intensity.normalize import write_intensity
+    from recon4.store.arrays import load_trajectory
+    from recon4.store.frames import FrameStore
+
+    write_intensity(
+        FrameStore.open(frames),
+        load_trajectory(trajectory / "trajectory.npz"),
+        out,
+        settings=settings.intensity,
+        progress=progress,
+    )
+
+
+def _map(
+    *,
+    out: Path,
+    settings: Settings,
+    progress: Progress,
+    frames: Path,
+    trajectory: Path,
+    intensity: Path,
+) -> dict[str, Any]:
+    from recon4.export.laz import export_laz
+    from recon4.intensity.table import IntensityTable
+    from recon4.mapping.build import build_map
+    from recon4.store.arrays import load_trajectory
+    from recon4.store.frames import FrameStore
+
+    tiles = build_map(
+        FrameStore.open(frames),
+        load_trajectory(trajectory / "trajectory.npz"),
+        IntensityTable.load(intensity / "table.npz"),
+        out,
+        settings=settings.map,
+        progress=progress,
+    )
+    export_laz(out, out / "map.laz", progress=progress)
+    return {"points": len(tiles), "bounds_m": [corner.tolist() for corner in tiles.bounds_m]}
+
+
+FRAMES = Stage("frames", 1, ("ingest",), _frames)
+ODOMETRY = Stage("odometry", 1, ("segments", "registration", "planes", "odometry"), _odometry)
+GRAPH = Stage("graph", 1, _MATCHING, _graph)
+VERIFICATION = Stage("verification", 1, ("verification",), _verification)
+CARRIED = Stage("carried", 1, (), _carried)
+INTENSITY = Stage("intensity", 1, ("intensity",), _intensity)
+MAP = Stage("map", 1, ("map",), _map)
