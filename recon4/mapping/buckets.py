@@ -13,8 +13,6 @@ from recon4.mapping.records import RECORD, Records, Tile, in_voxel_order
 
 BURST = 6_000_000
 """Records held in memory before they are thinned and written (192 MB)."""
-PART = 2_000_000
-"""Records of a tile read at once (64 MB)."""
 
 
 class Buckets:
@@ -48,11 +46,12 @@ class Buckets:
         """The tiles that have points, in a fixed order."""
         return sorted(self._tiles)
 
-    def read(self, tile: Tile, *, part: int = PART) -> Records:
+    def read(self, tile: Tile) -> Records:
         """All records of a tile in the order of their voxels, thinned.
 
         Read and thinned part by part: memory follows what stays, not how often a place was seen.
         """
+        part = max(1, self._burst // 3)
         kept: list[Records] = []
         fresh, limit = 0, part
         for records in self._parts(tile, part):

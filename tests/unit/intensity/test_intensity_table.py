@@ -163,7 +163,7 @@ def test_dependency_on_beam_range_and_incidence_goes(tmp_path):
         before, after = getattr(shown, f"{name}_before"), getattr(shown, f"{name}_after")
         left = spread(count, after, min_count=2000) / spread(count, before, min_count=2000)
         assert left < 0.1, f"{name}: {left:.3f}"
-    assert shown.channel_count.shape == (32,) and shown.incidence_deg[0] == 0.5
+    assert shown.channel_count.shape == (32,) and shown.incidence_deg[0] == 2.0
 
 
 def test_contrast_of_materials_grows_and_a_uniform_room_becomes_even(tmp_path):

@@ -214,11 +214,11 @@ def test_a_walk_without_points_gives_a_map_without_tiles(tmp_path):
 def test_memory_does_not_grow_with_the_walk(tmp_path):
     settings = MapSettings(voxel_m=0.1, normal_cell_m=0.2)
     peaks = []
-    walk = room_walk(frames=40, points=5000)
-    for frames in (40, 160):
+    walk = room_walk(frames=10, points=5000)
+    for frames in (60, 240):
         longer = walk.repeated(frames)
         tracemalloc.start()
-        build(longer, tmp_path / f"{frames}", settings, burst=40_000)
+        build(longer, tmp_path / f"{frames}", settings, burst=20_000)
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
 
