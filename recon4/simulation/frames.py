@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 from recon4.model.multiframe import COLUMNS, Multiframe
 from recon4.model.rig import Rig
 from recon4.progress import Progress, Silent
+from recon4.recording.poses import write_tum
 from recon4.recording.velodyne_models import MODELS
 from recon4.simulation.gnss import simulate_gnss
 from recon4.simulation.imu import simulate_imu
 from recon4.simulation.lidar import Firings
 from recon4.simulation.setup import Models, Setup, prepare
-from recon4.simulation.truth import true_trajectory, write_tum
+from recon4.simulation.truth import true_trajectory
 from recon4.store.frames import FrameWriter
 
 FRAME_NS = 100_000_000

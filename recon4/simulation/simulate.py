@@ -15,6 +15,7 @@ from recon4.errors import StoreError
 from recon4.model.rig import Rig, format_rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.progress import Progress
+from recon4.recording.poses import write_tum
 from recon4.recording.velodyne_encode import PcapWriter
 from recon4.simulation.bag import BagWriter, open_bag
 from recon4.simulation.gnss import simulate_gnss
@@ -25,7 +26,7 @@ from recon4.simulation.packets import pack, write_packets, write_positions
 from recon4.simulation.reflectivity import ReflectivityWriter
 from recon4.simulation.setup import EPOCH_NS, Models, Setup, prepare
 from recon4.simulation.tables import write_gnss, write_imu, write_markers
-from recon4.simulation.truth import true_trajectory, write_tum
+from recon4.simulation.truth import true_trajectory
 from recon4.store.atomic import atomic_folder
 
 _SECOND_NS = 1_000_000_000
