@@ -21,7 +21,7 @@ from recon4.evaluation.kitti import (
     thesis_drift,
 )
 from recon4.evaluation.mesh import Mesh, distance_to, read_mesh
-from recon4.evaluation.sharpness import Sharpness, sharpness, thin
+from recon4.evaluation.sharpness import Sharpness, around, draw_places, sharpness, thin
 from recon4.evaluation.slices import RelativeError, relative_error, spread_slices
 from recon4.evaluation.text import evaluation_text
 from recon4.evaluation.trajectories import find_trajectory
@@ -157,22 +157,24 @@ def drifts(pairs: PosePairs) -> tuple[Drift, ...]:
     )
 
 
-def map_quality(chunks: Chunks, *, places: int = 2000, seed: int = 0) -> MapQuality:
+def map_quality(chunks: Chunks, *, places: int = 2000, seed: int = 0) -> MapQuality | None:
     """Density and sharpness of a map at places drawn at random.
 
     Args:
         chunks: Makes a pass over the map's points.
         places: How many places.
         seed: Seed of the draw.
+
+    Returns:
+        None for a map without points.
     """
-    rng = np.random.default_rng(seed)
-    thinned = thin(chunks(), voxel_m=0.02)
-    where = thinned[
-        np.sort(rng.choice(len(thinned), size=min(places, len(thinned)), replace=False))
-    ]
+    where = draw_places(chunks(), rng=np.random.default_rng(seed), count=places)
+    if not len(where):
+        return None
+    near = list(around(where, chunks(), radius_m=0.3))
     return MapQuality(
-        density=surface_density(chunks(), where),
-        sharpness=sharpness(thinned, rng=rng, places=places),
+        density=surface_density(near, where),
+        sharpness=sharpness(thin(near, voxel_m=0.02), places=where, radius_m=0.3),
     )
 
 

@@ -7,7 +7,7 @@ made with the same radius and voxel.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +21,7 @@ _PLANAR = 0.1
 """A place is a plane where the middle eigenvalue is at least 1/0.1 times the smallest
 and at least 0.1 times the largest."""
 _BATCH = 500
+_MERGE_POINTS = 1_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,25 +42,22 @@ class Sharpness:
 def sharpness(
     points: Array,
     *,
-    rng: np.random.Generator,
-    places: int = 5000,
+    places: Array,
     radius_m: float = 0.3,
     voxel_m: float = 0.02,
 ) -> Sharpness:
-    """Mean map entropy and plane thickness at places drawn at random from the points.
+    """Mean map entropy and plane thickness at some places.
 
     Args:
-        points: Points of the map [m], (N, 3).
-        rng: Draws the places.
-        places: How many places to look at.
+        points: Points of the map around the places, or all of it [m], (N, 3).
+        places: Where to look, see `draw_places` [m], (M, 3).
         radius_m: Neighbors of a place are the points in a ball of this radius [m].
         voxel_m: One point is kept in a cube of this size before anything else [m].
     """
     p = thin([points], voxel_m=voxel_m)
-    if not len(p):
+    if not len(p) or not len(places):
         return Sharpness(float("nan"), float("nan"), 0, 0, radius_m, voxel_m)
-    where = p[np.sort(rng.choice(len(p), size=min(places, len(p)), replace=False))]
-    tree = cKDTree(p)
+    where, tree = places, cKDTree(p)
     parts = [
         _covariances(tree, where[k : k + _BATCH], radius_m) for k in range(0, len(where), _BATCH)
     ]
@@ -80,6 +78,42 @@ def sharpness(
     )
 
 
+def draw_places(chunks: Iterable[Array], *, rng: np.random.Generator, count: int = 2000) -> Array:
+    """Points of the map drawn at random, spread evenly over its surfaces, (<= count, 3).
+
+    Args:
+        chunks: Points of the map [m], arrays of (N, 3).
+        rng: Source of randomness.
+        count: How many.
+    """
+    spread = thin(chunks, voxel_m=0.25)
+    return spread[np.sort(rng.choice(len(spread), size=min(count, len(spread)), replace=False))]
+
+
+def around(places: Array, chunks: Iterable[Array], *, radius_m: float) -> Iterator[Array]:
+    """Of every chunk the points that may lie within a radius of a place: few of a large map.
+
+    Args:
+        places: Where to look [m], (M, 3), M > 0.
+        chunks: Points of the map [m], arrays of (N, 3).
+        radius_m: Radius [m]; every point within it is kept, and some beyond.
+    """
+    shifts = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3), axis=-1).reshape(-1, 3)
+    cells = np.floor(places / radius_m).astype(np.int64)[:, None] + shifts
+    wanted = np.unique(_key(cells.reshape(-1, 3)))
+    for chunk in chunks:
+        p = np.asarray(chunk, dtype=np.float64)
+        key = _key(np.floor(p / radius_m).astype(np.int64))
+        found = np.minimum(np.searchsorted(wanted, key), len(wanted) - 1)
+        yield p[wanted[found] == key]
+
+
+def _key(cell: NDArray[np.int64]) -> NDArray[np.int64]:
+    """One number a cell; exact within a million cells of the origin."""
+    i, j, k = (cell + (1 << 20)).T
+    return (((i << 21) | j) << 21) | k
+
+
 def thin(chunks: Iterable[Array], *, voxel_m: float) -> Array:
     """The first point in every voxel, in the order they come, (M, 3).
 
@@ -87,11 +121,22 @@ def thin(chunks: Iterable[Array], *, voxel_m: float) -> Array:
         chunks: Points [m], arrays of (N, 3).
         voxel_m: Edge of the voxels [m].
     """
-    kept: list[Array] = []
+    kept: Array = np.empty((0, 3))
+    waiting: list[Array] = []
+    points = 0
     for chunk in chunks:
-        both = np.concatenate([*kept, np.asarray(chunk, dtype=np.float64)])
-        kept = [both[_first_in_voxel(both, voxel_m)]]
-    return kept[0] if kept else np.empty((0, 3))
+        part = np.asarray(chunk, dtype=np.float64)
+        waiting.append(part[_first_in_voxel(part, voxel_m)])
+        points += len(waiting[-1])
+        if points > max(len(kept), _MERGE_POINTS):
+            kept = _merged(kept, waiting, voxel_m)
+            waiting, points = [], 0
+    return _merged(kept, waiting, voxel_m)
+
+
+def _merged(kept: Array, more: list[Array], voxel_m: float) -> Array:
+    both = np.concatenate([kept, *more])
+    return both[_first_in_voxel(both, voxel_m)]
 
 
 def _first_in_voxel(p: Array, voxel_m: float) -> NDArray[np.intp]:

@@ -5,7 +5,7 @@ import pytest
 
 from recon4.errors import ConfigError
 from recon4.evaluation.density import PlanePatch, patch_density, surface_density
-from recon4.evaluation.sharpness import sharpness, thin
+from recon4.evaluation.sharpness import around, draw_places, sharpness, thin
 from recon4.geometry.se3 import SE3, Array
 
 
@@ -15,6 +15,10 @@ def plane(n: int, *, size_m: float = 3.0, noise_m: float = 0.0, seed: int = 0) -
     p[:, :2] = rng.uniform(0, size_m, (n, 2))
     p[:, 2] = noise_m * rng.normal(size=n)
     return p
+
+
+def some(points: Array, count: int) -> Array:
+    return np.random.default_rng(0).permutation(points)[:count]
 
 
 def test_points_on_a_patch_are_counted_by_hand() -> None:
@@ -60,7 +64,9 @@ def test_surface_density_of_an_even_plane_is_points_over_area() -> None:
 
 
 def test_thickness_of_a_noisy_plane_is_its_noise() -> None:
-    found = sharpness(plane(40_000, noise_m=0.015), rng=np.random.default_rng(0), places=500)
+    points = plane(40_000, noise_m=0.015)
+
+    found = sharpness(points, places=some(points, 500))
 
     assert found.plane_thickness_m == pytest.approx(0.015, rel=0.1)
     assert found.planar_places > 450
@@ -69,7 +75,7 @@ def test_thickness_of_a_noisy_plane_is_its_noise() -> None:
 def test_entropy_of_a_gaussian_ball_is_the_textbook_formula() -> None:
     points = 0.02 * np.random.default_rng(0).normal(size=(20_000, 3))
 
-    found = sharpness(points, rng=np.random.default_rng(1), places=300, radius_m=1.0, voxel_m=1e-6)
+    found = sharpness(points, places=points[:100], radius_m=1.0, voxel_m=1e-6)
 
     assert found.entropy == pytest.approx(1.5 * np.log(2 * np.pi * np.e * 0.02**2), abs=0.02)
 
@@ -80,24 +86,36 @@ def test_a_doubled_wall_is_less_sharp() -> None:
         [plane(20_000, noise_m=0.01), plane(20_000, noise_m=0.01) + np.array([0, 0, 0.08])]
     )
 
-    one = sharpness(single, rng=np.random.default_rng(0), places=500)
-    two = sharpness(double, rng=np.random.default_rng(0), places=500)
+    one = sharpness(single, places=some(single, 500))
+    two = sharpness(double, places=some(double, 500))
 
     assert two.entropy > one.entropy + 0.5
     assert two.plane_thickness_m > 3 * one.plane_thickness_m
 
 
-def test_the_same_seed_gives_the_same_figures() -> None:
+def test_the_same_seed_draws_the_same_places() -> None:
     points = plane(20_000, noise_m=0.01)
 
-    first = sharpness(points, rng=np.random.default_rng(7), places=100)
+    first = draw_places([points], rng=np.random.default_rng(7), count=100)
 
-    assert first == sharpness(points, rng=np.random.default_rng(7), places=100)
+    assert len(first) == 100
+    assert first.tolist() == draw_places([points], rng=np.random.default_rng(7), count=100).tolist()
+
+
+def test_only_points_near_a_place_are_kept_and_all_of_them() -> None:
+    points = np.random.default_rng(0).uniform(-5, 5, (20_000, 3))
+    places = points[:20]
+
+    kept = np.concatenate(list(around(places, np.array_split(points, 3), radius_m=0.5)))
+
+    distance = np.linalg.norm(points[:, None] - places[None], axis=2).min(axis=1)
+    assert {tuple(p) for p in points[distance <= 0.5]} <= {tuple(p) for p in kept}
+    assert len(kept) < 0.2 * len(points)
 
 
 @pytest.mark.parametrize("points", [np.empty((0, 3)), np.zeros((5, 3)), np.eye(3) * 100])
 def test_a_map_without_neighborhoods_has_no_figures(points: Array) -> None:
-    found = sharpness(points, rng=np.random.default_rng(0))
+    found = sharpness(points, places=points[:2])
 
     assert np.isnan(found.entropy)
     assert found.places == 0

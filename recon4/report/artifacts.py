@@ -1,0 +1,114 @@
+"""Reading what the stages left behind, as far as it is there."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import StoreError
+from recon4.geometry.se3 import Array
+from recon4.model.pose_graph import PoseGraph
+from recon4.model.trajectory import Trajectory
+from recon4.pose_graph.files import load_graph
+from recon4.store.arrays import load_trajectory
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Results:
+    """The artifacts of a run in memory, without points. None or empty = not there."""
+
+    imported: dict[str, Any] = field(default_factory=dict)
+    """``report.json`` of the frames."""
+    odometry: Trajectory | None = None
+    steps: dict[str, NDArray[Any]] = field(default_factory=dict)
+    """Columns of ``steps.npz``."""
+    graph: PoseGraph | None = None
+    """The latest graph: levelled, else verified, else as searched."""
+    verification: dict[str, Any] = field(default_factory=dict)
+    final: Trajectory | None = None
+    """The latest trajectory after the odometry."""
+    refine: dict[str, Any] = field(default_factory=dict)
+    georeference: dict[str, Any] = field(default_factory=dict)
+    intensity: dict[str, NDArray[Any]] = field(default_factory=dict)
+    """Columns of ``diagnostics.npz``."""
+
+
+def read_results(artifacts: Mapping[str, Path]) -> Results:
+    """Read what there is.
+
+    Raises:
+        StoreError: If a file is there but damaged.
+    """
+    return Results(
+        imported=_json(artifacts, "frames", "report.json"),
+        odometry=_latest_trajectory(artifacts, ("odometry",)),
+        steps=_arrays(artifacts, "odometry", "steps.npz"),
+        graph=_latest_graph(artifacts, ("level", "verification", "graph")),
+        verification=_json(artifacts, "verification", "verification.json"),
+        final=_latest_trajectory(artifacts, ("level", "refine")),
+        refine=_json(artifacts, "refine", "refine.json"),
+        georeference=_json(artifacts, "level", "georeference.json"),
+        intensity=_arrays(artifacts, "intensity", "diagnostics.npz"),
+    )
+
+
+def way_m(trajectory: Trajectory) -> Array:
+    """Way covered before each pose [m], (N,), from positions half a second apart or more.
+
+    Shorter steps would add the body's sway and the noise of the poses to the way.
+    """
+    t_s = (trajectory.t_ns - trajectory.t_ns[0]) / 1e9
+    knots = np.unique(np.append(np.arange(0.0, t_s[-1], 0.5), t_s[-1]))
+    places = np.stack([np.interp(knots, t_s, trajectory.T_a_b.t[:, k]) for k in range(3)], axis=1)
+    covered = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(places, axis=0), axis=1))])
+    return np.interp(t_s, knots, covered)
+
+
+def _file(artifacts: Mapping[str, Path], stage: str, name: str) -> Path | None:
+    path = artifacts[stage] / name if stage in artifacts else None
+    return path if path is not None and path.is_file() else None
+
+
+def _json(artifacts: Mapping[str, Path], stage: str, name: str) -> dict[str, Any]:
+    path = _file(artifacts, stage, name)
+    if path is None:
+        return {}
+    try:
+        found = json.loads(path.read_text("utf-8"))
+    except (OSError, ValueError) as error:
+        raise StoreError(f"{stage}/{name} cannot be read: {error}") from error
+    if not isinstance(found, dict):
+        raise StoreError(f"{stage}/{name}: expected an object, got {type(found).__name__}")
+    return found
+
+
+def _arrays(artifacts: Mapping[str, Path], stage: str, name: str) -> dict[str, NDArray[Any]]:
+    path = _file(artifacts, stage, name)
+    if path is None:
+        return {}
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            return {key: file[key] for key in file.files}
+    except (OSError, ValueError, EOFError) as error:
+        raise StoreError(f"{stage}/{name} cannot be read: {error}") from error
+
+
+def _latest_trajectory(artifacts: Mapping[str, Path], stages: tuple[str, ...]) -> Trajectory | None:
+    for stage in stages:
+        path = _file(artifacts, stage, "trajectory.npz")
+        if path is not None:
+            return load_trajectory(path)
+    return None
+
+
+def _latest_graph(artifacts: Mapping[str, Path], stages: tuple[str, ...]) -> PoseGraph | None:
+    for stage in stages:
+        if _file(artifacts, stage, "graph.npz") is not None:
+            return load_graph(artifacts[stage])
+    return None

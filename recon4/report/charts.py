@@ -1,0 +1,167 @@
+"""Which charts the report shows, each with a sentence saying what to look for."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.evaluation.evaluate import Evaluation
+from recon4.evaluation.slices import HISTOGRAM_STEP_M
+from recon4.geometry.se3 import Array
+from recon4.model.pose_graph import PoseGraph, Verdict
+from recon4.model.trajectory import Trajectory
+from recon4.report.drift import DriftClosed
+from recon4.report.edges import by_verdict, spanning
+from recon4.report.figures import BLUE, GREEN, GREY, ORANGE, PINK, cumulative, histogram, lines
+from recon4.report.intensity import Dependency
+
+Charts = list[tuple[str, str]]
+"""SVG and caption of each chart."""
+_COLORS = {Verdict.ACCEPTED: BLUE, Verdict.REJECTED: ORANGE, Verdict.UNVERIFIED: GREY}
+
+
+def walk_charts(
+    final: Trajectory, steps: dict[str, NDArray[Any]], drift: DriftClosed | None
+) -> Charts:
+    """Drift, height and tracking over time."""
+    out: Charts = []
+    t_s = (final.t_ns - final.t_ns[0]) / 1e9
+    time = "time from the start [s]"
+    if drift is not None:
+        series = [("", drift.t_s, 100.0 * drift.moved_m, BLUE)]
+        svg = lines("drift", series, labels=(time, "final − odometry [cm]"))
+        out.append((svg, "How far the final trajectory lies from the odometry: the drift closed."))
+    if drift is not None and len(drift.loop_before_m):
+        groups = [
+            ("odometry", 100.0 * drift.loop_before_m, ORANGE),
+            ("final", 100.0 * drift.loop_after_m, BLUE),
+        ]
+        svg = histogram("loops", groups, labels=("disagreement of a loop [cm]", "loops"), log=True)
+        out.append((svg, "Accepted loops against the odometry and against the final poses."))
+    series = [("", t_s, final.T_a_b.t[:, 2], BLUE)]
+    out.append((lines("height", series, labels=(time, "height [m]")), "Height of the body."))
+    out += _tracking_charts(steps, time)
+    return out
+
+
+def edge_charts(graph: PoseGraph) -> Charts:
+    """Errors over their limits, verification, overlap, and how well the walk is tied together."""
+    out: Charts = []
+    ratio = by_verdict(graph, lambda edge: edge.error_m / edge.limit_m if edge.limit_m else np.nan)
+    if _any(ratio):
+        svg = histogram(
+            "error",
+            _groups(ratio),
+            labels=("error / limit", "edges"),
+            limit=(1.0, "limit"),
+            log=True,
+        )
+        out.append((svg, "Registration error of each pair over its limit (V Eq. 2.7)."))
+    median = by_verdict(graph, lambda edge: 100.0 * edge.verification_m)
+    if _any(median):
+        svg = histogram(
+            "verification",
+            _groups(median),
+            labels=("median disagreement with alternative paths [cm]", "edges"),
+            limit=(10.0, "10 cm (V §2.8)"),
+            log=True,
+        )
+        out.append(
+            (svg, "Median disagreement of each edge with alternative paths between its nodes.")
+        )
+    overlap = by_verdict(graph, lambda edge: 100.0 * edge.overlap)
+    if _any(overlap):
+        svg = histogram("overlap", _groups(overlap), labels=("overlap [%]", "edges"))
+        out.append((svg, "Overlap of the two views of each pair."))
+    if len(graph) > 1:
+        t_s = (graph.t_ns[:-1] - graph.t_ns[0]) / 1e9
+        series = [("", t_s, spanning(graph).astype(np.float64), GREEN)]
+        svg = lines("span", series, labels=("time from the start [s]", "edges spanning"))
+        out.append(
+            (svg, "How many edges hold the walk together at each moment; 1 = odometry alone.")
+        )
+    return out
+
+
+def accuracy_charts(found: Evaluation) -> Charts:
+    """Errors against the truth."""
+    out: Charts = []
+    errors = found.aligned.position_errors_m
+    groups = [("poses", 100.0 * errors, BLUE)]
+    svg = histogram("ate", groups, labels=("position error after SVD alignment [cm]", "poses"))
+    out.append((svg, "Distance of the poses from the truth."))
+    if found.relative is not None and found.relative.histogram.any():
+        counts = found.relative.histogram.astype(np.float64)
+        distance_m = np.linspace(HISTOGRAM_STEP_M, len(counts) * HISTOGRAM_STEP_M, len(counts))
+        svg = cumulative("er", distance_m, counts, marks_m=(0.02, 0.05))
+        out.append((svg, "Share of the points in the slices nearer to the model (V Fig. 3.2)."))
+    return out
+
+
+def gnss_charts(placed: dict[str, Any]) -> Charts:
+    """Residuals at the GNSS positions, from ``georeference.json``."""
+    found = _holding("residual_enu_m", placed)
+    if found is None or not len(found["residual_enu_m"]):
+        return []
+    residual_cm = 100.0 * np.asarray(found["residual_enu_m"], dtype=np.float64)
+    used = np.asarray(found.get("used", np.ones(len(residual_cm))), dtype=bool)
+    t_ns = np.asarray(found.get("t_ns", np.arange(len(used)) * 10**9), dtype=np.int64)
+    t_s = ((t_ns - t_ns[0]) / 1e9)[used]
+    if not used.any():
+        return []
+    names = (("east", BLUE), ("north", ORANGE), ("up", GREEN))
+    series = [(name, t_s, residual_cm[used, k], color) for k, (name, color) in enumerate(names)]
+    svg = lines("gnss", series, labels=("time from the first fix [s]", "measured − solved [cm]"))
+    return [(svg, f"Residuals of the {used.sum()} fixes used; {(~used).sum()} were left out.")]
+
+
+def intensity_charts(curves: tuple[Dependency, ...]) -> Charts:
+    """Dependency curves; they must become flat (V Fig. 2.13)."""
+    out: Charts = []
+    for curve in curves:
+        series = [
+            ("as measured", curve.x, curve.raw, GREY),
+            ("normalized", curve.x, curve.normalized, BLUE),
+        ]
+        svg = lines(f"intensity-{curve.name}", series, labels=(curve.label, "mean intensity"))
+        words = (
+            f"Intensity by {curve.name}: the curve's deviation falls from "
+            f"{curve.spread_raw:.2f} to {curve.spread_normalized:.2f}."
+        )
+        out.append((svg, words))
+    return out
+
+
+def _tracking_charts(steps: dict[str, NDArray[Any]], time: str) -> Charts:
+    t_ns = steps.get("t_mid_ns")
+    if t_ns is None or len(t_ns) < 2:
+        return []
+    t_s = (t_ns - t_ns[0]) / 1e9
+    out: Charts = []
+    if "error_m" in steps:
+        series = [("", t_s, 100.0 * steps["error_m"].astype(np.float64), PINK)]
+        svg = lines("tracking-error", series, labels=(time, "registration error [cm]"))
+        out.append((svg, "Odometry: mean distance of matched segments from the local map."))
+    if "share" in steps:
+        series = [("", t_s, 100.0 * steps["share"].astype(np.float64), GREEN)]
+        svg = lines("tracking-share", series, labels=(time, "matched [%]"))
+        out.append((svg, "Odometry: share of the segments that found a partner."))
+    return out
+
+
+def _holding(key: str, facts: dict[str, Any]) -> dict[str, Any] | None:
+    """The first table, this one or one inside it, that has a key."""
+    if key in facts:
+        return facts
+    inner = [_holding(key, value) for value in facts.values() if isinstance(value, dict)]
+    return next((table for table in inner if table is not None), None)
+
+
+def _groups(values: dict[Verdict, Array]) -> list[tuple[str, Array, str]]:
+    return [(str(verdict), values[verdict], _COLORS[verdict]) for verdict in Verdict]
+
+
+def _any(values: dict[Verdict, Array]) -> bool:
+    return any(np.isfinite(v).any() for v in values.values())

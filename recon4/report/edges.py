@@ -1,0 +1,95 @@
+"""What became of the pairs that were tried."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import Array
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.report.plan import Path
+
+_MOST_DRAWN = 4000
+
+
+@dataclass(frozen=True, slots=True)
+class EdgeRow:
+    """One line of the table: a verdict with its reason, and how many edges of each kind."""
+
+    verdict: str
+    reason: str
+    counts: tuple[int, ...]
+    """In the order of `EdgeKind`."""
+
+    @property
+    def total(self) -> int:
+        """Edges of all kinds."""
+        return sum(self.counts)
+
+
+def edge_rows(graph: PoseGraph) -> list[EdgeRow]:
+    """Edges by verdict and reason, in the order of the enums; rows without edges are left out."""
+    count = Counter((edge.verdict, edge.reason, edge.kind) for edge in graph.edges)
+    rows = [
+        EdgeRow(str(verdict), str(reason), tuple(count[verdict, reason, kind] for kind in EdgeKind))
+        for verdict in Verdict
+        for reason in Reason
+    ]
+    return [row for row in rows if row.total]
+
+
+def edge_paths(graph: PoseGraph) -> tuple[Path, ...]:
+    """Lines between the nodes: rejected ones below, accepted ones above."""
+    place = graph.T_map_body.t
+    tests: tuple[tuple[str, Callable[[Edge], bool]], ...] = (
+        ("edge-rejected", lambda e: e.verdict is Verdict.REJECTED and not _verified_away(e)),
+        ("edge-unverified", lambda e: e.verdict is Verdict.UNVERIFIED),
+        (
+            "edge-accepted",
+            lambda e: e.verdict is Verdict.ACCEPTED and e.kind is not EdgeKind.ODOMETRY,
+        ),
+        ("edge-verification", _verified_away),
+    )
+    return tuple(
+        Path(css, tuple(place[[edge.i, edge.j]] for edge in _some(graph, test)))
+        for css, test in tests
+    )
+
+
+def drawn_share(graph: PoseGraph) -> bool:
+    """Whether every edge is drawn; else an even sample of each class is."""
+    return len(graph.edges) <= _MOST_DRAWN
+
+
+def spanning(graph: PoseGraph) -> NDArray[np.int64]:
+    """How many edges in the graph span each step between consecutive nodes, (N - 1,).
+
+    One = only the odometry holds the map together there.
+    """
+    change = np.zeros(len(graph) + 1, dtype=np.int64)
+    for edge in graph.edges:
+        if edge.in_graph:
+            change[edge.i] += 1
+            change[edge.j] -= 1
+    return np.cumsum(change)[: max(len(graph) - 1, 0)]
+
+
+def by_verdict(graph: PoseGraph, value: Callable[[Edge], float]) -> dict[Verdict, Array]:
+    """Some number of each edge, by verdict."""
+    return {
+        verdict: np.array([value(e) for e in graph.edges if e.verdict is verdict], dtype=np.float64)
+        for verdict in Verdict
+    }
+
+
+def _verified_away(edge: Edge) -> bool:
+    return edge.verdict is Verdict.REJECTED and edge.reason in {Reason.VERIFICATION, Reason.ROBUST}
+
+
+def _some(graph: PoseGraph, test: Callable[[Edge], bool]) -> list[Edge]:
+    edges = [edge for edge in graph.edges if test(edge)]
+    return edges[:: max(1, -(-len(edges) // _MOST_DRAWN))]

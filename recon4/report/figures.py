@@ -1,0 +1,146 @@
+"""Charts as inline SVG: drawn by matplotlib, colored by the page (light, dark or paper)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from io import StringIO
+from typing import Any
+
+import numpy as np
+
+from recon4.geometry.se3 import Array
+
+BLUE, ORANGE, GREEN, GREY, PINK = "#0072b2", "#d55e00", "#009e73", "#999999", "#cc79a7"
+"""Okabe & Ito 2008: told apart by color-blind readers."""
+_INK = "#010203"
+"""Stands for the page's text color until the SVG is written."""
+_STYLE: dict[Any, Any] = {
+    "svg.fonttype": "none",
+    "font.family": ["sans-serif"],
+    "font.sans-serif": ["DejaVu Sans"],
+    "font.size": 9.0,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.labelcolor": _INK,
+    "axes.edgecolor": _INK,
+    "text.color": _INK,
+    "xtick.color": _INK,
+    "ytick.color": _INK,
+    "axes.grid": True,
+    "grid.color": "#808080",
+    "grid.alpha": 0.25,
+    "grid.linewidth": 0.6,
+    "legend.frameon": False,
+    "figure.constrained_layout.use": True,
+}
+
+
+class Chart:
+    """One pair of axes; `svg` gives the finished picture."""
+
+    def __init__(self, name: str, *, height: float = 2.7) -> None:
+        import matplotlib
+        from matplotlib.backends.backend_svg import FigureCanvasSVG
+        from matplotlib.figure import Figure
+
+        self._name = name
+        self._context = matplotlib.rc_context({**_STYLE, "svg.hashsalt": f"recon4 {name}"})
+        with self._context:
+            self.figure = Figure(figsize=(5.4, height))
+            FigureCanvasSVG(self.figure)
+            self.axes: Any = self.figure.subplots()
+
+    def svg(self, *, legend: bool = True) -> str:
+        """The picture, its text in the page's color."""
+        import matplotlib
+
+        with matplotlib.rc_context({**_STYLE, "svg.hashsalt": f"recon4 {self._name}"}):
+            if legend and self.axes.get_legend_handles_labels()[0]:
+                self.axes.legend(fontsize=8)
+            buffer = StringIO()
+            self.figure.savefig(
+                buffer, format="svg", transparent=True, metadata={"Date": None, "Creator": None}
+            )
+        text = buffer.getvalue()
+        text = text[text.index("<svg") :].replace(_INK, "currentColor")
+        text = re.sub(r'(<svg[^>]*?) width="[^"]*"', r"\1", text, count=1)
+        text = re.sub(r'(<svg[^>]*?) height="[^"]*"', r"\1", text, count=1)
+        text = re.sub(r' xmlns(:xlink)?="[^"]*"', "", text)
+        return text.replace("<svg", f'<svg role="img" class="chart" data-name="{self._name}"', 1)
+
+
+def lines(
+    name: str, series: Sequence[tuple[str, Array, Array, str]], *, labels: tuple[str, str]
+) -> str:
+    """Curves ``(label, x, y, color)`` with axes named ``labels``."""
+    chart = Chart(name)
+    for label, x, y, color in series:
+        few = thinned(len(x))
+        chart.axes.plot(x[few], y[few], color=color, lw=1.3, label=label)
+    chart.axes.set(xlabel=labels[0], ylabel=labels[1])
+    chart.axes.set_ylim(bottom=min(0.0, chart.axes.get_ylim()[0]))
+    return chart.svg()
+
+
+def histogram(
+    name: str,
+    groups: Sequence[tuple[str, Array, str]],
+    *,
+    labels: tuple[str, str],
+    limit: tuple[float, str] | None = None,
+    log: bool = False,
+) -> str:
+    """Histograms of groups ``(label, values, color)`` over each other, with a line at a limit.
+
+    Args:
+        name: Unique in the page.
+        groups: What to count; values that are not finite are left out.
+        labels: Names of the axes.
+        limit: Where to draw a line, and its name.
+        log: Classes grow by a factor; values below a thousandth of the largest are in the first.
+    """
+    finite = [(label, values[np.isfinite(values)], color) for label, values, color in groups]
+    finite = [group for group in finite if len(group[1])]
+    high = max([values.max() for _, values, _ in finite] + [limit[0] if limit else 0.0, 1e-9])
+    low = 1e-3 * high if log else 0.0
+    bins = np.geomspace(low, 1.001 * high, 46) if log else np.linspace(0.0, 1.001 * high, 41)
+    chart = Chart(name)
+    for label, values, color in finite:
+        chart.axes.hist(
+            np.maximum(values, low),
+            bins=bins.tolist(),
+            histtype="stepfilled",
+            color=color,
+            alpha=0.6,
+            label=f"{label} ({len(values)})",
+        )
+    if limit is not None:
+        chart.axes.axvline(limit[0], color=_INK, lw=1.2, ls="--", label=limit[1])
+    if log:
+        chart.axes.set_xscale("log")
+        chart.axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    chart.axes.set(xlabel=labels[0], ylabel=labels[1], xlim=(low, 1.05 * high))
+    return chart.svg()
+
+
+def cumulative(name: str, distance_m: Array, counts: Array, *, marks_m: Sequence[float]) -> str:
+    """Share of points nearer than a distance (V Fig. 3.2)."""
+    chart = Chart(name)
+    share = 100.0 * np.cumsum(counts) / max(counts.sum(), 1)
+    chart.axes.plot(100.0 * distance_m, share, color=BLUE, lw=1.6)
+    for mark in marks_m:
+        at = float(np.interp(mark, distance_m, share))
+        chart.axes.plot([100 * mark] * 2, [0, at], color=ORANGE, lw=1.0, ls="--")
+        chart.axes.annotate(
+            f"{at:.1f} %", (100 * mark, at), xytext=(4, -12), textcoords="offset points"
+        )
+    chart.axes.set(
+        xlabel="distance to the model [cm]", ylabel="points nearer [%]", ylim=(0, 101), xlim=(0, 10)
+    )
+    return chart.svg(legend=False)
+
+
+def thinned(count: int, most: int = 1500) -> Any:
+    """Rows that draw a long curve with few points; the last one is among them."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))

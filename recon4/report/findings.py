@@ -1,0 +1,150 @@
+"""The verdict in words: what a person must know before using the map."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+
+from recon4.evaluation.table import number, share
+from recon4.model.pose_graph import EdgeKind, PoseGraph, Verdict
+from recon4.report.artifacts import Results
+from recon4.report.drift import DriftClosed
+from recon4.report.facts import ReportFacts
+
+_GOAL_M = 0.05
+"""Relative error that V §3 demands [m]."""
+_MOST_WARNINGS = 12
+
+
+class Level(IntEnum):
+    """How bad a finding is."""
+
+    GOOD = 0
+    NOTE = 1
+    WARNING = 2
+    BAD = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One sentence."""
+
+    level: Level
+    text: str
+
+
+_HEADLINES = {
+    Level.GOOD: "Nothing stands out.",
+    Level.NOTE: "Usable; see the notes.",
+    Level.WARNING: "Look at the warnings before you use this map.",
+    Level.BAD: "Do not use this map without checking the points below.",
+}
+
+
+def headline(findings: list[Finding]) -> tuple[Level, str]:
+    """The worst level and one sentence for it."""
+    worst = max((finding.level for finding in findings), default=Level.NOTE)
+    return worst, _HEADLINES[worst]
+
+
+def find(facts: ReportFacts, results: Results, drift: DriftClosed | None) -> list[Finding]:
+    """Everything worth saying, worst first."""
+    found = [*_tracking(results), *_loops(results.graph), *_closed(drift)]
+    found += [*_imported(results), *_accuracy(facts)]
+    found += [Finding(Level.WARNING, text) for text in facts.warnings]
+    return sorted(found, key=lambda finding: -finding.level)
+
+
+def _tracking(results: Results) -> list[Finding]:
+    lost = np.asarray(results.steps.get("lost", np.empty(0)), dtype=bool)
+    if not len(lost):
+        return []
+    if not lost.any():
+        return [Finding(Level.GOOD, f"Tracking held in all {len(lost)} multiframes.")]
+    t_ns = results.steps.get("t_mid_ns")
+    where = ""
+    if t_ns is not None:
+        where = f", first {(t_ns[lost][0] - t_ns[0]) / 1e9:.1f} s after the start"
+    how_many = f"{lost.sum()} of {len(lost)} multiframes ({share(lost.mean())})"
+    return [Finding(Level.BAD, f"Tracking was lost in {how_many}{where}.")]
+
+
+def _loops(graph: PoseGraph | None) -> list[Finding]:
+    if graph is None:
+        return []
+    loops = [e for e in graph.edges if e.kind in {EdgeKind.LOOP, EdgeKind.MANUAL}]
+    accepted = sum(edge.verdict is Verdict.ACCEPTED for edge in loops)
+    out = []
+    if accepted:
+        out.append(Finding(Level.GOOD, f"{accepted} loops hold the map together."))
+    else:
+        text = "No loop was accepted: the drift of the odometry could be neither seen nor closed."
+        out.append(Finding(Level.WARNING, text))
+    unverified = sum(edge.verdict is Verdict.UNVERIFIED for edge in loops)
+    if unverified > accepted:
+        text = f"{unverified} loops could not be confirmed by an alternative path."
+        out.append(Finding(Level.WARNING, text))
+    broken = sum(e.kind is EdgeKind.ODOMETRY and not e.in_graph for e in graph.edges)
+    if broken:
+        text = (
+            f"{broken} edges between consecutive nodes were rejected: the walk may be torn there."
+        )
+        out.append(Finding(Level.BAD, text))
+    return out
+
+
+def _closed(drift: DriftClosed | None) -> list[Finding]:
+    if drift is None:
+        return []
+    out = []
+    text = f"The loops moved the end of the walk by {_cm(drift.end_m)} and no pose by more than "
+    out.append(
+        Finding(
+            Level.NOTE if drift.largest_m > 1.0 else Level.GOOD, text + _cm(drift.largest_m) + "."
+        )
+    )
+    if len(drift.loop_after_m) and np.percentile(drift.loop_after_m, 95) > 0.10:
+        text = "One accepted loop in twenty still disagrees with the map by more than "
+        out.append(
+            Finding(Level.WARNING, text + _cm(float(np.percentile(drift.loop_after_m, 95))) + ".")
+        )
+    return out
+
+
+def _imported(results: Results) -> list[Finding]:
+    imported = results.imported
+    out = []
+    outcome = imported.get("outcome", "complete")
+    if outcome != "complete":
+        out.append(Finding(Level.WARNING, f"The recording was read as: {outcome}."))
+    warnings = [str(text) for text in imported.get("warnings", [])]
+    out += [Finding(Level.WARNING, text) for text in warnings[:_MOST_WARNINGS]]
+    if len(warnings) > _MOST_WARNINGS:
+        text = f"{len(warnings) - _MOST_WARNINGS} more remarks under Import."
+        out.append(Finding(Level.WARNING, text))
+    return out
+
+
+def _accuracy(facts: ReportFacts) -> list[Finding]:
+    found = facts.evaluation
+    if found is None:
+        return []
+    out = []
+    if found.relative is not None:
+        e_r = found.relative.point_weighted.mean_m
+        level = Level.GOOD if e_r <= _GOAL_M else Level.BAD
+        goal = "within" if e_r <= _GOAL_M else "above"
+        out.append(Finding(level, f"e_r is {_cm(e_r)}: {goal} the goal of {_cm(_GOAL_M)}."))
+    rmse = found.aligned.position_m.rmse
+    level = Level.GOOD if rmse <= _GOAL_M else Level.NOTE
+    out.append(Finding(level, f"The trajectory is off by {_cm(rmse)} (RMSE, SVD-aligned)."))
+    if found.covered_share < 0.95:
+        text = f"The truth covers only {share(found.covered_share)} of the poses."
+        out.append(Finding(Level.WARNING, text))
+    return out
+
+
+def _cm(value_m: float) -> str:
+    return f"{number(value_m, 1, 100.0)} cm" if value_m < 1.0 else f"{number(value_m, 2)} m"

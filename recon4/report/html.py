@@ -1,0 +1,163 @@
+"""The quality report: one HTML file that needs nothing else (no scripts, no network)."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from recon4.evaluation.table import number, share
+from recon4.mapping.tiles import TileSet
+from recon4.model.pose_graph import EdgeKind
+from recon4.report import pictures
+from recon4.report.artifacts import Results, read_results, way_m
+from recon4.report.drift import DriftClosed, drift_closed
+from recon4.report.edges import edge_rows
+from recon4.report.facts import ReportFacts
+from recon4.report.findings import find, headline
+from recon4.report.maps import map_chunks, rasterize
+from recon4.settings import Settings, preset
+from recon4.store.atomic import write_text
+
+
+def write_report(path: Path, *, facts: ReportFacts) -> None:
+    """Write the report of a finished run.
+
+    Args:
+        path: The ``.html`` file; replaced only when the new one is complete.
+        facts: What the pipeline knows; what is missing is left out of the report.
+
+    Raises:
+        StoreError: If an artifact is damaged or the file cannot be written.
+    """
+    write_text(path, render(facts))
+
+
+def render(facts: ReportFacts) -> str:
+    """The report as HTML text; everything that a person or a file named is escaped."""
+    results = read_results(facts.artifacts)
+    drift = None
+    if results.odometry is not None and results.final is not None and len(results.odometry):
+        drift = drift_closed(results.odometry, results.final, results.graph)
+    tiles = TileSet.open(facts.artifacts["map"]) if "map" in facts.artifacts else None
+    rasters = rasterize(lambda: map_chunks(tiles)) if tiles is not None else []
+    findings = find(facts, results, drift)
+    level, verdict = headline(findings)
+    environment = Environment(
+        loader=PackageLoader("recon4.report", "."),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {
+        "number": number,
+        "share": share,
+        "short": _short,
+        "size": _size,
+    }
+    page = environment.get_template("template.html.jinja").render(
+        facts=facts,
+        results=results,
+        findings=findings,
+        level=level.name.lower(),
+        verdict=verdict,
+        key_figures=_key_figures(facts, results, drift, tiles),
+        maps=pictures.maps_pictures(rasters),
+        walk=pictures.walk_pictures(results, drift, rasters),
+        edges=pictures.edges_pictures(results, rasters),
+        edge_kinds=[str(kind) for kind in EdgeKind],
+        edge_rows=edge_rows(results.graph) if results.graph is not None else [],
+        accuracy=pictures.accuracy_pictures(facts),
+        intensity=pictures.intensity_pictures(results, rasters),
+        placed=_flat(results.georeference),
+        placed_charts=pictures.georeference_pictures(results),
+        imported=_flat({k: v for k, v in results.imported.items() if k not in _TOLD}),
+        changed=changed_settings(facts.settings, facts.preset),
+        all_settings=_flat(asdict(facts.settings)),
+        frame=f"{facts.crs} (metres)" if facts.crs else "local map frame, z up (metres)",
+        total_s=sum(stage.seconds for stage in facts.stages),
+        peak_bytes=max((stage.peak_bytes for stage in facts.stages), default=0),
+    )
+    return page.encode("utf-8", errors="replace").decode("utf-8")  # names that are not text
+
+
+_TOLD = {"warnings", "derived", "outcome"}
+
+
+def changed_settings(settings: Settings, preset_name: str) -> list[tuple[str, str, str]]:
+    """Settings that differ from their preset: name, value in the preset, value used."""
+    usual, used = dict(_flat(asdict(preset(preset_name)))), dict(_flat(asdict(settings)))
+    return [(name, usual[name], used[name]) for name in used if used[name] != usual[name]]
+
+
+def _key_figures(
+    facts: ReportFacts, results: Results, drift: DriftClosed | None, tiles: TileSet | None
+) -> list[tuple[str, str, str]]:
+    """Name, value and unit of the figures on top."""
+    out: list[tuple[str, str, str]] = []
+    walk = results.final or results.odometry
+    if walk is not None and len(walk) > 1:
+        seconds = (walk.t_ns[-1] - walk.t_ns[0]) / 1e9
+        out.append(("duration", _duration(seconds), "min:s"))
+        out.append(("way", number(float(way_m(walk)[-1]), 1), "m"))
+    if "lost" in results.steps:
+        out.append(("multiframes", _grouped(len(results.steps["lost"])), ""))
+    if tiles is not None:
+        out.append(("points in the map", _grouped(len(tiles)), ""))
+    if results.graph is not None:
+        kept = sum(edge.in_graph for edge in results.graph.edges)
+        out.append(
+            ("edges kept / tried", f"{_grouped(kept)} / {_grouped(len(results.graph.edges))}", "")
+        )
+    if drift is not None:
+        out.append(("largest drift closed", number(drift.largest_m, 1, 100.0), "cm"))
+    if facts.evaluation is not None and facts.evaluation.relative is not None:
+        e_r = facts.evaluation.relative.point_weighted.mean_m
+        out.append(("e_r", number(e_r, 2, 100.0), "cm"))
+    if facts.stages:
+        out.append(("computing time", _duration(sum(s.seconds for s in facts.stages)), "min:s"))
+    return out
+
+
+def _flat(value: Any, prefix: str = "") -> list[tuple[str, str]]:
+    """Nested facts as dotted names and short texts."""
+    if isinstance(value, dict):
+        pairs = [
+            _flat(item, f"{prefix}.{key}" if prefix else str(key)) for key, item in value.items()
+        ]
+        return [row for rows in pairs for row in rows]
+    if isinstance(value, list | tuple) and len(value) > 6:
+        return [(prefix, f"{len(value)} entries")]
+    return [(prefix, _short(value))]
+
+
+def _short(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.6g}" if np.isfinite(value) else "–"
+    if isinstance(value, int) and not isinstance(value, bool):
+        return _grouped(value) if abs(value) >= 10_000 else str(value)
+    if isinstance(value, str):
+        return value
+    return json.dumps(value, ensure_ascii=False)
+
+
+def _grouped(count: int) -> str:
+    """12 345 678, with thin spaces that do not break."""
+    return f"{count:,}".replace(",", "\u202f")
+
+
+def _size(count: int) -> str:
+    for unit, size in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
+        if count >= size:
+            return f"{count / size:.1f} {unit}"
+    return f"{count} bytes"
+
+
+def _duration(seconds: float) -> str:
+    whole = round(seconds)
+    return f"{whole // 60}:{whole % 60:02d}"

@@ -1,0 +1,243 @@
+"""Pictures of the map: points summed into pixels, in two passes with little memory."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from io import BytesIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import Array
+from recon4.mapping.tiles import TileSet
+
+MAX_PIXELS = 1300
+_LEVELS = 48
+"""Shades of a picture: fewer compress better, more nobody sees."""
+_BIN_M = 0.25
+_TRIM = 0.001
+"""Share of points left outside the picture at either end: reflections far away."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MapChunk:
+    """Some points of the finished map."""
+
+    xyz_m: Array
+    """Points in the frame of the map [m], (N, 3)."""
+    intensity: NDArray[np.integer]
+    """As the sensor gave it, (N,)."""
+    normalized: NDArray[np.floating] | None = None
+    """After normalization, (N,); None = was not made."""
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """From where the map is looked at."""
+
+    name: str
+    right: int
+    """Axis of the map that points to the right."""
+    up: int
+    """Axis of the map that points up."""
+    labels: tuple[str, str]
+    """What the two axes are called."""
+
+
+ABOVE = View("from above", 0, 1, ("x", "y"))
+FRONT = View("from the side, along y", 0, 2, ("x", "z"))
+SIDE = View("from the side, along x", 1, 2, ("y", "z"))
+VIEWS = (ABOVE, FRONT, SIDE)
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """Which part of the plane a picture shows."""
+
+    left_m: float
+    bottom_m: float
+    pixel_m: float
+    """Edge of a pixel [m]."""
+    width: int
+    """Pixels."""
+    height: int
+    """Pixels."""
+
+
+@dataclass(slots=True, eq=False)
+class Raster:
+    """Sums over the points in each pixel; row 0 is the top of the picture."""
+
+    view: View
+    frame: Frame
+    count: Array = field(init=False)
+    z_sum: Array = field(init=False)
+    intensity_sum: Array = field(init=False)
+    normalized_sum: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        size = self.frame.width * self.frame.height
+        self.count, self.z_sum = np.zeros(size), np.zeros(size)
+        self.intensity_sum, self.normalized_sum = np.zeros(size), np.zeros(size)
+
+    def add(self, chunk: MapChunk) -> None:
+        """Add points."""
+        f, p = self.frame, chunk.xyz_m
+        column = np.floor((p[:, self.view.right] - f.left_m) / f.pixel_m).astype(np.int64)
+        row = (
+            f.height - 1 - np.floor((p[:, self.view.up] - f.bottom_m) / f.pixel_m).astype(np.int64)
+        )
+        inside = (column >= 0) & (column < f.width) & (row >= 0) & (row < f.height)
+        pixel = row[inside] * f.width + column[inside]
+        size = len(self.count)
+        self.count += np.bincount(pixel, minlength=size)
+        self.z_sum += np.bincount(pixel, weights=p[inside, 2], minlength=size)
+        if self.view is not ABOVE:
+            return  # intensity is shown from above only
+        self.intensity_sum += np.bincount(pixel, weights=chunk.intensity[inside], minlength=size)
+        if chunk.normalized is not None:
+            self.normalized_sum += np.bincount(
+                pixel, weights=chunk.normalized[inside], minlength=size
+            )
+
+    def mean(self, total: Array) -> Array:
+        """Mean a pixel, NaN where there is no point, (height, width)."""
+        with np.errstate(invalid="ignore"):
+            return (total / self.count).reshape(self.frame.height, self.frame.width)
+
+    @property
+    def density(self) -> Array:
+        """Points a pixel on a logarithmic scale, 0..1, (height, width)."""
+        seen = self.count[self.count > 0]
+        top = np.log1p(np.percentile(seen, 99.5)) if len(seen) else 1.0
+        shade = np.clip(np.log1p(self.count) / top, 0.0, 1.0)
+        return shade.reshape(self.frame.height, self.frame.width)
+
+
+def map_chunks(tiles: TileSet, *, points: int = 8_000_000) -> Iterator[MapChunk]:
+    """The points of a map, or an even sample of them where there are more than so many."""
+    share = min(1.0, points / max(len(tiles), 1))
+    normalized = "intensity_normalized" in tiles.fields
+    for tile in tiles:
+        limit = int(np.ceil(share * len(tile)))
+        fields = ["intensity", "intensity_normalized"] if normalized else ["intensity"]
+        columns = tile.read(fields, limit=limit)
+        yield MapChunk(
+            tile.xyz_m(limit=limit), columns["intensity"], columns.get("intensity_normalized")
+        )
+
+
+def rasterize(
+    chunks: Callable[[], Iterable[MapChunk]], views: tuple[View, ...] = VIEWS
+) -> list[Raster]:
+    """Sum the points of a map into pictures, one a view, all of one scale.
+
+    Args:
+        chunks: Makes a pass over the map; called twice.
+        views: From where to look.
+
+    Returns:
+        Nothing if the map has no points.
+    """
+    bounds = _bounds(chunks())
+    if bounds is None:
+        return []
+    low, high = bounds
+    pixel_m = _pixel_m(float((high - low).max()))
+    rasters = [Raster(view, _frame(view, low, high, pixel_m)) for view in views]
+    for chunk in chunks():
+        for raster in rasters:
+            raster.add(chunk)
+    return rasters
+
+
+def ink_png(raster: Raster) -> bytes:
+    """Black where the points are many: walls seen along themselves are lines."""
+    shade = _steps(raster.density**1.3)
+    rgba = np.zeros((*shade.shape, 4))
+    rgba[..., 3] = shade
+    return _png(rgba)
+
+
+def height_png(raster: Raster) -> tuple[bytes, tuple[float, float]]:
+    """Color by height, paler where the points are few; with the heights at both ends [m]."""
+    from matplotlib import colormaps
+
+    z_m = raster.mean(raster.z_sum)
+    low, high = _ends(z_m, 1.0, 99.0)
+    rgba = np.array(colormaps["viridis"](_steps((z_m - low) / (high - low))))
+    rgba[..., 3] = np.where(raster.density > 0, 0.25 + 0.75 * _steps(raster.density), 0.0)
+    return _png(rgba), (low, high)
+
+
+def intensity_png(raster: Raster, *, normalized: bool) -> tuple[bytes, tuple[float, float]]:
+    """Grey by mean intensity; with the intensities shown black and white."""
+    mean = raster.mean(raster.normalized_sum if normalized else raster.intensity_sum)
+    low, high = _ends(mean, 2.0, 98.0)
+    shade = _steps((mean - low) / (high - low))
+    seen = np.isfinite(mean)
+    return _png(np.stack([shade, shade, shade, seen.astype(float)], axis=-1)), (low, high)
+
+
+def _bounds(chunks: Iterable[MapChunk]) -> tuple[Array, Array] | None:
+    """Where all but a thousandth of the points lie, a quarter of a metre exact."""
+    bins: list[Counter[int]] = [Counter(), Counter(), Counter()]
+    for chunk in chunks:
+        if not len(chunk.xyz_m):
+            continue
+        for axis, counter in enumerate(bins):
+            key = np.floor(chunk.xyz_m[:, axis] / _BIN_M).astype(np.int64)
+            first = int(key.min())
+            for step, count in enumerate(np.bincount(key - first).tolist()):
+                counter[first + step] += count
+    if not bins[0]:
+        return None
+    ends = np.array([_trimmed(counter) for counter in bins])
+    return ends[:, 0], ends[:, 1]
+
+
+def _trimmed(counter: Counter[int]) -> tuple[float, float]:
+    keys = np.array(sorted(counter))
+    share = np.cumsum([counter[key] for key in keys]) / counter.total()
+    first = keys[np.searchsorted(share, _TRIM)]
+    last = keys[np.searchsorted(share, 1.0 - _TRIM)]
+    return float(first - 1) * _BIN_M, float(last + 2) * _BIN_M
+
+
+def _pixel_m(extent_m: float) -> float:
+    """1, 2 or 5 times a power of ten, so that the extent fits into the picture."""
+    wanted = max(extent_m / MAX_PIXELS, 0.01)
+    power = 10.0 ** np.floor(np.log10(wanted))
+    return float(next(step * power for step in (1, 2, 5, 10) if step * power >= wanted * 0.999))
+
+
+def _frame(view: View, low: Array, high: Array, pixel_m: float) -> Frame:
+    size = np.ceil((high - low) / pixel_m).astype(int)
+    return Frame(
+        float(low[view.right]),
+        float(low[view.up]),
+        pixel_m,
+        int(size[view.right]),
+        int(size[view.up]),
+    )
+
+
+def _ends(values: Array, low: float, high: float) -> tuple[float, float]:
+    seen = values[np.isfinite(values)]
+    a, b = np.percentile(seen, [low, high]) if len(seen) else (0.0, 1.0)
+    return (float(a), float(b)) if b - a > 1e-9 else (float(a) - 0.5, float(a) + 0.5)
+
+
+def _steps(shade: Array) -> Array:
+    return np.round(np.nan_to_num(np.clip(shade, 0.0, 1.0)) * _LEVELS) / _LEVELS
+
+
+def _png(rgba: Array) -> bytes:
+    from matplotlib.image import imsave
+
+    buffer = BytesIO()
+    pixels: NDArray[np.uint8] = np.round(255.0 * rgba).astype(np.uint8)
+    imsave(buffer, pixels, format="png")
+    return buffer.getvalue()

@@ -1,0 +1,113 @@
+"""Rasters, plans and charts of the report."""
+
+from io import BytesIO
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+from recon4.report.figures import histogram, lines, thinned
+from recon4.report.maps import ABOVE, SIDE, MapChunk, ink_png, intensity_png, rasterize
+from recon4.report.plan import Path, nice_step, plan_svg
+
+
+def chunk(points: list[list[float]], intensity: float = 10.0) -> MapChunk:
+    xyz = np.array(points, dtype=np.float64)
+    return MapChunk(xyz, np.full(len(xyz), intensity), np.full(len(xyz), 2 * intensity))
+
+
+def test_every_point_of_a_small_map_lies_in_its_pixel() -> None:
+    points = [[0.0, 0.0, 0.0], [10.0, 0.0, 1.0], [10.0, 5.0, 2.0], [10.0, 5.0, 4.0]]
+
+    above = rasterize(lambda: [chunk(points[:2]), chunk(points[2:])])[0]
+
+    f = above.frame
+    assert above.count.sum() == 4
+    grid = above.count.reshape(f.height, f.width)
+    row, column = np.argwhere(grid == 2)[0]
+    assert f.left_m + (column + 0.5) * f.pixel_m == pytest.approx(10.0, abs=f.pixel_m)
+    assert f.bottom_m + (f.height - row - 0.5) * f.pixel_m == pytest.approx(5.0, abs=f.pixel_m)
+    assert above.mean(above.z_sum)[row, column] == pytest.approx(3.0)
+
+
+def test_a_reflection_far_away_does_not_shrink_the_map() -> None:
+    points = np.random.default_rng(0).uniform(0, 10, (5001, 3)).tolist()
+    points[0] = [5000.0, 0.0, 0.0]
+
+    above = rasterize(lambda: [chunk(points)])[0]
+
+    assert above.frame.width * above.frame.pixel_m < 12.0
+
+
+def test_both_side_views_have_the_scale_of_the_plan() -> None:
+    points = np.random.default_rng(0).uniform([0, 0, 0], [40, 10, 3], (5000, 3)).tolist()
+
+    rasters = rasterize(lambda: [chunk(points)])
+
+    assert len({raster.frame.pixel_m for raster in rasters}) == 1
+    side = next(raster for raster in rasters if raster.view is SIDE)
+    assert side.frame.width * side.frame.pixel_m == pytest.approx(10.0, abs=1.5)
+
+
+def test_no_points_make_no_pictures() -> None:
+    assert rasterize(lambda: []) == []
+
+
+def test_more_points_are_darker_ink_and_none_are_clear() -> None:
+    points = [[0.0, 0.0, 0.0]] + [[3.0, 3.0, 0.0]] * 50
+
+    raster = rasterize(lambda: [chunk(points)])[0]
+    alpha = imread(BytesIO(ink_png(raster)))[..., 3]
+
+    grid = raster.count.reshape(alpha.shape)
+    assert 0.0 < alpha[grid == 1][0] < alpha[grid == 50][0] == 1.0
+    assert alpha[grid == 0].max() == 0.0
+
+
+def test_intensity_shows_the_mean_and_its_ends() -> None:
+    chunks = [chunk([[0.0, 0, 0]], 10.0), chunk([[0.0, 0, 0]], 30.0), chunk([[4.0, 4, 0]], 60.0)]
+
+    raster = rasterize(lambda: chunks)[0]
+
+    assert intensity_png(raster, normalized=False)[1] == pytest.approx((20.8, 59.2))
+    assert intensity_png(raster, normalized=True)[1] == pytest.approx((41.6, 118.4))
+
+
+@pytest.mark.parametrize(("extent", "step"), [(10.0, 2.0), (33.0, 5.0), (600.0, 100.0), (0.7, 0.1)])
+def test_steps_are_round_numbers(extent: float, step: float) -> None:
+    assert nice_step(extent, 6) == pytest.approx(step)
+
+
+def test_a_plan_draws_a_point_where_its_coordinates_say() -> None:
+    raster = rasterize(lambda: [chunk([[0.0, 0.0, 0.0], [10.0, 10.0, 0.0]])])[0]
+    line = np.array([[0.0, 0.0, 0.0], [10.0, 10.0, 0.0]])
+
+    svg = ElementTree.fromstring(
+        plan_svg(None, ABOVE, raster.frame, paths=(Path("line-final", (line,)),))
+    )
+
+    drawn = next(e for e in svg.iter("path") if e.get("class") == "line-final")
+    x0, y0, x1, y1 = (float(v) for v in drawn.get("d", "")[1:].replace("L", " ").split())
+    scale = 1000.0 / (raster.frame.width * raster.frame.pixel_m)
+    assert (x1 - x0, y0 - y1) == pytest.approx((10 * scale, 10 * scale), abs=0.2)
+
+
+def test_charts_are_pictures_that_take_the_color_of_the_page() -> None:
+    svg = lines("one", [("a < b", np.arange(9.0), np.arange(9.0), "#0072b2")], labels=("s", "m"))
+
+    ElementTree.fromstring(svg.replace("xlink:", ""))
+    assert "currentColor" in svg
+    assert "a &lt; b" in svg
+
+
+def test_a_histogram_of_nothing_or_of_nan_is_empty_and_no_error() -> None:
+    for values in (np.empty(0), np.full(5, np.nan)):
+        svg = histogram("none", [("all", values, "#000000")], labels=("x", "n"), log=True)
+        assert "<svg" in svg
+
+
+def test_a_long_curve_is_thinned_but_keeps_its_ends() -> None:
+    few = thinned(100_000, 100)
+
+    assert (few[0], few[-1], len(few)) == (0, 99_999, 100)

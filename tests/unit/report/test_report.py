@@ -1,0 +1,305 @@
+"""The quality report, from real artifacts of a small made-up run."""
+
+import json
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from recon4.errors import StoreError
+from recon4.evaluation.evaluate import evaluate
+from recon4.geometry.se3 import SE3
+from recon4.mapping.tiles import TileWriter
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.model.trajectory import Trajectory
+from recon4.pose_graph.files import save_graph
+from recon4.report.drift import drift_closed
+from recon4.report.edges import edge_rows, spanning
+from recon4.report.facts import InputFile, ReportFacts, StageTiming
+from recon4.report.html import changed_settings, render, write_report
+from recon4.settings import override, preset
+from recon4.store.arrays import save_trajectory
+
+EVIL = "<script>alert('x')</script><img src=http://evil.example/a onerror=alert(1)>\"'{{ 7 * 7 }}"
+STEP_NS = 100_000_000
+
+
+class Tags(HTMLParser):
+    """Collects the tags, attributes and text of a page."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.attributes: list[tuple[str, str]] = []
+        self.text = ""
+        self.feed(page)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self.attributes += [(name, value or "") for name, value in attrs]
+
+    def handle_data(self, data: str) -> None:
+        self.text += data
+
+
+def loop_walk(n: int = 200, *, drift_m: float = 0.0) -> Trajectory:
+    s = np.linspace(0.0, 2 * np.pi, n)
+    places = np.stack([4 * np.cos(s), 3 * np.sin(s), 1.5 + 0 * s], axis=1)
+    places[:, 0] += drift_m * np.linspace(0.0, 1.0, n)
+    twists = np.zeros((n, 6))
+    twists[:, 2] = s
+    return Trajectory(np.arange(n, dtype=np.int64) * STEP_NS, SE3(SE3.exp(twists).R, places))
+
+
+def edge(
+    walk: Trajectory, i: int, j: int, kind: EdgeKind, verdict: Verdict, **facts: object
+) -> Edge:
+    T_i_j = walk.T_a_b[10 * i].inverse() @ walk.T_a_b[10 * j]
+    return Edge(i=i, j=j, T_i_j=T_i_j, kind=kind, verdict=verdict, **facts)
+
+
+def graph_of(walk: Trajectory) -> PoseGraph:
+    odometry = [edge(walk, k, k + 1, EdgeKind.ODOMETRY, Verdict.ACCEPTED) for k in range(19)]
+    good = {"error_m": 0.02, "limit_m": 0.1, "overlap": 0.8, "verification_m": 0.01}
+    bad = {"reason": Reason.VERIFICATION, "verification_m": 0.4}
+    loops = [
+        edge(walk, 0, 19, EdgeKind.LOOP, Verdict.ACCEPTED, **good),
+        edge(walk, 1, 18, EdgeKind.LOOP, Verdict.UNVERIFIED, error_m=0.03, limit_m=0.1),
+        edge(walk, 2, 9, EdgeKind.LOOP, Verdict.REJECTED, reason=Reason.OVERLAP, overlap=0.1),
+        edge(
+            walk,
+            3,
+            12,
+            EdgeKind.LOOP,
+            Verdict.REJECTED,
+            **bad,
+        ),
+    ]
+    rows = np.arange(20)
+    return PoseGraph(rows * 10, walk.t_ns[rows * 10], walk.T_a_b[rows * 10], (*odometry, *loops))
+
+
+def write_map(folder: Path) -> None:
+    rng = np.random.default_rng(0)
+    n = 20_000
+    xyz = rng.uniform([-6, -5, 0], [6, 5, 3], (n, 3)).astype(np.float32)
+    xyz[: n // 2, 1] = np.sign(xyz[: n // 2, 1]) * 5
+    columns = {
+        "xyz": xyz,
+        "intensity": rng.integers(0, 100, n).astype(np.uint16),
+        "intensity_normalized": rng.uniform(0, 100, n).astype(np.float32),
+        "t_ns": np.arange(n, dtype=np.int64),
+    }
+    folder.mkdir()
+    with TileWriter(folder, list(columns), tile_m=20.0) as writer:
+        writer.facts["crs"] = None
+        writer.append((0, 0, 0), columns)
+
+
+@pytest.fixture
+def facts(tmp_path: Path) -> ReportFacts:
+    folders = {
+        name: tmp_path / name
+        for name in ("frames", "odometry", "verification", "level", "intensity")
+    }
+    for folder in folders.values():
+        folder.mkdir()
+    write_map(tmp_path / "map")
+    truth = loop_walk()
+    save_trajectory(folders["odometry"] / "trajectory.npz", loop_walk(drift_m=0.5))
+    save_trajectory(folders["level"] / "trajectory.npz", truth)
+    save_graph(folders["verification"], graph_of(truth))
+    np.savez(
+        folders["odometry"] / "steps.npz",
+        t_mid_ns=truth.t_ns,
+        error_m=np.full(200, 0.01),
+        share=np.full(200, 0.9),
+        lost=np.zeros(200, dtype=bool),
+    )
+    imported = {
+        "outcome": "lossy",
+        "warnings": [EVIL],
+        "derived": ["ring"],
+        "counts": {"points": 5_000_000},
+    }
+    (folders["frames"] / "report.json").write_text(json.dumps(imported))
+    placed = {
+        "georeferenced": True,
+        "residual_enu_m": [[0.01, -0.02, 0.03]] * 9,
+        "used": [True] * 9,
+    }
+    (folders["level"] / "georeference.json").write_text(json.dumps(placed))
+    np.savez(
+        folders["intensity"] / "diagnostics.npz",
+        channel_count=np.full(32, 1000),
+        channel_before=np.stack([np.linspace(20, 60, 32), np.ones(32)]),
+        channel_after=np.stack([np.full(32, 40.0), np.ones(32)]),
+    )
+    return ReportFacts(
+        title="office walk",
+        created="2026-11-21T10:00:00Z",
+        preset="indoor",
+        settings=override(preset("indoor"), ["map.voxel_m=0.05"]),
+        artifacts=folders | {"map": tmp_path / "map"},
+        stages=(
+            StageTiming("frames", 2.0, 3.0, 200_000_000),
+            StageTiming("map", 8.0, 9.0, 900_000_000),
+        ),
+        inputs=(InputFile("walk.pcap", 1_234_567, "ab" * 32),),
+        versions={"recon4": "0.1.0", "python": "3.11"},
+    )
+
+
+def test_the_report_says_what_was_found(facts: ReportFacts) -> None:
+    text = Tags(render(facts)).text
+
+    for words in (
+        "office walk",
+        "Look at the warnings before you use this map.",
+        "Tracking held in all 200 multiframes.",
+        "1 loops hold the map together.",
+        "no pose by more than 50.0 cm",
+        "The recording was read as: lossy.",
+        "5\u202f000\u202f000",
+        "local map frame, z up (metres)",
+        "map.voxel_m",
+        "ab" * 32,
+        "900.0 MB",
+        "verification median > limit",
+        "Residuals of the 9 fixes used; 0 were left out.",
+        "falls from 11.92 to 0.00",
+    ):
+        assert words in text, words
+
+
+def test_names_and_texts_from_files_are_shown_as_text(facts: ReportFacts) -> None:
+    inputs = (InputFile(EVIL, 1, "0"),)
+    hostile = replace(
+        facts, title=EVIL, rig=EVIL, crs=EVIL, inputs=inputs, warnings=(EVIL,), created=EVIL,
+        versions={EVIL: EVIL}, stages=(StageTiming(EVIL, 1.0, 1.0, 1),),
+    )  # fmt: skip
+
+    page = Tags(render(hostile))
+
+    assert "script" not in page.tags
+    assert "img" not in page.tags
+    assert not [name for name, _ in page.attributes if name.startswith("on")]
+    assert page.text.count("alert('x')") >= 8
+    assert "49" not in page.text.split("alert('x')")[1][:80]
+
+
+def test_the_page_asks_nothing_of_the_network(facts: ReportFacts) -> None:
+    page = Tags(render(facts))
+
+    assert not {"script", "link", "iframe", "object", "embed", "form"} & set(page.tags)
+    sources = [v for name, v in page.attributes if name in {"src", "href", "xlink:href", "action"}]
+    assert sources
+    assert all(value.startswith(("data:image/png;base64,", "#")) for value in sources)
+    assert "https://" not in render(facts)
+
+
+def test_the_same_facts_give_the_same_page(facts: ReportFacts) -> None:
+    assert render(facts) == render(facts)
+
+
+def test_lost_tracking_is_the_first_thing_said(facts: ReportFacts, tmp_path: Path) -> None:
+    lost = np.zeros(200, dtype=bool)
+    lost[50:60] = True
+    np.savez(tmp_path / "odometry" / "steps.npz", t_mid_ns=loop_walk().t_ns, lost=lost)
+
+    text = Tags(render(facts)).text
+
+    assert "Do not use this map without checking the points below." in text
+    assert "lost in 10 of 200 multiframes (5.0 %), first 5.0 s after the start" in text
+
+
+def test_no_accepted_loop_is_a_warning(facts: ReportFacts, tmp_path: Path) -> None:
+    graph = graph_of(loop_walk())
+    save_graph(tmp_path / "verification", graph.with_edges(graph.edges[:19]))
+
+    assert "No loop was accepted" in render(facts)
+
+
+def test_a_report_without_any_artifact_can_still_be_written(
+    facts: ReportFacts, tmp_path: Path
+) -> None:
+    bare = replace(facts, artifacts={}, stages=(), inputs=(), versions={})
+
+    write_report(tmp_path / "report.html", facts=bare)
+
+    text = (tmp_path / "report.html").read_text("utf-8")
+    assert "The run left nothing that could be judged." in text
+
+
+def test_a_map_without_points_has_no_pictures(facts: ReportFacts, tmp_path: Path) -> None:
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    with TileWriter(empty, ["xyz", "intensity"], tile_m=10.0) as writer:
+        writer.facts["crs"] = None
+
+    page = render(replace(facts, artifacts={"map": empty}))
+
+    assert "<image" not in page
+
+
+def test_a_damaged_artifact_is_refused_by_name(facts: ReportFacts, tmp_path: Path) -> None:
+    (tmp_path / "level" / "georeference.json").write_text("{")
+
+    with pytest.raises(StoreError, match=r"level/georeference\.json"):
+        render(facts)
+
+
+def test_a_name_that_is_not_text_does_not_stop_the_report(
+    facts: ReportFacts, tmp_path: Path
+) -> None:
+    inputs = (InputFile(b"walk-\xff.pcap".decode("utf-8", "surrogateescape"), 1, "0"),)
+
+    write_report(tmp_path / "r.html", facts=replace(facts, inputs=inputs))
+
+    assert "walk-?.pcap" in (tmp_path / "r.html").read_text("utf-8")
+
+
+def test_an_evaluation_is_shown_with_its_figures(facts: ReportFacts, tmp_path: Path) -> None:
+    found = evaluate(
+        tmp_path / "level" / "trajectory.npz", truth=tmp_path / "odometry" / "trajectory.npz"
+    )
+
+    text = Tags(render(replace(facts, evaluation=found))).text
+
+    assert "Accuracy against the truth" in text
+    assert f"{100 * found.aligned.position_m.rmse:.2f}" in text
+
+
+def test_only_settings_that_differ_from_the_preset_are_listed() -> None:
+    changed = changed_settings(override(preset("indoor"), ["map.voxel_m=0.05"]), "indoor")
+
+    assert changed == [("map.voxel_m", "0.01", "0.05")]
+
+
+def test_drift_is_the_distance_after_the_first_poses_were_made_equal() -> None:
+    turned = SE3.from_rpy(0.1, 0.2, 0.3, [5, 6, 7])
+    odometry = Trajectory(loop_walk().t_ns, turned @ loop_walk(drift_m=0.5).T_a_b)
+
+    drift = drift_closed(odometry, loop_walk(), graph_of(loop_walk()))
+
+    assert drift is not None
+    assert drift.end_m == pytest.approx(0.5)
+    assert drift.loop_before_m == pytest.approx([0.5 * 190 / 199], abs=1e-9)
+    assert drift.loop_after_m == pytest.approx([0.0], abs=1e-9)
+
+
+def test_edges_are_counted_by_verdict_reason_and_kind() -> None:
+    rows = {(row.verdict, row.reason): row for row in edge_rows(graph_of(loop_walk()))}
+
+    assert rows["accepted", ""].counts[0] == 19
+    assert rows["rejected", "overlap < t_o"].total == 1
+    assert sum(row.total for row in rows.values()) == 23
+
+
+def test_every_step_knows_how_many_edges_span_it() -> None:
+    spans = spanning(graph_of(loop_walk()))
+
+    # odometry everywhere, the loop 0-19 everywhere, the unverified 1-18 all but at the ends
+    assert spans.tolist() == [2, *[3] * 17, 2]
