@@ -145,6 +145,42 @@ def serve(
 
 
 @app.command()
+def demo(
+    *,
+    out: Annotated[Path, typer.Option(help="Folder for the recording and the project.")] = Path(
+        "demo"
+    ),
+    seconds: Annotated[float, typer.Option(help="Length of the simulated walk [s].")] = 60.0,
+    port: Annotated[int, typer.Option(help="Port of the server; 0 = any free one.")] = 8000,
+    headless: Annotated[bool, typer.Option("--headless", help="End after the report.")] = False,
+) -> None:
+    """Simulate a walk through an office, map it and show it in the browser."""
+    from recon4.model.rig import load_rig
+    from recon4.pipeline import process as make_map
+    from recon4.simulation.simulate import simulate as walk
+    from recon4.terminal import describe_summary, watcher
+
+    recording, project = out / "recording", out / "office"
+    out.mkdir(parents=True, exist_ok=True)
+    with watcher() as progress:
+        if not recording.exists():
+            walk("office", recording, seconds=seconds, seed=1, bag=False, progress=progress)
+        summary = make_map(
+            [recording / "recording.pcap"],
+            project,
+            rig=load_rig(recording / "rig.toml"),
+            imu=recording / "imu.csv",
+            progress=progress,
+        )
+    _write(describe_summary(summary.to_json(), project))
+    if not headless:
+        from app.main import serve as run
+
+        with suppress(KeyboardInterrupt):
+            run(out, port=port, open_project=project.name, on_ready=_say_url)
+
+
+@app.command()
 def settings(
     preset: PresetOption = "indoor",
     assignments: SetOption = None,

@@ -32,9 +32,6 @@ RESULTS = (
 )
 """Files of a finished run, beside its summary."""
 
-_TRAJECTORIES = ("level", "refine", "carried")
-_GRAPHS = ("level", "verification")
-
 
 @dataclass(frozen=True, slots=True)
 class About:
@@ -58,6 +55,8 @@ class Summary:
     """What the settings started from."""
     rig: str
     """Name of the rig that was used."""
+    crs: str
+    """Code of the map's CRS; empty = a local frame."""
     duration_s: float
     """Time covered by the trajectory [s]."""
     way_m: float
@@ -104,7 +103,7 @@ def publish(
     """
     (root / SUMMARY).unlink(missing_ok=True)
     created = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
-    trajectory = load_trajectory(_final(runs) / "trajectory.npz")
+    trajectory = load_trajectory(runs["level"].artifact.folder / "trajectory.npz")
     facts = _facts(runs, about, created=created)
     for write in track(_writers(root, runs, facts), progress, what="results", unit="files"):
         write()
@@ -113,6 +112,7 @@ def publish(
         created=created,
         preset=about.project["preset"],
         rig=runs["frames"].figures["rig"],
+        crs=runs["level"].figures["crs"],
         duration_s=round(int(trajectory.t_ns[-1] - trajectory.t_ns[0]) / 1e9, 3),
         way_m=round(float(way_m(trajectory)[-1]), 3),
         multiframes=runs["frames"].figures["multiframes"],
@@ -135,23 +135,17 @@ def publish(
     return summary
 
 
-def _final(runs: Mapping[str, StageRun]) -> Path:
-    """Folder of the last stage that made the trajectory better."""
-    return next(runs[name].artifact.folder for name in _TRAJECTORIES if name in runs)
-
-
 def _writers(
     root: Path, runs: Mapping[str, StageRun], facts: ReportFacts
 ) -> list[Callable[[], None]]:
     """One function a file of `RESULTS`."""
     folder = {name: run.artifact.folder for name, run in runs.items()}
-    graph = next(folder[name] for name in _GRAPHS if name in folder)
     return [
-        lambda: _write_trajectory(_final(runs), root / "trajectory.tum"),
+        lambda: _write_trajectory(folder["level"], root / "trajectory.tum"),
         lambda: _write_trajectory(folder["odometry"], root / "odometry.tum"),
         lambda: copy_file(folder["map"] / "map.laz", root / "map.laz"),
-        lambda: copy_file(graph / "edges.json", root / "edges.json"),
-        lambda: _write_g2o(graph, root / "graph.g2o"),
+        lambda: copy_file(folder["level"] / "edges.json", root / "edges.json"),
+        lambda: _write_g2o(folder["level"], root / "graph.g2o"),
         lambda: write_report(root / "report.html", facts=facts),
     ]
 
@@ -185,6 +179,7 @@ def _facts(runs: Mapping[str, StageRun], about: About, *, created: str) -> Repor
         ),
         versions=versions(),
         rig=runs["frames"].figures["rig"],
+        crs=runs["level"].figures["crs"],
     )
 
 

@@ -74,23 +74,28 @@ def _verification(
     return {name: told[name] for name in ("edges", "chi2_before", "chi2_after")}
 
 
-def _carried(
-    *, out: Path, settings: Settings, progress: Progress, odometry: Path, graph: Path
-) -> None:
-    """The dense trajectory of the odometry, moved along with the nodes of the verified graph."""
-    from recon4.model.corrections import apply_corrections
-    from recon4.pose_graph.files import load_graph
-    from recon4.store.arrays import load_trajectory, save_trajectory
+def _refine(
+    *, out: Path, settings: Settings, progress: Progress, frames: Path, odometry: Path, graph: Path
+) -> dict[str, Any]:
+    from recon4.semi_rigid.refine import refine
+    from recon4.store.frames import FrameStore
 
-    dense, nodes = load_trajectory(odometry / "trajectory.npz"), load_graph(graph)
-    moved = apply_corrections(
-        dense, nodes.t_ns, T_before=dense.at(nodes.t_ns), T_after=nodes.T_map_body
-    )
-    save_trajectory(out / "trajectory.npz", moved)
+    store = FrameStore.open(frames)
+    return refine(store, odometry, graph, out, settings=settings, progress=progress)
+
+
+def _level(
+    *, out: Path, settings: Settings, progress: Progress, frames: Path, refined: Path, graph: Path
+) -> dict[str, Any]:
+    from recon4.georeference.stage import run_level
+    from recon4.store.frames import FrameStore
+
+    store = FrameStore.open(frames)
+    return run_level(store, refined, graph, out, settings=settings, progress=progress)
 
 
 def _intensity(
-    *, out: Path, settings: Settings, progress: Progress, frames: Path, trajectory: Path
+    *, out: Path, settings: Settings, progress: Progress, frames: Path, level: Path
 ) -> None:
     from recon4.intensity.normalize import write_intensity
     from recon4.store.arrays import load_trajectory
@@ -98,7 +103,7 @@ def _intensity(
 
     write_intensity(
         FrameStore.open(frames),
-        load_trajectory(trajectory / "trajectory.npz"),
+        load_trajectory(level / "trajectory.npz"),
         out,
         settings=settings.intensity,
         progress=progress,
@@ -111,10 +116,11 @@ def _map(
     settings: Settings,
     progress: Progress,
     frames: Path,
-    trajectory: Path,
+    level: Path,
     intensity: Path,
 ) -> dict[str, Any]:
     from recon4.export.laz import export_laz
+    from recon4.georeference.stage import read_crs
     from recon4.intensity.table import IntensityTable
     from recon4.mapping.build import build_map
     from recon4.store.arrays import load_trajectory
@@ -122,13 +128,20 @@ def _map(
 
     tiles = build_map(
         FrameStore.open(frames),
-        load_trajectory(trajectory / "trajectory.npz"),
+        load_trajectory(level / "trajectory.npz"),
         IntensityTable.load(intensity / "table.npz"),
         out,
         settings=settings.map,
         progress=progress,
     )
-    export_laz(out, out / "map.laz", progress=progress)
+    crs = read_crs(level)
+    export_laz(
+        out,
+        out / "map.laz",
+        crs=crs.wkt if crs else None,
+        to_crs=crs.to_crs if crs else None,
+        progress=progress,
+    )
     return {"points": len(tiles), "bounds_m": [corner.tolist() for corner in tiles.bounds_m]}
 
 
@@ -136,6 +149,7 @@ FRAMES = Stage("frames", 1, ("ingest",), _frames)
 ODOMETRY = Stage("odometry", 1, ("segments", "registration", "planes", "odometry"), _odometry)
 GRAPH = Stage("graph", 1, _MATCHING, _graph)
 VERIFICATION = Stage("verification", 1, ("verification",), _verification)
-CARRIED = Stage("carried", 1, (), _carried)
+REFINE = Stage("refine", 1, ("segments", "planes", "odometry", "graph", "refine"), _refine)
+LEVEL = Stage("level", 1, ("level", "gnss"), _level)
 INTENSITY = Stage("intensity", 1, ("intensity",), _intensity)
 MAP = Stage("map", 1, ("map",), _map)

@@ -1,0 +1,141 @@
+"""The stage ``level``: a horizontal map and, with GNSS, one that has its place on earth."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from recon4.errors import StoreError
+from recon4.geometry.se3 import Array
+from recon4.georeference.crs import CrsTransform, Origin
+from recon4.georeference.floor import level_by_floor
+from recon4.georeference.gnss import georeference
+from recon4.georeference.level import NOT_LEVELLED, Levelling, level
+from recon4.mapping.place import place_with_origins
+from recon4.model.corrections import apply_corrections
+from recon4.model.trajectory import Trajectory
+from recon4.pose_graph.files import load_graph, save_graph
+from recon4.progress import Progress
+from recon4.settings import Settings
+from recon4.store.arrays import load_trajectory, save_trajectory
+from recon4.store.atomic import write_json
+from recon4.store.frames import FrameStore
+
+_FLOOR_FRAMES = 200
+_FLOOR_POINTS = 2000
+"""So many points of so many multiframes, evenly chosen, show where the floor is."""
+
+
+def run_level(
+    frames: FrameStore,
+    refined: Path,
+    graph: Path,
+    out: Path,
+    *,
+    settings: Settings,
+    progress: Progress,
+) -> dict[str, Any]:
+    """Level and, where positions allow, georeference a finished trajectory.
+
+    Args:
+        frames: The multiframes with IMU and GNSS.
+        refined: Folder with ``trajectory.npz``, dense.
+        graph: Folder of the verified graph.
+        out: Receives ``trajectory.npz``, the graph's files and ``georeference.json``.
+        settings: Uses level and gnss.
+        progress: Counts the steps.
+    """
+    progress.start("level", 2, "steps")
+    dense, nodes = load_trajectory(refined / "trajectory.npz"), load_graph(graph)
+    nodes = nodes.with_poses(dense.at(nodes.t_ns))
+    levelling = find_level(frames, dense, source=settings.level.source)
+    dense = Trajectory(dense.t_ns, levelling.T_level_odom @ dense.T_a_b)
+    nodes = nodes.with_poses(levelling.T_level_odom @ nodes.T_map_body)
+    progress.advance()
+    placed = georeference(nodes, dense, frames.gnss, frames.rig, settings=settings.gnss)
+    dense = apply_corrections(
+        dense, nodes.t_ns, T_before=nodes.T_map_body, T_after=placed.graph.T_map_body
+    )
+    crs = _describe_crs(placed.origin, settings.gnss.crs) if placed.origin else {}
+    save_trajectory(out / "trajectory.npz", dense)
+    save_graph(out, placed.graph)
+    told = {"levelling": levelling.to_json(), "georeference": placed.to_json(), "crs": crs}
+    write_json(out / "georeference.json", _without_nan(told))
+    progress.advance()
+    return {
+        "levelled_by": levelling.source,
+        "tilt_deg": round(float(np.rad2deg(levelling.tilt_rad)), 4),
+        "crs": crs.get("name", ""),
+        "local": placed.reason,
+    }
+
+
+def find_level(frames: FrameStore, trajectory: Trajectory, *, source: str) -> Levelling:
+    """The levelling that `LevelSettings.source` asks for; the floor is the last resort of ``auto``.
+
+    Args:
+        frames: The multiframes with IMU and GNSS.
+        trajectory: ``T_odom_body``, dense.
+        source: ``auto``, ``imu``, ``floor`` or ``none``.
+    """
+    found = NOT_LEVELLED
+    if source in {"auto", "imu"}:
+        gnss = frames.gnss if source == "auto" else None
+        found = level(trajectory, frames.imu, frames.rig, gnss=gnss)
+    if source == "floor" or (source == "auto" and found.source == "none"):
+        found = level_by_floor(*_sample_points(frames, trajectory))
+    return found
+
+
+def read_crs(artifact: Path) -> CrsTransform | None:
+    """The CRS of the artifact of the stage ``level``; None if the map has no place on earth.
+
+    Raises:
+        StoreError: If ``georeference.json`` is missing or damaged.
+    """
+    path = artifact / "georeference.json"
+    try:
+        told = json.loads(path.read_text("utf-8"))
+        if not told["crs"]:
+            return None
+        origin = told["georeference"]["origin"]
+        lat_rad, lon_rad = np.deg2rad([origin["lat_deg"], origin["lon_deg"]]).tolist()
+        return CrsTransform(Origin(lat_rad, lon_rad, origin["height_m"]), told["crs"]["name"])
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise StoreError(f"{path} cannot be read: {error!r}") from error
+
+
+def _describe_crs(origin: Origin, name: str) -> dict[str, Any]:
+    crs = CrsTransform(origin, name)
+    return {
+        "name": crs.crs,
+        "wkt": crs.wkt,
+        "operation": crs.operation,
+        "accuracy_m": crs.accuracy_m,
+        "origin_m": crs.to_crs(np.zeros((1, 3)))[0].tolist(),
+    }
+
+
+def _sample_points(frames: FrameStore, trajectory: Trajectory) -> tuple[Array, Array]:
+    """Some points of the map and where their sensor was [m], (N, 3) each."""
+    rows = np.unique(np.linspace(0, len(frames) - 1, _FLOOR_FRAMES).astype(int))
+    points, origins = [], []
+    for k in rows.tolist():
+        frame = frames[k]
+        few = frame.take(slice(None, None, 1 + len(frame) // _FLOOR_POINTS))
+        placed = place_with_origins(few, trajectory, frames.rig)
+        points.append(placed.xyz_m)
+        origins.append(placed.origin_m)
+    return np.concatenate(points), np.concatenate(origins)
+
+
+def _without_nan(value: Any) -> Any:
+    """What is not a number becomes null, which JSON knows."""
+    if isinstance(value, dict):
+        return {name: _without_nan(item) for name, item in value.items()}
+    if isinstance(value, list):
+        return [_without_nan(item) for item in value]
+    return None if isinstance(value, float) and not np.isfinite(value) else value
