@@ -258,7 +258,7 @@ class RefineSettings:
     """How much a multiframe may move in all [m]: how well the pose graph knows it."""
     total_sd_rad: float = 0.005
     """The same for its rotation [rad]."""
-    converged_step_m: float = 2e-3
+    converged_step_m: float = 4e-3
     """Stop once no multiframe moves farther than this [m]."""
 
 
@@ -314,8 +314,11 @@ class IntensitySettings:
     """Width of a bin of incidence angle [deg]."""
     max_range_m: float = 60.0
     """Farther points share the last bin of range [m]."""
-    min_count: int = 50
+    min_count: int = 200
     """Bins with fewer points fall back to a coarser bin."""
+    min_contrast: float = 0.5
+    """A bin's deviation counts as at least this share of what its mean lets expect, so that a bin
+    of one material is not stretched to the contrast of all; 0 = Eq. 2.17 as it stands."""
     normal_cell_m: float = 0.15
     """Normals come from neighborhoods of three of these cells [m]."""
     windows: int = 40
@@ -337,6 +340,7 @@ class IntensitySettings:
             self.max_range_m,
         )
         _require(self.min_count >= 2, "min_count must be at least 2", self.min_count)
+        _require(0.0 <= self.min_contrast <= 1.0, "min_contrast must be 0 to 1", self.min_contrast)
         _require(self.normal_cell_m > 0.0, "normal_cell_m must be above 0", self.normal_cell_m)
         _require(self.windows >= 1, "windows must be at least 1", self.windows)
 

@@ -75,7 +75,7 @@ def refine(
     if settings.graph.mode == "beyond":
         start, done = refine_trajectory(frames, start, lost, settings=settings, progress=progress)
     save_trajectory(out / "trajectory.npz", start)
-    facts = {"rounds": [asdict(one) for one in done]}
+    facts: dict[str, object] = {"rounds": [asdict(one) for one in done]}
     (out / "refine.json").write_text(json.dumps(facts, indent=1))
     return facts
 
