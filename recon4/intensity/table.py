@@ -28,7 +28,7 @@ class IntensityTable:
     mean: NDArray[np.float32]
     """Mean raw intensity by sensor, ring, incidence (last: no normal), range, (S, B, I, R)."""
     std: NDArray[np.float32]
-    """Standard deviation, (S, B, I, R)."""
+    """Standard deviation that is divided by, (S, B, I, R)."""
     level: NDArray[np.uint8]
     """Row of `COARSER` whose bin served, (S, B, I, R); one past the last = all points."""
     target_mean: float
@@ -62,6 +62,9 @@ class IntensityTable:
             enough = merged[..., 0] >= settings.min_count
             bin_mean, bin_std = _moments(merged)
             mean[enough], std[enough], level[enough] = bin_mean[enough], bin_std[enough], row
+        expected = target_std * mean / max(target_mean, SHIFT_ONLY)
+        scaled = std >= SHIFT_ONLY
+        std[scaled] = np.maximum(std, settings.min_contrast * expected)[scaled]
         return IntensityTable(
             mean=mean,
             std=std,

@@ -18,7 +18,7 @@ from recon4.mapping.build import build_map
 from recon4.settings import IntensitySettings, MapSettings
 from tests.room_walks import Walk, room_walk
 
-SETTINGS = IntensitySettings(max_range_m=10.0, min_count=10)
+SETTINGS = IntensitySettings(max_range_m=10.0, min_count=10, min_contrast=0.0)
 COARSE = IntensitySettings(max_range_m=10.0, min_count=20, range_bin_m=0.4, incidence_bin_deg=4.0)
 GAINS = np.random.default_rng(9).uniform(0.6, 1.4, (2, 16))
 
@@ -90,9 +90,19 @@ def test_a_bin_without_deviation_is_only_shifted():
     np.testing.assert_allclose(apply(table, [40, 50, 0], 0, 10, 2.0), [70, 80, 30], rtol=1e-5)
 
 
+def test_a_bin_of_one_material_is_not_stretched_to_the_contrast_of_all():
+    # All: 20 x 39, 20 x 41, 20 x 10, 20 x 70: mean 40, sigma 21.2; the bin itself has sigma 1.
+    sums = sums_of([39, 41] * 20, 0, 10, 2.0) + sums_of([10, 70] * 20, 1, 10, 2.0)
+    settings = IntensitySettings(max_range_m=10.0, min_count=10, min_contrast=0.5)
+
+    table = IntensityTable.of_sums(sums, settings=settings, largest=255.0)
+
+    np.testing.assert_allclose(apply(table, [39, 41], 0, 10, 2.0), [38, 42], rtol=1e-5)
+
+
 @pytest.mark.parametrize(("upper", "limit"), [("raw", 200.0), ("twice_mean", 100.0)])
 def test_results_stay_between_zero_and_the_upper_limit(upper, limit):
-    settings = IntensitySettings(max_range_m=10.0, min_count=10, upper=upper)
+    settings = IntensitySettings(max_range_m=10.0, min_count=10, min_contrast=0.0, upper=upper)
     sums = sums_of([20, 80] * 20, 0, 10, 2.0)
 
     table = IntensityTable.of_sums(sums, settings=settings, largest=200.0)
