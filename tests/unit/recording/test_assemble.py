@@ -1,0 +1,235 @@
+"""Shots to multiframes: cuts, clocks, gaps, silent sensors."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.errors import ConfigError
+from recon4.model.rig import load_rig
+from recon4.recording.assemble import Assembler, drop_invalid, moved
+from recon4.recording.report import ImportReport
+from recon4.recording.rotation import nominal, rotation_rate
+from recon4.recording.shots import Shots
+from recon4.settings import IngestSettings
+from tests.builders import T0_NS, spin
+
+SETTINGS = IngestSettings(min_range_m=0.5)
+
+
+def rows(shots, chosen):
+    names = ("t_ns", "xyz", "intensity", "ring", "echo")
+    return Shots(shots.sensor, *(getattr(shots, name)[chosen] for name in names))
+
+
+def pieces(shots, count=25):
+    edges = np.linspace(0, len(shots), count + 1).astype(int)
+    return [rows(shots, slice(a, b)) for a, b in zip(edges, edges[1:], strict=False)]
+
+
+def assemble(streams, *, rig="single-vlp16", settings=SETTINGS, **options):
+    """Feed pieces in the order of their times."""
+    report = ImportReport()
+    assembler = Assembler(load_rig(rig), settings=settings, report=report, **options)
+    frames = [frame for shots in streams for frame in assembler.push(shots)]
+    return frames + assembler.flush(), assembler, report
+
+
+def merged(*streams):
+    return sorted((p for s in streams for p in pieces(s)), key=lambda p: int(p.t_ns[0]))
+
+
+def test_one_revolution_becomes_one_frame():
+    shots = spin(seconds=1.0)
+
+    frames, assembler, report = assemble(pieces(shots))
+
+    assert [len(frame) for frame in frames] == [len(shots) // 10] * 10
+    assert [frame.frame_id for frame in frames] == list(range(10))
+    assert [frame.t_ns - T0_NS for frame in frames] == [k * 100_000_000 for k in range(10)]
+    assert assembler.rotation_hz["lidar"] == pytest.approx(10.0, abs=0.02)
+    assert any("10 Hz" in text for text in report.derived)
+
+
+def test_no_point_is_lost_or_changed():
+    shots = spin(seconds=0.95)
+
+    frames, _, _ = assemble(pieces(shots, 7))
+
+    np.testing.assert_array_equal(np.concatenate([f.xyz for f in frames]), shots.xyz)
+    times = np.concatenate([f.t_ns + f.dt_ns.astype(np.int64) for f in frames])
+    np.testing.assert_array_equal(times, shots.t_ns)
+
+
+def test_a_faster_sensor_is_cut_at_its_own_rate():
+    frames, _, _ = assemble(pieces(spin(seconds=1.0, rate_hz=20.0)))
+
+    assert len(frames) == 20
+    assert frames[0].duration_ns == 50_000_000
+
+
+def test_two_sensors_are_cut_by_the_slower():
+    fast, slow = spin(rate_hz=20.0), spin(sensor=1, rate_hz=10.0)
+
+    frames, _, _ = assemble(merged(fast, slow), rig="4recon")
+
+    assert len(frames) == 10
+    assert all(set(f.sensor.tolist()) == {0, 1} for f in frames)
+
+
+def test_a_rate_that_splits_revolutions_is_said():
+    frames, _, report = assemble(
+        pieces(spin(rate_hz=10.0)), settings=replace(SETTINGS, rate_hz=15.0)
+    )
+
+    assert len(frames) == 15
+    assert any("no whole revolutions" in text for text in report.warnings)
+
+
+def test_frames_are_given_out_while_reading():
+    assembler = Assembler(load_rig("single-vlp16"), settings=SETTINGS, report=ImportReport())
+
+    given = [len(assembler.push(p)) for p in pieces(spin(seconds=4.0), 40)]
+
+    assert given[-1] >= 1
+    assert sum(given) >= 37
+
+
+def test_a_silent_sensor_does_not_hold_the_frames_up():
+    report = ImportReport()
+    assembler = Assembler(load_rig("4recon"), settings=SETTINGS, report=report, wait_s=1.0)
+
+    given = [len(assembler.push(p)) for p in pieces(spin(seconds=5.0), 50)]
+
+    assert sum(given) >= 37
+    assert report.counts["frames_without_vertical"] >= 37
+
+
+def test_a_sensor_that_falls_silent_is_counted():
+    frames, _, report = assemble(
+        merged(spin(seconds=4.0), spin(sensor=1, seconds=2.0)), rig="4recon", wait_s=1.0
+    )
+
+    assert len(frames) == 40
+    assert report.counts["frames_without_vertical"] == 20
+
+
+def test_batches_of_one_sensor_at_a_time_lose_nothing():
+    first, second = spin(seconds=6.0), spin(sensor=1, seconds=6.0)
+    streams = [p for pair in zip(pieces(first, 2), pieces(second, 2), strict=True) for p in pair]
+
+    frames, _, report = assemble(streams, rig="4recon")
+
+    assert sum(len(f) for f in frames) == len(first) + len(second)
+    assert report.counts["points_late"] == 0
+
+
+def test_a_gap_is_a_value_with_its_time_and_frames_go_on_without_holes():
+    shots = spin(seconds=3.0)
+    t_s = (shots.t_ns - T0_NS) / 1e9
+    shots = rows(shots, (t_s < 1.0) | (t_s >= 2.0))
+
+    frames, assembler, report = assemble(pieces(shots))
+
+    (gap,) = assembler.gaps
+    assert gap.seconds == pytest.approx(1.0, abs=0.01)
+    assert (gap.t_ns - T0_NS) / 1e9 == pytest.approx(1.0, abs=0.01)
+    assert [f.frame_id for f in frames] == list(range(20))
+    assert frames[10].t_ns - T0_NS == 2_000_000_000
+    assert report.counts["frames_empty"] == 10
+
+
+def test_a_clock_that_goes_back_an_hour_is_carried_on():
+    before, after = spin(seconds=1.0), spin(seconds=1.0, t0_ns=T0_NS - 3600 * 10**9)
+
+    frames, assembler, report = assemble([*pieces(before), *pieces(after)])
+
+    assert report.counts["clock_jumps_back"] == 1
+    assert assembler.gaps[0].seconds == pytest.approx(-3601.0, abs=0.1)
+    assert sum(len(f) for f in frames) == len(before) + len(after)
+    starts = [f.t_ns for f in frames]
+    assert (np.diff(starts) > 0).all()
+    assert starts[-1] - starts[0] < 2_100_000_000
+
+
+def test_sensors_whose_clocks_jump_together_stay_together():
+    hour = 3600 * 10**9
+    streams = merged(spin(seconds=1.0), spin(sensor=1, seconds=1.0))
+    late = T0_NS + 1_000_000_000 - hour
+    streams += merged(
+        spin(seconds=1.0, t0_ns=late), spin(sensor=1, seconds=1.0, t0_ns=late + 2_000_000)
+    )
+
+    frames, _, report = assemble(streams, rig="4recon")
+
+    assert report.counts["clock_jumps_back"] == 2
+    last = frames[-1]
+    first_of = [int(last.dt_ns[last.sensor == k].max()) for k in (0, 1)]
+    assert abs(first_of[0] - first_of[1]) < 3_000_000
+
+
+def test_clocks_that_have_nothing_in_common_are_refused():
+    with pytest.raises(ConfigError, match=r"clocks of horizontal, vertical differ by 3600"):
+        assemble(
+            [spin(seconds=2.0), spin(sensor=1, seconds=2.0, t0_ns=T0_NS + 3600 * 10**9)],
+            rig="4recon",
+        )
+
+
+def test_scraps_at_the_ends_are_left_out_and_counted():
+    main = spin(seconds=1.0)
+    first = rows(main, np.r_[0:50, len(main) // 10 : len(main)])
+    tail = rows(moved(main, 1_000_000_000), slice(0, 50))
+
+    frames, _, report = assemble([first, tail])
+
+    assert [f.frame_id for f in frames] == list(range(9))
+    assert report.counts["frames_incomplete_dropped"] == 2
+    assert report.counts["points_of_incomplete_frames"] == 100
+
+
+def test_half_a_revolution_at_the_end_is_kept():
+    frames, _, _ = assemble(pieces(spin(seconds=1.05)))
+
+    assert len(frames) == 11
+    assert len(frames[-1]) == pytest.approx(len(frames[0]) / 2, rel=0.05)
+
+
+def test_bad_points_are_dropped_by_reason():
+    shots = spin(seconds=0.1)
+    xyz = shots.xyz.copy()
+    xyz[0], xyz[1], xyz[2], xyz[3], xyz[4] = np.nan, np.inf, 0.0, 0.1, 500.0
+    report = ImportReport()
+
+    kept = drop_invalid(
+        Shots(0, shots.t_ns, xyz, shots.intensity, shots.ring, shots.echo),
+        settings=SETTINGS,
+        report=report,
+    )
+
+    assert len(kept) == len(shots) - 5
+    expected = {"points_invalid": 3, "points_near": 1, "points_far": 1}
+    assert report.counts == expected
+
+
+def test_nothing_in_gives_nothing_out():
+    assert assemble([])[0] == []
+
+
+@pytest.mark.parametrize("rate_hz", [5.0, 9.04, 10.0, 11.775, 20.0])
+def test_the_rotation_is_measured_with_half_of_the_view_blocked(rate_hz):
+    shots = spin(seconds=0.8, rate_hz=rate_hz)
+    seen = rows(shots, shots.xyz[:, 0] > 0.5)
+
+    assert rotation_rate(seen.t_ns, seen.xyz) == pytest.approx(rate_hz, rel=0.002)
+
+
+def test_a_sensor_that_does_not_turn_has_no_rate():
+    rng = np.random.default_rng(5)
+    t_ns = np.sort(rng.integers(0, 10**9, 5000))
+
+    assert np.isnan(rotation_rate(t_ns, rng.normal(size=(5000, 3)).astype(np.float32)))
+
+
+def test_a_rate_near_a_whole_number_is_that_number():
+    assert (nominal(9.98), nominal(11.775)) == (10.0, 11.775)

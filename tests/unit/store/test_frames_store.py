@@ -1,0 +1,162 @@
+"""Frame store: what is written is what is read, and damage is refused."""
+
+import errno
+import pickle
+import resource
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from recon4.errors import NoSpace, StoreError
+from recon4.model.multiframe import COLUMNS, Multiframe
+from recon4.model.rig import load_rig
+from recon4.model.samples import ImuSamples
+from recon4.store.frames import FrameStore, FrameWriter
+
+
+def multiframe(frame_id, count, rng):
+    columns = {
+        name: rng.integers(0, 200, (count, width) if width > 1 else count).astype(dtype)
+        for name, (dtype, width) in COLUMNS.items()
+    }
+    return Multiframe(frame_id, frame_id * 100_000_000, 100_000_000, **columns)
+
+
+@pytest.fixture
+def written(tmp_path):
+    rng = np.random.default_rng(1)
+    frames = [multiframe(0, 5, rng), multiframe(1, 0, rng), multiframe(2, 7, rng)]
+    imu = ImuSamples(np.array([1, 2], np.int64), np.ones((2, 3)), np.zeros((2, 3)))
+    with FrameWriter(tmp_path / "store", load_rig("4recon")) as writer:
+        for frame in frames:
+            writer.append(frame)
+        writer.add(imu=imu, report={"derived": ["ring"]})
+    return tmp_path / "store", frames
+
+
+def test_frames_come_back_as_they_were(written):
+    folder, frames = written
+
+    store = FrameStore.open(folder)
+
+    assert len(store) == 3
+    assert store.points == 12
+    for before, after in zip(frames, store, strict=True):
+        assert (after.frame_id, after.t_ns) == (before.frame_id, before.t_ns)
+        for name in COLUMNS:
+            np.testing.assert_array_equal(getattr(after, name), getattr(before, name))
+
+
+def test_what_belongs_to_the_recording_comes_back(written):
+    store = FrameStore.open(written[0])
+
+    assert store.t_mid_ns.tolist() == [50_000_000, 150_000_000, 250_000_000]
+    assert store.rig.name == "4RECON"
+    assert store.imu is not None
+    assert len(store.imu) == 2
+    assert store.gnss is None
+    assert store.report == {"derived": ["ring"]}
+
+
+def test_columns_are_plain_npy_files(written):
+    assert np.load(written[0] / "xyz.npy").shape == (12, 3)
+    assert np.load(written[0] / "dt_ns.npy").dtype == np.int32
+
+
+def test_writing_to_a_frame_does_not_change_the_file(written):
+    FrameStore.open(written[0])[0].xyz[:] = -1.0
+
+    assert (FrameStore.open(written[0])[0].xyz >= 0).all()
+
+
+def test_a_store_travels_to_another_process(written):
+    store = pickle.loads(pickle.dumps(FrameStore.open(written[0])))
+
+    assert len(store[2]) == 7
+
+
+def test_a_frame_that_is_not_there_is_an_index_error(written):
+    with pytest.raises(IndexError, match="frame 3 of 3"):
+        FrameStore.open(written[0])[3]
+
+
+def test_an_interrupted_writer_leaves_no_store(tmp_path):
+    with pytest.raises(KeyboardInterrupt), FrameWriter(tmp_path, load_rig("4recon")) as writer:
+        writer.append(multiframe(0, 5, np.random.default_rng(1)))
+        raise KeyboardInterrupt
+
+    with pytest.raises(StoreError, match="not a finished frame store"):
+        FrameStore.open(tmp_path)
+
+
+@pytest.mark.parametrize("name", [*COLUMNS, "index"])
+def test_a_cut_column_is_refused(written, name):
+    path = written[0] / f"{name}.npy"
+    path.write_bytes(path.read_bytes()[:-1])
+
+    with pytest.raises(StoreError, match=name if name != "index" else "not a finished"):
+        FrameStore.open(written[0])
+
+
+def test_an_empty_store_can_be_opened(tmp_path):
+    with FrameWriter(tmp_path / "store", load_rig("4recon")):
+        pass
+
+    store = FrameStore.open(tmp_path / "store")
+
+    assert (len(store), store.points, len(store.t_mid_ns)) == (0, 0, 0)
+
+
+def test_a_full_disk_is_named(tmp_path):
+    """A real limit on the size of files, in a process of its own."""
+    program = f"""
+import resource, signal, sys
+import numpy as np
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+from recon4.errors import NoSpace
+from recon4.model.multiframe import Multiframe
+from recon4.model.rig import load_rig
+from recon4.store.frames import FrameWriter
+from pathlib import Path
+n = 20_000
+zero = np.zeros(n, np.uint8)
+frame = Multiframe(0, 0, 1, np.zeros((n, 3), np.float32), zero.astype(np.uint16), zero, zero, zero,
+                   zero.astype(np.int32))
+try:
+    with FrameWriter(Path({str(tmp_path / "store")!r}), load_rig("4recon")) as writer:
+        writer.append(frame)
+except NoSpace as error:
+    sys.exit(0 if "cannot write" in str(error) else 3)
+sys.exit(4)
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, timeout=60)
+
+    assert done.returncode == 0, done.stderr.decode()
+
+
+def test_no_space_left_becomes_no_space(tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("recon4.store.frames.os.fsync", full)
+
+    with pytest.raises(NoSpace, match="No space left"), FrameWriter(tmp_path, load_rig("4recon")):
+        pass
+
+
+def test_memory_does_not_follow_the_walk(tmp_path):
+    rng = np.random.default_rng(1)
+    with FrameWriter(tmp_path / "store", load_rig("4recon")) as writer:
+        for k in range(60):
+            writer.append(multiframe(k, 60_000, rng))
+    store = FrameStore.open(tmp_path / "store")
+    _ = store[0].xyz.sum()
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+    total = sum(float(frame.xyz.sum()) for frame in store)
+
+    assert total > 0
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 20_000
