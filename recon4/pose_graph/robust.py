@@ -32,6 +32,8 @@ _LOOP_NODES = 10
 _GROUP_NODES = 3
 """Loops whose ends lie at most so many nodes apart form a group."""
 _MAX_GROUPS = 4
+_FEW_OUTLIERS = 0.05
+"""If the first start turns down no larger share of the loops, there is no need for others."""
 
 
 def optimize_gnc(
@@ -43,10 +45,11 @@ def optimize_gnc(
 ) -> Solution:
     """Truncated least squares: poses, and weights that are 0 or 1.
 
-    The starts: a Cauchy solve; graduated non-convexity from the convex problem (Yang 2020,
-    eqs. 12-14); and the odometry with only one of the largest groups of neighboring loops, which
-    is what finds the truth when loops are few, alone and mostly false. Protected edges always
-    count. The same graph gives the same bits.
+    The first start is a Cauchy solve. If that turns down more than a few loops, others compete:
+    graduated non-convexity from the convex problem (Yang 2020, eqs. 12-14), and the odometry with
+    only one of the largest groups of neighboring loops, which is what finds the truth when loops
+    are few, alone and mostly false. Protected edges always count. The same graph gives the same
+    bits.
 
     Args:
         graph: As for `solve.optimize`.
@@ -69,6 +72,8 @@ def optimize_gnc(
         cost = _truncated_cost(of, squared_residuals(T_map_body, of), limit=limit)
         if cost < lowest * (1.0 - 1e-9):
             best, lowest = (T_map_body, weights, used), cost
+        if _is_plain(of, weights):
+            break
     assert best is not None
     return solved(graph, of, best[0], weights=best[1], iterations=best[2])
 
@@ -132,6 +137,12 @@ def _settle(problem: Problem, T_map_body: SE3, *, limit: float) -> tuple[SE3, Ar
 def _truncated_cost(of: Relations, chi2: Array, *, limit: float) -> float:
     used = np.where(of.protected, chi2, np.minimum(chi2, limit))
     return float(used[of.in_graph].sum())
+
+
+def _is_plain(of: Relations, weights: Array) -> bool:
+    """Whether nearly all loops agree, so that no other start can do better."""
+    loops = of.in_graph & (np.abs(of.j - of.i) >= _LOOP_NODES)
+    return bool((loops & (weights == 0.0)).sum() <= _FEW_OUTLIERS * loops.sum())
 
 
 def _groups(of: Relations, loops: Flags) -> list[Flags]:
