@@ -163,7 +163,7 @@ def _data_facts(t_ns: Times, payloads: Payloads) -> dict[str, object]:
     flags = as_packets(payloads)["blocks"]["flag"]
     if ((flags == LOWER_BLOCK_FLAG).any(axis=1) & (flags == BLOCK_FLAG).any(axis=1)).mean() > 0.3:
         return {"kind": "data", "model": "HDL-64E"}
-    rows = sound_packets(payloads, ImportReport())
+    rows = np.flatnonzero(sound_packets(payloads, ImportReport()))
     if len(rows) < len(payloads) // 2 or not len(rows):
         return {"kind": "other"}
     packets = as_packets(payloads[rows])

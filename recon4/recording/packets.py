@@ -25,8 +25,8 @@ def as_packets(payloads: Payloads) -> NDArray[np.void]:
     return np.ascontiguousarray(payloads).view(DATA_PACKET)[:, 0]
 
 
-def sound_packets(payloads: Payloads, report: ImportReport) -> NDArray[np.intp]:
-    """Rows of the payloads that are data packets.
+def sound_packets(payloads: Payloads, report: ImportReport) -> NDArray[np.bool_]:
+    """Which of the payloads are data packets, (N,).
 
     Counts ``packets`` and what is dropped: ``packets_wrong_length`` (not 1206 bytes),
     ``packets_hdl64`` (blocks of the lower lasers of an HDL-64E), ``packets_wrong_flag`` (any of
@@ -36,19 +36,22 @@ def sound_packets(payloads: Payloads, report: ImportReport) -> NDArray[np.intp]:
     report.count("packets", len(payloads))
     if payloads.ndim != 2 or payloads.shape[1] != DATA_SIZE:
         report.count("packets_wrong_length", len(payloads))
-        return np.zeros(0, dtype=np.intp)
+        return np.zeros(len(payloads), dtype=np.bool_)
     packets = as_packets(payloads)
     flags = packets["blocks"]["flag"]
     flagged = (flags == BLOCK_FLAG).all(axis=1)
-    known = (flags == BLOCK_FLAG) | (flags == LOWER_BLOCK_FLAG)
-    lower = ~flagged & known.all(axis=1)
     turned = (packets["blocks"]["azimuth_cdeg"] <= 36000).all(axis=1)
     timed = packets["time_us"] < HOUR_US
+    sound = flagged & turned & timed
+    if sound.all():
+        return sound
+    known = (flags == BLOCK_FLAG) | (flags == LOWER_BLOCK_FLAG)
+    lower = ~flagged & known.all(axis=1)
     report.count("packets_hdl64", int(lower.sum()))
     report.count("packets_wrong_flag", int((~flagged & ~lower).sum()))
     report.count("packets_wrong_azimuth", int((flagged & ~turned).sum()))
     report.count("packets_wrong_time", int((flagged & turned & ~timed).sum()))
-    return np.flatnonzero(flagged & turned & timed)
+    return sound
 
 
 @dataclass(slots=True, eq=False)
@@ -70,16 +73,24 @@ class PacketOrder:
         """
         if not len(t_ns):
             return self._give(self._t_ns, self._payloads, 0)
+        newest = max(
+            (int(times[-1]) for times in (self._t_ns, self._given) if len(times)), default=0
+        )
+        tidy = t_ns[0] > newest and np.all(t_ns[1:] > t_ns[:-1])
         t_ns = np.concatenate([self._t_ns, t_ns])
         payloads = np.concatenate([self._payloads, payloads])
+        if not tidy:
+            t_ns, payloads = self._sorted(t_ns, payloads)
+        ready = int(np.searchsorted(t_ns, t_ns[-1:] - self.window_ns)[0]) if len(t_ns) else 0
+        return self._give(t_ns, payloads, ready)
+
+    def _sorted(self, t_ns: Times, payloads: Payloads) -> tuple[Times, Payloads]:
         backward = np.diff(t_ns, prepend=t_ns[0]) < 0
         order = np.argsort(t_ns, kind="stable")
         t_ns, payloads = t_ns[order], payloads[order]
         kept = self._new(t_ns)
         self.report.count("packets_out_of_order", int((backward & kept[np.argsort(order)]).sum()))
-        t_ns, payloads = t_ns[kept], payloads[kept]
-        ready = int(np.searchsorted(t_ns, t_ns[-1:] - self.window_ns)[0]) if len(t_ns) else 0
-        return self._give(t_ns, payloads, ready)
+        return t_ns[kept], payloads[kept]
 
     def flush(self) -> tuple[Times, Payloads]:
         """Give the rest."""

@@ -186,12 +186,17 @@ class PacketDecoder:
         Returns:
             Shots in firing order; those of the last ``settings.reorder_window_s`` are held back.
         """
-        rows = sound_packets(payloads, self._report)
-        rows = rows[self._same_product(payloads[rows])]
-        payloads = payloads[rows]
-        stamps = as_packets(payloads)["time_us"] if len(rows) else np.zeros(0, dtype=np.uint32)
-        t_ns, trusted = self.clock.push(np.asarray(t_arrival_ns)[rows], stamps)
-        return self._shots(*self._order.push(t_ns[trusted], payloads[trusted]))
+        t_arrival_ns = np.asarray(t_arrival_ns, dtype=np.int64)
+        for choose in (self._sound, self._same_product):
+            kept = choose(payloads)
+            if not kept.all():
+                t_arrival_ns, payloads = t_arrival_ns[kept], payloads[kept]
+        if not len(payloads):
+            return self._shots(*self._order.push(t_arrival_ns, payloads))
+        t_ns, trusted = self.clock.push(t_arrival_ns, as_packets(payloads)["time_us"])
+        if not trusted.all():
+            t_ns, payloads = t_ns[trusted], payloads[trusted]
+        return self._shots(*self._order.push(t_ns, payloads))
 
     def flush(self) -> Shots:
         """Give out what was held back."""
@@ -201,6 +206,9 @@ class PacketDecoder:
     def rotation_hz(self) -> float:
         """Measured rotation rate [Hz]; NaN before the first packets."""
         return self.rotation.hz
+
+    def _sound(self, payloads: Payloads) -> NDArray[np.bool_]:
+        return sound_packets(payloads, self._report)
 
     def _same_product(self, payloads: Payloads) -> NDArray[np.bool_]:
         """Packets with the product byte of the first ones; the report tells if it is another."""
@@ -244,28 +252,38 @@ class PacketDecoder:
         packet_s = self.model.packet_s(return_mode)
         self._report.count("packets_missing", self._interval.missing(t_ns, packet_s))
         self.rotation.push(t_ns, payloads, packet_s)
-        fired = model_of_interval(self._interval.median_s, return_mode)
+        usual_s = self._interval.usual_s()
+        fired = model_of_interval(usual_s, return_mode) if usual_s else None
         if fired is not None and fired != self.model.name:
             self._report.warn(
-                f"{self._sensor.name}: a packet every {1e3 * self._interval.median_s:.3f} ms is "
-                f"what a {fired} sends, but it is decoded as {self.model.name}"
+                f"{self._sensor.name}: a packet every {1e3 * usual_s:.3f} ms is what a {fired} "
+                f"sends, but it is decoded as {self.model.name}"
             )
 
 
 @dataclass(slots=True)
 class _Interval:
-    """Time between packets: its median over the first ones, and the holes."""
+    """Time between packets: what is usual among the first ones, and the holes."""
 
-    median_s: float = float("nan")
     _first: list[float] = field(default_factory=list)
     _last_ns: int | None = None
+    _told: bool = False
 
     def missing(self, t_ns: Times, packet_s: float) -> int:
         """How many packets seem to be missing, in pauses of less than a second."""
         steps_s = np.diff(t_ns if self._last_ns is None else np.append(self._last_ns, t_ns)) / 1e9
         self._last_ns = int(t_ns[-1])
-        if len(self._first) < 500 and len(steps_s):
-            self._first.extend(steps_s.tolist())
-            self.median_s = float(np.median(self._first)) if len(self._first) > 20 else float("nan")
-        short = steps_s[(steps_s > 1.5 * packet_s) & (steps_s < 1.0)]
+        if not self._told:
+            self._first.extend(steps_s[:100].tolist())
+        hole = steps_s > 1.5 * packet_s
+        if not hole.any():
+            return 0
+        short = steps_s[hole & (steps_s < 1.0)]
         return int(np.rint(short / packet_s - 1).sum())
+
+    def usual_s(self) -> float:
+        """Median of the first 100 or more steps [s], once; 0 before and after."""
+        if self._told or len(self._first) < 100:
+            return 0.0
+        self._told = True
+        return float(np.median(self._first))
