@@ -45,6 +45,23 @@ JsonOption = Annotated[bool, typer.Option("--json", help="Write JSON for program
 
 
 @app.command()
+def info(
+    recording: Annotated[Path, typer.Argument(help="pcap, bag, folder of clouds or CSV.")],
+    as_json: JsonOption = False,
+) -> None:
+    """Say what a recording holds, what will be derived and what is missing."""
+    from dataclasses import asdict
+
+    from recon4.recording.info import describe
+
+    found = describe(recording)
+    if as_json:
+        _write_json(asdict(found))
+    else:
+        _write("\n".join(found.lines()))
+
+
+@app.command()
 def process(
     recordings: Annotated[list[Path], typer.Argument(help="pcap, bag or folder of clouds.")],
     *,
@@ -129,6 +146,21 @@ def evaluate(
         _write_json(found.to_json())
     else:
         _write(found.table())
+
+
+@app.command()
+def export(
+    project: Annotated[Path, typer.Argument(help="Folder that `recon4 process --out` made.")],
+    file: Annotated[Path, typer.Argument(help="File to write; its ending says what: .laz, .ply.")],
+    crs: Annotated[str, typer.Option(help="As EPSG:5514+8357; default: the map's.")] = "",
+) -> None:
+    """Write the map of a project to a file, in any CRS when it is georeferenced."""
+    from recon4.results import export_map
+    from recon4.terminal import watcher
+
+    with watcher() as progress:
+        points = export_map(project, file, crs=crs, progress=progress)
+    _write(f"{points} points in {file}")
 
 
 @app.command()
@@ -338,7 +370,9 @@ def _write(text: str, end: str = "\n") -> None:
 
 
 def _write_json(value: Any) -> None:
-    _write(json.dumps(value, indent=1, ensure_ascii=False))
+    from recon4.store.atomic import null_for_nan
+
+    _write(json.dumps(null_for_nan(value), indent=1, ensure_ascii=False))
 
 
 def _complain(text: str) -> None:

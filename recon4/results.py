@@ -8,6 +8,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from recon4.errors import ConfigError, StoreError
+from recon4.export.laz import export_laz
+from recon4.export.ply import export_ply
+from recon4.georeference.stage import read_crs
 from recon4.pose_graph.files import load_graph
 from recon4.pose_graph.g2o import write_g2o
 from recon4.progress import Progress, track
@@ -19,6 +23,7 @@ from recon4.settings import Settings, to_json
 from recon4.store.arrays import load_trajectory
 from recon4.store.atomic import atomic_file, copy_file, write_json
 from recon4.store.hashing import hash_file
+from recon4.store.project import read_artifacts
 from recon4.store.stage import StageRun, versions
 
 SUMMARY = "summary.json"
@@ -133,6 +138,36 @@ def publish(
     )
     write_json(root / SUMMARY, summary.to_json())
     return summary
+
+
+def export_map(project: Path, path: Path, *, crs: str, progress: Progress) -> int:
+    """Write the map of a finished run as LAZ or PLY.
+
+    Args:
+        project: The project folder.
+        path: File to write; ``.laz`` or ``.ply``.
+        crs: Code of a CRS; empty = that of the map, or its local frame.
+        progress: Counts points.
+
+    Returns:
+        How many points were written.
+
+    Raises:
+        ConfigError: If the ending is another.
+        GeoreferenceError: If a CRS is asked for and the map has no place on earth.
+        StoreError: If there is no map yet or the file cannot be written.
+    """
+    artifacts = read_artifacts(project)
+    if "map" not in artifacts:
+        raise StoreError(f"{project} has no map yet: run recon4 process")
+    place = read_crs(artifacts["level"], crs)
+    to_crs = place.to_crs if place else None
+    if path.suffix == ".laz":
+        wkt = place.wkt if place else None
+        return export_laz(artifacts["map"], path, crs=wkt, to_crs=to_crs, progress=progress)
+    if path.suffix == ".ply":
+        return export_ply(artifacts["map"], path, to_crs=to_crs, progress=progress)
+    raise ConfigError(f"a map is written as .laz or .ply, got {path.name}")
 
 
 def _writers(

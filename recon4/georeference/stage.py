@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from recon4.errors import StoreError
+from recon4.errors import GeoreferenceError, StoreError
 from recon4.geometry.se3 import Array
 from recon4.georeference.crs import CrsTransform, Origin
 from recon4.georeference.floor import level_by_floor
@@ -21,7 +21,7 @@ from recon4.pose_graph.files import load_graph, save_graph
 from recon4.progress import Progress
 from recon4.settings import Settings
 from recon4.store.arrays import load_trajectory, save_trajectory
-from recon4.store.atomic import write_json
+from recon4.store.atomic import null_for_nan, write_json
 from recon4.store.frames import FrameStore
 
 _FLOOR_FRAMES = 200
@@ -63,7 +63,7 @@ def run_level(
     save_trajectory(out / "trajectory.npz", dense)
     save_graph(out, placed.graph)
     told = {"levelling": levelling.to_json(), "georeference": placed.to_json(), "crs": crs}
-    write_json(out / "georeference.json", _without_nan(told))
+    write_json(out / "georeference.json", null_for_nan(told))
     progress.advance()
     return {
         "levelled_by": levelling.source,
@@ -90,20 +90,31 @@ def find_level(frames: FrameStore, trajectory: Trajectory, *, source: str) -> Le
     return found
 
 
-def read_crs(artifact: Path) -> CrsTransform | None:
+def read_crs(artifact: Path, crs: str = "") -> CrsTransform | None:
     """The CRS of the artifact of the stage ``level``; None if the map has no place on earth.
 
+    Args:
+        artifact: Folder of the stage.
+        crs: Code of another CRS; empty = the one chosen by the settings.
+
     Raises:
+        GeoreferenceError: If another CRS is asked for and the map has no place on earth.
         StoreError: If ``georeference.json`` is missing or damaged.
     """
     path = artifact / "georeference.json"
     try:
         told = json.loads(path.read_text("utf-8"))
         if not told["crs"]:
+            if crs:
+                raise GeoreferenceError(
+                    f"the map cannot be put into {crs}: {told['georeference']['reason']}"
+                )
             return None
         origin = told["georeference"]["origin"]
         lat_rad, lon_rad = np.deg2rad([origin["lat_deg"], origin["lon_deg"]]).tolist()
-        return CrsTransform(Origin(lat_rad, lon_rad, origin["height_m"]), told["crs"]["name"])
+        return CrsTransform(
+            Origin(lat_rad, lon_rad, origin["height_m"]), crs or told["crs"]["name"]
+        )
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise StoreError(f"{path} cannot be read: {error!r}") from error
 
@@ -130,12 +141,3 @@ def _sample_points(frames: FrameStore, trajectory: Trajectory) -> tuple[Array, A
         points.append(placed.xyz_m)
         origins.append(placed.origin_m)
     return np.concatenate(points), np.concatenate(origins)
-
-
-def _without_nan(value: Any) -> Any:
-    """What is not a number becomes null, which JSON knows."""
-    if isinstance(value, dict):
-        return {name: _without_nan(item) for name, item in value.items()}
-    if isinstance(value, list):
-        return [_without_nan(item) for item in value]
-    return None if isinstance(value, float) and not np.isfinite(value) else value

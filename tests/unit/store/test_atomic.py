@@ -11,7 +11,15 @@ import numpy as np
 import pytest
 
 from recon4.errors import NoSpace, StoreError
-from recon4.store.atomic import atomic_file, atomic_folder, copy_file, sweep, write_json, write_text
+from recon4.store.atomic import (
+    atomic_file,
+    atomic_folder,
+    copy_file,
+    null_for_nan,
+    sweep,
+    write_json,
+    write_text,
+)
 
 ROOT = Path(__file__).parents[3]
 
@@ -75,6 +83,13 @@ def test_json_refuses_nan(tmp_path):
         write_json(tmp_path / "a.json", {"x": float("nan")})
 
     assert list(tmp_path.iterdir()) == []
+
+
+def test_what_is_not_a_number_becomes_null():
+    assert null_for_nan({"a": [float("nan"), 1.5, (float("inf"), "x")], "b": 0}) == {
+        "a": [None, 1.5, [None, "x"]],
+        "b": 0,
+    }
 
 
 def test_sweeping_removes_files_and_folders_of_ours_only(tmp_path):
