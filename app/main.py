@@ -126,7 +126,11 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
     settings.state.mkdir(exist_ok=True)
     jobs = JobStore(settings.state / "jobs.sqlite")
     supervisor = Supervisor(jobs, settings)
-    viewers = ViewerPool(idle_s=settings.viewer_idle_s, logs=settings.state / "viewers")
+    viewers = ViewerPool(
+        idle_s=settings.viewer_idle_s,
+        points=settings.viewer_points,
+        logs=settings.state / "viewers",
+    )
     app.state.parts = Parts(
         settings=settings,
         projects=ProjectStore(settings.root, settings.import_roots),

@@ -32,6 +32,8 @@ class ServerSettings:
     """A worker asked to stop is killed after this long [s]."""
     viewer_idle_s: float = 600.0
     """A viewer nobody looks at ends after this long [s]."""
+    viewer_points: int = 3_000_000
+    """At most so many points of a map are sent to one browser; phones get fewer."""
     worker: str = "app.jobs.worker"
     """Module run for a job."""
     max_body_bytes: int = 1 << 20

@@ -10,11 +10,14 @@
 from __future__ import annotations
 
 import json
+import logging
 import time
 from pathlib import Path
 from typing import Any
 
 from recon4.errors import Cancelled
+
+log = logging.getLogger("recon4.job")
 
 EVERY_S = 0.25
 """Counts are written, and the wish to stop is read, at most this often [s]."""
@@ -36,6 +39,7 @@ class EventWriter:
         """Begin a piece of work of ``total`` units (0 = unknown)."""
         self._what, self._unit, self._done, self._total = what, unit, 0, total
         self._began_s = time.monotonic()
+        log.info("%s: %s %s", what, total or "?", unit)
         self._tell()
 
     def advance(self, done: int = 1) -> None:
@@ -49,7 +53,9 @@ class EventWriter:
             self._tell()
 
     def event(self, kind: str, **facts: object) -> None:
-        """Say what was found."""
+        """Say what was found; pairs tried are too many for the log."""
+        if kind != "edge":
+            log.info("%s %s", kind, " ".join(f"{name}={value}" for name, value in facts.items()))
         self._write(kind, facts)
 
     def close(self) -> None:

@@ -58,6 +58,7 @@ def run(folder: JobFolder, work: Work) -> Outcome:
 
 def process(folder: JobFolder, progress: Progress) -> None:
     """Call the pipeline as ``recon4 process`` does."""
+    from recon4.model.rig import load_rig
     from recon4.pipeline import process as run_pipeline
     from recon4.settings import override, preset
 
@@ -67,7 +68,7 @@ def process(folder: JobFolder, progress: Progress) -> None:
         project,
         settings=override(preset(inputs.preset), list(inputs.settings)),
         preset=inputs.preset,
-        rig=inputs.rig or None,
+        rig=load_rig(inputs.rig) if inputs.rig else None,
         imu=Path(inputs.imu) if inputs.imu else None,
         gnss=Path(inputs.gnss) if inputs.gnss else None,
         progress=progress,

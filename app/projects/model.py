@@ -21,6 +21,7 @@ STAGE_ORDER = (
     "odometry",
     "graph",
     "verification",
+    "carried",
     "refine",
     "level",
     "intensity",

@@ -41,7 +41,11 @@ class Pictures:
                     stderr=asyncio.subprocess.DEVNULL,
                     env=worker_environment(),
                 )
-                await process.wait()
+                try:
+                    await process.wait()
+                finally:
+                    if process.returncode is None:
+                        process.kill()
         if not path.exists():
             raise NotFound("there is no picture of this map")
         return path

@@ -17,7 +17,8 @@ STARTS_WITHIN_S = 60.0
 class ViewerPool:
     """Starts viewers when they are asked for and knows their ports."""
 
-    def __init__(self, *, idle_s: float, logs: Path) -> None:
+    def __init__(self, *, idle_s: float, points: int, logs: Path) -> None:
+        self._points = points
         self._idle_s = idle_s
         self._logs = logs
         self._running: dict[Path, tuple[asyncio.subprocess.Process, int]] = {}
@@ -45,7 +46,8 @@ class ViewerPool:
         self._logs.mkdir(parents=True, exist_ok=True)
         with (self._logs / f"{project.name}.txt").open("ab") as log:
             process = await asyncio.create_subprocess_exec(
-                *(sys.executable, "-m", "app.viewer.process", str(project), str(self._idle_s)),
+                *(sys.executable, "-m", "app.viewer.process", str(project)),
+                *(str(self._idle_s), str(self._points)),
                 stdin=asyncio.subprocess.PIPE,
                 stdout=asyncio.subprocess.PIPE,
                 stderr=log,

@@ -1,4 +1,4 @@
-"""The viewer process: ``python -m app.viewer.process PROJECT IDLE_SECONDS``.
+"""The viewer process: ``python -m app.viewer.process PROJECT IDLE_SECONDS POINTS``.
 
 Writes ``{"port": n}`` as its only line of output; ends when its input is closed (the server is
 gone) or nobody has looked for a while. It only reads the project, so it may be killed any time.
@@ -27,10 +27,10 @@ log = logging.getLogger(__name__)
 class Seat:
     """One client: its panel, its screen and what it is shown."""
 
-    def __init__(self, client: Any, source: ProjectSource) -> None:
+    def __init__(self, client: Any, source: ProjectSource, points: int) -> None:
         self._source = source
         self._lock = threading.Lock()
-        self._screen = Screen(client)
+        self._screen = Screen(client, points)
         self._content = source.content(self._screen.budget)
         self._panel = Panel(client.gui, self._content, on_change=self._draw)
         self._screen.look_at(bounds(self._content))
@@ -54,13 +54,14 @@ class Seat:
 class Seats:
     """All clients of the viewer."""
 
-    def __init__(self, source: ProjectSource) -> None:
+    def __init__(self, source: ProjectSource, points: int) -> None:
         self._source = source
+        self._points = points
         self._taken: dict[int, Seat] = {}
 
     def take(self, client: Any) -> None:
         """Seat a new client."""
-        self._taken[client.client_id] = Seat(client, self._source)
+        self._taken[client.client_id] = Seat(client, self._source, self._points)
 
     def leave(self, client: Any) -> None:
         """Forget a client."""
@@ -72,14 +73,14 @@ class Seats:
             seat.refresh()
 
 
-def main(project: Path, idle_s: float) -> None:
+def main(project: Path, idle_s: float, points: int) -> None:
     """Serve one project until nobody needs it."""
     answer, sys.stdout = sys.stdout, sys.stderr  # viser greets people on it
     logging.basicConfig(level=logging.WARNING, format="%(asctime)s %(name)s %(message)s")
     over = threading.Event()
     threading.Thread(target=_wait_for_end_of_input, args=(over,), daemon=True).start()
     source = ProjectSource(project)
-    seats = Seats(source)
+    seats = Seats(source, points)
     viewer = Viewer(on_client=seats.take, on_leave=seats.leave)
     answer.write(json.dumps({"port": viewer.port}) + "\n")
     answer.flush()
@@ -95,4 +96,4 @@ def _wait_for_end_of_input(over: threading.Event) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), float(sys.argv[2]))
+    main(Path(sys.argv[1]), float(sys.argv[2]), int(sys.argv[3]))

@@ -26,21 +26,21 @@ from app.viewer.scene import (
 
 PHONE_WIDTH_PX = 700
 PHONE_BUDGET = 300_000
-DESKTOP_BUDGET = 3_000_000
 
 
 class Screen:
     """Keeps what one client sees equal to the last nodes it was given."""
 
-    def __init__(self, client: viser.ClientHandle) -> None:
+    def __init__(self, client: viser.ClientHandle, points: int) -> None:
         self._client = client
+        self._points = points
         self._shown: dict[str, tuple[Node, Any]] = {}
 
     @property
     def budget(self) -> int:
         """Points this client's graphics can be trusted with."""
         phone = self._client.camera.image_width < PHONE_WIDTH_PX
-        return PHONE_BUDGET if phone else DESKTOP_BUDGET
+        return min(PHONE_BUDGET, self._points) if phone else self._points
 
     def show(self, nodes: Iterable[Node]) -> None:
         """Draw the nodes and nothing else; only what differs is sent."""

@@ -17,7 +17,7 @@ from recon4.store.project import read_artifacts
 
 log = logging.getLogger(__name__)
 
-TRAJECTORY_STAGES = ("level", "refine")
+TRAJECTORY_STAGES = ("level", "refine", "carried")
 GRAPH_STAGES = ("level", "verification", "graph")
 """Stages that leave them, the last one first."""
 

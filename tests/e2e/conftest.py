@@ -1,0 +1,96 @@
+"""A real browser on a real server."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, BrowserContext, Page, expect, sync_playwright
+
+from tests.service.running import ROOT
+
+expect.set_options(timeout=45_000)  # two busy cores draw WebGL in software
+
+CHROMIUM = Path(os.environ.get("RECON4_CHROMIUM", "/usr/bin/chromium"))
+FLAGS = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+SCREENS = {"desktop": (1440, 900), "phone": (390, 844)}
+EXPECTED_NOISE = ("status of 40", "GPU stall", "THREE.Clock", "ViewerCameraMessage but websocket")
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    if not CHROMIUM.exists():
+        pytest.skip(f"needs Chromium at {CHROMIUM} (set RECON4_CHROMIUM)")
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(params=["desktop light", "desktop dark", "phone light", "phone dark"])
+def look(request) -> tuple[str, str]:
+    """A screen and a color scheme."""
+    screen, scheme = request.param.split()
+    return screen, scheme
+
+
+@pytest.fixture
+def context(browser, look) -> Iterator[BrowserContext]:
+    screen, scheme = look
+    width, height = SCREENS[screen]
+    context = browser.new_context(
+        viewport={"width": width, "height": height},
+        color_scheme=scheme,
+        has_touch=screen == "phone",
+        is_mobile=screen == "phone",
+    )
+    context.set_default_timeout(60_000)
+    yield context
+    context.close()
+
+
+@pytest.fixture
+def page(context) -> Iterator[Page]:
+    """A page on which any error of our own, and any request to elsewhere, fails the test."""
+    page = context.new_page()
+    complaints: list[str] = []
+    foreign: list[str] = []
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on(
+        "console",
+        lambda message: message.type == "error" and complaints.append(message.text),
+    )
+    page.on(
+        "request",
+        lambda request: (
+            request.url.startswith(("http://127.0.0.1:", "data:", "blob:"))
+            or foreign.append(request.url)
+        ),
+    )
+    yield page
+    assert foreign == []
+    assert [text for text in complaints if not any(n in text for n in EXPECTED_NOISE)] == []
+
+
+@pytest.fixture
+def picture(look):
+    """Keeps a screenshot for the documentation, when ``RECON4_PICTURES=1``."""
+
+    def keep(page: Page, name: str) -> None:
+        if os.environ.get("RECON4_PICTURES") == "1":
+            screen, scheme = look
+            path = ROOT / "docs" / "pictures" / f"{name}-{screen}-{scheme}.png"
+            page.screenshot(path=path, full_page=screen == "phone")
+
+    return keep

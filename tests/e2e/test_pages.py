@@ -1,0 +1,191 @@
+"""The pages as people use them."""
+
+import os
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.project_builder import build_project
+from tests.service.running import SLOW, open_gate, recording_with_gate, server_thread
+
+pytestmark = pytest.mark.e2e
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    root = tmp_path_factory.mktemp("projects")
+    build_project(root / "office", points=60_000)
+    build_project(root / "half", with_map=False)
+    with server_thread(root) as running:
+        yield running
+
+
+@pytest.fixture
+def server(tmp_path):
+    with server_thread(tmp_path, worker=SLOW) as running:
+        yield running
+
+
+@pytest.fixture(scope="module")
+def real():
+    """Projects made from recordings, for the pictures in the documentation."""
+    folder = os.environ.get("RECON4_PROJECTS")
+    if not folder:
+        pytest.skip("needs finished projects in RECON4_PROJECTS")
+    with server_thread(Path(folder), viewer_points=150_000) as running:
+        yield running
+
+
+def fits(page):
+    """Nothing sticks out to the side, and everything to press is large enough."""
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    small = page.evaluate(
+        """[...document.querySelectorAll('button, input, select, summary, .bar a, .files a')]
+        .filter((one) => one.checkVisibility() && one.getBoundingClientRect().height < 44)
+        .map((one) => one.outerHTML.slice(0, 80))"""
+    )
+    assert small == []
+
+
+def test_the_list_shows_projects_with_state_and_picture(finished, page, picture):
+    page.goto(finished.url)
+
+    card = page.get_by_role("listitem").filter(has_text="office")
+    expect(card).to_contain_text("Finished")
+    expect(card.locator("img")).to_have_js_property("complete", True)
+    expect(page.get_by_role("listitem").filter(has_text="half")).to_contain_text("Not finished")
+    fits(page)
+    picture(page, "projects")
+
+
+def test_a_project_shows_its_map_figures_and_results(finished, page, picture):
+    page.goto(finished.url)
+
+    page.get_by_role("link", name="office").click()
+    viewer = page.frame_locator("iframe")
+
+    expect(page.get_by_role("heading", name="office")).to_be_visible()
+    expect(page.get_by_role("term").filter(has_text="Points in the map")).to_be_visible()
+    expect(page.get_by_role("row").filter(has_text="odometry")).to_contain_text("Done")
+    expect(viewer.get_by_text("map frame · z up · metres")).to_be_visible()
+    expect(viewer.get_by_text("Points by normalized intensity")).to_be_attached()
+    frame = page.frames[-1]
+    frame.wait_for_function("window.__viserMutable?.canvas")
+    fits(page)
+    picture(page, "project")
+
+
+def test_real_projects_look_as_they_should(real, page, picture):
+    page.goto(real.url)
+    card = page.get_by_role("listitem").filter(has_text="of way").first
+    expect(card.locator("img")).to_have_js_property("complete", True)
+    picture(page, "projects")
+
+    card.get_by_role("link").click()
+    viewer = page.frame_locator("iframe")
+    expect(viewer.get_by_text("Points by normalized intensity")).to_be_attached()
+    page.frames[-1].wait_for_function("window.__viserMutable?.canvas")
+    fits(page)
+    picture(page, "project")
+
+
+def test_layers_and_colors_follow_the_panel(finished, page, look):
+    if look != ("desktop", "dark"):
+        pytest.skip("once is enough")
+    page.goto(f"{finished.url}/projects/office/")
+    viewer = page.frame_locator("iframe")
+    legend = viewer.get_by_text("Rejected, verification median > limit (2)").first
+
+    expect(legend).to_be_visible()
+    viewer.get_by_label("Color by").click()
+    viewer.get_by_role("option", name="height").click()
+
+    expect(viewer.get_by_text("m above the origin")).to_be_visible()
+    expect(viewer.get_by_text("Points by height")).to_be_visible()
+
+
+def test_a_download_and_the_report_open(finished, page, look):
+    if look != ("desktop", "light"):
+        pytest.skip("once is enough")
+    page.goto(f"{finished.url}/projects/office/")
+
+    with page.expect_download() as download:
+        page.get_by_role("link", name="Trajectory, TUM").click()
+    with page.expect_popup() as report:
+        page.get_by_role("link", name="Quality report").click()
+
+    assert download.value.suggested_filename == "office-trajectory.tum"
+    expect(report.value.get_by_role("heading", name="Report")).to_be_visible()
+
+
+def test_a_job_is_started_watched_cancelled_and_resumed(server, page, tmp_path, look, picture):
+    recording = recording_with_gate(tmp_path / "morning walk")
+    page.goto(server.url)
+
+    page.get_by_role("button", name="Browse…").click()
+    page.get_by_role("button", name=f"{tmp_path.name}/").click()
+    page.get_by_role("button", name="morning walk/").click()
+    page.get_by_role("button", name="Use this folder").click()
+    expect(page.get_by_label("Project name")).to_have_value("morning-walk")
+    fits(page)
+    picture(page, "new-project")
+    page.get_by_role("button", name="Start").click()
+
+    expect(page.get_by_role("heading", name="morning-walk")).to_be_visible()
+    expect(page.locator("job-status")).to_contain_text("Odometry")
+    expect(page.get_by_role("row").filter(has_text="frames")).to_contain_text("Done")
+    page.get_by_text("Log").click()
+    expect(page.locator("pre")).to_contain_text("Odometry")
+    fits(page)
+    picture(page, "running")
+    page.get_by_role("button", name="Cancel").click()
+    expect(page.locator("job-status")).to_contain_text("Cancelled")
+    expect(page.locator("job-status")).to_contain_text("finished stages are kept")
+
+    page.get_by_role("button", name="Resume").click()
+    expect(page.get_by_role("row").filter(has_text="frames")).to_contain_text("Kept from before")
+    gate = open_gate(recording)
+    expect(page.locator("#state")).to_contain_text("Finished")
+    os.close(gate)
+
+
+def test_a_refusal_is_shown_in_words(server, page, look):
+    page.goto(server.url)
+
+    page.get_by_label("Recording on this computer").fill("/etc/passwd")
+    page.get_by_label("Project name").fill("office")
+    page.get_by_role("button", name="Start").click()
+
+    expect(page.get_by_role("alert").filter(has_text="recordings may only lie in")).to_be_visible()
+
+
+def test_the_keyboard_is_enough_to_start_a_job(server, page, tmp_path, look):
+    if look != ("desktop", "light"):
+        pytest.skip("once is enough")
+    (tmp_path / "empty.pcap").write_bytes(b"")
+    page.goto(server.url)
+
+    page.get_by_label("Recording on this computer").focus()
+    page.keyboard.type(str(tmp_path / "empty.pcap"))
+    page.keyboard.press("Tab")
+    page.keyboard.press("Tab")
+    expect(page.get_by_label("Project name")).to_be_focused()
+    page.keyboard.press("Enter")
+
+    expect(page.locator("job-status")).to_contain_text("empty.pcap holds no points")
+
+
+def test_a_hostile_link_to_the_viewer_stays_with_our_server(finished, page, look):
+    if look != ("desktop", "light"):
+        pytest.skip("once is enough")
+    page.goto(f"{finished.url}/projects/office/viewer/?websocket=ws://127.0.0.1:9")
+
+    expect(page.get_by_text("Connected", exact=True)).to_be_visible()
+
+
+def test_the_api_is_described_without_internet(finished, page, look, picture):
+    page.goto(f"{finished.url}/api")
+
+    expect(page.get_by_role("heading", name="POST /api/jobs", exact=True)).to_be_visible()
+    fits(page)
