@@ -21,8 +21,8 @@ function draw() {
   const facts = project
     ? [project.preset && `preset ${project.preset}`, project.rig && `rig ${project.rig}`, bytes(project.bytes), when(project.updated)]
     : [];
-  fill(byId("state"), badge(stateOf(project, view)), make("p", { className: "quiet" }, facts.filter(Boolean).join(" · ")));
   status.hidden = !view || view.job.state === "succeeded";
+  fill(byId("state"), status.hidden ? badge(stateOf(project, view)) : null, make("p", { className: "quiet" }, facts.filter(Boolean).join(" · ")));
   if (view) status.view = view;
   drawFigures();
   drawFiles();

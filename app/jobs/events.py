@@ -55,7 +55,11 @@ class EventWriter:
     def event(self, kind: str, **facts: object) -> None:
         """Say what was found; pairs tried are too many for the log."""
         if kind != "edge":
-            log.info("%s %s", kind, " ".join(f"{name}={value}" for name, value in facts.items()))
+            log.info(
+                "%s %s",
+                kind,
+                " ".join(str(value) for name, value in facts.items() if name != "key"),
+            )
         self._write(kind, facts)
 
     def close(self) -> None:

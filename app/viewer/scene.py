@@ -223,8 +223,13 @@ def span_of(content: Content, color_by: ColorBy) -> Range:
 
 
 def bounds(content: Content) -> Bounds:
-    """The box around tiles and trajectory; a room's when there is neither."""
-    corners = [tile.origin_m + end for tile in content.tiles for end in _ends_of(tile.p_tile)]
+    """The box around nearly all points and the trajectory; a room's when there is neither.
+
+    A hundredth of the points may lie outside: what was seen far away through doors and panes.
+    """
+    step = max(1, sum(len(tile.p_tile) for tile in content.tiles) // 50_000)
+    seen = [tile.origin_m + tile.p_tile[::step] for tile in content.tiles if len(tile.p_tile)]
+    corners = [*np.percentile(np.concatenate(seen), [1.0, 99.0], axis=0)] if seen else []
     for line in (content.trajectory, content.odometry):
         if line is not None and len(line):
             corners += [*_ends_of(line.T_a_b.t)]

@@ -1,0 +1,130 @@
+"""Events, status and the queue on disk."""
+
+import sqlite3
+
+import pytest
+
+from app.errors import Conflict, IllegalTransition, NotFound
+from app.jobs.events import EventWriter, read_events
+from app.jobs.model import TRANSITIONS, Inputs, Job, JobState
+from app.jobs.status import Status, after
+from app.jobs.store import JobStore
+from recon4.errors import Cancelled
+
+
+@pytest.fixture
+def store(tmp_path):
+    store = JobStore(tmp_path / "jobs.sqlite")
+    yield store
+    store.close()
+
+
+def job(name="a", project="office", **changes):
+    inputs = Inputs(recordings=("/walk.pcap",), settings=("map.voxel_m=0.02",))
+    return Job(id=name, project=project, inputs=inputs, created="2026-01-01", **changes)
+
+
+def test_a_job_comes_back_as_it_was_stored(store):
+    store.add(job())
+
+    assert store.get("a") == job()
+    assert store.latest() == {"office": job()}
+
+
+def test_a_project_has_one_job_that_waits_or_runs(store):
+    first = store.add(job())
+
+    with pytest.raises(Conflict, match="already has a job"):
+        store.add(job("b"))
+    store.change(first, first.to(JobState.CANCELLED))
+
+    store.add(job("b"))
+    assert [one.id for one in store.of_project("office")] == ["b", "a"]
+
+
+def test_of_two_changes_from_one_state_the_second_is_refused(store):
+    first = store.add(job())
+    store.change(first, first.to(JobState.RUNNING))
+
+    with pytest.raises(Conflict, match="no longer queued"):
+        store.change(first, first.to(JobState.CANCELLED))
+
+
+def test_the_queue_survives_reopening_and_is_durable(tmp_path):
+    store = JobStore(tmp_path / "jobs.sqlite")
+    store.add(job())
+    store.close()
+
+    again = JobStore(tmp_path / "jobs.sqlite")
+
+    assert again.get("a") == job()
+    again.close()
+    connection = sqlite3.connect(tmp_path / "jobs.sqlite")
+    assert connection.execute("PRAGMA journal_mode").fetchone() == ("wal",)
+    connection.close()
+
+
+def test_an_unknown_job_is_not_found(store):
+    with pytest.raises(NotFound):
+        store.get("nothing")
+
+
+@pytest.mark.parametrize("state", [s for s, after in TRANSITIONS.items() if not after])
+def test_what_is_over_stays_over(state):
+    done = job(state=state)
+
+    assert done.over
+    for other in JobState:
+        with pytest.raises(IllegalTransition):
+            done.to(other)
+
+
+def test_rate_and_time_left_follow_from_what_was_told():
+    told = {"kind": "progress", "what": "odometry", "done": 25, "total": 100, "unit": "frames"}
+
+    status = after(Status(), {**told, "seconds": 5.0})
+
+    assert status.fraction == 0.25
+    assert status.rate_per_s == 5.0
+    assert status.eta_s == 15.0
+
+
+def test_a_new_worker_begins_with_nothing_done():
+    status = after(Status(), {"kind": "stage", "stage": "frames", "state": "done", "seconds": 1.0})
+
+    assert len(status.stages) == 1
+    assert after(status, {"kind": "run"}) == Status()
+
+
+def test_unknown_events_change_nothing():
+    assert after(Status(), {"kind": "edge", "i": 1}) == Status()
+    assert after(Status(), {}) == Status()
+
+
+def test_events_are_read_as_they_come_and_a_line_cut_by_a_kill_is_skipped(tmp_path):
+    path = tmp_path / "events.jsonl"
+    first = EventWriter(path, tmp_path / "cancel")
+    first.event("edge", i=1)
+    first.close()
+    events, offset = read_events(path, 0)
+    with path.open("ab") as file:
+        file.write(b'{"kind": "progr')
+    half, offset = read_events(path, offset)
+    second = EventWriter(path, tmp_path / "cancel")
+    second.close()
+    rest, _ = read_events(path, offset)
+
+    assert [event["kind"] for event in events] == ["run", "edge"]
+    assert half == []
+    assert [event["kind"] for event in rest] == ["run"]
+
+
+def test_a_run_stops_once_asked(tmp_path):
+    writer = EventWriter(tmp_path / "events.jsonl", tmp_path / "cancel")
+    writer.start("Odometry", 3, "frames")
+    (tmp_path / "cancel").touch()
+
+    with pytest.raises(Cancelled):
+        writer.advance(3)
+
+    writer.close()
