@@ -126,7 +126,7 @@ def _sample(
 ) -> Iterator[IntensitySample]:
     """The samples of one window, with normals from all of its points."""
     enabled = np.array([sensor.enabled for sensor in frames.rig.sensors])
-    kept = [frames[k].take(np.flatnonzero(enabled[frames[k].sensor])) for k in rows]
+    kept = [f.take(np.flatnonzero(enabled[f.sensor])) for f in map(frames.__getitem__, rows)]
     placed = [place_with_origins(frame, trajectory, frames.rig) for frame in kept]
     if not any(map(len, kept)):
         return

@@ -98,9 +98,10 @@ def _deal_out(
     enabled = np.array([sensor.enabled for sensor in rig.sensors])
 
     def split(k: int) -> dict[Tile, Records]:
-        placed = place_with_origins(frames[k], trajectory, rig)
+        frame = frames[k]
+        placed = place_with_origins(frame, trajectory, rig)
         return split_into_tiles(
-            frames[k], placed, grid, enabled=enabled, max_range_m=settings.max_range_m
+            frame, placed, grid, enabled=enabled, max_range_m=settings.max_range_m
         )
 
     parts = _in_order(pool, split, range(len(frames)))
