@@ -18,6 +18,7 @@ ROOM_M = np.array([8.0, 6.0, 3.0])
 T0_NS = 1_700_000_000_000_000_000
 ELEVATION = np.sort(vlp16_firings().elevation_rad)
 
+_PCD_WORDS = ("FIELDS", "SIZE", "TYPE", "COUNT")
 _SCAN = "velodyne_msgs/msg/VelodyneScan"
 _PACKET = "velodyne_msgs/msg/VelodynePacket"
 
@@ -111,7 +112,7 @@ def write_pcd(path: Path, table, *, encoding="binary", padding=0):
         fields.append(("_", 1, "U", padding))
     count = len(table[names[0]])
     header = "# .PCD v0.7\nVERSION 0.7\n"
-    for word, column in zip(("FIELDS", "SIZE", "TYPE", "COUNT"), zip(*fields, strict=True)):
+    for word, column in zip(_PCD_WORDS, zip(*fields, strict=True), strict=True):
         header += f"{word} {' '.join(str(value) for value in column)}\n"
     header += f"WIDTH {count}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {count}\n"
     path.write_bytes(f"{header}DATA {encoding}\n".encode() + _body(table, encoding, padding))
