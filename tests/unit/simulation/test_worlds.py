@@ -103,3 +103,17 @@ def test_a_model_file_is_read_back_by_an_independent_reader(tmp_path, worlds):
 
     np.testing.assert_array_equal(loaded.vertices.astype(np.float32), mesh.vertices_m)
     np.testing.assert_array_equal(loaded.faces, mesh.triangles)
+
+
+@pytest.mark.parametrize("name", ["office", "street", "field"])
+def test_markers_are_not_hidden(name, worlds):
+    world = worlds[name]
+    scene = Scene(world.mesh)
+    for marker in world.markers:
+        place = np.array([marker.x_m, marker.y_m, marker.z_m])
+        # Half a meter off on all six sides, looking at the marker.
+        sides = np.vstack([np.eye(3), -np.eye(3)])
+        hits = scene.cast(np.hstack([place + 0.5 * sides, -sides]).astype(np.float32))
+        seen = np.abs(hits.range_m - 0.5) < 0.01
+
+        assert np.any(world.mesh.reflectivity[hits.triangle[seen]] > 1.0), marker.name
