@@ -1,0 +1,148 @@
+"""From packets to a finished project folder, by the command line."""
+
+import json
+
+import laspy
+import numpy as np
+import pytest
+
+from recon4.cli import main
+from recon4.evaluation.evaluate import evaluate
+from recon4.progress import Silent
+from recon4.results import RESULTS
+from recon4.settings import preset, to_json
+from recon4.simulation.simulate import simulate
+from recon4.store.hashing import hash_file
+
+FEW = ["--set", "map.voxel_m=0.05", "--set", "graph.node_stride=10"]
+
+
+@pytest.fixture(scope="module")
+def walk(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("recording") / "walk"
+    simulate("office", folder, seconds=6.0, seed=2, bag=False, progress=Silent())
+    return folder
+
+
+@pytest.fixture(scope="module")
+def process(walk):
+    def run(out, *more):
+        recording = [str(walk / "recording.pcap"), "--imu", str(walk / "imu.csv")]
+        return main(["process", *recording, "--out", str(out), *FEW, *more])
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def project(process, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("project") / "office"
+    assert process(folder) == 0
+    return folder
+
+
+def test_every_result_is_there_and_vouched_for_by_its_hash(project):
+    summary = json.loads((project / "summary.json").read_text())
+
+    assert set(summary["hashes"]["results"]) == set(RESULTS)
+    for name, sha256 in summary["hashes"]["results"].items():
+        assert hash_file(project / name) == sha256
+
+
+def test_the_summary_tells_what_was_done_with_what(project):
+    summary = json.loads((project / "summary.json").read_text())
+
+    assert summary["rig"] == "4RECON"
+    assert summary["preset"] == "indoor"
+    assert summary["settings"]["map"]["voxel_m"] == 0.05
+    assert summary["settings"]["odometry"] == to_json(preset("indoor"))["odometry"]
+    assert set(summary["hashes"]["inputs"]) == {"recording.pcap", "imu.csv"}
+    assert [stage["stage"] for stage in summary["stages"]] == [
+        *("frames", "odometry", "graph", "verification", "refine", "level", "intensity", "map")
+    ]
+    assert all(stage["seconds"] > 0 and stage["peak_bytes"] > 0 for stage in summary["stages"])
+    assert summary["lost"] == 0
+    assert sum(summary["edges"].values()) == len(
+        json.loads((project / "edges.json").read_text())["edges"]
+    )
+
+
+def test_the_walk_is_tracked_to_a_centimetre(project, walk):
+    found = evaluate(project, truth=walk / "truth.tum")
+
+    assert found.covered_share == 1.0
+    assert found.aligned.position_m.rmse < 0.01
+
+
+def test_the_map_is_level_and_has_the_points_it_says(project):
+    summary = json.loads((project / "summary.json").read_text())
+
+    with laspy.open(project / "map.laz") as file:
+        points = file.read()
+    x, y, z = (np.asarray(points[axis]) for axis in "xyz")
+    on_floor = abs(z - np.median(z[z < np.percentile(z, 5)])) < 0.15
+    A = np.stack([x[on_floor], y[on_floor], np.ones(on_floor.sum())], axis=1)
+    slope = np.linalg.lstsq(A, z[on_floor], rcond=None)[0][:2]
+
+    assert len(points) == summary["points"]
+    assert np.rad2deg(np.linalg.norm(slope)) < 2.0  # six seconds do not tell a bias from a tilt
+
+
+def test_running_again_reuses_every_stage_and_gives_the_same_bytes(project, process):
+    before = json.loads((project / "summary.json").read_text())
+
+    assert process(project) == 0
+
+    after = json.loads((project / "summary.json").read_text())
+    assert all(stage["reused"] for stage in after["stages"])
+    for name in set(RESULTS) - {"report.html"}:  # it says when it was made
+        assert after["hashes"]["results"][name] == before["hashes"]["results"][name]
+
+
+def test_another_project_from_the_same_recording_has_the_same_bytes(project, process, tmp_path):
+    assert process(tmp_path / "again") == 0
+
+    for name in set(RESULTS) - {"report.html"}:
+        assert (tmp_path / "again" / name).read_bytes() == (project / name).read_bytes(), name
+
+
+def test_a_changed_map_setting_reruns_the_map_only(project, process):
+    assert process(project, "--set", "map.voxel_m=0.1") == 0
+
+    summary = json.loads((project / "summary.json").read_text())
+    assert [s["stage"] for s in summary["stages"] if not s["reused"]] == ["map"]
+    process(project)
+
+
+def test_verify_finds_the_project_whole(project, capsys):
+    assert main(["verify", str(project)]) == 0
+    assert "0 damaged" in capsys.readouterr().out
+
+
+def test_the_map_is_exported_but_not_into_a_crs_it_has_no_place_in(project, tmp_path, capsys):
+    assert main(["export", str(project), str(tmp_path / "map.ply")]) == 0
+    assert (tmp_path / "map.ply").read_bytes().startswith(b"ply\n")
+
+    assert main(["export", str(project), str(tmp_path / "m.laz"), "--crs", "EPSG:32633"]) == 1
+    assert "no GNSS in the recording" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        ("empty.pcap", b"", "empty.pcap"),
+        ("letter.pcap", b"Dear Sir or Madam, " * 40, "letter.pcap"),
+        ("missing.pcap", None, "No such file"),
+    ],
+)
+def test_a_bad_recording_is_one_line_and_leaves_no_artifact(
+    tmp_path, capsys, name, content, message
+):
+    if content is not None:
+        (tmp_path / name).write_bytes(content)
+
+    assert main(["process", str(tmp_path / name), "--out", str(tmp_path / "p")]) == 1
+
+    said = capsys.readouterr().err.splitlines()[-1]
+    assert said.startswith("recon4: ")
+    assert message in said
+    assert list((tmp_path / "p" / "artifacts").iterdir()) == []
