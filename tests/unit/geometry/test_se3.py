@@ -124,6 +124,16 @@ def test_tiny_turns_agree_with_the_series(omega, v):
     assert np.allclose(SE3.exp(xi).matrix(), series, atol=1e-11)
 
 
+@pytest.mark.parametrize("angle", [1e-9, 5e-5, 0.99e-4, 1.01e-4, 1e-3])
+def test_on_both_sides_of_the_switch_to_the_series_the_result_is_the_same(angle):
+    omega, v = np.array([0.0, 0.0, angle]), np.array([1.0, 2.0, 3.0])
+
+    # A turn about z by a on paper: x = sin(a)/a vx - (1 - cos(a))/a vy, and so on.
+    s, c = np.sin(angle) / angle, 2.0 * np.sin(angle / 2.0) ** 2 / angle
+    expected = [s * v[0] - c * v[1], c * v[0] + s * v[1], v[2]]
+    assert np.allclose(SE3.exp(np.concatenate([omega, v])).t, expected, rtol=0, atol=1e-12)
+
+
 @given(motions())
 def test_every_rotation_is_proper_and_survives_quaternion_and_matrix(a):
     assert np.allclose(a.R @ a.R.T, np.eye(3), atol=1e-12)

@@ -79,3 +79,18 @@ def test_an_artifact_renamed_but_not_yet_in_the_ledger_is_adopted_not_made_again
         first.runs, True
     )
     assert second.runs["count"].done == first.runs["count"].done
+
+
+def test_an_artifact_the_ledger_does_not_know_is_not_trusted_with_a_flipped_bit(tmp_path):
+    first = run_all(tmp_path / "project")
+    path = first.runs["total"].artifact.folder / "total.txt"
+    path.write_bytes(b"9" + path.read_bytes()[1:])
+    (tmp_path / "project" / "ledger.sqlite").unlink()
+
+    second = run_all(tmp_path / "project")
+
+    assert {name: run.reused for name, run in second.runs.items()} == {
+        "count": True,
+        "scale": True,
+        "total": False,
+    }
