@@ -9,6 +9,7 @@ import socket
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -17,6 +18,7 @@ from typing import Any
 
 import httpx
 
+from app.jobs.folder import JobFolder
 from app.main import AnnouncingServer, create_app, serve, uvicorn_config
 from app.settings import ServerSettings
 
@@ -42,8 +44,10 @@ class Running:
 
     def wait(self, job_id: str, met: Callable[[dict[str, Any]], bool]) -> dict[str, Any]:
         """The first view of the job, from the event stream, that meets a condition."""
+        deadline_s = time.monotonic() + 60.0
         with httpx.stream("GET", f"{self.url}/api/events", timeout=30.0) as stream:
             for line in stream.iter_lines():
+                assert time.monotonic() < deadline_s, "it never came to that"
                 if line.startswith("data:"):
                     view = json.loads(line[5:])
                     if view["job"]["id"] == job_id and met(view):
@@ -78,6 +82,7 @@ def server_thread(root: Path, **settings: Any) -> Iterator[Running]:
         finally:
             server.should_exit = True
             thread.join(20.0)
+            end_workers(root)
     assert not thread.is_alive()
 
 
@@ -97,6 +102,14 @@ def server_process(root: Path) -> Iterator[tuple[Running, subprocess.Popen[str]]
             yield Running(process.stdout.readline().strip().rstrip("/"), root), process
         finally:
             process.terminate()
+            process.wait()
+
+
+def end_workers(root: Path) -> None:
+    """A worker outlives its server, but not a test that failed."""
+    for path in (root / ".recon4" / "jobs").glob("*"):
+        if JobFolder(path).alive():
+            JobFolder(path).kill()
 
 
 def recording_with_gate(folder: Path) -> Path:
