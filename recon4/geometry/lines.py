@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -30,8 +31,8 @@ class Lines:
     def __len__(self) -> int:
         return len(self.mid)
 
-    def __getitem__(self, rows: object) -> Lines:
-        return Lines(self.mid[rows], self.dir[rows])  # type: ignore[index]
+    def __getitem__(self, rows: Any) -> Lines:
+        return Lines(self.mid[rows], self.dir[rows])
 
     def moved(self, T_a_b: SE3) -> Lines:
         """The same lines (held in frame ``b``) expressed in frame ``a``."""

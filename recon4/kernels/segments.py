@@ -8,7 +8,6 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-_MAX_PRESERVED = 16
 _RING_GAP = 3
 """A ring that is empty in a cell is skipped, but no more than this far."""
 
@@ -72,8 +71,8 @@ def draw_pairs(
     order, start = _sort_by_cell(xyz, ring, rings, bins)
     out = np.empty((bins * (rings - 1) * preserved, 2), np.int32)
     size = 0
-    best_sq = np.empty(_MAX_PRESERVED, np.float64)
-    best = np.empty((_MAX_PRESERVED, 2), np.int32)
+    best_sq = np.empty(preserved, np.float64)
+    best = np.empty((preserved, 2), np.int32)
     state = np.uint64(seed)
     for column in range(bins):
         for lower in range(rings - 1):

@@ -10,10 +10,10 @@ import numpy as np
 
 from recon4.geometry.lines import Lines
 from recon4.geometry.se3 import SE3, Array
-from recon4.kernels.overlap import share_inside
 from recon4.model.pose_graph import Edge, EdgeKind, Reason, Verdict
 from recon4.progress import Progress
 from recon4.registration.collar_lines import LineTarget, register_lines
+from recon4.registration.overlap import View, overlap
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.planes import register_to_planes
 from recon4.registration.result import Registration
@@ -80,27 +80,21 @@ class PairRegistrar:
         for k in group:
             pair = pairs[k]
             ends = self._views.ends(pair.j)
-            share = self._overlap(pair, ends)
+            share = self._overlap(pair)
             if share < self._settings.overlap.threshold:
                 out.append((k, _edge(pair, share, Reason.OVERLAP)))
                 continue
             if target is None:
                 target = self._target(submaps.around(pair.i, reach), planes)
-            out.append((k, self._judge(pair, share, self._solve(target, ends, pair, share), ends)))
+            out.append((k, self._judge(pair, share, self._solve(target, ends, pair, share))))
         return out
 
-    def _overlap(self, pair: Pair, ends: Ends) -> float:
-        o = self._settings.overlap
-        return float(
-            share_inside(
-                self._views.nearest_m(pair.i),
-                ends.reshape(-1, 3),
-                pair.T_i_j.R,
-                pair.T_i_j.t,
-                o.relative_tolerance,
-                o.absolute_tolerance_m,
-            )  # fmt: skip
-        )
+    def _overlap(self, pair: Pair) -> float:
+        source, target = (self._view(node) for node in (pair.i, pair.j))
+        return overlap(source, target, pair.T_i_j, self._settings.overlap)
+
+    def _view(self, node: int) -> View:
+        return View(self._views.ends(node).reshape(-1, 3), self._views.nearest_m(node))
 
     def _target(self, ends: Ends, planes: PlaneMap) -> PlaneMap | LineTarget:
         if self._settings.registration.solver != "planes":
@@ -123,10 +117,11 @@ class PairRegistrar:
             settings=settings,
         )  # fmt: skip
 
-    def _judge(self, pair: Pair, share: float, found: Registration, ends: Ends) -> Edge:
+    def _judge(self, pair: Pair, share: float, found: Registration) -> Edge:
         """Accept or reject (V Algorithm 2.1 line 8; A0 no. 12)."""
         g = self._settings.graph
-        limit_m = median_range_m(ends) * g.error_relative + g.error_absolute_m
+        range_m = median_range_m(self._views.ends(pair.i))
+        limit_m = range_m * g.error_relative + g.error_absolute_m
         reason = Reason.NONE
         if not found.converged:
             reason = Reason.NOT_CONVERGED

@@ -99,7 +99,8 @@ Selection = Callable[[PoseGraph], list[Pair]]
 def rounds(nodes: int, settings: GraphSettings) -> list[Selection]:
     """What each round tries, given the graph so far."""
     if settings.exhaustive:
-        schedule = distance_schedule(nodes)
+        farthest = nodes // 2 if settings.closed_trajectory else nodes - 1
+        schedule = distance_schedule(farthest)
         return [partial(pairs_at_distances, distances=d, settings=settings) for d in schedule]
     selections: list[Selection] = [partial(neighbor_pairs, settings=settings)]
     if settings.mode != "10":
@@ -110,7 +111,9 @@ def rounds(nodes: int, settings: GraphSettings) -> list[Selection]:
 
 def neighbor_pairs(graph: PoseGraph, settings: GraphSettings) -> list[Pair]:
     """Each node with the few after it; in mode ``10`` those within one second."""
-    distances = range(1, 3) if settings.mode == "10" else range(1, settings.neighbors + 1)
+    within_second = max(10 // settings.node_stride, 1)
+    farthest = within_second if settings.mode == "10" else settings.neighbors
+    distances = range(1, farthest + 1)
     return pairs_at_distances(graph, distances=distances, settings=settings)
 
 
@@ -131,11 +134,15 @@ def pairs_at_distances(
     return pairs
 
 
-def distance_schedule(nodes: int) -> list[range]:
-    """Distances 1 to N/2 in growing batches, the graph being optimized after each."""
+def distance_schedule(farthest: int) -> list[range]:
+    """Distances 1 to the farthest in growing batches, the graph being optimized after each.
+
+    N/2 is enough where pairs wrap around (Algorithm 2.1); an open walk of N nodes needs N - 1, or
+    its start would never be compared with its end.
+    """
     batches, d = [], 1
-    while d <= nodes // 2:
-        end = min(max(d + 1, d * 5 // 4), nodes // 2 + 1)
+    while d <= farthest:
+        end = min(max(d + 1, d * 5 // 4), farthest + 1)
         batches.append(range(d, end))
         d = end
     return batches
@@ -162,9 +169,8 @@ def revisit_pairs(graph: PoseGraph, *, settings: GraphSettings, limit: int) -> l
             walked_m[j] - walked_m[earlier]
         )
         inside = distance_m < allowed_m
-        for i in _spread(earlier[inside], distance_m[inside], limit):
-            if (i, j) not in tried:
-                pairs.append(_pair(graph, i, j, settings))
+        chosen = _spread(earlier[inside], distance_m[inside], limit)
+        pairs += [_pair(graph, i, j, settings) for i in chosen if (i, j) not in tried]
     return pairs
 
 
@@ -204,7 +210,7 @@ def odometry_edges(
                 kind=EdgeKind.ODOMETRY,
                 verdict=Verdict.ACCEPTED,
                 information=np.diag(sd**-2),
-            )  # fmt: skip
+            )
         )
     return tuple(edges)
 
@@ -230,6 +236,12 @@ def _try(
 def edge_facts(edge: Edge) -> dict[str, object]:
     """What a watcher is told of an edge, as plain JSON values."""
     return {
-        "i": edge.i, "j": edge.j, "edge_kind": edge.kind.value, "verdict": edge.verdict.value,
-        "reason": edge.reason.value, "overlap": edge.overlap, "error_m": edge.error_m,
-    }  # fmt: skip
+        "i": edge.i,
+        "j": edge.j,
+        "edge_kind": edge.kind.value,
+        "verdict": edge.verdict.value,
+        "reason": edge.reason.value,
+        "overlap": edge.overlap,
+        # Without a registration there is no error, and JSON has no word for NaN.
+        "error_m": edge.error_m if np.isfinite(edge.error_m) else None,
+    }

@@ -138,8 +138,8 @@ def _normal_equations(p: Array, n: Array, r: Array, w: Array) -> tuple[Array, Ar
     """``H``, ``g`` of a left correction about the centroid, and the degeneracy measure."""
     J = np.hstack([np.cross(p - p.mean(axis=0), n), n])
     H = J.T @ (w[:, None] * J)
-    N = n.T @ (w[:, None] * n) / max(float(w.sum()), 1e-12)
-    return H, J.T @ (w * r), float(np.linalg.eigvalsh(N)[0])
+    spread = n.T @ (w[:, None] * n) / max(float(w.sum()), 1e-12)
+    return H, J.T @ (w * r), float(np.linalg.eigvalsh(spread)[0])
 
 
 def _stop(errors: list[float], step: _Step, settings: RegistrationSettings) -> StopReason | None:

@@ -53,7 +53,7 @@ class LineOdometry:
                 # The step moves the whole frame; what it adds to the motion is its end.
                 moved_end = found.T_target_source @ self._T_odom_start @ motion
                 motion = self._T_odom_start.inverse() @ moved_end
-        return self._finish(frame, segments, predicted, motion, found)
+        return self._finish(frame, segments, predicted, motion=motion, found=found)
 
     def _predicted_motion(self, frame: Multiframe) -> SE3:
         """``T_start_end`` of the frame: newest motion heaviest, weights N…1 over their sum."""
@@ -93,6 +93,7 @@ class LineOdometry:
         frame: Multiframe,
         segments: Segments,
         predicted: SE3,
+        *,
         motion: SE3,
         found: Registration | None,
     ) -> OdometryStep:
@@ -100,8 +101,10 @@ class LineOdometry:
         lost = found is not None and not (found.converged and found.error_m < o.lost_error_m)
         used = predicted if lost else motion
         duration_s = frame.duration_ns * 1e-9
-        if not lost:
-            self._history.append(self._lines(segments, self._T_odom_start, used, duration_s))
+        lines = self._lines(segments, self._T_odom_start, used, duration_s)
+        # An empty first frame would leave nothing for any later one to match.
+        if not lost and len(lines):
+            self._history.append(lines)
         self._motions.append(used)
         T_start, T_end = self._T_odom_start, self._T_odom_start @ used
         self._T_odom_start = T_end

@@ -59,11 +59,10 @@ def _of_sensor(
         settings.preserved, settings.max_length_per_range, _seed(settings.seed, frame, row),
     )  # fmt: skip
     first, second = pairs[:, 0], pairs[:, 1]
-    p_body = sensor.T_body_sensor @ xyz.astype(np.float64)
-    dt_s = frame.dt_ns[rows] * 1e-9
-    range_m = np.linalg.norm(xyz, axis=1).astype(np.float64)
-    nearer = np.minimum(range_m[first], range_m[second])
-    return p_body[first], p_body[second], dt_s[first], dt_s[second], nearer
+    a, b = xyz[first].astype(np.float64), xyz[second].astype(np.float64)
+    nearer = np.sqrt(np.minimum(np.sum(a * a, axis=1), np.sum(b * b, axis=1)))
+    a_s, b_s = frame.dt_ns[rows[first]] * 1e-9, frame.dt_ns[rows[second]] * 1e-9
+    return sensor.T_body_sensor @ a, sensor.T_body_sensor @ b, a_s, b_s, nearer
 
 
 def _seed(seed: int, frame: Multiframe, row: int) -> int:

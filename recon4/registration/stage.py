@@ -54,6 +54,7 @@ def dense_trajectory(steps: list[OdometryStep]) -> Trajectory:
     t_ns, R, t_m = t_ns[newest], R[newest], t_m[newest]
     slot = (t_ns - t_ns[0]) // _DENSE_NS
     kept = np.append(np.diff(slot) > 0, True)
+    kept[0] = True
     return Trajectory(t_ns[kept], SE3(R[kept], t_m[kept]))
 
 

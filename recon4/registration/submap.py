@@ -42,7 +42,7 @@ class Submaps:
         self._rows = rows
         self._skip = skip
         self._cache: OrderedDict[int, Ends] = OrderedDict()
-        self._T_body_odom = odometry.at(frames.t_mid_ns[rows]).inverse()
+        self._t_ns = frames.t_mid_ns[rows]
 
     def around(self, node: int, reach: int) -> Ends:
         """Segments of the multiframes up to ``reach`` before and after the node's own."""
@@ -50,7 +50,9 @@ class Submaps:
         near = range(max(row - reach, 0), min(row + reach + 1, len(self._frames)))
         parts = [self._ends_odom(k) for k in near if not self._skip[k]]
         ends = np.concatenate(parts) if parts else np.empty((0, 2, 3))
-        return self._T_body_odom[node] @ ends
+        T_odom_body = self._odometry.at(self._t_ns[node : node + 1])[0]
+        # Flat, because numpy multiplies a stack of 2 x 3 matrices one by one.
+        return (T_odom_body.inverse() @ ends.reshape(-1, 3)).reshape(-1, 2, 3)
 
     def _ends_odom(self, row: int) -> Ends:
         if row in self._cache:
@@ -124,8 +126,8 @@ def _thin(ends: Ends, limit: int) -> Ends:
 
 def _scratch(shape: tuple[int, ...]) -> NDArray[np.float32]:
     """An array the system may page out to a nameless temporary file."""
-    file = tempfile.TemporaryFile()
-    return np.memmap(file, np.float32, "w+", shape=shape)
+    with tempfile.TemporaryFile() as file:
+        return np.memmap(file, np.float32, "w+", shape=shape)
 
 
 def median_range_m(ends: Array) -> float:
@@ -134,6 +136,10 @@ def median_range_m(ends: Array) -> float:
 
 
 def node_rows(t_ns: Times, stride: int, skip: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """Multiframes that become nodes: every ``stride``-th that is not lost."""
+    """Multiframes that become nodes: every ``stride``-th that is not lost.
+
+    At least one: the first that is not lost, or the very first if all of them are.
+    """
     rows = np.arange(min(stride // 2, max(len(t_ns) - 1, 0)), len(t_ns), stride)
-    return rows[~skip[rows]]
+    kept = rows[~skip[rows]]
+    return kept if len(kept) else np.append(np.flatnonzero(~skip), 0)[:1]

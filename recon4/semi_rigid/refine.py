@@ -111,8 +111,10 @@ def refine_trajectory(
     total_sd = np.repeat([r.total_sd_rad, r.total_sd_m], 3)
     for _ in range(r.rounds):
         progress.start("refine", len(frames) // r.map_stride + len(frames), "multiframe")
-        sweep = _Sweep(frames, trajectory, lost, settings, progress)
+        sweep = _Sweep(frames, trajectory, lost, settings=settings, progress=progress)
         system, mean_m, share = sweep.match(sweep.build())
+        if share == 0.0:
+            break
         step = solve_knots(system, correction, step_sd=step_sd, total_sd=total_sd)
         correction = correction + step
         trajectory = apply_knots(trajectory, knot_ns, step)
@@ -132,6 +134,7 @@ class _Sweep:
         frames: FrameStore,
         trajectory: Trajectory,
         lost: NDArray[np.bool_],
+        *,
         settings: Settings,
         progress: Progress,
     ) -> None:
@@ -148,7 +151,7 @@ class _Sweep:
         return planes
 
     def match(self, planes: PlaneMap) -> tuple[KnotSystem, float, float]:
-        """Normal equations of every multiframe against the map."""
+        """Normal equations of every multiframe against the map; a share of 0 if nothing matches."""
         count = len(self._frames)
         H, g = np.zeros((count, 12, 12)), np.zeros((count, 12))
         distances: list[float] = []
@@ -159,6 +162,8 @@ class _Sweep:
                 H[row], g[row], mean_m, share = found
                 distances.append(mean_m)
                 shares.append(share)
+        if not shares:
+            return KnotSystem(H, g), float("nan"), 0.0
         return KnotSystem(H, g), float(np.mean(distances)), float(np.mean(shares))
 
     def _ends(self, row: int) -> Array | None:
