@@ -147,6 +147,15 @@ class OdometrySettings:
     """Share of the matches counted as independent: neighbors see the same plane's error."""
     use_imu: bool = True
     """Predict and undistort with the IMU when the recording has one."""
+    use_gnss: bool = True
+    """Let GNSS/INS with heading hold odometry where the LiDAR cannot."""
+    gnss_sd_m: float = 0.1
+    """Smallest standard deviation given to a fix [m]: its errors are alike for seconds."""
+    heading_sd_rad: float = 0.01
+    """Standard deviation given to a heading of the INS [rad]."""
+    normal_noise_rad: float = 0.03
+    """Error of a plane's normal [rad]: directions that are held no better than by such errors
+    count as free."""
     gyro_noise: float = 3e-4
     """Noise density of the gyroscope [rad/s/sqrt(Hz)]."""
     accel_noise: float = 1e-2

@@ -45,10 +45,13 @@ def _frames(
 
 
 def _odometry(*, out: Path, settings: Settings, progress: Progress, frames: Path) -> dict[str, Any]:
+    from recon4.georeference.aid import make_aid
     from recon4.registration.stage import run_odometry
     from recon4.store.frames import FrameStore
 
-    return run_odometry(FrameStore.open(frames), out, settings=settings, progress=progress)
+    store = FrameStore.open(frames)
+    aid = make_aid(store.gnss, store.rig, settings.odometry)
+    return run_odometry(store, out, settings=settings, progress=progress, aid=aid)
 
 
 def _graph(
@@ -146,7 +149,7 @@ def _map(
 
 
 FRAMES = Stage("frames", 1, ("ingest",), _frames)
-ODOMETRY = Stage("odometry", 1, ("segments", "registration", "planes", "odometry"), _odometry)
+ODOMETRY = Stage("odometry", 2, ("segments", "registration", "planes", "odometry"), _odometry)
 GRAPH = Stage("graph", 1, _MATCHING, _graph)
 VERIFICATION = Stage("verification", 1, ("verification",), _verification)
 REFINE = Stage("refine", 1, ("segments", "planes", "odometry", "graph", "refine"), _refine)

@@ -34,6 +34,14 @@ class MotionState:
         """The pose."""
         return SE3(self.R, self.vector[:3])
 
+    def at_pose(self, T_odom_body: SE3, *, sd_rad: float, sd_m: float) -> MotionState:
+        """The same state at another pose, known with these standard deviations."""
+        P = self.P.copy()
+        P[:6, :] = P[:, :6] = 0.0
+        P[range(6), range(6)] = np.repeat([sd_rad, sd_m], 3) ** 2
+        vector = np.concatenate([T_odom_body.t, self.vector[3:]])
+        return replace(self, R=T_odom_body.R, vector=vector, P=P)
+
     def corrected(self, delta: Array, P: Array) -> MotionState:
         """The state moved by an error (18,), with a new covariance."""
         return replace(self, R=so3_exp(delta[:3]) @ self.R, vector=self.vector + delta[3:], P=P)

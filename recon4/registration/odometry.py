@@ -13,6 +13,8 @@ from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
+from recon4.registration.aiding import Aid
+from recon4.registration.degeneracy import held_directions
 from recon4.registration.motion import FreeMotion, ImuMotion, Motion, MotionState, Prediction
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.segments import Segments, sample_segments
@@ -71,8 +73,15 @@ class Odometry:
     frame). Without an IMU the same filter predicts constant velocity.
     """
 
-    def __init__(self, rig: Rig, settings: Settings, imu: ImuSamples | None = None) -> None:
-        self._rig, self._settings = rig, settings
+    def __init__(
+        self,
+        rig: Rig,
+        settings: Settings,
+        imu: ImuSamples | None = None,
+        *,
+        aid: Aid | None = None,
+    ) -> None:
+        self._rig, self._settings, self._aid = rig, settings, aid
         with_imu = imu is not None and len(imu) > 1 and settings.odometry.use_imu
         self._free: Motion = FreeMotion(settings.odometry)
         self._motion = ImuMotion(imu, rig, settings.odometry) if with_imu and imu else self._free
@@ -100,9 +109,21 @@ class Odometry:
     def _predict(self, frame: Multiframe) -> Prediction:
         start_ns, end_ns = frame.t_ns, frame.t_ns + frame.duration_ns
         if self._state is None:
-            self._state = self._motion.initial(start_ns)
+            self._state = self._initial(start_ns)
         covered = self._motion.covers(self._state.t_ns, end_ns)
         return (self._motion if covered else self._free).predict(self._state, end_ns)
+
+    def _initial(self, t_ns: int) -> MotionState:
+        """Where the aid says, else at the origin."""
+        state = self._motion.initial(t_ns)
+        T_enu_body = self._aid.pose(t_ns) if self._aid else None
+        if self._aid is None or T_enu_body is None:
+            return state
+        return state.at_pose(
+            T_enu_body,
+            sd_rad=self._aid.attitude_sd_rad,
+            sd_m=self._settings.odometry.gnss_sd_m,
+        )
 
     def _register(
         self, segments: Segments, prediction: Prediction, *, turn_rad: float = 0.0
@@ -126,8 +147,13 @@ class Odometry:
                 finest=max(coarse + 1 - rounds, 0), gate_m=gate_m,
             )  # fmt: skip
             H, g = information.copy(), information @ delta
-            H[:12, :12] += o.information_scale * match.H
-            g[:12] += o.information_scale * match.g
+            H_lidar, g_lidar = held_directions(match, o.normal_noise_rad)
+            H[:12, :12] += o.information_scale * H_lidar
+            g[:12] += o.information_scale * g_lidar
+            if self._aid is not None:
+                H_aid, g_aid = self._aid.pull(T_dense[-1], prediction.end.t_ns)
+                H[6:12, 6:12] += H_aid
+                g[6:12] += g_aid
             step = -np.linalg.solve(H, g)
             delta = delta + step
             T_dense = _correct(prediction, delta, center)

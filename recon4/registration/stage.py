@@ -9,6 +9,7 @@ import numpy as np
 from recon4.geometry.se3 import SE3
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, track
+from recon4.registration.aiding import Aid
 from recon4.registration.odometry import OdometryStep
 from recon4.registration.select import make_odometry
 from recon4.settings import Settings
@@ -20,7 +21,12 @@ _DENSE_NS = 9_000_000
 
 
 def run_odometry(
-    frames: FrameStore, out: Path, *, settings: Settings, progress: Progress
+    frames: FrameStore,
+    out: Path,
+    *,
+    settings: Settings,
+    progress: Progress,
+    aid: Aid | None = None,
 ) -> dict[str, object]:
     """Register all multiframes in order.
 
@@ -30,8 +36,9 @@ def run_odometry(
             (a row a multiframe).
         settings: Uses segments, planes, registration and odometry.
         progress: Counts multiframes; tracking that is lost is an event.
+        aid: Fixes of a GNSS/INS, outdoors.
     """
-    odometry = make_odometry(frames.rig, settings, frames.imu)
+    odometry = make_odometry(frames.rig, settings, frames.imu, aid=aid)
     steps: list[OdometryStep] = []
     for frame in track(frames, progress, what="odometry", unit="multiframe"):
         step = odometry.push(frame)
@@ -41,7 +48,12 @@ def run_odometry(
     save_trajectory(out / "trajectory.npz", dense_trajectory(steps))
     _save_steps(out / "steps.npz", steps)
     lost = sum(step.lost for step in steps)
-    return {"multiframes": len(steps), "lost": lost, "imu": frames.imu is not None}
+    return {
+        "multiframes": len(steps),
+        "lost": lost,
+        "imu": frames.imu is not None,
+        "gnss": aid is not None,
+    }
 
 
 def dense_trajectory(steps: list[OdometryStep]) -> Trajectory:

@@ -1,0 +1,82 @@
+"""Outdoors: what GNSS/INS knows of the body, as a weak hold for odometry where LiDAR has none.
+
+Over an open field the ground says nothing of how far one went. Fixes every tenth of a second keep
+odometry within decimeters there, and leave it alone wherever the LiDAR knows better.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from recon4.geometry.se3 import SE3, Array, skew, so3_log
+from recon4.model.trajectory import Times
+
+_MAX_GAP_NS = 300_000_000
+"""Between two fixes farther apart than this nothing is known [ns]."""
+_OUTLIER_SD = 3.0
+"""Residual in standard deviations at which a fix counts half."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Aid:
+    """Antenna positions and attitudes in a local frame: x east, y north, z up."""
+
+    t_ns: Times
+    """Times of the fixes on the rig's clock [ns], strictly increasing, (N,)."""
+    p_enu: Array
+    """Antenna positions [m], (N, 3)."""
+    sd_m: Array
+    """Standard deviation of each position, per axis [m], (N, 3)."""
+    R_enu_body: Array
+    """Attitudes, (N, 3, 3)."""
+    attitude_sd_rad: float
+    """Standard deviation of the attitudes [rad]."""
+    p_body_antenna: Array
+    """Lever arm [m], (3,)."""
+
+    def pose(self, t_ns: int) -> SE3 | None:
+        """``T_enu_body`` at a time; None without fixes around it."""
+        found = self._around(t_ns)
+        if found is None:
+            return None
+        row, s = found
+        near = row + (s > 0.5)
+        R = self.R_enu_body[near]
+        p = (1.0 - s) * self.p_enu[row] + s * self.p_enu[row + 1]
+        return SE3(R, p - R @ self.p_body_antenna)
+
+    def pull(self, T_enu_body: SE3, t_ns: int) -> tuple[Array, Array]:
+        """Information (6, 6) and gradient (6,) of a left correction about the body's origin.
+
+        A wild fix is held back by a Cauchy weight.
+        """
+        H, g = np.zeros((6, 6)), np.zeros(6)
+        found = self._around(t_ns)
+        if found is None:
+            return H, g
+        row, s = found
+        p_antenna = (1.0 - s) * self.p_enu[row] + s * self.p_enu[row + 1]
+        arm = T_enu_body.R @ self.p_body_antenna
+        J = np.hstack([-skew(arm), np.eye(3)])
+        r = T_enu_body.t + arm - p_antenna
+        z = r / self.sd_m[row]
+        weight = 1.0 / (1.0 + float(z @ z) / _OUTLIER_SD**2)
+        W = np.diag(weight / self.sd_m[row] ** 2)
+        H += J.T @ W @ J
+        g += J.T @ W @ r
+        # The heading only: roll and pitch come from gravity.
+        turn = so3_log(T_enu_body.R @ self.R_enu_body[row + (s > 0.5)].T)[2]
+        H[2, 2] += self.attitude_sd_rad**-2
+        g[2] += self.attitude_sd_rad**-2 * turn
+        return H, g
+
+    def _around(self, t_ns: int) -> tuple[int, float] | None:
+        right = int(np.searchsorted(self.t_ns, t_ns))
+        if right == 0 or right == len(self.t_ns):
+            return None
+        gap_ns = int(self.t_ns[right] - self.t_ns[right - 1])
+        if gap_ns > _MAX_GAP_NS:
+            return None
+        return right - 1, (t_ns - int(self.t_ns[right - 1])) / gap_ns
