@@ -124,7 +124,7 @@ def publish(
         lost=runs["odometry"].figures["lost"],
         points=runs["map"].figures["points"],
         edges=runs["verification"].figures["edges"],
-        warnings=tuple(runs["frames"].figures["warnings"]),
+        warnings=(*runs["frames"].figures["warnings"], *_later_warnings(runs)),
         seconds=round(sum(run.done.seconds for run in runs.values()), 3),
         peak_bytes=max(run.done.peak_bytes for run in runs.values()),
         stages=tuple(_stage(run) for run in runs.values()),
@@ -215,7 +215,17 @@ def _facts(runs: Mapping[str, StageRun], about: About, *, created: str) -> Repor
         versions=versions(),
         rig=runs["frames"].figures["rig"],
         crs=runs["level"].figures["crs"],
+        warnings=_later_warnings(runs),
     )
+
+
+def _later_warnings(runs: Mapping[str, StageRun]) -> tuple[str, ...]:
+    """What stages after the import have to say."""
+    told = tuple(runs["odometry"].figures.get("warnings", []))
+    level = runs["level"].figures
+    if runs["frames"].figures["gnss"] and not level["crs"]:
+        told += (f"the positions were not used, the map is local: {level['local']}",)
+    return told
 
 
 def _stage(run: StageRun) -> dict[str, Any]:

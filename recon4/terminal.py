@@ -142,6 +142,7 @@ def watcher(out: TextIO | None = None) -> PlainLines | Bars:
 
 def describe_progress(what: str, done: int, total: int, *, unit: str, seconds: float) -> str:
     """One line: percent, count, rate with unit, time left."""
+    total = max(total, done) if total else 0  # totals are estimates at times
     share = (
         f"{100 * done // total:3d} %  {_count(done, unit)}/{_count(total, unit)}" if total else ""
     )
@@ -160,7 +161,8 @@ def describe_event(kind: str, facts: dict[str, object]) -> str:
         return _describe_stage(facts)
     if kind not in _TOLD:
         return ""
-    return f"{_TOLD[kind]}: " + ", ".join(f"{name} {value}" for name, value in facts.items())
+    told = [str(v) if name == "text" else f"{name} {v}" for name, v in facts.items()]
+    return f"{_TOLD[kind]}: " + ", ".join(told)
 
 
 def describe_summary(summary: Mapping[str, Any], folder: Path) -> str:

@@ -10,6 +10,7 @@ from recon4.geometry.se3 import SE3
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, track
 from recon4.registration.aiding import Aid
+from recon4.registration.imu_trial import believable_imu
 from recon4.registration.odometry import OdometryStep
 from recon4.registration.select import make_odometry
 from recon4.settings import Settings
@@ -35,10 +36,13 @@ def run_odometry(
         out: Receives ``trajectory.npz`` (``T_odom_body``, dense) and ``steps.npz``
             (a row a multiframe).
         settings: Uses segments, planes, registration and odometry.
-        progress: Counts multiframes; tracking that is lost is an event.
+        progress: Counts multiframes; tracking that is lost and an IMU that is wrong are events.
         aid: Fixes of a GNSS/INS, outdoors.
     """
-    odometry = make_odometry(frames.rig, settings, frames.imu, aid=aid)
+    imu, remark = believable_imu(frames, settings)
+    if remark:
+        progress.event("warning", text=remark)
+    odometry = make_odometry(frames.rig, settings, imu, aid=aid)
     steps: list[OdometryStep] = []
     for frame in track(frames, progress, what="odometry", unit="multiframe"):
         step = odometry.push(frame)
@@ -51,7 +55,8 @@ def run_odometry(
     return {
         "multiframes": len(steps),
         "lost": lost,
-        "imu": frames.imu is not None,
+        "imu": imu is not None,
+        "warnings": [remark] if remark else [],
         "gnss": aid is not None,
     }
 

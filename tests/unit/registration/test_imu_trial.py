@@ -1,0 +1,99 @@
+"""An IMU is believed if the LiDARs agree with it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.model.samples import ImuSamples
+from recon4.progress import Silent
+from recon4.recording.ingest import ingest
+from recon4.registration.imu_trial import believable_imu
+from recon4.settings import OdometrySettings, preset
+from recon4.simulation.simulate import simulate
+from recon4.store.frames import FrameStore
+
+SETTINGS = preset("indoor")
+
+
+class Walk:
+    """A recording with another IMU."""
+
+    def __init__(self, frames, imu):
+        self._frames, self.imu = frames, imu
+        self.rig, self.t_mid_ns = frames.rig, frames.t_mid_ns
+
+    def __len__(self):
+        return len(self._frames)
+
+    def __getitem__(self, k):
+        return self._frames[k]
+
+
+@pytest.fixture(scope="module")
+def frames(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("walk")
+    simulate("office", folder / "in", seconds=6.0, seed=2, bag=False, progress=Silent())
+    (folder / "frames").mkdir()
+    ingest(
+        [folder / "in" / "recording.pcap"], folder / "frames", rig=None,
+        imu=folder / "in" / "imu.csv", gnss=None, settings=SETTINGS.ingest, progress=Silent(),
+    )  # fmt: skip
+    return FrameStore.open(folder / "frames")
+
+
+def altered(frames, turn=lambda gyro: gyro, late_ns=0, force=1.0):
+    imu = frames.imu
+    return ImuSamples(imu.t_ns + late_ns, turn(imu.gyro_rad_s), force * imu.accel_m_s2)
+
+
+def test_an_imu_that_agrees_is_taken_as_it_is(frames):
+    imu, remark = believable_imu(frames, SETTINGS)
+
+    assert imu is frames.imu
+    assert remark == ""
+
+
+def test_the_zero_of_a_gyroscope_is_taken_off(frames):
+    zero_rad_s = np.deg2rad([20.0, -5.0, -30.0])
+    walk = Walk(frames, altered(frames, lambda gyro: gyro + zero_rad_s))
+
+    imu, remark = believable_imu(walk, SETTINGS)
+
+    assert np.allclose(imu.gyro_rad_s, frames.imu.gyro_rad_s, atol=np.deg2rad(1.0))
+    assert "zero" in remark
+
+
+@pytest.mark.parametrize(
+    "fault",
+    [
+        {"turn": lambda gyro: gyro * [1.0, 1.0, -1.0]},
+        {"turn": lambda gyro: gyro * 3.0},
+        {"late_ns": 300_000_000},
+        {"force": -1.0},
+    ],
+    ids=["an axis the wrong way", "a wrong unit", "a late clock", "forces upside down"],
+)
+def test_an_imu_that_contradicts_the_lidars_is_not_used(frames, fault):
+    imu, remark = believable_imu(Walk(frames, altered(frames, **fault)), SETTINGS)
+
+    assert imu is None
+    assert "contradicts the LiDARs" in remark
+
+
+def test_without_an_imu_or_the_wish_to_use_it_nothing_is_tried(frames):
+    never = replace(SETTINGS, odometry=OdometrySettings(use_imu=False))
+
+    assert believable_imu(Walk(frames, None), SETTINGS) == (None, "")
+    assert believable_imu(frames, never) == (frames.imu, "")
+
+
+def test_one_multiframe_is_enough(frames):
+    class Single(Walk):
+        def __len__(self):
+            return 1
+
+    imu, remark = believable_imu(Single(frames, frames.imu), SETTINGS)
+
+    assert imu is frames.imu
+    assert remark == ""
