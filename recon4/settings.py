@@ -132,6 +132,30 @@ class PlaneSettings:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ScanSettings:
+    """Registration of two single scans: recovery without an IMU, sparse pairs."""
+
+    voxel_m: float = 0.25
+    """Scans are thinned to one point in a cube of this edge [m]."""
+    neighbors: int = 12
+    """Points whose plane gives a point its normal, itself included."""
+    gate_m: float = 1.0
+    """Points farther apart never match [m]; twice as far in the first two rounds."""
+    kernel_m: float = 0.3
+    """Scale of the Cauchy kernel on the symmetric distance [m]."""
+    rounds: int = 30
+    """Upper bound on match-and-solve rounds."""
+    inlier_m: float = 0.1
+    """A point this near to its plane lies on it [m]."""
+    min_share: float = 0.35
+    """With a smaller share of points in place the registration has not converged."""
+    sure_share: float = 0.6
+    """With a smaller share other starts are tried."""
+    starts: int = 10
+    """Overlays of the ground plans that are tried."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class OdometrySettings:
     """Pose of each multiframe from the ones before (V §2.4, requirements A3, A5)."""
 
@@ -168,6 +192,10 @@ class OdometrySettings:
     """Without an IMU: random walk of the turn rate [rad/s/sqrt(s)]."""
     free_accel: float = 2.0
     """Without an IMU: random walk of the velocity [m/s/sqrt(s)]."""
+    line_sd_m: float = 0.01
+    """Standard deviation of the motion over a multiframe by line odometry [m] …"""
+    line_sd_rad: float = 0.002
+    """… and of its rotation [rad]."""
     lost_error_m: float = 0.25
     """A larger error means lost [m]."""
     lost_share: float = 0.3
@@ -210,9 +238,9 @@ class GraphSettings:
     """t_r of the acceptance limit ``median_range * t_r + t_a`` (A0 no. 12)."""
     error_absolute_m: float = 0.05
     """t_a of that limit [m]."""
-    odometry_sd_m: float = 0.003
-    """Standard deviation of an odometry edge [m]."""
-    odometry_sd_rad: float = 0.0004
+    odometry_sd_m: float = 0.001
+    """Smallest standard deviation of an odometry edge [m]."""
+    odometry_sd_rad: float = 0.0002
     """The same for its rotation [rad]."""
     loop_sd_m: float = 0.008
     """Smallest standard deviation of a registered edge [m]."""
@@ -401,6 +429,7 @@ class Settings:
     overlap: OverlapSettings = field(default_factory=OverlapSettings)
     registration: RegistrationSettings = field(default_factory=RegistrationSettings)
     planes: PlaneSettings = field(default_factory=PlaneSettings)
+    scans: ScanSettings = field(default_factory=ScanSettings)
     odometry: OdometrySettings = field(default_factory=OdometrySettings)
     graph: GraphSettings = field(default_factory=GraphSettings)
     verification: VerificationSettings = field(default_factory=VerificationSettings)

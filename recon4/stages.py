@@ -149,8 +149,8 @@ def _map(
 
 
 FRAMES = Stage("frames", 1, ("ingest",), _frames)
-ODOMETRY = Stage("odometry", 2, ("segments", "registration", "planes", "odometry"), _odometry)
-GRAPH = Stage("graph", 1, _MATCHING, _graph)
+ODOMETRY = Stage("odometry", 3, ("segments", "registration", "planes", "odometry"), _odometry)
+GRAPH = Stage("graph", 2, _MATCHING, _graph)
 VERIFICATION = Stage("verification", 1, ("verification",), _verification)
 REFINE = Stage("refine", 1, ("segments", "planes", "odometry", "graph", "refine"), _refine)
 LEVEL = Stage("level", 1, ("level", "gnss"), _level)

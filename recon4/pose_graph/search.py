@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from functools import partial
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -44,10 +45,12 @@ def build_graph(
         settings: Uses nearly all groups of registration.
         progress: Counts pairs; each edge is an event.
     """
+    steps = load_arrays(odometry / "steps.npz", ["lost", "motion_cov"])
     graph = search(
         frames,
         load_trajectory(odometry / "trajectory.npz"),
-        load_arrays(odometry / "steps.npz", ["lost"])["lost"],
+        steps["lost"],
+        motion_cov=steps["motion_cov"],
         settings=settings,
         progress=progress,
     )
@@ -64,6 +67,7 @@ def search(
     trajectory: Trajectory,
     lost: NDArray[np.bool_],
     *,
+    motion_cov: Array,
     settings: Settings,
     progress: Progress,
 ) -> PoseGraph:
@@ -73,6 +77,7 @@ def search(
         frames: The multiframes.
         trajectory: ``T_odom_body``, dense.
         lost: Multiframes where odometry was lost, (number of multiframes,).
+        motion_cov: `OdometryStep.motion_cov` of each, (number of multiframes, 6, 6).
         settings: Uses segments, overlap, registration, planes, graph.
         progress: Counts pairs; each edge is an event.
     """
@@ -80,9 +85,8 @@ def search(
     rows = node_rows(frames.t_mid_ns, g.node_stride, lost)
     t_ns = frames.t_mid_ns[rows]
     T_odom_body = trajectory.at(t_ns)
-    graph = PoseGraph(
-        rows.astype(np.int64), t_ns, T_odom_body, odometry_edges(T_odom_body, rows, lost, g)
-    )
+    edges = odometry_edges(T_odom_body, rows, lost, motion_cov=motion_cov, settings=g)
+    graph = PoseGraph(rows.astype(np.int64), t_ns, T_odom_body, edges)
     views = NodeViews(len(rows), settings)
     registrar = PairRegistrar(
         lambda: Submaps(frames, trajectory, rows, settings, skip=lost), views, settings
@@ -193,15 +197,28 @@ def _spread(nodes: NDArray[np.int64], distance_m: Array, limit: int) -> list[int
 
 
 def odometry_edges(
-    T_odom_body: SE3, rows: NDArray[np.intp], lost: NDArray[np.bool_], settings: GraphSettings
+    T_odom_body: SE3,
+    rows: NDArray[np.intp],
+    lost: NDArray[np.bool_],
+    *,
+    motion_cov: Array,
+    settings: GraphSettings,
 ) -> tuple[Edge, ...]:
-    """Edges between consecutive nodes; weak ones across multiframes where tracking was lost."""
+    """Edges between consecutive nodes, as certain as odometry itself was of the motion between.
+
+    The errors of consecutive multiframes are alike, so their deviations add up, not their
+    variances. Across multiframes where tracking was lost an edge is weak.
+    """
     T_i_j = T_odom_body[:-1].inverse() @ T_odom_body[1:]
+    floor = np.diag(np.repeat([settings.odometry_sd_rad, settings.odometry_sd_m], 3) ** 2)
     edges = []
-    for k in range(len(rows) - 1):
-        broken = bool(lost[rows[k] : rows[k + 1] + 1].any())
-        scale = _LOST_SD_FACTOR if broken else 1.0
-        sd = np.repeat([settings.odometry_sd_rad, settings.odometry_sd_m], 3) * scale
+    for k, (first, last) in enumerate(pairwise(rows)):
+        between = slice(first + 1, last + 1)
+        into_j = np.kron(np.eye(2), T_odom_body.R[k + 1])
+        cov = into_j.T @ ((last - first) * motion_cov[between].sum(axis=0)) @ into_j + floor
+        if lost[first : last + 1].any():
+            cov = cov * _LOST_SD_FACTOR**2
+        information = np.linalg.inv(cov)
         edges.append(
             Edge(
                 i=k,
@@ -209,7 +226,7 @@ def odometry_edges(
                 T_i_j=T_i_j[k],
                 kind=EdgeKind.ODOMETRY,
                 verdict=Verdict.ACCEPTED,
-                information=np.diag(sd**-2),
+                information=0.5 * (information + information.T),
             )
         )
     return tuple(edges)

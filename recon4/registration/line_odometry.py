@@ -123,4 +123,5 @@ class LineOdometry:
             found.degeneracy if found else 0.0,
             float(np.linalg.norm(motion.t - predicted.t)),
             lost,
+            np.diag(np.repeat([o.line_sd_rad, o.line_sd_m], 3) ** 2),
         )

@@ -49,6 +49,8 @@ class OdometryStep:
     gap_m: float
     """How far the LiDAR moved the prediction [m]."""
     lost: bool
+    motion_cov: Array
+    """Covariance of the motion over the frame, turn and shift in odom axes, (6, 6)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,7 +60,8 @@ class _Fit:
     T_dense: SE3
     delta: Array
     """Correction of the pose at the start (6) and of the state at the end (18)."""
-    P_end: Array
+    P: Array
+    """Covariance of that correction, (24, 24)."""
     match: Match
     rounds: int
     converged: bool
@@ -163,8 +166,7 @@ class Odometry:
             ):
                 converged = True
                 break
-        P = np.linalg.inv(H)[6:, 6:]
-        return _Fit(T_dense, delta, P, match, rounds, converged)
+        return _Fit(T_dense, delta, np.linalg.inv(H), match, rounds, converged)
 
     def _is_lost(self, fit: _Fit) -> bool:
         o = self._settings.odometry
@@ -219,7 +221,7 @@ def _largest_move(step: Array) -> float:
 def _updated(prediction: Prediction, fit: _Fit, *, lost: bool, first: bool) -> MotionState:
     if lost or first:
         return prediction.end
-    return prediction.end.corrected(fit.delta[6:], fit.P_end)
+    return prediction.end.corrected(fit.delta[6:], fit.P[6:, 6:])
 
 
 def _step(
@@ -243,4 +245,11 @@ def _step(
         fit.match.degeneracy,
         float(np.linalg.norm(T_dense.t[-1] - end.t)),
         lost,
+        _motion_cov(prediction.prior if lost else fit.P),
     )
+
+
+def _motion_cov(P: Array) -> Array:
+    """Covariance of the end pose against the start pose, from their joint covariance."""
+    start, end = slice(0, 6), slice(6, 12)
+    return P[start, start] + P[end, end] - P[start, end] - P[end, start]

@@ -90,4 +90,5 @@ def _save_steps(path: Path, steps: list[OdometryStep]) -> None:
         degeneracy=np.array([s.degeneracy for s in steps]),
         gap_m=np.array([s.gap_m for s in steps]),
         lost=np.array([s.lost for s in steps]),
+        motion_cov=np.array([s.motion_cov for s in steps]).reshape(-1, 6, 6),
     )
