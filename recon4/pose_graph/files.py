@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import zipfile
-import zlib
 from pathlib import Path
 from typing import Any
 
@@ -53,7 +51,7 @@ def load_graph(folder: Path) -> PoseGraph:
         StoreError: If the file is missing, damaged or its columns do not fit together.
     """
     names = [*_NODES, *_EDGES, *_NUMBERS, *_COUNTS, *_TEXTS]
-    columns = _read(folder / "graph.npz", names)
+    columns = load_arrays(folder / "graph.npz", names)
     for name in names:
         expected = len(columns["frame_ids"] if name in _NODES else columns["i"])
         if len(columns[name]) != expected:
@@ -66,15 +64,6 @@ def load_graph(folder: Path) -> PoseGraph:
         raise StoreError(f"graph.npz: {error}") from error
     T_map_body = SE3(columns["node_R"], columns["node_t"])
     return PoseGraph(columns["frame_ids"], columns["t_ns"], T_map_body, edges)
-
-
-def _read(path: Path, names: list[str]) -> dict[str, Any]:
-    if not zipfile.is_zipfile(path):  # numpy leaves such a file open behind its error
-        raise StoreError(f"{path.name}: missing, cut off or not an archive of arrays")
-    try:
-        return load_arrays(path, names)
-    except (zipfile.BadZipFile, zlib.error) as error:
-        raise StoreError(f"{path.name}: damaged: {error}") from error
 
 
 def _edge(columns: dict[str, Any], row: int) -> Edge:

@@ -5,8 +5,8 @@ Sources: VLP-16 user manual 63-9243 rev. D (§6, §9, appendix C), VLP-32C user 
 The order of the lasers is the order on the wire; ring 0 is the lowest.
 The beams of one model cross in a focal point at the distance f from the axis of rotation while
 ranges count from the axis; so a beam of elevation e leaves the axis at the height ``-f tan e``.
-The VLP-16's manual lists these heights (f = 41.8 mm); for the others f is that of the optical
-drawings, 42.4 mm and 28.96 mm.
+The VLP-16's manual lists these heights (f = 41.8 mm); for the VLP-32C (42.4 mm) and the HDL-32E
+(28.96 mm) f was derived from velodyne-decoder's output.
 """
 
 from __future__ import annotations

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import zipfile
+import zlib
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, TypeVar
@@ -13,6 +15,9 @@ from recon4.geometry.se3 import SE3
 from recon4.model.trajectory import Trajectory
 
 Record = TypeVar("Record")
+
+_DAMAGED = (OSError, KeyError, ValueError, EOFError, TypeError, zipfile.BadZipFile, zlib.error)
+"""What numpy raises over a file that is missing, cut off, altered or something else."""
 
 
 def save_record(path: Path, record: Any) -> None:
@@ -52,7 +57,8 @@ def load_arrays(path: Path, names: list[str]) -> dict[str, Any]:
         StoreError: If the file is missing, damaged or lacks one of the names.
     """
     try:
-        with np.load(path, allow_pickle=False) as file:
+        # Opened here: numpy leaves a file that it cannot read open behind its error.
+        with path.open("rb") as raw, np.load(raw, allow_pickle=False) as file:
             return {name: file[name] for name in names}
-    except (OSError, KeyError, ValueError, EOFError) as error:
+    except _DAMAGED as error:
         raise StoreError(f"{path.name}: expected arrays {names}: {error}") from error
