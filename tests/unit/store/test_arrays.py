@@ -25,7 +25,7 @@ def test_named_arrays_come_back_bit_for_bit(whole):
 def test_a_file_cut_off_anywhere_is_one_error(whole, kept):
     whole.write_bytes(whole.read_bytes()[:kept])
 
-    with pytest.raises(StoreError, match="steps.npz"):
+    with pytest.raises(StoreError, match=r"steps\.npz"):
         load_arrays(whole, ["t_ns", "t_m"])
 
 
@@ -35,7 +35,7 @@ def test_altered_bytes_are_one_error(whole, at):
     content[at] ^= 0xFF
     whole.write_bytes(content)
 
-    with pytest.raises(StoreError, match="steps.npz"):
+    with pytest.raises(StoreError, match=r"steps\.npz"):
         load_arrays(whole, ["t_ns", "t_m"])
 
 
