@@ -1,0 +1,20 @@
+"""Recordings that several folders of tests share, made once."""
+
+import pytest
+
+from recon4.simulation.frames import simulate_frames
+from recon4.store.frames import FrameStore
+
+
+@pytest.fixture(scope="session")
+def office_walk(tmp_path_factory):
+    """Folder of six seconds of a person's walk through the simulated office, with an IMU."""
+    folder = tmp_path_factory.mktemp("office")
+    simulate_frames("office", folder, seconds=6.0, seed=3)
+    return folder
+
+
+@pytest.fixture
+def office_frames(office_walk):
+    """The multiframes of that walk."""
+    return FrameStore.open(office_walk)

@@ -1,0 +1,158 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.geometry.se3 import SE3, so3_exp
+from recon4.model.samples import ImuSamples
+from recon4.registration.motion import FreeMotion, ImuMotion, MotionState
+from recon4.settings import OdometrySettings
+from tests.room_walks import T0_NS
+from tests.scanned_room import RIG, imu_of, standing, strolling
+
+SETTINGS = OdometrySettings()
+S_NS = 1_000_000_000
+
+
+def imu_motion(pose=strolling, seconds=2.0, rig=RIG):
+    return ImuMotion(imu_of(pose, seconds), rig, SETTINGS)
+
+
+def start_of(pose, t_ns, velocity):
+    vector = np.zeros(15)
+    T = pose(np.array([(t_ns - T0_NS) * 1e-9]))
+    vector[:3], vector[3:6], vector[14] = T.t[0], velocity, -9.80665
+    return MotionState(t_ns, T.R[0], vector, 1e-6 * np.eye(18))
+
+
+def test_a_perfect_imu_predicts_the_walk():
+    state = start_of(strolling, T0_NS, [0.5, 0.1, 0.0])
+
+    prediction = imu_motion().predict(state, T0_NS + S_NS)
+
+    truth = strolling(prediction.t_s)
+    np.testing.assert_allclose(prediction.T_odom_body.t, truth.t, atol=2e-4)
+    np.testing.assert_allclose(prediction.T_odom_body.R, truth.R, atol=1e-6)
+    assert prediction.t_s[0] == 0.0
+    assert prediction.t_s[-1] == 1.0
+    assert prediction.end.t_ns == T0_NS + S_NS
+
+
+def test_two_halves_predict_the_same_as_the_whole():
+    motion, state = imu_motion(), start_of(strolling, T0_NS, [0.5, 0.1, 0.0])
+
+    whole = motion.predict(state, T0_NS + S_NS).end
+    halves = motion.predict(motion.predict(state, T0_NS + S_NS // 2).end, T0_NS + S_NS).end
+
+    np.testing.assert_allclose(halves.vector, whole.vector, atol=1e-6)
+    np.testing.assert_allclose(halves.P, whole.P, rtol=1e-3, atol=1e-12)
+
+
+def test_the_joint_prior_is_a_covariance_of_start_and_end():
+    prediction = imu_motion().predict(start_of(strolling, T0_NS, [0.5, 0, 0]), T0_NS + S_NS // 10)
+
+    prior = prediction.prior
+    assert prior.shape == (24, 24)
+    np.testing.assert_allclose(prior, prior.T, atol=1e-15)
+    np.testing.assert_array_equal(prior[:6, :6], 1e-6 * np.eye(6))
+    np.testing.assert_array_equal(prior[6:, 6:], prediction.end.P)
+    assert np.linalg.eigvalsh(prior).min() > -1e-15
+    # Over a tenth of a second the pose at the end is nearly that at the start, moved.
+    assert prior[3, 9] == pytest.approx(1e-6, rel=1e-6)
+
+
+def test_gravity_is_level_at_the_start():
+    tilt = so3_exp([0.2, -0.1, 0.0])
+
+    def tilted(t_s):
+        return SE3(np.tile(tilt, (len(t_s), 1, 1)), np.zeros((len(t_s), 3)))
+
+    state = imu_motion(tilted).initial(T0_NS)
+
+    np.testing.assert_allclose(state.R.T @ [0, 0, 1], tilt.T @ [0, 0, 1], atol=1e-6)
+    np.testing.assert_allclose(state.vector[12:], [0, 0, -9.80665])
+    # The heading is left as it is: the turn is about a horizontal axis of the body.
+    assert abs((state.R - state.R.T)[1, 0]) < 0.03
+
+
+def test_an_imu_upside_down_levels_too():
+    def turned_over(t_s):
+        return SE3(np.tile(so3_exp([np.pi, 0, 0]), (len(t_s), 1, 1)), np.zeros((len(t_s), 3)))
+
+    state = imu_motion(turned_over).initial(T0_NS)
+
+    np.testing.assert_allclose(state.R @ [0, 0, -1], [0, 0, 1], atol=1e-6)
+
+
+def test_mounting_and_lever_arm_of_the_imu_are_taken_off():
+    T_body_imu = SE3.from_rpy(0.1, 0.2, 1.0, [0.3, -0.2, 0.4])
+    rig = replace(RIG, T_body_imu=T_body_imu)
+
+    def of_imu(t_s):
+        return strolling(t_s) @ T_body_imu
+
+    mounted = ImuMotion(imu_of(of_imu, 2.0), rig, SETTINGS)
+    state = start_of(strolling, T0_NS, [0.5, 0.1, 0.0])
+
+    np.testing.assert_allclose(
+        mounted.predict(state, T0_NS + S_NS).T_odom_body.t[-1],
+        imu_motion().predict(state, T0_NS + S_NS).T_odom_body.t[-1],
+        atol=2e-3,
+    )
+
+
+def test_what_the_imu_covers():
+    motion = imu_motion(seconds=2.0)
+    imu = imu_of(strolling, 2.0)
+    hole = (imu.t_ns < T0_NS + S_NS) | (imu.t_ns > T0_NS + S_NS + 60_000_000)
+    holed = ImuMotion(
+        ImuSamples(imu.t_ns[hole], imu.gyro_rad_s[hole], imu.accel_m_s2[hole]), RIG, SETTINGS
+    )
+
+    assert motion.covers(T0_NS, T0_NS + S_NS)
+    assert not motion.covers(T0_NS + 2 * S_NS, T0_NS + 3 * S_NS)
+    assert not motion.covers(T0_NS - 2 * S_NS, T0_NS - S_NS)
+    assert not motion.covers(T0_NS + 10 * S_NS, T0_NS + 11 * S_NS)
+    assert holed.covers(T0_NS, T0_NS + S_NS // 2)
+    assert not holed.covers(T0_NS + S_NS // 2, T0_NS + 3 * S_NS // 2)
+
+
+def test_a_gyroscope_alone_still_turns():
+    imu = imu_of(strolling, 2.0)
+    alone = ImuSamples(imu.t_ns, imu.gyro_rad_s, np.full_like(imu.accel_m_s2, np.nan))
+    motion = ImuMotion(alone, RIG, SETTINGS)
+
+    state = motion.initial(T0_NS)
+    end = motion.predict(state, T0_NS + S_NS).end
+
+    np.testing.assert_array_equal(state.R, np.eye(3))
+    np.testing.assert_allclose(end.R, so3_exp([0, 0, np.deg2rad(20.0)]), atol=1e-6)
+    np.testing.assert_allclose(end.vector[:3], 0.0, atol=1e-12)
+
+
+def test_the_turn_of_a_second():
+    turn = imu_motion().turn(T0_NS, T0_NS + S_NS)
+
+    np.testing.assert_allclose(turn, so3_exp([0, 0, np.deg2rad(20.0)]), atol=1e-6)
+
+
+def test_without_an_imu_the_motion_goes_on():
+    motion = FreeMotion(SETTINGS)
+    state = motion.initial(T0_NS)
+    vector = state.vector.copy()
+    vector[3:6], vector[6:9] = [1.0, 0.5, 0.0], [0.0, 0.0, -0.7]
+
+    end = motion.predict(replace(state, vector=vector), T0_NS + S_NS // 10).end
+
+    np.testing.assert_allclose(end.vector[:3], [0.1, 0.05, 0.0], atol=1e-12)
+    np.testing.assert_allclose(end.R, so3_exp([0, 0, 0.07]), atol=1e-12)
+    assert motion.covers(T0_NS, T0_NS + 1)
+    assert not motion.covers(T0_NS, T0_NS)
+
+
+def test_standing_still_stays():
+    state = start_of(standing, T0_NS, [0.0, 0.0, 0.0])
+
+    end = imu_motion(standing).predict(state, T0_NS + S_NS).end
+
+    np.testing.assert_allclose(end.vector[:6], 0.0, atol=1e-9)
