@@ -133,23 +133,23 @@ class PlaneSettings:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScanSettings:
-    """Registration of two single scans: recovery without an IMU, sparse pairs."""
+    """Registration of two single scans: the first guess and the recovery without an IMU."""
 
     voxel_m: float = 0.25
     """Scans are thinned to one point in a cube of this edge [m]."""
     neighbors: int = 12
     """Points whose plane gives a point its normal, itself included."""
-    gate_m: float = 1.0
-    """Points farther apart never match [m]; twice as far in the first two rounds."""
+    gate_m: float = 0.7
+    """Points farther apart never match [m]; three times as far in the first two rounds."""
     kernel_m: float = 0.3
     """Scale of the Cauchy kernel on the symmetric distance [m]."""
     rounds: int = 30
     """Upper bound on match-and-solve rounds."""
     inlier_m: float = 0.1
     """A point this near to its plane lies on it [m]."""
-    min_share: float = 0.35
+    min_share: float = 0.3
     """With a smaller share of points in place the registration has not converged."""
-    sure_share: float = 0.6
+    sure_share: float = 0.45
     """With a smaller share other starts are tried."""
     starts: int = 10
     """Overlays of the ground plans that are tried."""

@@ -149,7 +149,9 @@ def _map(
 
 
 FRAMES = Stage("frames", 1, ("ingest",), _frames)
-ODOMETRY = Stage("odometry", 3, ("segments", "registration", "planes", "odometry"), _odometry)
+ODOMETRY = Stage(
+    "odometry", 4, ("segments", "registration", "planes", "scans", "odometry"), _odometry
+)
 GRAPH = Stage("graph", 2, _MATCHING, _graph)
 VERIFICATION = Stage("verification", 1, ("verification",), _verification)
 REFINE = Stage("refine", 1, ("segments", "planes", "odometry", "graph", "refine"), _refine)

@@ -6,13 +6,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from recon4.geometry.se3 import SE3, Array, so3_exp
+from recon4.geometry.se3 import SE3, Array, so3_exp, so3_log
 from recon4.kernels.imu import propagate
 from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.settings import OdometrySettings
 
+_FREE_SD = (0.01, 0.05, 0.3, 0.3)
+"""Standard deviation of a state between two scans: turn [rad], place [m], velocity [m/s], turn
+rate [rad/s]."""
 _SLOT_S = 0.02
 """Without an IMU the motion is sampled this often [s]."""
 
@@ -123,6 +126,25 @@ class FreeMotion:
         """At rest at the origin, not knowing it."""
         sd = np.repeat([1e-4, 1e-4, 1.0, 0.5, 1e-9, 1e-9], 3)
         return MotionState(t_ns, np.eye(3), np.zeros(15), np.diag(sd**2))
+
+    def between(self, T_odom_body: SE3, t_ns: tuple[int, int], start_ns: int) -> MotionState:
+        """The state at ``start_ns`` of a steady motion through two poses (a batch of 2)."""
+        span_s = (t_ns[1] - t_ns[0]) * 1e-9
+        velocity = (T_odom_body.t[1] - T_odom_body.t[0]) / span_s
+        turn_rate = so3_log(T_odom_body.R[0].T @ T_odom_body.R[1]) / span_s
+        back_s = (t_ns[1] - start_ns) * 1e-9
+        vector = np.zeros(15)
+        vector[:3] = T_odom_body.t[1] - back_s * velocity
+        vector[3:6], vector[6:9] = velocity, -turn_rate
+        sd = np.repeat([*_FREE_SD, 1e-9, 1e-9], 3)
+        R = T_odom_body.R[1] @ so3_exp(-back_s * turn_rate)
+        return MotionState(start_ns, R, vector, np.diag(sd**2))
+
+    def at_rest(self, state: MotionState, t_ns: int) -> MotionState:
+        """The state held still until ``t_ns``: what a lost body did is not known."""
+        vector = np.zeros(15)
+        vector[:3] = state.vector[:3]
+        return replace(self.initial(t_ns), R=state.R, vector=vector)
 
     def predict(self, state: MotionState, end_ns: int) -> Prediction:
         """Go on as before until ``end_ns``."""

@@ -17,13 +17,12 @@ from recon4.registration.aiding import Aid
 from recon4.registration.degeneracy import held_directions
 from recon4.registration.motion import FreeMotion, ImuMotion, Motion, MotionState, Prediction
 from recon4.registration.plane_map import Match, PlaneMap
+from recon4.registration.scan_chain import ScanChain, body_points
 from recon4.registration.segments import Segments, sample_segments
 from recon4.settings import Settings
 
 _GATES_M = (1.0, 0.5, 0.3, 0.2)
 """How far from its plane a point may lie, round by round; the last one stays."""
-_STARTS_RAD = (0.0, 0.2, -0.2, 0.45, -0.45)
-"""Without an IMU a lost frame is tried again from these turns away."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -73,7 +72,8 @@ class Odometry:
     Each frame is undistorted with the predicted motion, its collar line segments are held against
     planes of the last keyframes, and pose, velocity and IMU biases are updated together (an
     iterated error-state Kalman filter over the pose at the start and the state at the end of the
-    frame). Without an IMU the same filter predicts constant velocity.
+    frame). Without an IMU the same filter starts every frame where the registration to the last
+    scan puts it (`ScanChain`); where that fails the frame is lost.
     """
 
     def __init__(
@@ -86,8 +86,11 @@ class Odometry:
     ) -> None:
         self._rig, self._settings, self._aid = rig, settings, aid
         with_imu = imu is not None and len(imu) > 1 and settings.odometry.use_imu
-        self._free: Motion = FreeMotion(settings.odometry)
-        self._motion = ImuMotion(imu, rig, settings.odometry) if with_imu and imu else self._free
+        self._free = FreeMotion(settings.odometry)
+        self._motion: Motion = (
+            ImuMotion(imu, rig, settings.odometry) if with_imu and imu else self._free
+        )
+        self._chain = None if with_imu else ScanChain(settings.scans)
         self._state: MotionState | None = None
         self._map = PlaneMap(settings.planes)
         self._keyframes: deque[Array] = deque()
@@ -97,17 +100,33 @@ class Odometry:
         """Register the next multiframe; frames come in the order of their time."""
         segments = sample_segments(frame, self._rig, self._settings.segments)
         first = self._state is None
+        found = self._place(frame)
         prediction = self._predict(frame)
         fit = self._register(segments, prediction)
-        lost = not first and self._is_lost(fit)
-        if lost:
-            fit = self._search(segments, prediction, fit)
-            lost = self._is_lost(fit)
+        lost = not first and (not found or self._is_lost(fit))
         self._state = _updated(prediction, fit, lost=lost, first=first)
         T_dense = prediction.T_odom_body if lost or first else fit.T_dense
+        step = _step(frame, prediction, fit, T_dense, lost=lost)
         if not lost:
             self._extend_map(segments, prediction.t_s, T_dense)
-        return _step(frame, prediction, fit, T_dense, lost=lost)
+            if self._chain:
+                self._chain.keep(step.T_odom_body, frame.t_mid_ns)
+        return step
+
+    def _place(self, frame: Multiframe) -> bool:
+        """Without an IMU: start the frame where the last good scan says it is, if it can tell."""
+        if self._chain is None:
+            return True
+        found = self._chain.locate(body_points(frame, self._rig))
+        if self._state is None:
+            return True
+        if found is None:
+            self._state = self._free.at_rest(self._state, frame.t_ns)
+            return False
+        before, before_ns = self._chain.last
+        T = SE3.stack([before, before @ found])
+        self._state = self._free.between(T, (before_ns, frame.t_mid_ns), frame.t_ns)
+        return True
 
     def _predict(self, frame: Multiframe) -> Prediction:
         start_ns, end_ns = frame.t_ns, frame.t_ns + frame.duration_ns
@@ -128,15 +147,12 @@ class Odometry:
             sd_m=self._settings.odometry.gnss_sd_m,
         )
 
-    def _register(
-        self, segments: Segments, prediction: Prediction, *, turn_rad: float = 0.0
-    ) -> _Fit:
+    def _register(self, segments: Segments, prediction: Prediction) -> _Fit:
         o = self._settings.odometry
         coarse = 0 if isinstance(self._motion, ImuMotion) else self._settings.planes.levels - 1
         information = np.linalg.inv(prediction.prior + 1e-12 * np.eye(24))
         center = prediction.T_odom_body.t[-1]
         delta = np.zeros(24)
-        delta[[2, 8]] = turn_rad
         mid_body = 0.5 * (segments.a_body + segments.b_body)
         mid_s = 0.5 * (segments.a_s + segments.b_s)
         duration_s = prediction.t_s[-1]
@@ -172,11 +188,6 @@ class Odometry:
         o = self._settings.odometry
         bad = fit.match.share < o.lost_share or not fit.match.mean_m < o.lost_error_m
         return bad or not np.isfinite(fit.delta).all()
-
-    def _search(self, segments: Segments, prediction: Prediction, fit: _Fit) -> _Fit:
-        """Several starts around the prediction, the one that matches most."""
-        fits = [self._register(segments, prediction, turn_rad=turn) for turn in _STARTS_RAD[1:]]
-        return max([fit, *fits], key=lambda f: f.match.share)
 
     def _extend_map(self, segments: Segments, t_s: Array, T_dense: SE3) -> None:
         o = self._settings.odometry

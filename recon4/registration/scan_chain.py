@@ -1,0 +1,55 @@
+"""Where a frame is, told by the last good scan alone: the first guess without an IMU."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from recon4.geometry.se3 import SE3, Array
+from recon4.model.multiframe import Multiframe
+from recon4.model.rig import Rig
+from recon4.registration.scans import Scan, make_scan, search_scans
+from recon4.settings import ScanSettings
+
+
+class ScanChain:
+    """Registers each scan to the last one whose pose is known, wherever it may be.
+
+    Scans are taken as they were measured: two that follow each other are skewed alike. As long as
+    frames are lost the last good scan stays the target, so that coming back to it ends that.
+    """
+
+    def __init__(self, settings: ScanSettings) -> None:
+        self._settings = settings
+        self._scan: Scan | None = None
+        self._now: Scan | None = None
+        self._T_odom_body, self._t_ns = SE3.identity(), 0
+        self._motion = SE3.identity()
+
+    @property
+    def last(self) -> tuple[SE3, int]:
+        """Pose of the last good scan and its time [ns]."""
+        return self._T_odom_body, self._t_ns
+
+    def locate(self, points: Array) -> SE3 | None:
+        """The pose in the last good scan of a new one, points in the body [m], (N, 3)."""
+        self._now = make_scan(points, self._settings)
+        if self._scan is None:
+            return None
+        found = search_scans(self._scan, self._now, guess=self._motion, settings=self._settings)
+        return found.T_target_source if found.converged else None
+
+    def keep(self, T_odom_body: SE3, t_ns: int) -> None:
+        """The scan just located is a good one, at this pose and time [ns]."""
+        if self._scan is not None:
+            self._motion = self._T_odom_body.inverse() @ T_odom_body
+        self._scan, self._T_odom_body, self._t_ns = self._now, T_odom_body, t_ns
+
+
+def body_points(frame: Multiframe, rig: Rig) -> Array:
+    """Points of the sensors in use, in the body [m], (N, 3)."""
+    parts = [np.empty((0, 3))]
+    for row, sensor in enumerate(rig.sensors):
+        if sensor.enabled:
+            xyz = frame.xyz[frame.sensor == row].astype(np.float64)
+            parts.append(sensor.T_body_sensor @ xyz)
+    return np.concatenate(parts)

@@ -1,0 +1,199 @@
+"""Registration of two single scans, however sparse: symmetric point to plane, several starts.
+
+A map of small planes needs some scans to fill its cubes. Here every point brings the plane
+through its own neighbors, on both sides (symmetric ICP, Rusinkiewicz 2019), and where the guess
+proves wrong the ground plans of both scans are laid over each other at every turn and shift.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import fft, ndimage
+from scipy.spatial import cKDTree
+
+from recon4.geometry.se3 import SE3, Array, so3_exp
+from recon4.kernels.scans import accumulate_symmetric, count_from_above, neighbor_normals
+from recon4.registration.result import Registration, StopReason
+from recon4.settings import ScanSettings
+
+_MIN_MATCHES = 50
+_STEP_ARM_M = 5.0
+_COARSE_POINTS = 1500
+_COARSE_ROUNDS = 10
+_WIDE = 3.0
+"""The first rounds reach this many gates far."""
+_YAWS = 120
+_PLAN = 160
+"""Cells of a ground plan along each side."""
+_PLAN_CELL_M = 0.5
+_PLAN_MOST = 4.0
+_STEEP = 0.6
+"""Of the ground plan are points whose normal rises by less than this."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scan:
+    """Points of one scan, thinned, with the planes they lie on."""
+
+    points: Array
+    """(N, 3) [m]."""
+    normals: Array
+    """Unit, of either sign; zeros where the neighbors lie on a line, (N, 3)."""
+    tree: cKDTree
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    @cached_property
+    def plan(self) -> Array:
+        """Where walls and trunks stand, seen from above [m], (M, 2)."""
+        steep = np.abs(self.normals[:, 2]) < _STEEP
+        return np.ascontiguousarray(self.points[steep, :2])
+
+
+def make_scan(points: Array, settings: ScanSettings) -> Scan:
+    """Thin points [m], (N, 3), to one a voxel (their mean) and fit a plane around each."""
+    p = _thinned(points[np.isfinite(points).all(axis=1)], settings.voxel_m)
+    tree = cKDTree(p, balanced_tree=False, compact_nodes=False)
+    normals = np.zeros_like(p)
+    if len(p) >= settings.neighbors:
+        neighbor_normals(p, tree.query(p, settings.neighbors)[1], normals)
+    return Scan(p, normals, tree)
+
+
+def register_scans(
+    target: Scan, source: Scan, *, guess: SE3, settings: ScanSettings
+) -> Registration:
+    """Estimate ``T_target_source`` from a guess within a meter and some ten degrees.
+
+    Converged means that the steps became small and that at least ``settings.min_share`` of the
+    source lies on the target's surfaces; an end elsewhere is reported as too few matches.
+
+    Args:
+        target: Scan to register to.
+        source: Scan to be moved.
+        guess: First ``T_target_source``.
+        settings: Gate, kernel, bounds.
+    """
+    rows = np.arange(len(source))
+    return _descend(target, source, rows, guess=guess, rounds=settings.rounds, settings=settings)
+
+
+def search_scans(target: Scan, source: Scan, *, guess: SE3, settings: ScanSettings) -> Registration:
+    """Estimate ``T_target_source`` although the guess may be wrong altogether.
+
+    The guess is taken where it leads to a good match. Otherwise it competes with the best
+    overlays of the ground plans (upright scans, any turn, shifts up to 40 m), each
+    registered with some of the points; the one that puts most of them in place is refined.
+
+    Args:
+        target: Scan to register to.
+        source: Scan to be moved.
+        guess: First ``T_target_source``.
+        settings: Gate, kernel, bounds.
+    """
+    first = register_scans(target, source, guess=guess, settings=settings)
+    if first.converged and first.share >= settings.sure_share:
+        return first
+    rows = np.linspace(0, len(source) - 1, min(len(source), _COARSE_POINTS)).astype(np.intp)
+    starts = overlay_plans(target, source, count=settings.starts, height_m=float(guess.t[2]))
+    tries = [
+        _descend(target, source, rows, guess=start, rounds=_COARSE_ROUNDS, settings=settings)
+        for start in [first.T_target_source, *starts]
+    ]
+    best = max(tries, key=lambda found: found.share)
+    if best is tries[0]:
+        return first
+    other = register_scans(target, source, guess=best.T_target_source, settings=settings)
+    return max(first, other, key=lambda found: found.share)
+
+
+def overlay_plans(target: Scan, source: Scan, *, count: int, height_m: float) -> list[SE3]:
+    """The ``count`` best overlays of two ground plans: correlation over turn and shift by FFT.
+
+    Args:
+        target: Upright scan.
+        source: Upright scan.
+        count: How many; those next to a better one are left out.
+        height_m: ``z`` of the results [m].
+    """
+    yaw = np.arange(_YAWS) * (2.0 * np.pi / _YAWS)
+    fixed = np.zeros((1, _PLAN, _PLAN), np.float32)
+    turned = np.zeros((_YAWS, _PLAN, _PLAN), np.float32)
+    count_from_above(target.plan, yaw[:1], _PLAN_CELL_M, _PLAN_MOST, fixed)
+    count_from_above(source.plan, yaw, _PLAN_CELL_M, _PLAN_MOST, turned)
+    fixed = ndimage.uniform_filter(fixed, (1, 3, 3))
+    spectrum = fft.rfft2(fixed) * np.conj(fft.rfft2(turned))
+    score: NDArray[Any] = fft.irfft2(spectrum, s=(_PLAN, _PLAN))
+    return [_start(score, yaw, height_m) for _ in range(count)]
+
+
+def _start(score: NDArray[Any], yaw: Array, height_m: float) -> SE3:
+    """The best overlay; its surroundings are wiped so that the next call finds another."""
+    m, i, j = np.unravel_index(int(score.argmax()), score.shape)
+    near_yaw = np.arange(m - 2, m + 3) % len(score)
+    near_i, near_j = np.arange(i - 2, i + 3) % _PLAN, np.arange(j - 2, j + 3) % _PLAN
+    score[np.ix_(near_yaw, near_i, near_j)] = -np.inf
+    shift = (np.array([i, j]) + _PLAN // 2) % _PLAN - _PLAN // 2
+    return SE3.from_rpy(0.0, 0.0, float(yaw[m]), np.append(shift * _PLAN_CELL_M, height_m))
+
+
+def _descend(
+    target: Scan,
+    source: Scan,
+    rows: NDArray[np.intp],
+    *,
+    guess: SE3,
+    rounds: int,
+    settings: ScanSettings,
+) -> Registration:
+    """Match and solve until the steps are small, with some rows of the source."""
+    if len(target) < _MIN_MATCHES or len(rows) < _MIN_MATCHES:
+        return _refused(guess, 0)
+    p, n = source.points[rows], source.normals[rows]
+    T, stop, done = guess, StopReason.LIMIT, 0
+    for done in range(1, rounds + 1):
+        reach = settings.gate_m * (_WIDE if done <= 2 else 1.0)
+        q = T @ p
+        nearest = target.tree.query(q, distance_upper_bound=reach)[1]
+        H, g, nn = np.zeros((6, 6)), np.zeros(6), np.zeros((3, 3))
+        matches, right, weight, total, squares = accumulate_symmetric(
+            q, n @ T.R.T, nearest, target.points, target.normals, T.t,
+            settings.kernel_m, settings.inlier_m, H, g, nn,
+        )  # fmt: skip
+        if matches < _MIN_MATCHES:
+            return _refused(T, done)
+        step = -np.linalg.solve(H + 1e-9 * np.trace(H) * np.eye(6), g)
+        T = SE3(so3_exp(step[:3]) @ T.R, T.t + step[3:])
+        if done > 2 and _STEP_ARM_M * np.linalg.norm(step[:3]) + np.linalg.norm(step[3:]) < 1e-3:
+            stop = StopReason.SMALL_STEP
+            break
+    share = right / len(rows)
+    if share < settings.min_share:
+        stop = StopReason.TOO_FEW
+    variance = max(squares / weight, 1e-4)
+    degeneracy = float(np.linalg.eigvalsh(nn / weight)[0])
+    return Registration(T, stop, done, total / weight, 0.0, share, H / variance, degeneracy)
+
+
+def _refused(T: SE3, rounds: int) -> Registration:
+    nan = float("nan")
+    return Registration(T, StopReason.TOO_FEW, rounds, nan, 0.0, 0.0, np.zeros((6, 6)), 0.0)
+
+
+def _thinned(p: Array, voxel_m: float) -> Array:
+    """Mean of the points in every voxel, (M, 3)."""
+    if not len(p):
+        return np.empty((0, 3))
+    cell = np.floor(p / voxel_m).astype(np.int64)
+    cell -= cell.min(axis=0)
+    size = cell.max(axis=0) + 1
+    key = (cell[:, 0] * size[1] + cell[:, 1]) * size[2] + cell[:, 2]
+    _, row, count = np.unique(key, return_inverse=True, return_counts=True)
+    sums = [np.bincount(row, p[:, axis]) / count for axis in range(3)]
+    return np.ascontiguousarray(np.stack(sums, axis=1))
