@@ -1,0 +1,238 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.geometry.se3 import SE3
+from recon4.model.pose_graph import EdgeKind, Reason, Verdict
+from recon4.pose_graph.pairs import Pair, PairRegistrar
+from recon4.progress import Silent
+from recon4.registration.submap import NodeViews, Submaps, median_range_m, node_rows
+from recon4.settings import Settings, override
+from tests.scanned_room import strolling, walk
+
+NOTHING_LOST = np.zeros(21, bool)
+
+
+@pytest.fixture(scope="module")
+def stroll():
+    return walk(strolling, 21)
+
+
+def registrar(stroll, *assignments, lost=NOTHING_LOST, trajectory=None):
+    settings = override(Settings(), ["graph.workers=1", *assignments])
+    rows = node_rows(stroll.t_mid_ns, settings.graph.node_stride, lost)
+    views = NodeViews(len(rows), settings)
+    made = PairRegistrar(
+        lambda: Submaps(stroll, trajectory or stroll.truth, rows, settings, skip=lost),
+        views,
+        settings,
+    )
+    made.prepare(len(rows), Silent())
+    return made
+
+
+def true_motion(stroll, i, j):
+    T = stroll.truth.at(stroll.t_mid_ns[[2 + 5 * i, 2 + 5 * j]])
+    return T[0].inverse() @ T[1]
+
+
+def pair(stroll, i, j, *, wrong=None):
+    T = true_motion(stroll, i, j)
+    return Pair(i, j, EdgeKind.LOOP, T if wrong is None else T @ wrong)
+
+
+def try_one(stroll, *assignments, i=0, j=3, wrong=None, **options):
+    made = registrar(stroll, *assignments, **options)
+    return made.register([pair(stroll, i, j, wrong=wrong)], Silent())[0]
+
+
+def test_a_good_pair_is_accepted_with_all_its_figures(stroll):
+    wrong = SE3.from_rpy(0.01, 0.0, 0.03, [0.15, -0.10, 0.05])
+
+    edge = try_one(stroll, wrong=wrong)
+
+    assert (edge.verdict, edge.reason) == (Verdict.ACCEPTED, Reason.NONE)
+    assert edge.overlap > 0.7
+    assert 0.0 < edge.error_m < 0.02
+    assert edge.converged
+    assert edge.iterations > 1
+    assert edge.degeneracy > 0.05
+    off = true_motion(stroll, 0, 3).inverse() @ edge.T_i_j
+    assert np.linalg.norm(off.t) < 0.005
+    assert off.angle() < 0.002
+
+
+def test_the_limit_is_a_hundredth_of_the_median_range_and_five_centimeters(stroll):
+    edge = try_one(stroll)
+
+    settings = Settings()
+    submaps = Submaps(stroll, stroll.truth, np.array([2]), settings, skip=NOTHING_LOST)
+    range_m = median_range_m(submaps.around(0, settings.graph.source_reach))
+    assert 2.0 < range_m < 5.0
+    assert edge.limit_m == pytest.approx(0.01 * range_m + 0.05, abs=0.002)
+
+
+@pytest.mark.parametrize(("assignments", "wrong", "reason"), [
+    ([], SE3.from_rpy(0, 0, 0, [40.0, 0, 0]), Reason.OVERLAP),
+    (["overlap.threshold=1.01"], None, Reason.OVERLAP),
+    (["registration.max_iterations=2"], None, Reason.NOT_CONVERGED),
+    (["graph.error_relative=0.0", "graph.error_absolute_m=0.001"], None, Reason.ERROR),
+    (["graph.min_share=1.01"], None, Reason.FEW_MATCHES),
+    (["graph.min_degeneracy=0.34"], None, Reason.DEGENERATE),
+])  # fmt: skip
+def test_each_reason_to_turn_a_pair_down(stroll, assignments, wrong, reason):
+    edge = try_one(stroll, *assignments, wrong=wrong)
+
+    assert (edge.verdict, edge.reason) == (Verdict.REJECTED, reason)
+    assert not edge.in_graph
+    assert np.isfinite(edge.overlap)
+
+
+def test_a_pair_that_hardly_overlaps_keeps_the_pose_it_was_asked_with(stroll):
+    wrong = SE3.from_rpy(0, 0, 0, [40.0, 0, 0])
+
+    edge = try_one(stroll, wrong=wrong)
+
+    np.testing.assert_array_equal(edge.T_i_j.t, (true_motion(stroll, 0, 3) @ wrong).t)
+    assert np.isnan(edge.error_m)
+    assert edge.iterations == 0
+
+
+def test_the_mode_of_overlap_counts(stroll):
+    # From outside the room all walls of the other are behind the nearest one.
+    wrong = SE3.from_rpy(0, 0, 0, [3.0, 0, 0])
+    found = {
+        mode: try_one(stroll, f"overlap.mode={mode}", "overlap.threshold=1.01", wrong=wrong).overlap
+        for mode in ("target", "source", "min", "harmonic")
+    }
+
+    assert found["target"] != found["source"]
+    assert found["min"] == min(found["target"], found["source"])
+    a, b = found["target"], found["source"]
+    assert found["harmonic"] == pytest.approx(2 * a * b / (a + b))
+
+
+def test_edges_come_back_in_the_order_of_the_pairs(stroll):
+    asked = [pair(stroll, *ends) for ends in [(2, 3), (0, 2), (1, 3), (0, 1)]]
+
+    edges = registrar(stroll).register(asked, Silent())
+
+    assert [(e.i, e.j) for e in edges] == [(2, 3), (0, 2), (1, 3), (0, 1)]
+    for edge in edges:
+        off = true_motion(stroll, edge.i, edge.j).inverse() @ edge.T_i_j
+        assert np.linalg.norm(off.t) < 0.01
+
+
+def test_a_pair_alone_and_among_others_is_the_same(stroll):
+    alone = try_one(stroll)
+    others = [pair(stroll, 0, 1), pair(stroll, 0, 3), pair(stroll, 1, 2)]
+
+    among = registrar(stroll).register(others, Silent())[1]
+
+    np.testing.assert_array_equal(alone.T_i_j.t, among.T_i_j.t)
+    np.testing.assert_array_equal(alone.information, among.information)
+
+
+@pytest.mark.parametrize("solver", ["common_normal", "svd"])
+def test_the_solvers_of_lines_try_pairs_too(stroll, solver):
+    edge = try_one(
+        stroll,
+        f"registration.solver={solver}",
+        "registration.max_iterations=60",
+        wrong=SE3.from_rpy(0, 0, 0.01, [0.05, -0.03, 0.02]),
+    )
+
+    off = true_motion(stroll, 0, 3).inverse() @ edge.T_i_j
+    assert np.linalg.norm(off.t) < 0.05
+    g = Settings().graph
+    np.testing.assert_allclose(
+        np.diag(edge.information) ** -0.5, np.repeat([g.loop_sd_rad, g.loop_sd_m], 3)
+    )
+
+
+# -- how certain an edge is
+
+
+def test_the_information_is_positive_definite_and_no_surer_than_its_floor(stroll):
+    edge = try_one(stroll)
+
+    g = Settings().graph
+    assert np.linalg.eigvalsh(edge.information).min() > 0.0
+    np.testing.assert_array_equal(edge.information, edge.information.T)
+    sd = np.sqrt(np.diag(np.linalg.inv(edge.information)))
+    assert (sd >= np.repeat([g.loop_sd_rad, g.loop_sd_m], 3) * 0.999).all()
+    assert (sd < 8 * np.repeat([g.loop_sd_rad, g.loop_sd_m], 3)).all()
+
+
+def test_the_information_is_in_the_axes_of_the_second_node(stroll):
+    """Without walls across x the room is a tunnel along x, wherever the second node looks."""
+    tunnel = []
+    for frame in stroll.frames:
+        T = stroll.truth.at(frame.t_ns + frame.dt_ns.astype(np.int64))
+        p_map = T @ (stroll.rig.T_body_sensor[frame.sensor] @ frame.xyz.astype(np.float64))
+        _, y, z = p_map.T
+        sides = (y < -2.97) | (y > 3.47) | (z < -1.17) | (z > 1.67)
+        tunnel.append(frame.take(np.flatnonzero(sides)))
+
+    edge = try_one(replace(stroll, frames=tunnel), "graph.min_degeneracy=0.0")
+
+    assert edge.converged
+    assert edge.degeneracy < 0.005
+    spread, axes = np.linalg.eigh(np.linalg.inv(edge.information)[3:, 3:])
+    x_of_map_in_j = stroll.truth.at(stroll.t_mid_ns[[17]])[0].R.T @ [1.0, 0.0, 0.0]
+    assert abs(x_of_map_in_j[1]) > 0.4
+    assert abs(axes[:, 2] @ x_of_map_in_j) > 0.99
+    assert np.sqrt(spread[2]) > 2 * np.sqrt(spread[1])
+
+
+# -- submaps
+
+
+def test_a_submap_holds_its_multiframes_in_the_axes_of_the_node(stroll):
+    settings = Settings()
+    submaps = Submaps(stroll, stroll.truth, np.array([10]), settings, skip=NOTHING_LOST)
+
+    ends = submaps.around(0, 2)
+    alone = submaps.around(0, 0)
+
+    assert 4 * len(alone) < len(ends) < 6 * len(alone)
+    p_map = stroll.truth.at(stroll.t_mid_ns[[10]])[0] @ ends.reshape(-1, 3)
+    assert p_map[:, 0].max() == pytest.approx(5.0, abs=0.05)
+    assert p_map[:, 0].min() == pytest.approx(-4.0, abs=0.05)
+
+
+def test_lost_multiframes_bring_nothing(stroll):
+    lost = NOTHING_LOST.copy()
+    lost[[9, 11]] = True
+    whole, holed = (
+        Submaps(stroll, stroll.truth, np.array([10]), Settings(), skip=skip).around(0, 1)
+        for skip in (NOTHING_LOST, lost)
+    )
+
+    assert 0 < len(holed) < 0.5 * len(whole)
+    everything = np.ones(21, bool)
+    none = Submaps(stroll, stroll.truth, np.array([10]), Settings(), skip=everything).around(0, 5)
+    assert none.shape == (0, 2, 3)
+    assert median_range_m(none) == 0.0
+
+
+def test_a_submap_at_the_start_takes_what_there_is(stroll):
+    submaps = Submaps(stroll, stroll.truth, np.array([0, 20]), Settings(), skip=NOTHING_LOST)
+
+    first, last = submaps.around(0, 3), submaps.around(1, 3)
+
+    assert 0.7 < len(first) / len(last) < 1.4
+
+
+def test_nodes_keep_at_most_so_many_segments_spread_over_all(stroll):
+    settings = override(Settings(), ["graph.source_segments=500"])
+    views = NodeViews(1, settings)
+    views.fill(Submaps(stroll, stroll.truth, np.array([10]), settings, skip=NOTHING_LOST), [0])
+
+    ends = views.ends(0)
+
+    assert ends.shape == (500, 2, 3)
+    assert ends[..., 0].max() > 3.0
+    assert ends[..., 0].min() < -3.0
+    assert np.count_nonzero(views.nearest_m(0)) > 500

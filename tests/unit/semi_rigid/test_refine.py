@@ -1,0 +1,177 @@
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.geometry.se3 import SE3, so3_exp
+from recon4.model.pose_graph import PoseGraph
+from recon4.model.trajectory import Trajectory
+from recon4.pose_graph.files import save_graph
+from recon4.progress import Silent
+from recon4.semi_rigid.refine import corrected_by_graph, refine, refine_trajectory
+from recon4.settings import Settings, override
+from recon4.store.arrays import load_trajectory, save_trajectory
+from tests.scanned_room import strolling, walk, without_points
+
+ROUNDS = ["graph.workers=1", "refine.rounds=6", "refine.converged_step_m=0.0002"]
+SETTINGS = override(Settings(), ROUNDS)
+
+
+@pytest.fixture(scope="module")
+def stroll():
+    return walk(strolling, 30)
+
+
+def bent(truth, height_m=0.012):
+    """The truth with a slow wave of a centimeter, as a graph leaves it between its nodes."""
+    s = (truth.t_ns - truth.t_ns[0]) / (truth.t_ns[-1] - truth.t_ns[0])
+    wave = np.sin(3 * np.pi * s)[:, None]
+    t = truth.T_a_b.t + height_m * wave * [0.6, 0.6, 1.0]
+    R = so3_exp(0.003 * wave * [0.0, 0.0, 1.0]) @ truth.T_a_b.R
+    return Trajectory(truth.t_ns, SE3(R, t))
+
+
+def off_m(trajectory, truth):
+    """Deviation from the truth apart from the place of the whole [m]."""
+    d = trajectory.T_a_b.t - truth.T_a_b.t
+    return float(np.sqrt(np.mean(np.sum((d - d.mean(axis=0)) ** 2, axis=1))))
+
+
+def lost_none(frames):
+    return np.zeros(len(frames), bool)
+
+
+def refined(stroll, start, *, lost=None, settings=SETTINGS):
+    lost = lost_none(stroll) if lost is None else lost
+    return refine_trajectory(stroll, start, lost, settings=settings, progress=Silent())
+
+
+def test_a_bent_trajectory_becomes_straighter(stroll):
+    start = bent(stroll.truth)
+
+    result, rounds = refined(stroll, start)
+
+    assert off_m(result, stroll.truth) < 0.75 * off_m(start, stroll.truth)
+    assert rounds[-1].mean_m < rounds[0].mean_m
+    assert rounds[-1].largest_step_m < rounds[0].largest_step_m
+    np.testing.assert_array_equal(result.t_ns, start.t_ns)
+
+
+def test_the_truth_stays_where_it_is(stroll):
+    result, rounds = refined(stroll, stroll.truth)
+
+    assert off_m(result, stroll.truth) < 0.002
+    assert rounds[0].share > 0.5
+
+
+def test_refinement_stops_once_nothing_moves(stroll):
+    patient = override(SETTINGS, ["refine.converged_step_m=0.02"])
+
+    assert len(refined(stroll, stroll.truth, settings=patient)[1]) == 1
+
+
+def test_threads_do_not_change_a_bit(stroll):
+    two = override(SETTINGS, ["graph.workers=2", "refine.rounds=1"])
+    one = override(SETTINGS, ["refine.rounds=1"])
+
+    a, b = (refined(stroll, bent(stroll.truth), settings=s)[0] for s in (one, two))
+
+    np.testing.assert_array_equal(a.T_a_b.t, b.T_a_b.t)
+
+
+def test_lost_multiframes_take_no_part(stroll):
+    lost = lost_none(stroll)
+    lost[[10, 11]] = True
+    frames = list(stroll)
+    for k in (10, 11):
+        frames[k] = without_points(frames[k])
+
+    with_points, _ = refined(stroll, bent(stroll.truth), lost=lost)
+    without, _ = refined(replace(stroll, frames=frames), bent(stroll.truth), lost=lost)
+
+    np.testing.assert_array_equal(with_points.T_a_b.t, without.T_a_b.t)
+
+
+def test_without_any_match_nothing_moves(stroll):
+    start = bent(stroll.truth)
+
+    result, rounds = refined(stroll, start, lost=np.ones(len(stroll), bool))
+
+    assert rounds == []
+    np.testing.assert_array_equal(result.T_a_b.t, start.T_a_b.t)
+
+
+# -- the stage
+
+
+def prepared(stroll, folder):
+    """Folders of odometry (off by a drift) and graph (true)."""
+    for name in ("odometry", "graph", "out"):
+        (folder / name).mkdir()
+    drift = SE3.exp(np.linspace(0, 1, len(stroll.truth))[:, None] * [0, 0, 0.02, 0.1, 0.05, 0.0])
+    save_trajectory(
+        folder / "odometry" / "trajectory.npz",
+        Trajectory(stroll.truth.t_ns, drift @ stroll.truth.T_a_b),
+    )
+    np.savez(folder / "odometry" / "steps.npz", lost=lost_none(stroll))
+    t_ns = stroll.t_mid_ns[2::5]
+    graph = PoseGraph(np.arange(2, 30, 5), t_ns, stroll.truth.at(t_ns), ())
+    save_graph(folder / "graph", graph)
+    return graph
+
+
+@pytest.mark.parametrize("mode", ["10", "overlap", "verification"])
+def test_other_modes_leave_the_graph_s_word_alone(stroll, tmp_path, mode):
+    graph = prepared(stroll, tmp_path)
+
+    facts = refine(
+        stroll,
+        tmp_path / "odometry",
+        tmp_path / "graph",
+        tmp_path / "out",
+        settings=override(SETTINGS, [f"graph.mode={mode}"]),
+        progress=Silent(),
+    )
+
+    assert facts == {"rounds": []}
+    found = load_trajectory(tmp_path / "out" / "trajectory.npz")
+    odometry = load_trajectory(tmp_path / "odometry" / "trajectory.npz")
+    expected = corrected_by_graph(odometry, graph)
+    np.testing.assert_allclose(found.T_a_b.t, expected.T_a_b.t, atol=1e-9)
+
+
+def test_beyond_writes_a_better_trajectory_and_how_the_rounds_went(stroll, tmp_path):
+    graph = prepared(stroll, tmp_path)
+
+    facts = refine(
+        stroll,
+        tmp_path / "odometry",
+        tmp_path / "graph",
+        tmp_path / "out",
+        settings=SETTINGS,
+        progress=Silent(),
+    )
+
+    found = load_trajectory(tmp_path / "out" / "trajectory.npz")
+    assert json.loads((tmp_path / "out" / "refine.json").read_text()) == facts
+    assert 1 <= len(facts["rounds"]) <= 6
+    inner = slice(30, -30)
+    at_nodes = found.at(graph.t_ns)
+    np.testing.assert_allclose(at_nodes.t, graph.T_map_body.t, atol=0.006)
+    assert off_m(found[inner], stroll.truth[inner]) < 0.006
+
+
+def test_odometry_moves_along_with_the_nodes(stroll):
+    shifted = PoseGraph(
+        np.arange(2, 30, 5),
+        stroll.t_mid_ns[2::5],
+        SE3.from_rpy(0, 0, 1.0, [5.0, 0, 0]) @ stroll.truth.at(stroll.t_mid_ns[2::5]),
+        (),
+    )
+
+    moved = corrected_by_graph(stroll.truth, shifted)
+
+    expected = SE3.from_rpy(0, 0, 1.0, [5.0, 0, 0]) @ stroll.truth.T_a_b
+    np.testing.assert_allclose(moved.T_a_b.t, expected.t, atol=1e-9)
+    np.testing.assert_allclose(moved.T_a_b.R, expected.R, atol=1e-9)
