@@ -139,6 +139,8 @@ class ScanSettings:
     """Scans are thinned to one point in a cube of this edge [m]."""
     neighbors: int = 12
     """Points whose plane gives a point its normal, itself included."""
+    source_points: int = 20_000
+    """Of the source no more points than this are used."""
     gate_m: float = 0.7
     """Points farther apart never match [m]; three times as far in the first two rounds."""
     kernel_m: float = 0.3

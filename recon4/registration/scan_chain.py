@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from recon4.geometry.se3 import SE3, Array
@@ -9,6 +11,9 @@ from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.registration.scans import Scan, make_scan, search_scans
 from recon4.settings import ScanSettings
+
+_GUESS_POINTS = 3000
+"""Of a new scan so many points are used: the planes of the map say the rest."""
 
 
 class ScanChain:
@@ -19,7 +24,7 @@ class ScanChain:
     """
 
     def __init__(self, settings: ScanSettings) -> None:
-        self._settings = settings
+        self._settings = replace(settings, source_points=_GUESS_POINTS)
         self._scan: Scan | None = None
         self._now: Scan | None = None
         self._T_odom_body, self._t_ns = SE3.identity(), 0

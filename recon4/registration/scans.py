@@ -80,7 +80,7 @@ def register_scans(
         guess: First ``T_target_source``.
         settings: Gate, kernel, bounds.
     """
-    rows = np.arange(len(source))
+    rows = _some(source, settings.source_points)
     return _descend(target, source, rows, guess=guess, rounds=settings.rounds, settings=settings)
 
 
@@ -100,7 +100,7 @@ def search_scans(target: Scan, source: Scan, *, guess: SE3, settings: ScanSettin
     first = register_scans(target, source, guess=guess, settings=settings)
     if first.converged and first.share >= settings.sure_share:
         return first
-    rows = np.linspace(0, len(source) - 1, min(len(source), _COARSE_POINTS)).astype(np.intp)
+    rows = _some(source, _COARSE_POINTS)
     starts = overlay_plans(target, source, count=settings.starts, height_m=float(guess.t[2]))
     tries = [
         _descend(target, source, rows, guess=start, rounds=_COARSE_ROUNDS, settings=settings)
@@ -122,14 +122,14 @@ def overlay_plans(target: Scan, source: Scan, *, count: int, height_m: float) ->
         count: How many; those next to a better one are left out.
         height_m: ``z`` of the results [m].
     """
-    yaw = np.arange(_YAWS) * (2.0 * np.pi / _YAWS)
+    yaw: Array = np.linspace(0.0, 2.0 * np.pi, _YAWS, endpoint=False)
     fixed = np.zeros((1, _PLAN, _PLAN), np.float32)
     turned = np.zeros((_YAWS, _PLAN, _PLAN), np.float32)
     count_from_above(target.plan, yaw[:1], _PLAN_CELL_M, _PLAN_MOST, fixed)
     count_from_above(source.plan, yaw, _PLAN_CELL_M, _PLAN_MOST, turned)
     fixed = ndimage.uniform_filter(fixed, (1, 3, 3))
     spectrum = fft.rfft2(fixed) * np.conj(fft.rfft2(turned))
-    score: NDArray[Any] = fft.irfft2(spectrum, s=(_PLAN, _PLAN))
+    score = fft.irfft2(spectrum, s=(_PLAN, _PLAN))
     return [_start(score, yaw, height_m) for _ in range(count)]
 
 
@@ -179,6 +179,11 @@ def _descend(
     variance = max(squares / weight, 1e-4)
     degeneracy = float(np.linalg.eigvalsh(nn / weight)[0])
     return Registration(T, stop, done, total / weight, 0.0, share, H / variance, degeneracy)
+
+
+def _some(scan: Scan, limit: int) -> NDArray[np.intp]:
+    """Rows of a scan, evenly, no more than a limit."""
+    return np.linspace(0, len(scan) - 1, min(len(scan), limit)).astype(np.intp)
 
 
 def _refused(T: SE3, rounds: int) -> Registration:
