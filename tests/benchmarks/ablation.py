@@ -77,10 +77,10 @@ def judge(
 
 def row(name: str, floor: ErrorFloor, ate_m: float, *, lost: int, seconds: float) -> str:
     slices = " ".join(f"{100 * s.mean_m:5.2f}" for s in floor.estimated.slices)
-    e = floor.estimated.point_weighted
+    e, true = floor.estimated.point_weighted, floor.true.point_weighted
     return (
         f"{name:<22} {slices} | {100 * e.mean_m:5.2f} {100 * floor.estimated.plain_mean_m:5.2f} "
-        f"{100 * e.share_2cm:5.1f} % {100 * e.share_5cm:5.1f} % | true {100 * floor.true.point_weighted.mean_m:5.2f} "
+        f"{100 * e.share_2cm:5.1f} % {100 * e.share_5cm:5.1f} % | true {100 * true.mean_m:5.2f} "
         f"ratio {floor.ratio:5.3f} | ATE {100 * ate_m:6.2f} cm, {lost} lost, {seconds:5.1f} s"
     )
 
