@@ -91,8 +91,8 @@ class Assembler:
             ConfigError: If the clocks of the sensors have nothing to do with each other.
         """
         kept = drop_invalid(shots, settings=self._settings, report=self._report)
-        if len(kept):
-            self._take(kept)
+        for part in _runs(kept, round(self._settings.gap_s * 1e9)):
+            self._take(part)
         if self._start_ns is None and not self._head_complete():
             return []
         return self._cut(final=False)
@@ -289,6 +289,15 @@ def drop_invalid(shots: Shots, *, settings: IngestSettings, report: ImportReport
     report.count("points_far", int(np.count_nonzero(far)))
     drop = bad | near | far
     return _rows(shots, ~drop) if drop.any() else shots
+
+
+def _runs(shots: Shots, gap_ns: int) -> list[Shots]:
+    """The shots, cut where the clock goes back."""
+    if not len(shots):
+        return []
+    back = (np.flatnonzero(np.diff(shots.t_ns) < -gap_ns) + 1).tolist()
+    ends = zip([0, *back], [*back, len(shots)], strict=True)
+    return [_rows(shots, slice(start, end)) for start, end in ends] if back else [shots]
 
 
 def _rows(shots: Shots, rows: NDArray[np.bool_] | slice) -> Shots:

@@ -19,6 +19,11 @@ from recon4.recording.velodyne_models import (
 
 Payloads = NDArray[np.uint8]
 
+_SET_BACK_NS = 1_000_000_000
+"""Packets so far behind the ones before are not late: the clocks were set back together."""
+_STRAGGLERS = 8
+"""Fewer packets in a row are late all the same."""
+
 
 def as_packets(payloads: Payloads) -> NDArray[np.void]:
     """Payloads seen as `DATA_PACKET` records, (N,)."""
@@ -64,6 +69,7 @@ class PacketOrder:
     _t_ns: Times = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     _payloads: Payloads = field(default_factory=lambda: np.zeros((0, DATA_SIZE), dtype=np.uint8))
     _given: Times = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    _behind: int = 0
 
     def push(self, t_ns: Times, payloads: Payloads) -> tuple[Times, Payloads]:
         """Take packets, give those that are older than the window.
@@ -76,6 +82,9 @@ class PacketOrder:
         newest = max(
             (int(times[-1]) for times in (self._t_ns, self._given) if len(times)), default=0
         )
+        jump = self._jump(t_ns, newest)
+        if jump is not None:
+            return self._over_a_jump(t_ns, payloads, jump)
         tidy = t_ns[0] > newest and np.all(t_ns[1:] > t_ns[:-1])
         t_ns = np.concatenate([self._t_ns, t_ns])
         payloads = np.concatenate([self._payloads, payloads])
@@ -83,6 +92,27 @@ class PacketOrder:
             t_ns, payloads = self._sorted(t_ns, payloads)
         ready = int(np.searchsorted(t_ns, t_ns[-1:] - self.window_ns)[0]) if len(t_ns) else 0
         return self._give(t_ns, payloads, ready)
+
+    def _jump(self, t_ns: Times, newest: int) -> int | None:
+        """The row from which most packets are far behind, if these are no stragglers."""
+        latest = np.maximum.accumulate(np.append(newest, t_ns[:-1]))
+        rows = np.flatnonzero(t_ns < latest - _SET_BACK_NS)
+        if not len(rows) or 2 * len(rows) <= len(t_ns) - rows[0]:
+            self._behind = 0
+            return None
+        self._behind += len(rows)
+        if self._behind < _STRAGGLERS:
+            return None
+        self._behind = 0
+        return int(rows[0])
+
+    def _over_a_jump(self, t_ns: Times, payloads: Payloads, row: int) -> tuple[Times, Payloads]:
+        """All before a clock was set back at a row, then the rest in an order of its own."""
+        parts = [self.push(t_ns[:row], payloads[:row]), self.flush()]
+        self._given = self._given[:0]
+        parts.append(self.push(t_ns[row:], payloads[row:]))
+        times, packets = zip(*parts, strict=True)
+        return np.concatenate(times), np.concatenate(packets)
 
     def _sorted(self, t_ns: Times, payloads: Payloads) -> tuple[Times, Payloads]:
         backward = np.diff(t_ns, prepend=t_ns[0]) < 0

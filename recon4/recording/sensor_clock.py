@@ -15,6 +15,8 @@ _SAME_CLOCK_NS = SECOND_NS // 2
 """A sensor that is this near to the recorder's clock is synchronized with it."""
 _JUMP_NS = SECOND_NS
 """Clocks that move against each other by more than this have jumped."""
+_FIRST = 75
+"""Packets that tell how far the two clocks are apart."""
 _CONFIRM = 8
 """So many packets must agree on a jump; fewer are damaged packets and are dropped."""
 _PAUSE_NS = 60 * SECOND_NS
@@ -113,7 +115,9 @@ class SensorClock:
     def _start(self, t_arrival_ns: Times, t_us: NDArray[np.integer]) -> int:
         ahead = nearest_hour(t_us, t_arrival_ns) - t_arrival_ns
         around = (ahead - ahead[0] + HOUR_NS // 2) % HOUR_NS - HOUR_NS // 2
-        offset = int(ahead[0] + np.median(around))
+        # One that was measured: between two clocks, before and after a jump, lies none.
+        usual = int(np.sort(around[:_FIRST])[len(around[:_FIRST]) // 2])
+        offset = int(ahead[0]) + usual
         if self.utc_offset_ns is not None:
             offset += round((self.utc_offset_ns - offset) / HOUR_NS) * HOUR_NS
             self._report.derive(
@@ -122,7 +126,7 @@ class SensorClock:
             )
         elif abs(offset) > _SAME_CLOCK_NS:
             self._free_running = True
-            good = np.abs(around - np.median(around)) < _JUMP_NS
+            good = np.abs(around - usual) < _JUMP_NS
             self._shift_ns = int(np.min(-ahead[good])) - self._packet_ns
             self._report.warn(
                 f"{self._name}: its clock is {offset / SECOND_NS:+.3f} s off the recorder's and no "

@@ -17,7 +17,8 @@ class Shots:
     sensor: int
     """Row in ``Rig.sensors``."""
     t_ns: Times
-    """Time of each shot on the rig's clock [ns], non-decreasing, (N,)."""
+    """Time of each shot on the rig's clock [ns], (N,).
+    It decreases only where a clock was set back."""
     xyz: NDArray[np.float32]
     """Points in the frame of the sensor [m], (N, 3)."""
     intensity: NDArray[np.uint16]

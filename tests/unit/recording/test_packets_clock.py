@@ -186,3 +186,17 @@ def test_one_packet_at_a_time_as_from_a_socket_gives_the_same():
 
     assert kept.all()
     np.testing.assert_array_equal(out, t_ns // 1000 * 1000)
+
+
+@pytest.mark.parametrize("half", [20, 60, 100])
+def test_a_jump_among_the_very_first_packets_is_a_jump(half):
+    _, arrival, stamps = packets(200, off_ns=90 * SECOND_NS)
+    stamps = stamps.copy()
+    stamps[half:] = (stamps[half:] + 30_000_000) % 3_600_000_000
+    report = ImportReport()
+
+    t_ns, trusted = a_clock(report).push(arrival, stamps)
+
+    assert np.count_nonzero(~trusted) <= 60
+    assert np.all(np.abs(np.diff(t_ns[trusted])) < SECOND_NS // 10)
+    assert report.counts["clock_jumps"] >= 1

@@ -5,6 +5,7 @@ import pytest
 
 from recon4.recording.packets import PacketOrder
 from recon4.recording.report import ImportReport
+from recon4.recording.sensor_clock import SECOND_NS
 from recon4.recording.velodyne import PacketDecoder
 from recon4.settings import IngestSettings
 from tests.unit.recording.packet_builders import T0_NS, decode_all, sensor, spin
@@ -176,3 +177,21 @@ def test_the_order_gives_nothing_before_the_window_has_passed():
 
     assert (early.tolist(), later.tolist()) == ([], [T0_NS])
     assert order.flush()[0].tolist() == [T0_NS + 200_000_001]
+
+
+@pytest.mark.parametrize("batch", [1, 40, 75, 1500])
+def test_clocks_set_back_together_lose_no_packet(clean, batch):
+    t_ns, payloads, _ = clean
+    back_ns = np.where(np.arange(len(t_ns)) < 700, 0, 30 * SECOND_NS)
+    order = PacketOrder(window_ns=SECOND_NS // 5, report=ImportReport())
+
+    parts = [
+        order.push((t_ns - back_ns)[first : first + batch], payloads[first : first + batch])
+        for first in range(0, len(t_ns), batch)
+    ]
+    found = np.concatenate([t for t, _ in [*parts, order.flush()]])
+
+    lost = order.report.counts["packets_late"]
+    assert lost == (7 if batch == 1 else 0)
+    assert len(found) == len(t_ns) - lost
+    assert np.count_nonzero(np.diff(found) < 0) == 1
