@@ -1,0 +1,166 @@
+"""Registration of two single scans: a room with known walls, turned and moved."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from recon4.geometry.se3 import SE3
+from recon4.kernels.scans import accumulate_symmetric, neighbor_normals
+from recon4.registration.result import StopReason
+from recon4.registration.scan_chain import ScanChain
+from recon4.registration.scans import make_scan, overlay_plans, register_scans, search_scans
+from recon4.settings import ScanSettings
+
+SCANS = ScanSettings(voxel_m=0.2)
+
+
+def room(seed=1, count=12_000):
+    """Points on floor, four walls and two blocks of a room of 12 m x 8 m x 3 m, none alike."""
+    rng = np.random.default_rng(seed)
+    u = rng.uniform(size=(count, 3)) * [12.0, 8.0, 3.0] - [4.0, 3.0, 1.5]
+    kind = rng.integers(0, 7, count)
+    u[kind == 0, 2] = -1.5
+    u[kind == 1, 0] = -4.0
+    u[kind == 2, 0] = 8.0
+    u[kind == 3, 1] = -3.0
+    u[kind == 4, 1] = 5.0
+    block = (kind == 5) & (u[:, 1] > 3.0)
+    u[kind == 5, 0] = 2.0
+    u[(kind == 5) & ~block, 1] = 3.0 + rng.uniform(size=((kind == 5) & ~block).sum()) * 2.0
+    u[kind == 6, 1] = -1.0
+    u[kind == 6, 0] = 5.0 + rng.uniform(size=(kind == 6).sum()) * 3.0
+    return u
+
+
+def scan(T=None, seed=1):
+    """The room, seen from a pose."""
+    return make_scan((T or SE3.identity()).inverse() @ room(seed), SCANS)
+
+
+def apart(T, T_true):
+    error = T_true.inverse() @ T
+    return float(np.linalg.norm(error.t)) + 5.0 * float(error.angle())
+
+
+def test_the_normal_of_points_on_a_tilted_plane_is_the_planes():
+    rng = np.random.default_rng(3)
+    xy = rng.uniform(-1.0, 1.0, (40, 2))
+    p = np.column_stack([xy, 0.5 * xy[:, 0]])
+    normals = np.zeros_like(p)
+
+    neighbor_normals(p, np.tile(np.arange(40), (40, 1)), normals)
+
+    expected = np.array([-0.5, 0.0, 1.0]) / np.sqrt(1.25)
+    assert np.abs(normals @ expected) == pytest.approx(1.0)
+
+
+def test_points_on_a_line_have_no_normal():
+    p = np.outer(np.arange(20.0), [1.0, 2.0, 0.5])
+    normals = np.ones_like(p)
+
+    neighbor_normals(p, np.tile(np.arange(20), (20, 1)), normals)
+
+    assert not normals.any()
+
+
+def test_normal_equations_of_one_match_worked_out_by_hand():
+    H, g, nn = np.zeros((6, 6)), np.zeros(6), np.zeros((3, 3))
+    q, p, up = np.array([[2.0, 0.0, 0.3]]), np.array([[2.5, 0.0, 0.0]]), np.array([[0.0, 0.0, 1.0]])
+
+    # The normals point opposite ways, which must not matter: r = 0.3, w = 1 / (1 + 1).
+    matches, right, weight, total, squares = accumulate_symmetric(
+        q, -up, np.array([0]), p, up, np.zeros(3), 0.3, 0.1, H, g, nn
+    )
+
+    assert (matches, right) == (1, 0)
+    assert (weight, total, squares) == pytest.approx((0.5, 0.15, 0.045))
+    J = np.array([0.0, -2.0, 0.0, 0.0, 0.0, 1.0])
+    np.testing.assert_allclose(H, 0.5 * np.outer(J, J), atol=1e-15)
+    np.testing.assert_allclose(g, 0.15 * J, atol=1e-15)
+
+
+def test_another_sampling_of_the_room_is_brought_onto_it():
+    T_true = SE3.from_rpy(0.02, -0.03, 0.15, [0.4, -0.2, 0.1])
+
+    found = register_scans(scan(), scan(T_true, seed=2), guess=SE3.identity(), settings=SCANS)
+
+    assert found.converged
+    assert apart(found.T_target_source, T_true) < 0.03
+
+
+def test_exchanging_the_scans_gives_the_inverse():
+    T_true = SE3.from_rpy(0.0, 0.02, 0.1, [0.3, 0.1, 0.0])
+    a, b = scan(), scan(T_true, seed=2)
+
+    there = register_scans(a, b, guess=SE3.identity(), settings=SCANS)
+    back = register_scans(b, a, guess=SE3.identity(), settings=SCANS)
+
+    assert apart(back.T_target_source, there.T_target_source.inverse()) < 0.02
+
+
+def test_a_turn_no_descent_bridges_is_found_from_above():
+    T_true = SE3.from_rpy(0.0, 0.0, 2.2, [2.5, 1.0, 0.0])
+    a, b = scan(), scan(T_true, seed=2)
+
+    # A room is nearly its own mirror image: without this the wrong half turn would pass as good.
+    doubtful = dataclasses.replace(SCANS, sure_share=0.99)
+
+    starts = overlay_plans(a, b, count=3, height_m=0.0)
+    found = search_scans(a, b, guess=SE3.identity(), settings=doubtful)
+
+    assert min(apart(start, T_true) for start in starts) < 1.0
+    assert found.converged
+    assert apart(found.T_target_source, T_true) < 0.05
+
+
+def test_a_flat_floor_alone_lets_slide():
+    floor = np.column_stack([np.random.default_rng(5).uniform(-5, 5, (6000, 2)), np.zeros(6000)])
+
+    found = register_scans(
+        make_scan(floor, SCANS), make_scan(floor, SCANS), guess=SE3.identity(), settings=SCANS
+    )
+
+    assert found.degeneracy < 1e-3
+
+
+@pytest.mark.parametrize("count", [0, 5, 40])
+def test_too_few_points_are_an_outcome(count):
+    few = make_scan(room()[:count], SCANS)
+
+    found = search_scans(scan(), few, guess=SE3.identity(), settings=SCANS)
+
+    assert found.stop == StopReason.TOO_FEW
+    assert not found.converged
+    assert np.isnan(found.error_m)
+
+
+def test_points_that_are_not_numbers_are_left_out():
+    p = room()
+    p[::7] = np.nan
+
+    assert np.isfinite(make_scan(p, SCANS).points).all()
+
+
+def test_a_match_below_the_least_share_has_not_converged():
+    strict = dataclasses.replace(SCANS, min_share=1.01)
+
+    found = register_scans(scan(), scan(seed=2), guess=SE3.identity(), settings=strict)
+
+    assert found.stop == StopReason.TOO_FEW
+
+
+def test_the_chain_waits_at_the_last_good_scan():
+    chain = ScanChain(SCANS)
+    rng = np.random.default_rng(7)
+    nowhere = rng.uniform(-30.0, 30.0, (4000, 3))
+    T_true = SE3.from_rpy(0.0, 0.0, 0.1, [0.2, 0.0, 0.0])
+    assert chain.locate(room()) is None
+    chain.keep(SE3.identity(), 0)
+
+    lost, again = chain.locate(nowhere), chain.locate(T_true.inverse() @ room(2))
+
+    assert lost is None
+    assert again is not None
+    assert apart(again, T_true) < 0.03
+    assert chain.last[1] == 0
