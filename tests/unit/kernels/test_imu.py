@@ -145,6 +145,17 @@ def test_uncertainty_grows_as_the_densities_say():
     np.testing.assert_allclose(P, P.T, atol=1e-15)
 
 
+def test_uncertainty_of_one_step_on_paper():
+    still = np.zeros((2, 3))
+
+    cov = carry(still, still - GRAVITY, t_s=np.array([0.0, 0.1]))[4]
+
+    # Integrated white noise of density q: q² dt, q² dt²/2, q² dt³/3.
+    assert np.isclose(cov[8, 8], 1e-4 * 0.1)
+    assert np.isclose(cov[5, 8], 1e-4 * 0.1**2 / 2)
+    assert np.isclose(cov[5, 5], 1e-4 * 0.1**3 / 3)
+
+
 def test_without_noise_certainty_stays():
     still = np.zeros((21, 3))
 

@@ -124,7 +124,8 @@ def test_growing_keeps_everything():
     # Far more cubes than the first tables hold.
     rng = np.random.default_rng(5)
     floor = np.concatenate([rng.uniform(-40, 40, (300_000, 2)), np.full((300_000, 1), 0.1)], axis=1)
-    few, all_at_once = PlaneMap(SETTINGS), PlaneMap(SETTINGS)
+    early = patch((0, 0, 1), 0.05) + np.array([90.0, 0.0, 0.0])
+    few, all_at_once = made_of(early), made_of(early)
     all_at_once.add(floor)
     for part in np.array_split(floor, 7):
         few.add(np.ascontiguousarray(part))
@@ -132,6 +133,8 @@ def test_growing_keeps_everything():
 
     one, other = hold(all_at_once, asked), hold(few, asked)
 
+    # What was there before the tables grew is still there.
+    assert hold(all_at_once, early).share > 0.9
     assert one.share > 0.99
     np.testing.assert_array_equal(one.residual_m, other.residual_m)
     np.testing.assert_allclose(one.residual_m[np.isfinite(one.residual_m)], 0.02, atol=1e-6)
