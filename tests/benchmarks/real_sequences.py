@@ -1,6 +1,6 @@
 """Registration and odometry without an IMU on real data, beside small_gicp and KISS-ICP.
 
-    python -m tests.benchmarks.real_sequences [nclt] [corridor] [muehlburg] [--every N]
+    python -m tests.benchmarks.real_sequences [nclt] [corridor] [muehlburg] [--every N] [--skip N]
 
 The same run, one thread each. ``nclt``: consecutive key scans against the truth. ``corridor`` and
 ``muehlburg``: whole sequences by `Odometry`; no truth, so length, closure and map sharpness.
@@ -184,6 +184,7 @@ def sequence_table(frames: Sequence[Multiframe], rig: Rig, *, voxel_m: float) ->
 def main() -> None:
     """Run what is asked for, everything by default."""
     every = int(sys.argv[sys.argv.index("--every") + 1]) if "--every" in sys.argv else 1
+    skip = int(sys.argv[sys.argv.index("--skip") + 1]) if "--skip" in sys.argv else 0
     wanted = [word for word in sys.argv[1:] if word in {"nclt", "corridor", "muehlburg"}]
     for name in wanted or ["nclt", "corridor", "muehlburg"]:
         if name == "nclt":
@@ -192,7 +193,7 @@ def main() -> None:
             frames = corridor(DATA / "vlp16-corridor")
             print(sequence_table(frames, one_sensor("VLP-16"), voxel_m=0.25))
         else:
-            frames = list(muehlburg(DATA / "hdl64-muehlburg"))
+            frames = list(muehlburg(DATA / "hdl64-muehlburg"))[skip:]
             print(sequence_table(frames, one_sensor("HDL-64E"), voxel_m=0.6))
 
 
