@@ -1,0 +1,131 @@
+"""A run that is killed goes on to the same bytes; so does any other run of the same input."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+from recon4.cli import main
+from recon4.progress import Silent
+from recon4.recording.pcap import address_text, read_pcap
+from recon4.recording.report import ImportReport
+from recon4.recording.velodyne_encode import PcapWriter
+from recon4.simulation.simulate import simulate
+
+SECONDS = 4.0
+FEW = [
+    *("--set", "map.voxel_m=0.1", "--set", "graph.node_stride=4"),
+    *("--set", "segments.preserved=2"),
+]
+RESULTS = ("trajectory.tum", "odometry.tum", "edges.json", "map.laz", "graph.g2o")
+KILLED_AFTER = ("hash", "frames:", "odometry:", "graph:", "verification:", "refine:", "intensity:")
+
+
+@pytest.fixture(scope="module")
+def walk(tmp_path_factory):
+    """Four seconds of a walk with two LiDARs and an IMU."""
+    folder = tmp_path_factory.mktemp("walk")
+    simulate("office", folder / "whole", seconds=6.0, seed=3, bag=False, progress=Silent())
+    cut_pcap(folder / "whole" / "recording.pcap", folder / "walk.pcap")
+    (folder / "imu.csv").write_bytes((folder / "whole" / "imu.csv").read_bytes())
+    return folder
+
+
+def cut_pcap(source, target):
+    with PcapWriter(target) as writer:
+        end_ns = None
+        for batch in read_pcap(source, ImportReport()):
+            end_ns = end_ns or int(batch.t_ns[0] + SECONDS * 1e9)
+            for address, port in sorted({*zip(batch.source, batch.port, strict=True)}):
+                mine = (batch.source == address) & (batch.port == port) & (batch.length == 1206)
+                rows = np.flatnonzero(mine & (batch.t_ns < end_ns))
+                writer.write(
+                    batch.t_ns[rows], batch.payloads(rows, 1206),
+                    source=address_text(address), port=int(port),
+                )  # fmt: skip
+
+
+def command(walk, out, *more):
+    recording = [str(walk / "walk.pcap"), "--rig", "4recon", "--imu", str(walk / "imu.csv")]
+    return ["process", *recording, "--out", str(out), *FEW, *more]
+
+
+def results(out):
+    summary = json.loads((out / "summary.json").read_text())
+    for name in RESULTS:
+        assert summary["hashes"]["results"][name]
+    return {name: (out / name).read_bytes() for name in RESULTS}
+
+
+@pytest.fixture(scope="module")
+def unbroken(walk, tmp_path_factory):
+    out = tmp_path_factory.mktemp("unbroken") / "project"
+    assert main(command(walk, out)) == 0
+    return out
+
+
+def assert_same(found, expected):
+    for name in RESULTS:
+        assert found[name] == expected[name], name
+
+
+def test_the_walk_is_worth_the_test(unbroken):
+    summary = json.loads((unbroken / "summary.json").read_text())
+
+    assert summary["multiframes"] in {40, 41}
+    assert summary["edges"]["accepted"] > 10
+    assert summary["lost"] == 0
+
+
+def test_a_second_run_gives_the_same_bytes(walk, unbroken, tmp_path):
+    assert main(command(walk, tmp_path / "again")) == 0
+
+    assert_same(results(tmp_path / "again"), results(unbroken))
+
+
+def test_one_thread_gives_the_bytes_of_two(walk, unbroken, tmp_path):
+    assert main(command(walk, tmp_path / "one", "--set", "graph.workers=1")) == 0
+
+    assert_same(results(tmp_path / "one"), results(unbroken))
+
+
+def test_a_run_killed_in_every_stage_goes_on_to_the_same_bytes(walk, unbroken, tmp_path):
+    """Each run is killed a random while after a stage ended, so that the next one is hit.
+
+    SIGKILL goes to a real process: no cleaning up, no last word.
+    """
+    rng = np.random.default_rng(5)
+    out = tmp_path / "killed"
+    finished = []
+    for stage in KILLED_AFTER:
+        run_and_kill(command(walk, out), news=stage, seconds=rng.uniform(0.0, 0.3))
+        finished.append(len([*(out / "artifacts").glob("[!.]*")]))
+
+    assert main(command(walk, out)) == 0
+
+    assert_same(results(out), results(unbroken))
+    assert len(set(finished)) >= 5, f"kills should fall into different stages: {finished}"
+    assert not list(out.glob("**/.tmp-*"))
+    assert main(["verify", str(out)]) == 0
+
+
+def run_and_kill(arguments, *, news, seconds):
+    """Start a run, wait for a line that begins with ``news``, and some time more; kill it."""
+    run = subprocess.Popen(
+        [sys.executable, "-m", "recon4", *arguments],
+        stderr=subprocess.PIPE,
+        text=True,
+        env=os.environ | {"OMP_NUM_THREADS": "1"},
+    )
+    with run:
+        assert run.stderr is not None
+        said = next((line for line in run.stderr if line.startswith(news)), "")
+        time.sleep(seconds)
+        run.send_signal(signal.SIGKILL)
+    assert said, f"ended before it said {news!r}"
+    assert run.returncode == -signal.SIGKILL
