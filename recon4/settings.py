@@ -198,7 +198,7 @@ class OdometrySettings:
     """Standard deviation of the motion over a multiframe by line odometry [m] …"""
     line_sd_rad: float = 0.002
     """… and of its rotation [rad]."""
-    lost_error_m: float = 0.25
+    lost_error_m: float = 0.1
     """A larger error means lost [m]."""
     lost_share: float = 0.3
     """A smaller share of matched segments means lost."""

@@ -70,6 +70,9 @@ def _verification(
     from recon4.pose_graph.verification import verify
     from recon4.store.atomic import write_json
 
+    if settings.graph.mode in ("10", "overlap"):  # V Table 3.2: these stop before verification
+        save_graph(out, load_graph(graph))
+        return {}
     found = verify(load_graph(graph), settings=settings.verification, progress=progress)
     save_graph(out, found.graph)
     told = found.to_json()
@@ -150,11 +153,11 @@ def _map(
 
 FRAMES = Stage("frames", 1, ("ingest",), _frames)
 ODOMETRY = Stage(
-    "odometry", 4, ("segments", "registration", "planes", "scans", "odometry"), _odometry
+    "odometry", 5, ("segments", "registration", "planes", "scans", "odometry"), _odometry
 )
-GRAPH = Stage("graph", 2, _MATCHING, _graph)
-VERIFICATION = Stage("verification", 1, ("verification",), _verification)
+GRAPH = Stage("graph", 3, _MATCHING, _graph)
+VERIFICATION = Stage("verification", 2, ("verification", "graph"), _verification)
 REFINE = Stage("refine", 1, ("segments", "planes", "odometry", "graph", "refine"), _refine)
-LEVEL = Stage("level", 1, ("level", "gnss"), _level)
+LEVEL = Stage("level", 2, ("level", "gnss"), _level)
 INTENSITY = Stage("intensity", 1, ("intensity",), _intensity)
 MAP = Stage("map", 1, ("map",), _map)

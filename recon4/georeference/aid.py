@@ -40,7 +40,7 @@ def make_aid(gnss: GnssSamples | None, rig: Rig, settings: OdometrySettings) -> 
     )
     sd_m = np.fmax(np.nan_to_num(gnss.sd_enu_m[good], nan=0.0), settings.gnss_sd_m)
     return Aid(
-        t_ns=gnss.t_ns[good] + round(rig.gnss_time_offset_s * 1e9),
+        t_ns=gnss.t_ns[good],
         p_enu=p_enu,
         sd_m=sd_m,
         R_enu_body=_R_ENU_NED @ R_ned_down @ _R_DOWN_UP,

@@ -73,7 +73,7 @@ def usable_fixes(
         The fixes and the origin of their local frame: the first of the best ones. None of them
         and no origin if there is no usable fix.
     """
-    t_ns = gnss.t_ns + round(rig.gnss_time_offset_s * 1e9)
+    t_ns = gnss.t_ns
     rank = np.array([_RANKS.get(int(quality), 0) for quality in gnss.quality], dtype=np.intp)
     good = (rank >= _ASKED[settings.min_quality]) & _positioned(gnss)
     good &= (t_ns >= trajectory.t_ns[0]) & (t_ns <= trajectory.t_ns[-1])

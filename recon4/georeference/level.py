@@ -100,7 +100,7 @@ def level_by_attitude(trajectory: Trajectory, gnss: GnssSamples, rig: Rig) -> Le
     The heading is that of the SLAM pose; as it has to be read in the levelled frame, it is taken
     again after each average until the tilt stays (A0, A8).
     """
-    t_ns = gnss.t_ns + round(rig.gnss_time_offset_s * 1e9)
+    t_ns = gnss.t_ns
     rows = _covered(trajectory, t_ns) & np.isfinite(gnss.rpy_ned_rad[:, :2]).all(1)
     if rows.sum() < _MIN_PAIRS:
         return NOT_LEVELLED
@@ -150,7 +150,7 @@ def level_by_gravity(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> Level
 
 def _windows(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> tuple[Array, Array] | None:
     """Mean force without motion [m/s²], (W, 3), and mean rotation, (W, 3, 3), of each second."""
-    t_ns = imu.t_ns + round(rig.imu_time_offset_s * 1e9)
+    t_ns = imu.t_ns
     rows = np.flatnonzero(_covered(trajectory, t_ns) & np.isfinite(imu.accel_m_s2).all(1))
     if len(rows) == 0:
         return None

@@ -29,7 +29,7 @@ class Trial:
 
     lost: int
     error_m: float
-    """Mean distance of the matched segments from the local map [m]."""
+    """Distance of the matched segments from the local map, median of the frames [m]."""
 
     def clearly_better(self, other: Trial) -> bool:
         """Whether no more frames are lost and the error is much smaller."""
@@ -88,7 +88,7 @@ def _try(frames: FrameStore, imu: ImuSamples | None, settings: Settings) -> Tria
         lost += sum(step.lost for step in steps)
         errors += [step.error_m for step in steps[1:]]
     known = np.nan_to_num(np.array(errors), nan=_NEVER_M)
-    return Trial(lost, float(known.mean()) if len(known) else 0.0)
+    return Trial(lost, float(np.median(known)) if len(known) else 0.0)
 
 
 def _starts(frames: FrameStore) -> list[int]:

@@ -16,6 +16,8 @@ from recon4.settings import OdometrySettings
 _FREE_SD = (0.01, 0.05, 0.3, 0.3)
 """Standard deviation of a state between two scans: turn [rad], place [m], velocity [m/s], turn
 rate [rad/s]."""
+_REST_NS = 500_000_000
+"""Samples so near to a time tell which way is up then [ns]; if there is none, the nearest does."""
 _SLOT_S = 0.02
 """Without an IMU the motion is sampled this often [s]."""
 
@@ -67,7 +69,7 @@ class ImuMotion:
     """Motion predicted by an IMU, rotated into the body."""
 
     def __init__(self, imu: ImuSamples, rig: Rig, settings: OdometrySettings) -> None:
-        self._t_ns = imu.t_ns + round(rig.imu_time_offset_s * 1e9)
+        self._t_ns = imu.t_ns
         self._gyro, self._accel = _in_body(imu, rig)
         self._has_accel = bool(np.isfinite(self._accel).all())
         s = settings
@@ -85,7 +87,8 @@ class ImuMotion:
 
     def initial(self, t_ns: int) -> MotionState:
         """At rest or walking at ``t_ns``: roll and pitch from the mean specific force."""
-        near = np.abs(self._t_ns - t_ns) < 500_000_000
+        away_ns = np.abs(self._t_ns - t_ns)
+        near = away_ns <= max(_REST_NS, int(away_ns.min()))
         up_body = self._accel[near].mean(axis=0) if self._has_accel else np.array([0, 0, 1.0])
         sd = np.repeat([1e-4, 1e-4, 1.0, 0.02, 0.2, 0.3], 3)
         if not self._has_accel:
@@ -151,7 +154,11 @@ class FreeMotion:
         slots = max(2, round((end_ns - state.t_ns) * 1e-9 / _SLOT_S) + 1)
         times = np.linspace(state.t_ns, end_ns, slots).astype(np.int64)
         silent = np.zeros((slots, 3))
-        return _predict(state, times, silent, silent, self._noise)
+        # A silent accelerometer must not fall freely: an IMU's state comes here for a while only.
+        weightless = replace(state, vector=np.concatenate([state.vector[:9], np.zeros(6)]))
+        moved = _predict(weightless, times, silent, silent, self._noise)
+        vector = np.concatenate([moved.end.vector[:9], state.vector[9:]])
+        return replace(moved, end=replace(moved.end, vector=vector))
 
 
 Motion = ImuMotion | FreeMotion

@@ -99,7 +99,7 @@ class Odometry:
     def push(self, frame: Multiframe) -> OdometryStep:
         """Register the next multiframe; frames come in the order of their time."""
         segments = sample_segments(frame, self._rig, self._settings.segments)
-        first = self._state is None
+        first = not self._keyframes
         found = self._place(frame)
         prediction = self._predict(frame)
         fit = self._register(segments, prediction)
@@ -132,8 +132,13 @@ class Odometry:
         start_ns, end_ns = frame.t_ns, frame.t_ns + frame.duration_ns
         if self._state is None:
             self._state = self._initial(start_ns)
-        covered = self._motion.covers(self._state.t_ns, end_ns)
-        return (self._motion if covered else self._free).predict(self._state, end_ns)
+        if self._state.t_ns < start_ns:  # frames are missing in between
+            self._state = self._move(self._state, start_ns).end
+        return self._move(self._state, end_ns)
+
+    def _move(self, state: MotionState, end_ns: int) -> Prediction:
+        covered = self._motion.covers(state.t_ns, end_ns)
+        return (self._motion if covered else self._free).predict(state, end_ns)
 
     def _initial(self, t_ns: int) -> MotionState:
         """Where the aid says, else at the origin."""
@@ -190,6 +195,8 @@ class Odometry:
         return bad or not np.isfinite(fit.delta).all()
 
     def _extend_map(self, segments: Segments, t_s: Array, T_dense: SE3) -> None:
+        if len(segments) == 0:
+            return
         o = self._settings.odometry
         T_last_now = self._last_keyframe.inverse() @ T_dense[-1]
         moved = np.linalg.norm(T_last_now.t) > o.keyframe_m or T_last_now.angle() > o.keyframe_rad

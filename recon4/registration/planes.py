@@ -10,6 +10,7 @@ from recon4.registration.result import Registration, StopReason
 from recon4.settings import PlaneSettings, RegistrationSettings
 
 _GATES_M = (1.0, 0.7, 0.5, 0.3, 0.2, 0.15)
+_ERROR_GATE_M = 0.5
 _MIN_MATCHES = 100
 
 
@@ -57,10 +58,23 @@ def register_to_planes(
         if last_gate and small < settings.converged_step_m:
             stop = StopReason.SMALL_STEP
             break
+    error_m = _error(target, T_target_source, source, zero)
     return Registration(
-        T_target_source, stop, rounds, match.mean_m, 0.0, match.share, match.H[:6, :6],
+        T_target_source, stop, rounds, error_m, 0.0, match.share, match.H[:6, :6],
         match.degeneracy,
     )  # fmt: skip
+
+
+def _error(target: PlaneMap, T_target_source: SE3, source: Array, fraction: Array) -> float:
+    """Mean distance within a wide gate: one narrow enough to register hides what does not fit."""
+    wide = target.match(
+        T_target_source @ source,
+        fraction,
+        center=T_target_source.t,
+        finest=0,
+        gate_m=_ERROR_GATE_M,
+    )
+    return wide.mean_m
 
 
 def _moved(guess: SE3, T_target_source: SE3) -> float:

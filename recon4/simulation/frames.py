@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from recon4.model.multiframe import COLUMNS, Multiframe
 from recon4.model.rig import Rig
+from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.progress import Progress, Silent
 from recon4.recording.poses import write_tum
 from recon4.recording.velodyne_models import MODELS
@@ -65,9 +67,20 @@ def simulate_frames(
             for frame in chunk:
                 writer.append(frame)
             watch.advance()
+        imu, gnss = _on_rig_clock(imu, gnss, setup.rig)
         writer.add(imu=imu, gnss=gnss, report={"derived": [], "counts": {"points": writer.points}})
     write_tum(folder / "truth.tum", true_trajectory(setup.walk, epoch_ns=setup.epoch_ns))
     return setup
+
+
+def _on_rig_clock(
+    imu: ImuSamples, gnss: GnssSamples | None, rig: Rig
+) -> tuple[ImuSamples, GnssSamples | None]:
+    """Samples of a frame store are on the rig's clock, as ingest writes them."""
+    imu = replace(imu, t_ns=imu.t_ns + round(1e9 * rig.imu_time_offset_s))
+    if gnss is not None:
+        gnss = replace(gnss, t_ns=gnss.t_ns + round(1e9 * rig.gnss_time_offset_s))
+    return imu, gnss
 
 
 def _chunks(setup: Setup) -> Iterator[list[Multiframe]]:
