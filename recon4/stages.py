@@ -151,9 +151,9 @@ def _map(
     return {"points": len(tiles), "bounds_m": [corner.tolist() for corner in tiles.bounds_m]}
 
 
-FRAMES = Stage("frames", 1, ("ingest",), _frames)
+FRAMES = Stage("frames", 2, ("ingest",), _frames)
 ODOMETRY = Stage(
-    "odometry", 5, ("segments", "registration", "planes", "scans", "odometry"), _odometry
+    "odometry", 6, ("segments", "registration", "planes", "scans", "odometry"), _odometry
 )
 GRAPH = Stage("graph", 3, _MATCHING, _graph)
 VERIFICATION = Stage("verification", 2, ("verification", "graph"), _verification)

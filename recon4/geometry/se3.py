@@ -90,6 +90,14 @@ def matrix_from_quat(quat_xyzw: ArrayLike) -> Array:
     return np.eye(3) + 2.0 * w * V + 2.0 * (V @ V)
 
 
+def proper(R: Array) -> Array:
+    """The rotations that nearly orthonormal matrices mean, (..., 3, 3).
+
+    Products of rotations drift off slowly, and a loop that feeds them back drifts off fast.
+    """
+    return matrix_from_quat(quat_from_matrix(R))
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class SE3:
     """One motion or a batch. ``T_a_b @ p_b`` is the point in frame ``a``."""

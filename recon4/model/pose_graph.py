@@ -31,7 +31,7 @@ class Verdict(StrEnum):
     ACCEPTED = "accepted"
     REJECTED = "rejected"
     UNVERIFIED = "unverified"
-    """Accepted by its own error, but no alternative path could confirm it: in the graph, shown grey."""
+    """Accepted by its own error, but no alternative path confirms it: in the graph, shown grey."""
 
 
 class Reason(StrEnum):

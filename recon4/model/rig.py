@@ -114,7 +114,7 @@ def parse_rig(text: str, *, where: str) -> Rig:
         sensors=sensors,
         T_body_imu=_mounting(imu, f"{where}: imu"),
         imu_time_offset_s=_number(imu, "time_offset_s", 0.0, f"{where}: imu"),
-        p_body_antenna=_vector(gnss, "lever_arm_m", 3, (0.0, 0.0, 0.0), f"{where}: gnss"),
+        p_body_antenna=_vector(gnss, "lever_arm_m", 3, (0.0, 0.0, 0.0), where=f"{where}: gnss"),
         gnss_time_offset_s=_number(gnss, "time_offset_s", 0.0, f"{where}: gnss"),
     )
 
@@ -164,18 +164,18 @@ def _sensor(row: dict[str, Any], where: str) -> Sensor:
 
 
 def _mounting(row: dict[str, Any], where: str) -> SE3:
-    xyz_m = _vector(row, "xyz_m", 3, (0.0, 0.0, 0.0), where)
+    xyz_m = _vector(row, "xyz_m", 3, (0.0, 0.0, 0.0), where=where)
     if "quat_xyzw" in row:
-        quat = _vector(row, "quat_xyzw", 4, (), where)
+        quat = _vector(row, "quat_xyzw", 4, (), where=where)
         if not 0.99 < np.linalg.norm(quat) < 1.01:
             raise ConfigError(f"{where}: quat_xyzw must have length 1, got {quat.tolist()}")
         return SE3.from_quat(quat, xyz_m)
-    roll, pitch, yaw = np.deg2rad(_vector(row, "rpy_deg", 3, (0.0, 0.0, 0.0), where))
+    roll, pitch, yaw = np.deg2rad(_vector(row, "rpy_deg", 3, (0.0, 0.0, 0.0), where=where))
     return SE3.from_rpy(roll, pitch, yaw, xyz_m)
 
 
 def _vector(
-    row: dict[str, Any], key: str, size: int, default: tuple[float, ...], where: str
+    row: dict[str, Any], key: str, size: int, default: tuple[float, ...], *, where: str
 ) -> Array:
     value = row.get(key, default)
     numbers = isinstance(value, list | tuple) and all(isinstance(v, int | float) for v in value)

@@ -19,6 +19,10 @@ _ZERO_RAD_S = 0.06
 """A smaller offset is found by the odometry itself (its prior is a third of this)."""
 _CLEARLY = 0.75
 """Another way must bring the error below this share to be taken."""
+_CLEARLY_M = 0.002
+"""… and gain at least this [m]."""
+_TYPICAL = 0.8
+"""Share of the frames whose error counts: one bad frame must not decide."""
 _NEVER_M = 1.0
 """The error of a trial that found no match [m]."""
 
@@ -29,12 +33,16 @@ class Trial:
 
     lost: int
     error_m: float
-    """Distance of the matched segments from the local map, median of the frames [m]."""
+    """Distance of the matched segments from the local map that most frames stay below [m]."""
 
     def clearly_better(self, other: Trial) -> bool:
         """Whether no more frames are lost and the error is much smaller."""
-        fewer_lost = self.lost < other.lost and self.error_m < other.error_m
-        return fewer_lost or (self.lost <= other.lost and self.error_m < _CLEARLY * other.error_m)
+        if self.lost < other.lost:
+            return self.error_m < other.error_m
+        gain_m = other.error_m - self.error_m
+        return self.lost == other.lost and gain_m > max(
+            (1.0 - _CLEARLY) * other.error_m, _CLEARLY_M
+        )
 
 
 def believable_imu(frames: FrameStore, settings: Settings) -> tuple[ImuSamples | None, str]:
@@ -88,7 +96,7 @@ def _try(frames: FrameStore, imu: ImuSamples | None, settings: Settings) -> Tria
         lost += sum(step.lost for step in steps)
         errors += [step.error_m for step in steps[1:]]
     known = np.nan_to_num(np.array(errors), nan=_NEVER_M)
-    return Trial(lost, float(np.median(known)) if len(known) else 0.0)
+    return Trial(lost, float(np.quantile(known, _TYPICAL)) if len(known) else 0.0)
 
 
 def _starts(frames: FrameStore) -> list[int]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from recon4.geometry.se3 import SE3, Array, so3_exp, so3_log
+from recon4.geometry.se3 import SE3, Array, proper, so3_exp, so3_log
 from recon4.kernels.imu import propagate
 from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
@@ -47,9 +47,17 @@ class MotionState:
         vector = np.concatenate([T_odom_body.t, self.vector[3:]])
         return replace(self, R=T_odom_body.R, vector=vector, P=P)
 
+    def with_biases(self, vector: Array, cov: Array) -> MotionState:
+        """The same motion with other biases and gravity, (9,), and their covariance, (9, 9)."""
+        P = self.P.copy()
+        P[9:, :] = P[:, 9:] = 0.0
+        P[9:, 9:] = cov
+        return replace(self, vector=np.concatenate([self.vector[:6], vector]), P=P)
+
     def corrected(self, delta: Array, P: Array) -> MotionState:
         """The state moved by an error (18,), with a new covariance."""
-        return replace(self, R=so3_exp(delta[:3]) @ self.R, vector=self.vector + delta[3:], P=P)
+        R = proper(so3_exp(delta[:3]) @ self.R)
+        return replace(self, R=R, vector=self.vector + delta[3:], P=P)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -109,7 +117,7 @@ class ImuMotion:
         gyro, accel = (_at(times, self._t_ns, v) for v in (self._gyro, self._accel))
         if not self._has_accel:
             accel = np.zeros_like(gyro)
-        return _predict(state, times, gyro, accel, self._noise)
+        return _predict(state, times, gyro, accel, noise=self._noise)
 
 
 class FreeMotion:
@@ -143,6 +151,11 @@ class FreeMotion:
         R = T_odom_body.R[1] @ so3_exp(-back_s * turn_rate)
         return MotionState(start_ns, R, vector, np.diag(sd**2))
 
+    def coasting(self, state: MotionState) -> MotionState:
+        """The state of an IMU that fell silent: no gravity, no biases, the turn rate unknown."""
+        sd = np.repeat([_FREE_SD[-1], 1e-9, 1e-9], 3)
+        return state.with_biases(np.zeros(9), np.diag(sd**2))
+
     def at_rest(self, state: MotionState, t_ns: int) -> MotionState:
         """The state held still until ``t_ns``: what a lost body did is not known."""
         vector = np.zeros(15)
@@ -154,21 +167,18 @@ class FreeMotion:
         slots = max(2, round((end_ns - state.t_ns) * 1e-9 / _SLOT_S) + 1)
         times = np.linspace(state.t_ns, end_ns, slots).astype(np.int64)
         silent = np.zeros((slots, 3))
-        # A silent accelerometer must not fall freely: an IMU's state comes here for a while only.
-        weightless = replace(state, vector=np.concatenate([state.vector[:9], np.zeros(6)]))
-        moved = _predict(weightless, times, silent, silent, self._noise)
-        vector = np.concatenate([moved.end.vector[:9], state.vector[9:]])
-        return replace(moved, end=replace(moved.end, vector=vector))
+        return _predict(state, times, silent, silent, noise=self._noise)
 
 
 Motion = ImuMotion | FreeMotion
 
 
 def _predict(
-    state: MotionState, t_ns: Times, gyro: Array, accel: Array, noise: Array
+    state: MotionState, t_ns: Times, gyro: Array, accel: Array, *, noise: Array
 ) -> Prediction:
     t_s = (t_ns - t_ns[0]) * 1e-9
     R, p, v, Phi, P = propagate(t_s, gyro, accel, state.R, state.vector, state.P, noise)
+    R = proper(R)
     vector = state.vector.copy()
     vector[:3], vector[3:6] = p[-1], v
     cross = state.P[:6] @ Phi.T

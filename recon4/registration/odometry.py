@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from recon4.geometry.se3 import SE3, Array, interpolate, so3_exp
+from recon4.geometry.se3 import SE3, Array, interpolate, proper, so3_exp
 from recon4.kernels.imu import place_points
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
@@ -92,6 +92,8 @@ class Odometry:
         )
         self._chain = None if with_imu else ScanChain(settings.scans)
         self._state: MotionState | None = None
+        self._before_hole: MotionState | None = None
+        """While the IMU is silent: the last state it spoke for, whose biases still hold."""
         self._map = PlaneMap(settings.planes)
         self._keyframes: deque[Array] = deque()
         self._last_keyframe = SE3.identity()
@@ -137,8 +139,15 @@ class Odometry:
         return self._move(self._state, end_ns)
 
     def _move(self, state: MotionState, end_ns: int) -> Prediction:
-        covered = self._motion.covers(state.t_ns, end_ns)
-        return (self._motion if covered else self._free).predict(state, end_ns)
+        if self._motion.covers(state.t_ns, end_ns):
+            if self._before_hole is not None:
+                before, self._before_hole = self._before_hole, None
+                state = state.with_biases(before.vector[6:], before.P[9:, 9:])
+            return self._motion.predict(state, end_ns)
+        if self._before_hole is None:
+            self._before_hole = state
+            state = self._free.coasting(state)
+        return self._free.predict(state, end_ns)
 
     def _initial(self, t_ns: int) -> MotionState:
         """Where the aid says, else at the origin."""
@@ -223,7 +232,7 @@ def _correct(prediction: Prediction, delta: Array, center: Array) -> SE3:
     R = so3_exp(omega)
     predicted = prediction.T_odom_body
     arm = np.einsum("nij,nj->ni", R, predicted.t - center)
-    return SE3(R @ predicted.R, center + arm + shift)
+    return SE3(proper(R @ predicted.R), center + arm + shift)
 
 
 def _largest_move(step: Array) -> float:

@@ -305,7 +305,8 @@ def test_a_hole_of_the_imu_is_no_free_fall(stroll):
 
     steps = push_all(Odometry(stroll.rig, Settings(), imu), stroll)
 
-    assert max(step.gap_m for step in steps) < 0.03
+    # How fast the body moves at first is not known with or without a hole.
+    assert max(step.gap_m for step in steps[2:]) < 0.03
     assert worst_from_start(poses(steps), stroll.true_poses()) < 0.03
 
 
