@@ -69,7 +69,8 @@ def test_the_summary_tells_what_was_done_with_what(project):
 def test_the_walk_is_tracked_to_a_centimetre(project, walk):
     found = evaluate(project, truth=walk / "truth.tum")
 
-    assert found.covered_share == 1.0
+    # The last pose is the end of the last revolution, a moment after the end of the truth.
+    assert found.covered_share > 0.98
     assert found.aligned.position_m.rmse < 0.01
 
 

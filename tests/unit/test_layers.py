@@ -28,7 +28,8 @@ MAY_IMPORT = {
     "recon4/registration": STAGE | {"recon4.registration"},
     "recon4/pose_graph": STAGE | {"recon4.registration", "recon4.pose_graph"},
     "recon4/semi_rigid": STAGE | {"recon4.registration", "recon4.pose_graph", "recon4.semi_rigid"},
-    "recon4/georeference": STAGE | {"recon4.mapping", "recon4.pose_graph", "recon4.georeference"},
+    "recon4/georeference": STAGE
+    | {"recon4.mapping", "recon4.pose_graph", "recon4.georeference", "recon4.registration.aiding"},
     "recon4/intensity": STAGE | {"recon4.mapping", "recon4.intensity"},
     "recon4/mapping": STAGE | {"recon4.intensity", "recon4.mapping"},
     "recon4/export": STAGE | {"recon4.mapping", "recon4.pose_graph", "recon4.export"},
