@@ -198,6 +198,8 @@ class OdometrySettings:
     """Standard deviation of the motion over a multiframe by line odometry [m] …"""
     line_sd_rad: float = 0.002
     """… and of its rotation [rad]."""
+    restart_after: int = 10
+    """With an IMU: after so many lost multiframes a new local map is begun."""
     lost_error_m: float = 0.1
     """A larger error means lost [m]."""
     lost_share: float = 0.3

@@ -153,7 +153,7 @@ def _map(
 
 FRAMES = Stage("frames", 2, ("ingest",), _frames)
 ODOMETRY = Stage(
-    "odometry", 6, ("segments", "registration", "planes", "scans", "odometry"), _odometry
+    "odometry", 7, ("segments", "registration", "planes", "scans", "odometry"), _odometry
 )
 GRAPH = Stage("graph", 3, _MATCHING, _graph)
 VERIFICATION = Stage("verification", 2, ("verification", "graph"), _verification)

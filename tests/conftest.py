@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-DATA = Path(os.environ.get("RECON4_DATA", ROOT.parent / "shared" / "data"))
+DATA = Path(os.environ.get("RECON4_DATA") or ROOT.parent / "shared" / "data")
 
 
 @pytest.fixture(scope="session")

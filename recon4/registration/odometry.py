@@ -97,6 +97,7 @@ class Odometry:
         self._map = PlaneMap(settings.planes)
         self._keyframes: deque[Array] = deque()
         self._last_keyframe = SE3.identity()
+        self._lost_frames = 0
 
     def push(self, frame: Multiframe) -> OdometryStep:
         """Register the next multiframe; frames come in the order of their time."""
@@ -106,6 +107,7 @@ class Odometry:
         prediction = self._predict(frame)
         fit = self._register(segments, prediction)
         lost = not first and (not found or self._is_lost(fit))
+        self._count_lost(lost=lost)
         self._state = _updated(prediction, fit, lost=lost, first=first)
         T_dense = prediction.T_odom_body if lost or first else fit.T_dense
         step = _step(frame, prediction, fit, T_dense, lost=lost)
@@ -114,6 +116,17 @@ class Odometry:
             if self._chain:
                 self._chain.keep(step.T_odom_body, frame.t_mid_ns)
         return step
+
+    def _count_lost(self, *, lost: bool) -> None:
+        """With an IMU: after a while in a place the map does not know, begin a new map there.
+
+        The IMU alone has carried the body so far; the pose graph gets a weak edge across it.
+        """
+        self._lost_frames = self._lost_frames + 1 if lost else 0
+        if self._chain is None and self._lost_frames >= self._settings.odometry.restart_after:
+            self._map.clear()
+            self._keyframes.clear()
+            self._lost_frames = 0
 
     def _place(self, frame: Multiframe) -> bool:
         """Without an IMU: start the frame where the last good scan says it is, if it can tell."""

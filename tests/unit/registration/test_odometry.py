@@ -117,6 +117,19 @@ def test_the_same_frames_give_the_same_bits(stroll):
     np.testing.assert_array_equal(poses(one).R, poses(other).R)
 
 
+def test_with_an_imu_a_new_map_is_begun_in_an_unknown_place(stroll):
+    settings = override(Settings(), ["odometry.restart_after=3"])
+    frames = list(stroll)
+    for k in (4, 5, 6):
+        frames[k] = without_points(frames[k])
+
+    steps = push_all(Odometry(stroll.rig, settings, stroll.imu), frames)
+
+    assert [k for k, step in enumerate(steps) if step.lost] == [4, 5, 6]
+    assert steps[7].share == 0.0  # held against an empty map
+    assert steps[8].share > 0.4
+
+
 def test_frames_one_by_one_and_the_stage_are_one_code(stroll, tmp_path):
     steps = push_all(Odometry(stroll.rig, Settings(), stroll.imu), stroll)
     run_odometry(stroll, tmp_path, settings=Settings(), progress=Silent())
