@@ -99,7 +99,9 @@ def _closed(drift: DriftClosed | None) -> list[Finding]:
     if drift is None:
         return []
     out = []
-    text = f"The pose graph moved the end of the walk by {_cm(drift.end_m)} and no pose by more than "
+    text = (
+        f"The pose graph moved the end of the walk by {_cm(drift.end_m)} and no pose by more than "
+    )
     out.append(
         Finding(
             Level.NOTE if drift.largest_m > 1.0 else Level.GOOD, text + _cm(drift.largest_m) + "."
