@@ -80,22 +80,23 @@ def _edge(T_map_body: SE3, i: int, j: int, xi: np.ndarray) -> Edge:
 
 def inject_random(graph: PoseGraph, rng: np.random.Generator, count: int = 20) -> PoseGraph:
     """Loops between any two nodes that claim they see the same place."""
-    false = []
-    for _ in range(count):
+    models, false = _loops(graph), []
+    for k in range(count):
         i, j = sorted(rng.choice(len(graph), 2, replace=False).tolist())
         T_i_j = SE3.from_rpy(0.0, 0.0, rng.uniform(-np.pi, np.pi), rng.normal(size=3) * [1, 1, 0.1])
-        false.append(_false(graph, i, max(j, i + 2) if i + 2 < len(graph) else j, T_i_j))
+        j = max(j, i + 2) if i + 2 < len(graph) else j
+        false.append(_false(models[k % len(models)], i, j, T_i_j))
     return graph.with_edges((*graph.edges, *false))
 
 
 def inject_shifted(graph: PoseGraph, rng: np.random.Generator, count: int = 20) -> PoseGraph:
     """True loops registered 0.3 to 1.5 m wrong, as along a corridor or a row of equal desks."""
-    loops = [edge for edge in graph.edges if edge.kind is EdgeKind.LOOP]
-    false = []
-    for row in rng.choice(len(loops), count, replace=False):
+    loops, false = _loops(graph), []
+    for row in rng.choice(len(loops), count, replace=len(loops) < count):
         angle, length = rng.uniform(0, 2 * np.pi), rng.uniform(0.3, 1.5)
         shift = [0, 0, 0, length * np.cos(angle), length * np.sin(angle), 0.0]
-        false.append(_false(graph, loops[row].i, loops[row].j, loops[row].T_i_j @ SE3.exp(shift)))
+        true = loops[row]
+        false.append(_false(true, true.i, true.j, true.T_i_j @ SE3.exp(shift)))
     return graph.with_edges((*graph.edges, *false))
 
 
@@ -103,8 +104,8 @@ def inject_clusters(
     graph: PoseGraph, rng: np.random.Generator, count: int = 20, size: int = 5
 ) -> PoseGraph:
     """Groups of ``size`` loops that agree with each other: two places that look the same."""
-    false = []
-    for _ in range(count // size):
+    models, false = _loops(graph), []
+    for group in range(count // size):
         a, b = sorted(rng.choice(len(graph) - size, 2, replace=False).tolist())
         b = min(max(b, a + 30), len(graph) - size)
         T_start = SE3.from_rpy(0.0, 0.0, rng.uniform(-np.pi, np.pi), rng.normal(size=3))
@@ -112,18 +113,24 @@ def inject_clusters(
             T_a_i = graph.T_map_body[a].inverse() @ graph.T_map_body[a + k]
             T_b_j = graph.T_map_body[b].inverse() @ graph.T_map_body[b + k]
             noisy = T_a_i.inverse() @ T_start @ T_b_j @ SE3.exp(SD * rng.normal(size=6))
-            false.append(_false(graph, a + k, b + k, noisy))
+            model = models[(group * size + k) % len(models)]
+            false.append(_false(model, a + k, b + k, noisy))
     return graph.with_edges((*graph.edges, *false))
 
 
-def _false(graph: PoseGraph, i: int, j: int, T_i_j: SE3) -> Edge:
+def _loops(graph: PoseGraph) -> list[Edge]:
+    """Those that were registered and accepted; a false loop promises as much as one of them."""
+    return [edge for edge in graph.edges if edge.kind is EdgeKind.LOOP and edge.in_graph]
+
+
+def _false(model: Edge, i: int, j: int, T_i_j: SE3) -> Edge:
     return Edge(
         i=i,
         j=j,
         T_i_j=T_i_j,
         kind=EdgeKind.LOOP,
         verdict=Verdict.ACCEPTED,
-        information=graph.edges[-1].information,
+        information=model.information,
     )
 
 
