@@ -8,6 +8,7 @@ from typing import Annotated
 from fastapi import Depends
 from starlette.requests import HTTPConnection
 
+from app.desk import Desk
 from app.jobs.store import JobStore
 from app.jobs.supervisor import Supervisor
 from app.projects.picture import Pictures
@@ -26,6 +27,7 @@ class Parts:
     jobs: JobStore
     supervisor: Supervisor
     viewers: ViewerPool
+    desk: Desk
 
 
 def parts(connection: HTTPConnection) -> Parts:

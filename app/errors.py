@@ -5,7 +5,8 @@
     ├── Conflict             409  not possible in the present state
     │   └── IllegalTransition     a job cannot go from its state to that one
     ├── Refused              403  outside of what the server may touch
-    └── ViewerFailed         503  the 3-D viewer does not start
+    ├── ViewerFailed         503  the 3-D viewer does not start
+    └── DeskFailed           503  a helper process died or took too long
 
 A `Recon4Error` of the library is the fault of the input: 422.
 """
@@ -55,6 +56,12 @@ class Refused(AppError):
 
 class ViewerFailed(AppError):
     """The 3-D viewer does not start."""
+
+    status = 503
+
+
+class DeskFailed(AppError):
+    """A helper process died or took too long."""
 
     status = 503
 

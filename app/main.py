@@ -19,6 +19,7 @@ from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 from app import errors
 from app.access.guard import Guard
 from app.deps import Parts, Server
+from app.desk import Desk
 from app.jobs import routes as job_routes
 from app.jobs.store import JobStore
 from app.jobs.supervisor import Supervisor
@@ -126,6 +127,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
     settings.state.mkdir(exist_ok=True)
     jobs = JobStore(settings.state / "jobs.sqlite")
     supervisor = Supervisor(jobs, settings)
+    desk = Desk()
     viewers = ViewerPool(
         idle_s=settings.viewer_idle_s,
         points=settings.viewer_points,
@@ -138,6 +140,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
         jobs=jobs,
         supervisor=supervisor,
         viewers=viewers,
+        desk=desk,
     )
     watching = asyncio.create_task(supervisor.run())
     try:
@@ -145,6 +148,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
     finally:
         watching.cancel()
         await asyncio.gather(watching, return_exceptions=True)
+        desk.close()
         supervisor.close()
         await viewers.close()
         jobs.close()

@@ -68,10 +68,13 @@ def recordings_from_environment() -> tuple[Path, ...]:
     return tuple(Path(part) for part in named.split(os.pathsep) if part) or (Path.cwd(),)
 
 
+ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+"""One thread a library, so that two processes do not fight."""
+
+
 def worker_environment() -> dict[str, str]:
-    """What a worker inherits: one thread a library, so that two workers do not fight."""
-    one = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-    return {**os.environ, **one}
+    """What a worker inherits."""
+    return {**os.environ, **ONE_THREAD}
 
 
 def _refuse_open_network(host: str) -> None:

@@ -2,6 +2,7 @@
 
 import { readOpenApi } from "./api.js";
 import { make } from "./dom.js";
+import "./page_head.js";
 
 function operation(path, method, { summary, description, parameters = [], requestBody }) {
   const inputs = parameters.map((one) => `${one.name} (${one.in})`);

@@ -6,6 +6,7 @@ import { bytes, stateOf, when } from "./format.js";
 import { headline } from "./figures.js";
 import { badge } from "./job_status.js";
 import "./new_job.js";
+import "./page_head.js";
 
 const byId = (id) => document.getElementById(id);
 const cards = new Map();
@@ -70,7 +71,7 @@ watchJobs(
     else draw(id);
   },
   (linked) => {
-    byId("link").textContent = linked ? "" : "Connection lost, trying again";
+    document.querySelector("page-head").linked = linked;
   },
 );
 reload();

@@ -5,6 +5,7 @@ import { fill, make } from "./dom.js";
 import { figures } from "./figures.js";
 import { bytes, seconds, stateOf, when } from "./format.js";
 import { badge } from "./job_status.js";
+import "./page_head.js";
 
 const id = decodeURIComponent(location.pathname.split("/")[2]);
 const byId = (name) => document.getElementById(name);
@@ -16,7 +17,7 @@ let view = null;
 function draw() {
   const name = project?.name ?? id;
   document.title = `${name} · recon4`;
-  byId("name").textContent = name;
+  document.querySelector("page-head").name = name;
   byId("title").textContent = name;
   const facts = project
     ? [project.preset && `preset ${project.preset}`, project.rig && `rig ${project.rig}`, bytes(project.bytes), when(project.updated)]
@@ -105,6 +106,6 @@ function onJob(fresh) {
 
 byId("log").addEventListener("toggle", drawLog);
 watchJobs(onJob, (linked) => {
-  byId("link").textContent = linked ? "" : "Connection lost, trying again";
+  document.querySelector("page-head").linked = linked;
 });
 reload();

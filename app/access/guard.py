@@ -14,6 +14,8 @@ from urllib.parse import urlsplit
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from app.access.people import Person, Role
+
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 
 PAGE_POLICY = (
@@ -31,6 +33,10 @@ HEADERS = {
     "Permissions-Policy": "camera=(), microphone=(), geolocation=()",
     "Cache-Control": "no-cache",
 }
+
+
+LOCAL = Person("local", Role.ADMIN)
+"""Whoever sits at this computer, when the server listens on loopback only."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +60,7 @@ class Guard:
             return
         refusal = judge(scope, self._hosts)
         if refusal is None:
+            scope.setdefault("state", {})["person"] = LOCAL
             await self._app(scope, receive, _with_headers(send))
         elif scope["type"] == "websocket":
             await receive()

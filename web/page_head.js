@@ -1,0 +1,53 @@
+// <page-head>: the bar on top of every page. On the pages of a project it leads to the others.
+
+import { projectUrl } from "./api.js";
+import { make } from "./dom.js";
+
+const PAGES = [
+  ["", "Map"],
+  ["review/", "Review"],
+  ["slices/", "Slices"],
+];
+
+class PageHead extends HTMLElement {
+  #name = make("b");
+  #link = make("span", { className: "link-state", role: "status" });
+
+  connectedCallback() {
+    const [, first, id, page = ""] = location.pathname.split("/");
+    const inProject = first === "projects" && id;
+    this.className = "bar";
+    this.setAttribute("role", "banner");
+    this.replaceChildren(
+      make("a", { className: "brand", href: "/" }, "recon4"),
+      ...(inProject ? [this.#way(), this.#tabs(decodeURIComponent(id), page)] : []),
+      this.#link,
+      make("span", { className: "account" }),
+      make("a", { className: "quiet", href: "/api" }, "API"),
+    );
+    if (inProject) this.name = decodeURIComponent(id);
+  }
+
+  /** The project's name. */
+  set name(words) {
+    this.#name.textContent = words;
+  }
+
+  /** Whether the server answers. */
+  set linked(yes) {
+    this.#link.textContent = yes ? "" : "Connection lost, trying again";
+  }
+
+  #way() {
+    return make("nav", { ariaLabel: "Where you are", className: "way" },
+      make("a", { href: "/" }, "Projects"), make("span", { ariaHidden: "true" }, " / "), this.#name);
+  }
+
+  #tabs(id, here) {
+    const tab = ([path, words]) =>
+      make("a", { href: projectUrl(id) + path, ...(path === (here && `${here}/`) ? { ariaCurrent: "page" } : {}) }, words);
+    return make("nav", { ariaLabel: "Pages of the project", className: "tabs" }, ...PAGES.map(tab));
+  }
+}
+
+customElements.define("page-head", PageHead);
