@@ -334,6 +334,8 @@ class GnssSettings:
     """Drift of SLAM that may hide in that distance, per metre of track."""
     tilt_sd_rad: float = 0.005
     """How well the levelled map is horizontal [rad]."""
+    judge_edges: bool = True
+    """Turn down edges of the graph that contradict the positions."""
     min_extent_m: float = 3.0
     """Fixes must span at least this for a heading [m]."""
     seed: int = 4

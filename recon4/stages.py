@@ -158,6 +158,6 @@ ODOMETRY = Stage(
 GRAPH = Stage("graph", 3, _MATCHING, _graph)
 VERIFICATION = Stage("verification", 2, ("verification", "graph"), _verification)
 REFINE = Stage("refine", 1, ("segments", "planes", "odometry", "graph", "refine"), _refine)
-LEVEL = Stage("level", 2, ("level", "gnss"), _level)
+LEVEL = Stage("level", 3, ("level", "gnss"), _level)
 INTENSITY = Stage("intensity", 1, ("intensity",), _intensity)
 MAP = Stage("map", 1, ("map",), _map)

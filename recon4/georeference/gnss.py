@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import SE3, Array, align_points
 from recon4.georeference.crs import Origin
 from recon4.georeference.fixes import Fixes, correlated_sd, one_a_node, usable_fixes
-from recon4.model.pose_graph import PoseGraph
+from recon4.model.pose_graph import PoseGraph, Reason, Verdict
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples
 from recon4.model.trajectory import Times, Trajectory
-from recon4.pose_graph.solve import PosePriors, PositionPriors, optimize
+from recon4.pose_graph.robust import LOOP_NODES, optimize_gnc
+from recon4.pose_graph.solve import PosePriors, PositionPriors, Priors, optimize
 from recon4.settings import GnssSettings
 
 _DRAWS = 400
@@ -43,6 +44,8 @@ class GeoreferenceResult:
     """False: outlier, (M,)."""
     samples: int
     """How many fixes there were in the recording."""
+    rejected: tuple[int, ...] = ()
+    """Rows of edges turned down because they contradict the positions."""
 
     @property
     def rmse_m(self) -> Array:
@@ -70,6 +73,7 @@ class GeoreferenceResult:
             "t_ns": self.t_ns.tolist(),
             "residual_enu_m": np.round(self.residual_m, 4).tolist(),
             "used": self.used.tolist(),
+            "edges_rejected": list(self.rejected),
         }
 
 
@@ -87,6 +91,8 @@ def georeference(
     every fix becomes a factor on its node, with the lever arm, a Cauchy kernel and a standard
     deviation that leaves frame-to-frame motion to SLAM; fixes that do not fit are left out and
     the graph is solved once more. The fixes hold position and heading, the levelling the tilt.
+    Then the edges are judged again: where a walk goes around once, only positions can tell that a
+    loop is false. Those turned down get `Reason.ROBUST`; odometry and a person's decisions stay.
 
     Args:
         graph: Verified and levelled (z up).
@@ -114,7 +120,8 @@ def georeference(
         why = f"{near.sum()} agreeing fixes over {extent:.1f} m"
         return _local(graph, why, samples=len(gnss))
     graph = graph.with_poses(T_enu_map @ graph.T_map_body)
-    graph, used = _solve(graph, fixes, near, settings=settings)
+    rejected = _contradicting(graph, fixes, near, settings=settings)
+    graph, used = _solve(_without(graph, rejected), fixes, near, settings=settings)
     return GeoreferenceResult(
         graph=graph,
         origin=origin,
@@ -124,6 +131,7 @@ def georeference(
         residual_m=_residuals(graph, fixes),
         used=used,
         samples=len(gnss),
+        rejected=tuple(rejected),
     )
 
 
@@ -183,15 +191,45 @@ def _solve(
     """Solve with the fixes near, then once more without those that do not fit."""
     used, tilt = near, _tilt_priors(graph, sd_rad=settings.tilt_sd_rad)
     for _ in range(2):
-        chosen = one_a_node(fixes.take(used))
-        sd_m = correlated_sd(chosen, correlation_s=settings.correlation_s)
-        positions = PositionPriors(chosen.node, chosen.p_enu, chosen.p_node_antenna, sd_m)
-        solution = optimize(graph, kernel="cauchy", fixed=(), priors=(positions, tilt))
+        priors = (_positions(fixes.take(used), settings), tilt)
+        solution = optimize(graph, kernel="cauchy", fixed=(), priors=priors)
         graph = graph.with_poses(solution.T_map_body)
         off = np.abs(_residuals(graph, fixes)) / fixes.sd_m
         scale = np.maximum(1.4826 * np.median(off[used], axis=0), 1.0)
         used = near & np.all(off < _OUTLIER_SD * scale, axis=1)
     return graph, used
+
+
+def _contradicting(
+    graph: PoseGraph, fixes: Fixes, near: NDArray[np.bool_], *, settings: GnssSettings
+) -> list[int]:
+    """Rows of edges that the robust solve turns down once positions hold the map.
+
+    Which fixes are outliers is asked of the walk without its loops: else loops that are wrong
+    together would turn the fixes down that contradict them.
+    """
+    if not settings.judge_edges:
+        return []
+    short = tuple(e for e in graph.edges if e.decided_by != "auto" or abs(e.j - e.i) < LOOP_NODES)
+    walk, used = _solve(graph.with_edges(short), fixes, near, settings=settings)
+    tilt = _tilt_priors(graph, sd_rad=settings.tilt_sd_rad)
+    priors: tuple[Priors, ...] = (_positions(fixes.take(used), settings), tilt)
+    graph = graph.with_poses(walk.T_map_body)
+    weights = optimize_gnc(graph, fixed=(), priors=priors).weights
+    return [row for row, edge in enumerate(graph.edges) if edge.in_graph and weights[row] == 0.0]
+
+
+def _without(graph: PoseGraph, rows: list[int]) -> PoseGraph:
+    edges = list(graph.edges)
+    for row in rows:
+        edges[row] = edges[row].evolve(verdict=Verdict.REJECTED, reason=Reason.ROBUST)
+    return graph.with_edges(tuple(edges))
+
+
+def _positions(fixes: Fixes, settings: GnssSettings) -> PositionPriors:
+    chosen = one_a_node(fixes)
+    sd_m = correlated_sd(chosen, correlation_s=settings.correlation_s)
+    return PositionPriors(chosen.node, chosen.p_enu, chosen.p_node_antenna, sd_m)
 
 
 def _tilt_priors(graph: PoseGraph, *, sd_rad: float) -> PosePriors:

@@ -18,6 +18,7 @@ from recon4.mapping.place import place_with_origins
 from recon4.model.corrections import apply_corrections
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph, save_graph
+from recon4.pose_graph.relations import with_residuals
 from recon4.progress import Progress
 from recon4.settings import Settings
 from recon4.store.arrays import load_trajectory, save_trajectory
@@ -44,7 +45,8 @@ def run_level(
         frames: The multiframes with IMU and GNSS.
         refined: Folder with ``trajectory.npz``, dense.
         graph: Folder of the verified graph.
-        out: Receives ``trajectory.npz``, the graph's files and ``georeference.json``.
+        out: Receives ``trajectory.npz``, the graph's files and ``georeference.json``. The
+            residuals of the edges are those of the final poses.
         settings: Uses level and gnss.
         progress: Counts the steps.
     """
@@ -61,7 +63,7 @@ def run_level(
     )
     crs = _describe_crs(placed.origin, settings.gnss.crs) if placed.origin else {}
     save_trajectory(out / "trajectory.npz", dense)
-    save_graph(out, placed.graph)
+    save_graph(out, with_residuals(placed.graph))
     told = {"levelling": levelling.to_json(), "georeference": placed.to_json(), "crs": crs}
     write_json(out / "georeference.json", null_for_nan(told))
     progress.advance()
@@ -70,6 +72,7 @@ def run_level(
         "tilt_deg": round(float(np.rad2deg(levelling.tilt_rad)), 4),
         "crs": crs.get("name", ""),
         "local": placed.reason,
+        "edges_rejected": len(placed.rejected),
     }
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array, skew
-from recon4.model.pose_graph import Edge, EdgeKind
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph
 
 Rows = NDArray[np.intp]
 Flags = NDArray[np.bool_]
@@ -57,6 +57,13 @@ def squared_residuals(T_map_body: SE3, of: Relations) -> Array:
     predicted = T_map_body[of.i].inverse() @ T_map_body[of.j]
     xi = (of.T_i_j.inverse() @ predicted).log()
     return np.einsum("ea,eab,eb->e", xi, of.information, xi)
+
+
+def with_residuals(graph: PoseGraph) -> PoseGraph:
+    """The graph with ``chi2`` of every edge at the poses it has now, also of those not used."""
+    chi2 = squared_residuals(graph.T_map_body, relations(graph.edges)).tolist()
+    edges = (edge.evolve(chi2=value) for edge, value in zip(graph.edges, chi2, strict=True))
+    return graph.with_edges(tuple(edges))
 
 
 def adjoint(T_a_b: SE3) -> Array:

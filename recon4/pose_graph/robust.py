@@ -27,7 +27,7 @@ _MAX_ROUNDS = 60
 _MAX_SETTLING = 10
 _MAX_NOISE = 10.0
 """Edges may be this much noisier (in variance) than they say before they count as outliers."""
-_LOOP_NODES = 10
+LOOP_NODES = 10
 """Edges across fewer nodes are no loops."""
 _GROUP_NODES = 3
 """Loops whose ends lie at most so many nodes apart form a group."""
@@ -45,7 +45,8 @@ def optimize_gnc(
 ) -> Solution:
     """Truncated least squares: poses, and weights that are 0 or 1.
 
-    The first start is a Cauchy solve. If that turns down more than a few loops, others compete:
+    The first start is a Cauchy solve (with positions: the walk without its loops, laid over them).
+    If that turns down more than a few loops, others compete:
     graduated non-convexity from the convex problem (Yang 2020, eqs. 12-14), and the odometry with
     only one of the largest groups of neighboring loops, which is what finds the truth when loops
     are few, alone and mostly false. Protected edges always count. The same graph gives the same
@@ -70,6 +71,7 @@ def optimize_gnc(
     for T_start in _starts(problem, graph.T_map_body, T_cauchy, limit=limit):
         T_map_body, weights, used = _settle(problem, T_start, limit=limit)
         cost = _truncated_cost(of, squared_residuals(T_map_body, of), limit=limit)
+        cost += problem.prior_chi2(T_map_body)
         if cost < lowest * (1.0 - 1e-9):
             best, lowest = (T_map_body, weights, used), cost
         if _is_plain(of, weights):
@@ -89,10 +91,12 @@ def outlier_limit(edge_chi2: Array, *, probability: float) -> float:
 
 
 def _starts(problem: Problem, T_map_body: SE3, T_cauchy: SE3, *, limit: float) -> Iterator[SE3]:
+    of = problem.of
+    short = of.in_graph & (of.protected | (np.abs(of.j - of.i) < LOOP_NODES))
+    if problem.positions:  # they hold the walk without its loops, so they speak first
+        yield problem.solve(T_map_body, weights=short.astype(np.float64))[0]
     yield T_cauchy
     yield _graduate(problem, T_map_body, limit=limit)
-    of = problem.of
-    short = of.in_graph & (of.protected | (np.abs(of.j - of.i) < _LOOP_NODES))
     for group in _groups(of, of.in_graph & ~short):
         weights = (short | group).astype(np.float64)
         yield problem.solve(T_map_body, weights=weights)[0]
@@ -141,7 +145,7 @@ def _truncated_cost(of: Relations, chi2: Array, *, limit: float) -> float:
 
 def _is_plain(of: Relations, weights: Array) -> bool:
     """Whether nearly all loops agree, so that no other start can do better."""
-    loops = of.in_graph & (np.abs(of.j - of.i) >= _LOOP_NODES)
+    loops = of.in_graph & (np.abs(of.j - of.i) >= LOOP_NODES)
     return bool((loops & (weights == 0.0)).sum() <= _FEW_OUTLIERS * loops.sum())
 
 

@@ -193,9 +193,7 @@ class Problem:
         Raises:
             GraphError: If a number is not finite.
         """
-        values = gtsam.Values()
-        for node in range(self.nodes):
-            values.insert(node, _pose(T_map_body, node))
+        values = self._values(T_map_body)
         parameters = gtsam.LevenbergMarquardtParams()
         parameters.setMaxIterations(max_iterations)
         parameters.setRelativeErrorTol(_RELATIVE_DECREASE)
@@ -208,6 +206,17 @@ class Problem:
         if not np.isfinite(optimizer.error()) or not np.isfinite(found.t).all():
             raise GraphError("the optimizer met a number that is not finite")
         return found, int(optimizer.iterations())
+
+    def prior_chi2(self, T_map_body: SE3) -> float:
+        """Sum of the squared residuals of what is known from elsewhere: no edge, no kernel."""
+        nothing = self.factors(np.zeros(len(self.of)), kernel="none")
+        return 2.0 * float(nothing.error(self._values(T_map_body)))
+
+    def _values(self, T_map_body: SE3) -> Any:
+        values = gtsam.Values()
+        for node in range(self.nodes):
+            values.insert(node, _pose(T_map_body, node))
+        return values
 
     def factors(self, weights: Array, *, kernel: Kernel) -> Any:
         """The ``gtsam.NonlinearFactorGraph`` of the edges that count."""

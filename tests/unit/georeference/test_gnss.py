@@ -6,7 +6,7 @@ import pytest
 from recon4.geometry.se3 import SE3
 from recon4.georeference.crs import Origin, to_enu, to_geodetic
 from recon4.georeference.gnss import GeoreferenceResult, georeference
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
 from recon4.model.rig import load_rig
 from recon4.model.samples import GnssSamples
 from recon4.model.trajectory import Trajectory
@@ -195,6 +195,56 @@ def test_a_straight_line_does_not_roll() -> None:
     tilt = np.arccos(np.clip(np.sum(up * line.at(result.graph.t_ns).R[:, 2, :], axis=1), -1, 1))
     assert np.rad2deg(tilt.max()) < 0.5
     assert worst_m(result, line) < 0.08
+
+
+def with_loops(
+    graph: PoseGraph, true: Trajectory, *, shift_m: float, **changes: object
+) -> PoseGraph:
+    """Twelve loops from the end back to the beginning; all are wrong by one shift of the end."""
+    T = true.at(graph.t_ns)
+    T_moved = SE3(T.R, T.t + np.array([shift_m, 0.0, 0.0]))
+    loops = []
+    for k in range(12):
+        j = len(graph) - 12 + k
+        loops.append(
+            Edge(
+                i=k, j=j, T_i_j=T[k].inverse() @ T_moved[j], kind=EdgeKind.LOOP,
+                verdict=Verdict.ACCEPTED, information=np.diag([1e6] * 3 + [1e3] * 3),
+            ).evolve(**changes)
+        )  # fmt: skip
+    return graph.with_edges((*graph.edges, *loops))
+
+
+@pytest.mark.parametrize(("shift_m", "kept"), [(0.0, 12), (0.6, 0)])
+def test_loops_stay_or_fall_by_what_the_positions_say(
+    true: Trajectory, gnss: GnssSamples, shift_m: float, kept: int
+) -> None:
+    graph, dense = slam(true, np.random.default_rng(1))
+    graph = with_loops(graph, true, shift_m=shift_m)
+
+    result = georeference(graph, dense, gnss, RIG, settings=GnssSettings())
+
+    loops = result.graph.edges[-12:]
+    assert sum(edge.in_graph for edge in loops) == kept
+    assert all(edge.reason is Reason.ROBUST for edge in loops if not edge.in_graph)
+    assert len(result.rejected) == 12 - kept
+    assert result.to_json()["edges_rejected"] == list(result.rejected)
+    assert worst_m(result, true) < 0.08
+    assert result.used.mean() > 0.98
+
+
+@pytest.mark.parametrize(("person", "judge_edges"), [({"decided_by": "Ada"}, True), ({}, False)])
+def test_positions_turn_down_no_edge_of_a_person_and_none_when_switched_off(
+    true: Trajectory, gnss: GnssSamples, person: dict[str, str], judge_edges: bool
+) -> None:
+    graph, dense = slam(true, np.random.default_rng(1))
+    graph = with_loops(graph, true, shift_m=0.6, **person)
+    settings = GnssSettings(judge_edges=judge_edges)
+
+    result = georeference(graph, dense, gnss, RIG, settings=settings)
+
+    assert result.rejected == ()
+    assert all(edge.in_graph for edge in result.graph.edges)
 
 
 @pytest.mark.parametrize("kept", [0, 3])
