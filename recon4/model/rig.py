@@ -13,7 +13,7 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array
 
-SENSOR_MODELS = ("VLP-16", "VLP-32C", "HDL-32E", "HDL-64E", "generic")
+SENSOR_MODELS = ("VLP-16", "VLP-16 Hi-Res", "VLP-32C", "HDL-32E", "HDL-64E", "generic")
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

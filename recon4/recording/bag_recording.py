@@ -22,7 +22,7 @@ from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream, assign_topics, choose_rig
 from recon4.recording.shots import Shots
 from recon4.recording.velodyne import PacketDecoder
-from recon4.recording.velodyne_models import PRODUCTS, model_of_interval
+from recon4.recording.velodyne_models import likely_model
 from recon4.settings import IngestSettings
 
 Item = Shots | ImuSamples | GnssSamples | Trajectory
@@ -138,11 +138,10 @@ def _model(bag: Bag, topic: BagTopic) -> str:
 
 
 def _model_of_packets(payloads: NDArray[np.uint8]) -> str:
-    """By the interval of the packets, which no wrong product byte can spoil; else by that byte."""
+    """By the interval of the packets, which a wrong product byte cannot spoil, and that byte."""
     stamps_us = payloads[:, 1200:1204].copy().view("<u4")[:, 0].astype(np.int64)
     interval_s = float(np.median(np.diff(stamps_us))) * 1e-6
-    by_interval = model_of_interval(interval_s, int(payloads[0, 1204]))
-    return by_interval or PRODUCTS.get(int(payloads[0, 1205]), "generic")
+    return likely_model(int(payloads[0, 1205]), interval_s, int(payloads[0, 1204])) or "generic"
 
 
 def _most(topics: Sequence[BagTopic], kind: str, report: ImportReport) -> str:

@@ -24,7 +24,7 @@ from recon4.recording.velodyne_models import (
     POSITION_SIZE,
     PRODUCTS,
     RETURN_MODES,
-    model_of_interval,
+    likely_model,
     product_text,
 )
 
@@ -195,19 +195,19 @@ def _usual_step_s(stamp_ns: Times) -> float:
 
 def _model(product: int, return_mode: int, interval_s: float) -> tuple[str, tuple[str, ...]]:
     """Name of the model and what is remarkable: the firing pattern outweighs the product byte."""
-    fired = model_of_interval(interval_s, return_mode)
+    model = likely_model(product, interval_s, return_mode)
     said = PRODUCTS.get(product)
     remarks = []
     if return_mode not in RETURN_MODES:
         remarks.append(f"unknown return mode byte {return_mode:#04x}, read as single return")
-    if fired and said != fired:
+    if model and said != model:
         remarks.append(
             f"its packets say {product_text(product)}, but they come every {1e3 * interval_s:.3f} "
-            f"ms as those of a {fired}: taken for a {fired}"
+            f"ms as those of a {model}: taken for a {model}"
         )
-    elif not fired and not said:
+    elif not model:
         remarks.append(f"unknown product byte {product:#04x}; give a rig that names the model")
-    return fired or said or "", tuple(remarks)
+    return model or "", tuple(remarks)
 
 
 def _with_utc(stream: PacketStream, offset_ns: int | None) -> PacketStream:

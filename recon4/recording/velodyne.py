@@ -21,7 +21,7 @@ from recon4.recording.velodyne_models import (
     RETURN_MODES,
     STRONGEST,
     VelodyneModel,
-    model_of_interval,
+    models_of_interval,
     product_text,
     velodyne_model,
 )
@@ -253,10 +253,10 @@ class PacketDecoder:
         self._report.count("packets_missing", self._interval.missing(t_ns, packet_s))
         self.rotation.push(t_ns, payloads, packet_s)
         usual_s = self._interval.usual_s()
-        fired = model_of_interval(usual_s, return_mode) if usual_s else None
-        if fired is not None and fired != self.model.name:
+        fits = models_of_interval(usual_s, return_mode) if usual_s else ()
+        if fits and self.model.name not in fits:
             self._report.warn(
-                f"{self._sensor.name}: a packet every {1e3 * usual_s:.3f} ms is what a {fired} "
+                f"{self._sensor.name}: a packet every {1e3 * usual_s:.3f} ms is what a {fits[0]} "
                 f"sends, but it is decoded as {self.model.name}"
             )
 

@@ -1,7 +1,7 @@
 """What the data sheets say of each Velodyne: beams, firing times, bytes on the wire.
 
-Sources: VLP-16 user manual 63-9243 rev. D (§6, §9, appendix C), VLP-32C user manual 63-9325
-(§9.3, appendix D), HDL-32E user manual 63-9113 (appendix B and E).
+Sources: VLP-16 user manual 63-9243 rev. D (§6, §9, appendix C; also of the Hi-Res), VLP-32C user
+manual 63-9325 (§9.3, appendix D), HDL-32E user manual 63-9113 (appendix B and E).
 The order of the lasers is the order on the wire; ring 0 is the lowest.
 The beams of one model cross in a focal point at the distance f from the axis of rotation while
 ranges count from the axis; so a beam of elevation e leaves the axis at the height ``-f tan e``.
@@ -11,7 +11,7 @@ The VLP-16's manual lists these heights (f = 41.8 mm); for the VLP-32C (42.4 mm)
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -121,6 +121,18 @@ _VLP16 = VelodyneModel(
     sequence_s=55.296e-6,
 )
 
+_HIRES_ELEVATION_RAD = np.deg2rad(
+    np.column_stack([np.linspace(-30.0, -2.0, 8) / 3, np.linspace(2.0, 30.0, 8) / 3]).ravel()
+)
+
+_HIRES = replace(
+    _VLP16,
+    name="VLP-16 Hi-Res",
+    product=0x24,
+    elevation_rad=_HIRES_ELEVATION_RAD,
+    height_m=-0.0418 * np.tan(_HIRES_ELEVATION_RAD),
+)
+
 _VLP32C_ELEVATION_RAD = np.deg2rad(
     np.ravel(
         [
@@ -166,7 +178,7 @@ _HDL32E = VelodyneModel(
     sequence_s=46.08e-6,
 )
 
-MODELS = {model.name: model for model in (_VLP16, _VLP32C, _HDL32E)}
+MODELS = {model.name: model for model in (_VLP16, _HIRES, _VLP32C, _HDL32E)}
 """Models whose packets are decoded, by name."""
 PRODUCTS = {model.product: model.name for model in MODELS.values()}
 """Product byte to name."""
@@ -194,13 +206,22 @@ def velodyne_model(name: str) -> VelodyneModel:
     raise ConfigError(f"no packet decoder for sensor model {name!r}; decoded: {known}")
 
 
-def model_of_interval(seconds: float, return_mode: int) -> str | None:
-    """Name of the model whose packets follow each other at this interval, or None.
+def models_of_interval(seconds: float, return_mode: int) -> tuple[str, ...]:
+    """Names of the models whose packets follow each other at this interval; the usual one first.
 
     The interval is fixed by the firing sequence and does not depend on the rotation rate: 1.327 ms
-    for a VLP-16, 0.664 ms for a VLP-32C and 0.553 ms for an HDL-32E, half of it in dual mode.
+    for a VLP-16 (also Hi-Res), 0.664 ms for a VLP-32C and 0.553 ms for an HDL-32E, half of it in
+    dual mode.
     """
-    for model in MODELS.values():
-        if abs(seconds / model.packet_s(return_mode) - 1.0) < 0.03:
-            return model.name
-    return None
+    return tuple(
+        model.name
+        for model in MODELS.values()
+        if abs(seconds / model.packet_s(return_mode) - 1.0) < 0.03
+    )
+
+
+def likely_model(product: int, seconds: float, return_mode: int) -> str | None:
+    """The model of packets at this interval; its product byte counts only if it fits, or alone."""
+    said = PRODUCTS.get(product)
+    fits = models_of_interval(seconds, return_mode)
+    return said if said in fits or not fits else fits[0]

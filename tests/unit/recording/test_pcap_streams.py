@@ -72,6 +72,14 @@ def test_the_streams_of_a_file_are_named_with_what_they_carry(tmp_path):
     assert streams[1].utc_offset_ns is None
 
 
+def test_a_hi_res_puck_is_told_from_a_vlp16_by_its_product_byte(tmp_path):
+    path = capture(tmp_path / "hires.pcap", (FIRST, 2368, spin(200, model="VLP-16 Hi-Res")))
+
+    (stream,) = scan_pcap(path)
+
+    assert (stream.model, stream.remarks) == ("VLP-16 Hi-Res", ())
+
+
 def test_the_firing_pattern_outweighs_a_wrong_product_byte(tmp_path):
     t_ns, payloads = spin(200)
     payloads[:, -1] = 0x21

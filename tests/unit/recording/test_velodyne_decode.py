@@ -50,6 +50,19 @@ def test_the_top_laser_of_a_vlp16_at_10_m_lies_where_paper_says():
     assert (shots.ring[0], shots.intensity[0], shots.echo[0], shots.sensor) == (15, 77, 0, 3)
 
 
+def test_the_top_laser_of_a_hi_res_puck_looks_up_by_10_degrees():
+    azimuth, distance, intensity = one_packet(step=0)
+    distance[0, 0, [0, 1, 15]] = 5000
+
+    shots, _ = decoded(azimuth, distance, intensity, model="VLP-16 Hi-Res")
+
+    # Manual, table of the Hi-Res: lasers 0, 1 and 15 at -10, +0.667 and +10 degrees, 7.4 mm off.
+    elevation = np.deg2rad([-10.0, 2.0 / 3.0, 10.0])
+    height = 10 * np.sin(elevation) + np.array([7.4, -0.5, -7.4]) * 1e-3
+    assert shots.xyz[:, 2] == pytest.approx(height, abs=1e-4)
+    assert shots.ring.tolist() == [0, 8, 15]
+
+
 def test_the_second_sequence_of_a_vlp16_block_fires_half_a_block_later():
     azimuth, distance, intensity = one_packet(azimuth=35990)
     distance[0, 11, 16] = 1000
@@ -232,7 +245,7 @@ def test_no_packets_give_no_shots():
 
 @pytest.mark.parametrize("model", ["HDL-64E", "generic"])
 def test_a_model_without_tables_is_refused_in_words(model):
-    with pytest.raises(ConfigError, match="decoded: VLP-16, VLP-32C, HDL-32E"):
+    with pytest.raises(ConfigError, match="decoded: VLP-16, VLP-16 Hi-Res, VLP-32C, HDL-32E"):
         PacketDecoder(0, sensor(model=model), settings=WIDE, report=ImportReport())
 
 
