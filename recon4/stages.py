@@ -151,11 +151,11 @@ def _map(
     return {"points": len(tiles), "bounds_m": [corner.tolist() for corner in tiles.bounds_m]}
 
 
-FRAMES = Stage("frames", 2, ("ingest",), _frames)
+FRAMES = Stage("frames", 3, ("ingest",), _frames)
 ODOMETRY = Stage(
     "odometry", 7, ("segments", "registration", "planes", "scans", "odometry"), _odometry
 )
-GRAPH = Stage("graph", 3, _MATCHING, _graph)
+GRAPH = Stage("graph", 4, _MATCHING, _graph)
 VERIFICATION = Stage("verification", 2, ("verification", "graph"), _verification)
 REFINE = Stage("refine", 1, ("segments", "planes", "odometry", "graph", "refine"), _refine)
 LEVEL = Stage("level", 3, ("level", "gnss"), _level)

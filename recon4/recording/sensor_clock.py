@@ -15,10 +15,12 @@ _SAME_CLOCK_NS = SECOND_NS // 2
 """A sensor that is this near to the recorder's clock is synchronized with it."""
 _JUMP_NS = SECOND_NS
 """Clocks that move against each other by more than this have jumped."""
-_FIRST = 75
-"""Packets that tell how far the two clocks are apart."""
+_FIRST = 500
+"""Packets of the first batch that tell how far the two clocks are apart."""
 _CONFIRM = 8
 """So many packets must agree on a jump; fewer are damaged packets and are dropped."""
+_BLOCK = 64
+"""The clocks are compared after every so many packets, however they come in."""
 _PAUSE_NS = 60 * SECOND_NS
 _TRACK_NS = 10 * SECOND_NS
 _MAX_RATE = 2e-4
@@ -72,6 +74,9 @@ class SensorClock:
         self._rate = 0.0
         self._since_ns = 0
         self._window: list[int] = []
+        self._block: list[Times] = []
+        """Arrival minus expected and minus sensor's time, (2, n), of the block being filled."""
+        self._filled = 0
         self._host_jump_ns = 0
         self._free_running = False
         self._last = (0, 0)
@@ -96,13 +101,28 @@ class SensorClock:
         """
         if not len(t_us):
             return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.bool_)
-        offset = self._offset_ns if self._offset_ns is not None else self._start(t_arrival_ns, t_us)
-        expected = t_arrival_ns + offset
+        if self._offset_ns is None:
+            self._start(t_arrival_ns, t_us)
+        parts = []
+        start = 0
+        while start < len(t_us):
+            rows = slice(start, start + _BLOCK - self._filled)
+            parts.append(self._push_part(t_arrival_ns[rows], t_us[rows]))
+            start = rows.stop
+        return np.concatenate([t for t, _ in parts]), np.concatenate([kept for _, kept in parts])
+
+    def _push_part(
+        self, t_arrival_ns: Times, t_us: NDArray[np.integer]
+    ) -> tuple[Times, NDArray[np.bool_]]:
+        """Packets of one block: within it the relation of the clocks does not change."""
+        assert self._offset_ns is not None
+        expected = t_arrival_ns + self._offset_ns
         t_sensor = nearest_hour(t_us, expected)
-        if not np.any(self._odd(t_us, t_sensor, t_sensor - expected)):
-            self._follow(t_arrival_ns, t_sensor, t_sensor - expected)
-            return t_sensor + self._shift(t_sensor), np.ones(len(t_us), dtype=np.bool_)
-        return self._push_one_by_one(t_arrival_ns, t_us)
+        if np.any(self._odd(t_us, t_sensor, t_sensor - expected)):
+            return self._push_one_by_one(t_arrival_ns, t_us)
+        t_ns = t_sensor + self._shift(t_sensor)
+        self._follow(t_arrival_ns, t_sensor, t_sensor - expected)
+        return t_ns, np.ones(len(t_us), dtype=np.bool_)
 
     def at(self, t_arrival_ns: Times, t_us: NDArray[np.integer]) -> Times:
         """Absolute times of other packets of the sensor [ns], (N,); learns nothing from them."""
@@ -113,10 +133,11 @@ class SensorClock:
         return t_sensor + self._shift(t_sensor)
 
     def _start(self, t_arrival_ns: Times, t_us: NDArray[np.integer]) -> int:
+        t_arrival_ns, t_us = t_arrival_ns[:_FIRST], t_us[:_FIRST]
         ahead = nearest_hour(t_us, t_arrival_ns) - t_arrival_ns
         around = (ahead - ahead[0] + HOUR_NS // 2) % HOUR_NS - HOUR_NS // 2
         # One that was measured: between two clocks, before and after a jump, lies none.
-        usual = int(np.sort(around[:_FIRST])[len(around[:_FIRST]) // 2])
+        usual = int(np.sort(around)[len(around) // 2])
         offset = int(ahead[0]) + usual
         if self.utc_offset_ns is not None:
             offset += round((self.utc_offset_ns - offset) / HOUR_NS) * HOUR_NS
@@ -147,12 +168,18 @@ class SensorClock:
 
     def _follow(self, t_arrival_ns: Times, t_sensor: Times, deviation: Times) -> None:
         """Let the offset drift with the clocks, and the shift of a free-running sensor too."""
-        assert self._offset_ns is not None
-        self._offset_ns += int(0.1 * np.median(deviation))
         self._last = (int(t_arrival_ns[-1]), int(t_sensor[-1]))
+        self._block.append(np.stack([deviation, t_arrival_ns - t_sensor]))
+        self._filled += len(t_sensor)
+        if self._filled < _BLOCK:
+            return
+        block = np.concatenate(self._block, axis=1)
+        self._block, self._filled = [], 0
+        assert self._offset_ns is not None
+        self._offset_ns += int(0.1 * np.median(block[0]))
         if not self._free_running:
             return
-        self._window.append(int(np.min(t_arrival_ns - t_sensor)))
+        self._window.append(int(np.min(block[1])))
         now = int(t_sensor[-1])
         if now - self._since_ns >= _TRACK_NS:
             self._shift_ns = int(self._shift(now))
@@ -210,6 +237,7 @@ class SensorClock:
             self._rate = 0.0
             self._tell_jump("its clock", off_ns)
         self._since_ns, self._window, self._run = going_on, [], 0
+        self._block, self._filled = [], 0
 
     def _tell_jump(self, whose: str, jump_ns: int) -> None:
         self._report.count("clock_jumps")

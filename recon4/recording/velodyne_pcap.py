@@ -114,9 +114,9 @@ class VelodynePcap:
         to_data = from_sensor & (datagrams.port == stream.port)
         whole = to_data & (datagrams.length == DATA_SIZE)
         self._report.count("packets_wrong_length", int((to_data & ~whole).sum()))
-        for size, chosen in (
-            (POSITION_SIZE, from_sensor & ~to_data & (datagrams.length == POSITION_SIZE)),
+        for size, chosen in (  # data first: they tell the clock best
             (DATA_SIZE, whole),
+            (POSITION_SIZE, from_sensor & ~to_data & (datagrams.length == POSITION_SIZE)),
         ):
             rows = np.flatnonzero(chosen)
             if len(rows):

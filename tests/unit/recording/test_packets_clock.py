@@ -1,5 +1,7 @@
 """Microseconds past the hour become absolute times, whatever the clocks do."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -49,6 +51,20 @@ def test_a_synchronized_sensor_keeps_its_own_time_to_the_microsecond():
     assert kept.all()
     np.testing.assert_array_equal(out, t_ns // 1000 * 1000)
     assert not report.warnings
+
+
+@pytest.mark.parametrize("off_ns", [0, 417 * SECOND_NS], ids=["synchronized", "free running"])
+def test_the_times_do_not_depend_on_how_the_packets_are_batched(off_ns):
+    _, arrival, stamps = packets(30_000, off_ns=off_ns, drift=5e-5)
+    rng = np.random.default_rng(3)
+    cuts = np.concatenate([[0, 700], 700 + np.cumsum(rng.integers(1, 90, 800)), [30_000]])
+    cuts = np.unique(cuts[cuts <= 30_000])
+    clock = a_clock()
+
+    whole, _ = a_clock().push(arrival, stamps)
+    parts = [clock.push(arrival[a:b], stamps[a:b])[0] for a, b in pairwise(cuts.tolist())]
+
+    np.testing.assert_array_equal(np.concatenate(parts), whole)
 
 
 def test_the_stamp_may_wrap_at_the_full_hour():
