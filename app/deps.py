@@ -14,6 +14,7 @@ from app.jobs.supervisor import Supervisor
 from app.projects.picture import Pictures
 from app.projects.store import ProjectStore
 from app.settings import ServerSettings
+from app.uploads.store import UploadStore
 from app.viewer.pool import ViewerPool
 
 
@@ -24,6 +25,7 @@ class Parts:
     settings: ServerSettings
     projects: ProjectStore
     pictures: Pictures
+    uploads: UploadStore
     jobs: JobStore
     supervisor: Supervisor
     viewers: ViewerPool

@@ -1,10 +1,18 @@
 """Errors of the server, and the one place where errors become HTTP.
 
     AppError
+    ├── WeakPassword         422  a password that is guessed first
     ├── NotFound             404  no such project, job or file
     ├── Conflict             409  not possible in the present state
     │   └── IllegalTransition     a job cannot go from its state to that one
-    ├── Refused              403  outside of what the server may touch
+    ├── Unknown              401  nobody is signed in, or name and password do not fit
+    │   └── SignInAgain           the password must be given once more
+    ├── Refused              403  outside of what the server or this person may touch
+    ├── TooMany              429  too often; ``retry_after_s`` says when again
+    ├── BadRequest           400  the request makes no sense
+    ├── TooLarge             413  more bytes than the server takes
+    ├── TooMany              429  the server has enough to do
+    ├── NoRoom               507  the disk has no room for it
     ├── ViewerFailed         503  the 3-D viewer does not start
     └── DeskFailed           503  a helper process died or took too long
 
@@ -14,7 +22,10 @@ A `Recon4Error` of the library is the fault of the input: 422.
 from __future__ import annotations
 
 import logging
+import math
 import secrets
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import ClassVar
 
 from fastapi import FastAPI, Request
@@ -30,6 +41,14 @@ class AppError(Exception):
     """Base of the tree above; the message is fit to be shown."""
 
     status: ClassVar[int] = 500
+    headers: Mapping[str, str] = MappingProxyType({})
+    """Sent with the answer."""
+
+
+class WeakPassword(AppError):
+    """A password that is guessed first."""
+
+    status = 422
 
 
 class NotFound(AppError):
@@ -48,10 +67,54 @@ class IllegalTransition(Conflict):
     """A job cannot go from its state to that one."""
 
 
+class Unknown(AppError):
+    """Nobody is signed in, or name and password do not fit."""
+
+    status = 401
+
+
+class SignInAgain(Unknown):
+    """The password must be given once more."""
+
+
 class Refused(AppError):
-    """Outside of what the server may touch."""
+    """Outside of what the server or this person may touch."""
 
     status = 403
+
+
+class TooMany(AppError):
+    """Too often."""
+
+    status = 429
+
+    def __init__(self, message: str, *, retry_after_s: float) -> None:
+        super().__init__(message)
+        self.headers = {"Retry-After": str(math.ceil(retry_after_s))}
+
+
+class BadRequest(AppError):
+    """The request makes no sense."""
+
+    status = 400
+
+
+class TooLarge(AppError):
+    """More bytes than the server takes."""
+
+    status = 413
+
+
+class TooMany(AppError):
+    """The server has enough to do."""
+
+    status = 429
+
+
+class NoRoom(AppError):
+    """The disk has no room for it."""
+
+    status = 507
 
 
 class ViewerFailed(AppError):
@@ -80,7 +143,7 @@ def install(app: FastAPI) -> None:
 
     @app.exception_handler(AppError)
     async def known(_: Request, error: AppError) -> JSONResponse:
-        return _problem(error.status, type(error).__name__, str(error))
+        return _problem(error.status, type(error).__name__, str(error), headers=error.headers)
 
     @app.exception_handler(Recon4Error)
     async def wrong_input(_: Request, error: Recon4Error) -> JSONResponse:
@@ -89,9 +152,12 @@ def install(app: FastAPI) -> None:
     @app.exception_handler(Exception)
     async def our_own(request: Request, error: Exception) -> JSONResponse:
         number = secrets.token_hex(4)
-        log.error("error %s in %s", number, request.scope["path"], exc_info=error)
+        log.error("error %s in %r", number, request.scope["path"], exc_info=error)
         return _problem(500, "InternalError", f"the server failed; the log says why under {number}")
 
 
-def _problem(status: int, error: str, detail: str) -> JSONResponse:
-    return JSONResponse(Problem(error=error, detail=detail).model_dump(), status_code=status)
+def _problem(
+    status: int, error: str, detail: str, *, headers: Mapping[str, str] | None = None
+) -> JSONResponse:
+    problem = Problem(error=error, detail=detail)
+    return JSONResponse(problem.model_dump(), status_code=status, headers=headers)

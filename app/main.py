@@ -27,6 +27,8 @@ from app.projects import routes as project_routes
 from app.projects.picture import Pictures
 from app.projects.store import ProjectStore
 from app.settings import ServerSettings, recordings_from_environment
+from app.uploads import routes as upload_routes
+from app.uploads.store import UploadStore
 from app.viewer import page, proxy
 from app.viewer.pool import ViewerPool
 from recon4 import __version__
@@ -52,6 +54,8 @@ def create_app(settings: ServerSettings) -> FastAPI:
     errors.install(app)
     for part in (project_routes, job_routes, page, proxy):
         app.include_router(part.router)
+    for router in (upload_routes.files, upload_routes.router):
+        app.include_router(router)
     app.mount("/web", StaticFiles(directory=WEB), name="web")
     _add_pages(app)
     return app
@@ -137,6 +141,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
         settings=settings,
         projects=ProjectStore(settings.root, settings.import_roots),
         pictures=Pictures(settings.state / "pictures"),
+        uploads=UploadStore(settings),
         jobs=jobs,
         supervisor=supervisor,
         viewers=viewers,

@@ -38,6 +38,20 @@ class ServerSettings:
     """Module run for a job."""
     max_body_bytes: int = 1 << 20
     """Larger request bodies are refused [bytes]."""
+    waiting_jobs: int = 20
+    """So many jobs may wait for their turn; more are refused."""
+    memory_bytes: int = 0
+    """A worker may take so much memory [bytes]; 0 = 70 % of this computer's."""
+    reserve_bytes: int = 2 << 30
+    """Uploads and jobs leave at least this much of the disk free [bytes]."""
+    upload_bytes: int = 100_000_000_000
+    """Larger uploads are refused [bytes]."""
+    open_uploads: int = 16
+    """So many uploads may be unfinished."""
+    upload_stale_s: float = 7 * 86400.0
+    """An upload nothing comes for is given up after this long [s]."""
+    trash_s: float = 7 * 86400.0
+    """A deleted project can be brought back for this long [s]."""
 
     def __post_init__(self) -> None:
         _refuse_open_network(self.host)

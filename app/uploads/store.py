@@ -1,0 +1,268 @@
+"""Uploads on disk, so that they survive the browser, the server and the power cut.
+
+    ROOT/.recon4/uploads/<id>/upload.json     what was announced
+    ROOT/.recon4/uploads/<id>/parts/<n>.json  one a file, written when it is announced
+    ROOT/.recon4/uploads/<id>/data/…          the bytes so far; a file's length is its offset
+    ROOT/recordings/<name>-<id>/…             `data` once everything is here, read-only from then
+
+What a request was told is on disk before it is told (fsync). The server process is the only writer.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import re
+import secrets
+import shutil
+import threading
+import time
+from collections.abc import Iterator
+from dataclasses import fields
+from datetime import UTC, datetime
+from pathlib import Path, PurePosixPath
+
+from app.errors import BadRequest, NoRoom, NotFound, TooLarge, TooMany
+from app.settings import ServerSettings
+from app.uploads.model import Part, Upload
+from app.uploads.names import another, safe_path, slug
+from recon4.store.atomic import write_json
+
+log = logging.getLogger(__name__)
+
+UPLOAD_ID = re.compile(r"[0-9a-f]{12}")
+
+
+class UploadStore:
+    """All uploads there are; safe to be called from several threads."""
+
+    def __init__(self, settings: ServerSettings) -> None:
+        self._settings = settings
+        self._folder = settings.state / "uploads"
+        self.recordings = settings.root.resolve() / "recordings"
+        self._lock = threading.Lock()
+        self._uploads: dict[str, Upload] = {}
+        self._read()
+
+    # -- asked by routes
+
+    def all(self) -> list[Upload]:
+        """All uploads, the newest first; finished ones too, until they are swept."""
+        with self._lock:
+            found = sorted(self._uploads.values(), key=lambda u: u.created, reverse=True)
+        return found
+
+    def get(self, upload_id: str) -> Upload:
+        """One upload.
+
+        Raises:
+            NotFound: If there is none, or it was given up.
+        """
+        with self._lock:
+            if upload_id not in self._uploads:
+                raise NotFound(
+                    f"no upload {upload_id[:32]!r}; it may have been given up: send anew"
+                )
+            return self._uploads[upload_id]
+
+    def part(self, part_id: str) -> tuple[Upload, Part]:
+        """One file of an upload, by the last part of its address.
+
+        Raises:
+            NotFound: If there is none.
+        """
+        upload_id, _, number = part_id.partition("-")
+        upload = self.get(upload_id)
+        for part in upload.parts.values():
+            if str(part.number) == number:
+                return upload, part
+        raise NotFound(f"no file {number[:16]!r} in upload {upload_id}")
+
+    def begin(self, name: str, *, files: int, total: int, fingerprint: str, by: str) -> Upload:
+        """Announce a recording.
+
+        Raises:
+            TooLarge: If it is larger than the server takes.
+            TooMany: If too many uploads are unfinished.
+            NoRoom: If the disk has no room for it.
+        """
+        with self._lock:
+            self._refuse_too_much(total)
+            upload_id = secrets.token_hex(6)
+            upload = Upload(
+                id=upload_id,
+                name=name,
+                files=files,
+                bytes=total,
+                fingerprint=fingerprint,
+                by=by,
+                created=datetime.now(UTC).isoformat(timespec="seconds"),
+                folder=f"{slug(name)}-{upload_id}",
+            )
+            folder = self._folder / upload_id
+            (folder / "parts").mkdir(parents=True)
+            (folder / "data").mkdir()
+            self._note(upload)
+            fsync(self._folder)
+            self._uploads[upload_id] = upload
+            return upload
+
+    def add(self, upload: Upload, name: str, *, length: int) -> Part:
+        """Announce a file of an upload; announced twice, it is the same file.
+
+        Raises:
+            BadRequest: If the name is none, or the files are more than was announced.
+            NoRoom: If the disk is full.
+        """
+        with self._lock:
+            if name in upload.parts and upload.parts[name].bytes == length:
+                return upload.parts[name]
+            self._refuse_surplus(upload, name, length)
+            taken = {str(part.path).lower() for part in upload.parts.values()}
+            path = another(safe_path(name), taken)
+            part = Part(number=len(upload.parts), name=name, path=path, bytes=length)
+            data = self._data(upload, part)
+            try:
+                data.parent.mkdir(parents=True, exist_ok=True)
+                os.close(os.open(data, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600))
+                fsync(data.parent)
+                note = {"name": name, "path": str(path), "bytes": length}
+                write_json(self._folder / upload.id / "parts" / f"{part.number}.json", note)
+            except (FileExistsError, NotADirectoryError) as error:
+                raise BadRequest(f"a file and a folder are both called {name[:100]!r}") from error
+            upload.parts[name] = part
+            return part
+
+    def data(self, upload: Upload, part: Part) -> Path:
+        """Where the bytes of a file go."""
+        return self._data(upload, part)
+
+    def finish(self, upload: Upload) -> None:
+        """Once everything is here: make it a recording. Called again, nothing happens."""
+        with self._lock:
+            if upload.finished or not upload.whole:
+                return
+            data, target = self._folder / upload.id / "data", self.recordings / upload.folder
+            self.recordings.mkdir(exist_ok=True)
+            if data.exists():
+                for path in data.rglob("*"):
+                    path.chmod(0o755 if path.is_dir() else 0o444)  # a recording is never changed
+                data.rename(target)
+                fsync(self.recordings)
+            upload.finished = True
+            self._note(upload)
+
+    def remove(self, upload: Upload) -> None:
+        """Give an upload up; a finished recording stays."""
+        with self._lock:
+            self._uploads.pop(upload.id, None)
+            folder = self._folder / upload.id
+            if folder.exists():
+                gone = folder.with_name(f"gone-{upload.id}-{secrets.token_hex(3)}")
+                folder.rename(gone)
+                fsync(self._folder)
+                shutil.rmtree(gone, ignore_errors=True)
+
+    def expires(self, upload: Upload) -> float:
+        """When an upload is given up, if nothing comes any more [s since 1970]."""
+        newest = max((p.stat().st_mtime for p in self._files(upload)), default=time.time())
+        return newest + self._settings.upload_stale_s
+
+    def sweep(self, now_s: float) -> list[str]:
+        """Give up uploads nothing came for in a long time.
+
+        Returns:
+            Their ids.
+        """
+        stale = [upload for upload in self.all() if self.expires(upload) < now_s]
+        for upload in stale:
+            if not upload.finished:
+                log.info("upload %s of %s was given up", upload.id, upload.by)
+            self.remove(upload)
+        return [upload.id for upload in stale]
+
+    # -- room
+
+    def _refuse_too_much(self, total: int) -> None:
+        settings = self._settings
+        if total > settings.upload_bytes:
+            raise TooLarge(
+                f"{total / 1e9:.1f} GB are more than this server takes in one upload "
+                f"({settings.upload_bytes / 1e9:.0f} GB)"
+            )
+        still_open = [upload for upload in self._uploads.values() if not upload.finished]
+        if len(still_open) >= settings.open_uploads:
+            raise TooMany(
+                f"{len(still_open)} uploads are unfinished already; finish or remove one first"
+            )
+        promised = sum(upload.bytes - upload.received for upload in still_open)
+        free = shutil.disk_usage(self._settings.root).free - promised
+        if free < total + settings.reserve_bytes:
+            raise NoRoom(
+                f"the disk has room for {max(0, free - settings.reserve_bytes) / 1e9:.1f} GB, "
+                f"this recording has {total / 1e9:.1f} GB; make room first"
+            )
+
+    def _refuse_surplus(self, upload: Upload, name: str, length: int) -> None:
+        announced = sum(part.bytes for part in upload.parts.values())
+        if (
+            upload.finished
+            or name in upload.parts
+            or len(upload.parts) >= upload.files
+            or announced + length > upload.bytes
+        ):
+            raise BadRequest(
+                f"{name[:100]!r} with {length} bytes was not announced: this upload has "
+                f"{upload.files} files of {upload.bytes} bytes in all"
+            )
+
+    # -- files
+
+    def _data(self, upload: Upload, part: Part) -> Path:
+        return self._folder / upload.id / "data" / part.path
+
+    def _files(self, upload: Upload) -> Iterator[Path]:
+        yield self._folder / upload.id / "upload.json"
+        if not upload.finished:
+            yield from (
+                p for part in upload.parts.values() if (p := self._data(upload, part)).exists()
+            )
+
+    def _note(self, upload: Upload) -> None:
+        facts = {f.name: getattr(upload, f.name) for f in fields(upload) if f.name != "parts"}
+        write_json(self._folder / upload.id / "upload.json", facts)
+
+    def _read(self) -> None:
+        """Take in what a server before left, and end what it had begun to end."""
+        self._folder.mkdir(parents=True, exist_ok=True)
+        for folder in sorted(self._folder.iterdir()):
+            if not UPLOAD_ID.fullmatch(folder.name):
+                shutil.rmtree(folder, ignore_errors=True)  # removal was begun
+                continue
+            try:
+                upload = self._read_one(folder)
+            except (OSError, ValueError, TypeError, KeyError) as error:
+                log.warning("upload %s is damaged and left alone: %s", folder.name, error)
+                continue
+            self._uploads[upload.id] = upload
+            self.finish(upload)
+
+    def _read_one(self, folder: Path) -> Upload:
+        upload = Upload(**json.loads((folder / "upload.json").read_text("utf-8")))
+        moved = upload.finished or not (folder / "data").exists()
+        for path in sorted((folder / "parts").glob("*.json"), key=lambda p: int(p.stem)):
+            note = json.loads(path.read_text("utf-8"))
+            part = Part(number=int(path.stem), **{**note, "path": PurePosixPath(note["path"])})
+            part.offset = part.bytes if moved else self._data(upload, part).stat().st_size
+            upload.parts[part.name] = part
+        return upload
+
+
+def fsync(path: Path) -> None:
+    """Make a file or folder durable."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
