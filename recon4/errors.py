@@ -2,6 +2,7 @@
 
     Recon4Error
     ├── ConfigError            a setting or a rig file is wrong (also a ValueError)
+    │   └── WrongSettings      all that is wrong with a set of settings at once
     ├── RecordingError         a recording cannot be read
     │   ├── UnknownFormat      no reader recognizes the file
     │   ├── EmptyRecording     the file is readable but holds no points
@@ -26,6 +27,18 @@ class Recon4Error(Exception):
 
 class ConfigError(Recon4Error, ValueError):
     """A setting or a rig file is wrong."""
+
+
+class WrongSettings(ConfigError):
+    """All that is wrong with a set of settings at once."""
+
+    def __init__(self, problems: dict[str, str]) -> None:
+        super().__init__(problems)
+        self.problems = problems
+        """``group.field`` (or the text itself where it names none) -> what is wrong, in words."""
+
+    def __str__(self) -> str:
+        return "; ".join(self.problems.values())
 
 
 class RecordingError(Recon4Error):

@@ -6,10 +6,11 @@ A stage receives its own group only, so a changed setting reruns only what depen
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
 from typing import Any, Literal, get_args, get_type_hints
 
-from recon4.errors import ConfigError
+from recon4.errors import ConfigError, WrongSettings
 
 
 def _require(holds: bool, rule: str, value: object) -> None:
@@ -473,26 +474,57 @@ def preset(name: str) -> Settings:
 
 
 def override(settings: Settings, assignments: list[str]) -> Settings:
-    """Apply ``group.field=value`` texts in order.
+    """Apply ``group.field=value`` texts; of two for one field the later counts.
 
     Raises:
-        ConfigError: Naming the setting, what was expected and what was given.
+        WrongSettings: Naming every wrong one, what was expected and what was given.
     """
+    problems: dict[str, str] = {}
+    values: dict[str, dict[str, Any]] = {}
     for text in assignments:
-        path, sign, value = text.partition("=")
-        group_name, dot, name = path.strip().partition(".")
-        if not sign or not dot:
-            raise ConfigError(f"expected group.field=value, got {text!r}")
-        group = getattr(settings, group_name, None) if group_name in _names(settings) else None
-        if group is None:
-            raise ConfigError(f"no setting group {group_name!r}; known: {_names(settings)}")
-        if name not in _names(group):
-            raise ConfigError(f"no setting {path!r}; known in {group_name}: {_names(group)}")
-        kind = get_type_hints(type(group))[name]
-        settings = replace(
-            settings, **{group_name: replace(group, **{name: _parse(value.strip(), kind, path)})}
-        )
-    return settings
+        path, _, value = (part.strip() for part in text.partition("="))
+        try:
+            group, name, kind = _find(settings, text)
+            values.setdefault(group, {})[name] = _parse(value, kind, path)
+        except ConfigError as error:
+            problems[path] = str(error)
+    changed = {
+        group: _replaced(getattr(settings, group), group, fresh, problems)
+        for group, fresh in values.items()
+    }
+    if problems:
+        raise WrongSettings(problems)
+    return replace(settings, **changed)
+
+
+def _find(settings: Settings, text: str) -> tuple[str, str, Any]:
+    """Group, name and type of the setting a text assigns."""
+    path, sign, _ = text.partition("=")
+    group_name, dot, name = path.strip().partition(".")
+    if not sign or not dot:
+        raise ConfigError(f"expected group.field=value, got {text!r}")
+    if group_name not in _names(settings):
+        raise ConfigError(f"no setting group {group_name!r}; known: {_names(settings)}")
+    group = getattr(settings, group_name)
+    if name not in _names(group):
+        raise ConfigError(f"no setting {path!r}; known in {group_name}: {_names(group)}")
+    return group_name, name, get_type_hints(type(group))[name]
+
+
+def _replaced(group: Any, name: str, values: dict[str, Any], problems: dict[str, str]) -> Any:
+    """The group with other values; those it refuses are left out and told."""
+    left = dict(values)
+    while left:
+        try:
+            return replace(group, **left)
+        except ConfigError as error:
+            # A rule may speak of two fields: blame those given, the first named first.
+            words = str(error)
+            blamed = [field for field in re.findall(r"\w+", words) if field in left]
+            wrong = blamed[0] if blamed else next(iter(left))
+            problems[f"{name}.{wrong}"] = words
+            del left[wrong]
+    return group
 
 
 def to_json(settings: object) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 import ast
 import inspect
+import pickle
 import typing
 from dataclasses import FrozenInstanceError, fields, is_dataclass
 from pathlib import Path
@@ -9,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from recon4 import settings as declared
-from recon4.errors import ConfigError
+from recon4.errors import ConfigError, WrongSettings
 from recon4.settings import PRESETS, Settings, canonical, override, preset, to_json
 from recon4.settings_help import describe_settings, differences, markdown
 
@@ -67,6 +68,39 @@ def test_every_kind_of_value_is_understood(text, value):
 def test_a_wrong_text_is_refused_with_what_was_expected(text, message):
     with pytest.raises(ConfigError, match=message):
         override(Settings(), [text])
+
+
+def test_everything_wrong_is_told_at_once_and_where():
+    texts = [
+        "map.voxel_m=thick",
+        "maps.x=1",
+        "nonsense",
+        "segments.azimuth_bins=3",
+        "segments.preserved=0",
+        "ingest.min_range_m=500",
+        "graph.node_stride=2",
+    ]
+
+    with pytest.raises(WrongSettings) as refused:
+        override(Settings(), texts)
+
+    assert refused.value.problems.keys() == {
+        "map.voxel_m",
+        "maps.x",
+        "nonsense",
+        "segments.azimuth_bins",
+        "segments.preserved",
+        "ingest.min_range_m",
+    }
+    assert "must be 4 to 3600, got 3" in str(refused.value)
+    assert "min_range_m must be below max_range_m" in str(refused.value)
+    assert str(pickle.loads(pickle.dumps(refused.value))) == str(refused.value)
+
+
+def test_two_settings_that_only_fit_together_may_be_changed_together():
+    changed = override(Settings(), ["ingest.min_range_m=200", "ingest.max_range_m=300"])
+
+    assert changed.ingest.min_range_m == 200.0
 
 
 def test_an_unknown_preset_is_refused_with_those_there_are():
