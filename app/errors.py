@@ -8,10 +8,9 @@
     ├── Unknown              401  nobody is signed in, or name and password do not fit
     │   └── SignInAgain           the password must be given once more
     ├── Refused              403  outside of what the server or this person may touch
-    ├── TooMany              429  too often; ``retry_after_s`` says when again
+    ├── TooMany              429  too often, or too much at a time
     ├── BadRequest           400  the request makes no sense
     ├── TooLarge             413  more bytes than the server takes
-    ├── TooMany              429  the server has enough to do
     ├── NoRoom               507  the disk has no room for it
     ├── ViewerFailed         503  the 3-D viewer does not start
     └── DeskFailed           503  a helper process died or took too long
@@ -84,13 +83,14 @@ class Refused(AppError):
 
 
 class TooMany(AppError):
-    """Too often."""
+    """Too often, or too much at a time; may say when it can be tried again."""
 
     status = 429
 
-    def __init__(self, message: str, *, retry_after_s: float) -> None:
+    def __init__(self, message: str, *, retry_after_s: float = 0.0) -> None:
         super().__init__(message)
-        self.headers = {"Retry-After": str(math.ceil(retry_after_s))}
+        if retry_after_s:
+            self.headers = {"Retry-After": str(math.ceil(retry_after_s))}
 
 
 class BadRequest(AppError):
@@ -103,12 +103,6 @@ class TooLarge(AppError):
     """More bytes than the server takes."""
 
     status = 413
-
-
-class TooMany(AppError):
-    """The server has enough to do."""
-
-    status = 429
 
 
 class NoRoom(AppError):
