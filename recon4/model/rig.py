@@ -13,6 +13,8 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array
 
+IMU_PORT, GNSS_PORT = 8309, 8310
+"""Next to Velodyne's 2368 (data) and 8308 (positions)."""
 SENSOR_MODELS = ("VLP-16", "VLP-16 Hi-Res", "VLP-32C", "HDL-32E", "HDL-64E", "generic")
 
 
@@ -52,6 +54,12 @@ class Rig:
     """Lever arm: phase center of the GNSS antenna in the body [m], (3,)."""
     gnss_time_offset_s: float
     """Added to the GNSS time stamps to get rig time [s]."""
+    imu_port: int = IMU_PORT
+    """UDP port its IMU's datagrams go to (``docs/live.md``); 0 = none."""
+    gnss_port: int = GNSS_PORT
+    """UDP port its GNSS receiver's datagrams go to; 0 = none."""
+    gnss_serial: str = ""
+    """Serial device of the receiver, for example ``/dev/ttyUSB0:115200``; empty = none."""
 
     @property
     def T_body_sensor(self) -> SE3:
@@ -107,8 +115,10 @@ def parse_rig(text: str, *, where: str) -> Rig:
     if len(set(names)) < len(names):
         raise ConfigError(f"{where}: sensor names must differ, got {names}")
     imu, gnss = table.get("imu", {}), table.get("gnss", {})
-    _refuse_unknown(imu, {"xyz_m", "rpy_deg", "quat_xyzw", "time_offset_s"}, f"{where}: imu")
-    _refuse_unknown(gnss, {"lever_arm_m", "time_offset_s"}, f"{where}: gnss")
+    _refuse_unknown(
+        imu, {"xyz_m", "rpy_deg", "quat_xyzw", "time_offset_s", "port"}, f"{where}: imu"
+    )
+    _refuse_unknown(gnss, {"lever_arm_m", "time_offset_s", "port", "serial"}, f"{where}: gnss")
     return Rig(
         name=str(table.get("name", where)),
         sensors=sensors,
@@ -116,6 +126,9 @@ def parse_rig(text: str, *, where: str) -> Rig:
         imu_time_offset_s=_number(imu, "time_offset_s", 0.0, f"{where}: imu"),
         p_body_antenna=_vector(gnss, "lever_arm_m", 3, (0.0, 0.0, 0.0), where=f"{where}: gnss"),
         gnss_time_offset_s=_number(gnss, "time_offset_s", 0.0, f"{where}: gnss"),
+        imu_port=_port(imu, IMU_PORT, f"{where}: imu"),
+        gnss_port=_port(gnss, GNSS_PORT, f"{where}: gnss"),
+        gnss_serial=str(gnss.get("serial", "")),
     )
 
 
@@ -129,9 +142,12 @@ def format_rig(rig: Rig) -> str:
         lines += [f'address = "{sensor.address}"', f'topic = "{sensor.topic}"']
         lines += [f"enabled = {str(sensor.enabled).lower()}", ""]
     lines += ["[imu]", *_mounting_lines(rig.T_body_imu)]
-    lines += [f"time_offset_s = {rig.imu_time_offset_s!r}", "", "[gnss]"]
+    lines += [f"time_offset_s = {rig.imu_time_offset_s!r}", f"port = {rig.imu_port}"]
+    lines += ["", "[gnss]"]
     lines += [f"lever_arm_m = {_floats(rig.p_body_antenna)}"]
-    lines += [f"time_offset_s = {rig.gnss_time_offset_s!r}", ""]
+    lines += [f"time_offset_s = {rig.gnss_time_offset_s!r}", f"port = {rig.gnss_port}"]
+    lines += [f'serial = "{rig.gnss_serial}"'] if rig.gnss_serial else []
+    lines += [""]
     return "\n".join(lines)
 
 
@@ -157,7 +173,7 @@ def _sensor(row: dict[str, Any], where: str) -> Sensor:
         T_body_sensor=_mounting(row, where),
         time_offset_s=_number(row, "time_offset_s", 0.0, where),
         address=str(row.get("address", "")),
-        port=int(_number(row, "port", 2368, where)),
+        port=_port(row, 2368, where),
         topic=str(row.get("topic", "")),
         enabled=bool(row.get("enabled", True)),
     )
@@ -189,6 +205,13 @@ def _number(row: dict[str, Any], key: str, default: float, where: str) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
         raise ConfigError(f"{where}: {key} must be a finite number, got {value!r}")
     return float(value)
+
+
+def _port(row: dict[str, Any], default: int, where: str) -> int:
+    port = _number(row, "port", default, where)
+    if not 0 <= port <= 65535 or port != int(port):
+        raise ConfigError(f"{where}: port must be 0 to 65535, got {port:g}")
+    return int(port)
 
 
 def _refuse_unknown(row: dict[str, Any], known: set[str], where: str) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
@@ -20,6 +20,7 @@ from recon4.progress import Progress
 from recon4.recording.assemble import Assembler
 from recon4.recording.csv_samples import read_gnss_csv, read_imu_csv
 from recon4.recording.open import Kind, Recording, open_recording, recognize
+from recon4.recording.pcap import OpenFile, open_plain
 from recon4.recording.poses import write_tum
 from recon4.recording.report import ImportReport
 from recon4.recording.samples import clean_gnss, clean_imu, join
@@ -42,20 +43,47 @@ class _Samples:
     gnss: list[GnssSamples] = field(default_factory=list)
     poses: list[Trajectory] = field(default_factory=list)
 
+    def keep(self, item: ImuSamples | GnssSamples | Trajectory) -> None:
+        """Remember it."""
+        if isinstance(item, ImuSamples):
+            self.imu.append(item)
+        elif isinstance(item, GnssSamples):
+            self.gnss.append(item)
+        else:
+            self.poses.append(item)
+
 
 @dataclass(slots=True)
 class _Written:
     """What was written of the points."""
 
-    t_first_ns: int
-    duration_ns: int
+    t_first_ns: int = 0
+    duration_ns: int = 0
+    """Of a frame; 0 = none was written."""
     t_last_ns: int = 0
     points: NDArray[np.int64] = field(default_factory=lambda: np.zeros(256, np.int64))
     """Of each sensor."""
 
+    def add(self, frame: Multiframe) -> None:
+        """Count a frame."""
+        if not self.duration_ns:
+            self.t_first_ns, self.duration_ns = frame.t_ns, frame.duration_ns
+        self.t_last_ns = frame.t_ns + frame.duration_ns
+        self.points += np.bincount(frame.sensor, minlength=256)
+
     @property
     def span(self) -> Span:
         return self.t_first_ns, self.t_last_ns
+
+
+@dataclass(frozen=True, slots=True)
+class Live:
+    """How a capture that still goes on differs from a finished recording."""
+
+    open_file: OpenFile = open_plain
+    """Opens the capture file; reading waits for what is not written yet."""
+    watch: Callable[[Multiframe | ImuSamples | GnssSamples], None] = lambda item: None
+    """Shown each multiframe once it is written, and samples as they are read, not yet cleaned."""
 
 
 def ingest(
@@ -67,6 +95,7 @@ def ingest(
     gnss: Path | None,
     settings: IngestSettings,
     progress: Progress,
+    live: Live | None = None,
 ) -> None:
     """Read a recording into a frame store.
 
@@ -78,6 +107,7 @@ def ingest(
         gnss: GNSS samples that replace the recording's.
         settings: How to read.
         progress: Told of multiframes written, gaps and warnings.
+        live: A capture that still goes on.
 
     Raises:
         RecordingError: If the recording cannot be read or has no points.
@@ -89,13 +119,27 @@ def ingest(
     given = _Samples(
         imu=[read_imu_csv(imu)] if imu else [], gnss=[read_gnss_csv(gnss)] if gnss else []
     )
-    recording = open_recording(paths, rig, settings=settings, report=report)
+    live = live or Live()
+    recording = open_recording(
+        paths, rig, settings=settings, report=report, open_file=live.open_file
+    )
     assembler = Assembler(recording.rig, settings=settings, report=report)
     found = _Samples()
     with FrameWriter(out, recording.rig) as writer:
-        frames = _multiframes(recording, assembler, found)
-        written = _write_frames(writer, frames, recording.seconds, progress)
-        if written is None:
+        written = _Written()
+        for item in _items(recording, assembler):
+            if not isinstance(item, Multiframe):
+                found.keep(item)
+            else:
+                if not written.duration_ns:
+                    count = round(recording.seconds * 1e9 / item.duration_ns)
+                    progress.start("frames", count, "multiframe")
+                writer.append(item)
+                written.add(item)
+                progress.advance()
+            if not isinstance(item, Trajectory):
+                live.watch(item)
+        if not written.duration_ns:
             counted = ", ".join(f"{name} {n}" for name, n in sorted(report.counts.items()))
             raise EmptyRecording(f"{paths[0].name}: no usable points ({counted or 'nothing read'})")
         rig, span = recording.rig, written.span
@@ -125,37 +169,16 @@ def _sort_out(
     return [path for path in recordings if path not in (imu, gnss)], imu, gnss
 
 
-def _multiframes(
-    recording: Recording, assembler: Assembler, found: _Samples
-) -> Iterator[Multiframe]:
+def _items(
+    recording: Recording, assembler: Assembler
+) -> Iterator[Multiframe | ImuSamples | GnssSamples | Trajectory]:
+    """What a recording holds, its shots assembled."""
     for item in recording.read():
         if isinstance(item, Shots):
             yield from assembler.push(item)
-        elif isinstance(item, Multiframe):
-            yield item
-        elif isinstance(item, ImuSamples):
-            found.imu.append(item)
-        elif isinstance(item, GnssSamples):
-            found.gnss.append(item)
         else:
-            found.poses.append(item)
+            yield item
     yield from assembler.flush()
-
-
-def _write_frames(
-    writer: FrameWriter, frames: Iterator[Multiframe], seconds: float, progress: Progress
-) -> _Written | None:
-    """Write them all; None if there is none."""
-    written: _Written | None = None
-    for frame in frames:
-        if written is None:
-            progress.start("frames", round(seconds * 1e9 / frame.duration_ns), "multiframe")
-            written = _Written(frame.t_ns, frame.duration_ns)
-        writer.append(frame)
-        written.t_last_ns = frame.t_ns + frame.duration_ns
-        written.points += np.bincount(frame.sensor, minlength=256)
-        progress.advance()
-    return written
 
 
 # -- samples

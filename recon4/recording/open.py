@@ -20,7 +20,7 @@ from recon4.recording.cloud_files import is_cloud_file, read_cloud
 from recon4.recording.cloud_points import model_of_points
 from recon4.recording.csv_samples import GNSS_HEADER, IMU_HEADER, csv_header
 from recon4.recording.folders import CLOUD_SUFFIXES, folder_gaps, list_frames, natural, read_frames
-from recon4.recording.pcap import is_pcap
+from recon4.recording.pcap import OpenFile, is_pcap, open_plain
 from recon4.recording.poses import pose_format
 from recon4.recording.positions import PositionSamples
 from recon4.recording.report import ImportReport
@@ -94,7 +94,12 @@ def recognize(path: Path) -> Kind:
 
 
 def open_recording(
-    paths: Sequence[Path], rig: Rig | None, *, settings: IngestSettings, report: ImportReport
+    paths: Sequence[Path],
+    rig: Rig | None,
+    *,
+    settings: IngestSettings,
+    report: ImportReport,
+    open_file: OpenFile = open_plain,
 ) -> Recording:
     """Look at the head of a recording and settle its rig.
 
@@ -103,6 +108,7 @@ def open_recording(
         rig: The rig; None = chosen from what is in the recording.
         settings: How to read.
         report: Told what was found and worked out.
+        open_file: How to open capture files; that of a live capture still grows.
 
     Raises:
         RecordingError: If it cannot be read.
@@ -118,7 +124,12 @@ def open_recording(
         names = ", ".join(f"{path.name} ({k})" for path, k in zip(paths, kinds, strict=True))
         raise UnknownFormat(f"recordings of one kind expected, got {names}")
     if kind is Kind.PCAP:
-        return _open_pcap([f for path in paths for f in pcap_files(path)], rig, settings, report)
+        files = [f for path in paths for f in pcap_files(path)]
+        if rig is None:
+            rig = choose_rig(lidars_of_packets(files, settings, report), report)
+        pcap = VelodynePcap(files, rig, settings=settings, report=report, open_file=open_file)
+        read = partial(_read_pcap, pcap)
+        return Recording(kind, pcap.rig, read, stream_seconds(pcap.streams))
     if kind is Kind.FRAMES:
         return _open_frames(paths, rig, settings, report)
     bag = BagRecording(
@@ -199,15 +210,6 @@ def _folder_kind(path: Path) -> Kind:
 
 def _known() -> str:
     return f"known: {', '.join(Kind)}"
-
-
-def _open_pcap(
-    files: Sequence[Path], rig: Rig | None, settings: IngestSettings, report: ImportReport
-) -> Recording:
-    if rig is None:
-        rig = choose_rig(lidars_of_packets(files, settings, report), report)
-    pcap = VelodynePcap(files, rig, settings=settings, report=report)
-    return Recording(Kind.PCAP, pcap.rig, partial(_read_pcap, pcap), stream_seconds(pcap.streams))
 
 
 def stream_seconds(streams: Sequence[PacketStream]) -> float:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from recon4.errors import EmptyRecording
 from recon4.model.trajectory import Times
 from recon4.recording.packets import Payloads, as_packets, sound_packets
-from recon4.recording.pcap import address_text, read_pcap
+from recon4.recording.pcap import Datagrams, OpenFile, address_text, open_plain, read_pcap
 from recon4.recording.positions import utc_offset_ns
 from recon4.recording.report import ImportReport
 from recon4.recording.sensor_clock import SECOND_NS, nearest_hour
@@ -78,18 +78,21 @@ def address_number(address: str) -> int:
     return a << 24 | b << 16 | c << 8 | d
 
 
-def scan_pcap(path: Path, *, max_packets: int = 4000) -> list[PacketStream]:
+def scan_pcap(
+    path: Path, *, max_packets: int = 4000, open_file: OpenFile = open_plain
+) -> list[PacketStream]:
     """Look at the head of a capture file: data streams first, in order of appearance.
 
     Args:
         path: A pcap or pcapng file.
-        max_packets: Stop after about so many datagrams.
+        max_packets: Stop after so many datagrams.
+        open_file: How to open it.
 
     Raises:
         UnknownFormat: If it is not a capture file.
         EmptyRecording: If it holds no packet.
     """
-    head = _head(path, max_packets)
+    head = _head(path, max_packets, open_file)
     keys = head.source.astype(np.int64) << 16 | head.port
     _, first = np.unique(keys, return_index=True)
     streams = [_stream(path, head, keys == keys[row]) for row in sorted(first.tolist())]
@@ -112,24 +115,28 @@ class _Head:
     """Share of the file that was read, 1 = all."""
 
 
-def _head(path: Path, max_packets: int) -> _Head:
+def _head(path: Path, max_packets: int, open_file: OpenFile) -> _Head:
+    """Exactly the first ``max_packets`` datagrams, however the file comes in pieces."""
     report = ImportReport()
-    parts, found, share = [], 0, 1.0
-    for batch in read_pcap(path, report):
-        parts.append((batch, batch.payloads(np.arange(len(batch)), DATA_SIZE)))
-        found += len(batch)
-        if found >= max_packets:
-            bytes_read = sum(len(b.buffer) for b, _ in parts)
+    parts: list[tuple[Datagrams, int]] = []
+    left, bytes_read, share = max_packets, 0, 1.0
+    for batch in read_pcap(path, report, open_file):
+        count = min(len(batch), left)
+        parts.append((batch, count))
+        left -= count
+        if not left:
+            bytes_read += int(batch.start[count - 1] + batch.length[count - 1])
             share = min(1.0, bytes_read / path.stat().st_size)
             break
-    if not found:
+        bytes_read += len(batch.buffer)
+    if left == max_packets:
         raise EmptyRecording(f"{path.name}: no UDP datagram in it, only other packets")
     return _Head(
-        t_ns=np.concatenate([batch.t_ns for batch, _ in parts]),
-        source=np.concatenate([batch.source for batch, _ in parts]),
-        port=np.concatenate([batch.port for batch, _ in parts]),
-        length=np.concatenate([batch.length for batch, _ in parts]),
-        payloads=np.concatenate([payloads for _, payloads in parts]),
+        t_ns=np.concatenate([batch.t_ns[:n] for batch, n in parts]),
+        source=np.concatenate([batch.source[:n] for batch, n in parts]),
+        port=np.concatenate([batch.port[:n] for batch, n in parts]),
+        length=np.concatenate([batch.length[:n] for batch, n in parts]),
+        payloads=np.concatenate([b.payloads(np.arange(n), DATA_SIZE) for b, n in parts]),
         share=share,
     )
 

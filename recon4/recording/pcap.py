@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -84,7 +84,18 @@ def address_text(source: int) -> str:
     return ".".join(str((int(source) >> shift) & 255) for shift in (24, 16, 8, 0))
 
 
-def read_pcap(path: Path, report: ImportReport) -> Iterator[Datagrams]:
+OpenFile = Callable[[Path], IO[bytes]]
+"""Opens a file for reading bytes; its ``read(n)`` may give fewer, and none only at the end."""
+
+
+def open_plain(path: Path) -> IO[bytes]:
+    """A finished file."""
+    return path.open("rb")
+
+
+def read_pcap(
+    path: Path, report: ImportReport, open_file: OpenFile = open_plain
+) -> Iterator[Datagrams]:
     """Stream the UDP datagrams of a pcap (µs or ns, either byte order) or pcapng file.
 
     Counts ``records`` and, of them, those that are no datagrams for us: ``records_not_udp``,
@@ -96,7 +107,7 @@ def read_pcap(path: Path, report: ImportReport) -> Iterator[Datagrams]:
         EmptyRecording: If it holds no packet at all.
     """
     found = 0
-    with path.open("rb") as file:
+    with open_file(path) as file:
         for records in _records(file, path.name, report):
             found += len(records.t_ns)
             report.count("records", len(records.t_ns))

@@ -12,8 +12,9 @@ import numpy as np
 from recon4.errors import EmptyRecording
 from recon4.geometry.se3 import SE3
 from recon4.model.rig import Rig, Sensor
+from recon4.recording.datagram_samples import SampleDecoder
 from recon4.recording.packet_streams import PacketStream, address_number, scan_pcap
-from recon4.recording.pcap import Datagrams, read_pcap
+from recon4.recording.pcap import Datagrams, OpenFile, open_plain, read_pcap
 from recon4.recording.positions import PositionDecoder, PositionSamples
 from recon4.recording.report import ImportReport
 from recon4.recording.sensor_clock import SensorClock
@@ -51,6 +52,7 @@ class VelodynePcap:
         *,
         settings: IngestSettings,
         report: ImportReport,
+        open_file: OpenFile = open_plain,
     ) -> None:
         """Scan the heads of the files and assign streams to sensors.
 
@@ -60,6 +62,7 @@ class VelodynePcap:
             rig: The rig, or None to make one of what is found.
             settings: Range limits and reorder window.
             report: Takes counts, warnings and what was derived.
+            open_file: How to open the files for reading; a live capture's file still grows.
 
         Raises:
             UnknownFormat: If a file is not a capture file.
@@ -67,7 +70,7 @@ class VelodynePcap:
             ConfigError: If the model of a sensor is not decoded from packets.
         """
         self._report = report
-        self.streams = [stream for path in paths for stream in scan_pcap(path)]
+        self.streams = [s for path in paths for s in scan_pcap(path, open_file=open_file)]
         groups = _sensors_of(self.streams)
         if not groups:
             seen = ", ".join(f"{s.packets} packets to port {s.port}" for s in self.streams)
@@ -80,7 +83,9 @@ class VelodynePcap:
                 report.warn(f"{stream.label}: {remark}")
         self.rig = rig or _rig_of(groups)
         self._channels = self._assign(groups, settings)
+        self._samples = SampleDecoder(report)
         self._paths = list(paths)
+        self._open = open_file
 
     def read(self) -> Iterator[Shots | PositionSamples]:
         """Stream the whole recording once; the shots of one sensor come in order of time."""
@@ -88,6 +93,7 @@ class VelodynePcap:
         for path, datagrams in heapq.merge(*batches, key=lambda batch: int(batch[1].t_ns[0])):
             for channel in self._channels:
                 yield from self._decode(channel, path, datagrams)
+            yield from self._decode_samples(datagrams)
         for channel in self._channels:
             yield channel.data.flush()
         fragments = self._report.counts["records_fragment"]
@@ -102,7 +108,7 @@ class VelodynePcap:
         return {channel.sensor.name: channel.data.rotation_hz for channel in self._channels}
 
     def _batches(self, path: Path) -> Iterator[tuple[Path, Datagrams]]:
-        return ((path, batch) for batch in read_pcap(path, self._report) if len(batch))
+        return ((path, batch) for batch in read_pcap(path, self._report, self._open) if len(batch))
 
     def _decode(
         self, channel: _Channel, path: Path, datagrams: Datagrams
@@ -122,6 +128,17 @@ class VelodynePcap:
             if len(rows):
                 decoder = channel.positions if size == POSITION_SIZE else channel.data
                 yield decoder.push(datagrams.t_ns[rows], datagrams.payloads(rows, size))
+
+    def _decode_samples(self, datagrams: Datagrams) -> Iterator[PositionSamples]:
+        """Samples of an IMU or a GNSS receiver with ports of their own."""
+        ports = {port for port in (self.rig.imu_port, self.rig.gnss_port) if port}
+        rows = np.flatnonzero(np.isin(datagrams.port, list(ports)))
+        if not len(rows):
+            return
+        ends = (datagrams.start + datagrams.length)[rows].tolist()
+        starts = datagrams.start[rows].tolist()
+        texts = [datagrams.buffer[a:b].tobytes() for a, b in zip(starts, ends, strict=True)]
+        yield PositionSamples(*self._samples.push(datagrams.t_ns[rows].tolist(), texts))
 
     def _assign(
         self, groups: list[tuple[PacketStream, ...]], settings: IngestSettings
@@ -203,8 +220,10 @@ def _match(
                 chosen[row] = streams
                 left.remove(streams)
                 break
-    empty = [row for row in range(len(sensors)) if row not in chosen]
-    for row, streams in zip(empty, list(left), strict=False):
+    for row in (row for row in range(len(sensors)) if row not in chosen):
+        if not left:
+            break
+        streams = min(left, key=lambda streams: streams[0].port != sensors[row].port)
         chosen[row] = streams
         left.remove(streams)
         report.derive(

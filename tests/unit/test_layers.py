@@ -25,11 +25,14 @@ MAY_IMPORT = {
     "recon4/kernels": {"recon4.kernels"},
     "recon4/store": MODEL | {"recon4.store"},
     "recon4/recording": STAGE | {"recon4.recording"},
+    "recon4/live": STAGE | {"recon4"},
     "recon4/registration": STAGE | {"recon4.registration"},
     "recon4/pose_graph": STAGE | {"recon4.registration", "recon4.pose_graph"},
     "recon4/semi_rigid": STAGE | {"recon4.registration", "recon4.pose_graph", "recon4.semi_rigid"},
     "recon4/georeference": STAGE
     | {"recon4.mapping", "recon4.pose_graph", "recon4.georeference", "recon4.registration.aiding"},
+    "recon4/review": STAGE
+    | {"recon4.registration", "recon4.pose_graph", "recon4.mapping", "recon4.review"},
     "recon4/intensity": STAGE | {"recon4.mapping", "recon4.intensity"},
     "recon4/mapping": STAGE | {"recon4.intensity", "recon4.mapping"},
     "recon4/export": STAGE | {"recon4.mapping", "recon4.pose_graph", "recon4.export"},
@@ -56,7 +59,7 @@ ONLY_HERE = {
     "uvicorn": {"app"},
     "typer": {"recon4/cli.py"},
     "rich": {"recon4/terminal.py"},
-    "sqlite3": {"recon4/store", "recon4/recording", "app"},
+    "sqlite3": {"recon4/store", "recon4/recording", "recon4/review", "app"},
 }
 """Heavy or telling packages -> where alone they may be imported."""
 
