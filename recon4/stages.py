@@ -10,6 +10,7 @@ from typing import Any
 
 from recon4.model.rig import Rig
 from recon4.progress import Progress
+from recon4.review.decisions import Standing
 from recon4.settings import Settings
 from recon4.store.stage import Stage
 
@@ -78,6 +79,19 @@ def _verification(
     told = found.to_json()
     write_json(out / "verification.json", told)
     return {name: told[name] for name in ("edges", "chi2_before", "chi2_after")}
+
+
+def _review(
+    *,
+    out: Path,
+    settings: Settings,
+    progress: Progress,
+    graph: Path,
+    decisions: tuple[Standing, ...],
+) -> dict[str, Any]:
+    from recon4.review.solve import run_review
+
+    return run_review(graph, decisions, out, settings=settings, progress=progress)
 
 
 def _refine(
@@ -153,11 +167,12 @@ def _map(
 
 FRAMES = Stage("frames", 3, ("ingest",), _frames)
 ODOMETRY = Stage(
-    "odometry", 7, ("segments", "registration", "planes", "scans", "odometry"), _odometry
+    "odometry", 8, ("segments", "registration", "planes", "scans", "odometry"), _odometry
 )
 GRAPH = Stage("graph", 4, _MATCHING, _graph)
 VERIFICATION = Stage("verification", 2, ("verification", "graph"), _verification)
+REVIEW = Stage("review", 1, ("verification", "graph"), _review)
 REFINE = Stage("refine", 1, ("segments", "planes", "odometry", "graph", "refine"), _refine)
 LEVEL = Stage("level", 3, ("level", "gnss"), _level)
-INTENSITY = Stage("intensity", 1, ("intensity",), _intensity)
+INTENSITY = Stage("intensity", 2, ("intensity",), _intensity)
 MAP = Stage("map", 1, ("map",), _map)

@@ -7,22 +7,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from recon4.geometry.se3 import SE3, Array, interpolate, proper, so3_exp
+from recon4.geometry.se3 import SE3, Array, interpolate
 from recon4.kernels.imu import place_points
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.registration.aiding import Aid
-from recon4.registration.degeneracy import held_directions
+from recon4.registration.frame_fit import FrameFit, FrameFitter
 from recon4.registration.motion import FreeMotion, ImuMotion, Motion, MotionState, Prediction
-from recon4.registration.plane_map import Match, PlaneMap
+from recon4.registration.plane_map import PlaneMap
+from recon4.registration.rest import hold_still, seems_still
 from recon4.registration.scan_chain import ScanChain, body_points
 from recon4.registration.segments import Segments, sample_segments
 from recon4.settings import Settings
-
-_GATES_M = (1.0, 0.5, 0.3, 0.2)
-"""How far from its plane a point may lie, round by round; the last one stays."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,20 +48,6 @@ class OdometryStep:
     lost: bool
     motion_cov: Array
     """Covariance of the motion over the frame, turn and shift in odom axes, (6, 6)."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Fit:
-    """Outcome of the rounds for one frame from one start."""
-
-    T_dense: SE3
-    delta: Array
-    """Correction of the pose at the start (6) and of the state at the end (18)."""
-    P: Array
-    """Covariance of that correction, (24, 24)."""
-    match: Match
-    rounds: int
-    converged: bool
 
 
 class Odometry:
@@ -94,6 +78,12 @@ class Odometry:
         self._state: MotionState | None = None
         self._before_hole: MotionState | None = None
         """While the IMU is silent: the last state it spoke for, whose biases still hold."""
+        self._fitter = FrameFitter(
+            settings.odometry,
+            settings.registration.converged_step_m,
+            coarse=0 if self._chain is None else settings.planes.levels - 1,
+            aid=aid,
+        )
         self._map = PlaneMap(settings.planes)
         self._keyframes: deque[Array] = deque()
         self._last_keyframe = SE3.identity()
@@ -105,8 +95,10 @@ class Odometry:
         first = not self._keyframes
         found = self._place(frame)
         prediction = self._predict(frame)
-        fit = self._register(segments, prediction)
+        fit = self._fitter.fit(self._map, segments, prediction)
         lost = not first and (not found or self._is_lost(fit))
+        if self._chain and not lost and seems_still(self._chain.located):
+            fit = hold_still(fit, prediction, self._chain.last[0])
         self._count_lost(lost=lost)
         self._state = _updated(prediction, fit, lost=lost, first=first)
         T_dense = prediction.T_odom_body if lost or first else fit.T_dense
@@ -174,44 +166,7 @@ class Odometry:
             sd_m=self._settings.odometry.gnss_sd_m,
         )
 
-    def _register(self, segments: Segments, prediction: Prediction) -> _Fit:
-        o = self._settings.odometry
-        coarse = 0 if isinstance(self._motion, ImuMotion) else self._settings.planes.levels - 1
-        information = np.linalg.inv(prediction.prior + 1e-12 * np.eye(24))
-        center = prediction.T_odom_body.t[-1]
-        delta = np.zeros(24)
-        mid_body = 0.5 * (segments.a_body + segments.b_body)
-        mid_s = 0.5 * (segments.a_s + segments.b_s)
-        duration_s = prediction.t_s[-1]
-        T_dense = _correct(prediction, delta, center)
-        converged, rounds = False, 0
-        for rounds in range(1, o.rounds + 1):
-            p_odom = place_points(prediction.t_s, T_dense.R, T_dense.t, mid_s, mid_body)
-            gate_m = _GATES_M[min(rounds - 1 + (0 if coarse else 1), len(_GATES_M) - 1)]
-            match = self._map.match(
-                p_odom, mid_s / duration_s, center=center,
-                finest=max(coarse + 1 - rounds, 0), gate_m=gate_m,
-            )  # fmt: skip
-            H, g = information.copy(), information @ delta
-            H_lidar, g_lidar = held_directions(match, o.normal_noise_rad)
-            H[:12, :12] += o.information_scale * H_lidar
-            g[:12] += o.information_scale * g_lidar
-            if self._aid is not None:
-                H_aid, g_aid = self._aid.pull(T_dense[-1], prediction.end.t_ns)
-                H[6:12, 6:12] += H_aid
-                g[6:12] += g_aid
-            step = -np.linalg.solve(H, g)
-            delta = delta + step
-            T_dense = _correct(prediction, delta, center)
-            if (
-                rounds > coarse
-                and _largest_move(step) < self._settings.registration.converged_step_m
-            ):
-                converged = True
-                break
-        return _Fit(T_dense, delta, np.linalg.inv(H), match, rounds, converged)
-
-    def _is_lost(self, fit: _Fit) -> bool:
+    def _is_lost(self, fit: FrameFit) -> bool:
         o = self._settings.odometry
         bad = fit.match.share < o.lost_share or not fit.match.mean_m < o.lost_error_m
         return bad or not np.isfinite(fit.delta).all()
@@ -237,35 +192,14 @@ class Odometry:
             self._map.remove(self._keyframes.popleft())
 
 
-def _correct(prediction: Prediction, delta: Array, center: Array) -> SE3:
-    """The predicted poses moved by a correction that grows linearly over the frame."""
-    s = (prediction.t_s / prediction.t_s[-1])[:, None]
-    omega = (1.0 - s) * delta[:3] + s * delta[6:9]
-    shift = (1.0 - s) * delta[3:6] + s * delta[9:12]
-    R = so3_exp(omega)
-    predicted = prediction.T_odom_body
-    arm = np.einsum("nij,nj->ni", R, predicted.t - center)
-    return SE3(proper(R @ predicted.R), center + arm + shift)
-
-
-def _largest_move(step: Array) -> float:
-    """How far a step moves a point 5 m away, at the start or end of the frame [m]."""
-    return float(
-        max(
-            5 * np.linalg.norm(step[k : k + 3]) + np.linalg.norm(step[k + 3 : k + 6])
-            for k in (0, 6)
-        )
-    )
-
-
-def _updated(prediction: Prediction, fit: _Fit, *, lost: bool, first: bool) -> MotionState:
+def _updated(prediction: Prediction, fit: FrameFit, *, lost: bool, first: bool) -> MotionState:
     if lost or first:
         return prediction.end
     return prediction.end.corrected(fit.delta[6:], fit.P[6:, 6:])
 
 
 def _step(
-    frame: Multiframe, prediction: Prediction, fit: _Fit, T_dense: SE3, *, lost: bool
+    frame: Multiframe, prediction: Prediction, fit: FrameFit, T_dense: SE3, *, lost: bool
 ) -> OdometryStep:
     end = prediction.T_odom_body[-1]
     middle = prediction.t_s[-1] / 2

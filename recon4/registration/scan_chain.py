@@ -9,6 +9,7 @@ import numpy as np
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
+from recon4.registration.result import StopReason
 from recon4.registration.scans import Scan, make_scan, search_scans
 from recon4.settings import ScanSettings
 
@@ -28,7 +29,12 @@ class ScanChain:
         self._scan: Scan | None = None
         self._now: Scan | None = None
         self._T_odom_body, self._t_ns = SE3.identity(), 0
-        self._motion = SE3.identity()
+        self._motion = self._located = SE3.identity()
+
+    @property
+    def located(self) -> SE3:
+        """The pose of the newest scan in the last good one, as `locate` found it."""
+        return self._located
 
     @property
     def last(self) -> tuple[SE3, int]:
@@ -41,7 +47,9 @@ class ScanChain:
         if self._scan is None:
             return None
         found = search_scans(self._scan, self._now, guess=self._motion, settings=self._settings)
-        return found.T_target_source if found.converged else None
+        self._located = found.T_target_source
+        # Of two skewed scans the matches may go to and fro for ever: what lies in place decides.
+        return None if found.stop is StopReason.TOO_FEW else found.T_target_source
 
     def keep(self, T_odom_body: SE3, t_ns: int) -> None:
         """The scan just located is a good one, at this pose and time [ns]."""

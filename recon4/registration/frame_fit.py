@@ -1,0 +1,110 @@
+"""One frame held against the map of planes: the rounds of the iterated filter."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from recon4.geometry.se3 import SE3, Array, proper, so3_exp
+from recon4.kernels.imu import place_points
+from recon4.registration.aiding import Aid
+from recon4.registration.degeneracy import held_directions
+from recon4.registration.motion import Prediction
+from recon4.registration.plane_map import Match, PlaneMap
+from recon4.registration.segments import Segments
+from recon4.settings import OdometrySettings
+
+_GATES_M = (1.0, 0.5, 0.3, 0.2)
+"""How far from its plane a point may lie, round by round; the last one stays."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FrameFit:
+    """Outcome of the rounds for one frame."""
+
+    T_dense: SE3
+    delta: Array
+    """Correction of the pose at the start (6) and of the state at the end (18)."""
+    P: Array
+    """Covariance of that correction, (24, 24)."""
+    H_lidar: Array
+    """What the points alone say of the two poses: information, (12, 12)."""
+    match: Match
+    rounds: int
+    converged: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FrameFitter:
+    """How frames are fitted: bounds and weights, the same for all frames."""
+
+    settings: OdometrySettings
+    converged_step_m: float
+    coarse: int
+    """Level of cubes to begin with, 0 = the finest: how far off the prediction may be."""
+    aid: Aid | None = None
+
+    def fit(self, target: PlaneMap, segments: Segments, prediction: Prediction) -> FrameFit:
+        """Correct a predicted motion until the segments' ends lie on the planes.
+
+        Both ends count, not the midpoint: a plane is fitted to ends, and only its own points lie
+        on it evenly; at rest that halves the scatter of the pose.
+        """
+        information = np.linalg.inv(prediction.prior + 1e-12 * np.eye(24))
+        center = prediction.T_odom_body.t[-1]
+        p_body = np.concatenate([segments.a_body, segments.b_body])
+        p_s = np.concatenate([segments.a_s, segments.b_s])
+        share_of_frame = p_s / prediction.t_s[-1]
+        delta = np.zeros(24)
+        T_dense = _correct(prediction, delta, center)
+        converged, rounds = False, 0
+        for rounds in range(1, self.settings.rounds + 1):
+            p_odom = place_points(prediction.t_s, T_dense.R, T_dense.t, p_s, p_body)
+            match = target.match(
+                p_odom, share_of_frame, center=center,
+                finest=max(self.coarse + 1 - rounds, 0), gate_m=self._gate_m(rounds),
+            )  # fmt: skip
+            H_lidar, g_lidar = self._weighted(match)
+            H, g = information.copy(), information @ delta
+            H[:12, :12] += H_lidar
+            g[:12] += g_lidar
+            if self.aid is not None:
+                H_aid, g_aid = self.aid.pull(T_dense[-1], prediction.end.t_ns)
+                H[6:12, 6:12] += H_aid
+                g[6:12] += g_aid
+            step = -np.linalg.solve(H, g)
+            delta = delta + step
+            T_dense = _correct(prediction, delta, center)
+            if rounds > self.coarse and _largest_move_m(step) < self.converged_step_m:
+                converged = True
+                break
+        return FrameFit(T_dense, delta, np.linalg.inv(H), H_lidar, match, rounds, converged)
+
+    def _gate_m(self, rounds: int) -> float:
+        return _GATES_M[min(rounds - 1 + (0 if self.coarse else 1), len(_GATES_M) - 1)]
+
+    def _weighted(self, match: Match) -> tuple[Array, Array]:
+        H, g = held_directions(match, self.settings.normal_noise_rad)
+        return self.settings.information_scale * H, self.settings.information_scale * g
+
+
+def _correct(prediction: Prediction, delta: Array, center: Array) -> SE3:
+    """The predicted poses moved by a correction that grows linearly over the frame."""
+    s = (prediction.t_s / prediction.t_s[-1])[:, None]
+    omega = (1.0 - s) * delta[:3] + s * delta[6:9]
+    shift = (1.0 - s) * delta[3:6] + s * delta[9:12]
+    R = so3_exp(omega)
+    predicted = prediction.T_odom_body
+    arm = np.einsum("nij,nj->ni", R, predicted.t - center)
+    return SE3(proper(R @ predicted.R), center + arm + shift)
+
+
+def _largest_move_m(step: Array) -> float:
+    """How far a step moves a point 5 m away, at the start or end of the frame [m]."""
+    return float(
+        max(
+            5 * np.linalg.norm(step[k : k + 3]) + np.linalg.norm(step[k + 3 : k + 6])
+            for k in (0, 6)
+        )
+    )
