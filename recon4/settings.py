@@ -113,6 +113,15 @@ class RegistrationSettings:
     target_error_m: float = 0.01
     """An error below this has converged [m] (``svd``)."""
 
+    def __post_init__(self) -> None:
+        _require(
+            self.solver in {"planes", "common_normal", "svd"},
+            "solver must be planes, common_normal or svd (single scans are registered only inside "
+            "odometry without an IMU, by solver planes and the group scans)",
+            self.solver,
+        )
+        _require(self.max_iterations >= 1, "max_iterations must be 1 or more", self.max_iterations)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlaneSettings:
@@ -227,6 +236,11 @@ class GraphSettings:
     """Nodes farther apart are not revisits of one place [m] …"""
     drift_share: float = 0.005
     """… plus this share of the distance walked in between, for the drift not yet closed."""
+    retry_rounds: int = 2
+    """So many times pairs turned down are tried again from better poses; 0 = never."""
+    retry_move_m: float = 0.2
+    """A pair is tried again if its expected pose moved by more than this since [m, rotation as at
+    5 m]."""
     source_reach: int = 2
     """Multiframes before and after a node that it brings to a pair."""
     source_segments: int = 6000
@@ -251,6 +265,15 @@ class GraphSettings:
     """Smallest standard deviation of a registered edge [m]."""
     loop_sd_rad: float = 0.001
     """The same for its rotation [rad]."""
+
+    def __post_init__(self) -> None:
+        for name in ("node_stride", "workers", "source_segments"):
+            value = getattr(self, name)
+            _require(value >= 1, f"{name} must be 1 or more", value)
+        for name in ("neighbors", "revisits", "retry_rounds", "source_reach", "target_reach"):
+            value = getattr(self, name)
+            _require(value >= 0, f"{name} must be 0 or more", value)
+        _require(self.retry_move_m > 0.0, "retry_move_m must be above 0", self.retry_move_m)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -352,6 +375,13 @@ class GnssSettings:
 class IntensitySettings:
     """Intensity normalization (V §2.10, Eq. 2.17, requirements A9)."""
 
+    method: Literal["surfaces", "bins"] = "surfaces"
+    """``surfaces`` compares points of the same place, so that near floors and far walls are not
+    taken for an effect of range; ``bins`` is the text: the plain mean of each bin."""
+    surface_cell_m: float = 0.25
+    """Points in a cube of this edge lie on one surface [m] (``surfaces``)."""
+    surface_points: int = 500_000
+    """About so many of the sampled points are compared (``surfaces``)."""
     range_bin_m: float = 0.2
     """Width of a bin of range [m]."""
     incidence_bin_deg: float = 1.0
@@ -359,10 +389,12 @@ class IntensitySettings:
     max_range_m: float = 60.0
     """Farther points share the last bin of range [m]."""
     min_count: int = 200
-    """Bins with fewer points fall back to a coarser bin."""
+    """Bins with fewer points fall back to a coarser bin, or to the product of the factors of beam,
+    incidence and range (``surfaces``)."""
     min_contrast: float = 0.5
-    """A bin's deviation counts as at least this share of what its mean lets expect, so that a bin
-    of one material is not stretched to the contrast of all; 0 = Eq. 2.17 as it stands."""
+    """With ``bins``: a bin's deviation counts as at least this share of what its mean lets
+    expect, so that a bin of one material is not stretched to the contrast of all; 0 = Eq. 2.17 as
+    it stands."""
     normal_cell_m: float = 0.15
     """Normals come from neighborhoods of three of these cells [m]."""
     windows: int = 40
@@ -387,6 +419,8 @@ class IntensitySettings:
         _require(0.0 <= self.min_contrast <= 1.0, "min_contrast must be 0 to 1", self.min_contrast)
         _require(self.normal_cell_m > 0.0, "normal_cell_m must be above 0", self.normal_cell_m)
         _require(self.windows >= 1, "windows must be at least 1", self.windows)
+        _require(self.surface_cell_m > 0.0, "surface_cell_m must be above 0", self.surface_cell_m)
+        _require(self.surface_points >= 1, "surface_points must be at least 1", self.surface_points)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -458,6 +492,7 @@ PRESETS: dict[str, Settings] = {
         odometry=OdometrySettings(use_imu=False),
         graph=GraphSettings(mode="verification"),
         verification=VerificationSettings(robust="none"),
+        intensity=IntensitySettings(method="bins", min_contrast=0.0),
     ),
 }
 

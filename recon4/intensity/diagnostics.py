@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
+from recon4.intensity.surfaces import Sightings, Surfaces
 from recon4.intensity.table import IntensityTable
 from recon4.store.arrays import load_record, save_record
 
@@ -41,6 +44,16 @@ class Diagnostics:
     all_before: Array
     """Mean and deviation over all points, (2,)."""
     all_after: Array
+    channel_same_count: Array
+    channel_same: Array
+    """Intensity over that of the same surface by channel: raw, then normalized, (2, C); 1 = as
+    bright as all other points of these surfaces."""
+    range_same_count: Array
+    range_same: Array
+    """The same by range, (2, R)."""
+    incidence_same_count: Array
+    incidence_same: Array
+    """The same by incidence, (2, I)."""
 
     def save(self, path: Path) -> None:
         """Write ``diagnostics.npz``."""
@@ -62,12 +75,19 @@ def spread(count: Array, curve: Array, *, min_count: int = 1) -> float:
     return float(means.max() - means.min()) if len(means) else 0.0
 
 
-def diagnose(table: IntensityTable, sums: Array) -> Diagnostics:
+def diagnose(
+    table: IntensityTable, sums: Array, surfaces: Surfaces, seen: Sightings
+) -> Diagnostics:
     """Dependency curves of some points under a table.
+
+    The curves of means also show that near and far are different things; those of the same
+    surface do not.
 
     Args:
         table: What normalizes.
         sums: Count, sum and sum of squares of each bin's raw intensities, (S, B, I, R, 3).
+        surfaces: How bright places are.
+        seen: Points to compare with the places they lie at.
     """
     after = _normalized_sums(table, sums)
     curves: dict[str, Array] = {}
@@ -86,7 +106,38 @@ def diagnose(table: IntensityTable, sums: Array) -> Diagnostics:
         all_before=_curve(sums.sum(axis=(0, 1, 2, 3))[None])[:, 0],
         all_after=_curve(after.sum(axis=(0, 1, 2, 3))[None])[:, 0],
         **curves,
+        **_same_surface(table, surfaces, seen),
     )
+
+
+def _same_surface(table: IntensityTable, surfaces: Surfaces, seen: Sightings) -> dict[str, Array]:
+    """Curves of intensity over brightness, and the points they rest on."""
+    brightness = surfaces.brightness_of(seen.cell)
+    rows = np.flatnonzero(brightness > 0.0)
+    channel, incidence, ranges = seen.bins[rows].T
+    _, rings, incidences, count = table.mean.shape
+    at = (channel // rings, channel % rings, incidence, ranges)
+    raw = seen.intensity[rows].astype(np.float64)
+    values = (raw, table.gain[at] * raw + table.offset[at])
+    axes = {
+        "channel": (channel, table.mean.shape[0] * rings),
+        "range": (ranges, count),
+        "incidence": (incidence, incidences),
+    }
+    out: dict[str, Array] = {}
+    for name, (bins, size) in axes.items():
+        due = np.bincount(bins, brightness[rows], size)
+        curve = np.stack([_over(np.bincount(bins, v, size), due) for v in values])
+        points = np.bincount(bins, minlength=size).astype(np.float64)
+        kept = slice(0, size - (name == "incidence"))
+        out[f"{name}_same_count"], out[f"{name}_same"] = points[kept], curve[:, kept]
+    return out
+
+
+def _over(seen: NDArray[Any], due: NDArray[Any]) -> Array:
+    """Ratio of two sums a bin, relative to the ratio of all; NaN without points, (N,)."""
+    whole = seen.sum() / due.sum() if due.sum() > 0.0 else 1.0
+    return np.asarray(seen / np.where(due > 0.0, due, np.nan) / (whole or 1.0))
 
 
 def _normalized_sums(table: IntensityTable, sums: Array) -> Array:

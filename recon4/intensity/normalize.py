@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.intensity.diagnostics import Diagnostics, diagnose
+from recon4.intensity.surfaces import Sightings, cells_of, learn_surfaces, sightings_of
 from recon4.intensity.table import IntensityTable
 from recon4.kernels.intensity import accumulate
 from recon4.kernels.voxels import face_sensor
@@ -39,6 +40,8 @@ class IntensitySample:
     incidence_rad: NDArray[np.float32]
     """NaN without a normal, (N,)."""
     range_m: NDArray[np.float32]
+    cell: NDArray[np.int64]
+    """Cube of the map, `recon4.intensity.surfaces.cells_of`, (N,)."""
 
 
 def learn_intensity(
@@ -51,7 +54,7 @@ def learn_intensity(
     """The table of a walk, and what intensity depends on before and after it.
 
     Some windows of ten seconds are sampled, ten multiframes each; normals come from the points of
-    a window together. Memory follows the window.
+    a window together. Memory follows the window and ``settings.surface_points``.
 
     Args:
         frames: The points in the frames of their sensors.
@@ -65,17 +68,23 @@ def learn_intensity(
     """
     progress = progress or Silent()
     windows = sample_windows(len(frames), settings.windows)
-    rings = 1 + max(
-        (int(frames[k].ring.max(initial=0)) for window in windows for k in window), default=0
-    )
-    learned, held_out = (_no_sums(len(frames.rig.sensors), rings, settings) for _ in range(2))
-    largest = 0
+    shape = _shape(frames, windows, settings)
+    few = settings.surface_points / max(1, sum(map(len, windows)))
+    learned, held_out = (_Pile(shape, few, settings) for _ in range(2))
     for window in track(windows, progress, what="learn intensities", unit="windows"):
-        for k, sample in enumerate(_sample(frames, trajectory, window, settings.normal_cell_m)):
-            largest = max(largest, int(sample.intensity.max(initial=0)))
-            add_sample(held_out if k % HELD_OUT == HELD_OUT - 1 else learned, sample, settings)
-    table = IntensityTable.of_sums(learned, settings=settings, largest=float(largest))
-    return table, diagnose(table, held_out if held_out[..., 0].any() else learned)
+        samples = _sample(frames, trajectory, window, settings)
+        for k, sample in enumerate(samples):
+            (held_out if k % HELD_OUT == HELD_OUT - 1 else learned).add(sample)
+    seen = learned.sightings()
+    surfaces = learn_surfaces(seen, shape, settings=settings)
+    largest = max(learned.largest, held_out.largest)
+    if settings.method == "surfaces":
+        total = learned.sums.sum(axis=(0, 1, 2, 3))
+        table = IntensityTable.of_surfaces(surfaces, total, settings=settings, largest=largest)
+    else:
+        table = IntensityTable.of_sums(learned.sums, settings=settings, largest=largest)
+    shown = held_out if held_out.sums[..., 0].any() else learned
+    return table, diagnose(table, shown.sums, surfaces, shown.sightings())
 
 
 def write_intensity(
@@ -115,14 +124,53 @@ def sample_windows(frames: int, windows: int) -> list[list[int]]:
     return [list(range(start, min(start + length, frames), stride)) for start in starts]
 
 
-def _no_sums(sensors: int, rings: int, settings: IntensitySettings) -> Array:
+def _shape(
+    frames: Frames, windows: list[list[int]], settings: IntensitySettings
+) -> tuple[int, int, int, int]:
+    """Sensors, beams, bins of incidence (last: no normal), bins of range."""
+    beams = (int(frames[k].ring.max(initial=0)) for window in windows for k in window)
     incidences = int(np.ceil(90.0 / settings.incidence_bin_deg)) + 1
     ranges = int(np.ceil(settings.max_range_m / settings.range_bin_m))
-    return np.zeros((sensors, rings, incidences, ranges, 3))
+    return len(frames.rig.sensors), 1 + max(beams, default=0), incidences, ranges
+
+
+class _Pile:
+    """What samples add up to, and about ``few`` points of each of them."""
+
+    def __init__(
+        self, shape: tuple[int, int, int, int], few: float, settings: IntensitySettings
+    ) -> None:
+        self._few, self._settings = few, settings
+        self._rng = np.random.default_rng(0)
+        self._seen: list[Sightings] = []
+        self.sums = np.zeros((*shape, 3))
+        self.largest = 0.0
+
+    def add(self, sample: IntensitySample) -> None:
+        """Take in the points of a multiframe."""
+        add_sample(self.sums, sample, self._settings)
+        self.largest = max(self.largest, float(sample.intensity.max(initial=0)))
+        rows = np.flatnonzero(self._rng.random(len(sample.cell)) * len(sample.cell) < self._few)
+        sensors, rings, incidences, ranges, _ = self.sums.shape
+        self._seen.append(
+            sightings_of(
+                sample.cell[rows],
+                sample.sensor[rows].astype(np.int64) * rings + sample.ring[rows],
+                sample.incidence_rad[rows],
+                sample.range_m[rows],
+                intensity=sample.intensity[rows],
+                shape=(sensors * rings, incidences, ranges),
+                settings=self._settings,
+            )
+        )
+
+    def sightings(self) -> Sightings:
+        """Some points of all multiframes; the same ones in every run."""
+        return Sightings.joined(self._seen)
 
 
 def _sample(
-    frames: Frames, trajectory: Trajectory, rows: list[int], cell_m: float
+    frames: Frames, trajectory: Trajectory, rows: list[int], settings: IntensitySettings
 ) -> Iterator[IntensitySample]:
     """The samples of one window, with normals from all of its points."""
     enabled = np.array([sensor.enabled for sensor in frames.rig.sensors])
@@ -131,10 +179,11 @@ def _sample(
     if not any(map(len, kept)):
         return
     xyz = np.concatenate([p.xyz_m for p in placed])
-    normals = local_normals((xyz - xyz[0]).astype(np.float32), cell_m).normal
+    normals = local_normals((xyz - xyz[0]).astype(np.float32), settings.normal_cell_m).normal
     ends = np.cumsum([len(frame) for frame in kept])
     for frame, place, normal in zip(kept, placed, np.split(normals, ends[:-1]), strict=True):
         range_m, incidence = np.empty((2, len(frame)), np.float32)
         to_sensor = (place.origin_m - place.xyz_m).astype(np.float32)
         face_sensor(np.ascontiguousarray(normal), to_sensor, range_m, incidence)
-        yield IntensitySample(frame.intensity, frame.sensor, frame.ring, incidence, range_m)
+        cell = cells_of(place.xyz_m, settings.surface_cell_m)
+        yield IntensitySample(frame.intensity, frame.sensor, frame.ring, incidence, range_m, cell)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError, StoreError
 from recon4.geometry.se3 import Array
+from recon4.intensity.surfaces import Surfaces
 from recon4.kernels.intensity import apply_table
 from recon4.settings import IntensitySettings
 from recon4.store.arrays import load_arrays
@@ -30,7 +31,9 @@ class IntensityTable:
     std: NDArray[np.float32]
     """Standard deviation that is divided by, (S, B, I, R)."""
     level: NDArray[np.uint8]
-    """Row of `COARSER` whose bin served, (S, B, I, R); one past the last = all points."""
+    """Row of `COARSER` whose bin served, (S, B, I, R); one past the last = all points. Of a table
+    learned from surfaces: 0 = the bin itself, 1 = mostly the factors, one past the last = a beam
+    without points."""
     target_mean: float
     target_std: float
     upper: float
@@ -51,8 +54,7 @@ class IntensityTable:
             ConfigError: If there are no points at all.
         """
         total = sums.sum(axis=(0, 1, 2, 3))
-        if total[0] == 0:
-            raise ConfigError("intensity cannot be normalized: there are no points to learn from")
+        _require_points(total)
         target_mean, target_std = (float(v) for v in _moments(total))
         mean = np.full(sums.shape[:4], target_mean, np.float32)
         std = np.full(sums.shape[:4], target_std, np.float32)
@@ -68,6 +70,37 @@ class IntensityTable:
         return IntensityTable(
             mean=mean,
             std=std,
+            level=level,
+            target_mean=target_mean,
+            target_std=target_std,
+            upper=largest if settings.upper == "raw" else 2.0 * target_mean,
+            incidence_bin_rad=float(np.deg2rad(settings.incidence_bin_deg)),
+            range_bin_m=settings.range_bin_m,
+        )
+
+    @staticmethod
+    def of_surfaces(
+        surfaces: Surfaces, total: Array, *, settings: IntensitySettings, largest: float
+    ) -> IntensityTable:
+        """Make the table of what each bin would hold had it seen all surfaces of the walk.
+
+        Args:
+            surfaces: Factors of the bins: mean and deviation of a bin are those of all points
+                times its factor.
+            total: Count, sum and sum of squares of all raw intensities, (3,).
+            settings: Bins, the least count, the clamp.
+            largest: Largest raw intensity.
+
+        Raises:
+            ConfigError: If there are no points at all.
+        """
+        _require_points(total)
+        target_mean, target_std = (float(v) for v in _moments(total))
+        level = (surfaces.count < settings.min_count).astype(np.uint8)
+        level[surfaces.count.sum(axis=(2, 3)) == 0] = len(COARSER)
+        return IntensityTable(
+            mean=np.asarray(surfaces.factor * target_mean, dtype=np.float32),
+            std=np.asarray(surfaces.factor * target_std, dtype=np.float32),
             level=level,
             target_mean=target_mean,
             target_std=target_std,
@@ -152,6 +185,11 @@ class IntensityTable:
             incidence_bin_rad=incidence_bin_rad,
             range_bin_m=range_bin_m,
         )
+
+
+def _require_points(total: Array) -> None:
+    if total[0] == 0:
+        raise ConfigError("intensity cannot be normalized: there are no points to learn from")
 
 
 def _moments(sums: Array) -> tuple[Array, Array]:

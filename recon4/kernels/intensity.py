@@ -78,3 +78,71 @@ def apply_table(
             )
             x = gain[s, b, i, r] * x + offset[s, b, i, r]
         out[n] = min(max(x, np.float32(0.0)), np.float32(upper))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def bins_of(
+    channel: Any,
+    incidence_rad: Any,
+    range_m: Any,
+    incidence_bin_rad: float,
+    range_bin_m: float,
+    shape: Any,
+    out: Any,
+) -> None:
+    """Channel, bin of incidence and bin of range of each point, ``out (N, 3)``.
+
+    ``shape`` counts channels, bins of incidence and of range, as in `accumulate`.
+    """
+    for n in range(len(channel)):
+        i, r = bin_of(incidence_rad[n], range_m[n], incidence_bin_rad, range_bin_m, shape)
+        out[n, 0], out[n, 1], out[n, 2] = channel[n], i, r
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def surface_equations(
+    starts: Any, parameters: Any, intensity: Any, theta: Any, H: Any, g: Any
+) -> None:
+    """Newton's equations of a log-linear model with an unknown brightness for each cell.
+
+    The expected intensity of point n in cell c is ``b_c exp(theta_i + theta_j + theta_k)``. For
+    given theta the likeliest ``b_c`` is the sum of intensities over the sum of the exponentials;
+    it is put in, so that the equations hold theta only, however many cells there are.
+
+    Args:
+        starts: First point of each cell and the number of points, (C + 1,).
+        parameters: Rows i, j, k of theta of each point, sorted by cell, (N, 3).
+        intensity: float32 (N,).
+        theta: (P,).
+        H: Receives the negative second derivatives, (P, P).
+        g: Receives the first derivatives, (P,).
+    """
+    factor = np.exp(theta)
+    sums = np.zeros(len(theta))
+    touched = np.empty(len(theta), np.int64)
+    for c in range(len(starts) - 1):
+        seen, expected = 0.0, 0.0
+        for n in range(starts[c], starts[c + 1]):
+            i, j, k = parameters[n]
+            seen += intensity[n]
+            expected += factor[i] * factor[j] * factor[k]
+        if seen <= 0.0:
+            continue
+        brightness, used = seen / expected, 0
+        for n in range(starts[c], starts[c + 1]):
+            i, j, k = parameters[n]
+            m = brightness * factor[i] * factor[j] * factor[k]
+            for a in (i, j, k):
+                g[a] += intensity[n] - m
+                if sums[a] == 0.0:
+                    touched[used] = a
+                    used += 1
+                sums[a] += m
+                for b in (i, j, k):
+                    H[a, b] += m
+        for a in touched[:used]:
+            share = sums[a] / seen
+            for b in touched[:used]:
+                H[a, b] -= share * sums[b]
+        for a in touched[:used]:
+            sums[a] = 0.0

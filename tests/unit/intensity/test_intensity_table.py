@@ -1,5 +1,7 @@
 """Intensity normalization: V Eq. 2.17 in its standardizing form."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -50,6 +52,7 @@ def sums_of(intensity, ring, incidence_deg, range_m, settings=SETTINGS, sensor=N
         np.broadcast_to(np.asarray(ring, np.uint8), n).copy(),
         np.broadcast_to(np.deg2rad(incidence_deg).astype(np.float32), n).copy(),
         np.broadcast_to(np.float32(range_m), n).copy(),
+        np.zeros(n, np.int64),
     )
     add_sample(sums, sample, settings)
     return sums
@@ -162,10 +165,10 @@ def test_two_sensors_with_the_same_ring_are_kept_apart():
     assert table.mean[0, 4, 10, 10] == 15.0 and table.mean[1, 4, 10, 10] == 95.0
 
 
-def test_dependency_on_beam_range_and_incidence_goes(tmp_path):
+def test_dependency_of_means_on_beam_range_and_incidence_goes_by_bins(tmp_path):
     walk = room_walk(frames=10, points=100_000, noise_m=0.005, intensity=law)
 
-    write_intensity(walk, walk.trajectory, tmp_path, settings=COARSE)
+    write_intensity(walk, walk.trajectory, tmp_path, settings=replace(COARSE, method="bins"))
 
     shown = Diagnostics.load(tmp_path / "diagnostics.npz")
     for name in ("channel", "range", "incidence"):
@@ -176,6 +179,61 @@ def test_dependency_on_beam_range_and_incidence_goes(tmp_path):
     assert shown.channel_count.shape == (32,) and shown.incidence_deg[0] == 2.0
 
 
+def on_carpet(p_map):
+    """The floor and the ceiling of `room_walk` but for a border, where no cube meets a wall."""
+    low, high = np.array([-2.5, -2.5]), np.array([4.5, 2.5])
+    inside = ((p_map[:, :2] > low) & (p_map[:, :2] < high)).all(axis=1)
+    return inside & (np.abs(p_map[:, 2] - 0.1) > 1.45)
+
+
+def carpet(p_map, sensor, ring, incidence_rad, range_m, rng):
+    """What is near is dark: a third of the walls."""
+    places = np.where(on_carpet(p_map)[:, None], [0.6, 0.6, 0.1], [0.6, 0.1, 0.1])
+    return law(places, sensor, ring, incidence_rad, range_m, rng)
+
+
+def test_what_lies_near_and_far_is_not_taken_for_an_effect_of_range():
+    walk = room_walk(frames=20, points=40_000, noise_m=0.005, intensity=carpet)
+
+    _, by_surfaces = learn_intensity(walk, walk.trajectory, settings=COARSE)
+    _, by_bins = learn_intensity(walk, walk.trajectory, settings=replace(COARSE, method="bins"))
+
+    for name in ("channel", "range", "incidence"):
+        count, same = (getattr(by_surfaces, f"{name}_same{end}") for end in ("_count", ""))
+        raw, left = (deviation(curve, count) for curve in same)
+        assert left < 0.12 * raw, f"{name}: {left:.3f} of {raw:.3f}"
+        if name != "channel":
+            assert left < 0.25 * deviation(getattr(by_bins, f"{name}_same")[1], count), name
+
+
+def deviation(curve, count):
+    used = count > 200
+    middle = np.average(curve[used], weights=count[used])
+    return np.sqrt(np.average((curve[used] - middle) ** 2, weights=count[used]))
+
+
+def normalized_map(walk, table, folder):
+    """Points of the walk's map with raw and normalized intensity."""
+    folder.mkdir()
+    settings = MapSettings(voxel_m=0.02, normal_cell_m=0.15)
+    tiles = list(build_map(walk, walk.trajectory, table, folder, settings=settings))
+    columns = [t.read(["intensity", "intensity_normalized"]) for t in tiles]
+    fields = ("intensity", "intensity_normalized")
+    values = [np.concatenate([c[field] for c in columns]).astype(float) for field in fields]
+    return np.concatenate([t.xyz_m() for t in tiles]), *values
+
+
+@pytest.mark.parametrize(("method", "low", "high"), [("surfaces", 2.75, 3.25), ("bins", 1.0, 2.6)])
+def test_walls_that_reflect_three_times_as_much_become_so_bright(tmp_path, method, low, high):
+    walk = room_walk(frames=20, points=40_000, noise_m=0.005, intensity=carpet)
+    table, _ = learn_intensity(walk, walk.trajectory, settings=replace(COARSE, method=method))
+
+    xyz, _, normalized = normalized_map(walk, table, tmp_path / "map")
+
+    walls = np.abs(xyz[:, 2] - 0.1) < 1.2
+    assert low < normalized[walls].mean() / normalized[on_carpet(xyz)].mean() < high
+
+
 def test_contrast_of_materials_grows_and_a_uniform_room_becomes_even(tmp_path):
     walks = {
         "striped": room_walk(frames=20, points=40_000, noise_m=0.005, intensity=law),
@@ -183,24 +241,7 @@ def test_contrast_of_materials_grows_and_a_uniform_room_becomes_even(tmp_path):
     }
     learned_from = walks["striped"]
     table, _ = learn_intensity(learned_from, learned_from.trajectory, settings=COARSE)
-    figures = {}
-    for name, walk in walks.items():
-        (tmp_path / name).mkdir()
-        tiles = build_map(
-            walk,
-            walk.trajectory,
-            table,
-            tmp_path / name,
-            settings=MapSettings(voxel_m=0.02, normal_cell_m=0.15),
-        )
-        columns = [t.read(["intensity", "intensity_normalized"]) for t in tiles]
-        figures[name] = (
-            np.concatenate([t.xyz_m() for t in tiles]),
-            *(
-                np.concatenate([c[field] for c in columns]).astype(float)
-                for field in ("intensity", "intensity_normalized")
-            ),
-        )
+    figures = {name: normalized_map(walk, table, tmp_path / name) for name, walk in walks.items()}
 
     xyz, raw, normalized = figures["striped"]
     truth = reflectivity(xyz)

@@ -1,0 +1,182 @@
+"""What beam, incidence and range do to intensity, learned from surfaces seen in several ways.
+
+Floors are near and walls far, so the mean of a bin says as much about what is there as about the
+sensor. A small cube of the map that is seen by many beams, from near and far, has one brightness:
+how its points differ is the sensor's doing. Both are estimated together, as Poisson regression
+with a fixed effect a cube (Hausman, Hall, Griliches 1984).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import Array
+from recon4.kernels.intensity import bins_of, surface_equations
+from recon4.settings import IntensitySettings
+
+ROUNDS = 12
+"""Newton's method ends after so many rounds; five are usual."""
+CONVERGED = 1e-4
+"""It ends when no factor changes by more than this share."""
+LONGEST_STEP = 1.0
+"""A round changes the logarithm of a factor by at most this."""
+GAUGE = 1e-3
+"""Weight that holds what no point determines: the three groups of factors share one scale."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sightings:
+    """Points with the place they lie at and the bins they fall into."""
+
+    cell: NDArray[np.int64]
+    """Cube of the map, `cells_of`, (N,)."""
+    bins: NDArray[np.int32]
+    """Channel, bin of incidence, bin of range, (N, 3)."""
+    intensity: NDArray[np.float32]
+    """Raw, (N,)."""
+
+    def __len__(self) -> int:
+        return len(self.cell)
+
+    @staticmethod
+    def joined(parts: Sequence[Sightings]) -> Sightings:
+        """All of some sightings."""
+        return Sightings(
+            np.concatenate([np.empty(0, np.int64), *(p.cell for p in parts)]),
+            np.concatenate([np.empty((0, 3), np.int32), *(p.bins for p in parts)]),
+            np.concatenate([np.empty(0, np.float32), *(p.intensity for p in parts)]),
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Surfaces:
+    """What was learned: the factor of every bin and the brightness of every cube."""
+
+    factor: Array
+    """Raw over normalized intensity of a bin, (S, B, I, R)."""
+    count: Array
+    """Points each of them rests on, (S, B, I, R)."""
+    cell: NDArray[np.int64]
+    """Cubes, ascending, (C,)."""
+    brightness: Array
+    """Normalized intensity of each, (C,)."""
+
+    def brightness_of(self, cell: NDArray[np.int64]) -> Array:
+        """Normalized intensity that points in cubes should have; 0 = cube unknown, (N,)."""
+        if len(self.cell) == 0:
+            return np.zeros(len(cell))
+        row = np.minimum(np.searchsorted(self.cell, cell), len(self.cell) - 1)
+        return np.where(self.cell[row] == cell, self.brightness[row], 0.0)
+
+
+def cells_of(xyz_m: Array, cell_m: float) -> NDArray[np.int64]:
+    """A number for the cube of each point; 21 bits an axis, (N, 3) -> (N,)."""
+    at = np.floor(xyz_m / cell_m).astype(np.int64) & 0x1FFFFF
+    return np.asarray(at[:, 0] << 42 | at[:, 1] << 21 | at[:, 2], dtype=np.int64)
+
+
+def sightings_of(
+    cell: NDArray[np.int64],
+    channel: NDArray[np.int64],
+    incidence_rad: NDArray[np.float32],
+    range_m: NDArray[np.float32],
+    *,
+    intensity: NDArray[np.uint16],
+    shape: tuple[int, int, int],
+    settings: IntensitySettings,
+) -> Sightings:
+    """Sort points into bins; ``shape`` counts channels, bins of incidence and of range."""
+    bins = np.empty((len(cell), 3), np.int32)
+    width_rad = float(np.deg2rad(settings.incidence_bin_deg))
+    bins_of(channel, incidence_rad, range_m, width_rad, settings.range_bin_m, shape, bins)
+    return Sightings(cell, bins, intensity.astype(np.float32))
+
+
+def learn_surfaces(
+    sightings: Sightings, shape: tuple[int, int, int, int], *, settings: IntensitySettings
+) -> Surfaces:
+    """Estimate factors and brightnesses.
+
+    A factor is that of the beam times that of the incidence times that of the range, and each bin
+    differs from this product as far as its points say so: they count against
+    ``settings.min_count`` points that say it does not.
+
+    Args:
+        sightings: To learn from.
+        shape: Sensors, beams, bins of incidence (last: no normal), bins of range.
+        settings: Uses ``min_count``.
+    """
+    order = np.argsort(sightings.cell, kind="stable")
+    cell, first = np.unique(sightings.cell[order], return_index=True)
+    starts = np.append(first, len(order))
+    bins, intensity = sightings.bins[order], sightings.intensity[order]
+    groups = (shape[0] * shape[1], shape[2], shape[3])
+    parts = _log_factors(starts, bins, intensity, groups, weight=float(settings.min_count))
+    factor = np.exp(parts[0][:, None, None] + parts[1][:, None] + parts[2])
+
+    flat = np.ravel_multi_index(tuple(bins.T), factor.shape)
+    of_point = factor.ravel()[flat]
+    brightness = _brightness(starts, intensity, of_point)
+    expected = np.repeat(brightness, np.diff(starts)) * of_point
+    prior = settings.min_count * float(intensity.mean()) if len(intensity) else 0.0
+    seen, due = (
+        np.bincount(flat, v, factor.size).reshape(factor.shape) for v in (intensity, expected)
+    )
+    factor *= (seen + prior) / (due + prior) if prior else 1.0
+
+    of_point = factor.ravel()[flat]
+    total = float(intensity.sum())
+    scale = float((intensity / of_point).sum()) / total if total else 1.0
+    return Surfaces(
+        factor=(factor * scale).reshape(shape),
+        count=np.bincount(flat, minlength=factor.size).reshape(shape).astype(np.float64),
+        cell=cell,
+        brightness=_brightness(starts, intensity, of_point * scale),
+    )
+
+
+def _brightness(starts: NDArray[np.int64], intensity: NDArray[np.float32], factor: Array) -> Array:
+    """Likeliest brightness of each cube: sum of intensities over sum of factors."""
+    if len(starts) == 1:
+        return np.empty(0)
+    seen = np.add.reduceat(intensity.astype(np.float64), starts[:-1])
+    return np.asarray(seen / np.add.reduceat(factor, starts[:-1]))
+
+
+def _log_factors(
+    starts: NDArray[np.int64],
+    bins: NDArray[np.int32],
+    intensity: NDArray[np.float32],
+    groups: tuple[int, int, int],
+    *,
+    weight: float,
+) -> list[Array]:
+    """Logarithms of the factors of channel, incidence and range; 0 = nothing is known."""
+    ends = np.cumsum(groups)
+    parameters = bins + np.array([0, ends[0], ends[1]], np.int32)
+    prior = _prior(groups, weight)
+    scaled = intensity / max(float(intensity.mean()) if len(intensity) else 0.0, 1e-9)
+    theta = np.zeros(ends[-1])
+    for _ in range(ROUNDS):
+        H, g = np.zeros((len(theta), len(theta))), np.zeros(len(theta))
+        surface_equations(starts, parameters, scaled, theta, H, g)
+        step = np.linalg.solve(H + prior, g - prior @ theta)
+        theta += np.clip(step, -LONGEST_STEP, LONGEST_STEP)
+        if np.abs(step).max() < CONVERGED:
+            break
+    return np.split(theta, ends[:-1])
+
+
+def _prior(groups: tuple[int, int, int], weight: float) -> Array:
+    """Neighboring angles and ranges are alike, as sure as ``weight`` points can make it."""
+    out = GAUGE * np.eye(sum(groups))
+    channels, incidences, ranges = groups
+    for first, size in ((channels, incidences - 1), (channels + incidences, ranges)):
+        difference = np.diff(np.eye(size), axis=0)
+        rows = slice(first, first + size)
+        out[rows, rows] += weight * difference.T @ difference
+    return out
