@@ -53,7 +53,7 @@ class PairRegistrar:
                 progress.advance(len(chunk))
 
     def register(self, pairs: Sequence[Pair], progress: Progress) -> list[Edge]:
-        """Try pairs; edges come back in the order of the pairs."""
+        """Try pairs, each an event when it is done; edges come back in the order of the pairs."""
         order = sorted(range(len(pairs)), key=lambda k: (pairs[k].i, pairs[k].j, k))
         groups = _by_target(order, pairs)
         chunks = [groups[k : k + _CHUNK] for k in range(0, len(groups), _CHUNK)]
@@ -62,6 +62,8 @@ class PairRegistrar:
         with ThreadPoolExecutor(self._settings.graph.workers) as pool:
             for done in pool.map(lambda chunk: self._try_chunk(chunk, pairs), chunks):
                 edges.update(done)
+                for edge in done.values():
+                    progress.event("edge", **edge_facts(edge))
                 progress.advance(len(done))
         return [edges[k] for k in range(len(pairs))]
 
@@ -140,6 +142,25 @@ class PairRegistrar:
             iterations=found.iterations,
             information=_information(found, self._settings),
         )
+
+
+def edge_facts(edge: Edge) -> dict[str, object]:
+    """What a watcher is told of an edge, as plain JSON values."""
+    return {
+        "i": edge.i,
+        "j": edge.j,
+        "edge_kind": edge.kind.value,
+        "verdict": edge.verdict.value,
+        "reason": edge.reason.value,
+        "overlap": _told(edge.overlap),
+        "error_m": _told(edge.error_m),
+        "limit_m": _told(edge.limit_m),
+    }
+
+
+def _told(figure: float) -> float | None:
+    """A figure for JSON, which has no word for NaN; five digits are enough to look at."""
+    return float(f"{figure:.5g}") if np.isfinite(figure) else None
 
 
 def _edge(pair: Pair, share: float, reason: Reason) -> Edge:

@@ -1,23 +1,22 @@
 """The progressive search for pairs that see the same place (V §2.7, Algorithm 2.1).
 
 Pairs are tried near ones first; after each round the graph is optimized, so that later, farther
-pairs start from better poses. Every pair tried is kept with its verdict.
+pairs start from better poses. At the end those turned down whose expected pose has moved since are
+tried again. Every pair tried is kept with its verdict, that of its last try.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from functools import partial
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
 from recon4.model.trajectory import Trajectory
+from recon4.pose_graph.candidates import Ends, retry_pairs, rounds
 from recon4.pose_graph.files import save_graph
 from recon4.pose_graph.pairs import Pair, PairRegistrar
 from recon4.pose_graph.solve import optimize
@@ -27,8 +26,6 @@ from recon4.settings import GraphSettings, Settings
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
 
-_RUN_GAP = 2
-"""Nodes on either side of a chosen one that add nothing new."""
 _LOST_SD_FACTOR = 200.0
 """How much less an odometry edge across a lost multiframe is worth."""
 
@@ -53,6 +50,7 @@ def build_graph(
         motion_cov=steps["motion_cov"],
         settings=settings,
         progress=progress,
+        scratch=out,
     )
     save_graph(out, graph)
     return {
@@ -70,6 +68,7 @@ def search(
     motion_cov: Array,
     settings: Settings,
     progress: Progress,
+    scratch: Path,
 ) -> PoseGraph:
     """The graph after all rounds, poses optimized (Cauchy kernel), not yet verified.
 
@@ -79,7 +78,8 @@ def search(
         lost: Multiframes where odometry was lost, (number of multiframes,).
         motion_cov: `OdometryStep.motion_cov` of each, (number of multiframes, 6, 6).
         settings: Uses segments, overlap, registration, planes, graph.
-        progress: Counts pairs; each edge is an event.
+        progress: Counts pairs; each try is an event.
+        scratch: Folder for nameless files of 0.2 MB a node.
     """
     g = settings.graph
     rows = node_rows(frames.t_mid_ns, g.node_stride, lost)
@@ -87,113 +87,19 @@ def search(
     T_odom_body = trajectory.at(t_ns)
     edges = odometry_edges(T_odom_body, rows, lost, motion_cov=motion_cov, settings=g)
     graph = PoseGraph(rows.astype(np.int64), t_ns, T_odom_body, edges)
-    views = NodeViews(len(rows), settings)
+    progress.event("nodes", t_ns=t_ns.tolist(), t_m=np.round(T_odom_body.t, 3).tolist())
+    views = NodeViews(len(rows), settings, scratch)
     registrar = PairRegistrar(
         lambda: Submaps(frames, trajectory, rows, settings, skip=lost), views, settings
     )
     registrar.prepare(len(rows), progress)
+    expected: dict[Ends, SE3] = {}
     for select in rounds(len(rows), g):
-        graph = _try(graph, select(graph), registrar, progress)
+        graph = _try(graph, select(graph), registrar, expected=expected, progress=progress)
+    for _ in range(g.retry_rounds):
+        again = retry_pairs(graph, expected, move_m=g.retry_move_m)
+        graph = _try(graph, again, registrar, expected=expected, progress=progress)
     return graph
-
-
-Selection = Callable[[PoseGraph], list[Pair]]
-
-
-def rounds(nodes: int, settings: GraphSettings) -> list[Selection]:
-    """What each round tries, given the graph so far."""
-    if settings.exhaustive:
-        farthest = nodes // 2 if settings.closed_trajectory else nodes - 1
-        schedule = distance_schedule(farthest)
-        return [partial(pairs_at_distances, distances=d, settings=settings) for d in schedule]
-    selections: list[Selection] = [partial(neighbor_pairs, settings=settings)]
-    if settings.mode != "10":
-        selections += [partial(revisit_pairs, settings=settings, limit=2)]
-        selections += [partial(revisit_pairs, settings=settings, limit=settings.revisits)]
-    return selections
-
-
-def neighbor_pairs(graph: PoseGraph, settings: GraphSettings) -> list[Pair]:
-    """Each node with the few after it; in mode ``10`` those within one second."""
-    within_second = max(10 // settings.node_stride, 1)
-    farthest = within_second if settings.mode == "10" else settings.neighbors
-    distances = range(1, farthest + 1)
-    return pairs_at_distances(graph, distances=distances, settings=settings)
-
-
-def pairs_at_distances(
-    graph: PoseGraph, *, distances: Iterable[int], settings: GraphSettings
-) -> list[Pair]:
-    """All pairs ``d`` nodes apart (Algorithm 2.1 with 0-based nodes, A0 no. 5)."""
-    count = len(graph)
-    tried = {(e.i, e.j) for e in graph.edges if e.kind is not EdgeKind.ODOMETRY}
-    pairs = []
-    for d in distances:
-        last = count if settings.closed_trajectory else count - d
-        for start in range(max(last, 0)):
-            i, j = sorted((start, (start + d) % count))
-            if i != j and (i, j) not in tried:
-                tried.add((i, j))
-                pairs.append(_pair(graph, i, j, settings))
-    return pairs
-
-
-def distance_schedule(farthest: int) -> list[range]:
-    """Distances 1 to the farthest in growing batches, the graph being optimized after each.
-
-    N/2 is enough where pairs wrap around (Algorithm 2.1); an open walk of N nodes needs N - 1, or
-    its start would never be compared with its end.
-    """
-    batches, d = [], 1
-    while d <= farthest:
-        end = min(max(d + 1, d * 5 // 4), farthest + 1)
-        batches.append(range(d, end))
-        d = end
-    return batches
-
-
-def revisit_pairs(graph: PoseGraph, *, settings: GraphSettings, limit: int) -> list[Pair]:
-    """Each node with at most ``limit`` earlier nodes of the same place, spread over its visits.
-
-    Only nodes close by are looked at, so the work grows with the walk and not with its square.
-    How far off the poses may be is allowed for by the distance walked in between.
-    """
-    t = graph.T_map_body.t
-    walked_m = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(t, axis=0), axis=1))])
-    tried = {(e.i, e.j) for e in graph.edges}
-    pairs = []
-    reach_m = settings.revisit_radius_m + settings.drift_share * walked_m
-    near = cKDTree(t).query_ball_point(t, r=reach_m)
-    for j, found in enumerate(near):
-        earlier = np.sort([i for i in found if i < j - settings.neighbors])
-        if len(earlier) == 0:
-            continue
-        distance_m = np.linalg.norm(t[earlier] - t[j], axis=1)
-        allowed_m = settings.revisit_radius_m + settings.drift_share * (
-            walked_m[j] - walked_m[earlier]
-        )
-        inside = distance_m < allowed_m
-        chosen = _spread(earlier[inside], distance_m[inside], limit)
-        pairs += [_pair(graph, i, j, settings) for i in chosen if (i, j) not in tried]
-    return pairs
-
-
-def _spread(nodes: NDArray[np.int64], distance_m: Array, limit: int) -> list[int]:
-    """The nearest node of each visit (a run of nodes), then the nearest of halves of the runs."""
-    runs = np.split(np.arange(len(nodes)), np.flatnonzero(np.diff(nodes) > 1) + 1)
-    chosen: list[int] = []
-    while runs and len(chosen) < limit:
-        runs.sort(key=lambda run: float(distance_m[run].min()) if len(run) else np.inf)
-        halves = []
-        for run in runs:
-            if len(run) == 0 or len(chosen) == limit:
-                continue
-            best = int(run[np.argmin(distance_m[run])])
-            chosen.append(int(nodes[best]))
-            at = int(np.searchsorted(run, best))
-            halves += [run[: max(at - _RUN_GAP, 0)], run[at + 1 + _RUN_GAP :]]
-        runs = [run for run in halves if len(run)]
-    return sorted(chosen)
 
 
 def odometry_edges(
@@ -232,33 +138,30 @@ def odometry_edges(
     return tuple(edges)
 
 
-def _pair(graph: PoseGraph, i: int, j: int, settings: GraphSettings) -> Pair:
-    kind = EdgeKind.NEIGHBOR if j - i <= settings.neighbors else EdgeKind.LOOP
-    return Pair(i, j, kind, graph.T_map_body[i].inverse() @ graph.T_map_body[j])
-
-
 def _try(
-    graph: PoseGraph, pairs: list[Pair], registrar: PairRegistrar, progress: Progress
+    graph: PoseGraph,
+    pairs: list[Pair],
+    registrar: PairRegistrar,
+    *,
+    expected: dict[Ends, SE3],
+    progress: Progress,
 ) -> PoseGraph:
+    """Try pairs and optimize; ``expected`` receives the pose each of them started from."""
     if not pairs:
         return graph
+    expected.update({(pair.i, pair.j): pair.T_i_j for pair in pairs})
     edges = registrar.register(pairs, progress)
-    for edge in edges:
-        progress.event("edge", **edge_facts(edge))
-    graph = graph.with_edges(graph.edges + tuple(edges))
+    graph = graph.with_edges(_newest(graph.edges, edges))
     solution = optimize(graph, kernel="cauchy")
+    progress.event("nodes", t_m=np.round(solution.T_map_body.t, 3).tolist())
     return graph.with_poses(solution.T_map_body)
 
 
-def edge_facts(edge: Edge) -> dict[str, object]:
-    """What a watcher is told of an edge, as plain JSON values."""
-    return {
-        "i": edge.i,
-        "j": edge.j,
-        "edge_kind": edge.kind.value,
-        "verdict": edge.verdict.value,
-        "reason": edge.reason.value,
-        "overlap": edge.overlap,
-        # Without a registration there is no error, and JSON has no word for NaN.
-        "error_m": edge.error_m if np.isfinite(edge.error_m) else None,
-    }
+def _newest(edges: tuple[Edge, ...], tried: list[Edge]) -> tuple[Edge, ...]:
+    """One edge a pair: what was tried again takes the place of the try before."""
+    newest = {(edge.i, edge.j): edge for edge in tried}
+    kept = [
+        edge if edge.kind is EdgeKind.ODOMETRY else newest.pop((edge.i, edge.j), edge)
+        for edge in edges
+    ]
+    return (*kept, *newest.values())

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import tempfile
 from collections import OrderedDict
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,13 +91,19 @@ def _covering(trajectory: Trajectory, t_ns: int, duration_ns: int) -> Trajectory
 
 
 class NodeViews:
-    """What each node brings to a pair: some segments and its view volume, kept on disk."""
+    """What each node brings to a pair: some segments and its view volume, kept on disk.
 
-    def __init__(self, count: int, settings: Settings) -> None:
+    Args:
+        count: How many nodes.
+        settings: Uses graph and overlap.
+        scratch: Folder on the disk that is to hold them, nameless; an OSError says it is full.
+    """
+
+    def __init__(self, count: int, settings: Settings, scratch: Path) -> None:
         g, o = settings.graph, settings.overlap
         self._size = np.zeros(count, np.int64)
-        self._ends = _scratch((count, g.source_segments, 2, 3))
-        self._nearest = _scratch((count, o.azimuth_bins, o.elevation_bins))
+        self._ends = _scratch((count, g.source_segments, 2, 3), scratch)
+        self._nearest = _scratch((count, o.azimuth_bins, o.elevation_bins), scratch)
         self._settings = settings
 
     def fill(self, submaps: Submaps, nodes: Sequence[int]) -> None:
@@ -124,10 +132,12 @@ def _thin(ends: Ends, limit: int) -> Ends:
     return ends[np.linspace(0, len(ends) - 1, limit).astype(np.intp)]
 
 
-def _scratch(shape: tuple[int, ...]) -> NDArray[np.float32]:
-    """An array the system may page out to a nameless temporary file."""
-    with tempfile.TemporaryFile() as file:
-        return np.memmap(file, np.float32, "w+", shape=shape)
+def _scratch(shape: tuple[int, ...], folder: Path) -> NDArray[np.float32]:
+    """An array the system may page out to a nameless file, gone with the array."""
+    with tempfile.TemporaryFile(dir=folder) as file:
+        # A file without its blocks, written through memory, kills the process on a full disk.
+        os.posix_fallocate(file.fileno(), 0, 4 * int(np.prod(shape)))
+        return np.memmap(file, np.float32, "r+", shape=shape)
 
 
 def median_range_m(ends: Array) -> float:

@@ -1,4 +1,6 @@
 from dataclasses import replace
+from pathlib import Path
+from tempfile import gettempdir
 
 import numpy as np
 import pytest
@@ -22,7 +24,7 @@ def stroll():
 def registrar(stroll, *assignments, lost=NOTHING_LOST, trajectory=None):
     settings = override(Settings(), ["graph.workers=1", *assignments])
     rows = node_rows(stroll.t_mid_ns, settings.graph.node_stride, lost)
-    views = NodeViews(len(rows), settings)
+    views = NodeViews(len(rows), settings, Path(gettempdir()))
     made = PairRegistrar(
         lambda: Submaps(stroll, trajectory or stroll.truth, rows, settings, skip=lost),
         views,
@@ -225,9 +227,9 @@ def test_a_submap_at_the_start_takes_what_there_is(stroll):
     assert 0.7 < len(first) / len(last) < 1.4
 
 
-def test_nodes_keep_at_most_so_many_segments_spread_over_all(stroll):
+def test_nodes_keep_at_most_so_many_segments_spread_over_all(stroll, tmp_path):
     settings = override(Settings(), ["graph.source_segments=500"])
-    views = NodeViews(1, settings)
+    views = NodeViews(1, settings, tmp_path)
     views.fill(Submaps(stroll, stroll.truth, np.array([10]), settings, skip=NOTHING_LOST), [0])
 
     ends = views.ends(0)

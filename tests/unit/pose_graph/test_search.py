@@ -1,30 +1,36 @@
+import errno
 import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from recon4.errors import Cancelled
+from recon4.errors import Cancelled, ConfigError
 from recon4.geometry.se3 import SE3
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
-from recon4.pose_graph.files import load_graph, save_graph
-from recon4.pose_graph.search import (
-    build_graph,
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.pose_graph.candidates import (
     distance_schedule,
-    edge_facts,
     neighbor_pairs,
-    odometry_edges,
     pairs_at_distances,
+    retry_pairs,
     revisit_pairs,
     rounds,
-    search,
 )
+from recon4.pose_graph.files import load_graph, save_graph
+from recon4.pose_graph.pairs import edge_facts
+from recon4.pose_graph.search import build_graph, odometry_edges, search
 from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
 from recon4.registration.stage import run_odometry
-from recon4.registration.submap import node_rows
+from recon4.registration.submap import NodeViews, node_rows
 from recon4.semi_rigid.refine import refine
-from recon4.settings import GraphSettings, Settings, VerificationSettings, override
+from recon4.settings import (
+    GraphSettings,
+    RegistrationSettings,
+    Settings,
+    VerificationSettings,
+    override,
+)
 from recon4.store.arrays import load_trajectory
 from tests.scanned_room import strolling, walk, without_points
 
@@ -373,6 +379,101 @@ def test_who_asks_to_stop_is_heard(searched, stroll):
         )
 
 
+# -- tried again
+
+
+def test_a_pair_turned_down_is_tried_again_once_its_poses_have_moved():
+    def edge(i, j, verdict, kind=EdgeKind.LOOP):
+        return Edge(i=i, j=j, T_i_j=SE3.identity(), kind=kind, verdict=verdict)
+
+    refused, kept = Verdict.REJECTED, Verdict.ACCEPTED
+    edges = [edge(0, 3, refused), edge(1, 3, kept), edge(0, 2, refused), edge(1, 2, refused)]
+    graph = graph_at([[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0.3, 0]], edges)
+    before = {
+        (0, 3): SE3.from_rpy(0, 0, 0, [3, 0, 0]),
+        (1, 3): SE3.from_rpy(0, 0, 0, [9, 0, 0]),
+        (0, 2): SE3.from_rpy(0, 0, 0, [2, 0.15, 0]),
+        (1, 2): SE3.from_rpy(0, 0, 0.05, [1, 0, 0]),
+    }
+
+    again = retry_pairs(graph, before, move_m=0.2)
+
+    assert ends(again) == [(0, 3), (1, 2)]
+    assert [pair.kind for pair in again] == [EdgeKind.LOOP, EdgeKind.LOOP]
+    np.testing.assert_array_equal(again[0].T_i_j.t, [3, 0.3, 0])
+
+
+def drifting_search(stroll, folder, watch, *assignments):
+    """Odometry drifts by 12 cm a node; only guesses within 30 cm converge."""
+    t_s = (stroll.truth.t_ns - stroll.truth.t_ns[0]) * 1e-9
+    drift = 0.4 * t_s[:, None] * [1.0, 0.0, 0.0]
+    T = stroll.truth.T_a_b
+    return search(
+        stroll,
+        replace(stroll.truth, T_a_b=SE3(T.R, T.t + drift)),
+        np.zeros(len(stroll), bool),
+        motion_cov=np.broadcast_to(0.01 * np.eye(6), (len(stroll), 6, 6)),
+        settings=settings_of(
+            *("graph.node_stride=3", "graph.target_reach=1", "graph.source_reach=1"),
+            *("registration.max_move_m=0.3", *assignments),
+        ),
+        progress=watch,
+        scratch=folder,
+    )
+
+
+def test_a_search_tries_again_what_a_poor_pose_made_it_turn_down(stroll, tmp_path):
+    watch = Silent()
+    once = drifting_search(stroll, tmp_path, Silent(), "graph.retry_rounds=0")
+    again = drifting_search(stroll, tmp_path, watch)
+
+    assert sum(e.reason is Reason.NOT_CONVERGED for e in once.edges) >= 5
+    assert not any(e.reason is Reason.NOT_CONVERGED for e in again.edges)
+    assert sum(e.in_graph for e in again.edges) > sum(e.in_graph for e in once.edges)
+    # One edge a pair, that of the last try; every try was told.
+    pairs = [(e.i, e.j) for e in again.edges if e.kind is not EdgeKind.ODOMETRY]
+    assert len(pairs) == len(set(pairs)) == len(once.edges) - len(once) + 1
+    told = [(f["i"], f["j"]) for kind, f in watch.events if kind == "edge"]
+    assert len(told) > len(pairs)
+    assert set(told) == set(pairs)
+
+
+def test_the_scratch_of_a_search_lies_in_its_own_folder_and_is_gone_after(
+    stroll, tmp_path, monkeypatch
+):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "no such folder"))
+
+    drifting_search(stroll, tmp_path, Silent(), "graph.retry_rounds=0")
+
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_full_disk_is_told_before_the_search_begins(tmp_path):
+    resource = pytest.importorskip("resource")
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, before[1]))
+    try:
+        with pytest.raises(OSError, match=r"too large|No space") as caught:
+            NodeViews(50, Settings(), tmp_path)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+    assert caught.value.errno in {errno.EFBIG, errno.ENOSPC}
+
+
+@pytest.mark.parametrize(
+    "assignment", ["node_stride=0", "workers=0", "retry_rounds=-1", "retry_move_m=0"]
+)
+def test_settings_of_the_graph_that_make_no_sense_are_refused(assignment):
+    with pytest.raises(ConfigError, match=assignment.partition("=")[0]):
+        settings_of(f"graph.{assignment}")
+
+
+def test_pairs_are_not_registered_as_single_scans():
+    with pytest.raises(ConfigError, match=r"planes.*single scans"):
+        RegistrationSettings(solver="scans")
+
+
 # -- tiny recordings
 
 
@@ -419,7 +520,7 @@ def test_a_recording_without_a_single_point_goes_through(stroll, tmp_path):
     assert facts["rounds"] == []
 
 
-def test_all_lost_leaves_one_node(stroll):
+def test_all_lost_leaves_one_node(stroll, tmp_path):
     graph = search(
         stroll,
         stroll.truth,
@@ -427,6 +528,7 @@ def test_all_lost_leaves_one_node(stroll):
         motion_cov=np.zeros((len(stroll), 6, 6)),
         settings=settings_of(),
         progress=Silent(),
+        scratch=tmp_path,
     )
 
     assert len(graph) == 1
