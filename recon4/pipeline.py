@@ -10,6 +10,8 @@ from recon4.errors import RecordingError
 from recon4.model.rig import Rig, format_rig
 from recon4.progress import Progress, Silent
 from recon4.results import About, Summary, publish
+from recon4.review.decisions import NOTHING_DECIDED, Decided
+from recon4.review.journal import read_decided
 from recon4.settings import Settings
 from recon4.settings import preset as settings_of
 from recon4.store.hashing import hash_json, size_of
@@ -69,6 +71,7 @@ def process(
             rig=Input(hash_json(format_rig(rig)), rig) if rig else None,
             imu=Input(keys[imu], imu) if imu else None,
             gnss=Input(keys[gnss], gnss) if gnss else None,
+            decided=read_decided(out),
         )
         about = About(read_description(out), settings)
         return publish(out, runner.runs, about, progress=progress)
@@ -81,13 +84,23 @@ def run_stages(
     rig: Input | None,
     imu: Input | None,
     gnss: Input | None,
+    decided: Decided = NOTHING_DECIDED,
 ) -> None:
-    """Every stage in order; each is skipped when its artifact is there."""
+    """Every stage in order; each is skipped when its artifact is there.
+
+    Without decisions of people there is no stage ``review``, so that undoing all of them finds the
+    artifacts of before again.
+    """
     run = runner.run
     frames = run(stages.FRAMES, recordings=recordings, rig=rig, imu=imu, gnss=gnss)
     odometry = run(stages.ODOMETRY, frames=frames)
     searched = run(stages.GRAPH, frames=frames, odometry=odometry)
     graph = run(stages.VERIFICATION, graph=searched)
+    if decided:
+        decisions = Input(decided.key, decided.standing)
+        graph = run(stages.REVIEW, graph=graph, decisions=decisions)
+    else:
+        runner.skip(stages.REVIEW)
     refined = run(stages.REFINE, frames=frames, odometry=odometry, graph=graph)
     level = run(stages.LEVEL, frames=frames, refined=refined, graph=graph)
     intensity = run(stages.INTENSITY, frames=frames, level=level)

@@ -123,7 +123,7 @@ def publish(
         multiframes=runs["frames"].figures["multiframes"],
         lost=runs["odometry"].figures["lost"],
         points=runs["map"].figures["points"],
-        edges=runs["verification"].figures["edges"],
+        edges=(runs.get("review") or runs["verification"]).figures["edges"],
         warnings=(*runs["frames"].figures["warnings"], *_later_warnings(runs)),
         seconds=round(sum(run.done.seconds for run in runs.values()), 3),
         peak_bytes=max(run.done.peak_bytes for run in runs.values()),
@@ -222,6 +222,8 @@ def _facts(runs: Mapping[str, StageRun], about: About, *, created: str) -> Repor
 def _later_warnings(runs: Mapping[str, StageRun]) -> tuple[str, ...]:
     """What stages after the import have to say."""
     told = tuple(runs["odometry"].figures.get("warnings", []))
+    if "review" in runs:
+        told += tuple(runs["review"].figures["warnings"])
     level = runs["level"].figures
     if runs["frames"].figures["gnss"] and not level["crs"]:
         told += (f"the positions were not used, the map is local: {level['local']}",)

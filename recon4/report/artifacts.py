@@ -29,7 +29,7 @@ class Results:
     steps: dict[str, NDArray[Any]] = field(default_factory=dict)
     """Columns of ``steps.npz``."""
     graph: PoseGraph | None = None
-    """The latest graph: levelled, else verified, else as searched."""
+    """The latest graph: levelled, else reviewed, else verified, else as searched."""
     verification: dict[str, Any] = field(default_factory=dict)
     final: Trajectory | None = None
     """The latest trajectory after the odometry."""
@@ -49,7 +49,7 @@ def read_results(artifacts: Mapping[str, Path]) -> Results:
         imported=_json(artifacts, "frames", "report.json"),
         odometry=_latest_trajectory(artifacts, ("odometry",)),
         steps=_arrays(artifacts, "odometry", "steps.npz"),
-        graph=_latest_graph(artifacts, ("level", "verification", "graph")),
+        graph=_latest_graph(artifacts, ("level", "review", "verification", "graph")),
         verification=_json(artifacts, "verification", "verification.json"),
         final=_latest_trajectory(artifacts, ("level", "refine")),
         refine=_json(artifacts, "refine", "refine.json"),

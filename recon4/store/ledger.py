@@ -126,6 +126,11 @@ class Ledger:
         with self._errors():
             self._db.execute("INSERT OR REPLACE INTO current VALUES (?,?)", (stage, key))
 
+    def clear_current(self, stage: str) -> None:
+        """Say that the latest run has no artifact of a stage."""
+        with self._errors():
+            self._db.execute("DELETE FROM current WHERE stage = ?", (stage,))
+
     def current(self) -> dict[str, str]:
         """Stage name -> key of its artifact in the latest run."""
         with self._errors():

@@ -120,6 +120,10 @@ class StageRunner:
         )
         return artifact
 
+    def skip(self, stage: Stage) -> None:
+        """This run does without the stage: an artifact of an earlier run is not its own."""
+        self._project.ledger.clear_current(stage.name)
+
     def _finished(self, artifact: Artifact) -> FinishedStage | None:
         """Its row, if the artifact is there and whole; a damaged one is set aside, not deleted."""
         ledger = self._project.ledger

@@ -1,0 +1,99 @@
+"""Decisions put into a pose graph."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.review.decisions import Measurement, Pair, Standing, pose_of
+
+CHANGED_M = 0.1
+"""An edge that lies farther from what the person saw is named [m] …"""
+CHANGED_RAD = 0.02
+"""… or turned by more than this [rad]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Applied:
+    """A graph with the decisions in it."""
+
+    graph: PoseGraph
+    """Not solved again."""
+    missing: tuple[Standing, ...]
+    """Decisions about pairs this graph does not have, or never registered: without effect."""
+    changed: tuple[Standing, ...]
+    """Decisions about edges that measure something else than the person saw: they hold."""
+
+
+def apply_decisions(graph: PoseGraph, standing: Sequence[Standing]) -> Applied:
+    """The graph with each decision's edge accepted, rejected, measured anew or added."""
+    row_of = rows_by_pair(graph)
+    node_of = {int(frame): node for node, frame in enumerate(graph.frame_ids)}
+    edges = list(graph.edges)
+    missing, changed = [], []
+    for one in standing:
+        row = row_of.get(one.pair)
+        if row is not None:
+            if one.measurement is None and one.accepted and not is_measured(edges[row]):
+                missing.append(one)
+                continue
+            if one.measurement is None and _differs(edges[row], one):
+                changed.append(one)
+            edges[row] = _decided(edges[row], one)
+        elif one.measurement is not None and all(frame in node_of for frame in one.pair):
+            i, j = (node_of[frame] for frame in one.pair)
+            edges.append(_decided(_manual(i, j, one.measurement), one))
+        else:
+            missing.append(one)
+    return Applied(graph.with_edges(tuple(edges)), tuple(missing), tuple(changed))
+
+
+def rows_by_pair(graph: PoseGraph) -> dict[Pair, int]:
+    """Row of the edge of each pair that may be decided about: all but odometry."""
+    return {
+        (int(graph.frame_ids[edge.i]), int(graph.frame_ids[edge.j])): row
+        for row, edge in enumerate(graph.edges)
+        if edge.kind is not EdgeKind.ODOMETRY
+    }
+
+
+def is_measured(edge: Edge) -> bool:
+    """Whether its pose was registered; a pair without enough overlap has only a guess."""
+    return edge.reason is not Reason.OVERLAP
+
+
+def _decided(edge: Edge, one: Standing) -> Edge:
+    if one.measurement is not None:
+        edge = _measured(edge, one.measurement)
+    return edge.evolve(
+        verdict=Verdict.ACCEPTED if one.accepted else Verdict.REJECTED,
+        reason=Reason.NONE if one.accepted else Reason.OPERATOR,
+        decided_by=one.who,
+    )
+
+
+def _manual(i: int, j: int, measured: Measurement) -> Edge:
+    return Edge(i=i, j=j, T_i_j=measured.motion(), kind=EdgeKind.MANUAL, verdict=Verdict.ACCEPTED)
+
+
+def _measured(edge: Edge, measured: Measurement) -> Edge:
+    return edge.evolve(
+        T_i_j=measured.motion(),
+        information=measured.matrix(),
+        overlap=measured.overlap,
+        error_m=measured.error_m,
+        limit_m=measured.limit_m,
+        degeneracy=measured.degeneracy,
+        iterations=measured.iterations,
+        converged=True,
+    )
+
+
+def _differs(edge: Edge, one: Standing) -> bool:
+    if not one.T_i_j:
+        return False
+    apart = pose_of(one.T_i_j).inverse() @ edge.T_i_j
+    return bool(np.linalg.norm(apart.t) > CHANGED_M or apart.angle() > CHANGED_RAD)

@@ -1,0 +1,238 @@
+"""What people decided about pairs, and what stands of it: the fold over the journal.
+
+A decision names its pair by the ids of two multiframes, so that it survives another search.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass, replace
+from enum import StrEnum
+from typing import Any
+
+import numpy as np
+
+from recon4.errors import StoreError
+from recon4.geometry.se3 import SE3, Array
+from recon4.store.hashing import hash_json
+
+Pair = tuple[int, int]
+"""Ids of two multiframes, the earlier one first."""
+
+
+class Kind(StrEnum):
+    """What a row of the journal says."""
+
+    ACCEPT = "accept"
+    """The pair counts, whatever the program found."""
+    REJECT = "reject"
+    """The pair does not count."""
+    RESTORE = "restore"
+    """The program may decide again."""
+    REPLACE = "replace"
+    """The pair counts, with another measurement."""
+    ADD = "add"
+    """A pair the program never tried counts."""
+    UNDO = "undo"
+    """Take back the last decision that was not taken back."""
+    REDO = "redo"
+    """Decide again what was taken back last."""
+    APPROVE = "approve"
+    """A finished map was signed; changes no decision."""
+
+
+AUTOMATIC = "auto"
+"""`Edge.decided_by` of what the program decided; nobody may bear this name."""
+MEASURED = (Kind.REPLACE, Kind.ADD)
+"""Kinds that bring a measurement of their own."""
+ABOUT_PAIRS = (Kind.ACCEPT, Kind.REJECT, Kind.RESTORE, *MEASURED)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Measurement:
+    """A registration a person asked for."""
+
+    T_i_j: tuple[float, ...]
+    """Pose of ``j`` in ``i``: x y z [m], quaternion x y z w."""
+    information: tuple[float, ...]
+    """As `Edge.information`, row by row, 36 numbers."""
+    overlap: float
+    error_m: float
+    limit_m: float
+    degeneracy: float
+    iterations: int
+
+    def motion(self) -> SE3:
+        """``T_i_j``."""
+        return pose_of(self.T_i_j)
+
+    def matrix(self) -> Array:
+        """``information``, (6, 6)."""
+        return np.array(self.information).reshape(6, 6)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Decision:
+    """One row of the journal before it is written."""
+
+    kind: Kind
+    who: str
+    why: str = ""
+    pair: Pair | None = None
+    """Of decisions about a pair."""
+    T_i_j: tuple[float, ...] = ()
+    """The pose the person saw, x y z qx qy qz qw; empty where there is no edge."""
+    measurement: Measurement | None = None
+    """Of `REPLACE` and `ADD`."""
+    facts: dict[str, Any] | None = None
+    """Of `APPROVE`: version and hash."""
+
+    def __post_init__(self) -> None:
+        if self.who in ("", AUTOMATIC):
+            raise ValueError(f"a decision is made by a person, not by {self.who!r}")
+        if (self.pair is None) == (self.kind in ABOUT_PAIRS):
+            raise ValueError(
+                f"a decision to {self.kind} names {'a' if self.pair is None else 'no'} pair"
+            )
+        if self.pair is not None and not 0 <= self.pair[0] < self.pair[1]:
+            raise ValueError(f"a pair is two multiframes, the earlier first, got {self.pair}")
+        if (self.measurement is None) == (self.kind in MEASURED):
+            raise ValueError(f"a decision to {self.kind} with or without a measurement")
+
+    def body(self) -> dict[str, Any]:
+        """What the journal keeps beside its columns, as JSON values."""
+        measured = asdict(self.measurement) if self.measurement else None
+        return {"T_i_j": list(self.T_i_j), "measurement": _plain(measured), "facts": self.facts}
+
+    @staticmethod
+    def of(kind: str, who: str, why: str, *, pair: Pair | None, body: dict[str, Any]) -> Decision:
+        """From what the journal kept.
+
+        Raises:
+            StoreError: If that is no decision.
+        """
+        try:
+            told = body["measurement"]
+            return Decision(
+                kind=Kind(kind),
+                who=who,
+                why=why,
+                pair=pair,
+                T_i_j=tuple(body["T_i_j"]),
+                measurement=_measurement(told) if told else None,
+                facts=body["facts"],
+            )
+        except (KeyError, TypeError, ValueError) as error:
+            raise StoreError(f"the journal holds a row that is no decision: {error}") from error
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Standing:
+    """What holds for a pair after all decisions about it."""
+
+    pair: Pair
+    accepted: bool
+    who: str
+    """Who decided last."""
+    why: str
+    T_i_j: tuple[float, ...]
+    """What that person saw."""
+    measurement: Measurement | None = None
+    """In place of the program's."""
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain JSON values."""
+        told: dict[str, Any] = _plain(asdict(self))
+        return told
+
+
+@dataclass(frozen=True, slots=True)
+class Decided:
+    """The fold over a journal."""
+
+    standing: tuple[Standing, ...] = ()
+    """Ordered by pair."""
+    undoable: int = 0
+    """How many decisions can be taken back."""
+    redoable: int = 0
+    """How many can be decided again."""
+
+    @property
+    def key(self) -> str:
+        """SHA-256 of what stands; the same decisions have the same key, whenever they were made."""
+        return hash_json([one.to_json() for one in self.standing])
+
+    def __bool__(self) -> bool:
+        return bool(self.standing)
+
+
+NOTHING_DECIDED = Decided()
+
+
+def fold(decisions: Iterable[Decision]) -> Decided:
+    """What stands after these decisions, oldest first.
+
+    Raises:
+        StoreError: If something is taken back that was never decided.
+    """
+    done: list[Decision] = []
+    undone: list[Decision] = []
+    for decision in decisions:
+        if decision.kind in (Kind.UNDO, Kind.REDO):
+            source, target = (done, undone) if decision.kind is Kind.UNDO else (undone, done)
+            if not source:
+                raise StoreError(f"the journal holds a row to {decision.kind} nothing")
+            target.append(source.pop())
+        elif decision.kind is not Kind.APPROVE:
+            done.append(decision)
+            undone.clear()
+    standing: dict[Pair, Standing] = {}
+    for decision in done:
+        _stand(standing, decision)
+    ordered = tuple(standing[pair] for pair in sorted(standing))
+    return Decided(ordered, len(done), len(undone))
+
+
+def _stand(standing: dict[Pair, Standing], decision: Decision) -> None:
+    assert decision.pair is not None
+    before = standing.pop(decision.pair, None)
+    if decision.kind is Kind.RESTORE:
+        return
+    after = Standing(
+        pair=decision.pair,
+        accepted=decision.kind is not Kind.REJECT,
+        who=decision.who,
+        why=decision.why,
+        T_i_j=decision.T_i_j,
+        measurement=decision.measurement,
+    )
+    if decision.kind not in MEASURED and before is not None:
+        after = replace(after, measurement=before.measurement)
+    standing[decision.pair] = after
+
+
+def pose_of(numbers: Iterable[float]) -> SE3:
+    """A pose of x y z [m] and a quaternion x y z w."""
+    listed = list(numbers)
+    return SE3.from_quat(np.array(listed[3:]), np.array(listed[:3]))
+
+
+def numbers_of(T_a_b: SE3) -> tuple[float, ...]:
+    """The inverse of `pose_of`."""
+    return (*map(float, T_a_b.t), *map(float, T_a_b.quat_xyzw()))
+
+
+def _measurement(told: dict[str, Any]) -> Measurement:
+    known: dict[str, Any] = {n: math.nan if v is None else v for n, v in told.items()}
+    known |= {name: tuple(told[name]) for name in ("T_i_j", "information")}
+    return Measurement(**known)
+
+
+def _plain(value: Any) -> Any:
+    """JSON values: lists for tuples, null for NaN."""
+    if isinstance(value, dict):
+        return {name: _plain(item) for name, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,124 @@
+"""How much the map would move if one edge changed sides: what the queue is ordered by.
+
+Linearized about the poses found. An edge has the residual ``r = log(T_ij^-1 T_i^-1 T_j)`` and the
+information ``W``; ``J = [-Ad(T_j^-1 T_i), I]`` is its derivative by right twists of the poses of
+``i`` and ``j``; ``S = J H^-1 J^T`` is what the whole graph knows about that relative pose
+(``H`` = sum of ``J^T W J`` over the edges in it). Then, by the matrix inversion lemma,
+
+    in the graph, taken out:    d = (I - S W)^-1 S W r
+    not in it, put in:          d = -S (S + W^-1)^-1 r
+
+is how the relative pose of the two would change. Its size, ``|v| + 5 m |omega|``, is the influence.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_array
+from scipy.sparse.linalg import splu
+
+from recon4.geometry.se3 import Array
+from recon4.kernels.selected_inverse import entries, selected_inverse
+from recon4.model.pose_graph import PoseGraph
+from recon4.pose_graph.relations import Relations, adjoint, relations
+
+ARM_M = 5.0
+"""A turn counts as what it moves at this distance [m]."""
+_NOTHING = 1e-12
+"""Share of the largest information that an entry weighs which is only to have a place."""
+_GAUGE = 1e9
+
+
+def influence_m(graph: PoseGraph, asked: NDArray[np.bool_]) -> Array:
+    """Influence of edges [m].
+
+    Args:
+        graph: Solved.
+        asked: Edges to look at, (E,).
+
+    Returns:
+        (E,), NaN where not asked.
+    """
+    of = relations(graph.edges)
+    out = np.full(len(of), np.nan)
+    rows = np.flatnonzero(asked)
+    if len(rows) == 0:
+        return out
+    T_j_i = (graph.T_map_body[of.i].inverse() @ graph.T_map_body[of.j]).inverse()
+    A = -adjoint(T_j_i)
+    S = _relative_covariance(of, A, rows, nodes=len(graph))
+    r = (of.T_i_j[rows].inverse() @ T_j_i[rows].inverse()).log()
+    out[rows] = _size(_changes(S, of.information[rows], r, of.in_graph[rows]))
+    return out
+
+
+def _changes(S: Array, W: Array, r: Array, in_graph: NDArray[np.bool_]) -> Array:
+    """Change of the relative pose of each edge's ends, (M, 6)."""
+    out = np.empty_like(r)
+    eye = np.eye(6)
+    share = S @ W
+    pull = share @ r[..., None]
+    used, free = in_graph, ~in_graph
+    # The little more than one keeps an edge that alone holds its node from dividing by zero.
+    out[used] = np.linalg.solve((1.0 + 1e-6) * eye - share[used], pull[used])[..., 0]
+    # S (S + W^-1)^-1 r = (S W + I)^-1 S W r: no inverse of W is needed.
+    out[free] = -np.linalg.solve(share[free] + eye, pull[free])[..., 0]
+    return out
+
+
+def _size(change: Array) -> Array:
+    turn, shift = (np.linalg.norm(part, axis=1) for part in (change[:, :3], change[:, 3:]))
+    size: Array = shift + ARM_M * turn
+    return size
+
+
+def _relative_covariance(of: Relations, A: Array, rows: NDArray[np.intp], *, nodes: int) -> Array:
+    """``S`` of some edges, (M, 6, 6), from the entries of ``H^-1`` at their nodes."""
+    factor = splu(
+        _hessian(of, A, rows, nodes=nodes),
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
+    )
+    lower = factor.L.tocsc()
+    lower.sort_indices()
+    start, row = lower.indptr.astype(np.int64), lower.indices.astype(np.int64)
+    inverse = selected_inverse(start, row, lower.data, factor.U.diagonal())
+    axes = factor.perm_c.astype(np.int64).reshape(nodes, 6)
+
+    def blocks(a: NDArray[np.intp], b: NDArray[np.intp]) -> Array:
+        at_a, at_b = np.broadcast_arrays(axes[a][:, :, None], axes[b][:, None, :])
+        found: Array = entries(start, row, inverse, at_a.ravel(), at_b.ravel())
+        return found.reshape(-1, 6, 6)
+
+    i, j = of.i[rows], of.j[rows]
+    A = A[rows]
+    cross = A @ blocks(i, j)
+    both: Array = blocks(j, j) + cross + np.swapaxes(cross, 1, 2)
+    return both + A @ blocks(i, i) @ np.swapaxes(A, 1, 2)
+
+
+def _hessian(of: Relations, A: Array, asked: NDArray[np.intp], *, nodes: int) -> Any:
+    """``H`` of the edges in the graph, the first node held, (6 N, 6 N).
+
+    What is asked about has a place in the factor only where ``H`` is not zero, so all blocks of
+    those edges and of the nodes weigh next to nothing at least.
+    """
+    used = np.flatnonzero(of.in_graph)
+    i, j, W, A = of.i[used], of.j[used], of.information[used], A[used]
+    left = np.swapaxes(A, 1, 2) @ W
+    blocks = [(i, i, left @ A), (i, j, left), (j, i, W @ A), (j, j, W)]
+    every = np.arange(nodes)
+    a = np.concatenate([of.i[asked], of.j[asked], every])
+    b = np.concatenate([of.j[asked], of.i[asked], every])
+    blocks.append((a, b, np.full((len(a), 6, 6), _NOTHING * float(np.abs(W).max(initial=1.0)))))
+    first = np.zeros(1, np.intp)
+    blocks.append((first, first, _GAUGE * np.eye(6)[None]))
+    row, column = np.meshgrid(np.arange(6), np.arange(6), indexing="ij")
+    at_row = np.concatenate([(6 * a[:, None, None] + row).ravel() for a, _, _ in blocks])
+    at_column = np.concatenate([(6 * b[:, None, None] + column).ravel() for _, b, _ in blocks])
+    values = np.concatenate([block.ravel() for _, _, block in blocks])
+    return csc_array((values, (at_row, at_column)), shape=(6 * nodes, 6 * nodes))

@@ -1,0 +1,214 @@
+"""The journal of a project: every decision, who, when and why, in rows nobody changes again.
+
+``decisions.sqlite`` (WAL, synchronous FULL). Each row holds the hash of the one before it, so a row
+that is changed, removed or put in between shows (`broken`).
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import sqlite3
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from recon4.errors import StoreError
+from recon4.review.decisions import Decided, Decision, Kind, fold
+from recon4.store.atomic import raise_if_full
+
+NAME = "decisions.sqlite"
+START = "0" * 64
+"""What the first row takes for the hash of the one before."""
+_BUSY_S = 10.0
+
+_SCHEMA = """
+CREATE TABLE IF NOT EXISTS journal (
+    seq INTEGER PRIMARY KEY,
+    time TEXT NOT NULL,
+    who TEXT NOT NULL,
+    kind TEXT NOT NULL,
+    frame_i INTEGER,
+    frame_j INTEGER,
+    body TEXT NOT NULL,
+    why TEXT NOT NULL,
+    prev_hash TEXT NOT NULL,
+    hash TEXT NOT NULL
+);
+CREATE TRIGGER IF NOT EXISTS no_change BEFORE UPDATE ON journal
+    BEGIN SELECT RAISE(ABORT, 'the journal is only appended to'); END;
+CREATE TRIGGER IF NOT EXISTS no_removal BEFORE DELETE ON journal
+    BEGIN SELECT RAISE(ABORT, 'the journal is only appended to'); END;
+"""
+_COLUMNS = "seq, time, who, kind, frame_i, frame_j, body, why, prev_hash, hash"
+
+
+class NothingToTakeBack(StoreError):
+    """Undo or redo with nothing left to undo or redo."""
+
+
+class JournalMoved(StoreError):
+    """Somebody else decided something meanwhile."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One row; the fields are the columns."""
+
+    seq: int
+    """Counts from 1 without holes."""
+    time: str
+    """UTC, ISO 8601 with milliseconds."""
+    who: str
+    kind: str
+    frame_i: int | None
+    frame_j: int | None
+    body: str
+    """JSON text, see `Decision.body`."""
+    why: str
+    prev_hash: str
+    hash: str
+
+    def sealed(self) -> str:
+        """The hash this row must have."""
+        told = [self.seq, self.time, self.who, self.kind, self.frame_i, self.frame_j, self.body]
+        text = json.dumps([*told, self.why, self.prev_hash], separators=(",", ":"))
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    def decision(self) -> Decision:
+        """What was decided.
+
+        Raises:
+            StoreError: If the row is no decision.
+        """
+        pair = (
+            None if self.frame_i is None or self.frame_j is None else (self.frame_i, self.frame_j)
+        )
+        try:
+            body = json.loads(self.body)
+        except ValueError as error:
+            raise StoreError(f"row {self.seq} of the journal is damaged: {error}") from error
+        return Decision.of(self.kind, self.who, self.why, pair=pair, body=body)
+
+
+def read_rows(root: Path) -> list[Row]:
+    """All rows of a project, oldest first; none if nothing was ever decided.
+
+    Raises:
+        StoreError: If the file is damaged.
+    """
+    path = root / NAME
+    if not path.exists():
+        return []
+    with _database(path) as db:
+        return _rows(db)
+
+
+def read_decided(root: Path) -> Decided:
+    """What stands in a project.
+
+    Raises:
+        StoreError: If the journal is damaged.
+    """
+    return fold(row.decision() for row in read_rows(root))
+
+
+def append(root: Path, decision: Decision, *, after_seq: int | None = None) -> Row:
+    """Add a row; it is on the disk when this returns.
+
+    Args:
+        root: The project folder.
+        decision: What was decided.
+        after_seq: Refuse if the last row is another one; None = any.
+
+    Raises:
+        NothingToTakeBack: If it is an undo or redo and there is nothing to take back.
+        JournalMoved: If the last row is not ``after_seq``.
+        StoreError: If the file is damaged or cannot be written (`NoSpace`: disk full).
+    """
+    with _database(root / NAME, write=True) as db:
+        db.execute("BEGIN IMMEDIATE")  # from here on no other writer
+        rows = _rows(db)
+        _check(rows, decision, after_seq)
+        row = _next(rows, decision)
+        db.execute(
+            f"INSERT INTO journal ({_COLUMNS}) VALUES (?,?,?,?,?,?,?,?,?,?)",
+            tuple(getattr(row, name) for name in _COLUMNS.split(", ")),
+        )
+        db.execute("COMMIT")
+    return row
+
+
+def broken(rows: Sequence[Row]) -> list[str]:
+    """What is wrong with the chain of hashes, in words; empty = as it was written."""
+    told, before = [], START
+    for place, row in enumerate(rows, start=1):
+        if row.seq != place:
+            told.append(f"row {place} is missing")
+            break
+        if row.prev_hash != before:
+            told.append(f"row {place} does not follow the row before it")
+        if row.sealed() != row.hash:
+            told.append(f"row {place} ({row.kind} by {row.who}) was changed")
+        before = row.hash
+    return told
+
+
+def head(rows: Sequence[Row]) -> str:
+    """Hash of the last row."""
+    return rows[-1].hash if rows else START
+
+
+def _check(rows: Sequence[Row], decision: Decision, after_seq: int | None) -> None:
+    if after_seq is not None and after_seq != len(rows):
+        raise JournalMoved(
+            f"somebody decided something meanwhile ({len(rows) - after_seq} more rows); look again"
+        )
+    if decision.kind in (Kind.UNDO, Kind.REDO):
+        decided = fold(row.decision() for row in rows)
+        left = decided.undoable if decision.kind is Kind.UNDO else decided.redoable
+        if not left:
+            raise NothingToTakeBack(f"there is nothing to {decision.kind}")
+
+
+def _next(rows: Sequence[Row], decision: Decision) -> Row:
+    frame_i, frame_j = decision.pair or (None, None)
+    row = Row(
+        seq=len(rows) + 1,
+        time=datetime.now(UTC).isoformat(timespec="milliseconds"),
+        who=decision.who,
+        kind=str(decision.kind),
+        frame_i=frame_i,
+        frame_j=frame_j,
+        body=json.dumps(decision.body(), separators=(",", ":"), allow_nan=False),
+        why=decision.why,
+        prev_hash=head(rows),
+        hash="",
+    )
+    return Row(
+        **{name: getattr(row, name) for name in _COLUMNS.split(", ")} | {"hash": row.sealed()}
+    )
+
+
+def _rows(db: sqlite3.Connection) -> list[Row]:
+    return [Row(*values) for values in db.execute(f"SELECT {_COLUMNS} FROM journal ORDER BY seq")]
+
+
+@contextmanager
+def _database(path: Path, *, write: bool = False) -> Iterator[sqlite3.Connection]:
+    db: sqlite3.Connection | None = None
+    try:
+        db = sqlite3.connect(path, isolation_level=None, timeout=_BUSY_S)
+        db.execute("PRAGMA synchronous = FULL")
+        if write:
+            db.execute("PRAGMA journal_mode = WAL")
+            db.executescript(_SCHEMA)
+        yield db
+    except sqlite3.Error as error:
+        raise_if_full(error, path)
+        raise StoreError(f"{path} is damaged or cannot be used: {error}") from error
+    finally:
+        if db is not None:
+            db.close()  # what was not committed is rolled back

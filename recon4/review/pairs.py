@@ -1,0 +1,231 @@
+"""Two places of the walk laid over each other: their points, and a registration from a first guess.
+
+Only nodes of the graph can be joined; a moment between two of them means the nearer one.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from tempfile import gettempdir
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import ConfigError
+from recon4.geometry.se3 import SE3, Array
+from recon4.mapping.place import place
+from recon4.model.pose_graph import EdgeKind, PoseGraph, Reason
+from recon4.pose_graph.pairs import Pair as TriedPair
+from recon4.pose_graph.pairs import PairRegistrar
+from recon4.progress import Silent
+from recon4.registration.overlap import View, overlap
+from recon4.registration.submap import NodeViews, Submaps
+from recon4.review.apply import is_measured, rows_by_pair
+from recon4.review.decisions import Measurement, Pair, numbers_of, pose_of
+from recon4.review.queue import MOST_PATHS, alternative_paths
+from recon4.review.source import Source
+from recon4.store.arrays import load_arrays, load_trajectory
+from recon4.store.atomic import null_for_nan
+
+MAGIC = b"R4PP"
+LAYOUT = struct.Struct("<4sIII")
+"""Head of the points: magic, version 1, numbers of points of i and of j; then float32 x y z of
+each in the body frame of its own multiframe [m], little-endian."""
+MOST_POINTS = 30_000
+"""Of each of the two."""
+MOST_REACH = 10
+"""Multiframes before and after that may be shown along."""
+_VOXEL_M = 0.04
+_MOST_RANGE_M = 60.0
+
+
+@dataclass(frozen=True, slots=True)
+class Alignment:
+    """What a registration from a person's guess found."""
+
+    measurement: Measurement
+    converged: bool
+    reason: str
+    """Why the program would turn it down; empty = it would not."""
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain JSON values."""
+        told: dict[str, Any] = null_for_nan(asdict(self))
+        return told
+
+
+def pair_points(root: Path, pair: Pair, reach: int) -> bytes:
+    """Points of two multiframes, each with ``reach`` others before and after, as `LAYOUT`.
+
+    Raises:
+        ConfigError: If one of them is no node of the graph, or the reach is too large.
+        StoreError: If artifacts are missing or damaged.
+    """
+    if not 0 <= reach <= MOST_REACH:
+        raise ConfigError(f"reach must be 0 to {MOST_REACH} multiframes, got {reach}")
+    source = Source.of(root)
+    nodes_of(source.verified, pair)
+    clouds = [_cloud(source, frame, reach) for frame in pair]
+    head = LAYOUT.pack(MAGIC, 1, len(clouds[0]), len(clouds[1]))
+    return head + b"".join(np.ascontiguousarray(cloud, "<f4").tobytes() for cloud in clouds)
+
+
+def pair_facts(root: Path, pair: Pair) -> dict[str, Any]:
+    """Poses and alternative paths of a pair, tried or not, as JSON values.
+
+    Raises:
+        ConfigError: If one of them is no node of the graph.
+        StoreError: If there is no verified graph.
+    """
+    source = Source.of(root)
+    graph = source.verified
+    i, j = nodes_of(graph, pair)
+    row = rows_by_pair(graph).get(pair)
+    edge = graph.edges[row] if row is not None else None
+    predicted = graph.T_map_body[i].inverse() @ graph.T_map_body[j]
+    measured = edge is not None and is_measured(edge)
+    T_i_j = edge.T_i_j if edge is not None and measured else predicted
+    paths = alternative_paths(graph, i, j, T_i_j, settings=source.settings)
+    told: dict[str, Any] = null_for_nan(
+        {
+            "pair": list(pair),
+            "t_ns": [int(graph.t_ns[node]) for node in (i, j)],
+            "predicted": numbers_of(predicted),
+            "odometry": numbers_of(_by_odometry(source, i, j) or predicted),
+            "measured": numbers_of(T_i_j) if measured else None,
+            "upright": _upright(source, graph, i),
+            "apart_m": float(np.linalg.norm((predicted.inverse() @ T_i_j).t)),
+            "apart_rad": float((predicted.inverse() @ T_i_j).angle()),
+            "paths": [asdict(path) for path in paths[:MOST_PATHS]],
+            "path_count": len(paths),
+        }
+    )
+    return told
+
+
+def align(root: Path, pair: Pair, guess: tuple[float, ...]) -> Alignment:
+    """Register two nodes as the search does, from a person's guess.
+
+    Args:
+        root: The project folder.
+        pair: Two multiframes that are nodes.
+        guess: First ``T_i_j``, x y z [m] and quaternion x y z w.
+
+    Raises:
+        ConfigError: If one of them is no node, or the guess is no pose.
+        StoreError: If artifacts are missing or damaged.
+    """
+    T_guess = _checked(guess)
+    source = Source.of(root)
+    nodes_of(source.verified, pair)
+    # What a person points at is tried, however little the two see of each other.
+    settings = replace(source.settings, overlap=replace(source.settings.overlap, threshold=0.0))
+    lost = _lost(source)
+    rows = np.array(pair, dtype=np.intp)
+    views = NodeViews(2, settings, Path(gettempdir()))
+
+    def submaps() -> Submaps:
+        return Submaps(source.frames, source.odometry, rows, settings, skip=lost)
+
+    registrar = PairRegistrar(submaps, views, settings)
+    registrar.prepare(2, Silent())
+    tried = registrar.register([TriedPair(0, 1, EdgeKind.MANUAL, T_guess)], Silent())[0]
+    ends = [View(views.ends(k).reshape(-1, 3), views.nearest_m(k)) for k in (0, 1)]
+    found = Measurement(
+        T_i_j=numbers_of(tried.T_i_j),
+        information=tuple(tried.information.ravel().tolist()),
+        overlap=overlap(ends[0], ends[1], tried.T_i_j, settings.overlap),
+        error_m=tried.error_m,
+        limit_m=tried.limit_m,
+        degeneracy=tried.degeneracy,
+        iterations=tried.iterations,
+    )
+    reason = tried.reason
+    if not reason and found.overlap < source.settings.overlap.threshold:
+        reason = Reason.OVERLAP
+    return Alignment(found, tried.converged, str(reason))
+
+
+def walk_facts(root: Path) -> dict[str, Any]:
+    """The nodes for a map of the walk and its sliders: frame ids, seconds, x y z [m].
+
+    Raises:
+        StoreError: If there is no verified graph.
+    """
+    graph = Source.of(root).verified
+    seconds = (graph.t_ns - graph.t_ns[0]) / 1e9
+    return {
+        "frames": graph.frame_ids.tolist(),
+        "t_s": np.round(seconds, 3).tolist(),
+        "xyz_m": np.round(graph.T_map_body.t, 3).tolist(),
+    }
+
+
+def nodes_of(graph: PoseGraph, pair: Pair) -> tuple[int, int]:
+    """Rows of the two nodes.
+
+    Raises:
+        ConfigError: If there is no such node.
+    """
+    rows = np.searchsorted(graph.frame_ids, pair)
+    for frame, row in zip(pair, rows, strict=True):
+        if row == len(graph) or graph.frame_ids[row] != frame:
+            raise ConfigError(f"multiframe {frame} is no node of the pose graph")
+    return int(rows[0]), int(rows[1])
+
+
+def _cloud(source: Source, frame: int, reach: int) -> NDArray[np.float64]:
+    """Points around a multiframe in its body frame [m], (N, 3), thinned evenly."""
+    frames, odometry = source.frames, source.odometry
+    near = range(max(frame - reach, 0), min(frame + reach + 1, len(frames)))
+    parts = [place(frames[k], odometry, frames.rig) for k in near]
+    T_odom_body = odometry.at(frames.t_mid_ns[frame : frame + 1])[0]
+    p_body = T_odom_body.inverse() @ np.concatenate(parts)
+    p_body = p_body[np.linalg.norm(p_body, axis=1) < _MOST_RANGE_M]
+    return _thinned(p_body)
+
+
+def _thinned(p_body: Array) -> Array:
+    """One point a small cube, then evenly few enough."""
+    keys = np.floor(p_body / _VOXEL_M).astype(np.int64) + (1 << 20)
+    packed = (keys[:, 0] << 42) | (keys[:, 1] << 21) | keys[:, 2]
+    rows = np.sort(np.unique(packed, return_index=True)[1])
+    if len(rows) > MOST_POINTS:
+        rows = rows[np.linspace(0, len(rows) - 1, MOST_POINTS).astype(np.intp)]
+    return p_body[rows]
+
+
+def _upright(source: Source, graph: PoseGraph, node: int) -> list[float]:
+    """Rotation of the body of a node in a levelled frame, as a quaternion x y z w."""
+    folder = source.artifacts.get("level")
+    if folder is not None:
+        levelled = load_trajectory(folder / "trajectory.npz")
+        at = int(np.clip(graph.t_ns[node], levelled.t_ns[0], levelled.t_ns[-1]))
+        quat = levelled.at(np.array([at]))[0].quat_xyzw()
+    else:
+        quat = graph.T_map_body[node].quat_xyzw()
+    listed: list[float] = quat.tolist()
+    return listed
+
+
+def _by_odometry(source: Source, i: int, j: int) -> SE3 | None:
+    if "odometry" not in source.artifacts:
+        return None
+    T = source.odometry.at(source.verified.t_ns[[i, j]])
+    return T[0].inverse() @ T[1]
+
+
+def _lost(source: Source) -> NDArray[np.bool_]:
+    steps = load_arrays(source.artifacts["odometry"] / "steps.npz", ["lost"])
+    lost: NDArray[np.bool_] = steps["lost"]
+    return lost
+
+
+def _checked(guess: tuple[float, ...]) -> SE3:
+    numbers = np.asarray(guess, dtype=np.float64)
+    if numbers.shape != (7,) or not np.isfinite(numbers).all() or not numbers[3:].any():
+        raise ConfigError("a guess is x y z and a quaternion x y z w, all finite")
+    return pose_of(numbers.tolist())

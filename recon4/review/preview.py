@@ -1,0 +1,80 @@
+"""A quick look at what decisions do to the graph, without running the pipeline."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+from recon4.model.pose_graph import PoseGraph
+from recon4.review.decisions import AUTOMATIC, Decided
+from recon4.review.solve import Reviewed, difference, facts_of, pair_of, review
+from recon4.review.source import Source
+
+_REMEMBERED = 6
+_solved: OrderedDict[tuple[str, str], Reviewed] = OrderedDict()
+"""The latest solutions of this process: the one before a decision was the one after the last."""
+_sources: OrderedDict[str, Source] = OrderedDict()
+
+
+def preview(root: Path, decided: Decided, before: Decided) -> dict[str, Any]:
+    """What the stage ``review`` would find, and what changed since another set of decisions.
+
+    Args:
+        root: The project folder.
+        decided: What stands now.
+        before: What stood before the last decision.
+
+    Returns:
+        JSON values: ``key`` of the decisions, ``last`` and ``all`` (`Difference` to before the last
+        decision and to no decision), ``conflicts``, ``missing``, ``changed``, ``edges`` (squared
+        residual and verdict of every pair somebody decided about), ``seconds``.
+
+    Raises:
+        StoreError: If there is no verified graph.
+        GraphError: If the graph cannot be solved.
+    """
+    began_s = perf_counter()
+    source = _source(root)
+    earlier, now = _review(source, before).graph, _review(source, decided)
+    told: dict[str, Any] = {
+        "key": decided.key,
+        "last": difference(earlier, now.graph).to_json(),
+        "all": difference(source.verified, now.graph).to_json(),
+        "edges": _decided_edges(now.graph),
+    }
+    told |= facts_of(now, ())
+    del told["decisions"]
+    return told | {"seconds": round(perf_counter() - began_s, 3)}
+
+
+def _review(source: Source, decided: Decided) -> Reviewed:
+    if not decided:
+        return Reviewed(source.verified, (), (), ())
+    known = (source.key, decided.key)
+    if known not in _solved:
+        _solved[known] = review(source.verified, decided.standing, settings=source.settings)
+        if len(_solved) > _REMEMBERED:
+            _solved.popitem(last=False)
+    _solved.move_to_end(known)
+    return _solved[known]
+
+
+def _source(root: Path) -> Source:
+    """The project's graph, read once."""
+    found = Source.of(root)
+    known = f"{root}:{found.key}"
+    if known not in _sources:
+        _sources[known] = found
+        if len(_sources) > _REMEMBERED:
+            _sources.popitem(last=False)
+    return _sources[known]
+
+
+def _decided_edges(graph: PoseGraph) -> list[dict[str, Any]]:
+    return [
+        {"pair": list(pair_of(graph, edge)), "chi2": edge.chi2, "verdict": str(edge.verdict)}
+        for edge in graph.edges
+        if edge.decided_by != AUTOMATIC
+    ]

@@ -1,0 +1,165 @@
+"""The pairs a person may decide about, those that move the map most first."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import SE3, Array
+from recon4.kernels.paths import path_medians
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph
+from recon4.pose_graph.paths import PathIndex
+from recon4.pose_graph.relations import relations
+from recon4.review.apply import is_measured
+from recon4.review.influence import influence_m
+from recon4.review.solve import pair_of
+from recon4.review.source import Source
+from recon4.settings import Settings
+
+COLUMNS = (
+    "frame_i", "frame_j", "t_i_s", "t_j_s", "kind", "verdict", "reason", "measured", "influence_m",
+    "overlap", "error_m", "limit_m", "degeneracy", "verification_m", "paths", "chi2",
+)  # fmt: skip
+"""What is told of each pair, in this order."""
+MOST_PATHS = 60
+"""So many alternative paths of a pair are told one by one, the worst first."""
+
+
+def queue_json(root: Path) -> bytes:
+    """All pairs but odometry as JSON: ``key``, ``columns`` and ``rows``, largest influence first.
+
+    Figures are those of the verified graph, before any decision, so that the order does not change
+    under the hands of who decides. The same graph gives the same bytes.
+
+    Raises:
+        StoreError: If there is no verified graph.
+    """
+    source = Source.of(root)
+    graph = source.verified
+    rows = queue_rows(graph, settings=source.settings)
+    told = {
+        "key": source.key,
+        "began_ns": int(graph.t_ns[0]),
+        "limit_m": source.settings.verification.limit_m,
+        "columns": COLUMNS,
+        "rows": rows,
+    }
+    return json.dumps(told, separators=(",", ":"), allow_nan=False).encode()
+
+
+def queue_rows(graph: PoseGraph, *, settings: Settings) -> list[list[Any]]:
+    """One row a pair, as `COLUMNS`."""
+    asked = np.array([edge.kind is not EdgeKind.ODOMETRY for edge in graph.edges], np.bool_)
+    measured = np.array([is_measured(edge) for edge in graph.edges], np.bool_)
+    influence = np.nan_to_num(influence_m(graph, asked & measured))
+    medians, counts = medians_of_all(graph, settings=settings)
+    rows = np.flatnonzero(asked)
+    order = rows[np.lexsort((rows, -influence[rows]))]
+    return [
+        _row(
+            graph,
+            graph.edges[k],
+            influence=float(influence[k]),
+            median_m=float(medians[k]),
+            paths=int(counts[k]),
+        )
+        for k in order.tolist()
+    ]
+
+
+def medians_of_all(graph: PoseGraph, *, settings: Settings) -> tuple[Array, NDArray[np.int64]]:
+    """Median disagreement with the alternative paths, also of edges that are not in the graph.
+
+    Returns:
+        Medians [m], NaN without a path, and numbers of paths, (E,) each.
+    """
+    index = _index(graph, settings)
+    of = index.of
+    rows = np.arange(len(of), dtype=np.int64)
+    medians, counts = path_medians(
+        rows,
+        *(of.i, of.j, of.T_i_j.t, index.start, index.neighbor, index.edge),
+        *(index.T_slot.R, index.T_slot.t, index.alive, index.max_edges, index.with_itself),
+    )
+    return medians, counts
+
+
+@dataclass(frozen=True, slots=True)
+class AlternativePath:
+    """A way around an edge."""
+
+    frames: tuple[int, ...]
+    """Multiframes from one end to the other."""
+    residual_m: float
+    """How far its end lies from where the edge says."""
+    residual_rad: float
+
+
+def alternative_paths(
+    graph: PoseGraph, i: int, j: int, T_i_j: SE3, *, settings: Settings
+) -> list[AlternativePath]:
+    """All simple paths between two nodes that the verification looks at, worst first.
+
+    Args:
+        graph: Its edges in the graph may be walked.
+        i: First node.
+        j: Second node.
+        T_i_j: What the edge in question says.
+        settings: How long paths may be.
+    """
+    index = _index(graph, settings)
+    own = {
+        row for row, e in enumerate(graph.edges)
+        if (e.i, e.j) == (i, j) and e.kind is not EdgeKind.ODOMETRY
+    }  # fmt: skip
+    found: list[AlternativePath] = []
+    stack: list[tuple[tuple[int, ...], SE3]] = [((i,), SE3.identity())]
+    while stack:
+        nodes, T = stack.pop()
+        for slot in range(int(index.start[nodes[-1]]), int(index.start[nodes[-1] + 1])):
+            after, row = int(index.neighbor[slot]), int(index.edge[slot])
+            if after in nodes or row in own or not index.alive[row]:
+                continue
+            T_after = T @ index.T_slot[slot]
+            if after == j:
+                found.append(_told(graph, (*nodes, j), T_i_j.inverse() @ T_after))
+            elif len(nodes) < index.max_edges:
+                stack.append(((*nodes, after), T_after))
+    return sorted(found, key=lambda path: (-path.residual_m, path.frames))
+
+
+def _told(graph: PoseGraph, nodes: tuple[int, ...], apart: SE3) -> AlternativePath:
+    frames = tuple(int(graph.frame_ids[node]) for node in nodes)
+    return AlternativePath(frames, float(np.linalg.norm(apart.t)), float(apart.angle()))
+
+
+def _index(graph: PoseGraph, settings: Settings) -> PathIndex:
+    v = settings.verification
+    cycle = v.variant == "cycle"
+    return PathIndex.build(
+        relations(graph.edges),
+        nodes=len(graph),
+        max_edges=2 if cycle else v.max_path_edges,
+        with_itself=cycle,
+    )
+
+
+def _row(
+    graph: PoseGraph, edge: Edge, *, influence: float, median_m: float, paths: int
+) -> list[Any]:
+    frame_i, frame_j = pair_of(graph, edge)
+    began_ns = int(graph.t_ns[0])
+    seconds = [round((int(graph.t_ns[node]) - began_ns) / 1e9, 3) for node in (edge.i, edge.j)]
+    numbers = (
+        influence, edge.overlap, edge.error_m, edge.limit_m, edge.degeneracy, median_m,
+    )  # fmt: skip
+    told = [float(f"{v:.5g}") if math.isfinite(v) else None for v in numbers]
+    chi2 = float(f"{edge.chi2:.5g}") if math.isfinite(edge.chi2) else None
+    words = [str(edge.kind), str(edge.verdict), str(edge.reason), is_measured(edge)]
+    return [frame_i, frame_j, *seconds, *words, *told, paths, chi2]

@@ -1,0 +1,295 @@
+"""The graph after the decisions of people: verified and solved again, and what that changed.
+
+The same function makes the stage ``review`` and the quick look after each decision.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import SE3
+from recon4.model.pose_graph import Edge, PoseGraph, Verdict
+from recon4.pose_graph.files import load_graph, save_graph
+from recon4.pose_graph.relations import relations, squared_residuals
+from recon4.pose_graph.robust import outlier_limit
+from recon4.pose_graph.solve import optimize
+from recon4.pose_graph.verification import verify
+from recon4.progress import Progress, Silent
+from recon4.review.apply import apply_decisions
+from recon4.review.decisions import AUTOMATIC, Pair, Standing
+from recon4.settings import Settings
+from recon4.store.atomic import null_for_nan, write_json
+
+MOST_MOVES = 10
+_APART_NODES = 5
+"""Moves of nodes nearer to each other than this are one move."""
+_LEAST_MOVE_M = 1e-4
+UNVERIFIED_MODES = ("10", "overlap")
+"""Modes of V Table 3.2 that stop before verification."""
+
+
+@dataclass(frozen=True, slots=True)
+class Conflict:
+    """An edge a person accepted that does not fit the graph: it counts all the same."""
+
+    pair: Pair
+    chi2: float
+    """Squared residual."""
+    limit: float
+    """Beyond this the program would have called it an outlier."""
+    residual_m: float
+    residual_rad: float
+    who: str
+
+
+@dataclass(frozen=True, slots=True)
+class Move:
+    """How far a node went."""
+
+    node: int
+    frame_id: int
+    t_ns: int
+    moved_m: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Reviewed:
+    """A graph with the decisions in it, solved."""
+
+    graph: PoseGraph
+    conflicts: tuple[Conflict, ...]
+    """Worst first."""
+    missing: tuple[Standing, ...]
+    """Decisions without effect: their pair is not in this graph, or was never registered."""
+    changed: tuple[Standing, ...]
+    """Decisions about edges that measure something else than the person saw."""
+
+    @property
+    def chi2(self) -> float:
+        """Sum over the edges in the graph."""
+        return chi2_of(self.graph)[0]
+
+    def warnings(self) -> list[str]:
+        """What a person should know, in words."""
+        told = []
+        if self.conflicts:
+            told.append(
+                f"{len(self.conflicts)} accepted by an operator do not fit the rest of the graph: "
+                + ", ".join(_named(one.pair) for one in self.conflicts[:5])
+            )
+        if self.missing:
+            told.append(
+                f"{len(self.missing)} decisions are about pairs that are not there any more: "
+                + ", ".join(_named(one.pair) for one in self.missing[:5])
+            )
+        if self.changed:
+            told.append(
+                f"{len(self.changed)} decisions are about pairs that now measure something else: "
+                + ", ".join(_named(one.pair) for one in self.changed[:5])
+            )
+        return told
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Difference:
+    """What lies between two solved graphs of the same nodes."""
+
+    chi2_before: float
+    chi2_after: float
+    edges_before: int
+    """In the graph."""
+    edges_after: int
+    moves: tuple[Move, ...]
+    """The largest, one a place, largest first."""
+    turned_down: tuple[Pair, ...]
+    """Pairs the program dropped of its own accord: they fit no longer."""
+    taken_back: tuple[Pair, ...]
+    """Pairs the program took in again of its own accord."""
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain JSON values."""
+        told: dict[str, Any] = null_for_nan(
+            {
+                "chi2_before": self.chi2_before,
+                "chi2_after": self.chi2_after,
+                "edges_before": self.edges_before,
+                "edges_after": self.edges_after,
+                "moves": [_fields(move) for move in self.moves],
+                "turned_down": [list(pair) for pair in self.turned_down],
+                "taken_back": [list(pair) for pair in self.taken_back],
+            }
+        )
+        return told
+
+
+def run_review(
+    graph: Path,
+    decisions: Sequence[Standing],
+    out: Path,
+    *,
+    settings: Settings,
+    progress: Progress,
+) -> dict[str, Any]:
+    """The stage ``review``: the verified graph with the decisions of people in it.
+
+    Args:
+        graph: Folder of the verified graph.
+        decisions: What stands.
+        out: Receives ``graph.npz``, ``edges.json`` and ``review.json``.
+        settings: Uses verification and graph.
+        progress: Counts the steps.
+    """
+    verified = load_graph(graph)
+    reviewed = review(verified, decisions, settings=settings, progress=progress)
+    save_graph(out, reviewed.graph)
+    told = difference(verified, reviewed.graph).to_json() | facts_of(reviewed, decisions)
+    write_json(out / "review.json", told)
+    counts = {str(v): sum(e.verdict is v for e in reviewed.graph.edges) for v in Verdict}
+    return {
+        "edges": counts,
+        "decisions": len(decisions),
+        "conflicts": len(reviewed.conflicts),
+        "missing": len(reviewed.missing),
+        "chi2_before": told["chi2_before"],
+        "chi2_after": told["chi2_after"],
+        "warnings": reviewed.warnings(),
+    }
+
+
+def review(
+    verified: PoseGraph,
+    decisions: Sequence[Standing],
+    *,
+    settings: Settings,
+    progress: Progress | None = None,
+) -> Reviewed:
+    """Put the decisions in, verify and solve again.
+
+    What a person accepted always counts (it is protected, like odometry); what the program thinks
+    of the other pairs is asked anew, because it may have thought so only for a pair that is now
+    rejected. Nothing is dropped in silence: accepted edges that do not fit are `Conflict`.
+
+    Raises:
+        GraphError: If the graph cannot be solved.
+    """
+    applied = apply_decisions(verified, decisions)
+    if settings.graph.mode in UNVERIFIED_MODES:
+        graph = _solved(applied.graph)
+    else:
+        graph = verify(
+            applied.graph, settings=settings.verification, progress=progress or Silent()
+        ).graph
+    found = conflicts(graph, probability=settings.verification.inlier_probability)
+    return Reviewed(graph, found, applied.missing, applied.changed)
+
+
+def _solved(graph: PoseGraph) -> PoseGraph:
+    solution = optimize(graph, kernel="cauchy")
+    told = [
+        edge.evolve(chi2=float(chi2))
+        for edge, chi2 in zip(graph.edges, solution.edge_chi2, strict=True)
+    ]
+    return graph.with_poses(solution.T_map_body).with_edges(tuple(told))
+
+
+def conflicts(graph: PoseGraph, *, probability: float) -> tuple[Conflict, ...]:
+    """Edges that people accepted and that do not fit, worst first."""
+    of = relations(graph.edges)
+    chi2 = squared_residuals(graph.T_map_body, of)
+    free = of.in_graph & ~of.protected
+    limit = outlier_limit(chi2[free], probability=probability)
+    found = []
+    for row, edge in enumerate(graph.edges):
+        if edge.in_graph and edge.decided_by != AUTOMATIC and chi2[row] > limit:
+            apart = _residual(graph, edge)
+            found.append(
+                Conflict(
+                    pair=pair_of(graph, edge),
+                    chi2=float(chi2[row]),
+                    limit=limit,
+                    residual_m=float(np.linalg.norm(apart.t)),
+                    residual_rad=float(apart.angle()),
+                    who=edge.decided_by,
+                )
+            )
+    return tuple(sorted(found, key=lambda one: (-one.chi2, one.pair)))
+
+
+def difference(before: PoseGraph, after: PoseGraph) -> Difference:
+    """What changed from one graph to the other; ``after`` may have more edges at its end."""
+    chi2_before, edges_before = chi2_of(before)
+    chi2_after, edges_after = chi2_of(after)
+    turned_down: list[Pair] = []
+    taken_back: list[Pair] = []
+    for old, new in zip(before.edges, after.edges, strict=False):
+        if new.decided_by == AUTOMATIC and old.in_graph != new.in_graph:
+            (taken_back if new.in_graph else turned_down).append(pair_of(after, new))
+    return Difference(
+        chi2_before=chi2_before,
+        chi2_after=chi2_after,
+        edges_before=edges_before,
+        edges_after=edges_after,
+        moves=_largest_moves(before, after),
+        turned_down=tuple(turned_down),
+        taken_back=tuple(taken_back),
+    )
+
+
+def chi2_of(graph: PoseGraph) -> tuple[float, int]:
+    """Sum of the squared residuals of the edges in the graph, and how many those are."""
+    of = relations(graph.edges)
+    used: NDArray[np.float64] = squared_residuals(graph.T_map_body, of)[of.in_graph]
+    return float(used.sum()), len(used)
+
+
+def facts_of(reviewed: Reviewed, decisions: Sequence[Standing]) -> dict[str, Any]:
+    """Decisions and what is wrong with them, as JSON values."""
+    told: dict[str, Any] = null_for_nan(
+        {
+            "decisions": [one.to_json() for one in decisions],
+            "conflicts": [_fields(one) for one in reviewed.conflicts],
+            "missing": [list(one.pair) for one in reviewed.missing],
+            "changed": [list(one.pair) for one in reviewed.changed],
+            "warnings": reviewed.warnings(),
+        }
+    )
+    return told
+
+
+def pair_of(graph: PoseGraph, edge: Edge) -> Pair:
+    """Ids of the two multiframes of an edge."""
+    return int(graph.frame_ids[edge.i]), int(graph.frame_ids[edge.j])
+
+
+def _largest_moves(before: PoseGraph, after: PoseGraph) -> tuple[Move, ...]:
+    moved_m = np.linalg.norm(after.T_map_body.t - before.T_map_body.t, axis=1)
+    taken: list[int] = []
+    for node in np.argsort(-moved_m, kind="stable").tolist():
+        if len(taken) == MOST_MOVES or moved_m[node] < _LEAST_MOVE_M:
+            break
+        if all(abs(node - other) >= _APART_NODES for other in taken):
+            taken.append(node)
+    return tuple(
+        Move(node, int(after.frame_ids[node]), int(after.t_ns[node]), float(moved_m[node]))
+        for node in taken
+    )
+
+
+def _residual(graph: PoseGraph, edge: Edge) -> SE3:
+    predicted = graph.T_map_body[edge.i].inverse() @ graph.T_map_body[edge.j]
+    return edge.T_i_j.inverse() @ predicted
+
+
+def _fields(record: Conflict | Move) -> dict[str, Any]:
+    told = {name: getattr(record, name) for name in record.__slots__}
+    return {name: list(v) if isinstance(v, tuple) else v for name, v in told.items()}
+
+
+def _named(pair: Pair) -> str:
+    return f"multiframes {pair[0]} and {pair[1]}"

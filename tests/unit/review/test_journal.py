@@ -1,0 +1,153 @@
+"""The journal on disk."""
+
+import sqlite3
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import pytest
+
+from recon4.errors import StoreError
+from recon4.review.decisions import Decision, Kind
+from recon4.review.journal import (
+    NAME,
+    JournalMoved,
+    NothingToTakeBack,
+    append,
+    broken,
+    head,
+    read_decided,
+    read_rows,
+)
+
+
+def reject(j, who="Eva", why=""):
+    return Decision(kind=Kind.REJECT, who=who, why=why, pair=(2, j))
+
+
+def undo(who="Eva"):
+    return Decision(kind=Kind.UNDO, who=who)
+
+
+def test_a_project_nobody_decided_about_has_an_empty_journal_and_no_file(tmp_path):
+    assert read_rows(tmp_path) == []
+    assert not read_decided(tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_rows_say_who_when_and_why_and_follow_each_other(tmp_path):
+    append(tmp_path, reject(7, why="other floor"))
+    append(tmp_path, reject(9, who="Jan"))
+
+    first, second = read_rows(tmp_path)
+
+    assert (first.seq, first.who, first.kind, first.why) == (1, "Eva", "reject", "other floor")
+    assert first.time.endswith("+00:00")
+    assert second.prev_hash == first.hash
+    assert broken([first, second]) == []
+
+
+def test_undo_of_nothing_is_refused_and_leaves_no_row(tmp_path):
+    append(tmp_path, reject(7))
+    append(tmp_path, undo())
+
+    with pytest.raises(NothingToTakeBack, match="nothing to undo"):
+        append(tmp_path, undo())
+    assert len(read_rows(tmp_path)) == 2
+
+
+def test_who_did_not_see_the_last_decision_is_told(tmp_path):
+    append(tmp_path, reject(7))
+    append(tmp_path, reject(9, who="Jan"))
+
+    with pytest.raises(JournalMoved, match="1 more rows"):
+        append(tmp_path, undo(), after_seq=1)
+    assert append(tmp_path, undo(), after_seq=2).seq == 3
+
+
+def test_two_writers_at_once_lose_nothing(tmp_path):
+    def write(who):
+        for k in range(40):
+            append(tmp_path, reject(10 + k, who=who))
+
+    with ThreadPoolExecutor(2) as pool:
+        list(pool.map(write, ["Eva", "Jan"]))
+
+    rows = read_rows(tmp_path)
+    assert broken(rows) == []
+    for who in ("Eva", "Jan"):
+        assert [row.frame_j for row in rows if row.who == who] == list(range(10, 50))
+
+
+def test_what_was_acknowledged_survives_kill_9(tmp_path):
+    program = (
+        "import sys; from pathlib import Path; from tests.unit.review.test_journal import *\n"
+        "for k in range(10, 10**6): append(Path(sys.argv[1]), reject(k)); print(k, flush=True)"
+    )
+    for _ in range(3):
+        child = subprocess.Popen(
+            [sys.executable, "-c", program, str(tmp_path)], stdout=subprocess.PIPE, text=True
+        )
+        with child, child.stdout:
+            said = [child.stdout.readline() for _ in range(15)]
+            child.kill()
+            said += child.stdout.readlines()
+        whole = [line for line in said if line.endswith("\n")]
+
+        rows = read_rows(tmp_path)
+        assert broken(rows) == []
+        assert rows[-1].frame_j >= int(whole[-1])
+
+
+@pytest.mark.parametrize(
+    "change", [{"who": "Jan"}, {"why": "x"}, {"frame_j": 8}, {"time": "2020"}, {"kind": "accept"}]
+)
+def test_a_changed_row_breaks_the_chain(tmp_path, change):
+    for j in (7, 8, 9):
+        append(tmp_path, reject(j))
+    rows = read_rows(tmp_path)
+
+    rows[1] = (
+        replace(rows[1], **change) if change != {"frame_j": 8} else replace(rows[1], frame_j=6)
+    )
+
+    assert any("row 2" in what and "changed" in what for what in broken(rows))
+
+
+def test_a_row_whose_hash_was_made_anew_breaks_the_chain_behind_it(tmp_path):
+    for j in (7, 8, 9):
+        append(tmp_path, reject(j))
+    rows = read_rows(tmp_path)
+    forged = replace(rows[1], who="Jan")
+
+    rows[1] = replace(forged, hash=forged.sealed())
+
+    assert broken(rows) == ["row 3 does not follow the row before it"]
+
+
+def test_a_removed_row_breaks_the_chain(tmp_path):
+    for j in (7, 8, 9):
+        append(tmp_path, reject(j))
+    rows = read_rows(tmp_path)
+
+    assert broken([rows[0], rows[2]]) == ["row 2 is missing"]
+    assert head(rows) != head(rows[:2])
+
+
+def test_the_database_itself_refuses_changes(tmp_path):
+    append(tmp_path, reject(7))
+    db = sqlite3.connect(tmp_path / NAME)
+
+    with pytest.raises(sqlite3.IntegrityError, match="only appended"):
+        db.execute("UPDATE journal SET who = 'Jan'")
+    with pytest.raises(sqlite3.IntegrityError, match="only appended"):
+        db.execute("DELETE FROM journal")
+    db.close()
+
+
+def test_a_damaged_journal_is_one_clear_error(tmp_path):
+    (tmp_path / NAME).write_bytes(b"not a database, but long enough to be taken for one" * 30)
+
+    with pytest.raises(StoreError, match=NAME):
+        read_rows(tmp_path)

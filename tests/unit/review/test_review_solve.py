@@ -1,0 +1,195 @@
+"""The graph after the decisions."""
+
+import numpy as np
+import pytest
+
+from recon4.model.pose_graph import EdgeKind, Reason, Verdict
+from recon4.pose_graph.verification import verify
+from recon4.review.apply import CHANGED_M, apply_decisions, rows_by_pair
+from recon4.review.decisions import Decision, Kind, Measurement, fold, numbers_of
+from recon4.review.solve import difference, review
+from recon4.settings import GraphSettings, Settings, VerificationSettings
+from tests.unit.review.graphs import LOOP, truth, two_rounds
+
+
+def frames(i, j):
+    return (5 * i + 2, 5 * j + 2)
+
+
+def standing(*decisions):
+    return fold(decisions).standing
+
+
+def accept(i, j, **more):
+    return Decision(kind=Kind.ACCEPT, who="Eva", pair=frames(i, j), **more)
+
+
+def reject(i, j, **more):
+    return Decision(kind=Kind.REJECT, who="Eva", pair=frames(i, j), **more)
+
+
+def measured(i, j, *, kind=Kind.ADD, off_m=(0.0, 0.0, 0.0)):
+    T = truth()
+    T_i_j = numbers_of(T[i].inverse() @ T[j])
+    T_i_j = (*(a + b for a, b in zip(T_i_j[:3], off_m, strict=True)), *T_i_j[3:])
+    measurement = Measurement(
+        T_i_j=T_i_j, information=tuple(LOOP.ravel()), overlap=0.6, error_m=0.01, limit_m=0.05,
+        degeneracy=0.1, iterations=7,
+    )  # fmt: skip
+    return Decision(kind=kind, who="Eva", pair=frames(i, j), measurement=measurement)
+
+
+@pytest.fixture(scope="module")
+def verified():
+    return verify(two_rounds(), settings=Settings().verification).graph
+
+
+def at(graph, i, j):
+    return graph.edges[rows_by_pair(graph)[frames(i, j)]]
+
+
+def test_no_decision_changes_nothing(verified):
+    found = review(verified, (), settings=Settings())
+
+    np.testing.assert_allclose(found.graph.T_map_body.t, verified.T_map_body.t, atol=1e-6)
+    assert [e.verdict for e in found.graph.edges] == [e.verdict for e in verified.edges]
+    assert found.conflicts == ()
+
+
+def test_a_rejected_loop_is_out_by_the_operators_name(verified):
+    found = review(verified, standing(reject(3, 32)), settings=Settings())
+
+    edge = at(found.graph, 3, 32)
+    assert (edge.verdict, edge.reason, edge.decided_by) == (
+        Verdict.REJECTED,
+        Reason.OPERATOR,
+        "Eva",
+    )
+
+
+def test_an_accepted_loop_stays_in_although_it_does_not_fit_and_is_named():
+    wrong = (10, 40, (1.5, 0.0, 0.0))
+    graph = verify(two_rounds(wrong=[wrong]), settings=Settings().verification).graph
+    assert at(graph, 10, 40).verdict is Verdict.REJECTED
+
+    found = review(graph, standing(accept(10, 40)), settings=Settings())
+
+    assert at(found.graph, 10, 40).in_graph
+    (conflict,) = found.conflicts
+    assert conflict.pair == frames(10, 40)
+    assert conflict.chi2 > conflict.limit
+    assert 0.1 < conflict.residual_m < 1.6
+    assert any(str(frames(10, 40)[0]) in words for words in found.warnings())
+
+
+def test_rejecting_the_one_wrong_loop_brings_the_walk_back():
+    """Where the program does not judge, a lone loop bends the walk."""
+    plain = Settings(verification=VerificationSettings(robust="none"))
+    wrong = (5, 50, (2.0, 0.0, 0.0))
+    graph = verify(two_rounds(loops=False, wrong=[wrong]), settings=plain.verification).graph
+    bent_m = np.abs(graph.T_map_body.t - truth().t).max()
+
+    found = review(graph, standing(reject(5, 50)), settings=plain)
+
+    straight_m = np.abs(found.graph.T_map_body.t - truth().t).max()
+    assert bent_m > 1.0
+    assert straight_m < 0.1
+    moved = difference(graph, found.graph)
+    assert moved.moves[0].moved_m == pytest.approx(
+        np.linalg.norm(found.graph.T_map_body.t - graph.T_map_body.t, axis=1).max()
+    )
+    assert moved.edges_after == moved.edges_before - 1
+
+
+def test_what_the_program_dropped_only_for_a_wrong_edge_comes_back():
+    """Two loops contradict each other and nothing else decides; the operator does."""
+    graph = two_rounds(loops=False, wrong=[(5, 34, (0.0, 0.0, 0.0)), (6, 35, (0.9, 0.0, 0.0))])
+    verified = verify(graph, settings=Settings().verification).graph
+    kept = [e for e in verified.edges if e.kind is EdgeKind.LOOP and e.in_graph]
+    assert len(kept) < 2
+
+    wrong_out = review(verified, standing(reject(6, 35)), settings=Settings()).graph
+
+    assert at(wrong_out, 5, 34).in_graph
+    assert not at(wrong_out, 6, 35).in_graph
+
+
+def test_a_replaced_measurement_is_what_counts(verified):
+    found = review(
+        verified, standing(measured(3, 32, kind=Kind.REPLACE, off_m=(0.02, 0.0, 0.0))),
+        settings=Settings(),
+    )  # fmt: skip
+
+    edge = at(found.graph, 3, 32)
+    assert edge.kind is EdgeKind.LOOP
+    assert edge.iterations == 7
+    np.testing.assert_allclose(
+        edge.T_i_j.t, at(verified, 3, 32).T_i_j.t + np.array([0.02, 0, 0]), atol=0.02
+    )
+
+
+def test_an_added_loop_is_manual_and_pulls(verified):
+    drifting = verify(two_rounds(loops=False, noise=0.02), settings=Settings().verification).graph
+    before_m = np.linalg.norm(drifting.T_map_body.t[45] - truth().t[45])
+
+    found = review(drifting, standing(measured(0, 45)), settings=Settings())
+
+    edge = at(found.graph, 0, 45)
+    assert (edge.kind, edge.decided_by, edge.in_graph) == (EdgeKind.MANUAL, "Eva", True)
+    assert np.linalg.norm(found.graph.T_map_body.t[45] - truth().t[45]) < 0.2 * before_m
+
+
+def test_decisions_about_pairs_that_are_gone_are_counted_and_named(verified):
+    gone = [reject(0, 20), accept(9, 55)]
+    elsewhere = Decision(kind=Kind.REJECT, who="Eva", pair=(2, 999_999))
+
+    found = review(verified, standing(*gone, elsewhere), settings=Settings())
+
+    assert {one.pair for one in found.missing} == {frames(0, 20), frames(9, 55), (2, 999_999)}
+    assert any(words.startswith("3 decisions") for words in found.warnings())
+
+
+def test_a_pair_that_was_never_registered_cannot_be_accepted(verified):
+    edges = list(verified.edges)
+    row = rows_by_pair(verified)[frames(3, 32)]
+    edges[row] = edges[row].evolve(verdict=Verdict.REJECTED, reason=Reason.OVERLAP)
+
+    applied = apply_decisions(verified.with_edges(tuple(edges)), standing(accept(3, 32)))
+
+    assert [one.pair for one in applied.missing] == [frames(3, 32)]
+    assert not applied.graph.edges[row].in_graph
+
+
+def test_an_edge_that_measures_something_else_than_was_seen_is_named(verified):
+    seen = at(verified, 3, 32).T_i_j
+    other = numbers_of(seen)
+    other = (other[0] + 2 * CHANGED_M, *other[1:])
+
+    same = apply_decisions(verified, standing(accept(3, 32, T_i_j=numbers_of(seen))))
+    changed = apply_decisions(verified, standing(accept(3, 32, T_i_j=other)))
+
+    assert same.changed == ()
+    assert [one.pair for one in changed.changed] == [frames(3, 32)]
+
+
+def test_odometry_is_not_decided_about(verified):
+    applied = apply_decisions(verified, standing(reject(4, 5)))
+
+    assert [one.pair for one in applied.missing] == [frames(4, 5)]
+    assert all(e.in_graph for e in applied.graph.edges if e.kind is EdgeKind.ODOMETRY)
+
+
+def test_modes_without_verification_are_solved_all_the_same(verified):
+    settings = Settings(graph=GraphSettings(mode="overlap"))
+
+    found = review(verified, standing(reject(3, 32)), settings=settings)
+
+    assert not at(found.graph, 3, 32).in_graph
+
+
+def test_the_same_decisions_give_the_same_bits(verified):
+    chosen = standing(reject(3, 32), measured(0, 45), accept(6, 35))
+
+    a, b = (review(verified, chosen, settings=Settings()).graph for _ in range(2))
+
+    assert np.array_equal(a.T_map_body.t, b.T_map_body.t)

@@ -1,0 +1,163 @@
+"""The stage between verification and refine."""
+
+import json
+
+import numpy as np
+import pytest
+
+from recon4 import stages
+from recon4.model.pose_graph import Verdict
+from recon4.pose_graph.files import load_graph, save_graph
+from recon4.pose_graph.verification import verify
+from recon4.progress import Silent
+from recon4.review.decisions import Decision, Kind
+from recon4.review.journal import append, read_decided
+from recon4.review.preview import preview
+from recon4.review.queue import COLUMNS, alternative_paths, queue_json, queue_rows
+from recon4.review.source import Source
+from recon4.settings import Settings
+from recon4.store.project import Project, read_artifacts
+from recon4.store.stage import Input, Stage, StageRunner
+from tests.unit.review.graphs import two_rounds
+
+
+def _searched(*, out, settings, progress, graph):
+    save_graph(out, graph)
+
+
+SEARCH = Stage("graph", 1, (), _searched)
+
+
+@pytest.fixture
+def run(tmp_path):
+    """The graph's stages of a project, as the pipeline runs them."""
+    root = tmp_path / "office"
+
+    def go():
+        with Project.open(root) as project:
+            runner = StageRunner(project, Settings(), Silent())
+            wrong = [(10, 40, (1.5, 0.0, 0.0))]
+            searched = runner.run(SEARCH, graph=Input("two rounds", two_rounds(wrong=wrong)))
+            runner.run(stages.VERIFICATION, graph=searched)
+            decided = read_decided(root)
+            if decided:
+                inputs = {"decisions": Input(decided.key, decided.standing)}
+                verified = runner.runs["verification"].artifact
+                runner.run(stages.REVIEW, graph=verified, **inputs)
+            else:
+                runner.skip(stages.REVIEW)
+            return runner.runs
+
+    go.root = root
+    return go
+
+
+def reject(i, j):
+    return Decision(kind=Kind.REJECT, who="Eva", pair=(5 * i + 2, 5 * j + 2))
+
+
+def test_decisions_make_a_graph_of_their_own_and_undoing_them_finds_the_old_one(run):
+    before = run()
+    append(run.root, reject(3, 32))
+    with_decision = run()
+    append(run.root, Decision(kind=Kind.UNDO, who="Eva"))
+
+    after = run()
+
+    assert "review" not in before
+    assert with_decision["review"].figures["decisions"] == 1
+    assert "review" not in after
+    assert after["verification"].artifact.key == before["verification"].artifact.key
+    assert "review" not in read_artifacts(run.root)
+
+
+def test_the_same_decisions_again_find_the_same_artifact(run):
+    run()
+    append(run.root, reject(3, 32))
+    first = run()["review"]
+    append(run.root, Decision(kind=Kind.UNDO, who="Eva"))
+    append(run.root, reject(3, 32))
+
+    again = run()["review"]
+
+    assert again.artifact.key == first.artifact.key
+    assert again.reused
+
+
+def test_review_json_names_what_happened(run):
+    run()
+    append(run.root, Decision(kind=Kind.ACCEPT, who="Eva", why="seen", pair=(52, 202)))
+    append(run.root, reject(0, 20))
+
+    found = run()["review"]
+
+    told = json.loads((found.artifact.folder / "review.json").read_text())
+    assert [one["pair"] for one in told["conflicts"]] == [[52, 202]]
+    assert told["missing"] == [[2, 102]]
+    assert told["moves"][0]["moved_m"] > 0.01
+    assert told["chi2_after"] > told["chi2_before"]
+    assert {one["why"] for one in told["decisions"]} == {"seen", ""}
+    assert found.figures["conflicts"] == 1
+    assert len(found.figures["warnings"]) == 2
+
+
+def test_the_quick_look_says_what_the_stage_will_say(run):
+    run()
+    before = read_decided(run.root)
+    append(run.root, Decision(kind=Kind.ACCEPT, who="Eva", pair=(52, 202)))
+    decided = read_decided(run.root)
+
+    quick = preview(run.root, decided, before)
+
+    artifact = run()["review"].artifact.folder
+    told = json.loads((artifact / "review.json").read_text())
+    assert quick["all"] == {name: told[name] for name in quick["all"]}
+    assert quick["conflicts"] == told["conflicts"]
+    assert quick["last"] == quick["all"]
+    assert quick["edges"][0]["pair"] == [52, 202]
+    assert quick["edges"][0]["chi2"] == pytest.approx(told["conflicts"][0]["chi2"])
+
+
+def test_the_queue_is_ordered_by_influence_and_always_the_same(run):
+    run()
+
+    told = json.loads(queue_json(run.root))
+
+    rows = [dict(zip(COLUMNS, row, strict=True)) for row in told["rows"]]
+    influence = [row["influence_m"] for row in rows]
+    assert influence == sorted(influence, reverse=True)
+    assert (rows[0]["frame_i"], rows[0]["frame_j"]) == (52, 202)
+    assert rows[0]["verdict"] == "rejected"
+    assert rows[0]["verification_m"] > 1.0  # of rejected pairs too
+    assert all(row["kind"] != "odometry" for row in rows)
+    assert queue_json(run.root) == queue_json(run.root)
+
+
+def test_alternative_paths_one_by_one_have_the_median_of_the_verification():
+    graph = verify(two_rounds(), settings=Settings().verification).graph
+    rows = {tuple(row[:2]): row for row in queue_rows(graph, settings=Settings())}
+    edge = next(e for e in graph.edges if (e.i, e.j) == (3, 32))
+
+    paths = alternative_paths(graph, 3, 32, edge.T_i_j, settings=Settings())
+
+    assert len(paths) == edge.paths == rows[17, 162][COLUMNS.index("paths")]
+    assert np.median([path.residual_m for path in paths]) == pytest.approx(edge.verification_m)
+    assert all(path.frames[0] == 17 and path.frames[-1] == 162 for path in paths)
+
+
+def test_the_reviewed_graph_keeps_every_pair_that_was_tried(run):
+    verified = load_graph(run()["verification"].artifact.folder)
+    append(run.root, reject(3, 32))
+
+    reviewed = load_graph(run()["review"].artifact.folder)
+
+    assert len(reviewed.edges) == len(verified.edges)
+    assert sum(e.verdict is Verdict.REJECTED for e in reviewed.edges) == 1 + sum(
+        e.verdict is Verdict.REJECTED for e in verified.edges
+    )
+
+
+def test_settings_are_those_the_graph_was_made_with(run):
+    run()
+
+    assert Source.of(run.root).settings.verification == Settings().verification
