@@ -8,11 +8,13 @@ from typing import Annotated
 from fastapi import Depends
 from starlette.requests import HTTPConnection
 
+from app.access.door import Access
 from app.desk import Desk
 from app.jobs.store import JobStore
 from app.jobs.supervisor import Supervisor
 from app.projects.picture import Pictures
 from app.projects.store import ProjectStore
+from app.projects.trash import Trash
 from app.settings import ServerSettings
 from app.uploads.store import UploadStore
 from app.viewer.pool import ViewerPool
@@ -23,8 +25,10 @@ class Parts:
     """One of each for a server."""
 
     settings: ServerSettings
+    access: Access
     projects: ProjectStore
     pictures: Pictures
+    trash: Trash
     uploads: UploadStore
     jobs: JobStore
     supervisor: Supervisor

@@ -5,7 +5,8 @@
     ├── NotFound             404  no such project, job or file
     ├── Conflict             409  not possible in the present state
     │   └── IllegalTransition     a job cannot go from its state to that one
-    ├── Unknown              401  nobody is signed in, or name and password do not fit
+    ├── Unknown              401  nobody is signed in
+    │   ├── WrongPassword         name and password do not fit
     │   └── SignInAgain           the password must be given once more
     ├── Refused              403  outside of what the server or this person may touch
     ├── TooMany              429  too often, or too much at a time
@@ -67,9 +68,13 @@ class IllegalTransition(Conflict):
 
 
 class Unknown(AppError):
-    """Nobody is signed in, or name and password do not fit."""
+    """Nobody is signed in."""
 
     status = 401
+
+
+class WrongPassword(Unknown):
+    """Name and password do not fit."""
 
 
 class SignInAgain(Unknown):

@@ -3,40 +3,56 @@
 from __future__ import annotations
 
 import asyncio
-import fcntl
-import os
-import socket
-from collections.abc import AsyncIterator, Callable, Iterator
-from contextlib import asynccontextmanager, contextmanager
+import signal
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
 from pathlib import Path
+from typing import Any
 
-import uvicorn
-from fastapi import FastAPI
-from fastapi.responses import FileResponse
+from fastapi import Depends, FastAPI
+from fastapi.responses import FileResponse, JSONResponse
 from fastapi.staticfiles import StaticFiles
 from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 
-from app import errors
+from app import errors, server_routes
+from app.access import admin_routes
+from app.access import routes as access_routes
+from app.access.door import Access, open_access
 from app.access.guard import Guard
+from app.access.people import May, anybody, needs
+from app.access.routes_check import check_declared
+from app.access.welcome import welcome
 from app.deps import Parts, Server
 from app.desk import Desk
+from app.jobs import choices
 from app.jobs import routes as job_routes
 from app.jobs.store import JobStore
 from app.jobs.supervisor import Supervisor
+from app.listen import (
+    AnnouncingServer,
+    certificate_of,
+    hosts_of,
+    listening,
+    make_state,
+    only_one,
+    private_files,
+    urls,
+    uvicorn_config,
+)
+from app.maintenance import look_after
 from app.projects import routes as project_routes
 from app.projects.picture import Pictures
 from app.projects.store import ProjectStore
-from app.settings import ServerSettings, recordings_from_environment
+from app.projects.trash import Trash
+from app.settings import ServerSettings
 from app.uploads import routes as upload_routes
 from app.uploads.store import UploadStore
 from app.viewer import page, proxy
-from app.viewer.pool import ViewerPool
+from app.viewer.pool import Sockets, ViewerPool
 from recon4 import __version__
-from recon4.errors import StoreError
 
 WEB = Path(__file__).parents[1] / "web"
-HOSTS = frozenset({"127.0.0.1", "localhost", "::1"})
-"""Names the server answers to; a forwarded port (ssh -L) keeps them."""
+MAY_LOOK = [Depends(needs(May.LOOK))]
 
 
 def create_app(settings: ServerSettings) -> FastAPI:
@@ -47,88 +63,63 @@ def create_app(settings: ServerSettings) -> FastAPI:
         summary="Maps from LiDAR backpacks: projects, jobs, results, viewer",
         docs_url=None,
         redoc_url=None,
+        openapi_url=None,
         lifespan=lambda app: _running(app, settings),
     )
     app.add_middleware(RequestBodyLimitMiddleware, max_body_size=settings.max_body_bytes)
-    app.add_middleware(Guard, hosts=HOSTS)
+    pinned = settings.tls_certificate is not None
+    app.add_middleware(Guard, hosts=hosts_of(settings), login=settings.lan, pinned=pinned)
     errors.install(app)
-    for part in (project_routes, job_routes, page, proxy):
+    for part in (access_routes, admin_routes, project_routes, job_routes, choices, server_routes):
         app.include_router(part.router)
+    for part in (page, proxy):
+        app.include_router(part.router, dependencies=MAY_LOOK)
     for router in (upload_routes.files, upload_routes.router):
         app.include_router(router)
     app.mount("/web", StaticFiles(directory=WEB), name="web")
     _add_pages(app)
+    check_declared(app)
     return app
 
 
 def serve(
-    root: Path,
+    settings: ServerSettings,
     *,
-    host: str = "127.0.0.1",
-    port: int = 8000,
     open_project: str | None = None,
-    on_ready: Callable[[str], None] = lambda url: None,
-    worker: str = "app.jobs.worker",
+    on_ready: Callable[[str, list[str]], None] = lambda url, notes: None,
 ) -> None:
     """Run the server until it is interrupted.
 
     Args:
-        root: Folder that holds the project folders.
-        host: Address to listen on; loopback only.
-        port: Port; 0 = any free one.
+        settings: Where and how.
         open_project: The project whose page the URL leads to; None = the list.
-        on_ready: Called once with the URL, as soon as the server listens.
-        worker: Module run for a job.
+        on_ready: Called once, as soon as the server listens, with the URL and what else people
+            have to know: other URLs, the certificate's fingerprint, how to make the first admin.
 
     Raises:
-        ConfigError: If it cannot listen there, or ``root`` does not hold projects.
-        StoreError: If another server runs on the same folder.
+        ConfigError: If ``root`` does not hold projects, or the certificate is none.
+        StoreError: If it cannot listen there, or another server runs on the same folder.
     """
-    settings = ServerSettings(
-        root=root,
-        host=host,
-        port=port,
-        recordings=recordings_from_environment(),
-        worker=worker,
-    )
-    with _only_one(settings), _listening(settings) as listener:
-        name, bound = listener.getsockname()[:2]
-        shown = f"[{name}]" if ":" in name else name
+    with private_files(settings.lan), only_one(settings), listening(settings) as listener:
+        certificate = certificate_of(settings)
+        app = create_app(settings)
+        best, *others = urls(settings, listener)
         path = f"projects/{open_project}/" if open_project else ""
-        server = AnnouncingServer(
-            uvicorn_config(create_app(settings)), lambda: on_ready(f"http://{shown}:{bound}/{path}")
-        )
+
+        def ready() -> None:
+            access: Access = app.state.parts.access
+            on_ready(best + path, welcome(access, best, others=others, certificate=certificate))
+
+        server = AnnouncingServer(uvicorn_config(app, certificate), ready)
+        # uvicorn shuts down in order, then raises what it caught once more: by then all is done
+        signal.signal(signal.SIGTERM, lambda *_: None)
         asyncio.run(server.serve([listener]))
-
-
-class AnnouncingServer(uvicorn.Server):
-    """Says when it listens."""
-
-    def __init__(self, config: uvicorn.Config, ready: Callable[[], None]) -> None:
-        super().__init__(config)
-        self._ready = ready
-
-    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Start, then say so."""
-        await super().startup(sockets)
-        self._ready()
-
-
-def uvicorn_config(app: FastAPI) -> uvicorn.Config:
-    """How the application is run, in tests too."""
-    return uvicorn.Config(
-        app,
-        log_level="warning",
-        access_log=False,
-        ws_per_message_deflate=False,  # costs 0.3 s of processor time a million points
-        timeout_graceful_shutdown=2,  # event streams never end by themselves
-        server_header=False,
-    )
 
 
 @asynccontextmanager
 async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None]:
-    settings.state.mkdir(exist_ok=True)
+    make_state(settings)
+    access = open_access(settings.state, login=settings.lan)
     jobs = JobStore(settings.state / "jobs.sqlite")
     supervisor = Supervisor(jobs, settings)
     desk = Desk()
@@ -136,74 +127,67 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
         idle_s=settings.viewer_idle_s,
         points=settings.viewer_points,
         logs=settings.state / "viewers",
+        jobs=settings.state / "jobs",
+        sockets=Sockets(
+            most=settings.viewer_sockets, most_a_person=settings.viewer_sockets_a_person
+        ),
     )
+    uploads = UploadStore(settings)
+    trash = Trash(settings.root, settings.state / "trash", kept_s=settings.trash_s)
     app.state.parts = Parts(
         settings=settings,
+        access=access,
         projects=ProjectStore(settings.root, settings.import_roots),
         pictures=Pictures(settings.state / "pictures"),
-        uploads=UploadStore(settings),
+        trash=trash,
+        uploads=uploads,
         jobs=jobs,
         supervisor=supervisor,
         viewers=viewers,
         desk=desk,
     )
-    watching = asyncio.create_task(supervisor.run())
+    watching = [
+        asyncio.create_task(supervisor.run()),
+        asyncio.create_task(look_after(jobs, uploads, trash)),
+    ]
     try:
         yield
     finally:
-        watching.cancel()
-        await asyncio.gather(watching, return_exceptions=True)
+        for task in watching:
+            task.cancel()
+        await asyncio.gather(*watching, return_exceptions=True)
         desk.close()
         supervisor.close()
         await viewers.close()
         jobs.close()
+        access.close()
 
 
 def _add_pages(app: FastAPI) -> None:
-    @app.get("/healthz", tags=["server"])
+    administer, anyone = [Depends(needs(May.ADMINISTER))], [Depends(anybody)]
+
+    @app.get("/healthz", tags=["server"], dependencies=anyone)
     async def healthz() -> dict[str, str]:
         """Whether the server answers."""
         return {"status": "ok", "version": __version__}
 
-    @app.get("/", include_in_schema=False)
-    def index() -> FileResponse:
-        return FileResponse(WEB / "index.html")
+    @app.get("/openapi.json", include_in_schema=False, dependencies=administer)
+    def openapi() -> JSONResponse:
+        return JSONResponse(app.openapi())
 
-    @app.get("/api", include_in_schema=False)
-    def api() -> FileResponse:
-        return FileResponse(WEB / "api.html")
+    def page(path: str, file: str, who: list[Any]) -> None:
+        @app.get(path, include_in_schema=False, dependencies=who, name=file)
+        def read() -> FileResponse:
+            return FileResponse(WEB / file)
 
-    @app.get("/projects/{project_id}/", include_in_schema=False)
+    page("/", "index.html", MAY_LOOK)
+    page("/account", "account.html", MAY_LOOK)
+    page("/login", "login.html", anyone)
+    page("/people", "people.html", administer)
+    page("/api", "api.html", administer)
+
+    @app.get("/projects/{project_id}/", include_in_schema=False, dependencies=MAY_LOOK)
     def project(project_id: str, server: Server) -> FileResponse:
         if not server.jobs.of_project(project_id):
             server.projects.folder(project_id)  # a waiting job's project has no folder yet
         return FileResponse(WEB / "project.html")
-
-
-@contextmanager
-def _only_one(settings: ServerSettings) -> Iterator[None]:
-    """Hold the folder: two servers would start every job twice."""
-    settings.state.mkdir(exist_ok=True)
-    lock = os.open(settings.state / "server.lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
-    try:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError as error:
-            raise StoreError(f"another server runs on {settings.root}; use that one") from error
-        yield
-    finally:
-        os.close(lock)
-
-
-@contextmanager
-def _listening(settings: ServerSettings) -> Iterator[socket.socket]:
-    family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
-    with socket.socket(family) as listener:
-        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            listener.bind((settings.host, settings.port))
-        except OSError as error:
-            raise StoreError(
-                f"port {settings.port} is in use ({error.strerror}); choose another with --port"
-            ) from error
-        yield listener

@@ -17,9 +17,17 @@ class ServerSettings:
     root: Path
     """Folder that holds the project folders."""
     host: str = "127.0.0.1"
-    """Address to listen on. Loopback only: there is no login yet."""
+    """Address to listen on; loopback only unless ``lan``."""
     port: int = 8000
     """Port to listen on; 0 = any free one."""
+    lan: bool = False
+    """TLS and login together; neither goes without the other."""
+    tls_certificate: Path | None = None
+    """The user's own certificate chain, PEM; None = one is made."""
+    tls_key: Path | None = None
+    """Its key, PEM."""
+    names: tuple[str, ...] = ()
+    """Host names browsers may use, besides those this computer knows of itself; ``lan`` only."""
     recordings: tuple[Path, ...] = ()
     """Folders a job may read recordings from, besides ``root``."""
     running_jobs: int = 1
@@ -34,6 +42,10 @@ class ServerSettings:
     """A viewer nobody looks at ends after this long [s]."""
     viewer_points: int = 3_000_000
     """At most so many points of a map are sent to one browser; phones get fewer."""
+    viewer_sockets: int = 32
+    """At most so many viewers are open at the same time."""
+    viewer_sockets_a_person: int = 8
+    """At most so many of them belong to one person."""
     worker: str = "app.jobs.worker"
     """Module run for a job."""
     max_body_bytes: int = 1 << 20
@@ -54,7 +66,12 @@ class ServerSettings:
     """A deleted project can be brought back for this long [s]."""
 
     def __post_init__(self) -> None:
-        _refuse_open_network(self.host)
+        if not self.lan:
+            _refuse_open_network(self.host)
+            if self.tls_certificate or self.tls_key:
+                raise ConfigError("a certificate goes with --lan, which also turns on the login")
+        if (self.tls_certificate is None) != (self.tls_key is None):
+            raise ConfigError("give --tls-cert and --tls-key together, or neither")
         if not self.root.is_dir():
             raise ConfigError(f"no folder {self.root}: give the folder that holds the projects")
         if (self.root / "project.json").exists():
@@ -82,6 +99,12 @@ def recordings_from_environment() -> tuple[Path, ...]:
     return tuple(Path(part) for part in named.split(os.pathsep) if part) or (Path.cwd(),)
 
 
+def names_from_environment() -> tuple[str, ...]:
+    """Host names in ``RECON4_NAMES``, with commas between."""
+    named = os.environ.get("RECON4_NAMES", "")
+    return tuple(part.strip() for part in named.split(",") if part.strip())
+
+
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 """One thread a library, so that two processes do not fight."""
 
@@ -99,5 +122,6 @@ def _refuse_open_network(host: str) -> None:
     if not loopback:
         raise ConfigError(
             f"will not listen on {host!r}: without TLS and login only loopback (127.0.0.1) is "
-            "allowed; from another computer use: ssh -L 8000:127.0.0.1:8000 THIS-HOST"
+            "allowed; use --lan for both, or from another computer: "
+            "ssh -L 8000:127.0.0.1:8000 THIS-HOST"
         )

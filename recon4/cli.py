@@ -9,6 +9,7 @@ import json
 import os
 import signal
 import sys
+import webbrowser
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -17,9 +18,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 import recon4
-from recon4.errors import Cancelled, Recon4Error
+from recon4.cli_users import users
+from recon4.errors import Cancelled, ConfigError, Recon4Error
 
 if TYPE_CHECKING:
+    from app.settings import ServerSettings
     from recon4.geometry.se3 import Array
     from recon4.settings import Settings
 
@@ -30,6 +33,8 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
+
+app.add_typer(users, name="users")
 
 _INTERRUPTED = 130
 """What shells give a program that Ctrl-C ended; typer turns the interrupt into this code."""
@@ -166,14 +171,31 @@ def export(
 @app.command()
 def serve(
     root: Annotated[Path, typer.Argument(help="Folder that holds project folders.")] = Path(),
-    host: Annotated[str, typer.Option(help="Address to listen on; loopback only.")] = "127.0.0.1",
+    *,
+    lan: Annotated[bool, typer.Option("--lan", help="For others: TLS and login together.")] = False,
+    host: Annotated[str, typer.Option(help="Address to listen on; default by --lan.")] = "",
     port: Annotated[int, typer.Option(help="Port; 0 = any free one.")] = 8000,
+    tls_cert: Annotated[Path | None, typer.Option(help="Your certificate chain, PEM.")] = None,
+    tls_key: Annotated[Path | None, typer.Option(help="Its key, PEM.")] = None,
+    show: Annotated[bool, typer.Option("--open", help="Open it in this browser.")] = False,
 ) -> None:
     """Show projects in the browser: results, jobs, 3D viewer. Ctrl-C ends it."""
-    from app.main import serve as run
+    from app.settings import ServerSettings, names_from_environment, recordings_from_environment
 
-    with suppress(KeyboardInterrupt):
-        run(root, host=host, port=port, on_ready=_say_url)
+    try:
+        chosen = ServerSettings(
+            root=root,
+            lan=lan,
+            host=host or ("0.0.0.0" if lan else "127.0.0.1"),
+            port=port,
+            tls_certificate=tls_cert,
+            tls_key=tls_key,
+            names=names_from_environment(),
+            recordings=recordings_from_environment(),
+        )
+    except ConfigError as error:
+        raise typer.BadParameter(str(error)) from error
+    _serve(chosen, show=show)
 
 
 @app.command()
@@ -206,10 +228,11 @@ def demo(
         )
     _write(describe_summary(summary.to_json(), project))
     if not headless:
-        from app.main import serve as run
+        from app.settings import ServerSettings, recordings_from_environment
 
-        with suppress(KeyboardInterrupt):
-            run(out, port=port, open_project=project.name, on_ready=_say_url)
+        recordings = recordings_from_environment()
+        chosen = ServerSettings(root=out, port=port, recordings=recordings)
+        _serve(chosen, open_project=project.name)
 
 
 @app.command()
@@ -348,9 +371,17 @@ def _map_chunks(folder: Path) -> Callable[[], Iterator[Array]]:
     return lambda: (tile.xyz_m() for tile in TileSet.open(folder))
 
 
-def _say_url(url: str) -> None:
-    _write(f"Serving at {url} (Ctrl-C ends it)")
-    sys.stdout.flush()
+def _serve(chosen: ServerSettings, *, open_project: str | None = None, show: bool = False) -> None:
+    from app.main import serve as run
+
+    def ready(url: str, notes: list[str]) -> None:
+        _write("\n".join([f"Serving at {url} (Ctrl-C ends it)", *notes]))
+        sys.stdout.flush()
+        if show:
+            webbrowser.open(url)
+
+    with suppress(KeyboardInterrupt):
+        run(chosen, open_project=open_project, on_ready=ready)
 
 
 def _show_settings(chosen: Settings) -> None:

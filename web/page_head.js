@@ -1,6 +1,6 @@
 // <page-head>: the bar on top of every page. On the pages of a project it leads to the others.
 
-import { projectUrl } from "./api.js";
+import { projectUrl, readMe, signOut } from "./api.js";
 import { make } from "./dom.js";
 
 const PAGES = [
@@ -12,6 +12,7 @@ const PAGES = [
 class PageHead extends HTMLElement {
   #name = make("b");
   #link = make("span", { className: "link-state", role: "status" });
+  #account = make("span", { className: "account" });
 
   connectedCallback() {
     const [, first, id, page = ""] = location.pathname.split("/");
@@ -22,10 +23,31 @@ class PageHead extends HTMLElement {
       make("a", { className: "brand", href: "/" }, "recon4"),
       ...(inProject ? [this.#way(), this.#tabs(decodeURIComponent(id), page)] : []),
       this.#link,
-      make("span", { className: "account" }),
-      make("a", { className: "quiet", href: "/api" }, "API"),
+      this.#account,
     );
     if (inProject) this.name = decodeURIComponent(id);
+    readMe().then((me) => this.#show(me), (error) => (this.#link.textContent = error.message));
+  }
+
+  /** Who is signed in, and what only some may open. */
+  #show({ name, role, may, login }) {
+    const admin = may.includes("administer");
+    this.#account.replaceChildren(
+      ...(admin ? [make("a", { href: "/api" }, "API"), make("a", { href: "/people" }, "People")] : []),
+      ...(login ? [
+        make("a", { className: "who", href: "/account", ariaLabel: `Account of ${name}, ${role}` }, make("b", {}, name), make("span", { className: "role" }, role)),
+        make("button", { type: "button", onclick: () => this.#leave() }, "Sign out"),
+      ] : []),
+    );
+  }
+
+  async #leave() {
+    try {
+      await signOut();
+      location.assign("/login");
+    } catch (error) {
+      this.#link.textContent = error.message;
+    }
   }
 
   /** The project's name. */

@@ -1,20 +1,22 @@
-"""Who may talk to the server: host names, origins, headers. Pure ASGI, before everything else.
+"""Who may talk to the server: host names, origins, sessions, headers. Pure ASGI, before all else.
 
-A page of another site open in the operator's browser can send requests to localhost and open
-WebSockets; a name that points to 127.0.0.1 can even make them look same-site (DNS rebinding).
-So the host must be one of ours, and whatever changes something must come from our own page.
+A page of another site open in somebody's browser can send requests here and open WebSockets; a
+name that points to this computer can even make them look same-site (DNS rebinding). So the host
+must be one of ours, whatever changes something must come from our own page, and where there is
+a login, nothing but the login itself is answered without a session.
 """
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.access.people import Person, Role
+from app.access.doorkeeper import Doorkeeper
+from app.access.people import LOCAL
+from app.access.refusal import Refusal, answer, note
 
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 
@@ -33,64 +35,85 @@ HEADERS = {
     "Permissions-Policy": "camera=(), microphone=(), geolocation=()",
     "Cache-Control": "no-cache",
 }
-
-
-LOCAL = Person("local", Role.ADMIN)
-"""Whoever sits at this computer, when the server listens on loopback only."""
+PRIVATE = {"Cache-Control": "no-store"}
+"""Answers of the API are kept by no browser where people sign in."""
+PINNED = {"Strict-Transport-Security": "max-age=31536000"}
+"""Only with a certificate browsers trust: with another they would lock people out."""
 
 
 @dataclass(frozen=True, slots=True)
-class Refusal:
-    """Why a request is turned away."""
+class Hosts:
+    """Which ``Host`` headers are answered."""
 
-    status: int
-    detail: str
+    names: frozenset[str]
+    """Host names and addresses, lower case, without port."""
+    by_address: bool = False
+    """Also the very address a connection came to, which no foreign name can be."""
+
+    def answer(self, name: str, scope: Scope) -> bool:
+        """Whether a request for this name is answered."""
+        came_to = (scope.get("server") or ("",))[0]
+        return name in self.names or (self.by_address and bool(name) and name == came_to)
 
 
 class Guard:
-    """Turns away foreign hosts and origins; adds the security headers."""
+    """Turns away foreign hosts and origins and whoever is not signed in; adds the headers."""
 
-    def __init__(self, app: ASGIApp, *, hosts: frozenset[str]) -> None:
-        self._app = app
+    def __init__(self, app: ASGIApp, *, hosts: Hosts, login: bool, pinned: bool = False) -> None:
+        self._app = Doorkeeper(app) if login else app
         self._hosts = hosts
+        self._login = login
+        self._headers = HEADERS | (PINNED if pinned else {})
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
-        refusal = judge(scope, self._hosts)
-        if refusal is None:
-            scope.setdefault("state", {})["person"] = LOCAL
-            await self._app(scope, receive, _with_headers(send))
-        elif scope["type"] == "websocket":
-            await receive()
-            await send({"type": "websocket.close", "code": 1008, "reason": refusal.detail})
+        send = self._with_headers(scope, send)
+        scope.setdefault("state", {}).update(person=LOCAL, signed_in_s=0.0)
+        if (refusal := judge(scope, self._hosts)) is None:
+            await self._app(scope, receive, send)
         else:
-            await _answer(refusal, _with_headers(send))
+            await note(scope, refusal)
+            await answer(refusal, scope, receive, send)
+
+    def _with_headers(self, scope: Scope, send: Send) -> Send:
+        private = self._login and scope["path"].startswith("/api/")
+        wanted = self._headers | (PRIVATE if private else {})
+
+        async def send_with_headers(message: Message) -> None:
+            if message["type"] in ("http.response.start", "websocket.http.response.start"):
+                headers = MutableHeaders(scope=message)
+                for name, value in wanted.items():
+                    headers.setdefault(name, value)
+            await send(message)
+
+        return send_with_headers
 
 
-def judge(scope: Scope, hosts: frozenset[str]) -> Refusal | None:
+def judge(scope: Scope, hosts: Hosts) -> Refusal | None:
     """The refusal of a request, None if it may pass.
 
     Args:
         scope: The ASGI scope of a request or WebSocket.
-        hosts: Host names (without port) the server answers to.
+        hosts: The host names the server answers to.
     """
     headers = Headers(scope=scope)
     named = headers.getlist("host")
-    if len(named) != 1 or hostname(named[0]) not in hosts:
-        return Refusal(400, "this server does not answer to that host name")
+    if len(named) != 1 or not hosts.answer(hostname(named[0]), scope):
+        return Refusal(400, "Refused", "this server does not answer to that host name")
     origins = headers.getlist("origin")
-    if scope["type"] == "websocket":
-        allowed = len(origins) == 1 and same_origin(origins[0], named[0])
-    elif scope["method"] in SAFE_METHODS:
-        allowed = True
-    elif origins:
-        allowed = len(origins) == 1 and same_origin(origins[0], named[0])
+    secure = scope["scheme"] in ("https", "wss")
+    if scope["type"] == "websocket" or origins:
+        allowed = len(origins) == 1 and same_origin(origins[0], named[0], secure=secure)
     else:
         # Browsers always send Origin or Sec-Fetch-Site with these; scripts send neither.
         allowed = headers.get("sec-fetch-site", "same-origin") == "same-origin"
-    return None if allowed else Refusal(403, "requests from other sites are not accepted")
+    if scope["type"] == "http" and scope["method"] in SAFE_METHODS:
+        allowed = True
+    if allowed:
+        return None
+    return Refusal(403, "Refused", "requests from other sites are not accepted")
 
 
 def hostname(host: str) -> str:
@@ -104,24 +127,6 @@ def hostname(host: str) -> str:
     return "" if malformed else parts.hostname or ""
 
 
-def same_origin(origin: str, host: str) -> bool:
-    """Whether a page of this origin was served under this ``Host`` header."""
-    return origin.lower() in (f"http://{host.lower()}", f"https://{host.lower()}")
-
-
-def _with_headers(send: Send) -> Send:
-    async def send_with_headers(message: Message) -> None:
-        if message["type"] in ("http.response.start", "websocket.http.response.start"):
-            headers = MutableHeaders(scope=message)
-            for name, value in HEADERS.items():
-                headers.setdefault(name, value)
-        await send(message)
-
-    return send_with_headers
-
-
-async def _answer(refusal: Refusal, send: Send) -> None:
-    body = json.dumps({"error": "Refused", "detail": refusal.detail}).encode()
-    headers = [(b"content-type", b"application/json")]
-    await send({"type": "http.response.start", "status": refusal.status, "headers": headers})
-    await send({"type": "http.response.body", "body": body})
+def same_origin(origin: str, host: str, *, secure: bool) -> bool:
+    """Whether a page of this origin was served under this ``Host`` header, by this protocol."""
+    return origin.lower() == f"{'https' if secure else 'http'}://{host.lower()}"

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import asyncio
+from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Annotated
@@ -10,7 +11,8 @@ from typing import Annotated
 from fastapi import Depends
 from starlette.requests import HTTPConnection
 
-from app.errors import Refused
+from app.access.audit import audit
+from app.errors import Refused, SignInAgain
 
 
 class May(StrEnum):
@@ -31,6 +33,8 @@ class May(StrEnum):
 class Role(StrEnum):
     """What a person is on this server."""
 
+    NOBODY = "nobody"
+    """Who has not signed in; never given to a person."""
     VIEWER = "viewer"
     OPERATOR = "operator"
     REVIEWER = "reviewer"
@@ -38,11 +42,15 @@ class Role(StrEnum):
 
 
 MAY: dict[Role, frozenset[May]] = {
+    Role.NOBODY: frozenset(),
     Role.VIEWER: frozenset({May.LOOK}),
     Role.OPERATOR: frozenset({May.LOOK, May.PROCESS, May.CAPTURE}),
     Role.REVIEWER: frozenset({May.LOOK, May.PROCESS, May.REVIEW}),
     Role.ADMIN: frozenset(May),
 }
+
+FRESH_S = 900.0
+"""What is signed with one's name needs a password given within this time [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,26 +65,56 @@ class Person:
         return what in MAY[self.role]
 
 
+LOCAL = Person("local", Role.ADMIN)
+"""Whoever sits at this computer, when the server listens on loopback only."""
+NOBODY = Person("nobody", Role.NOBODY)
+"""Who has not signed in."""
+
+
 def person(connection: HTTPConnection) -> Person:
     """Who asks, as the guard in front of the application found out."""
     found: Person = connection.scope["state"]["person"]
     return found
 
 
+def signed_in_s(connection: HTTPConnection) -> float:
+    """Seconds since this person last gave the password; 0 where there is no login."""
+    found: float = connection.scope["state"]["signed_in_s"]
+    return found
+
+
 Who = Annotated[Person, Depends(person)]
 
 
-def needs(what: May) -> Callable[[Person], Person]:
+def needs(what: May) -> Callable[[HTTPConnection], Awaitable[Person]]:
     """A dependency that lets only those pass who may: ``dependencies=[Depends(needs(May.LOOK))]``.
 
     Raises (when called by the framework):
-        Refused: If the person may not.
+        Refused: If the person may not; it is noted in the audit log.
     """
 
-    def check(who: Who) -> Person:
+    async def check(connection: HTTPConnection) -> Person:
+        who = person(connection)
         if not who.may(what):
+            path = connection.scope["path"]
+            await asyncio.to_thread(audit, connection, what, path, outcome="refused")
             raise Refused(f"{who.name} is a {who.role} here and may not {what}; ask an admin")
         return who
 
-    check.needs = what  # type: ignore[attr-defined]  # read by the test of the role matrix
+    check.needs = what  # type: ignore[attr-defined]  # read by `app.access.routes_check`
     return check
+
+
+def anybody() -> None:
+    """The dependency of the few routes that answer before login: ``Depends(anybody)``."""
+
+
+def fresh_login(connection: HTTPConnection) -> Person:
+    """A dependency for what is signed with one's name: the password was given a moment ago.
+
+    Raises:
+        SignInAgain: If it was given more than `FRESH_S` ago; ``POST /api/login/again`` helps.
+    """
+    if signed_in_s(connection) > FRESH_S:
+        raise SignInAgain("give your password again: this is signed with your name")
+    return person(connection)

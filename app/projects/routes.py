@@ -2,32 +2,101 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Depends, Request
 from fastapi.responses import FileResponse
+from pydantic import BaseModel, ConfigDict, Field
 
-from app.deps import Server
-from app.errors import Problem
-from app.projects.model import Entry, Project
+from app.access.audit import audit
+from app.access.people import May, needs
+from app.deps import Parts, Server
+from app.errors import Conflict, Problem
+from app.jobs.model import JobState
+from app.projects.look import Found, look_at
+from app.projects.model import Entry, Project, ProjectCard
+from app.projects.trash import Deleted
 
-router = APIRouter(prefix="/api", tags=["projects"], responses={404: {"model": Problem}})
+router = APIRouter(
+    prefix="/api",
+    tags=["projects"],
+    dependencies=[Depends(needs(May.LOOK))],
+    responses={404: {"model": Problem}},
+)
 
+PROCESS = [Depends(needs(May.PROCESS))]
 REPORT_POLICY = "sandbox; default-src 'none'; style-src 'unsafe-inline'; img-src data:"
 """A report is a file of the project: it may show itself and nothing more."""
 
 
-@router.get("/projects")
-def list_projects(server: Server) -> list[Project]:
+LOOK_LIMIT_S = 60.0
+
+
+class Rename(BaseModel):
+    """Another name."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    name: str = Field(min_length=1, max_length=100, pattern=r"^[^\x00-\x1f\x7f]+$")
+    """For people; any letters."""
+
+
+class Restored(BaseModel):
+    """A project that is back."""
+
+    project: str
+
+
+@router.get("/projects", summary="Projects")
+def list_projects(server: Server) -> list[ProjectCard]:
     """All projects, the newest first."""
     return server.projects.all()
 
 
-@router.get("/projects/{project_id}")
+@router.get("/projects/{project_id}", summary="One project")
 def read_project(project_id: str, server: Server) -> Project:
-    """One project."""
+    """One project with its results and finished stages."""
     return server.projects.get(project_id)
 
 
-@router.get("/projects/{project_id}/files/{name}", response_class=FileResponse)
+@router.patch("/projects/{project_id}", dependencies=PROCESS, summary="Rename")
+def rename_project(project_id: str, new: Rename, server: Server, request: Request) -> Project:
+    """Give a project another name; its folder and addresses stay. Not while a job runs."""
+    server.projects.rename(project_id, new.name.strip())
+    audit(request, "rename project", f"{project_id}: {new.name}")
+    return server.projects.get(project_id)
+
+
+@router.delete("/projects/{project_id}", dependencies=PROCESS, summary="Delete")
+def delete_project(project_id: str, server: Server, request: Request) -> Deleted:
+    """Move a project to the trash; it can be brought back for a week. Not while a job runs."""
+    folder = server.projects.folder(project_id)
+    _refuse_while_busy(server, project_id)
+    deleted = server.trash.put(folder)
+    audit(request, "delete project", project_id)
+    return deleted
+
+
+@router.get("/trash", dependencies=PROCESS, summary="Deleted projects")
+def list_trash(server: Server) -> list[Deleted]:
+    """Projects that were deleted lately and can be brought back."""
+    return server.trash.all()
+
+
+@router.post("/trash/{deleted_id}/restore", dependencies=PROCESS, summary="Bring back")
+def restore_project(deleted_id: str, server: Server, request: Request) -> Restored:
+    """Bring a deleted project back under its old name."""
+    project = server.trash.restore(deleted_id)
+    audit(request, "restore project", project)
+    return Restored(project=project)
+
+
+@router.delete("/trash/{deleted_id}", status_code=204, dependencies=PROCESS, summary="Remove")
+def remove_project(deleted_id: str, server: Server, request: Request) -> None:
+    """Remove a deleted project for good, now."""
+    server.trash.remove(deleted_id)
+    audit(request, "remove project", deleted_id)
+
+
+@router.get("/projects/{project_id}/files/{name}", response_class=FileResponse, summary="A result")
 def download(project_id: str, name: str, server: Server) -> FileResponse:
     """A result file, as a download."""
     path = server.projects.result(project_id, name)
@@ -36,7 +105,7 @@ def download(project_id: str, name: str, server: Server) -> FileResponse:
     )
 
 
-@router.get("/projects/{project_id}/report", response_class=FileResponse)
+@router.get("/projects/{project_id}/report", response_class=FileResponse, summary="Report")
 def report(project_id: str, server: Server) -> FileResponse:
     """The quality report, to look at."""
     path = server.projects.result(project_id, "report.html")
@@ -44,13 +113,36 @@ def report(project_id: str, server: Server) -> FileResponse:
     return FileResponse(path, media_type="text/html; charset=utf-8", headers=policy)
 
 
-@router.get("/projects/{project_id}/picture", response_class=FileResponse)
+@router.get("/projects/{project_id}/picture", response_class=FileResponse, summary="Picture")
 async def picture(project_id: str, server: Server) -> FileResponse:
     """The map from above, PNG; drawn when it is asked for the first time."""
     return FileResponse(await server.pictures.of(server.projects.map_artifact(project_id)))
 
 
-@router.get("/recordings", responses={403: {"model": Problem}})
+@router.get(
+    "/recordings",
+    dependencies=[Depends(needs(May.PROCESS))],
+    responses={403: {"model": Problem}},
+    summary="Folders of this computer",
+)
 def browse(server: Server, folder: str = "") -> list[Entry]:
     """Files and folders of this computer a recording may be picked from."""
     return server.projects.browse(folder)
+
+
+@router.get(
+    "/look",
+    dependencies=PROCESS,
+    responses={403: {"model": Problem}, 422: {"model": Problem}, 503: {"model": Problem}},
+    summary="What is in a recording",
+)
+async def look(path: str, server: Server) -> Found:
+    """What is in a recording on this computer, and the settings that suit it."""
+    real = server.projects.importable(path)
+    return await server.desk.run("look", look_at, real, limit_s=LOOK_LIMIT_S)
+
+
+def _refuse_while_busy(server: Parts, project_id: str) -> None:
+    active = (JobState.QUEUED, JobState.RUNNING)
+    if any(job.state in active for job in server.jobs.of_project(project_id)):
+        raise Conflict(f"a job of {project_id} waits or runs; cancel it first")

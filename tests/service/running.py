@@ -19,8 +19,9 @@ from typing import Any
 import httpx
 
 from app.jobs.folder import JobFolder
-from app.main import AnnouncingServer, create_app, serve, uvicorn_config
-from app.settings import ServerSettings
+from app.listen import AnnouncingServer, certificate_of, make_state, uvicorn_config
+from app.main import create_app, serve
+from app.settings import ServerSettings, recordings_from_environment
 
 ROOT = Path(__file__).parents[2]
 SLOW = "tests.service.slow_worker"
@@ -46,6 +47,9 @@ class Running:
         """The first view of the job, from the event stream, that meets a condition."""
         deadline_s = time.monotonic() + 60.0
         with httpx.stream("GET", f"{self.url}/api/events", timeout=30.0) as stream:
+            view = self.get(f"/api/jobs/{job_id}").json()  # what is over is not told again
+            if met(view):
+                return view
             for line in stream.iter_lines():
                 assert time.monotonic() < deadline_s, "it never came to that"
                 if line.startswith("data:"):
@@ -69,16 +73,20 @@ class Running:
 
 @contextmanager
 def server_thread(root: Path, **settings: Any) -> Iterator[Running]:
-    """A server on a free port, in this process."""
-    app = create_app(ServerSettings(root=root, **settings))
+    """A server on a free port, in this process; with ``lan=True`` one with TLS and login."""
+    chosen = ServerSettings(root=root, **settings)
+    make_state(chosen)
+    certificate = certificate_of(chosen)
+    app = create_app(chosen)
     with socket.create_server(("127.0.0.1", 0)) as listener:
         ready = threading.Event()
-        server = AnnouncingServer(uvicorn_config(app), ready.set)
+        server = AnnouncingServer(uvicorn_config(app, certificate), ready.set)
         thread = threading.Thread(target=lambda: asyncio.run(server.serve([listener])))
         thread.start()
         try:
             assert ready.wait(20.0)
-            yield Running(f"http://127.0.0.1:{listener.getsockname()[1]}", root)
+            scheme = "https" if certificate else "http"
+            yield Running(f"{scheme}://127.0.0.1:{listener.getsockname()[1]}", root)
         finally:
             server.should_exit = True
             thread.join(20.0)
@@ -87,10 +95,12 @@ def server_thread(root: Path, **settings: Any) -> Iterator[Running]:
 
 
 @contextmanager
-def server_process(root: Path) -> Iterator[tuple[Running, subprocess.Popen[str]]]:
-    """A server in a process of its own, with the slow worker."""
+def server_process(
+    root: Path, worker: str = SLOW
+) -> Iterator[tuple[Running, subprocess.Popen[str]]]:
+    """A server in a process of its own."""
     process = subprocess.Popen(
-        [sys.executable, "-m", "tests.service.running", str(root)],
+        [sys.executable, "-m", "tests.service.running", str(root), worker],
         stdout=subprocess.PIPE,
         text=True,
         cwd=ROOT,
@@ -119,10 +129,10 @@ def recording_with_gate(folder: Path) -> Path:
     return folder
 
 
-def open_gate(recording: Path) -> int:
+def open_gate(recording: Path, word: str = "go") -> int:
     """Let the slow worker through; the descriptor keeps the gate open until closed."""
     gate = os.open(recording / "gate", os.O_RDWR)
-    os.write(gate, b"go")
+    os.write(gate, word.encode())
     return gate
 
 
@@ -133,8 +143,11 @@ def ran(recording: Path) -> list[str]:
 
 if __name__ == "__main__":
     serve(
-        Path(sys.argv[1]),
-        port=0,
-        on_ready=lambda url: sys.stdout.write(url + "\n") and sys.stdout.flush(),
-        worker=SLOW,
+        ServerSettings(
+            root=Path(sys.argv[1]),
+            port=0,
+            recordings=recordings_from_environment(),
+            worker=sys.argv[2],
+        ),
+        on_ready=lambda url, notes: sys.stdout.write(url + "\n") and sys.stdout.flush(),
     )

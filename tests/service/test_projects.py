@@ -4,6 +4,7 @@ import httpx
 import pytest
 
 from app.main import serve
+from app.settings import ServerSettings
 from recon4.errors import StoreError
 from tests.project_builder import build_project
 from tests.service.running import server_process, server_thread
@@ -80,10 +81,10 @@ def test_two_servers_do_not_share_a_folder(tmp_path):
         assert httpx.get(f"{server.url}/healthz").status_code == 200
 
         with pytest.raises(StoreError, match="another server runs"):
-            serve(tmp_path, port=0)
+            serve(ServerSettings(root=tmp_path, port=0))
 
 
 def test_a_taken_port_is_told(tmp_path):
     with server_process(tmp_path) as (server, _), pytest.raises(StoreError, match="is in use"):
         (tmp_path / "other").mkdir()
-        serve(tmp_path / "other", port=int(server.url.rsplit(":", 1)[1]))
+        serve(ServerSettings(root=tmp_path / "other", port=int(server.url.rsplit(":", 1)[1])))

@@ -1,0 +1,106 @@
+"""HTTP face of what admins do: people, everybody's sessions, the audit log."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Query, Request
+from pydantic import Field
+
+from app.access.accounts import Account
+from app.access.audit import Chain, Entry, audit
+from app.access.people import May, Role, fresh_login, needs
+from app.access.routes import SessionView, Text, Wire, views
+from app.deps import Server
+from app.errors import Problem
+
+router = APIRouter(
+    prefix="/api",
+    tags=["administration"],
+    dependencies=[Depends(needs(May.ADMINISTER))],
+    responses={403: {"model": Problem}, 404: {"model": Problem}, 409: {"model": Problem}},
+)
+FRESH = Depends(fresh_login)
+
+
+class NewPerson(Wire):
+    """Somebody who is to sign in."""
+
+    name: Text
+    role: Role
+    password: Text
+    """To begin with; the person can change it."""
+
+
+class Changes(Wire):
+    """What to change; what is left out stays."""
+
+    role: Role | None = None
+    disabled: bool | None = None
+    password: Annotated[str | None, Field(max_length=1000)] = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Log:
+    """A page of the audit log."""
+
+    entries: list[Entry]
+    """The newest first."""
+    chain: Chain
+
+
+@router.get("/people")
+def list_people(server: Server) -> list[Account]:
+    """Everybody who may sign in."""
+    return server.access.accounts.all()
+
+
+@router.post("/people", status_code=201, dependencies=[FRESH])
+def add_person(new: NewPerson, request: Request, server: Server) -> Account:
+    """Add a person."""
+    account = server.access.accounts.add(new.name, new.role, new.password)
+    audit(request, "add person", f"{account.name}, {account.role}")
+    return account
+
+
+@router.patch("/people/{name}", dependencies=[FRESH])
+def change_person(name: str, changes: Changes, request: Request, server: Server) -> Account:
+    """Change role or password, lock out or let in again; the person's sessions end."""
+    accounts = server.access.accounts
+    account = accounts.get(name)
+    if changes.password is not None:
+        account = accounts.set_password(name, changes.password)
+        audit(request, "set password", account.name)
+    if changes.role is not None:
+        account = accounts.set_role(name, changes.role)
+        audit(request, "set role", f"{account.name}, {account.role}")
+    if changes.disabled is not None:
+        account = accounts.set_disabled(name, changes.disabled)
+        audit(request, "disable" if changes.disabled else "enable", account.name)
+    server.access.sessions.forget_believed()
+    return account
+
+
+@router.get("/sessions")
+def list_sessions(request: Request, server: Server) -> list[SessionView]:
+    """Everybody's sessions."""
+    return views(request, server.access.sessions.all())
+
+
+@router.delete("/sessions/{session_id}", status_code=204)
+def end_session(session_id: str, request: Request, server: Server) -> None:
+    """End a session; whatever it has open closes within seconds."""
+    server.access.sessions.end(session_id)
+    audit(request, "end session", session_id)
+
+
+@router.get("/audit")
+def read_audit(
+    server: Server,
+    most: Annotated[int, Query(ge=1, le=1000)] = 100,
+    before: Annotated[int | None, Query(ge=1)] = None,
+) -> Log:
+    """The audit log, and whether it is as it was written."""
+    log = server.access.log
+    return Log(entries=log.newest(most, before=before), chain=log.check())

@@ -1,0 +1,158 @@
+"""The audit log: who did what, when, from where, to what, and how it ended.
+
+Every row carries the hash of itself and the row before, so a row changed or taken out later shows.
+Whoever can write the file could make the whole chain anew: the newest hash, noted elsewhere,
+settles that.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import threading
+import time
+import unicodedata
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import Any
+
+import sqlalchemy as sa
+from starlette.requests import HTTPConnection
+
+from app.access.database import AUDIT, writing
+
+BEGINNING = "0" * 64
+"""What stands for the hash before the first row."""
+LONGEST = 300
+"""Longer texts are cut [characters]."""
+REFUSALS_A_MINUTE = 60
+"""More are counted, not written: a stranger must not fill the disk."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Entry:
+    """A row of the audit log."""
+
+    number: int
+    time: str
+    """UTC, ISO 8601."""
+    person: str
+    address: str
+    """Where from."""
+    action: str
+    object: str
+    outcome: str
+    """``done``, ``refused`` or ``failed``."""
+    hash: str
+    """SHA-256 of the fields above and of the row before, hexadecimal."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Chain:
+    """Whether the log is as it was written."""
+
+    entries: int
+    broken_at: int | None
+    """Number of the first row that does not follow from the one before; None = none."""
+    newest: str
+    """Hash of the newest row."""
+
+
+class AuditLog:
+    """Appends to the log and reads it."""
+
+    def __init__(self, engine: sa.Engine, clock: Callable[[], float] = time.time) -> None:
+        self._engine = engine
+        self._clock = clock
+        self._lock = threading.Lock()
+        self._minute, self._refusals, self._unwritten = 0, 0, 0
+
+    def add(
+        self, person: str, address: str, *, action: str, what: str, outcome: str = "done"
+    ) -> None:
+        """Append a row; it is on disk when this returns."""
+        if outcome != "done" and not (what := self._counted(what)):
+            return
+        moment = datetime.fromtimestamp(self._clock(), UTC).isoformat(timespec="milliseconds")
+        texts = dict(person=person, address=address, action=action, object=what, outcome=outcome)
+        row: dict[str, Any] = {"time": moment}
+        row |= {name: printable(text) for name, text in texts.items()}
+        newest = sa.select(AUDIT.c.number, AUDIT.c.hash).order_by(AUDIT.c.number.desc()).limit(1)
+        with writing(self._engine) as connection:
+            number, before = connection.execute(newest).one_or_none() or (0, BEGINNING)
+            row |= {"number": number + 1}
+            connection.execute(AUDIT.insert().values(**row, hash=link(before, row)))
+
+    def newest(self, most: int, *, before: int | None = None) -> list[Entry]:
+        """The newest rows, newest first; with ``before`` those older than that row."""
+        query = AUDIT.select().order_by(AUDIT.c.number.desc()).limit(most)
+        if before is not None:
+            query = query.where(AUDIT.c.number < before)
+        with self._engine.connect() as connection:
+            return [Entry(**row) for row in connection.execute(query).mappings()]
+
+    def check(self) -> Chain:
+        """Compute every hash again."""
+        with self._engine.connect() as connection:
+            rows = connection.execute(AUDIT.select().order_by(AUDIT.c.number)).mappings()
+            return follow(dict(row) for row in rows)
+
+    def _counted(self, what: str) -> str:
+        """The object of a refusal with how many were left out before it; empty = leave it out."""
+        with self._lock:
+            minute = int(self._clock() // 60)
+            if minute != self._minute:
+                self._minute, self._refusals = minute, 0
+            self._refusals += 1
+            if self._refusals > REFUSALS_A_MINUTE:
+                self._unwritten += 1
+                return ""
+            left_out, self._unwritten = self._unwritten, 0
+        return f"{what} (after {left_out} more that were not written)" if left_out else what or "-"
+
+
+def audit(connection: HTTPConnection, action: str, what: str, *, outcome: str = "done") -> None:
+    """Note what the person who asks did to what; on disk when this returns.
+
+    Args:
+        connection: The request or WebSocket.
+        action: A verb, as ``start job``.
+        what: Its object, as ``office``.
+        outcome: ``done``, ``refused`` or ``failed``.
+    """
+    log: AuditLog = connection.app.state.parts.access.log
+    name = connection.scope["state"]["person"].name
+    log.add(name, address(connection), action=action, what=what, outcome=outcome)
+
+
+def address(connection: HTTPConnection) -> str:
+    """Where a request came from."""
+    return connection.client.host if connection.client else "?"
+
+
+def link(before: str, row: dict[str, Any]) -> str:
+    """The hash of a row, given that of the row before."""
+    text = json.dumps([before, {k: v for k, v in row.items() if k != "hash"}], sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def follow(rows: Iterable[dict[str, Any]]) -> Chain:
+    """Walk the chain from its beginning."""
+    before, number, broken = BEGINNING, 0, None
+    for row in rows:
+        whole = row["number"] == number + 1 and row["hash"] == link(before, row)
+        if broken is None and not whole:
+            broken = row["number"]
+        before, number = row["hash"], row["number"]
+    return Chain(entries=number, broken_at=broken, newest=before)
+
+
+def printable(text: str) -> str:
+    """Without control characters, which could forge lines, and not endless."""
+    shown = "".join("\N{REPLACEMENT CHARACTER}" if _hidden(one) else one for one in text[:LONGEST])
+    return shown.encode("utf-8", "replace").decode()
+
+
+def _hidden(character: str) -> bool:
+    return unicodedata.category(character) in {"Cc", "Cf", "Cs", "Zl", "Zp"}

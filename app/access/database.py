@@ -1,0 +1,99 @@
+"""``access.sqlite``: people, sessions, known browsers and the audit log, in a file of mode 0600.
+
+The server and the command ``recon4 users`` both write to it, so a change begins by taking the
+write lock; whoever only reads never waits.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import sqlalchemy as sa
+from alembic import command
+from alembic.config import Config
+
+METADATA = sa.MetaData()
+PEOPLE = sa.Table(
+    "people",
+    METADATA,
+    sa.Column("key", sa.String, primary_key=True),
+    sa.Column("name", sa.String, nullable=False),
+    sa.Column("role", sa.String, nullable=False),
+    sa.Column("password", sa.String, nullable=False),
+    sa.Column("disabled", sa.Boolean, nullable=False),
+    sa.Column("created", sa.String, nullable=False),
+)
+"""``key`` is the name folded, so that Anna and anna are one; ``password`` is an argon2 hash."""
+
+SESSIONS = sa.Table(
+    "sessions",
+    METADATA,
+    sa.Column("id", sa.String, primary_key=True),
+    sa.Column("token_hash", sa.String, unique=True, nullable=False),
+    sa.Column("person", sa.String, nullable=False),
+    sa.Column("began_s", sa.Float, nullable=False),
+    sa.Column("proved_s", sa.Float, nullable=False),
+    sa.Column("seen_s", sa.Float, nullable=False),
+    sa.Column("address", sa.String, nullable=False),
+    sa.Column("agent", sa.String, nullable=False),
+)
+"""``person`` is a key of `PEOPLE`; times are in seconds since 1970."""
+
+BROWSERS = sa.Table(
+    "browsers",
+    METADATA,
+    sa.Column("token_hash", sa.String, primary_key=True),
+    sa.Column("person", sa.String, nullable=False),
+    sa.Column("known_s", sa.Float, nullable=False),
+)
+"""Browsers a person once signed in with: others' guesses do not delay them."""
+
+AUDIT = sa.Table(
+    "audit",
+    METADATA,
+    sa.Column("number", sa.Integer, primary_key=True),
+    sa.Column("time", sa.String, nullable=False),
+    sa.Column("person", sa.String, nullable=False),
+    sa.Column("address", sa.String, nullable=False),
+    sa.Column("action", sa.String, nullable=False),
+    sa.Column("object", sa.String, nullable=False),
+    sa.Column("outcome", sa.String, nullable=False),
+    sa.Column("hash", sa.String, nullable=False),
+)
+"""Triggers refuse to change or delete a row."""
+
+
+def open_database(path: Path) -> sa.Engine:
+    """The database, made or brought up to date."""
+    os.close(os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600))
+    path.chmod(0o600)
+    engine = sa.create_engine(f"sqlite:///{path}")
+    sa.event.listen(engine, "connect", _durable)
+    with writing(engine) as connection:
+        _migrate(connection)
+    return engine
+
+
+@contextmanager
+def writing(engine: sa.Engine) -> Iterator[sa.Connection]:
+    """A transaction that nobody else writes beside; committed at the end."""
+    with engine.begin() as connection:
+        connection.exec_driver_sql("BEGIN IMMEDIATE")
+        yield connection
+
+
+def _durable(connection: Any, _: object) -> None:
+    """What was acknowledged survives a power cut."""
+    for pragma in ("journal_mode=WAL", "synchronous=FULL", "busy_timeout=5000"):
+        connection.execute(f"PRAGMA {pragma}").close()
+
+
+def _migrate(connection: sa.Connection) -> None:
+    config = Config()
+    config.set_main_option("script_location", str(Path(__file__).parent / "migrations"))
+    config.attributes["connection"] = connection
+    command.upgrade(config, "head")

@@ -1,0 +1,236 @@
+"""HTTP face of the login and of one's own account: parse, delegate, answer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Request, Response
+from pydantic import BaseModel, ConfigDict, Field
+
+from app.access.audit import address, audit
+from app.access.door import Access, Caller, Entered
+from app.access.doorkeeper import BROWSER_COOKIE, COOKIE, cookie
+from app.access.people import LOCAL, MAY, May, Role, Who, anybody, needs
+from app.access.sessions import BROWSER_KNOWN_S, LIVES, Session, form_token
+from app.deps import Server
+from app.errors import AppError, Conflict, Problem, TooMany
+
+router = APIRouter(
+    prefix="/api",
+    tags=["access"],
+    responses={401: {"model": Problem}, 403: {"model": Problem}, 429: {"model": Problem}},
+)
+ANYBODY = Depends(anybody)
+SIGNED_IN = Depends(needs(May.LOOK))
+"""Whoever is signed in may look."""
+
+Text = Annotated[str, Field(max_length=1000)]
+
+
+class Wire(BaseModel):
+    """What a browser sends; nothing unknown is taken."""
+
+    model_config = ConfigDict(extra="forbid")
+
+
+class Credentials(Wire):
+    """Name and password."""
+
+    name: Text
+    password: Text
+
+
+class Setup(Credentials):
+    """The first admin."""
+
+    token: Text
+    """From the link the server showed at its start."""
+
+
+class Again(Wire):
+    """The password once more."""
+
+    password: Text
+
+
+class NewPassword(Wire):
+    """The old password and the new."""
+
+    old: Text
+    new: Text
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Me:
+    """Who asks."""
+
+    name: str
+    role: Role
+    may: tuple[May, ...]
+    """What the role allows."""
+    login: bool
+    """Whether people sign in to this server."""
+    token: str
+    """Goes into the header ``X-Recon4-Token`` of every request that changes something."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SessionView:
+    """A session, for people."""
+
+    session: Session
+    current: bool
+    """Whether it is the one that asks."""
+
+
+@router.post("/login", dependencies=[ANYBODY])
+def login(given: Credentials, request: Request, response: Response, server: Server) -> Me:
+    """Sign in; the answer sets the cookie of the session."""
+    access = _with_login(server.access)
+    try:
+        entered = access.door.enter(given.name, given.password, _caller(request))
+    except AppError as error:
+        _note_failure(access, request, given.name, error)
+        raise
+    return _welcome(access, request, response, entered=entered)
+
+
+@router.post("/setup", dependencies=[ANYBODY])
+def set_up(given: Setup, request: Request, response: Response, server: Server) -> Me:
+    """Make the first admin, with the one-time token the server showed at its start."""
+    access = _with_login(server.access)
+    entered = access.door.set_up(
+        given.token, given.name, password=given.password, caller=_caller(request)
+    )
+    name = entered.account.name
+    access.log.add(name, address(request), action="set up", what=f"{name}, admin")
+    return _welcome(access, request, response, entered=entered)
+
+
+@router.post("/login/again", dependencies=[SIGNED_IN])
+def login_again(given: Again, request: Request, response: Response, server: Server) -> Me:
+    """Give the password again, as approval asks for; the cookie changes."""
+    access = _with_login(server.access)
+    session: Session = request.scope["state"]["session"]
+    try:
+        access.door.prove(session.person, given.password, _caller(request))
+    except AppError as error:
+        _note_failure(access, request, session.person, error)
+        raise
+    token = access.sessions.prove(session.id)
+    _set_cookie(response, token, session.role)
+    audit(request, "sign in again", session.id)
+    return _me(access, session.person, role=session.role, token=token)
+
+
+@router.post("/logout", status_code=204, dependencies=[SIGNED_IN])
+def logout(request: Request, response: Response, server: Server) -> None:
+    """End this session; whatever it has open closes."""
+    access = _with_login(server.access)
+    session: Session = request.scope["state"]["session"]
+    access.sessions.end(session.id)
+    audit(request, "sign out", session.id)
+    response.delete_cookie(COOKIE, path="/", secure=True, httponly=True, samesite="strict")
+    response.headers["Clear-Site-Data"] = '"cache", "storage"'
+
+
+@router.get("/me", dependencies=[SIGNED_IN])
+def read_me(request: Request, who: Who, server: Server) -> Me:
+    """Who asks, what that person may, and the token for changes."""
+    token = cookie(request.scope, COOKIE) if server.access.login else ""
+    return _me(server.access, who.name, role=who.role, token=token)
+
+
+@router.post("/me/password", dependencies=[SIGNED_IN])
+def change_password(given: NewPassword, request: Request, response: Response, server: Server) -> Me:
+    """Change one's own password; all other sessions end."""
+    access = _with_login(server.access)
+    name = request.scope["state"]["session"].person
+    caller = _caller(request)
+    access.door.prove(name, given.old, caller)
+    access.accounts.set_password(name, given.new)
+    access.sessions.forget_believed()
+    audit(request, "change password", name)
+    entered = access.door.enter(name, given.new, caller)
+    return _welcome(access, request, response, entered=entered)
+
+
+@router.get("/me/sessions", dependencies=[SIGNED_IN])
+def list_my_sessions(request: Request, who: Who, server: Server) -> list[SessionView]:
+    """One's own sessions."""
+    return views(request, server.access.sessions.all(person=who.name))
+
+
+@router.delete("/me/sessions/{session_id}", status_code=204, dependencies=[SIGNED_IN])
+def end_my_session(session_id: str, request: Request, who: Who, server: Server) -> None:
+    """End one of one's own sessions."""
+    server.access.sessions.end(session_id, person=who.name)
+    audit(request, "end session", f"{session_id} of {who.name}")
+
+
+def views(request: Request, sessions: list[Session]) -> list[SessionView]:
+    """Sessions as they are shown."""
+    mine: Session | None = request.scope["state"].get("session")
+    return [SessionView(session=one, current=bool(mine and mine.id == one.id)) for one in sessions]
+
+
+def _with_login(access: Access) -> Access:
+    if not access.login:
+        raise Conflict(f"there is no login here: whoever sits at this computer is {LOCAL.name}")
+    return access
+
+
+def _caller(request: Request) -> Caller:
+    return Caller(
+        address=address(request),
+        agent=request.headers.get("user-agent", ""),
+        browser=cookie(request.scope, BROWSER_COOKIE)[:100],
+    )
+
+
+def _welcome(access: Access, request: Request, response: Response, *, entered: Entered) -> Me:
+    """Hand over the cookies; the session this browser had before ends."""
+    name, role = entered.account.name, entered.account.role
+    before: Session | None = request.scope["state"].get("session")
+    if before is not None and access.sessions.alive(before.id):
+        access.sessions.end(before.id)
+    access.log.add(name, address(request), action="sign in", what=role)
+    _set_cookie(response, entered.session, role)
+    response.set_cookie(
+        BROWSER_COOKIE,
+        entered.browser,
+        max_age=int(BROWSER_KNOWN_S),
+        path="/",
+        secure=True,
+        httponly=True,
+        samesite="strict",
+    )
+    return _me(access, name, role=role, token=entered.session)
+
+
+def _set_cookie(response: Response, token: str, role: Role) -> None:
+    response.set_cookie(
+        COOKIE,
+        token,
+        max_age=int(LIVES[role].whole_s),
+        path="/",
+        secure=True,
+        httponly=True,
+        samesite="strict",
+    )
+
+
+def _me(access: Access, name: str, *, role: Role, token: str) -> Me:
+    may = tuple(what for what in May if what in MAY[role])
+    given = form_token(token) if access.login else ""
+    return Me(name=name, role=role, may=may, login=access.login, token=given)
+
+
+def _note_failure(access: Access, request: Request, name: str, error: AppError) -> None:
+    """A name nobody has is not written: people type their password there by mistake."""
+    known = access.accounts.password_hash(name) is not None
+    outcome = "refused" if isinstance(error, TooMany) else "failed"
+    who = access.accounts.get(name).name if known else "nobody"
+    what = str(error) if known else f"a name nobody has: {error}"
+    access.log.add(who, address(request), action="sign in", what=what, outcome=outcome)
