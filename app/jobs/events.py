@@ -19,6 +19,8 @@ from recon4.errors import Cancelled
 
 log = logging.getLogger("recon4.job")
 
+MANY = frozenset({"edge", "nodes", "poses", "verdicts"})
+"""Events the viewer draws; the log would drown in them."""
 EVERY_S = 0.25
 """Counts are written, and the wish to stop is read, at most this often [s]."""
 
@@ -53,8 +55,8 @@ class EventWriter:
             self._tell()
 
     def event(self, kind: str, **facts: object) -> None:
-        """Say what was found; pairs tried are too many for the log."""
-        if kind != "edge":
+        """Say what was found."""
+        if kind not in MANY:
             log.info(
                 "%s %s",
                 kind,

@@ -7,6 +7,7 @@ heartbeat       touched by the worker every second
 cancel          made by the server: please stop
 events.jsonl    how far it is (`app.jobs.events`), appended by the worker
 log.txt         what the worker said
+room            some bytes that make way for the last words when the disk is full
 outcome.json    how it ended, written last and whole
 """
 
@@ -26,6 +27,9 @@ from typing import Literal
 from app.jobs.model import Inputs
 from recon4.store.atomic import write_json
 
+KEPT_BYTES = 64 << 10
+MOST_LOG_BYTES = 256 << 10
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outcome:
@@ -36,18 +40,27 @@ class Outcome:
     """Why, and what to do."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limits:
+    """What a worker may take of this computer."""
+
+    memory_bytes: int
+    reserve_bytes: int
+    """It does not begin when less of the disk than this would stay free."""
+
+
 @dataclass(frozen=True, slots=True)
 class JobFolder:
     """One job's folder."""
 
     path: Path
 
-    def prepare(self, inputs: Inputs, project: Path) -> None:
+    def prepare(self, inputs: Inputs, project: Path, limits: Limits) -> None:
         """Write the request; clear what an earlier attempt left."""
         self.path.mkdir(parents=True, exist_ok=True)
         for name in ("pid", "heartbeat", "outcome.json"):
             (self.path / name).unlink(missing_ok=True)
-        request = {"project": str(project), "inputs": asdict(inputs)}
+        request = {"project": str(project), "inputs": asdict(inputs), "limits": asdict(limits)}
         write_json(self.path / "request.json", request)
 
     def request(self) -> tuple[Path, Inputs]:
@@ -57,6 +70,10 @@ class JobFolder:
         for name in ("recordings", "settings"):
             inputs[name] = tuple(inputs[name])
         return Path(request["project"]), Inputs(**inputs)
+
+    def limits(self) -> Limits:
+        """What the worker may take."""
+        return Limits(**json.loads((self.path / "request.json").read_text("utf-8"))["limits"])
 
     @contextlib.contextmanager
     def try_lock(self) -> Iterator[int | None]:
@@ -95,8 +112,22 @@ class JobFolder:
         with contextlib.suppress(FileNotFoundError, ProcessLookupError, ValueError):
             os.killpg(int((self.path / "pid").read_text()), signal.SIGKILL)
 
+    def end_orphans(self) -> None:
+        """End the children a dead worker left. Its number is not another's while they live."""
+        with contextlib.suppress(FileNotFoundError, ProcessLookupError, ValueError):
+            number = int((self.path / "pid").read_text())
+            if _state(number) in ("", "Z"):
+                os.killpg(number, signal.SIGKILL)
+
+    def keep_room(self) -> None:
+        """Take the room the last words need, while there is some."""
+        with (self.path / "room").open("wb") as file:
+            file.write(bytes(KEPT_BYTES))
+            os.fsync(file.fileno())
+
     def finish(self, outcome: Outcome) -> None:
         """Say how it ended; the worker's last deed."""
+        (self.path / "room").unlink(missing_ok=True)
         write_json(self.path / "outcome.json", asdict(outcome))
 
     def outcome(self) -> Outcome | None:
@@ -105,6 +136,20 @@ class JobFolder:
             return Outcome(**json.loads((self.path / "outcome.json").read_text("utf-8")))
         except FileNotFoundError:
             return None
+
+    def log_since(self, offset: int) -> tuple[str, int]:
+        """Whole lines of the log from a byte offset on, and the offset to ask from next time."""
+        try:
+            with (self.path / "log.txt").open("rb") as file:
+                file.seek(offset)
+                data = file.read(MOST_LOG_BYTES)
+        except FileNotFoundError:
+            return "", offset
+        whole = (
+            data[: data.rfind(b"\n") + 1] or data[: MOST_LOG_BYTES * (len(data) >= MOST_LOG_BYTES)]
+        )
+        lines = whole.decode("utf-8", "replace").splitlines()
+        return "".join(f"{_printable(line)}\n" for line in lines), offset + len(whole)
 
     def log_tail(self, *, lines: int) -> str:
         """The last lines of the log, without control characters."""
@@ -116,7 +161,19 @@ class JobFolder:
         except FileNotFoundError:
             return ""
         kept = text.splitlines()[-lines:]
-        return "\n".join("".join(c for c in line if c.isprintable()) for line in kept)
+        return "\n".join(map(_printable, kept))
+
+
+def _printable(line: str) -> str:
+    return "".join(c for c in line if c.isprintable())
+
+
+def _state(number: int) -> str:
+    """What the kernel says of a process: a letter, ``Z`` for one that is over; empty = none."""
+    try:
+        return Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[0]
+    except (OSError, IndexError):
+        return ""
 
 
 def _lock(descriptor: int) -> bool:

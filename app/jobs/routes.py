@@ -5,24 +5,35 @@ from __future__ import annotations
 import secrets
 from collections.abc import AsyncIterator
 from dataclasses import dataclass
-from typing import Annotated
+from pathlib import Path
+from typing import Annotated, Any
 
-from fastapi import APIRouter, Query
-from fastapi.responses import PlainTextResponse
+from fastapi import APIRouter, Depends, Query
+from fastapi.responses import FileResponse, PlainTextResponse
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.access.people import May, needs
 from app.deps import Parts, Server
-from app.errors import Problem
-from app.jobs.model import Inputs, Job
+from app.errors import NoRoom, NotFound, Problem, TooMany
+from app.jobs.model import Inputs, Job, JobState
+from app.jobs.space import refuse_if_full
 from app.jobs.status import Status
 from app.jobs.supervisor import now
+from recon4.errors import NoSpace
 from recon4.model.rig import load_rig, rig_presets
-from recon4.settings import PRESETS, override, preset
+from recon4.settings import override, preset
 
 router = APIRouter(
-    prefix="/api", tags=["jobs"], responses={404: {"model": Problem}, 409: {"model": Problem}}
+    prefix="/api",
+    tags=["jobs"],
+    dependencies=[Depends(needs(May.LOOK))],
+    responses={404: {"model": Problem}, 409: {"model": Problem}},
 )
+PROCESS = [Depends(needs(May.PROCESS))]
+REFUSALS: dict[int | str, dict[str, Any]] = {
+    status: {"model": Problem} for status in (403, 429, 507)
+}
 
 LONGEST_QUIET_S = 15.0
 """An event stream says at least every so often that it is still there [s]."""
@@ -42,8 +53,10 @@ class NewJob(BaseModel):
     """Name of a shipped rig or path of a rig file; empty = guessed."""
     imu: str = ""
     gnss: str = ""
-    settings: list[str] = Field(default=[], max_length=100)
+    settings: list[str] = Field(default=[], max_length=300)
     """``group.field=value`` texts over the preset."""
+    clone_of: str = Field(default="", max_length=64)
+    """A project whose finished stages the new one begins with, as far as they fit."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,70 +67,113 @@ class JobView:
     status: Status
     fraction: float | None
     """Share of the piece of work in hand, None = not known."""
+    overall: float
+    """Share of the whole run."""
+    overall_eta_s: float | None
+    """Time the whole run still takes [s], None = not known yet."""
 
 
-class Choices(BaseModel):
-    """What a new job may choose from."""
+class LogPiece(BaseModel):
+    """What a log says from some place on."""
 
-    presets: list[str]
-    rigs: list[str]
-
-
-@router.get("/choices")
-def read_choices() -> Choices:
-    """Presets and shipped rigs."""
-    return Choices(presets=list(PRESETS), rigs=rig_presets())
+    text: str
+    next: int
+    """Where to go on reading."""
 
 
-@router.get("/jobs")
+@router.get("/jobs", summary="Newest jobs")
 def list_jobs(server: Server) -> list[JobView]:
     """The newest job of each project."""
-    return _views(server)
+    return [_view(server, job) for job in server.jobs.latest().values()]
 
 
-@router.post("/jobs", status_code=201, responses={403: {"model": Problem}})
+@router.post("/jobs", status_code=201, responses=REFUSALS, dependencies=PROCESS, summary="Start")
 def add_job(new: NewJob, server: Server) -> JobView:
-    """Put a job in the queue."""
-    return _add(server, new.project, _checked(new, server))
+    """Put a job in the queue.
+
+    On a project that exists, stages that do not depend on what changed are kept; so they are in a
+    new project with ``clone_of``.
+    """
+    inputs = _checked(new, server)
+    _refuse_too_many(server)
+    if new.clone_of and new.clone_of != new.project:
+        server.projects.clone(new.clone_of, new.project)
+    return _add(server, new.project, inputs)
 
 
-@router.get("/jobs/{job_id}")
+@router.get("/jobs/{job_id}", summary="One job")
 def read_job(job_id: str, server: Server) -> JobView:
-    """One job."""
+    """A job with how far it is."""
     return _view(server, server.jobs.get(job_id))
 
 
-@router.post("/jobs/{job_id}/cancel")
+@router.get("/projects/{project_id}/jobs", summary="Jobs of a project")
+def jobs_of(project_id: str, server: Server) -> list[JobView]:
+    """All jobs of a project, the newest first: what it was made with."""
+    return [_view(server, job) for job in server.jobs.of_project(project_id)]
+
+
+@router.post("/jobs/{job_id}/cancel", dependencies=PROCESS, summary="Cancel")
 def cancel_job(job_id: str, server: Server) -> JobView:
     """Stop a job; its finished stages are kept."""
     return _view(server, server.supervisor.cancel(server.jobs.get(job_id)))
 
 
-@router.post("/jobs/{job_id}/retry", status_code=201)
+@router.post(
+    "/jobs/{job_id}/retry",
+    status_code=201,
+    responses=REFUSALS,
+    dependencies=PROCESS,
+    summary="Resume",
+)
 def retry_job(job_id: str, server: Server) -> JobView:
     """Run the same again as a new job; it goes on after the last finished stage."""
     job = server.jobs.get(job_id)
+    _refuse_too_many(server)
+    _refuse_if_full(server, job.project, job.inputs)
     return _add(server, job.project, job.inputs)
 
 
-@router.get("/jobs/{job_id}/log", response_class=PlainTextResponse)
+@router.get("/jobs/{job_id}/log", response_class=PlainTextResponse, summary="Log")
 def read_log(job_id: str, server: Server, lines: Annotated[int, Query(ge=1, le=5000)] = 200) -> str:
     """The last lines of a job's log."""
     return server.supervisor.folder(server.jobs.get(job_id).id).log_tail(lines=lines)
 
 
-@router.get("/events", response_class=EventSourceResponse)
+@router.get("/jobs/{job_id}/log/since", summary="Log as it grows")
+def follow_log(
+    job_id: str, server: Server, offset: Annotated[int, Query(ge=0, le=1 << 50)] = 0
+) -> LogPiece:
+    """Whole lines of a job's log from a byte offset on; ask again with ``next``."""
+    text, following = server.supervisor.folder(server.jobs.get(job_id).id).log_since(offset)
+    return LogPiece(text=text, next=following)
+
+
+@router.get("/jobs/{job_id}/log/file", response_class=FileResponse, summary="Log as a file")
+def download_log(job_id: str, server: Server) -> FileResponse:
+    """The whole log, as a download."""
+    job = server.jobs.get(job_id)
+    path = server.supervisor.folder(job.id).path / "log.txt"
+    if not path.exists():
+        raise NotFound("this job has said nothing yet")
+    return FileResponse(path, filename=f"{job.project}-log.txt", media_type="text/plain")
+
+
+@router.get("/events", response_class=EventSourceResponse, summary="Changes as they happen")
 async def stream_jobs(server: Server) -> AsyncIterator[ServerSentEvent]:
-    """Server-sent events: ``job`` with a `JobView` at first for each job, then at each change."""
-    sent: dict[str, JobView] = {}
+    """Server-sent events: a ``job`` with a `JobView` for each change of a job.
+
+    At first there is one for each project's newest job, unless that succeeded.
+    """
+    version = server.supervisor.version
+    jobs = [job for job in server.jobs.latest().values() if job.state is not JobState.SUCCEEDED]
     while True:
-        version = server.supervisor.version
-        fresh = {view.job.id: view for view in _views(server)}
-        for job_id, view in fresh.items():
-            if sent.get(job_id) != view:
-                yield ServerSentEvent(event="job", data=view)
-        sent = fresh
+        for job in jobs:
+            yield ServerSentEvent(event="job", data=_view(server, job))
         await server.supervisor.news(version, timeout_s=LONGEST_QUIET_S)
+        touched = server.supervisor.touched_since(version)
+        version = server.supervisor.version
+        jobs = [server.jobs.get(job_id) for job_id in touched]
 
 
 def _checked(new: NewJob, server: Parts) -> Inputs:
@@ -130,7 +186,7 @@ def _checked(new: NewJob, server: Parts) -> Inputs:
     rig = new.rig if new.rig in rig_presets() else resolved(new.rig)
     if rig:
         load_rig(rig)
-    return Inputs(
+    inputs = Inputs(
         recordings=tuple(resolved(path) for path in new.recordings),
         preset=new.preset,
         rig=rig,
@@ -138,19 +194,39 @@ def _checked(new: NewJob, server: Parts) -> Inputs:
         gnss=resolved(new.gnss),
         settings=tuple(new.settings),
     )
+    _refuse_if_full(server, new.project, inputs)
+    return inputs
+
+
+def _refuse_too_many(server: Parts) -> None:
+    waiting = len(server.jobs.in_state(JobState.QUEUED))
+    if waiting >= server.settings.waiting_jobs:
+        raise TooMany(f"{waiting} jobs wait already; try again when some are done, or cancel some")
+
+
+def _refuse_if_full(server: Parts, project: str, inputs: Inputs) -> None:
+    given = [Path(path) for path in (*inputs.recordings, inputs.imu, inputs.gnss) if path]
+    try:
+        refuse_if_full(
+            server.settings.root / project, given, reserve_bytes=server.settings.reserve_bytes
+        )
+    except NoSpace as error:
+        raise NoRoom(str(error)) from error
 
 
 def _add(server: Parts, project: str, inputs: Inputs) -> JobView:
     job = Job(id=secrets.token_hex(8), project=project, inputs=inputs, created=now())
     server.jobs.add(job)
-    server.supervisor.wake()
+    server.supervisor.wake(job)
     return _view(server, job)
 
 
-def _views(server: Parts) -> list[JobView]:
-    return [_view(server, job) for job in server.jobs.latest().values()]
-
-
 def _view(server: Parts, job: Job) -> JobView:
-    status = server.supervisor.status(job)
-    return JobView(job=job, status=status, fraction=status.fraction)
+    status, overall = server.supervisor.status(job), server.supervisor.overall(job)
+    return JobView(
+        job=job,
+        status=status,
+        fraction=status.fraction,
+        overall=overall.fraction,
+        overall_eta_s=overall.eta_s,
+    )

@@ -35,6 +35,14 @@ class Status:
     """Stages begun so far, in order."""
 
     @property
+    def where(self) -> str:
+        """The stage and the piece of work in hand, in words."""
+        if not self.what:
+            return "before it began"
+        running = [row.stage for row in self.stages if row.state == "running"]
+        return f"in stage {running[-1]} ({self.what})" if running else f"in {self.what}"
+
+    @property
     def fraction(self) -> float | None:
         """Share of the piece that is done, None = not known."""
         return min(self.done / self.total, 1.0) if self.total else None

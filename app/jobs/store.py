@@ -14,6 +14,7 @@ from alembic.config import Config
 from sqlalchemy.exc import IntegrityError
 
 from app.errors import Conflict, NotFound
+from app.jobs.backups import Backups
 from app.jobs.model import Inputs, Job, JobState
 
 METADATA = sa.MetaData()
@@ -40,6 +41,9 @@ class JobStore:
     """All jobs there ever were."""
 
     def __init__(self, path: Path) -> None:
+        self._backups = Backups(path)
+        self.notice = self._backups.repair()
+        """What people should know: set when the file was damaged; else empty."""
         self._engine = sa.create_engine(f"sqlite:///{path}")
         sa.event.listen(self._engine, "connect", _durable)
         with self._engine.begin() as connection:
@@ -48,6 +52,10 @@ class JobStore:
     def close(self) -> None:
         """Let go of the file."""
         self._engine.dispose()
+
+    def back_up(self) -> None:
+        """Keep a copy of today, unless there is one."""
+        self._backups.make()
 
     def add(self, job: Job) -> Job:
         """Append a job to the queue.

@@ -11,13 +11,18 @@ import contextlib
 import logging
 import subprocess
 import sys
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 
 from app.errors import Conflict
+from app.jobs.endings import ending
 from app.jobs.events import read_events
-from app.jobs.folder import JobFolder, Outcome
+from app.jobs.folder import JobFolder, Limits, Outcome
+from app.jobs.limits import allowed_memory
 from app.jobs.model import Job, JobState
+from app.jobs.overall import Overall
+from app.jobs.overall import after as further
 from app.jobs.status import Status, after
 from app.jobs.store import JobStore
 from app.settings import ServerSettings, worker_environment
@@ -32,6 +37,7 @@ class Tail:
 
     def __init__(self, folder: JobFolder) -> None:
         self.status = Status()
+        self.overall = Overall()
         self._path = folder.path / "events.jsonl"
         self._offset = 0
 
@@ -41,12 +47,13 @@ class Tail:
         events, self._offset = read_events(self._path, self._offset)
         for event in events:
             self.status = after(self.status, event)
+            self.overall = further(self.overall, event)
         return self.status != before
 
     def forget(self) -> None:
         """Start anew: what was said so far was another worker's."""
         self.read()
-        self.status = Status()
+        self.status, self.overall = Status(), Overall()
 
 
 class Supervisor:
@@ -62,6 +69,8 @@ class Supervisor:
         self._news = asyncio.Event()
         self.version = 0
         """Counts whatever happened to any job."""
+        self._touched: dict[str, int] = {}
+        self._asked: set[str] = set()
 
     # -- asked by routes
 
@@ -75,8 +84,20 @@ class Supervisor:
             return Status()
         return self._tail(job).status
 
-    def wake(self) -> None:
-        """Something was changed: look at the queue now. From any thread."""
+    def overall(self, job: Job) -> Overall:
+        """How far its whole run is."""
+        if job.state is JobState.QUEUED:
+            return Overall()
+        overall = self._tail(job).overall
+        return replace(overall, over=True) if job.state is JobState.SUCCEEDED else overall
+
+    def touched_since(self, version: int) -> list[str]:
+        """Jobs that something happened to after that version."""
+        return [job_id for job_id, touched in self._touched.items() if touched > version]
+
+    def wake(self, job: Job) -> None:
+        """A job was added or changed: look at the queue now. From any thread."""
+        self._asked.add(job.id)
         if self._loop is not None:
             self._loop.call_soon_threadsafe(self._wake.set)
 
@@ -98,7 +119,7 @@ class Supervisor:
             job = self._store.change(job, job.to(JobState.CANCELLED, finished=now()))
         else:
             self.folder(job.id).ask_to_stop()
-        self.wake()
+        self.wake(job)
         return job
 
     # -- the engine
@@ -107,29 +128,33 @@ class Supervisor:
         """Watch until cancelled."""
         self._loop = asyncio.get_running_loop()
         while True:
-            asked = self._wake.is_set()
             self._wake.clear()
+            asked, self._asked = self._asked, set()
             try:
                 changed = await asyncio.to_thread(self.step)
             except Exception:
                 log.exception("the queue could not be looked after; trying again")
-                changed = False
-            if changed or asked:
-                self.version += 1
-                self._news.set()
-                self._news = asyncio.Event()
+                changed = set()
+            self._tell(changed | asked)
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(self._wake.wait(), LOOK_EVERY_S)
 
-    def step(self) -> bool:
-        """Look at every worker and the queue once; whether anything changed."""
+    def _tell(self, jobs: set[str]) -> None:
+        if jobs:
+            self.version += 1
+            self._touched |= dict.fromkeys(jobs, self.version)
+            self._news.set()
+            self._news = asyncio.Event()
+
+    def step(self) -> set[str]:
+        """Look at every worker and the queue once; ids of the jobs that changed."""
         running = self._store.in_state(JobState.RUNNING)
-        changed = any([self._watch(job) for job in running])
+        changed = {job.id for job in running if self._watch(job)}
         free = self._settings.running_jobs - len(self._store.in_state(JobState.RUNNING))
         waiting = self._store.in_state(JobState.QUEUED)[: max(0, free)]
         for job in waiting:
             self._start(job)
-        return changed or bool(waiting)
+        return changed | {job.id for job in waiting}
 
     def close(self) -> None:
         """Leave the workers alone: they go on and the next server adopts them."""
@@ -147,7 +172,11 @@ class Supervisor:
 
     def _start(self, job: Job) -> None:
         folder = self.folder(job.id)
-        folder.prepare(job.inputs, self._settings.root.resolve() / job.project)
+        limits = Limits(
+            memory_bytes=allowed_memory(self._settings.memory_bytes),
+            reserve_bytes=self._settings.reserve_bytes,
+        )
+        folder.prepare(job.inputs, self._settings.root.resolve() / job.project, limits)
         self._tail(job).forget()
         with folder.try_lock() as lock:
             # The state comes first: a server killed between the two lines finds a running job
@@ -160,17 +189,27 @@ class Supervisor:
 
     def _watch(self, job: Job) -> bool:
         changed = self._tail(job).read()
-        if (worker := self._workers.get(job.id)) is not None:
-            worker.poll()  # so that a dead one does not stay a zombie
         folder = self.folder(job.id)
         if folder.alive():
             self._end_if_stuck(folder)
             return changed
-        ended = self._ended(job, folder.outcome(), self._tail(job).status)
+        code = self._exit_code(job)
+        folder.end_orphans()
         self._tail(job).read()
-        self._store.change(job, ended)
+        self._store.change(job, self._ended(job, folder.outcome(), code))
         self._workers.pop(job.id, None)
         return True
+
+    def _exit_code(self, job: Job) -> int | None:
+        """How a worker that let go of its lock ended; None if a server before was its parent."""
+        worker = self._workers.get(job.id)
+        if worker is None:
+            return None
+        try:
+            return worker.wait(5.0)  # the lock goes a moment before the process
+        except subprocess.TimeoutExpired:
+            worker.kill()
+            return worker.wait()
 
     def _end_if_stuck(self, folder: JobFolder) -> None:
         asked_s = folder.asked_to_stop_s()
@@ -180,19 +219,19 @@ class Supervisor:
             log.warning("worker %s gives no sign of life: killed", folder.path.name)
             folder.kill()
 
-    def _ended(self, job: Job, outcome: Outcome | None, status: Status) -> Job:
+    def _ended(self, job: Job, outcome: Outcome | None, code: int | None) -> Job:
         """The job after its worker is gone."""
         if outcome is not None:
             return job.to(JobState(outcome.state), finished=now(), note=outcome.note)
-        where = f"in {status.what}" if status.what else "before it began"
+        where, how = self._tail(job).status.where, ending(code)
         if self.folder(job.id).asked_to_stop_s() is not None:
             return job.to(JobState.CANCELLED, finished=now(), note="stopped on request")
         if job.attempt < self._settings.attempts:
-            note = f"the worker died {where}; it goes on after the last finished stage"
+            note = f"the worker {how}, {where}; it goes on after the last finished stage"
             return job.to(JobState.QUEUED, note=note)
         note = (
-            f"the worker died {job.attempt} times, last {where}; often the memory was not enough "
-            "or the recording is damaged: see the log, then retry"
+            f"the worker died {job.attempt} times: last it {how}, {where}; perhaps the recording "
+            "is damaged or too large for this computer: see the log, then resume"
         )
         return job.to(JobState.FAILED, finished=now(), note=note)
 

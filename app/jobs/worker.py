@@ -5,6 +5,7 @@ It knows no server: it may outlive the one that started it and be adopted by the
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import os
 import sys
@@ -14,11 +15,18 @@ from pathlib import Path
 
 from app.jobs.events import EventWriter
 from app.jobs.folder import JobFolder, Outcome
-from recon4.errors import Cancelled, Recon4Error
+from app.jobs.limits import confine
+from app.jobs.space import refuse_if_full
+from recon4.errors import Cancelled, NoSpace, Recon4Error
 from recon4.progress import Progress
+from recon4.store.atomic import raise_if_full
 
 log = logging.getLogger("recon4.job")
 
+OUT_OF_MEMORY = (
+    "out of memory: the job may take what the server's setting allows; close other programs, "
+    "or process fewer points (a larger map.voxel_m, a shorter recording), then resume"
+)
 
 Work = Callable[[JobFolder, Progress], None]
 
@@ -26,33 +34,39 @@ Work = Callable[[JobFolder, Progress], None]
 def main(path: Path, work: Work) -> None:
     """Run the job of a folder and write its outcome."""
     folder = JobFolder(path)
+    confine(folder.limits().memory_bytes)
     (path / "pid").write_text(str(os.getpid()))
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(message)s", datefmt="%H:%M:%S")
     over = threading.Event()
     threading.Thread(target=_beat, args=(path / "heartbeat", over), daemon=True).start()
     outcome = run(folder, work)
-    log.info("%s %s", outcome.state, outcome.note)
     folder.finish(outcome)
+    log.info("%s %s", outcome.state, outcome.note)
     over.set()
 
 
 def run(folder: JobFolder, work: Work) -> Outcome:
     """Do the work; what happened in words."""
-    events = EventWriter(folder.path / "events.jsonl", folder.path / "cancel")
+    events: EventWriter | None = None
     try:
+        folder.keep_room()
+        events = EventWriter(folder.path / "events.jsonl", folder.path / "cancel")
         work(folder, events)
     except Cancelled as stop:
         return Outcome(state="cancelled", note=str(stop))
     except Recon4Error as error:
         return Outcome(state="failed", note=str(error))
     except MemoryError:
-        return Outcome(state="failed", note="out of memory; close other programs and retry")
+        return Outcome(state="failed", note=OUT_OF_MEMORY)
     except Exception as error:
+        if (full := _full(error, folder.path)) is not None:
+            return Outcome(state="failed", note=full)
         log.exception("unexpected")
         note = f"{type(error).__name__} in the program; the log says where"
         return Outcome(state="failed", note=note)
     finally:
-        events.close()
+        if events is not None:
+            events.close()
     return Outcome(state="succeeded")
 
 
@@ -63,6 +77,8 @@ def process(folder: JobFolder, progress: Progress) -> None:
     from recon4.settings import override, preset
 
     project, inputs = folder.request()
+    given = [Path(path) for path in (*inputs.recordings, inputs.imu, inputs.gnss) if path]
+    refuse_if_full(project, given, reserve_bytes=folder.limits().reserve_bytes)
     run_pipeline(
         [Path(recording) for recording in inputs.recordings],
         project,
@@ -75,9 +91,19 @@ def process(folder: JobFolder, progress: Progress) -> None:
     )
 
 
+def _full(error: Exception, path: Path) -> str | None:
+    """The words of a full disk, if that is what an error came from."""
+    try:
+        raise_if_full(error, path)
+    except NoSpace as full:
+        return str(full)
+    return None
+
+
 def _beat(heartbeat: Path, over: threading.Event) -> None:
     while True:
-        heartbeat.touch()
+        with contextlib.suppress(OSError):  # a full disk is the work's to tell
+            heartbeat.touch()
         if over.wait(1.0):
             return
 

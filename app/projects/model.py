@@ -78,6 +78,25 @@ class Project:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ProjectCard:
+    """What the list shows of a project: what two small files say."""
+
+    id: str
+    name: str
+    finished: bool
+    updated: str
+    """When its newest stage or result came, UTC, ISO 8601."""
+    preset: str
+    rig: str
+    pictured: bool
+    """Whether there is a map to draw a picture of."""
+    way_m: float | None
+    """Length of the way [m]; None before the first run ended."""
+    points: int | None
+    """Points of the map; None before the first run ended."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Entry:
     """A file or folder a recording may be picked from."""
 

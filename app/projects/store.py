@@ -9,12 +9,23 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from app.errors import NotFound, Refused
-from app.projects.model import RESULTS, STAGE_ORDER, Entry, FinishedStage, Project, ResultFile
+from app.errors import Conflict, NotFound, Refused
+from app.projects.clone import clone_artifacts
+from app.projects.model import (
+    RESULTS,
+    STAGE_ORDER,
+    Entry,
+    FinishedStage,
+    Project,
+    ProjectCard,
+    ResultFile,
+)
 from recon4.errors import StoreError
+from recon4.store.project import Project as Folder
 from recon4.store.project import is_project, read_artifacts, read_stages
 
 PROJECT_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
+Stamp = tuple[int | None, ...]
 MOST_ENTRIES = 2000
 """A longer folder listing is cut."""
 
@@ -25,11 +36,13 @@ class ProjectStore:
     def __init__(self, root: Path, import_roots: tuple[Path, ...]) -> None:
         self._root = root.resolve()
         self._import_roots = import_roots
+        self._cards: dict[str, tuple[Stamp, ProjectCard]] = {}
 
-    def all(self) -> list[Project]:
-        """Every project, the newest first."""
-        folders = [entry for entry in self._root.iterdir() if _is_project(entry)]
-        return sorted((self._read(f) for f in folders), key=lambda p: p.updated, reverse=True)
+    def all(self) -> list[ProjectCard]:
+        """Every project, the newest first. Folders that did not change are not read again."""
+        with os.scandir(self._root) as entries:
+            found = [card for entry in entries if (card := self._card(entry)) is not None]
+        return sorted(found, key=lambda card: card.updated, reverse=True)
 
     def get(self, project_id: str) -> Project:
         """One project.
@@ -72,6 +85,33 @@ class ProjectStore:
             raise NotFound(f"project {project_id} has no map yet")
         return artifacts["map"]
 
+    def rename(self, project_id: str, name: str) -> None:
+        """Give a project another name for people; its folder keeps its own.
+
+        Raises:
+            NotFound: If there is none of that name.
+            Conflict: If a job writes to it at the moment.
+        """
+        try:
+            with Folder.open(self.folder(project_id)) as project:
+                project.describe(name=name)
+        except StoreError as error:
+            raise Conflict(f"not now: {error}") from error
+
+    def clone(self, project_id: str, target: str) -> None:
+        """Make a project that begins with the finished stages of another.
+
+        Raises:
+            NotFound: If there is none of that name.
+            Conflict: If there is one of the new name already.
+            NoRoom: If the disk is full.
+        """
+        folder = self.folder(project_id)
+        if not PROJECT_ID.fullmatch(target):
+            raise NotFound(f"no name for a project: {target[:64]!r}")
+        work = self._root / ".recon4" / "clones"
+        clone_artifacts(_artifacts(folder), self._root / target, work)
+
     def importable(self, path: str) -> Path:
         """A recording's path, if the server may read it.
 
@@ -108,6 +148,18 @@ class ProjectStore:
         shown.sort(key=lambda path: (not path.is_dir(), path.name.lower()))
         return [_entry(path, path.name) for path in shown[:MOST_ENTRIES]]
 
+    def _card(self, entry: os.DirEntry[str]) -> ProjectCard | None:
+        if not PROJECT_ID.fullmatch(entry.name) or not entry.is_dir(follow_symlinks=False):
+            return None
+        folder = Path(entry.path)
+        stamp = _stamp(folder)
+        if stamp[0] is None:
+            return None
+        kept = self._cards.get(entry.name)
+        if kept is None or kept[0] != stamp:
+            kept = self._cards[entry.name] = (stamp, _read_card(folder, stamp))
+        return kept[1]
+
     def _read(self, folder: Path) -> Project:
         facts = _json(folder / "project.json")
         size, changed_s = _weigh(folder)
@@ -126,6 +178,45 @@ class ProjectStore:
             pictured=any(stage.stage == "map" for stage in stages),
             summary=_json(folder / "summary.json"),
         )
+
+
+def _stamp(folder: Path) -> Stamp:
+    """When what a card shows last changed [ns]; None for what is not there."""
+    return tuple(
+        _changed_ns(folder / name) for name in ("project.json", "summary.json", "artifacts")
+    )
+
+
+def _changed_ns(path: Path) -> int | None:
+    try:
+        return path.stat().st_mtime_ns
+    except OSError:
+        return None
+
+
+def _read_card(folder: Path, stamp: Stamp) -> ProjectCard:
+    facts, summary = _json(folder / "project.json"), _json(folder / "summary.json")
+    changed_s = max(t_ns for t_ns in stamp if t_ns is not None) / 1e9
+    finished = stamp[1] is not None
+    return ProjectCard(
+        id=folder.name,
+        name=str(facts.get("name") or folder.name),
+        finished=finished,
+        updated=datetime.fromtimestamp(changed_s, UTC).isoformat(timespec="seconds"),
+        preset=str(facts.get("preset") or ""),
+        rig=_name_of(facts.get("rig")),
+        pictured=finished and "points" in summary,
+        way_m=_number(summary.get("way_m")),
+        points=_whole(summary.get("points")),
+    )
+
+
+def _number(value: Any) -> float | None:
+    return float(value) if isinstance(value, int | float) else None
+
+
+def _whole(value: Any) -> int | None:
+    return value if isinstance(value, int) else None
 
 
 def _is_project(folder: Path) -> bool:

@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+import errno
+import logging
 import os
+import resource
 import select
+import signal
+import subprocess
 import sys
 from pathlib import Path
+
+import numpy as np
 
 from app.jobs.folder import JobFolder
 from app.jobs.worker import main
@@ -14,6 +21,36 @@ from recon4.progress import Progress
 from recon4.settings import Settings
 from recon4.store.project import Project
 from recon4.store.stage import Input, Stage, StageRunner
+
+
+def take_memory() -> None:
+    _ = np.ones((1 << 40) // 8)
+
+
+def fill_disk() -> None:
+    raise OSError(errno.ENOSPC, "No space left on device")
+
+
+def leave_a_child() -> None:
+    subprocess.Popen(["sleep", "600"])
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def tell_limits() -> None:
+    names = ("RLIMIT_DATA", "RLIMIT_NOFILE", "RLIMIT_CORE")
+    status = Path("/proc/self/status").read_text()
+    told = {name: resource.getrlimit(getattr(resource, name)) for name in names}
+    logging.getLogger("recon4.job").info("%s %s", told, status[status.index("NoNewPrivs") :][:20])
+
+
+DEEDS = {
+    "crash": lambda: os.kill(os.getpid(), signal.SIGSEGV),
+    "memory": take_memory,
+    "full": fill_disk,
+    "child": leave_a_child,
+    "limits": tell_limits,
+}
+"""Word written to the gate -> what happens to the worker."""
 
 
 def work(folder: JobFolder, progress: Progress) -> None:
@@ -44,7 +81,9 @@ def _odometry(
     gate = os.open(recording / "gate", os.O_RDWR)
     while not select.select([gate], [], [], 0.02)[0]:
         progress.advance(0)
+    word = os.read(gate, 100).decode()
     os.close(gate)
+    DEEDS.get(word, lambda: None)()
     progress.advance(100)
     _note(recording, "finished")
     (out / "done.txt").write_text("done")

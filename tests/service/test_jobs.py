@@ -36,6 +36,7 @@ def test_a_job_runs_tells_its_progress_and_ends(server, recording):
     os.close(gate)
     assert waiting["job"]["state"] == "running"
     assert waiting["fraction"] == 0.0
+    assert 0.0 < waiting["overall"] < done["overall"] == 1.0
     assert [row["stage"] for row in done["status"]["stages"]] == ["frames", "odometry"]
     assert server.get("/api/projects/office").json()["finished"]
     assert "succeeded" in server.get(f"/api/jobs/{job}/log").text
@@ -73,7 +74,8 @@ def test_a_worker_that_dies_three_times_is_given_up_with_words(server, recording
 
     view = server.wait_state(job, "failed")
 
-    assert "died 3 times, last in Odometry" in view["job"]["note"]
+    assert "died 3 times" in view["job"]["note"]
+    assert "[SIGKILL], in stage odometry (Odometry)" in view["job"]["note"]
 
 
 def test_a_running_job_stops_on_request_and_resumes_as_a_new_one(server, recording):

@@ -1,0 +1,140 @@
+"""HTTP face of what a job may choose from: presets, rigs, every setting with its meaning."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from typing import Any
+
+from fastapi import APIRouter, Depends
+from pydantic import BaseModel, ConfigDict, Field
+
+from app.access.people import May, needs
+from recon4.errors import WrongSettings
+from recon4.model.rig import rig_presets
+from recon4.settings import PRESETS, override, preset, to_json
+from recon4.settings_help import GroupHelp, SettingHelp, describe_settings
+
+router = APIRouter(prefix="/api", tags=["settings"], dependencies=[Depends(needs(May.LOOK))])
+
+UNITS = {
+    "m": "m",
+    "s": "s",
+    "ns": "ns",
+    "hz": "Hz",
+    "rad": "rad",
+    "deg": "°",
+    "m_s": "m/s",
+    "m_s2": "m/s²",
+    "rad_s": "rad/s",
+}
+"""Ending of a setting's name -> how its unit is written."""
+
+
+class Choices(BaseModel):
+    """What a new job may choose from."""
+
+    presets: list[str]
+    rigs: list[str]
+
+
+class SettingView(BaseModel):
+    """One setting, as a form shows it."""
+
+    path: str
+    """``group.field``, what a job's ``settings`` take."""
+    name: str
+    kind: str
+    """``int``, ``float``, ``text``, ``bool`` or ``choice``."""
+    choices: list[str]
+    """Of a ``choice``."""
+    unit: str
+    text: str
+    """What it means."""
+    default: Any
+    value: Any
+    """In the preset asked for."""
+
+
+class GroupView(BaseModel):
+    """The settings of one part of the pipeline."""
+
+    name: str
+    text: str
+    settings: list[SettingView]
+
+
+class Assignments(BaseModel):
+    """Settings somebody thinks of."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    preset: str = "indoor"
+    settings: list[str] = Field(default=[], max_length=300)
+    """``group.field=value`` texts over the preset."""
+
+
+class Verdict(BaseModel):
+    """What is wrong with them."""
+
+    problems: dict[str, str]
+    """``group.field`` -> what is wrong and what was expected, in words; empty = all is well."""
+
+
+@router.get("/choices", summary="Presets and rigs")
+def read_choices() -> Choices:
+    """Presets and shipped rigs a job may name."""
+    return Choices(presets=list(PRESETS), rigs=rig_presets())
+
+
+@router.get("/settings", summary="Every setting")
+def read_settings(of: str = "indoor") -> list[GroupView]:
+    """Every setting with its meaning, unit, default and its value in the preset ``of``."""
+    values = to_json(preset(of))
+    return [_group(group, values[group.name]) for group in _described()]
+
+
+@router.post("/settings/check", summary="Check settings")
+def check_settings(given: Assignments) -> Verdict:
+    """Whether a job would take these settings; every mistake is named."""
+    chosen = preset(given.preset)
+    try:
+        override(chosen, given.settings)
+    except WrongSettings as error:
+        return Verdict(problems=error.problems)
+    return Verdict(problems={})
+
+
+@cache
+def _described() -> tuple[GroupHelp, ...]:
+    return describe_settings()
+
+
+def _group(group: GroupHelp, values: dict[str, Any]) -> GroupView:
+    settings = [_setting(one, values[one.name]) for one in group.settings]
+    return GroupView(name=group.name, text=_plain(group.text), settings=settings)
+
+
+def _setting(one: SettingHelp, value: Any) -> SettingView:
+    words = re.findall(r"`([^`]*)`", one.kind)
+    truth = words == ["true", "false"]
+    return SettingView(
+        path=one.path,
+        name=one.name,
+        kind="bool" if truth else "choice" if words else one.kind,
+        choices=[] if truth else words,
+        unit=unit_of(one.name),
+        text=_plain(one.text),
+        default=one.default,
+        value=value,
+    )
+
+
+def unit_of(name: str) -> str:
+    """The unit a setting's name ends with; empty = none."""
+    endings = sorted(UNITS, key=len, reverse=True)
+    return next((UNITS[ending] for ending in endings if name.endswith(f"_{ending}")), "")
+
+
+def _plain(text: str) -> str:
+    return text.replace("``", "")

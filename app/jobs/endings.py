@@ -1,0 +1,28 @@
+"""How a worker that did not say its last word ended, for people."""
+
+from __future__ import annotations
+
+import signal
+
+WORDS = {
+    signal.SIGKILL: "was killed from outside; often the memory of the computer was not enough",
+    signal.SIGSEGV: "crashed in native code (segmentation fault)",
+    signal.SIGABRT: "was given up by native code (abort)",
+    signal.SIGBUS: "crashed reading a file that got shorter (bus error)",
+    signal.SIGFPE: "crashed in native code (arithmetic)",
+    signal.SIGILL: "needs a processor with more instructions (illegal instruction)",
+    signal.SIGTERM: "was ended from outside",
+}
+
+
+def ending(code: int | None) -> str:
+    """What became of a worker, from its exit code; None = nobody saw it end."""
+    if code is None:
+        return "died while no server watched"
+    if code >= 0:
+        return f"ended without a result (exit code {code})"
+    try:
+        kind = signal.Signals(-code)
+    except ValueError:
+        return f"was ended by signal {-code}"
+    return f"{WORDS.get(kind, 'was ended')} [{kind.name}]"

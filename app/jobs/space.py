@@ -1,0 +1,45 @@
+"""Room on the disk: asked before a job is taken, and again before it begins."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Iterable
+from pathlib import Path
+
+from recon4.errors import NoSpace
+
+TIMES_THE_INPUT = 3
+"""Decoded frames and map together have at most so many times the bytes of the recording."""
+
+
+def refuse_if_full(project: Path, inputs: Iterable[Path], *, reserve_bytes: int) -> None:
+    """Refuse a job that the disk has no room for; what the project holds already counts.
+
+    Raises:
+        NoSpace: Saying how much is free and how much is needed.
+    """
+    given = sum(size_below(path) for path in inputs)
+    needed = max(0, TIMES_THE_INPUT * given - size_below(project)) + reserve_bytes
+    there = next(folder for folder in (project, *project.parents) if folder.exists())
+    free = shutil.disk_usage(there).free
+    if free < needed:
+        raise NoSpace(
+            f"no space: this job needs about {needed / 1e9:.1f} GB "
+            f"({TIMES_THE_INPUT} x {given / 1e9:.2f} GB of recording, and some to spare), "
+            f"{free / 1e9:.1f} GB are free; make room, then start again"
+        )
+
+
+def size_below(path: Path) -> int:
+    """Bytes of a file, or of all files below a folder; 0 when there is nothing."""
+    if path.is_file():
+        return path.stat().st_size
+    size = 0
+    for parent, _, names in os.walk(path):
+        for name in names:
+            try:
+                size += os.stat(os.path.join(parent, name), follow_symlinks=False).st_size
+            except FileNotFoundError:
+                continue  # a running job tidies up
+    return size

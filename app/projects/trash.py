@@ -1,0 +1,136 @@
+"""Deleting in two steps: a project is moved aside, and what lies aside long enough is removed.
+
+ROOT/.recon4/trash/<project>@<moment>/      the project, as it was
+ROOT/.recon4/trash/.going-…                 being removed; gone for good
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import secrets
+import shutil
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from app.errors import Conflict, NotFound
+
+NAME = re.compile(r"(?P<project>[A-Za-z0-9][A-Za-z0-9._-]{0,63})@(?P<moment>\d{8}T\d{12})")
+MOMENT = "%Y%m%dT%H%M%S%f"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Deleted:
+    """A project that lies aside."""
+
+    id: str
+    """What to bring it back by."""
+    project: str
+    deleted: str
+    """UTC, ISO 8601."""
+    goes: str
+    """When it is removed for good."""
+
+
+class Trash:
+    """What was deleted lately."""
+
+    def __init__(self, root: Path, folder: Path, *, kept_s: float) -> None:
+        self._root = root.resolve()
+        self._folder = folder
+        self._kept_s = kept_s
+
+    def put(self, project: Path) -> Deleted:
+        """Move a project aside; it is found under its name no more."""
+        self._folder.mkdir(parents=True, exist_ok=True)
+        target = self._folder / f"{project.name}@{datetime.now(UTC).strftime(MOMENT)}"
+        project.rename(target)
+        _fsync(self._folder)
+        _fsync(self._root)
+        return self._deleted(target)
+
+    def all(self) -> list[Deleted]:
+        """What lies aside, the newest first."""
+        found = [path for path in self._entries() if NAME.fullmatch(path.name)]
+        return sorted(map(self._deleted, found), key=lambda one: one.deleted, reverse=True)
+
+    def restore(self, deleted_id: str) -> str:
+        """Bring a project back.
+
+        Returns:
+            Its name.
+
+        Raises:
+            NotFound: If it is gone.
+            Conflict: If there is another project of that name by now.
+        """
+        path = self._find(deleted_id)
+        project = self._deleted(path).project
+        if (self._root / project).exists():
+            raise Conflict(f"there is another project {project} by now; delete or rename that one")
+        path.rename(self._root / project)
+        _fsync(self._root)
+        return project
+
+    def remove(self, deleted_id: str) -> None:
+        """Remove a deleted project for good.
+
+        Raises:
+            NotFound: If it is gone already.
+        """
+        self._remove(self._find(deleted_id))
+
+    def sweep(self, now_s: float) -> list[str]:
+        """Remove what has lain aside long enough, and what was being removed when a server ended.
+
+        Returns:
+            The names of the projects.
+        """
+        for path in self._entries():
+            if path.name.startswith(".going-"):
+                shutil.rmtree(path, ignore_errors=True)
+        old = [path for path in self._entries() if NAME.fullmatch(path.name)]
+        old = [path for path in old if _deleted_s(path) + self._kept_s < now_s]
+        for path in old:
+            self._remove(path)
+        return [self._deleted(path).project for path in old]
+
+    def _remove(self, path: Path) -> None:
+        going = path.with_name(f".going-{secrets.token_hex(6)}")
+        path.rename(going)
+        shutil.rmtree(going, ignore_errors=True)
+
+    def _find(self, deleted_id: str) -> Path:
+        if not NAME.fullmatch(deleted_id) or not (self._folder / deleted_id).is_dir():
+            raise NotFound("this project is gone for good")
+        return self._folder / deleted_id
+
+    def _entries(self) -> list[Path]:
+        return list(self._folder.iterdir()) if self._folder.exists() else []
+
+    def _deleted(self, path: Path) -> Deleted:
+        at_s = _deleted_s(path)
+        return Deleted(
+            id=path.name,
+            project=path.name.split("@")[0],
+            deleted=_iso(at_s),
+            goes=_iso(at_s + self._kept_s),
+        )
+
+
+def _deleted_s(path: Path) -> float:
+    moment = datetime.strptime(path.name.split("@")[1], MOMENT)
+    return moment.replace(tzinfo=UTC).timestamp()
+
+
+def _iso(t_s: float) -> str:
+    return datetime.fromtimestamp(t_s, UTC).isoformat(timespec="seconds")
+
+
+def _fsync(folder: Path) -> None:
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
