@@ -167,14 +167,15 @@ def _describe_pcap(info: RecordingInfo, path: Path) -> RecordingInfo:
     files = pcap_files(path)
     most = 1 << 40 if info.bytes <= _WHOLE_BYTES else _HEAD_PACKETS
     streams = [stream for file in files for stream in scan_pcap(file, max_packets=most)]
-    positions = [s for s in streams if s.kind == "position"]
+    words = {"position": "position packets", "IMU": "IMU samples", "GNSS": "GNSS samples"}
+    samples = [s for s in streams if s.kind in words]
     return replace(
         info,
         t_first_ns=min((s.t_first_ns for s in streams), default=0),
         t_last_ns=max((s.t_end_ns for s in streams), default=0),
         estimated=not all(s.whole for s in streams),
         sensors=tuple(_packet_sensor(s) for s in streams if s.kind == "data"),
-        samples=tuple(f"{s.source}:{s.port}: {_total(s)} position packets" for s in positions),
+        samples=tuple(f"{s.source}:{s.port}: {_total(s)} {words[s.kind]}" for s in samples),
     )
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import EmptyRecording
 from recon4.model.trajectory import Times
+from recon4.recording.datagram_samples import SampleDecoder
 from recon4.recording.packets import Payloads, as_packets, sound_packets
 from recon4.recording.pcap import Datagrams, OpenFile, address_text, open_plain, read_pcap
 from recon4.recording.positions import utc_offset_ns
@@ -28,6 +29,9 @@ from recon4.recording.velodyne_models import (
     product_text,
 )
 
+KINDS = ("data", "position", "IMU", "GNSS", "other")
+_SAMPLES_TRIED = 20
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PacketStream:
@@ -39,7 +43,7 @@ class PacketStream:
     port: int
     """Destination port."""
     kind: str
-    """``data``, ``position`` or ``other``."""
+    """``data``, ``position``, ``IMU`` or ``GNSS`` (datagrams of samples), or ``other``."""
     packets: int
     """In the part that was scanned."""
     t_first_ns: int
@@ -96,7 +100,7 @@ def scan_pcap(
     keys = head.source.astype(np.int64) << 16 | head.port
     _, first = np.unique(keys, return_index=True)
     streams = [_stream(path, head, keys == keys[row]) for row in sorted(first.tolist())]
-    streams.sort(key=lambda stream: ("data", "position", "other").index(stream.kind))
+    streams.sort(key=lambda stream: KINDS.index(stream.kind))
     offsets = {s.source: s.utc_offset_ns for s in streams if s.kind == "position"}
     return [_with_utc(stream, offsets.get(stream.source)) for stream in streams]
 
@@ -153,6 +157,11 @@ def _stream(path: Path, head: _Head, mine: NDArray[np.bool_]) -> PacketStream:
         rows = length == POSITION_SIZE
         positions = head.payloads[mine][rows][:, :POSITION_SIZE]
         facts = {"kind": "position", "utc_offset_ns": utc_offset_ns(t_ns[rows], positions)}
+    else:
+        first_rows = np.flatnonzero(mine)[:_SAMPLES_TRIED]
+        texts = [head.payloads[k, : head.length[k]].tobytes() for k in first_rows]
+        imu, gnss = SampleDecoder(ImportReport()).push(head.t_ns[first_rows].tolist(), texts)
+        facts["kind"] = "IMU" if imu is not None else "GNSS" if gnss is not None else "other"
     return PacketStream(
         file=path,
         source=address_text(int(head.source[mine][0])),

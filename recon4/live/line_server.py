@@ -1,0 +1,96 @@
+"""JSON lines over a Unix socket: how the processes of a capture talk.
+
+Everybody connected hears everything said, in order. A listener that does not listen is let go:
+it connects again and is told what is so by then.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+MOST_UNHEARD_BYTES = 4 << 20
+_LONGEST_LINE = 1 << 16
+
+
+class LineServer:
+    """Listens on a path; `say` reaches all who are connected."""
+
+    def __init__(
+        self,
+        *,
+        greet: Callable[[], Iterable[dict[str, Any]]],
+        hear: Callable[[dict[str, Any]], None],
+    ) -> None:
+        """Make it.
+
+        Args:
+            greet: What a new listener is told first.
+            hear: Called with every whole line that is a JSON object; others are ignored.
+        """
+        self._greet, self._hear = greet, hear
+        self._writers: set[asyncio.StreamWriter] = set()
+        self._listeners: set[asyncio.Task[None]] = set()
+        self._server: asyncio.Server | None = None
+        self._path = Path()
+
+    async def listen(self, path: Path) -> None:
+        """Start."""
+        with suppress(FileNotFoundError):
+            path.unlink()  # of a process that was killed
+        self._path = path
+        self._server = await asyncio.start_unix_server(self._serve, path, limit=_LONGEST_LINE)
+        os.chmod(path, 0o600)
+
+    def say(self, told: dict[str, Any]) -> None:
+        """Tell everybody."""
+        line = json.dumps(told, separators=(",", ":")).encode() + b"\n"
+        for writer in list(self._writers):
+            if writer.transport.get_write_buffer_size() > MOST_UNHEARD_BYTES:
+                writer.transport.abort()
+            else:
+                writer.write(line)
+
+    async def close(self) -> None:
+        """Stop; what was said is still delivered."""
+        for writer in list(self._writers):
+            with suppress(ConnectionError, TimeoutError):
+                await asyncio.wait_for(writer.drain(), 2.0)
+            writer.close()
+        if self._server is not None:
+            self._server.close()
+            await asyncio.gather(*self._listeners, return_exceptions=True)
+        with suppress(FileNotFoundError):
+            self._path.unlink()
+
+    async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        task = asyncio.current_task()
+        assert task is not None
+        self._listeners.add(task)
+        task.add_done_callback(self._listeners.discard)
+        for said in self._greet():
+            writer.write(json.dumps(said, separators=(",", ":")).encode() + b"\n")
+        self._writers.add(writer)
+        try:
+            while line := await reader.readline():
+                told = _object(line)
+                if told is not None:
+                    self._hear(told)
+        except (ConnectionError, ValueError):
+            pass  # gone, or no line of ours
+        finally:
+            self._writers.discard(writer)
+            writer.close()
+
+
+def _object(line: bytes) -> dict[str, Any] | None:
+    try:
+        told = json.loads(line)
+    except ValueError:
+        return None
+    return told if isinstance(told, dict) else None

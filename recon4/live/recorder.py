@@ -1,0 +1,201 @@
+"""The recorder: a process that puts every datagram on the disk and does nothing else.
+
+``python -m recon4.live.recorder PROJECT`` listens on the ports of the rig until it is told to stop
+(or gets SIGTERM). It talks JSON lines on a Unix socket (`Session.socket`):
+
+    said   {"kind": "written", "bytes": n}                the capture file can be read up to there
+           {"kind": "status", …}                          twice a second, see `Recorder.status`
+           {"kind": "mark", "t_ns": …, "text": …, …}
+           {"kind": "stopped", …}                         the file is complete
+    heard  {"do": "stop"} {"do": "pause"} {"do": "resume"}
+           {"do": "mark", "what": "point" | "place", "text": …, "who": …}
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import shutil
+import signal
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+from recon4.errors import Recon4Error
+from recon4.live.capture_file import CaptureFile, Datagram
+from recon4.live.line_server import LineServer
+from recon4.live.ports import Port, open_ports
+from recon4.live.session import Session, load_session, stretched
+from recon4.model.rig import Rig, load_rig
+from recon4.store.atomic import write_json
+
+STATUS_EVERY_S = 0.5
+_AT_ONCE = 256
+"""Datagrams fetched from a port before the others have their turn."""
+
+
+class Recorder:
+    """Sockets in, file out, status to whoever listens. Lives in one event loop."""
+
+    def __init__(self, session: Session, rig: Rig) -> None:
+        """Open ports and file.
+
+        Raises:
+            ConfigError: If a port cannot be opened.
+            OSError: If the capture file exists or cannot be made.
+        """
+        self._session, self._rig = session, rig
+        self._loop = asyncio.get_running_loop()
+        self._lines = LineServer(greet=self._greeting, hear=self._hear)
+        self._ports = open_ports(rig, address=session.address)
+        self._file = CaptureFile(session.capture, on_written=self._written)
+        self._counts: Counter[tuple[str, int]] = Counter()
+        self._counted: Counter[tuple[str, int]] = Counter()
+        self._counted_s = self._began_s = time.monotonic()
+        self._began_ns = time.time_ns()
+        self._paused = False
+        self._skipped = 0
+        self._rates: list[dict[str, Any]] = []
+        self._over = asyncio.Event()
+        self._why = "stopped"
+
+    async def run(self, on_ready: Callable[[], None]) -> None:
+        """Record until told to stop."""
+        for sign in (signal.SIGTERM, signal.SIGINT):
+            self._loop.add_signal_handler(sign, self._over.set)
+        await self._lines.listen(self._session.socket("recorder"))
+        for port in self._ports:
+            self._loop.add_reader(port.socket, self._receive, port)
+        on_ready()
+        while not self._over.is_set():
+            try:
+                await asyncio.wait_for(self._over.wait(), STATUS_EVERY_S)
+            except TimeoutError:
+                self._tell_status()
+        await self._finish()
+
+    async def _finish(self) -> None:
+        for port in self._ports:
+            self._receive(port)
+            self._loop.remove_reader(port.socket)
+            port.socket.close()
+        await asyncio.to_thread(self._file.close)
+        outcome = {"why": self._why, **self.status()}
+        write_json(self._session.outcome, outcome)
+        self._lines.say({"kind": "stopped", **outcome})
+        await self._lines.close()
+
+    def _receive(self, port: Port) -> None:
+        for _ in range(_AT_ONCE):
+            datagram = port.receive()
+            if datagram is None:
+                return
+            self._take(datagram)
+
+    def _take(self, datagram: Datagram) -> None:
+        self._counts[datagram.source[0], datagram.port] += 1
+        if self._paused:
+            self._skipped += 1
+        else:
+            t_ns = stretched(datagram.t_ns, self._session.speed)
+            self._file.add(replace(datagram, t_ns=t_ns))
+
+    def _written(self, size: int) -> None:
+        told = {"kind": "written", "bytes": size}
+        self._loop.call_soon_threadsafe(self._lines.say, told)
+
+    def _tell_status(self) -> None:
+        now_s = time.monotonic()
+        seconds = now_s - self._counted_s
+        fresh = self._counts - self._counted
+        self._rates = [
+            {"source": source, "port": port, "per_s": round(fresh[source, port] / seconds, 1)}
+            for source, port in sorted(self._counts)
+        ]
+        self._counted, self._counted_s = Counter(self._counts), now_s
+        self._lines.say({"kind": "status", **self.status()})
+        if not self._disk()["enough"]:
+            self._why = "the disk is nearly full"
+            self._over.set()
+
+    def status(self) -> dict[str, Any]:
+        """What a person may want to know; see ``docs/live.md``."""
+        return {
+            "t_ns": stretched(time.time_ns(), self._session.speed),
+            "began_ns": self._began_ns,
+            "seconds": round(time.monotonic() - self._began_s, 1),
+            "paused": self._paused,
+            "skipped_in_pauses": self._skipped,
+            "senders": self._rates,
+            "ports": {str(port.number): port.words for port in self._ports},
+            "kernel_drops": sum(port.kernel_drops for port in self._ports),
+            "file": asdict(self._file.state()),
+            "disk": self._disk(),
+        }
+
+    def _disk(self) -> dict[str, Any]:
+        free = shutil.disk_usage(self._session.project).free
+        written = self._file.state().written_bytes
+        per_s = written / max(time.monotonic() - self._began_s, 1.0)
+        left_s = (free - self._session.least_free_bytes) / per_s if per_s > 1000 else None
+        return {
+            "free_bytes": free,
+            "left_s": None if left_s is None else round(left_s),
+            "enough": free > self._session.least_free_bytes,
+        }
+
+    def _greeting(self) -> list[dict[str, Any]]:
+        size = self._file.state().written_bytes
+        return [{"kind": "written", "bytes": size}, {"kind": "status", **self.status()}]
+
+    def _hear(self, told: dict[str, Any]) -> None:
+        match told.get("do"):
+            case "stop":
+                self._over.set()
+            case "pause":
+                self._paused = True
+                self._mark({"what": "pause"})
+            case "resume":
+                self._paused = False
+                self._mark({"what": "resume"})
+            case "mark":
+                self._mark({name: told.get(name) for name in ("what", "text", "who")})
+            case _:
+                pass  # a newer server may know more
+
+    def _mark(self, facts: dict[str, Any]) -> None:
+        mark = {"t_ns": stretched(time.time_ns(), self._session.speed), **facts}
+        with self._session.marks.open("a", encoding="utf-8") as file:
+            file.write(json.dumps(mark, ensure_ascii=False) + "\n")
+            file.flush()
+            os.fsync(file.fileno())
+        self._lines.say({"kind": "mark", **mark})
+        self._tell_status()
+
+
+def main(project: Path) -> int:
+    """Record a session that was prepared; says ``ready`` on its output once it listens."""
+
+    def say_ready() -> None:
+        sys.stdout.write("ready\n")
+        sys.stdout.flush()
+
+    async def run() -> None:
+        await Recorder(session, load_rig(session.rig)).run(say_ready)
+
+    session = load_session(project)
+    try:
+        asyncio.run(run())
+    except (Recon4Error, OSError) as error:
+        sys.stderr.write(f"{error}\n")
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1])))

@@ -1,0 +1,183 @@
+"""Sends a recording to the ports of a recorder as its sensors did, so that no hardware is needed.
+
+Stamps are moved to now: the sensors appear as they were, only today. Samples of ``imu.csv`` and
+``gnss.csv`` beside the capture go out as JSON datagrams.
+"""
+
+from __future__ import annotations
+
+import csv
+import heapq
+import json
+import socket
+import time
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from recon4.errors import EmptyRecording
+from recon4.live.session import stretched
+from recon4.model.rig import GNSS_PORT, IMU_PORT
+from recon4.progress import Progress
+from recon4.recording.open import pcap_files
+from recon4.recording.pcap import address_text, read_pcap
+from recon4.recording.report import ImportReport
+from recon4.recording.velodyne_models import DATA_SIZE, HOUR_US, POSITION_SIZE
+
+_STAMP_AT = {DATA_SIZE: 1200, POSITION_SIZE: 198}
+"""Where a packet of this size has its microseconds past the hour."""
+_SAMPLE_DELAY_NS = {"imu.csv": 2_000_000, "gnss.csv": 50_000_000}
+"""How long after its time a sample is sent [ns]."""
+_AHEAD_NS = 500_000
+"""Datagrams that are due so soon are sent at once."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shipment:
+    """A datagram to be sent."""
+
+    t_ns: int
+    """When it came in, in the recording [ns]."""
+    source: str
+    port: int
+    payload: bytes
+    stamped: bool = False
+    """It holds an absolute ``t_ns`` as JSON."""
+
+
+Alter = Callable[[Shipment], Iterable[Shipment]]
+"""What becomes of a datagram on its way; for trials with bad networks."""
+
+
+def replay(
+    recording: Path,
+    *,
+    progress: Progress,
+    target: str = "127.0.0.1",
+    speed: float = 1.0,
+    alter: Alter = lambda shipment: (shipment,),
+) -> int:
+    """Send a capture file, and the CSV files beside it, at the speed it was recorded.
+
+    Args:
+        recording: A pcap file, or a folder with pcap files (``recon4 simulate``, a live project's
+            ``recordings``).
+        progress: Counts seconds of the recording.
+        target: Address to send to.
+        speed: How many times as fast; the recorder must be started with the same.
+        alter: May drop, change or multiply datagrams.
+
+    Returns:
+        How many datagrams were sent.
+
+    Raises:
+        RecordingError: If there is nothing to send.
+    """
+    shipments = shipments_of(recording)
+    first = next(shipments, None)
+    if first is None:
+        raise EmptyRecording(f"{recording.name}: no UDP datagram in it")
+    began_ns = time.time_ns()
+    shift_ns = (stretched(began_ns, speed) - first.t_ns) // 1000 * 1000
+    sent = 0
+    progress.start("replay", 0, "s")
+    second = first.t_ns
+    with _Senders(target) as senders:
+        for shipment in heapq.merge((first,), shipments, key=lambda s: s.t_ns):
+            _wait_until(began_ns + round((shipment.t_ns - first.t_ns) / speed))
+            for altered in alter(shipment):
+                senders.send(moved(altered, shift_ns))
+                sent += 1
+            if shipment.t_ns - second >= 1_000_000_000:
+                second = shipment.t_ns
+                progress.advance()
+    return sent
+
+
+def shipments_of(recording: Path) -> Iterator[Shipment]:
+    """All datagrams of a recording in order of their time."""
+    files = pcap_files(recording)
+    folder = recording if recording.is_dir() else recording.parent
+    parts = [_datagrams(file) for file in files]
+    for name, port in (("imu.csv", IMU_PORT), ("gnss.csv", GNSS_PORT)):
+        if (folder / name).exists():
+            parts.append(_samples(folder / name, port))
+    return heapq.merge(*parts, key=lambda shipment: shipment.t_ns)
+
+
+def moved(shipment: Shipment, shift_ns: int) -> Shipment:
+    """The datagram as it would have been so much later."""
+    payload = shipment.payload
+    at = _STAMP_AT.get(len(payload))
+    if shipment.stamped:
+        payload = b"\n".join(_later(line, shift_ns) for line in payload.splitlines())
+    elif at is not None:
+        stamp_us = int.from_bytes(payload[at : at + 4], "little")
+        if stamp_us < HOUR_US:
+            later = ((stamp_us + shift_ns // 1000) % HOUR_US).to_bytes(4, "little")
+            payload = payload[:at] + later + payload[at + 4 :]
+    return Shipment(shipment.t_ns + shift_ns, shipment.source, shipment.port, payload)
+
+
+def _later(line: bytes, shift_ns: int) -> bytes:
+    try:
+        told = json.loads(line)
+        return json.dumps(told | {"t_ns": told["t_ns"] + shift_ns}).encode()
+    except (ValueError, TypeError, KeyError):
+        return line
+
+
+def _datagrams(file: Path) -> Iterator[Shipment]:
+    for batch in read_pcap(file, ImportReport()):
+        columns = (batch.t_ns, batch.source, batch.port, batch.start, batch.length)
+        rows = zip(*(column.tolist() for column in columns), strict=True)
+        for t_ns, source, port, start, length in rows:
+            payload = batch.buffer[start : start + length].tobytes()
+            stamped = length not in _STAMP_AT and payload.startswith(b"{")
+            yield Shipment(t_ns, address_text(source), port, payload, stamped)
+
+
+def _samples(path: Path, port: int) -> Iterator[Shipment]:
+    delay_ns = _SAMPLE_DELAY_NS[path.name]
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        for row in csv.DictReader(file):
+            known = {name: float(cell) for name, cell in row.items() if cell and name != "t_ns"}
+            finite = {name: value for name, value in known.items() if np.isfinite(value)}
+            payload = json.dumps({"t_ns": int(row["t_ns"]), **finite}).encode()
+            yield Shipment(int(row["t_ns"]) + delay_ns, "127.0.0.1", port, payload, stamped=True)
+
+
+def _wait_until(t_ns: int) -> None:
+    left_ns = t_ns - time.time_ns()
+    if left_ns > _AHEAD_NS:
+        time.sleep(left_ns / 1e9)
+
+
+class _Senders:
+    """A socket for each sender, with an address of its own where that is possible."""
+
+    def __init__(self, target: str) -> None:
+        self._target = target
+        self._sockets: dict[str, socket.socket] = {}
+        self._closing = ExitStack()
+
+    def __enter__(self) -> _Senders:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._closing.close()
+
+    def send(self, shipment: Shipment) -> None:
+        """Send a datagram."""
+        if shipment.source not in self._sockets:
+            self._sockets[shipment.source] = self._open(shipment.source)
+        self._sockets[shipment.source].sendto(shipment.payload, (self._target, shipment.port))
+
+    def _open(self, source: str) -> socket.socket:
+        udp = self._closing.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
+        if self._target.startswith("127."):  # every address of 127/8 is ours
+            udp.bind(("127." + source.split(".", 1)[1], 0))
+        return udp

@@ -1,0 +1,252 @@
+"""A real recorder process on real sockets."""
+
+import json
+import secrets
+import signal
+import socket
+import subprocess
+import sys
+import time
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+
+from recon4.live.capture_file import CaptureFile, Datagram
+from recon4.live.replay import Shipment, moved, replay
+from recon4.live.session import Session
+from recon4.progress import Silent
+from recon4.recording.pcap import read_pcap
+from recon4.recording.report import ImportReport
+from recon4.recording.velodyne_encode import PcapWriter
+from tests.unit.recording.packet_builders import spin
+
+
+@pytest.fixture
+def session(tmp_path):
+    address = ".".join(["127", *(str(secrets.randbelow(250) + 2) for _ in range(3))])
+    session = Session(project=tmp_path / "walk", address=address, least_free_bytes=0)
+    session.capture.parent.mkdir(parents=True)
+    session.save()
+    session.rig.write_text('name = "test"\n[[sensor]]\nname = "lidar"\n')
+    return session
+
+
+@contextmanager
+def recording(session):
+    process = subprocess.Popen(
+        [sys.executable, "-m", "recon4.live.recorder", str(session.project)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    with process:
+        try:
+            assert process.stdout.readline() == "ready\n", process.stderr.read()
+            with Talk(session) as talk:
+                yield process, talk
+        finally:
+            process.kill()
+
+
+class Talk:
+    """A listener on the recorder's socket."""
+
+    def __init__(self, session):
+        self.socket = socket.socket(socket.AF_UNIX)
+        self.socket.settimeout(20.0)
+        self.socket.connect(str(session.socket("recorder")))
+        self.lines = self.socket.makefile("r")
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.lines.close()
+        self.socket.close()
+
+    def say(self, **told):
+        self.socket.sendall(json.dumps(told).encode() + b"\n")
+
+    def hear(self, kind, met=lambda told: True):
+        for line in self.lines:
+            told = json.loads(line)
+            if told["kind"] == kind and met(told):
+                return told
+        raise AssertionError(f"never heard {kind}")
+
+
+def send(session, count, *, size=1206, start=0):
+    udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    udp.bind(("127.0.0.77", 0))
+    for k in range(start, start + count):
+        udp.sendto(k.to_bytes(4, "little") + bytes(size - 4), (session.address, 2368))
+    udp.close()
+
+
+def numbers(path):
+    report = ImportReport()
+    found = [
+        int.from_bytes(batch.buffer[s : s + 4].tobytes(), "little")
+        for batch in read_pcap(path, report)
+        for s in batch.start.tolist()
+    ]
+    return found, report
+
+
+def test_every_datagram_is_in_the_file_with_sender_port_and_time(session):
+    before_ns = time.time_ns()
+    with recording(session) as (process, talk):
+        send(session, 500)
+        talk.hear("status", lambda told: told["file"]["datagrams"] == 500)
+        talk.say(do="stop")
+        stopped = talk.hear("stopped")
+        assert process.wait(20) == 0
+
+    (batch,) = read_pcap(session.capture, ImportReport())
+    assert len(batch) == 500
+    assert set(batch.source.tolist()) == {0x7F00004D}
+    assert set(batch.port.tolist()) == {2368}
+    assert before_ns < batch.t_ns[0] <= batch.t_ns[-1] < time.time_ns()
+    assert (stopped["file"]["dropped"], stopped["kernel_drops"]) == (0, 0)
+    assert json.loads(session.outcome.read_text())["why"] == "stopped"
+    assert not session.socket("recorder").exists()
+
+
+def test_what_was_synced_survives_a_kill_and_opens_with_the_normal_reader(session):
+    with recording(session) as (process, talk):
+        send(session, 300)
+        told = talk.hear("status", lambda told: told["file"]["synced_bytes"] > 300 * 1206)
+        process.send_signal(signal.SIGKILL)
+        process.wait(20)
+
+    assert session.capture.stat().st_size >= told["file"]["synced_bytes"]
+    assert numbers(session.capture)[0] == list(range(300))
+    assert not session.outcome.exists()
+
+
+def test_a_pause_leaves_out_what_comes_and_says_how_much(session):
+    with recording(session) as (process, talk):
+        send(session, 10)
+        talk.hear("status", lambda told: told["file"]["datagrams"] == 10)
+        talk.say(do="pause")
+        talk.hear("mark", lambda told: told["what"] == "pause")
+        send(session, 20, start=10)
+        talk.hear("status", lambda told: told["skipped_in_pauses"] == 20)
+        talk.say(do="resume")
+        talk.hear("mark", lambda told: told["what"] == "resume")
+        send(session, 5, start=30)
+        talk.hear("status", lambda told: told["file"]["datagrams"] == 15)
+        talk.say(do="stop")
+        process.wait(20)
+
+    assert numbers(session.capture)[0] == [*range(10), *range(30, 35)]
+
+
+def test_a_mark_is_on_the_disk_before_it_is_confirmed(session):
+    with recording(session) as (process, talk):
+        talk.say(do="mark", what="point", text="crack in the wall, 2. Stock", who="Eva")
+        talk.hear("mark")
+        process.kill()
+        process.wait(20)
+
+    (mark,) = map(json.loads, session.marks.read_text().splitlines())
+    assert (mark["text"], mark["who"]) == ("crack in the wall, 2. Stock", "Eva")
+
+
+def test_nonsense_on_the_socket_does_no_harm(session):
+    with recording(session) as (process, talk):
+        talk.socket.sendall(b'\xff\x00{"do": }\n[1, 2]\n{"do": "dance"}\n')
+        send(session, 3)
+        talk.hear("status", lambda told: told["file"]["datagrams"] == 3)
+        with Talk(session) as other:
+            other.socket.sendall(b"x" * 100_000)  # no line end: let go, nobody else notices
+        talk.hear("status")
+        assert process.poll() is None
+
+
+def test_a_port_in_use_is_named_with_what_it_is_for(session):
+    taken = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    taken.bind((session.address, 2368))
+    command = [sys.executable, "-m", "recon4.live.recorder", str(session.project)]
+
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    taken.close()
+
+    assert done.returncode == 1
+    assert "UDP port 2368 (lidar) cannot be opened" in done.stderr
+
+
+def test_a_full_disk_stops_the_file_at_a_whole_record_and_is_said(tmp_path):
+    code = """
+import resource, signal, sys, time
+from pathlib import Path
+from recon4.live.capture_file import CaptureFile, Datagram
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+file = CaptureFile(Path(sys.argv[1]), on_written=lambda size: None)
+for k in range(200):
+    file.add(Datagram(k, ("127.0.0.1", 5), 2368, k.to_bytes(4, "little") + bytes(1202)))
+    if k % 10 == 9:
+        while file.state().waiting_bytes: time.sleep(0.01)
+file.close()
+state = file.state()
+print(state.datagrams, state.dropped, state.problem)
+"""
+    path = tmp_path / "walk.pcap"
+
+    done = subprocess.run([sys.executable, "-c", code, path], capture_output=True, text=True)
+
+    kept, dropped, problem = done.stdout.strip().split(" ", 2)
+    assert (int(kept) + int(dropped), problem) == (200, "the disk is full"), done.stderr
+    found, report = numbers(path)
+    assert found == list(range(int(kept)))
+    assert 60 < len(found) < 80
+    assert report.outcome == "complete"
+
+
+def test_too_much_waiting_for_the_disk_is_dropped_and_counted(tmp_path, monkeypatch):
+    monkeypatch.setattr("recon4.live.capture_file.MOST_WAITING_BYTES", 10_000)
+    file = CaptureFile(tmp_path / "walk.pcap", on_written=lambda size: None)
+
+    for _ in range(30):
+        file.add(Datagram(1, ("127.0.0.1", 5), 2368, bytes(1206)))
+    file.close()
+
+    assert file.state().dropped + file.state().datagrams == 30
+    assert file.state().dropped >= 20
+
+
+def test_stamps_of_replayed_packets_are_moved_across_the_hour():
+    _, payloads = spin(1)
+    stamp_us = int.from_bytes(payloads[0, 1200:1204].tobytes(), "little")
+
+    later = moved(Shipment(0, "10.0.0.1", 2368, payloads[0].tobytes()), 3_599_000_000_000)
+
+    assert int.from_bytes(later.payload[1200:1204], "little") == (stamp_us + 3_599_000_000) % (
+        3_600_000_000
+    )
+    assert later.payload[:1200] == payloads[0].tobytes()[:1200]
+    sample = Shipment(0, "10.0.0.1", 8309, b'{"t_ns": 7, "gx_rad_s": 1}', stamped=True)
+    assert json.loads(moved(sample, 5).payload) == {"t_ns": 12, "gx_rad_s": 1}
+
+
+def test_a_replay_comes_in_at_the_speed_it_was_recorded_with_its_samples(session, tmp_path):
+    source = tmp_path / "source"
+    source.mkdir()
+    t_ns, payloads = spin(700)
+    with PcapWriter(source / "recording.pcap") as file:
+        file.write(t_ns, payloads, source="192.168.1.201", port=2368)
+
+    with recording(session) as (process, talk):
+        began_s = time.monotonic()
+        assert replay(source, progress=Silent(), target=session.address) == 700
+        took_s = time.monotonic() - began_s
+        talk.say(do="stop")
+        process.wait(20)
+
+    (batch,) = read_pcap(session.capture, ImportReport())
+    assert took_s == pytest.approx((t_ns[-1] - t_ns[0]) / 1e9, abs=0.3)
+    assert set(batch.source.tolist()) == {0x7FA801C9}
+    steps = batch.t_ns - batch.t_ns[0] - (t_ns - t_ns[0])
+    assert np.median(np.abs(steps)) < 20e6
