@@ -32,7 +32,7 @@ from fastapi import FastAPI, Request
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel
 
-from recon4.errors import Recon4Error
+from recon4.errors import Recon4Error, WrongSettings
 
 log = logging.getLogger(__name__)
 
@@ -135,6 +135,8 @@ class Problem(BaseModel):
     """Name of the error."""
     detail: str
     """What is wrong and what to do, for people."""
+    problems: dict[str, str] = {}
+    """Field -> what is wrong with it, when several fields are."""
 
 
 def install(app: FastAPI) -> None:
@@ -143,6 +145,10 @@ def install(app: FastAPI) -> None:
     @app.exception_handler(AppError)
     async def known(_: Request, error: AppError) -> JSONResponse:
         return _problem(error.status, type(error).__name__, str(error), headers=error.headers)
+
+    @app.exception_handler(WrongSettings)
+    async def wrong_settings(_: Request, error: WrongSettings) -> JSONResponse:
+        return _problem(422, type(error).__name__, str(error), problems=error.problems)
 
     @app.exception_handler(Recon4Error)
     async def wrong_input(_: Request, error: Recon4Error) -> JSONResponse:
@@ -156,7 +162,12 @@ def install(app: FastAPI) -> None:
 
 
 def _problem(
-    status: int, error: str, detail: str, *, headers: Mapping[str, str] | None = None
+    status: int,
+    error: str,
+    detail: str,
+    *,
+    headers: Mapping[str, str] | None = None,
+    problems: Mapping[str, str] | None = None,
 ) -> JSONResponse:
-    problem = Problem(error=error, detail=detail)
-    return JSONResponse(problem.model_dump(), status_code=status, headers=headers)
+    problem = Problem(error=error, detail=detail, problems=dict(problems or {}))
+    return JSONResponse(problem.model_dump(exclude_defaults=True), status_code=status, headers=headers)

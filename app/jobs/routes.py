@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Query
+from fastapi import APIRouter, Depends, Query, Request
 from fastapi.responses import FileResponse, PlainTextResponse
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.access.audit import audit
 from app.access.people import May, needs
 from app.deps import Parts, Server
 from app.errors import NoRoom, NotFound, Problem, TooMany
@@ -88,7 +89,7 @@ def list_jobs(server: Server) -> list[JobView]:
 
 
 @router.post("/jobs", status_code=201, responses=REFUSALS, dependencies=PROCESS, summary="Start")
-def add_job(new: NewJob, server: Server) -> JobView:
+def add_job(new: NewJob, server: Server, request: Request) -> JobView:
     """Put a job in the queue.
 
     On a project that exists, stages that do not depend on what changed are kept; so they are in a
@@ -98,7 +99,9 @@ def add_job(new: NewJob, server: Server) -> JobView:
     _refuse_too_many(server)
     if new.clone_of and new.clone_of != new.project:
         server.projects.clone(new.clone_of, new.project)
-    return _add(server, new.project, inputs)
+    added = _add(server, new.project, inputs)
+    audit(request, "start job", f"{new.project}: {', '.join(new.recordings)}")
+    return added
 
 
 @router.get("/jobs/{job_id}", summary="One job")
@@ -114,9 +117,11 @@ def jobs_of(project_id: str, server: Server) -> list[JobView]:
 
 
 @router.post("/jobs/{job_id}/cancel", dependencies=PROCESS, summary="Cancel")
-def cancel_job(job_id: str, server: Server) -> JobView:
+def cancel_job(job_id: str, server: Server, request: Request) -> JobView:
     """Stop a job; its finished stages are kept."""
-    return _view(server, server.supervisor.cancel(server.jobs.get(job_id)))
+    job = server.supervisor.cancel(server.jobs.get(job_id))
+    audit(request, "cancel job", job.project)
+    return _view(server, job)
 
 
 @router.post(
@@ -126,12 +131,14 @@ def cancel_job(job_id: str, server: Server) -> JobView:
     dependencies=PROCESS,
     summary="Resume",
 )
-def retry_job(job_id: str, server: Server) -> JobView:
+def retry_job(job_id: str, server: Server, request: Request) -> JobView:
     """Run the same again as a new job; it goes on after the last finished stage."""
     job = server.jobs.get(job_id)
     _refuse_too_many(server)
     _refuse_if_full(server, job.project, job.inputs)
-    return _add(server, job.project, job.inputs)
+    added = _add(server, job.project, job.inputs)
+    audit(request, "resume job", job.project)
+    return added
 
 
 @router.get("/jobs/{job_id}/log", response_class=PlainTextResponse, summary="Log")

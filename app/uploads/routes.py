@@ -16,6 +16,7 @@ from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 from starlette.requests import ClientDisconnect
 from starlette.types import Message, Receive, Scope, Send
 
+from app.access.audit import audit
 from app.access.people import May, Who, needs
 from app.deps import Parts, Server
 from app.errors import AppError, BadRequest, Conflict, Problem
@@ -117,7 +118,7 @@ def list_uploads(server: Server) -> list[UploadView]:
 
 
 @router.post("", status_code=201, summary="Announce a recording")
-def begin_upload(new: NewUpload, server: Server, who: Who) -> UploadView:
+def begin_upload(new: NewUpload, server: Server, who: Who, request: Request) -> UploadView:
     """Announce a recording of one or several files; then send each file with tus.
 
     Refused when the disk has no room for it (507), when it is too large (413) or when too many
@@ -126,6 +127,7 @@ def begin_upload(new: NewUpload, server: Server, who: Who) -> UploadView:
     upload = server.uploads.begin(
         new.name, files=new.files, total=new.bytes, fingerprint=new.fingerprint, by=who.name
     )
+    audit(request, "upload recording", f"{upload.folder}: {upload.bytes} bytes")
     return _view(server, upload)
 
 
@@ -146,9 +148,11 @@ def list_files(upload_id: str, server: Server) -> list[FileView]:
 
 
 @router.delete("/{upload_id}", status_code=204, summary="Give up an upload")
-def remove_upload(upload_id: str, server: Server) -> None:
+def remove_upload(upload_id: str, server: Server, request: Request) -> None:
     """Forget an upload and what came of it. A recording that is whole stays."""
-    server.uploads.remove(server.uploads.get(upload_id))
+    upload = server.uploads.get(upload_id)
+    server.uploads.remove(upload)
+    audit(request, "give up upload", upload.folder)
 
 
 CREATE: dict[str, Any] = {

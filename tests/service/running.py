@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import httpx
+from fastapi import FastAPI
 
 from app.jobs.folder import JobFolder
 from app.listen import AnnouncingServer, certificate_of, make_state, uvicorn_config
@@ -31,6 +32,7 @@ SLOW = "tests.service.slow_worker"
 class Running:
     url: str
     root: Path
+    app: FastAPI | None = None
 
     def get(self, path: str, **options: Any) -> httpx.Response:
         return httpx.get(self.url + path, timeout=30.0, **options)
@@ -86,7 +88,7 @@ def server_thread(root: Path, **settings: Any) -> Iterator[Running]:
         try:
             assert ready.wait(20.0)
             scheme = "https" if certificate else "http"
-            yield Running(f"{scheme}://127.0.0.1:{listener.getsockname()[1]}", root)
+            yield Running(f"{scheme}://127.0.0.1:{listener.getsockname()[1]}", root, app)
         finally:
             server.should_exit = True
             thread.join(20.0)

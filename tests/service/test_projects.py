@@ -28,6 +28,15 @@ def test_the_list_shows_every_project_also_a_damaged_one(server):
 
     assert found.keys() == {"office", "half", "broken"}
     assert found["office"]["finished"] and not found["half"]["finished"]
+    assert found["office"]["way_m"] == 58.2 and found["half"]["way_m"] is None
+    assert found["office"]["pictured"] and not found["half"]["pictured"]
+
+
+def test_a_project_tells_its_stages_also_a_damaged_one(server):
+    found = {
+        name: server.get(f"/api/projects/{name}").json() for name in ("office", "half", "broken")
+    }
+
     assert [row["stage"] for row in found["office"]["stages"]] == [
         "odometry",
         "verification",
