@@ -84,6 +84,8 @@ class Live:
     """Opens the capture file; reading waits for what is not written yet."""
     watch: Callable[[Multiframe | ImuSamples | GnssSamples], None] = lambda item: None
     """Shown each multiframe once it is written, and samples as they are read, not yet cleaned."""
+    report: ImportReport = field(default_factory=ImportReport)
+    """Where repairs and warnings are noted as they happen."""
 
 
 def ingest(
@@ -114,12 +116,12 @@ def ingest(
         ConfigError: If rig, clocks or units are wrong.
         StoreError: If the store cannot be written.
     """
-    report = ImportReport()
+    live = live or Live()
+    report = live.report
     paths, imu, gnss = _sort_out(recordings, imu, gnss)
     given = _Samples(
         imu=[read_imu_csv(imu)] if imu else [], gnss=[read_gnss_csv(gnss)] if gnss else []
     )
-    live = live or Live()
     recording = open_recording(
         paths, rig, settings=settings, report=report, open_file=live.open_file
     )

@@ -1,0 +1,136 @@
+"""What the phone is shown: new points only, and where something was not seen."""
+
+import numpy as np
+import pytest
+
+from recon4.live.coverage import CELL_M, Coverage, Seen
+from recon4.live.preview import Preview
+
+
+def values(count):
+    return (np.arange(count) % 251).astype(np.uint8)
+
+
+def test_only_voxels_that_were_not_there_are_new():
+    preview = Preview(voxel_m=0.1)
+
+    first = preview.add(
+        np.array([[0.01, 0.02, 0.03], [0.05, 0.05, 0.05], [-0.01, 0, 0]]), values(3)
+    )
+    second = preview.add(np.array([[0.09, 0.0, 0.0], [0.11, 0.0, 0.0]]), values(2))
+
+    assert first.voxels.tolist() == [[0, 0, 0], [-1, 0, 0]]
+    assert first.values.tolist() == [0, 2]
+    assert (second.start, second.voxels.tolist()) == (2, [[1, 0, 0]])
+    assert preview.add(np.array([[0.15, 0.0, 0.0]]), values(1)) is None
+
+
+def test_growing_forgets_nothing():
+    p = np.random.default_rng(1).uniform(-20, 20, (200_000, 3))
+    preview = Preview(voxel_m=0.5, most=10**6)
+
+    for part in np.array_split(p, 37):
+        preview.add(part, values(len(part)))
+
+    expected = np.unique(np.floor(p / 0.5).astype(np.int64), axis=0)
+    got = preview.since(0).voxels
+    assert len(got) == len(expected)
+    np.testing.assert_array_equal(np.unique(got, axis=0), expected)
+
+
+def test_too_many_points_double_the_voxels_and_everything_is_sent_again():
+    p = np.random.default_rng(2).uniform(-10, 10, (20_000, 3))
+    preview = Preview(voxel_m=0.1, most=5000)
+
+    chunk = preview.add(p, values(len(p)))
+
+    assert (chunk.generation, chunk.start) == (preview.generation, 0)
+    assert len(chunk.voxels) == len(preview) <= 5000
+    expected = np.unique(np.floor(p / chunk.voxel_m).astype(np.int64), axis=0)
+    np.testing.assert_array_equal(np.unique(chunk.voxels, axis=0), expected)
+
+
+def test_points_beyond_the_reach_of_the_numbers_are_left_out():
+    preview = Preview(voxel_m=0.1)
+
+    chunk = preview.add(np.array([[4000.0, 0, 0], [1.0, 0, 0]]), values(2))
+
+    assert chunk.voxels.tolist() == [[10, 0, 0]]
+
+
+def room(x0, x1, y0, y1, *, door=None, step=0.05):
+    """Points on the walls of a room, without those in a door (a span of y in the wall x = x1)."""
+    ys, xs = np.arange(y0, y1, step), np.arange(x0, x1, step)
+    walls = [
+        np.column_stack([np.full_like(ys, x0), ys]),
+        np.column_stack([np.full_like(ys, x1), ys]),
+        np.column_stack([xs, np.full_like(xs, y0)]),
+        np.column_stack([xs, np.full_like(xs, y1)]),
+    ]
+    p = np.concatenate(walls)
+    if door:
+        p = p[~((np.abs(p[:, 0] - x1) < 1e-6) & (p[:, 1] > door[0]) & (p[:, 1] < door[1]))]
+    return np.column_stack([p, np.zeros(len(p))])
+
+
+def look(coverage, at, p, times=20):
+    for _ in range(times):
+        coverage.add(np.array([*at, 0.0]), p)
+
+
+def test_a_closed_room_has_no_gap_and_its_walls_are_seen_well():
+    coverage = Coverage()
+
+    look(coverage, (0.0, 0.0), room(-3, 3, -2, 2))
+
+    assert coverage.gaps() == []
+    assert coverage.share_well() > 0.95
+
+
+def test_an_open_door_is_a_gap_until_somebody_goes_in():
+    coverage = Coverage()
+    outer = room(-3, 3, -2, 2, door=(-0.6, 0.6))
+    inside = np.array([[4.5, y, 0.0] for y in np.arange(-0.7, 0.7, 0.05)])
+    look(coverage, (0.0, 0.0), np.concatenate([outer, inside]))
+
+    (gap,) = coverage.gaps()[:1]
+
+    assert gap.p_map[0] > 2.7
+    assert abs(gap.p_map[1]) < 1.6
+    assert gap.width_m >= 0.75
+    look(coverage, (4.0, 0.0), room(3.02, 6, -2, 2))
+    assert coverage.gaps() == []
+
+
+def test_a_wall_far_away_is_seen_poorly():
+    coverage = Coverage()
+    wall = np.column_stack([np.full(41, 20.0), np.linspace(-2, 2, 41), np.zeros(41)])
+
+    look(coverage, (0.0, 0.0), wall)
+
+    row, column = (np.array([20.1, 0.1]) / CELL_M - coverage.first_cell).astype(int)
+    assert coverage.seen()[row, column] == Seen.POOR
+
+
+def test_the_floor_and_the_ceiling_stand_in_nobodys_way():
+    coverage = Coverage()
+    floor = np.array([[2.0, 0.0, -1.3], [2.0, 1.0, 1.5]])
+
+    look(coverage, (0.0, 0.0), floor)
+
+    seen = coverage.seen()
+    row, column = (np.array([2.1, 0.1]) / CELL_M - coverage.first_cell).astype(int)
+    assert seen[row, column] == Seen.FREE
+    assert not (seen >= Seen.POOR).any()
+
+
+def test_the_plan_grows_where_the_walk_goes():
+    coverage = Coverage()
+    look(coverage, (0.0, 0.0), room(-3, 3, -2, 2), times=2)
+    before = coverage.seen().sum()
+
+    look(coverage, (-60.0, 45.0), room(-63, -57, 43, 47), times=2)
+
+    seen = coverage.seen()
+    assert seen.sum() == pytest.approx(2 * before, rel=0.05)
+    assert min(seen.shape) > 256
