@@ -124,18 +124,39 @@ def align_to_mesh(
         ``T_model_map``; the start itself where fewer than 100 points match.
     """
     q, normals = sample_mesh(mesh, spacing_m=0.05, rng=rng)
+    return fit_planes(
+        p_map, q, normals, T_model_map=T_model_map, rounds=rounds, max_distance_m=max_distance_m
+    )[0]
+
+
+def fit_planes(
+    p_map: Array,
+    q: Array,
+    normals: Array,
+    *,
+    T_model_map: SE3,
+    rounds: int = 30,
+    max_distance_m: float = 0.5,
+) -> tuple[SE3, int]:
+    """As `align_to_mesh`, onto points of the model ``q`` (M, 3) with normals of either sign.
+
+    Returns:
+        ``T_model_map`` and how many points matched at last; fewer than 100 are not used.
+    """
     tree = cKDTree(q)
+    matched = 0
     for _ in range(rounds):
         p = T_model_map @ p_map
         distance, nearest = tree.query(p, distance_upper_bound=max_distance_m)
         near = np.isfinite(distance)
-        if near.sum() < 100:
-            return T_model_map
+        matched = int(near.sum())
+        if matched < 100:
+            break
         step = _point_to_plane_step(p[near], q[nearest[near]], normals[nearest[near]])
         T_model_map = step @ T_model_map
         if np.linalg.norm(step.log()) < 1e-7:
             break
-    return T_model_map
+    return T_model_map, matched
 
 
 def _point_to_plane_step(p: Array, q: Array, normals: Array) -> SE3:

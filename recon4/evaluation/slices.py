@@ -122,7 +122,7 @@ def relative_error(
     histogram = np.sum([tally.histogram for tally in tallies], axis=0)
     return RelativeError(
         slices=rows,
-        point_weighted=_together(rows),
+        point_weighted=together(rows),
         plain_mean_m=float(np.mean(measured)) if measured else float("nan"),
         outlier_m=outlier_m,
         histogram=histogram,
@@ -176,7 +176,8 @@ class _Tally:
         self.histogram += np.bincount(classes, minlength=len(self.histogram))
 
 
-def _together(rows: tuple[SliceError, ...]) -> SliceError:
+def together(rows: tuple[SliceError, ...]) -> SliceError:
+    """All slices thrown together, weighted by points."""
     points = sum(row.points for row in rows)
     used = [row for row in rows if row.points]
     return SliceError(

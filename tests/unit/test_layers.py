@@ -32,12 +32,16 @@ MAY_IMPORT = {
     "recon4/georeference": STAGE
     | {"recon4.mapping", "recon4.pose_graph", "recon4.georeference", "recon4.registration.aiding"},
     "recon4/review": STAGE
-    | {"recon4.registration", "recon4.pose_graph", "recon4.mapping", "recon4.review"},
+    | {"recon4.registration", "recon4.pose_graph", "recon4.mapping", "recon4.review"}
+    | {"recon4.report.approval"},
     "recon4/intensity": STAGE | {"recon4.mapping", "recon4.intensity"},
     "recon4/mapping": STAGE | {"recon4.intensity", "recon4.mapping"},
     "recon4/export": STAGE | {"recon4.mapping", "recon4.pose_graph", "recon4.export"},
     "recon4/evaluation": STAGE
     | {"recon4.mapping", "recon4.export", "recon4.evaluation", "recon4.simulation"},
+    "recon4/slices": STAGE
+    | {f"recon4.{room}" for room in ("recording", "mapping", "georeference", "export")}
+    | {"recon4.evaluation", "recon4.slices"},
     "recon4/report": {"recon4"},
     "recon4/simulation": STAGE | {"recon4.recording", "recon4.export", "recon4.simulation"},
     "recon4": {"recon4"},
@@ -53,13 +57,19 @@ NOBODY_IMPORTS = {"recon4.cli": {"recon4/__main__.py"}, "recon4.pipeline": {"rec
 ONLY_HERE = {
     "gtsam": {"recon4/pose_graph/solve.py"},
     "open3d": {"recon4/simulation/raycast.py"},
-    "laspy": {"recon4/export/laz.py"},
+    "laspy": {"recon4/export/laz.py", "recon4/slices/clouds.py"},
     "viser": {"app/viewer/show.py", "app/viewer/panels.py"},
-    "matplotlib": {"recon4/report", "app/viewer/palette.py"},
+    "matplotlib": {
+        "recon4/report",
+        "recon4/slices/colors.py",
+        "recon4/slices/sheet.py",
+        "app/viewer/palette.py",
+    },
+    "ezdxf": {"recon4/slices/export.py"},
     "fastapi": {"app"},
     "uvicorn": {"app"},
     "typer": {"recon4/cli.py", "recon4/cli_users.py"},
-    "cryptography": {"app/access/certificate.py"},
+    "cryptography": {"app/access/certificate.py", "recon4/review/signature.py"},
     "argon2": {"app/access/passwords.py"},
     "rich": {"recon4/terminal.py"},
     "sqlite3": {"recon4/store", "recon4/recording", "recon4/review", "app"},

@@ -1,0 +1,93 @@
+"""Numbers to colors for slices, on white paper and on a dark screen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import Array
+
+ColorBy = Literal["height", "intensity", "normalized", "time", "sensor", "distance"]
+Ground = Literal["light", "dark"]
+Rgb = tuple[int, int, int]
+
+REFERENCE_COLOR: Rgb = (22, 163, 74)
+"""The reference is green (V Fig. 3.3)."""
+DISTANCE_RANGE_M = (0.0, 0.10)
+"""Distances to the reference: blue 0, red 10 cm (V Fig. 3.3)."""
+SENSOR_COLORS: tuple[Rgb, ...] = (
+    (0, 114, 178),
+    (213, 94, 0),
+    (0, 158, 115),
+    (204, 121, 167),
+    (166, 134, 0),
+)
+"""Told apart also by people who see few colors (after Okabe and Ito 2008)."""
+
+UNITS: dict[ColorBy, str] = {
+    "height": "m",
+    "intensity": "",
+    "normalized": "",
+    "time": "s",
+    "sensor": "",
+    "distance": "m",
+}
+WORDS: dict[ColorBy, str] = {
+    "height": "Height",
+    "intensity": "Intensity",
+    "normalized": "Normalized intensity",
+    "time": "Time since start",
+    "sensor": "Sensor",
+    "distance": "Distance to reference",
+}
+_DISTANCE_STOPS: tuple[Rgb, ...] = ((32, 84, 255), (150, 60, 200), (232, 20, 20))
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """Values at the two ends of the colors."""
+
+    low: float
+    high: float
+
+
+@cache
+def table(color: ColorBy, ground: Ground) -> NDArray[np.uint8]:
+    """256 colors from low to high, (256, 3); none of them fades into the ground."""
+    steps = np.linspace(0.0, 1.0, 256)
+    if color == "distance":
+        at = np.linspace(0.0, 1.0, len(_DISTANCE_STOPS))
+        stops = np.array(_DISTANCE_STOPS, dtype=np.float64)
+        channels = [np.interp(steps, at, stops[:, c]) for c in range(3)]
+        return np.stack(channels, axis=1).round().astype(np.uint8)
+    import matplotlib
+
+    name = "turbo" if color == "time" else "viridis"
+    first, last = (0.0, 0.90) if ground == "light" else (0.18, 1.0)
+    rgba = matplotlib.colormaps[name](first + steps * (last - first), bytes=True)
+    return np.ascontiguousarray(rgba[:, :3])
+
+
+def paint(values: Array, span: Span, *, color: ColorBy, ground: Ground) -> NDArray[np.uint8]:
+    """Colors of values, (…) -> (…, 3); beyond the ends the color of the end, NaN = the low end."""
+    if color == "sensor":
+        sensors = np.array(SENSOR_COLORS, dtype=np.uint8)
+        return sensors[np.nan_to_num(values).astype(np.int64) % len(sensors)]
+    width = max(span.high - span.low, 1e-12)
+    scaled = np.nan_to_num((values - span.low) * (255.0 / width)).clip(0.0, 255.0)
+    return table(color, ground)[scaled.astype(np.uint8)]
+
+
+def usual_span(values: Array, *, color: ColorBy) -> Span:
+    """Fixed for distances; else from the 2nd to the 98th percentile of what is seen."""
+    if color == "distance":
+        return Span(*DISTANCE_RANGE_M)
+    known = values[np.isfinite(values)]
+    if not len(known):
+        return Span(0.0, 1.0)
+    low, high = np.percentile(known[:: max(1, len(known) // 100_000)], [2.0, 98.0])
+    return Span(float(low), float(max(high, low + 1e-6)))

@@ -1,0 +1,113 @@
+"""Slices of the map against a reference: the rows of V Table 3.2."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Sequence
+
+import numpy as np
+
+from recon4.errors import ConfigError
+from recon4.evaluation.slices import RelativeError, Slice, SliceError, relative_error, together
+from recon4.geometry.se3 import SE3
+from recon4.mapping.tiles import TileSet
+from recon4.slices.cut import ERROR_THICKNESS_M, Cut, horizontal, vertical
+from recon4.slices.points import points_in
+from recon4.slices.reference import FAR_M, Reference
+
+
+def compare(tiles: TileSet, cuts: Sequence[Cut], reference: Reference) -> RelativeError:
+    """Mean distance and shares within 2 and 5 cm of every slice, from all its points.
+
+    Points farther than 0.5 m from the reference (people, what was not there then) are counted
+    apart. Averages are both by points, as V prints, and plain over the slices.
+
+    Raises:
+        ConfigError: Without slices.
+    """
+    if not cuts:
+        raise ConfigError("a comparison takes one slice or more")
+    found = [_one(tiles, cut, reference) for cut in cuts]
+    rows = tuple(one.slices[0] for one in found)
+    measured = [row.mean_m for row in rows if row.points]
+    return RelativeError(
+        slices=rows,
+        point_weighted=together(rows),
+        plain_mean_m=float(np.mean(measured)) if measured else float("nan"),
+        outlier_m=FAR_M,
+        histogram=np.sum([one.histogram for one in found], axis=0),
+        alignment="given",
+    )
+
+
+def _one(tiles: TileSet, cut: Cut, reference: Reference) -> RelativeError:
+    return relative_error(
+        (cut.to_map(part.uvd) for part in points_in(tiles, cut)),
+        [Slice(cut.name, cut.normal, cut.offset_m, cut.thickness_m)],
+        T_model_map=SE3.identity(),
+        distance=reference.distance,
+        outlier_m=FAR_M,
+    )
+
+
+def usual_cuts(tiles: TileSet, *, thickness_m: float = ERROR_THICKNESS_M) -> tuple[Cut, ...]:
+    """Eight slices spread evenly: four horizontal, two across x, two across y (V §3.2)."""
+    low, high = tiles.bounds_m
+    if not np.isfinite(low).all():
+        raise ConfigError("the map has no points")
+    x, y, z = ((low[a] + (np.arange(4) + 0.5) / 4.0 * (high - low)[a]) for a in range(3))
+    cuts = [horizontal(float(h), thickness_m=thickness_m) for h in z]
+    for k in (0, 2):
+        middle = (x[k] + x[k + 1]) / 2.0
+        cuts.append(
+            vertical((middle, float(low[1])), (middle, float(high[1])), thickness_m=thickness_m)
+        )
+    for k in (0, 2):
+        middle = (y[k] + y[k + 1]) / 2.0
+        cuts.append(
+            vertical((float(low[0]), middle), (float(high[0]), middle), thickness_m=thickness_m)
+        )
+    return tuple(cuts)
+
+
+def to_csv(found: RelativeError) -> str:
+    """The table as CSV: centimetres and percent, a row a slice, both averages at the end."""
+    out = io.StringIO()
+    rows = csv.writer(out, lineterminator="\n")
+    rows.writerow(["slice", "points", "outliers", "mean_cm", "below_2cm_pct", "below_5cm_pct"])
+    for row in (*found.slices, found.point_weighted):
+        name = "average weighted by points" if row is found.point_weighted else row.name
+        rows.writerow([name, row.points, row.outliers, *_figures(row)])
+    rows.writerow(["plain average of the slices", "", "", _number(100.0 * found.plain_mean_m)])
+    return out.getvalue()
+
+
+def to_json(found: RelativeError) -> dict[str, object]:
+    """Plain values for the page; NaN where a slice has no points."""
+    return {
+        "slices": [_row(row) for row in found.slices],
+        "point_weighted": _row(found.point_weighted),
+        "plain_mean_m": found.plain_mean_m,
+        "outlier_m": found.outlier_m,
+        "histogram": found.histogram[:100].tolist(),
+    }
+
+
+def _row(row: SliceError) -> dict[str, object]:
+    return {
+        "name": row.name,
+        "points": row.points,
+        "outliers": row.outliers,
+        "mean_m": row.mean_m,
+        "share_2cm": row.share_2cm,
+        "share_5cm": row.share_5cm,
+    }
+
+
+def _figures(row: SliceError) -> list[str]:
+    return [_number(100.0 * value) for value in (row.mean_m, row.share_2cm, row.share_5cm)]
+
+
+def _number(value: float) -> str:
+    return f"{value:.2f}" if np.isfinite(value) else ""

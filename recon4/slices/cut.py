@@ -1,0 +1,155 @@
+"""Where to cut: horizontal, vertical and free planes with a thickness."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from recon4.errors import ConfigError
+from recon4.geometry.se3 import Array
+
+Kind = Literal["horizontal", "vertical", "free"]
+Vector = tuple[float, float, float]
+
+ERROR_THICKNESS_M = 0.02
+"""To judge errors (V §3.2: slices 2 cm wide) [m]."""
+LOOKING_THICKNESS_M = 0.10
+"""To look at [m]."""
+MOST_THICKNESS_M = 100.0
+MOST_SLICES = 200
+"""Repeated slices in one request."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cut:
+    """A slab of the map and the axes of its picture.
+
+    ``u`` points to the right, ``v`` up, and the viewer looks against ``u × v``. A horizontal cut
+    has the map's own x and y; a vertical one the distance along its line, and the map's z.
+    """
+
+    kind: Kind
+    origin_m: Vector
+    """Point of the map where u, v and the distance from the plane are 0 [m]."""
+    u: Vector
+    v: Vector
+    thickness_m: float = LOOKING_THICKNESS_M
+
+    def __post_init__(self) -> None:
+        numbers = np.array([*self.origin_m, *self.u, *self.v, self.thickness_m])
+        if not np.isfinite(numbers).all() or np.abs(numbers).max() > 1e8:
+            raise ConfigError(f"a cut needs finite coordinates, got {numbers.tolist()}")
+        if not 0.0 < self.thickness_m <= MOST_THICKNESS_M:
+            raise ConfigError(
+                f"the thickness must be 0 to {MOST_THICKNESS_M:.0f} m, got {self.thickness_m}"
+            )
+
+    @property
+    def axes(self) -> Array:
+        """Unit vectors u, v and normal in the map, rows of (3, 3)."""
+        return np.array([self.u, self.v, np.cross(self.u, self.v)])
+
+    @property
+    def normal(self) -> Array:
+        """Unit normal ``u × v``, (3,)."""
+        return self.axes[2]
+
+    @property
+    def offset_m(self) -> float:
+        """``normal · p`` of the points of the plane [m]."""
+        return float(self.normal @ np.array(self.origin_m))
+
+    def to_plane(self, p_map: Array) -> Array:
+        """u, v and distance from the plane of points of the map [m], (N, 3) -> (N, 3)."""
+        out: Array = (np.asarray(p_map, dtype=np.float64) - self.origin_m) @ self.axes.T
+        return out
+
+    def to_map(self, uvd: Array) -> Array:
+        """Points of the map at u, v and distance from the plane [m], (N, 3) -> (N, 3)."""
+        out: Array = np.asarray(uvd, dtype=np.float64) @ self.axes + self.origin_m
+        return out
+
+    def moved(self, distance_m: float) -> Cut:
+        """The same cut farther along its normal."""
+        origin = np.array(self.origin_m) + distance_m * self.normal
+        return replace(self, origin_m=_vector(origin))
+
+    def repeated(self, count: int, *, spacing_m: float) -> tuple[Cut, ...]:
+        """This cut and those behind it along the normal, at equal distances.
+
+        Raises:
+            ConfigError: If there are none or too many, or they do not move.
+        """
+        if not 1 <= count <= MOST_SLICES:
+            raise ConfigError(f"1 to {MOST_SLICES} slices at a time, got {count}")
+        if count > 1 and not 0.001 <= abs(spacing_m) <= 1000.0:
+            raise ConfigError(f"slices need 1 mm to 1 km between them, got {spacing_m} m")
+        return tuple(self.moved(k * spacing_m) for k in range(count))
+
+    @property
+    def name(self) -> str:
+        """Where it is, in words: ``z = 1.200 m``."""
+        if self.kind == "horizontal":
+            return f"z = {self.origin_m[2]:.3f} m"
+        if self.kind == "vertical":
+            azimuth = np.rad2deg(np.arctan2(self.u[0], self.u[1])) % 360.0
+            return f"azimuth {azimuth:.1f}°, offset {self.offset_m:.3f} m"
+        n = ", ".join(f"{x:.3f}" for x in self.normal)
+        return f"normal ({n}), offset {self.offset_m:.3f} m"
+
+
+def horizontal(z_m: float, *, thickness_m: float = LOOKING_THICKNESS_M) -> Cut:
+    """A floor plan at a height of the map."""
+    return Cut("horizontal", (0.0, 0.0, z_m), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), thickness_m)
+
+
+def vertical(
+    a_m: tuple[float, float], b_m: tuple[float, float], *, thickness_m: float = LOOKING_THICKNESS_M
+) -> Cut:
+    """A section through two points seen from above; u counts from the first.
+
+    Raises:
+        ConfigError: If the points are less than 1 mm apart.
+    """
+    along = np.array(b_m, dtype=np.float64) - a_m
+    length_m = float(np.linalg.norm(along))
+    if not length_m >= 0.001:
+        raise ConfigError("the two points of a vertical cut must be 1 mm apart or more")
+    u = (*(along / length_m).tolist(), 0.0)
+    origin = (float(a_m[0]), float(a_m[1]), 0.0)
+    return Cut("vertical", origin, u, (0.0, 0.0, 1.0), thickness_m)
+
+
+def vertical_at(
+    position_m: tuple[float, float],
+    azimuth_rad: float,
+    *,
+    thickness_m: float = LOOKING_THICKNESS_M,
+) -> Cut:
+    """A section through one point; the azimuth of its line is clockwise from the map's y."""
+    x, y = position_m
+    ahead = (x + float(np.sin(azimuth_rad)), y + float(np.cos(azimuth_rad)))
+    return vertical(position_m, ahead, thickness_m=thickness_m)
+
+
+def free(origin_m: Vector, normal: Vector, *, thickness_m: float = LOOKING_THICKNESS_M) -> Cut:
+    """Any plane. v is as near to the map's z as it can be (to y, if the plane is level).
+
+    Raises:
+        ConfigError: If the normal has no direction.
+    """
+    length = float(np.linalg.norm(normal))
+    if not (np.isfinite(length) and length > 1e-9):
+        raise ConfigError(f"a plane needs a normal with a direction, got {normal}")
+    n = np.array(normal) / length
+    up = np.array([0.0, 0.0, 1.0]) if abs(n[2]) < 0.999 else np.array([0.0, 1.0, 0.0])
+    u = np.cross(up, n)
+    u /= np.linalg.norm(u)
+    return Cut("free", origin_m, _vector(u), _vector(np.cross(n, u)), thickness_m)
+
+
+def _vector(values: Array) -> Vector:
+    x, y, z = (float(value) for value in values)
+    return x, y, z

@@ -1,0 +1,445 @@
+"""Double walls: one surface that two visits put at two places.
+
+The map is cut into patches (a cell, and the side it was seen from), and each patch into visits
+(windows of time). Within a visit a surface is sharp; if two groups of visits put it farther apart
+than noise and poses explain, the wall is double. See ``docs/slices.md`` for the equations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import ConfigError
+from recon4.geometry.se3 import Array
+from recon4.kernels.doubles import COLUMNS, best_split, gather
+from recon4.mapping.tiles import Tile, TileSet
+from recon4.progress import Progress, Silent
+
+_BLOCK = 2_000_000
+_FIRST_TABLE = 1 << 15
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DoubleRule:
+    """When a patch counts as double."""
+
+    cell_m: float = 0.12
+    """Width of a patch [m]: a step in a wall lies in few of them."""
+    depth: int = 3
+    """Length of a patch along its normal, in widths."""
+    window_s: float = 5.0
+    """Points closer in time belong to one visit [s]."""
+    least_points: int = 20
+    """Each of the two groups has at least so many points of the patch."""
+    least_share: float = 0.10
+    """Each of the two groups has at least this share of the patch's points."""
+    most_sigma_m: float = 0.04
+    """A patch thicker than this within its visits is not a surface [m] (standard deviation)."""
+    least_spread_m: float = 0.02
+    """A patch narrower than this is not a surface [m] (standard deviation along it)."""
+    most_aside_m: float = 0.04
+    """The middles of the two groups are at most so far from each other along the surface [m]."""
+    pose_sigma_m: float = 0.007
+    """Places of one surface in visits of a good map scatter by this [m]."""
+    z: float = 3.0
+    """So many standard deviations are not chance."""
+    correlated: float = 10.0
+    """So many neighboring points count as one independent measurement (same beam and angle)."""
+
+
+@dataclass(frozen=True, slots=True)
+class DoubleWall:
+    """A place where a surface is double; the figures are medians of its patches."""
+
+    middle_m: tuple[float, float, float]
+    """Of its patches, in the map [m]."""
+    normal: tuple[float, float, float]
+    """Of the surface, towards the sensor's side or away."""
+    separation_m: float
+    """Distance of the two layers [m]."""
+    limit_m: float
+    """What noise and poses explain at this place [m]."""
+    sigma_m: float
+    """Thickness of one layer (standard deviation within a visit) [m]."""
+    bimodality: float
+    """Ashman's D, ``separation / sigma``: above 2 two layers are seen apart."""
+    share: float
+    """Of the points in the weaker layer, 0..0.5."""
+    patches: int
+    """Patches like this one here."""
+    points: int
+    spans_s: tuple[tuple[float, float], tuple[float, float]]
+    """First and last second since the start of the visits of both layers."""
+    frames: tuple[tuple[int, int], tuple[int, int]]
+    """First and last multiframe of both layers."""
+
+
+@dataclass(frozen=True, slots=True)
+class DoubleReport:
+    """What the check found."""
+
+    walls: tuple[DoubleWall, ...]
+    """The widest apart first."""
+    patches: int
+    """Flat patches that were visited at least twice: where the check can see."""
+    double_patches: int
+    median_separation_m: float
+    """Of all patches visited twice: how well visits agree [m]; NaN = none."""
+    p95_separation_m: float
+    median_sigma_m: float
+    """Thickness of a surface within a visit [m]."""
+    points: int
+
+    @property
+    def share(self) -> float:
+        """Of the patches visited twice, those that are double, 0..1."""
+        return self.double_patches / self.patches if self.patches else 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Patches:
+    """Flat patches with at least two visits, as columns (P,) or (P, 3)."""
+
+    middle_m: Array
+    normal: Array
+    sigma_m: Array
+    separation_m: Array
+    limit_m: Array
+    share: Array
+    points: Array
+    spans_s: Array
+    frames: Array
+    double: NDArray[np.bool_]
+
+
+def find_double_walls(
+    tiles: TileSet, *, rule: DoubleRule | None = None, progress: Progress | None = None
+) -> DoubleReport:
+    """Check every surface of a map that was visited twice. Memory follows one tile.
+
+    Args:
+        tiles: The map, with normals.
+        rule: When a patch counts as double.
+        progress: Counts points.
+
+    Raises:
+        ConfigError: If the map has no normals or times.
+    """
+    rule, progress = rule or DoubleRule(), progress or Silent()
+    missing = {"normal", "t_ns", "frame_id"} - set(tiles.fields)
+    if missing:
+        raise ConfigError(f"the map lacks {sorted(missing)}: double walls cannot be looked for")
+    progress.start("double walls", len(tiles), "points")
+    first_ns = (tiles.facts["time_ns"] or [0])[0]
+    found, split = [], []
+    for tile in tiles:
+        visits = _visits(tile, rule, first_ns)
+        inner = _inner(visits, tile, rule, tile_m=float(tiles.facts["tile_m"]))
+        found.append(_judge(visits.take(inner), rule))
+        split.append(visits.take(~inner))
+        progress.advance(len(tile))
+    found.append(_judge(_merged(split), rule))
+    return _report([patches for patches in found if len(patches.points)], rule, len(tiles))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Visits:
+    """Points of one patch in one window of time, as columns (K,)."""
+
+    cell: NDArray[np.int64]
+    """The cell in the middle of the patch, counted from the map's origin, (K, 3)."""
+    face: NDArray[np.int64]
+    """Axis of its normal, twice, plus 1 if it looks down the axis."""
+    window: NDArray[np.int64]
+    sums: Array
+    """As `recon4.kernels.doubles` makes them, (K, 12)."""
+
+    def take(self, rows: NDArray[Any]) -> _Visits:
+        """Some of them."""
+        return _Visits(self.cell[rows], self.face[rows], self.window[rows], self.sums[rows])
+
+    def patches(self) -> NDArray[np.int64]:
+        """A number a patch, the same for all its visits."""
+        low = self.cell.min(axis=0, initial=0)
+        side = self.cell.max(axis=0, initial=0) - low + 1
+        i, j, k = (self.cell - low).T
+        return ((k * side[1] + j) * side[0] + i) * 6 + self.face
+
+
+def _visits(tile: Tile, rule: DoubleRule, first_ns: int) -> _Visits:
+    columns = tile.read(["xyz", "normal", "t_ns", "frame_id"])
+    # A layer of long cells all around: their middles may lie outside of the points.
+    base = np.floor((np.array(tile.low_m) - 1e-4) / rule.cell_m).astype(np.int64) - rule.depth
+    low = base * rule.cell_m
+    side = int(np.ceil(np.max(np.array(tile.high_m) - low) / rule.cell_m)) + rule.depth + 1
+    size, used = _FIRST_TABLE, -1
+    while used < 0:
+        keys, sums = np.full(size, -1, np.int64), np.zeros((size, COLUMNS))
+        used = 0
+        for first in range(0, len(tile), _BLOCK):
+            rows = slice(first, first + _BLOCK)
+            used = gather(
+                columns["xyz"][rows],
+                columns["normal"][rows].view(np.uint16),
+                columns["t_ns"][rows],
+                columns["frame_id"][rows],
+                first_ns,
+                int(rule.window_s * 1e9),
+                low - tile.origin_m,
+                base,
+                rule.cell_m,
+                rule.depth,
+                side,
+                keys,
+                sums,
+                used,
+            )
+            if used < 0:
+                size *= 2
+                break
+    taken = keys >= 0
+    return _unpacked(keys[taken], sums[taken], base, side)
+
+
+def _unpacked(keys: NDArray[np.int64], sums: Array, base: NDArray[np.int64], side: int) -> _Visits:
+    cell, face = np.divmod(keys, 6)
+    rest, i = np.divmod(cell, side)
+    rest, j = np.divmod(rest, side)
+    window, k = np.divmod(rest, side)
+    return _Visits(np.stack([i, j, k], axis=1) + base, face, window, sums)
+
+
+def _inner(visits: _Visits, tile: Tile, rule: DoubleRule, *, tile_m: float) -> NDArray[np.bool_]:
+    """Which patches lie in the tile with all their length: no other tile knows more of them."""
+    half = np.zeros((len(visits.face), 3), np.int64)
+    np.put_along_axis(half, visits.face[:, None] // 2, rule.depth // 2, axis=1)
+    low = (visits.cell - half) * rule.cell_m - tile.origin_m
+    high = (visits.cell + half + 1) * rule.cell_m - tile.origin_m
+    return np.asarray(np.all((low > 0.0) & (high < tile_m), axis=1))
+
+
+def _merged(parts: list[_Visits]) -> _Visits:
+    """Patches that tiles have parts of, put together."""
+    if not parts:
+        return _Visits(
+            np.empty((0, 3), np.int64), np.empty(0, np.int64), np.empty(0, np.int64),
+            np.empty((0, COLUMNS)),
+        )  # fmt: skip
+    every = _Visits(
+        np.concatenate([p.cell for p in parts]),
+        np.concatenate([p.face for p in parts]),
+        np.concatenate([p.window for p in parts]),
+        np.concatenate([p.sums for p in parts]),
+    )
+    order = np.lexsort([every.window, every.patches()])
+    every = every.take(order)
+    same = np.diff(every.patches()) == 0
+    start = np.flatnonzero(np.concatenate([[True], ~(same & (np.diff(every.window) == 0))]))
+    start = start[: len(order)]
+    if not len(start):
+        return every
+    sums = np.add.reduceat(every.sums, start, axis=0)
+    sums[:, 10] = np.minimum.reduceat(every.sums[:, 10], start)
+    sums[:, 11] = np.maximum.reduceat(every.sums[:, 11], start)
+    first = every.take(start)
+    return _Visits(first.cell, first.face, first.window, sums)
+
+
+def _judge(visits: _Visits, rule: DoubleRule) -> _Patches:
+    """Patches that are flat and were visited twice, and which of them are double."""
+    visits = visits.take(visits.sums[:, 0] >= 8.0)  # a few points have no place of their own
+    visits = visits.take(np.lexsort([visits.window, visits.patches()]))
+    _, owner, count = np.unique(visits.patches(), return_inverse=True, return_counts=True)
+    visits = visits.take(count[owner] >= 2)
+    _, first, owner, count = np.unique(
+        visits.patches(), return_index=True, return_inverse=True, return_counts=True
+    )
+    start = np.append(first, len(owner)).astype(np.int64)
+    sums, total = visits.sums, np.bincount(owner, visits.sums[:, 0], len(first))
+    within = np.add.reduceat(_scatter(sums), first) if len(first) else np.empty((0, 3, 3))
+    values, vectors = np.linalg.eigh(within)
+    normal = vectors[:, :, 0]
+    along = np.einsum("kd,kd->k", sums[:, 1:4] / sums[:, :1], normal[owner])
+    lower = _lower_group(start, sums[:, 0], along)
+    sigma = np.sqrt(np.maximum(values[:, 0], 0.0) / np.maximum(total - count, 1.0))
+    spread = np.sqrt(np.maximum(values[:, 1], 0.0) / np.maximum(total, 1.0))
+    groups = [
+        _group(visits, along, mask, owner=owner, patches=len(first)) for mask in (lower, ~lower)
+    ]
+    return _patches(visits.take(first), rule, shape=(normal, sigma, spread), groups=groups)
+
+
+def _scatter(sums: Array) -> Array:
+    """Scatter of each window about its own mean, (K, 3, 3)."""
+    upper = sums[:, 4:10]
+    full = upper[:, [0, 1, 2, 1, 3, 4, 2, 4, 5]].reshape(-1, 3, 3)
+    mean = sums[:, 1:4] / sums[:, :1]
+    return full - sums[:, 0, None, None] * mean[:, :, None] * mean[:, None, :]
+
+
+def _lower_group(start: NDArray[np.int64], n: Array, along: Array) -> NDArray[np.bool_]:
+    owner = np.repeat(np.arange(len(start) - 1), np.diff(start))
+    order = np.lexsort([along, owner])
+    split = np.zeros(len(start) - 1, np.int64)
+    best_split(start, n, along, order, split)
+    rank = np.arange(len(along)) - start[owner]
+    lower = np.zeros(len(along), np.bool_)
+    lower[order] = rank < split[owner]
+    return lower
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Group:
+    """One of the two groups of visits of each patch, as columns (P,)."""
+
+    n: Array
+    along_m: Array
+    mean_m: Array
+    windows: Array
+    """First and last, (P, 2)."""
+    frames: Array
+    """First and last multiframe, (P, 2)."""
+
+
+def _group(
+    visits: _Visits,
+    along: Array,
+    mask: NDArray[np.bool_],
+    *,
+    owner: NDArray[np.intp],
+    patches: int,
+) -> _Group:
+    mine, sums = owner[mask], visits.sums[mask]
+
+    def total(values: Array) -> Array:
+        return np.bincount(mine, values, patches).astype(np.float64)
+
+    def ends(low: Array, high: Array) -> Array:
+        out = np.tile([np.inf, -np.inf], (patches, 1))
+        np.minimum.at(out[:, 0], mine, low)
+        np.maximum.at(out[:, 1], mine, high)
+        return out
+
+    n = total(sums[:, 0])
+    safe = np.maximum(n, 1.0)
+    window = visits.window[mask].astype(np.float64)
+    return _Group(
+        n=n,
+        along_m=total(sums[:, 0] * along[mask]) / safe,
+        mean_m=np.stack([total(sums[:, a]) / safe for a in (1, 2, 3)], axis=1),
+        windows=ends(window, window + 1.0),
+        frames=ends(sums[:, 10], sums[:, 11]),
+    )
+
+
+def _patches(
+    patch: _Visits, rule: DoubleRule, *, shape: tuple[Array, Array, Array], groups: list[_Group]
+) -> _Patches:
+    normal, sigma, spread = shape
+    a, b = groups
+    total = np.maximum(a.n + b.n, 1.0)
+    separation = b.along_m - a.along_m
+    step = b.mean_m - a.mean_m
+    aside = np.linalg.norm(step - separation[:, None] * normal, axis=1)
+    limit = limit_m(sigma, a.n, b.n, rule)
+    share = np.minimum(a.n, b.n) / total
+    flat = (sigma <= rule.most_sigma_m) & (spread >= rule.least_spread_m)
+    flat &= (np.minimum(a.n, b.n) >= rule.least_points) & (share >= rule.least_share)
+    flat &= aside <= rule.most_aside_m
+    # Between the faces of a thin wall normals are wild; the plane of such points is another.
+    flat &= np.abs(np.take_along_axis(normal, patch.face[:, None] // 2, axis=1)[:, 0]) >= 0.5
+    mean = (a.n[:, None] * a.mean_m + b.n[:, None] * b.mean_m) / total[:, None]
+    middle = (patch.cell + 0.5) * rule.cell_m + mean
+    return _Patches(
+        middle_m=middle[flat],
+        normal=normal[flat],
+        sigma_m=sigma[flat],
+        separation_m=separation[flat],
+        limit_m=limit[flat],
+        share=share[flat],
+        points=total[flat],
+        spans_s=np.stack([a.windows, b.windows], axis=1)[flat] * rule.window_s,
+        frames=np.stack([a.frames, b.frames], axis=1)[flat],
+        double=(separation > limit)[flat],
+    )
+
+
+def limit_m(sigma_m: Array, n_a: Array, n_b: Array, rule: DoubleRule) -> Array:
+    """Separation that noise and good poses explain [m], (P,).
+
+    ``z * sqrt(sigma^2 c (1 / n_a + 1 / n_b) + 2 pose_sigma^2)``: the noise of two means, of which
+    ``c`` neighboring points count as one, and of two poses.
+    """
+    noise = sigma_m**2 * rule.correlated * (1.0 / np.maximum(n_a, 1.0) + 1.0 / np.maximum(n_b, 1.0))
+    out: Array = rule.z * np.sqrt(noise + 2.0 * rule.pose_sigma_m**2)
+    return out
+
+
+def _report(found: list[_Patches], rule: DoubleRule, points: int) -> DoubleReport:
+    separation = np.concatenate([p.separation_m for p in found] or [np.empty(0)])
+    sigma = np.concatenate([p.sigma_m for p in found] or [np.empty(0)])
+    double = sum(int(p.double.sum()) for p in found)
+    median, p95 = np.percentile(separation, [50, 95]) if len(separation) else (np.nan, np.nan)
+    walls = sorted(_walls(found), key=lambda wall: (-wall.separation_m, wall.middle_m))
+    return DoubleReport(
+        walls=tuple(walls),
+        patches=len(separation),
+        double_patches=double,
+        median_separation_m=float(median),
+        p95_separation_m=float(p95),
+        median_sigma_m=float(np.median(sigma)) if len(sigma) else float("nan"),
+        points=points,
+    )
+
+
+_PLACE_M = 1.5
+"""Double patches this near to each other, facing alike, are one place [m]."""
+_LEAST_PATCHES = 10
+"""A place has at least so many: an edge or a moved chair makes one or two."""
+
+
+def _walls(found: list[_Patches]) -> Iterator[DoubleWall]:
+    """Places, each with the figures of its worst patch."""
+    every = [(p, int(k)) for p in found for k in np.flatnonzero(p.double)]
+    if not every:
+        return
+    middle = np.array([p.middle_m[k] for p, k in every])
+    normal = np.array([p.normal[k] for p, k in every])
+    facing = np.argmax(np.abs(normal), axis=1)
+    keys = np.column_stack([np.floor(middle / _PLACE_M).astype(np.int64), facing])
+    _, owner = np.unique(keys, axis=0, return_inverse=True)
+    for place in range(int(owner.max()) + 1):
+        rows = np.flatnonzero(owner == place)
+        if len(rows) < _LEAST_PATCHES:
+            continue
+        yield _wall([every[row] for row in rows], middle[rows].mean(axis=0))
+
+
+def _wall(patches: list[tuple[_Patches, int]], middle: Array) -> DoubleWall:
+    def median(name: str) -> float:
+        return float(np.median([getattr(p, name)[k] for p, k in patches]))
+
+    p, k = sorted(patches, key=lambda one: float(one[0].separation_m[one[1]]))[len(patches) // 2]
+    separation, sigma = median("separation_m"), median("sigma_m")
+    x, y, z = (float(c) for c in middle)
+    nx, ny, nz = (float(c) for c in p.normal[k])
+    (a0, a1), (b0, b1) = p.spans_s[k].tolist()
+    (fa0, fa1), (fb0, fb1) = p.frames[k].astype(int).tolist()
+    return DoubleWall(
+        middle_m=(x, y, z),
+        normal=(nx, ny, nz),
+        separation_m=separation,
+        limit_m=median("limit_m"),
+        sigma_m=sigma,
+        bimodality=separation / max(sigma, 1e-6),
+        share=median("share"),
+        patches=len(patches),
+        points=int(sum(p.points[k] for p, k in patches)),
+        spans_s=((a0, a1), (b0, b1)),
+        frames=((fa0, fa1), (fb0, fb1)),
+    )

@@ -1,0 +1,273 @@
+"""Slices as files for other programs: LAZ, CSV, DXF, GeoTIFF; streamed, never half there."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+
+from recon4.errors import ConfigError, GeoreferenceError
+from recon4.export.laz import export_laz
+from recon4.geometry.se3 import Array
+from recon4.mapping.tile import progressive
+from recon4.mapping.tiles import TileSet, TileWriter
+from recon4.slices.colors import Ground, Span
+from recon4.slices.cut import Cut
+from recon4.slices.frames import Frame, jacobian
+from recon4.slices.picture import Picture
+from recon4.slices.points import Part, Window, points_in
+from recon4.store.atomic import atomic_file
+
+MOST_DXF_POINTS = 2_000_000
+_DXF_CELL_M = 0.01
+
+
+def write_laz(
+    tiles: TileSet, cuts: Sequence[Cut], path: Path, *, frame: Frame, window: Window | None = None
+) -> int:
+    """The points of slices as LAZ 1.4, with all fields; a point in two slices is there twice.
+
+    Returns:
+        How many points were written.
+
+    Raises:
+        ConfigError: If the slices are empty.
+        StoreError: If the file cannot be written or does not read back.
+    """
+    with TemporaryDirectory(dir=path.parent, prefix=".slice-") as folder:
+        out = Path(folder)
+        with TileWriter(out, tiles.fields, tile_m=float(tiles.facts["tile_m"])) as writer:
+            writer.facts = {name: tiles.facts[name] for name in ("voxel_m", "crs")}
+            for cut in cuts:
+                for part in points_in(tiles, cut, tiles.fields, window=window):
+                    order = progressive(np.arange(len(part)))
+                    writer.append(part.tile.ijk, {k: v[order] for k, v in part.columns.items()})
+        if not len(TileSet.open(out)):
+            raise ConfigError("the slice holds no points, there is nothing to export")
+        return export_laz(out, path, crs=frame.wkt or None, to_crs=frame.to_crs)
+
+
+def write_csv(
+    tiles: TileSet, cuts: Sequence[Cut], path: Path, *, frame: Frame, window: Window | None = None
+) -> int:
+    """A line a point: slice, u, v and distance on the cut, coordinates, fields.
+
+    Returns:
+        How many points were written.
+    """
+    fields = [n for n in ("intensity", "intensity_normalized", "sensor", "frame_id", "t_ns")
+              if n in tiles.fields]  # fmt: skip
+    count = 0
+    axes = ["easting_m", "northing_m", "height_m"] if frame.to_crs else ["x_m", "y_m", "z_m"]
+    with atomic_file(path) as temporary, temporary.open("w", encoding="utf-8") as file:
+        file.write(f"# recon4 slice, {frame.words}\n")
+        file.write(",".join(["slice", "u_m", "v_m", "off_m", *axes, *fields]) + "\n")
+        for number, part, p_map in _every(tiles, cuts, fields, window):
+            p = frame.to_crs(p_map) if frame.to_crs else p_map
+            table = np.column_stack([np.full(len(part), number), part.uvd, p])
+            extra = [part.columns[name] for name in fields]
+            text = io.StringIO()
+            rows = csv.writer(text, lineterminator="\n")
+            for row, *values in zip(table, *extra, strict=True):
+                rows.writerow([int(row[0]), *(f"{x:.4f}" for x in row[1:]), *map(_plain, values)])
+            file.write(text.getvalue())
+            count += len(part)
+    return count
+
+
+def write_dxf(
+    tiles: TileSet,
+    cuts: Sequence[Cut],
+    path: Path,
+    *,
+    frame: Frame,
+    window: Window | None = None,
+    flat: bool = False,
+) -> int:
+    """Points as DXF R2010 in metres, a layer a slice, one point a square centimetre of the cut.
+
+    ezdxf makes the frame of the file; the points are written into it as they come, so that
+    memory does not follow their number.
+
+    Args:
+        tiles: The map.
+        cuts: Slices; their layers are named by number and place.
+        path: File to write.
+        frame: Coordinates are those of its CRS, if it has one.
+        window: Only this part.
+        flat: u, v and 0 instead of coordinates: a section to lay on a sheet.
+
+    Returns:
+        How many points were written.
+
+    Raises:
+        ConfigError: If there are too many.
+        StoreError: If the file cannot be written.
+    """
+    layers = [layer_name(k, cut) for k, cut in enumerate(cuts, start=1)]
+    before, after, owner = _dxf_frame(layers)
+    count = 0
+    with atomic_file(path) as temporary, temporary.open("w", encoding="utf-8") as file:
+        file.write(before)
+        for number, part, p_map in _every(tiles, cuts, [], window, cell_m=_DXF_CELL_M):
+            if flat:
+                p = part.uvd * [1.0, 1.0, 0.0]
+            else:
+                p = frame.to_crs(p_map) if frame.to_crs else p_map
+            count += len(p)
+            if count > MOST_DXF_POINTS:
+                raise ConfigError(
+                    f"a DXF holds at most {MOST_DXF_POINTS} points; take a thinner slice or a "
+                    "smaller window, or export LAZ"
+                )
+            first = _FIRST_HANDLE + count - len(p)
+            layer = layers[number - 1]
+            file.writelines(
+                f"  0\nPOINT\n  5\n{first + k:X}\n330\n{owner}\n100\nAcDbEntity\n  8\n{layer}\n"
+                f"100\nAcDbPoint\n 10\n{x:.4f}\n 20\n{y:.4f}\n 30\n{z:.4f}\n"
+                for k, (x, y, z) in enumerate(p.tolist())
+            )
+        file.write(after)
+    return count
+
+
+def layer_name(number: int, cut: Cut) -> str:
+    """Name of a slice's layer, of characters every CAD takes."""
+    place = {
+        "horizontal": f"Z_{cut.origin_m[2]:.3f}",
+        "vertical": f"V_{cut.offset_m:.3f}",
+        "free": f"F_{cut.offset_m:.3f}",
+    }[cut.kind]
+    return f"SLICE_{number:03d}_{place}".replace(".", "_")
+
+
+def write_geotiff(
+    picture: Picture, path: Path, *, frame: Frame, span: Span, ground: Ground = "light"
+) -> None:
+    """The picture as GeoTIFF, colored, transparent where nothing is.
+
+    A horizontal slice of a georeferenced map carries its CRS, and a transformation that is exact
+    at its middle. Everything else has the coordinates of the cut (u, v in metres) and no CRS.
+
+    Raises:
+        GeoreferenceError: If the picture is so large that a pixel would be off by its half.
+        StoreError: If the file cannot be written.
+    """
+    from PIL import Image, TiffImagePlugin
+
+    tags = TiffImagePlugin.ImageFileDirectory_v2()
+    geo = _georeference(picture, frame)
+    for tag, values in geo.items():
+        text = isinstance(values, str)
+        tags.tagtype[tag] = 2 if text else (3 if tag == _GEO_KEYS else 12)
+        tags[tag] = values if text else tuple(values)
+    image = Image.fromarray(picture.rgba(span, ground))
+    with atomic_file(path) as temporary:
+        image.save(temporary, format="TIFF", compression="tiff_adobe_deflate", tiffinfo=tags)
+
+
+_GEO_KEYS, _GEO_ASCII, _GEO_MATRIX = 34735, 34737, 34264
+_FIRST_HANDLE = 0x10000
+_NEXT_HANDLE = 0x1000_0000
+
+
+def _georeference(picture: Picture, frame: Frame) -> dict[int, Any]:
+    """Tags of GeoTIFF 1.1: the transformation from pixels, and keys that name the CRS."""
+    cut, paper = picture.cut, picture.paper
+    u0, v0 = paper.corner
+    if cut.kind == "horizontal" and frame.to_crs is not None:
+        middle = np.array([u0 + paper.width * paper.pixel_m / 2.0,
+                           v0 - paper.height * paper.pixel_m / 2.0, cut.origin_m[2]])  # fmt: skip
+        J, place = jacobian(frame.to_crs, middle)
+        _refuse_bent(picture, frame, middle)
+        A = J[:2, :2] * [paper.pixel_m, -paper.pixel_m]
+        corner = place[:2] + J[:2, :2] @ (np.array([u0, v0]) - middle[:2])
+        code = _epsg(frame)
+        keys = [(1024, 0, 1, 1), (1025, 0, 1, 1), (3072, 0, 1, code), (3076, 0, 1, 9001)]
+        words = ""
+    else:
+        A, corner = np.diag([paper.pixel_m, -paper.pixel_m]), np.array([u0, v0])
+        words = f"recon4 slice {cut.name}, {frame.words}|"
+        keys = [(1024, 0, 1, 32767), (1025, 0, 1, 1), (1026, _GEO_ASCII, len(words), 0)]
+        keys.append((3076, 0, 1, 9001))
+    matrix = [A[0, 0], A[0, 1], 0, corner[0], A[1, 0], A[1, 1], 0, corner[1],
+              0, 0, 0, 0, 0, 0, 0, 1]  # fmt: skip
+    directory = [1, 1, 1, len(keys), *(number for key in keys for number in key)]
+    tags: dict[int, Any] = {_GEO_KEYS: directory, _GEO_MATRIX: [float(x) for x in matrix]}
+    if words:
+        tags[_GEO_ASCII] = words.encode("ascii", "replace").decode()
+    return tags
+
+
+def _refuse_bent(picture: Picture, frame: Frame, middle: Array) -> None:
+    assert frame.to_crs is not None
+    J, place = jacobian(frame.to_crs, middle)
+    w = picture.paper.window
+    corners = np.array([[x, y, middle[2]] for x in (w.left, w.right) for y in (w.bottom, w.top)])
+    off = frame.to_crs(corners) - (place + (corners - middle) @ J.T)
+    worst = float(np.linalg.norm(off[:, :2], axis=1).max())
+    if worst > max(0.5 * picture.paper.pixel_m, 0.005):
+        raise GeoreferenceError(
+            f"the picture is so large that its corners would be off by {worst:.3f} m in "
+            f"{frame.crs}; export a smaller window"
+        )
+
+
+def _epsg(frame: Frame) -> int:
+    """Code of the horizontal system."""
+    first = frame.crs.removeprefix("EPSG:").split("+")[0]
+    if not first.isdigit():
+        raise GeoreferenceError(f"a GeoTIFF needs an EPSG code, the map is in {frame.crs}")
+    return int(first)
+
+
+def _every(
+    tiles: TileSet,
+    cuts: Sequence[Cut],
+    fields: Sequence[str],
+    window: Window | None,
+    *,
+    cell_m: float = 0.0,
+) -> Iterator[tuple[int, Part, Array]]:
+    """Number of the slice (from 1), points, and their places in the map; thinned if asked for."""
+    for number, cut in enumerate(cuts, start=1):
+        for part in points_in(tiles, cut, fields, window=window):
+            kept = _thinned(part, cell_m) if cell_m else part
+            yield number, kept, cut.to_map(kept.uvd)
+
+
+def _thinned(part: Part, cell_m: float) -> Part:
+    cells = np.floor(part.uvd[:, :2] / cell_m).astype(np.int64)
+    _, first = np.unique(cells, axis=0, return_index=True)
+    rows = np.sort(first)
+    columns = {name: column[rows] for name, column in part.columns.items()}
+    return Part(part.tile, part.rows[rows], part.uvd[rows], columns)
+
+
+def _dxf_frame(layers: list[str]) -> tuple[str, str, str]:
+    """Text before and behind the entities of an empty drawing, and the handle that owns them."""
+    import ezdxf.filemanagement
+    import ezdxf.units
+
+    drawing = ezdxf.filemanagement.new("R2010", units=ezdxf.units.M)
+    for k, layer in enumerate(layers):
+        drawing.layers.add(layer, color=1 + k % 6)
+    drawing.header["$PDMODE"], drawing.header["$PDSIZE"] = 0, 0.0
+    owner = drawing.modelspace().layout_key
+    marker = drawing.modelspace().add_point((0, 0))
+    drawing.entitydb.handles.reset(f"{_NEXT_HANDLE:X}")  # leaves room for our points
+    text = io.StringIO()
+    drawing.write(text)
+    whole = text.getvalue()
+    at = whole.index(f"  0\nPOINT\n  5\n{marker.dxf.handle}\n")
+    end = whole.index("  0\nENDSEC\n", at)
+    return whole[:at], whole[end:], owner
+
+
+def _plain(value: Any) -> str:
+    return f"{value:.4f}" if isinstance(value, np.floating) else str(int(value))

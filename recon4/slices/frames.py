@@ -1,0 +1,98 @@
+"""Between the map and the coordinate reference system it lies in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from recon4.errors import GeoreferenceError, StoreError
+from recon4.export.points import ToCrs
+from recon4.geometry.se3 import Array
+from recon4.georeference.stage import read_crs
+from recon4.mapping.tiles import TileSet
+from recon4.store.project import read_artifacts
+
+_STEP_M = 10.0
+_ROUNDS = 4
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Frame:
+    """What coordinates a project's map can be given in."""
+
+    crs: str
+    """Code as ``EPSG:32633``; empty = the map is local."""
+    wkt: str
+    to_crs: ToCrs | None
+
+    @property
+    def words(self) -> str:
+        """For the edge of a picture: frame, axes, unit."""
+        place = f"in {self.crs}" if self.crs else "local"
+        return f"map frame ({place}), x y z, z up, metres"
+
+    def from_crs(self, p_crs: Array) -> Array:
+        """Points of the CRS in the map [m], (N, 3): Newton steps on `to_crs`, to 1 µm.
+
+        Raises:
+            GeoreferenceError: If the map is local, or the points are not near it.
+        """
+        if self.to_crs is None:
+            raise GeoreferenceError("the map is local: it has no place on earth")
+        J, origin = jacobian(self.to_crs, np.zeros(3))
+        back = np.asarray(np.linalg.inv(J), dtype=np.float64)
+        p_map: Array = (p_crs - origin) @ back.T
+        if len(p_map) and not np.abs(p_map).max() < 1e6:
+            raise GeoreferenceError(f"these coordinates are not in {self.crs}: far from the map")
+        for _ in range(_ROUNDS):
+            off: Array = (p_crs - self.to_crs(p_map)) @ back.T
+            p_map = p_map + off
+            if not len(off) or np.abs(off).max() < 1e-6:
+                break
+        return p_map
+
+
+def jacobian(to_crs: ToCrs, p_map: Array) -> tuple[Array, Array]:
+    """How coordinates of the CRS change with those of the map at a place.
+
+    Returns:
+        Derivative (3, 3), columns are the map's axes; and the place in the CRS (3,).
+    """
+    steps = np.concatenate([np.eye(3), -np.eye(3)]) * _STEP_M
+    around = to_crs(np.concatenate([p_map + steps, p_map[None]]))
+    J: Array = ((around[:3] - around[3:6]) / (2.0 * _STEP_M)).T
+    return J, around[6]
+
+
+def read_frame(project: Path) -> Frame:
+    """The frame of a project's map; local when the run found no place on earth.
+
+    Raises:
+        StoreError: If the project has no map.
+    """
+    artifacts = read_artifacts(project)
+    return frame_of(artifacts)
+
+
+def frame_of(artifacts: dict[str, Path]) -> Frame:
+    """As `read_frame`, of the artifacts of a run."""
+    if "map" not in artifacts:
+        raise StoreError("the project has no map yet")
+    level = artifacts.get("level")
+    if level is not None and (level / "georeference.json").exists():
+        place = read_crs(level)
+        if place is not None:
+            return Frame(place.crs, place.wkt, place.to_crs)
+    own = TileSet.open(artifacts["map"]).crs
+    if own is not None:
+        shift = np.array(own.origin_m)
+        return Frame("its CRS", own.wkt, lambda p: np.asarray(p, dtype=np.float64) + shift)
+    return Frame("", "", None)
+
+
+def facts(frame: Frame) -> dict[str, Any]:
+    """For the page, as plain JSON values."""
+    return {"crs": frame.crs, "words": frame.words}

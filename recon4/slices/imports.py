@@ -1,0 +1,123 @@
+"""A reference file becomes a reference of ours: tiles of points with normals, or a mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import ConfigError
+from recon4.geometry.se3 import SE3, Array
+from recon4.mapping.normals import local_normals
+from recon4.mapping.tile import progressive
+from recon4.mapping.tiles import TileSet, TileWriter
+from recon4.slices.clouds import read_points
+from recon4.slices.frames import Frame
+from recon4.slices.meshes import is_mesh, load_mesh
+from recon4.slices.reference import read_facts
+from recon4.store.atomic import atomic_folder, write_json
+
+TILE_M = 5.0
+NORMAL_CELL_M = 0.05
+_BURST = 4_000_000
+_MOST_TRIANGLES = 20_000_000
+
+
+def import_reference(
+    path: Path, out: Path, *, name: str = "", frame: Frame | None = None
+) -> dict[str, object]:
+    """Make a reference of a cloud or mesh, completely or not at all.
+
+    Args:
+        path: PLY, PCD, LAS, LAZ, E57, XYZ, CSV, OBJ, STL.
+        out: New folder.
+        name: Shown to people; empty = the file's name.
+        frame: Given when the file's coordinates are those of the map's CRS; None = map frame.
+
+    Returns:
+        ``reference.json``.
+
+    Raises:
+        CorruptFile, UnknownFormat, RecordingError: If the file cannot be used, in words.
+    """
+    with atomic_folder(out) as folder:
+        facts: dict[str, object] = {
+            "name": name or path.name,
+            "file": path.name,
+            "frame": "crs" if frame else "map",
+            "T_map_reference": np.eye(4).tolist(),
+            "alignment": "none",
+        }
+        facts |= (_mesh if is_mesh(path) else _cloud)(path, folder, frame)
+        write_json(folder / "reference.json", facts)
+    return facts
+
+
+def set_alignment(folder: Path, T_map_reference: SE3, *, words: str) -> dict[str, object]:
+    """Remember how a reference is laid onto the map."""
+    facts = read_facts(folder) | {
+        "T_map_reference": T_map_reference.matrix().tolist(),
+        "alignment": words,
+    }
+    write_json(folder / "reference.json", facts)
+    return facts
+
+
+def write_tiles(chunks: Iterable[Array], out: Path) -> TileSet:
+    """Sort points into tiles, with a normal each where the neighborhood is flat.
+
+    Args:
+        chunks: Points [m], (N, 3) each.
+        out: Receives ``tiles/`` and ``tiles.json``.
+    """
+    with TemporaryDirectory(dir=out, prefix="buckets-") as place:
+        names = _deal_out(chunks, Path(place))
+        with TileWriter(out, ["xyz", "normal"], tile_m=TILE_M) as writer:
+            writer.facts = {"voxel_m": 0.0, "crs": None}
+            for ijk in sorted(names):
+                xyz = np.fromfile(names[ijk], np.float32).reshape(-1, 3)
+                xyz = xyz[progressive(_spatial(xyz))]
+                normal = local_normals(np.ascontiguousarray(xyz), NORMAL_CELL_M).normal
+                t_ns = np.zeros(len(xyz), np.int64)
+                writer.append(ijk, {"xyz": xyz, "normal": normal, "t_ns": t_ns})
+                names[ijk].unlink()
+    return TileSet.open(out)
+
+
+def _mesh(path: Path, out: Path, frame: Frame | None) -> dict[str, object]:
+    mesh = load_mesh(path)
+    if len(mesh.triangles) > _MOST_TRIANGLES:
+        raise ConfigError(f"{path.name} has more than {_MOST_TRIANGLES} triangles")
+    vertices = frame.from_crs(mesh.vertices_m) if frame else mesh.vertices_m
+    np.savez(out / "mesh.npz", vertices_m=vertices, triangles=mesh.triangles)
+    return {"kind": "mesh", "triangles": len(mesh.triangles)}
+
+
+def _cloud(path: Path, out: Path, frame: Frame | None) -> dict[str, object]:
+    chunks = read_points(path)
+    tiles = write_tiles((frame.from_crs(c) for c in chunks) if frame else chunks, out)
+    return {"kind": "cloud", "points": len(tiles)}
+
+
+def _deal_out(chunks: Iterable[Array], place: Path) -> dict[tuple[int, int, int], Path]:
+    names: dict[tuple[int, int, int], Path] = {}
+    for chunk in chunks:
+        for first in range(0, len(chunk), _BURST):
+            points = chunk[first : first + _BURST]
+            ijk = np.floor(points / TILE_M).astype(np.int64)
+            order = np.lexsort(ijk.T)
+            cuts = np.flatnonzero(np.any(np.diff(ijk[order], axis=0) != 0, axis=1)) + 1
+            for rows in np.split(order, cuts) if len(points) else []:
+                i, j, k = (int(x) for x in ijk[rows[0]])
+                file = names.setdefault((i, j, k), place / f"{len(names)}.f4")
+                local = points[rows] - np.array([i, j, k]) * TILE_M
+                with file.open("ab") as out:
+                    out.write(local.astype(np.float32).tobytes())
+    return names
+
+
+def _spatial(xyz: NDArray[np.float32]) -> NDArray[np.intp]:
+    return np.lexsort(np.floor(xyz / 0.25).T)

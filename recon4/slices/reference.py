@@ -1,0 +1,197 @@
+"""A reference model beside the map: a cloud or a mesh, and distances to it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from recon4.errors import ConfigError, StoreError
+from recon4.evaluation.mesh import Mesh, distance_to
+from recon4.geometry.se3 import SE3, Array
+from recon4.mapping.tiles import TileSet
+from recon4.slices.cut import Cut
+from recon4.slices.points import Window, points_in
+
+Method = Literal["plane", "point"]
+FAR_M = 0.5
+"""Distances are not looked for beyond this [m]; they come back as infinite."""
+_MARGIN_M = 2.0
+"""Points of a request are measured in cubes of this size, each with its own search tree [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """A model to compare with.
+
+    ``plane``: distance from the plane through the nearest point of the reference, where it has a
+    normal, so a coarse reference does not count its own spacing as error. ``point``: distance to
+    the nearest point, as V §3.2. Of a mesh always the distance to the nearest triangle.
+    """
+
+    name: str
+    folder: Path
+    T_map_reference: SE3
+    method: Method = "plane"
+    mesh: Mesh | None = None
+    tiles: TileSet | None = None
+
+    def distance(self, p_map: Array) -> Array:
+        """Distance of points of the map (N, 3) to the reference [m], (N,); inf = over `FAR_M`."""
+        p = self.T_map_reference.inverse() @ np.ascontiguousarray(p_map, dtype=np.float64)
+        if self.mesh is not None:
+            found = np.asarray(self._to_mesh(p), dtype=np.float64)
+            return np.where(found <= FAR_M, found, np.inf)
+        return self._to_cloud(p)
+
+    def outline(self, cut: Cut, window: Window, *, step_m: float) -> Iterator[Array]:
+        """The reference inside a cut, as points u, v, distance from the plane [m], (M, 3) each.
+
+        Args:
+            cut: In the map.
+            window: Only this part.
+            step_m: Lines of a mesh become points this far apart [m].
+        """
+        own = moved_cut(cut, self.T_map_reference.inverse())
+        if self.mesh is not None:
+            yield _along(mesh_lines(self.mesh, own), window, step_m)
+        elif self.tiles is not None:
+            for part in points_in(self.tiles, own, window=window):
+                yield part.uvd
+
+    @cached_property
+    def _to_mesh(self) -> Callable[[Array], Array]:
+        assert self.mesh is not None
+        return distance_to(self.mesh)
+
+    def _to_cloud(self, p: Array) -> Array:
+        """Cube by cube, so that only the reference's points nearby are in memory."""
+        assert self.tiles is not None
+        out = np.full(len(p), np.inf)
+        cubes = np.floor(p / _MARGIN_M).astype(np.int64)
+        order = np.lexsort(cubes.T)
+        changes = np.flatnonzero(np.any(np.diff(cubes[order], axis=0) != 0, axis=1)) + 1
+        for rows in np.split(order, changes) if len(p) else []:
+            low = p[rows].min(axis=0) - FAR_M
+            high = p[rows].max(axis=0) + FAR_M
+            out[rows] = self._near(p[rows], low, high)
+        return out
+
+    def _near(self, p: Array, low: Array, high: Array) -> Array:
+        q, normal = points_between(self.tiles, low, high)
+        if not len(q):
+            return np.full(len(p), np.inf)
+        tree = cKDTree(q, balanced_tree=False, compact_nodes=False)
+        distance, row = tree.query(p, distance_upper_bound=FAR_M)
+        near = np.isfinite(distance)
+        if self.method == "plane":
+            n = normal[row[near]]
+            flat = np.abs(np.einsum("ni,ni->n", n, p[near] - q[row[near]]))
+            known = np.einsum("ni,ni->n", n, n) > 0.25
+            distance[near] = np.where(known, flat, distance[near])
+        return np.asarray(distance, dtype=np.float64)
+
+
+def points_between(tiles: TileSet | None, low: Array, high: Array) -> tuple[Array, Array]:
+    """Points of a reference in a box of its own frame, and their normals, (N, 3) each."""
+    assert tiles is not None
+    points, normals = [np.empty((0, 3))], [np.empty((0, 3))]
+    for tile in tiles:
+        if np.any(np.array(tile.low_m) > high) or np.any(np.array(tile.high_m) < low):
+            continue
+        columns = tile.read(["xyz", "normal"])
+        xyz = columns["xyz"].astype(np.float64) + tile.origin_m
+        inside = np.all((xyz >= low) & (xyz <= high), axis=1)
+        points.append(xyz[inside])
+        normals.append(columns["normal"][inside].astype(np.float64))
+    return np.concatenate(points), np.concatenate(normals)
+
+
+def load_reference(folder: Path, *, method: Method = "plane") -> Reference:
+    """A reference that `recon4.slices.imports.import_reference` made.
+
+    Raises:
+        StoreError: If it is missing or damaged.
+    """
+    facts = read_facts(folder)
+    T = SE3.from_matrix(np.array(facts["T_map_reference"]))
+    name = str(facts["name"])
+    if facts["kind"] == "mesh":
+        try:
+            with np.load(folder / "mesh.npz") as file:
+                mesh = Mesh(file["vertices_m"], file["triangles"])
+        except (OSError, ValueError, KeyError) as error:
+            raise StoreError(f"{folder.name}/mesh.npz cannot be read: {error}") from error
+        return Reference(name, folder, T, method, mesh=mesh)
+    return Reference(name, folder, T, method, tiles=TileSet.open(folder))
+
+
+def read_facts(folder: Path) -> dict[str, Any]:
+    """``reference.json`` of a reference.
+
+    Raises:
+        StoreError: If it is missing or damaged.
+    """
+    try:
+        facts = json.loads((folder / "reference.json").read_text("utf-8"))
+        missing = {"name", "kind", "T_map_reference"} - set(facts)
+    except (OSError, ValueError, TypeError) as error:
+        raise StoreError(f"{folder.name} is not a reference: {error}") from error
+    if missing:
+        raise StoreError(f"{folder.name}/reference.json lacks {sorted(missing)}")
+    return dict(facts)
+
+
+def moved_cut(cut: Cut, T_b_a: SE3) -> Cut:
+    """The same cut in another frame: points keep their u, v and distance from the plane."""
+    origin = (T_b_a @ np.array([cut.origin_m]))[0]
+    u, v = T_b_a.R @ np.array(cut.u), T_b_a.R @ np.array(cut.v)
+    return Cut("free", _triple(origin), _triple(u), _triple(v), cut.thickness_m)
+
+
+def mesh_lines(mesh: Mesh, cut: Cut) -> Array:
+    """Where the middle plane of a cut meets the triangles: segments in u, v [m], (S, 2, 2)."""
+    if not len(mesh.triangles):
+        raise ConfigError("the mesh has no triangles")
+    uvd = cut.to_plane(mesh.vertices_m)
+    corner = uvd[mesh.triangles]
+    d = corner[:, :, 2]
+    crossed = (d.min(axis=1) <= 0.0) & (d.max(axis=1) > 0.0)
+    corner, d = corner[crossed], d[crossed]
+    above = d > 0.0
+    ends = []
+    for i, j in ((0, 1), (1, 2), (2, 0)):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            s = d[:, i] / (d[:, i] - d[:, j])
+        point = corner[:, i, :2] + s[:, None] * (corner[:, j, :2] - corner[:, i, :2])
+        point[above[:, i] == above[:, j]] = np.nan
+        ends.append(point)
+    three = np.stack(ends, axis=1)
+    # A plane that crosses a triangle crosses two of its sides: the third entry is NaN.
+    order = np.argsort(np.isnan(three[:, :, 0]), axis=1, kind="stable")[:, :2]
+    out: Array = np.take_along_axis(three, order[:, :, None], axis=1)
+    return out
+
+
+def _along(lines: Array, window: Window, step_m: float) -> Array:
+    """Points along segments, u, v and 0, (M, 3); only segments that can meet the window."""
+    low, high = lines.min(axis=1), lines.max(axis=1)
+    seen = np.all(high >= [window.left, window.bottom], axis=1)
+    seen &= np.all(low <= [window.right, window.top], axis=1)
+    points = [np.empty((0, 2))]
+    for a, b in lines[seen]:
+        n = min(20_000, int(np.ceil(np.linalg.norm(b - a) / step_m)) + 1)
+        points.append(a + np.linspace(0.0, 1.0, n)[:, None] * (b - a))
+    uv = np.concatenate(points)
+    return np.column_stack([uv, np.zeros(len(uv))])
+
+
+def _triple(values: Array) -> tuple[float, float, float]:
+    x, y, z = (float(value) for value in values)
+    return x, y, z

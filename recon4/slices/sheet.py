@@ -1,0 +1,267 @@
+"""A slice on paper: true scale, grid with coordinates, scale bar, legend, who approved it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+import recon4
+from recon4.errors import ConfigError
+from recon4.slices.colors import (
+    REFERENCE_COLOR,
+    SENSOR_COLORS,
+    UNITS,
+    WORDS,
+    ColorBy,
+    Span,
+    table,
+)
+from recon4.slices.cut import Cut
+from recon4.slices.picture import Paper, Picture
+from recon4.slices.points import Window
+from recon4.store.atomic import atomic_file
+
+Size = Literal["a4", "a3", "a2", "a1"]
+SIZES_MM: dict[Size, tuple[float, float]] = {
+    "a4": (297.0, 210.0),
+    "a3": (420.0, 297.0),
+    "a2": (594.0, 420.0),
+    "a1": (841.0, 594.0),
+}
+SCALES = (1, 2, 5, 10, 20, 25, 50, 100, 200, 250, 500, 1000, 2000, 2500, 5000, 10000)
+DPI = 300
+_LEFT_MM, _RIGHT_MM, _TOP_MM, _BOTTOM_MM = 18.0, 8.0, 20.0, 30.0
+_MM_PER_INCH = 25.4
+_INK, _QUIET, _GRID = "#17202a", "#56636f", "#b9c3cc"
+
+
+@dataclass(frozen=True, slots=True)
+class Words:
+    """What is written on a sheet."""
+
+    project: str
+    frame: str
+    """Frame, axes, unit."""
+    sources: str
+    """Versions and hashes that the picture rests on."""
+    approval: str
+    """Who approved the map and when, or that nobody did."""
+    reference: str = ""
+    sensors: tuple[str, ...] = field(default=())
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """How a window lies on a sheet."""
+
+    size: Size
+    scale: int
+    """1 : so many."""
+    window: Window
+    """What is printed: the window asked for, in the middle of what fits [m]."""
+
+    @property
+    def paper(self) -> Paper:
+        """The picture to draw for it, at `DPI`."""
+        return Paper(self.window, self.scale * _MM_PER_INCH / 1000.0 / DPI)
+
+
+def lay_out(window: Window, size: Size = "a4", scale: int = 0) -> Layout:
+    """Choose the largest usual scale at which a window fits, or take the one asked for.
+
+    Raises:
+        ConfigError: If it does not fit at 1 : 10 000, or the scale is not a usual one.
+    """
+    if scale and scale not in SCALES:
+        raise ConfigError(f"a scale is one of {list(SCALES)}, got {scale}")
+    across_mm, up_mm = _field_mm(size)
+    width_m, height_m = window.right - window.left, window.top - window.bottom
+    least = max(width_m * 1000.0 / across_mm, height_m * 1000.0 / up_mm)
+    chosen = scale or next((s for s in SCALES if s >= least * (1.0 - 1e-9)), 0)
+    if not chosen:
+        raise ConfigError(f"a window {width_m:.0f} m wide does not fit on {size} at 1 : 10 000")
+    half_u, half_v = across_mm * chosen / 2000.0, up_mm * chosen / 2000.0
+    u, v = (window.left + window.right) / 2.0, (window.bottom + window.top) / 2.0
+    return Layout(size, chosen, Window(u - half_u, v - half_v, u + half_u, v + half_v))
+
+
+def write_sheet(picture: Picture, layout: Layout, path: Path, *, span: Span, words: Words) -> None:
+    """Write a sheet as PNG (300 dpi), SVG or PDF; the same picture gives the same bytes.
+
+    Raises:
+        ConfigError: If the ending is another.
+        StoreError: If the file cannot be written.
+    """
+    kind = path.suffix.lower().lstrip(".")
+    if kind not in {"png", "svg", "pdf"}:
+        raise ConfigError(f"a sheet is written as .png, .svg or .pdf, got {path.name}")
+    import matplotlib
+    from matplotlib.figure import Figure
+
+    plain: dict[Any, Any] = {
+        "svg.hashsalt": "recon4",
+        "svg.fonttype": "none",
+        "font.family": "DejaVu Sans",
+    }
+    with matplotlib.rc_context({**plain, "font.size": 7, "path.simplify": False}):
+        across_mm, up_mm = SIZES_MM[layout.size]
+        figure = Figure(figsize=(across_mm / _MM_PER_INCH, up_mm / _MM_PER_INCH), dpi=DPI)
+        _field(figure, picture, layout, span)
+        _head(figure, picture, layout, words)
+        _scale_bar(figure, layout)
+        _legend(figure, picture, span, words)
+        metadata = {"Date": None} if kind == "svg" else {}
+        if kind == "pdf":
+            metadata = {"CreationDate": None}
+        with atomic_file(path) as temporary:
+            figure.savefig(temporary, format=kind, dpi=DPI, metadata=metadata)
+
+
+def grid_step_m(across_m: float) -> float:
+    """Distance of grid lines: 1, 2 or 5 times a power of ten, six to fourteen of them."""
+    rough = across_m / 14.0
+    power = 10.0 ** np.floor(np.log10(rough))
+    return float(power * next(s for s in (1.0, 2.0, 5.0, 10.0) if s * power >= rough * 0.999))
+
+
+def axis_words(cut: Cut) -> tuple[str, str]:
+    """What u and v are."""
+    if cut.kind == "horizontal":
+        return "x [m]", "y [m]"
+    if cut.kind == "vertical":
+        return "along the section [m]", "height z [m]"
+    return "u [m]", "v [m]"
+
+
+def _field_mm(size: Size) -> tuple[float, float]:
+    across_mm, up_mm = SIZES_MM[size]
+    return across_mm - _LEFT_MM - _RIGHT_MM, up_mm - _TOP_MM - _BOTTOM_MM
+
+
+def _field(figure: Any, picture: Picture, layout: Layout, span: Span) -> None:
+    across_mm, up_mm = SIZES_MM[layout.size]
+    width, height = _field_mm(layout.size)
+    axes = figure.add_axes(
+        (_LEFT_MM / across_mm, _BOTTOM_MM / up_mm, width / across_mm, height / up_mm)
+    )
+    w = layout.window
+    axes.imshow(
+        picture.rgba(span, "light"),
+        extent=(w.left, w.right, w.bottom, w.top),
+        interpolation="none",
+        aspect="auto",
+        zorder=2,
+    )
+    step = grid_step_m(max(w.right - w.left, w.top - w.bottom))
+    digits = max(0, -int(np.floor(np.log10(step) + 1e-9)))
+    for axis, low, high in ((axes.xaxis, w.left, w.right), (axes.yaxis, w.bottom, w.top)):
+        ticks = np.arange(np.ceil(low / step), np.floor(high / step) + 1.0) * step
+        axis.set_ticks(ticks, [f"{tick:.{digits}f}".replace("-", "\u2212") for tick in ticks])
+    axes.tick_params(colors=_QUIET, width=0.4, length=2.5)
+    axes.grid(color=_GRID, linewidth=0.35, zorder=0)
+    axes.set_axisbelow(True)
+    u_words, v_words = axis_words(picture.cut)
+    axes.set_xlabel(u_words, color=_QUIET, labelpad=2)
+    axes.set_ylabel(v_words, color=_QUIET, labelpad=2)
+    for spine in axes.spines.values():
+        spine.set_color(_INK)
+        spine.set_linewidth(0.6)
+
+
+def _head(figure: Any, picture: Picture, layout: Layout, words: Words) -> None:
+    across_mm, up_mm = SIZES_MM[layout.size]
+    x = _LEFT_MM / across_mm
+    kind = {"horizontal": "Horizontal slice", "vertical": "Vertical slice", "free": "Slice"}
+    title = f"{words.project}   {kind[picture.cut.kind]}  {picture.cut.name}"
+    facts = (
+        f"1 : {layout.scale} on {layout.size.upper()}     "
+        f"thickness {_length(picture.cut.thickness_m)}"
+        f"     {picture.points:,} points".replace(",", "\u2009")
+        + f"     {words.frame}"
+    )
+    figure.text(
+        x, 1.0 - 9.0 / up_mm, title, fontsize=10, weight="bold", color=_INK, parse_math=False
+    )
+    figure.text(x, 1.0 - 15.0 / up_mm, facts, color=_INK, parse_math=False)
+    figure.text(x, 4.5 / up_mm, words.sources, fontsize=5.5, color=_QUIET, parse_math=False)
+    figure.text(x, 8.0 / up_mm, words.approval, fontsize=6, color=_INK, parse_math=False)
+
+
+def _scale_bar(figure: Any, layout: Layout) -> None:
+    across_mm, up_mm = SIZES_MM[layout.size]
+    step = grid_step_m(60.0 * layout.scale / 1000.0 * 14.0 / 4.0)
+    length_mm = step * 1000.0 / layout.scale
+    axes = figure.add_axes(
+        (_LEFT_MM / across_mm, 14.0 / up_mm, 3 * length_mm / across_mm, 1.6 / up_mm)
+    )
+    axes.set(xlim=(0, 3), ylim=(0, 1), yticks=[])
+    axes.axvspan(0, 1, color=_INK)
+    axes.axvspan(2, 3, color=_INK)
+    axes.set_xticks(range(4), [f"{k * step:g}" for k in range(3)] + [f"{3 * step:g} m"])
+    axes.tick_params(colors=_INK, length=0, pad=1.5, labelsize=6)
+    for spine in axes.spines.values():
+        spine.set_linewidth(0.5)
+
+
+def _legend(figure: Any, picture: Picture, span: Span, words: Words) -> None:
+    across_mm, up_mm = SIZES_MM[layout_size(figure)]
+    color: ColorBy = picture.color
+    right = 1.0 - (_RIGHT_MM + 3.0) / across_mm
+    width = 60.0 / across_mm
+    bar = (right - width, 12.5 / up_mm, width, 2.4 / up_mm)
+    unit = f" [{UNITS[color]}]" if UNITS[color] else ""
+    label = f"{WORDS[color]}{unit}"
+    if color == "sensor":
+        _sensors(figure, bar, words)
+    else:
+        axes = figure.add_axes(bar)
+        axes.imshow(table(color, "light")[None], aspect="auto", extent=(0, 1, 0, 1))
+        axes.set_yticks([])
+        ends = (span.low, (span.low + span.high) / 2.0, span.high)
+        axes.set_xticks((0, 0.5, 1), [f"{end:.4g}" for end in ends])
+        axes.tick_params(colors=_INK, length=2, width=0.4, pad=1.5, labelsize=6)
+        for spine in axes.spines.values():
+            spine.set_linewidth(0.4)
+    figure.text(right - width, 16.2 / up_mm, label, color=_INK, fontsize=6.5, parse_math=False)
+    if words.reference:
+        green = tuple(c / 255.0 for c in REFERENCE_COLOR)
+        x = right - width - 4.0 / across_mm
+        figure.text(
+            x, 13.0 / up_mm, f"\u25a0 reference: {words.reference}", color=green, fontsize=6.5,
+            ha="right", parse_math=False,
+        )  # fmt: skip
+
+
+def layout_size(figure: Any) -> Size:
+    """Which paper a figure has."""
+    across_mm = figure.get_figwidth() * _MM_PER_INCH
+    return min(SIZES_MM, key=lambda size: abs(SIZES_MM[size][0] - across_mm))
+
+
+def _sensors(figure: Any, bar: tuple[float, float, float, float], words: Words) -> None:
+    for k, name in enumerate(words.sensors or ("1", "2")):
+        rgb = tuple(c / 255.0 for c in SENSOR_COLORS[k % len(SENSOR_COLORS)])
+        x = bar[0] + k * bar[2] / max(2, len(words.sensors))
+        figure.text(x, bar[1], f"\u25a0 {name}", color=rgb, fontsize=6.5, parse_math=False)
+
+
+def _length(length_m: float) -> str:
+    return f"{100.0 * length_m:g} cm" if length_m < 1.0 else f"{length_m:g} m"
+
+
+def approval_words(approval: Mapping[str, Any] | None) -> str:
+    """Who approved a map and when, for sheets and files."""
+    if not approval:
+        return "Not approved"
+    who = str(approval.get("name") or approval.get("who") or "?")
+    when = str(approval.get("time") or approval.get("when") or approval.get("created") or "")
+    return f"Approved by {who[:80]} {when[:40]}".strip()
+
+
+def source_words(artifact_key: str) -> str:
+    """What made a picture."""
+    return f"recon4 {recon4.__version__}, map {artifact_key[:16]}"

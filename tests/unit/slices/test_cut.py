@@ -1,0 +1,132 @@
+import numpy as np
+import pytest
+
+from recon4.errors import ConfigError
+from recon4.geometry.se3 import SE3
+from recon4.slices.cut import Cut, free, horizontal, vertical, vertical_at
+from recon4.slices.points import Window, extent, points_in
+from recon4.slices.reference import moved_cut
+from tests.unit.slices.room_map import write_map
+
+
+@pytest.fixture(scope="module")
+def cloud():
+    return np.random.default_rng(3).uniform([-7, -6, -2], [9, 8, 3], (40_000, 3))
+
+
+@pytest.fixture(scope="module")
+def tiles(cloud, tmp_path_factory):
+    return write_map(tmp_path_factory.mktemp("map"), cloud)
+
+
+CUTS = [
+    horizontal(0.7, thickness_m=0.3),
+    vertical((-3.0, -2.0), (5.0, 4.0), thickness_m=0.2),
+    vertical_at((1.0, 1.0), np.deg2rad(200.0), thickness_m=0.05),
+    free((0.5, 0.3, 0.1), (0.3, -0.5, 0.8), thickness_m=0.4),
+    free((0.0, 0.0, 0.5), (0.0, 0.0, 1.0), thickness_m=0.4),
+]
+
+
+@pytest.mark.parametrize("cut", CUTS, ids=lambda cut: cut.kind)
+def test_a_cut_holds_exactly_the_points_within_half_its_thickness(cloud, tiles, cut):
+    stored = np.concatenate([tile.xyz_m() for tile in tiles])  # as float32 of their tile
+    expected = np.abs((stored - cut.origin_m) @ cut.normal) <= cut.thickness_m / 2.0
+
+    parts = list(points_in(tiles, cut))
+
+    found = np.concatenate([cut.to_map(part.uvd) for part in parts])
+    assert len(found) == expected.sum() > 50
+    assert np.abs(sorted_rows(found) - sorted_rows(stored[expected])).max() < 1e-9
+
+
+@pytest.mark.parametrize("cut", CUTS, ids=lambda cut: cut.kind)
+def test_the_axes_of_a_cut_are_right_handed_and_its_coordinates_lead_back(cut):
+    p = np.random.default_rng(1).uniform(-50, 50, (20, 3))
+
+    back = cut.to_map(cut.to_plane(p))
+
+    assert np.abs(cut.axes @ cut.axes.T - np.eye(3)).max() < 1e-12
+    assert np.linalg.det(cut.axes) == pytest.approx(1.0)
+    assert np.abs(back - p).max() < 1e-9
+
+
+def test_a_horizontal_cut_shows_the_coordinates_of_the_map():
+    uvd = horizontal(1.5).to_plane(np.array([[3.0, 4.0, 1.7]]))
+
+    assert uvd[0] == pytest.approx([3.0, 4.0, 0.2])
+
+
+def test_a_vertical_cut_shows_the_way_from_its_first_point_and_the_height():
+    uvd = vertical((1.0, 1.0), (1.0, 9.0)).to_plane(np.array([[1.25, 4.0, 2.0]]))
+
+    assert uvd[0] == pytest.approx([3.0, 2.0, 0.25])
+
+
+def test_a_window_leaves_out_what_lies_beside_it(tiles):
+    cut = CUTS[1]
+    window = Window(1.0, -1.0, 3.0, 1.0)
+
+    uvd = np.concatenate([part.uvd for part in points_in(tiles, cut, window=window)])
+
+    every = np.concatenate([part.uvd for part in points_in(tiles, cut)])
+    inside = (every[:, 0] >= 1) & (every[:, 0] <= 3) & (every[:, 1] >= -1) & (every[:, 1] <= 1)
+    assert len(uvd) == inside.sum() > 10
+
+
+def test_all_of_a_cut_is_inside_its_extent(tiles):
+    for cut in CUTS:
+        seen = extent(tiles, cut)
+        uvd = np.concatenate([part.uvd for part in points_in(tiles, cut)])
+        assert seen.left <= uvd[:, 0].min() and uvd[:, 0].max() <= seen.right
+        assert seen.bottom <= uvd[:, 1].min() and uvd[:, 1].max() <= seen.top
+
+
+def test_repeated_cuts_are_equally_far_from_each_other():
+    cuts = CUTS[3].repeated(4, spacing_m=0.25)
+
+    assert np.diff([cut.offset_m for cut in cuts]) == pytest.approx([0.25] * 3)
+
+
+def test_far_from_the_origin_nothing_is_lost(tmp_path):
+    p = np.array([[500_000.123, 5_400_000.456, 300.0], [500_001.0, 5_400_001.0, 300.004]])
+    tiles = write_map(tmp_path, p)
+
+    part = next(points_in(tiles, horizontal(300.0, thickness_m=0.004)))
+
+    assert len(part) == 1
+    assert part.uvd[0, :2] == pytest.approx(p[0, :2], abs=1e-6)
+
+
+def test_a_moved_cut_gives_moved_points_the_same_place():
+    T = SE3.from_rpy(0.1, -0.2, 2.0, [5.0, -3.0, 1.0])
+    p = np.random.default_rng(2).uniform(-5, 5, (10, 3))
+
+    moved = moved_cut(CUTS[1], T)
+
+    assert np.abs(moved.to_plane(T @ p) - CUTS[1].to_plane(p)).max() < 1e-9
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: free((0, 0, 0), (0, 0, 0)),
+        lambda: free((0, 0, float("nan")), (0, 0, 1)),
+        lambda: vertical((1, 1), (1, 1)),
+        lambda: horizontal(1.0, thickness_m=0.0),
+        lambda: horizontal(1.0).repeated(0, spacing_m=1.0),
+        lambda: horizontal(1.0).repeated(3, spacing_m=0.0),
+    ],
+)
+def test_a_plane_without_meaning_is_refused(make):
+    with pytest.raises(ConfigError):
+        make()
+
+
+def test_a_cut_is_a_value():
+    assert horizontal(1.0) == horizontal(1.0)
+    assert isinstance(hash(horizontal(1.0)), int) and isinstance(horizontal(1.0), Cut)
+
+
+def sorted_rows(p):
+    return p[np.lexsort(p.T)]

@@ -1,0 +1,107 @@
+import io
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from recon4.errors import ConfigError
+from recon4.slices.colors import DISTANCE_RANGE_M, REFERENCE_COLOR, Span, paint, table
+from recon4.slices.cut import horizontal
+from recon4.slices.imports import import_reference
+from recon4.slices.picture import Paper, draw, png
+from recon4.slices.points import Window
+from recon4.slices.reference import load_reference
+from tests.unit.slices.room_map import T0_NS, write_map
+
+CUT = horizontal(1.0, thickness_m=0.2)
+PAPER = Paper(Window(0.0, 0.0, 4.0, 2.0), 0.1)
+POINTS = np.array(
+    [[0.05, 1.95, 1.0], [0.07, 1.93, 1.05], [3.95, 0.05, 0.95], [2.05, 1.05, 2.0], [5.0, 1.0, 1.0]]
+)
+
+
+@pytest.fixture
+def tiles(tmp_path):
+    return write_map(
+        tmp_path / "map",
+        POINTS,
+        intensity=np.array([10, 30, 50, 70, 90], np.uint16),
+        sensor=np.array([0, 1, 1, 0, 0], np.uint8),
+        t_ns=T0_NS + np.arange(5) * 10**9,
+    )
+
+
+def test_every_point_is_where_it_belongs_and_pixels_show_means(tiles):
+    picture = draw(tiles, CUT, PAPER, color="intensity")
+
+    assert picture.points == 3
+    assert np.argwhere(picture.count).tolist() == [[0, 0], [19, 39]]
+    assert picture.value[0, 0] == 20.0  # mean of 10 and 30
+    assert picture.value[19, 39] == 50.0
+    assert np.isnan(picture.value[10, 20])
+
+
+def test_sensors_are_never_mixed(tiles):
+    picture = draw(tiles, CUT, PAPER, color="sensor")
+
+    assert picture.value[0, 0] in (0.0, 1.0)
+    assert picture.value[19, 39] == 1.0
+
+
+def test_time_counts_from_the_start_and_height_is_that_of_the_map(tiles):
+    time = draw(tiles, CUT, PAPER, color="time")
+    height = draw(tiles, CUT, PAPER, color="height")
+
+    assert time.value[19, 39] == pytest.approx(2.0)
+    assert height.value[19, 39] == pytest.approx(0.95)
+
+
+def test_points_grow_when_pixels_become_smaller_than_the_grid_of_the_map(tiles):
+    paper = Paper(Window(3.9, 0.0, 4.0, 0.1), 0.001)
+
+    picture = draw(tiles, CUT, paper, color="height")
+
+    assert picture.points == 1
+    assert (picture.count > 0).sum() == 69  # all within 4.5 pixels
+
+
+def test_distances_are_colored_from_blue_to_red_and_the_reference_is_green(tiles, tmp_path):
+    cloud = tmp_path / "reference.xyz"
+    cloud.write_text("\n".join(f"{x:.2f} 1.90 1.0" for x in np.arange(0.0, 4.0, 0.02)))
+    import_reference(cloud, tmp_path / "reference")
+    reference = load_reference(tmp_path / "reference", method="point")
+
+    picture = draw(tiles, CUT, PAPER, color="distance", reference=reference)
+    rgba = picture.rgba(Span(*DISTANCE_RANGE_M), "light")
+
+    assert picture.span == Span(0.0, 0.10)
+    assert picture.value[0, 0] == pytest.approx(np.hypot(0.05, 0.01), abs=1e-3)
+    assert np.isinf(picture.value[19, 39])
+    assert rgba[19, 39, 0] > 200 > rgba[19, 39, 2]
+    assert tuple(rgba[1, 20, :3]) == REFERENCE_COLOR
+
+
+def test_the_ends_of_a_palette_stand_for_everything_beyond():
+    colors = paint(np.array([-5.0, 0.0, 1.0, 9.0]), Span(0.0, 1.0), color="height", ground="light")
+
+    assert np.array_equal(colors[0], colors[1]) and np.array_equal(colors[2], colors[3])
+    assert np.array_equal(colors[3], table("height", "light")[255])
+
+
+def test_a_picture_is_a_png_transparent_where_nothing_is(tiles):
+    picture = draw(tiles, CUT, PAPER)
+
+    image = Image.open(io.BytesIO(png(picture.rgba(picture.span, "dark"))))
+
+    assert image.size == (40, 20)
+    assert image.getpixel((20, 10))[3] == 0 and image.getpixel((0, 0))[3] > 100
+
+
+def test_an_enormous_picture_is_refused_before_it_is_made():
+    with pytest.raises(ConfigError, match="larger pixels"):
+        Paper(Window(0.0, 0.0, 1000.0, 1000.0), 0.001)
+
+
+def test_what_the_map_lacks_is_said(tiles):
+    with pytest.raises(ConfigError, match="reference"):
+        draw(tiles, CUT, PAPER, color="distance")
