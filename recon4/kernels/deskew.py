@@ -8,13 +8,14 @@ from numba import njit
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def place_points(
+def place_sensor_points(
     xyz: Any, sensor: Any, dt_ns: Any, knot_ns: Any, R: Any, t: Any, out_xyz: Any, out_origin: Any
 ) -> None:
     """Move points from their sensors into the map.
 
     Between two knots, rotation matrices and positions are blended linearly; with knots 1 ms
-    apart a matrix so blended is off from the SLERP by less than 3e-6 at 250 deg/s.
+    apart a matrix so blended is off from the SLERP by less than 3e-6 at 250 deg/s. For whole
+    clouds; `recon4.kernels.imu.place_points` does the same exactly for samples and sparse knots.
 
     Args:
         xyz: Points in the frames of their sensors [m], float32 (N, 3).

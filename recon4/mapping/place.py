@@ -8,7 +8,7 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array
-from recon4.kernels.deskew import place_points
+from recon4.kernels.deskew import place_sensor_points
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.trajectory import Times, Trajectory
@@ -80,7 +80,7 @@ def _place(
     slack = frame.duration_ns if slack_ns is None else slack_ns
     T_map_body = trajectory.at(knot_ns, slack_ns=slack)
     T_map_sensor = SE3(T_map_body.R[:, None], T_map_body.t[:, None]) @ rig.T_body_sensor
-    place_points(
+    place_sensor_points(
         np.ascontiguousarray(frame.xyz),
         np.ascontiguousarray(frame.sensor),
         np.ascontiguousarray(frame.dt_ns),
