@@ -12,6 +12,7 @@ from recon4.model.samples import GnssSamples
 from recon4.model.trajectory import Trajectory
 from recon4.settings import GnssSettings
 
+LOOPS = 25
 PLACE = Origin(np.deg2rad(49.2), np.deg2rad(16.6), 250.0)
 RIG = replace(load_rig("4recon"), p_body_antenna=np.array([-0.3, 0.1, 0.8]))
 START = SE3.from_rpy(0.0, 0.0, 2.2, [40.0, -15.0, 3.0])
@@ -200,34 +201,39 @@ def test_a_straight_line_does_not_roll() -> None:
 def with_loops(
     graph: PoseGraph, true: Trajectory, *, shift_m: float, **changes: object
 ) -> PoseGraph:
-    """Twelve loops from the end back to the beginning; all are wrong by one shift of the end."""
+    """25 loops from the end back to the beginning; all are wrong by one shift of the end."""
     T = true.at(graph.t_ns)
     T_moved = SE3(T.R, T.t + np.array([shift_m, 0.0, 0.0]))
     loops = []
-    for k in range(12):
-        j = len(graph) - 12 + k
+    for k in range(LOOPS):
+        j = len(graph) - LOOPS + k
         loops.append(
             Edge(
                 i=k, j=j, T_i_j=T[k].inverse() @ T_moved[j], kind=EdgeKind.LOOP,
-                verdict=Verdict.ACCEPTED, information=np.diag([1e6] * 3 + [1e3] * 3),
+                verdict=Verdict.ACCEPTED, information=np.diag([1e6] * 3 + [1e4] * 3),
             ).evolve(**changes)
         )  # fmt: skip
     return graph.with_edges((*graph.edges, *loops))
 
 
-@pytest.mark.parametrize(("shift_m", "kept"), [(0.0, 12), (0.6, 0)])
+@pytest.mark.parametrize(("shift_m", "kept"), [(0.0, LOOPS), (1.0, 0)])
 def test_loops_stay_or_fall_by_what_the_positions_say(
     true: Trajectory, gnss: GnssSamples, shift_m: float, kept: int
 ) -> None:
     graph, dense = slam(true, np.random.default_rng(1))
     graph = with_loops(graph, true, shift_m=shift_m)
+    unregistered = graph.edges[0].evolve(
+        j=50, kind=EdgeKind.LOOP, verdict=Verdict.REJECTED, reason=Reason.OVERLAP
+    )
+    graph = graph.with_edges((unregistered, *graph.edges))
 
     result = georeference(graph, dense, gnss, RIG, settings=GnssSettings())
 
-    loops = result.graph.edges[-12:]
+    assert result.graph.edges[0].reason is Reason.OVERLAP
+    loops = result.graph.edges[-LOOPS:]
     assert sum(edge.in_graph for edge in loops) == kept
     assert all(edge.reason is Reason.ROBUST for edge in loops if not edge.in_graph)
-    assert len(result.rejected) == 12 - kept
+    assert len(result.rejected) == LOOPS - kept
     assert result.to_json()["edges_rejected"] == list(result.rejected)
     assert worst_m(result, true) < 0.08
     assert result.used.mean() > 0.98
@@ -238,7 +244,7 @@ def test_positions_turn_down_no_edge_of_a_person_and_none_when_switched_off(
     true: Trajectory, gnss: GnssSamples, person: dict[str, str], judge_edges: bool
 ) -> None:
     graph, dense = slam(true, np.random.default_rng(1))
-    graph = with_loops(graph, true, shift_m=0.6, **person)
+    graph = with_loops(graph, true, shift_m=1.0, **person)
     settings = GnssSettings(judge_edges=judge_edges)
 
     result = georeference(graph, dense, gnss, RIG, settings=settings)

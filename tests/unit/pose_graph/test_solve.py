@@ -102,6 +102,32 @@ def test_a_false_loop_pulls_little_under_the_cauchy_kernel_and_not_at_all_in_gnc
     assert truncated.weights[:-10].mean() > 0.99
 
 
+def test_protected_edges_count_fully_whatever_the_kernel() -> None:
+    T = SE3.stack([shift(0.0), shift(1.0)])
+    stated = 1e4 * np.eye(6)
+    odometry = edge(0, 1, shift(1.0), information=stated)
+    loop = edge(0, 1, shift(2.0), information=stated, kind=EdgeKind.LOOP)
+
+    cauchy = optimize(graph_of(T, odometry, loop), kernel="cauchy")
+    truncated = optimize_gnc(graph_of(T, odometry, loop))
+
+    assert cauchy.T_map_body.t[1, 0] < 1.01
+    assert cauchy.weights[0] == 1.0
+    assert cauchy.weights[1] < 0.01
+    assert truncated.weights.tolist() == [1.0, 0.0]
+
+
+def test_protected_edges_stay_in_gnc_even_where_two_loops_contradict_them() -> None:
+    T = SE3.stack([shift(0.0), shift(1.0)])
+    stated = 1e4 * np.eye(6)
+    odometry = edge(0, 1, shift(1.0), information=stated)
+    loops = [edge(0, 1, shift(1.3), information=stated, kind=EdgeKind.LOOP) for _ in range(20)]
+
+    solution = optimize_gnc(graph_of(T, odometry, *loops))
+
+    assert solution.weights[0] == 1.0
+
+
 def test_the_same_graph_gives_the_same_bits() -> None:
     graph = inject_random(
         office_graph(np.random.default_rng(4), nodes=60)[0], np.random.default_rng(5), 5

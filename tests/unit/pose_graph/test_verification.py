@@ -7,6 +7,7 @@ from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
 from recon4.pose_graph.paths import PathIndex
 from recon4.pose_graph.relations import relations
+from recon4.pose_graph.solve import optimize
 from recon4.pose_graph.verification import verify
 from recon4.settings import VerificationSettings
 from tests.benchmarks.false_loops import inject_random, inject_shifted, office_graph
@@ -175,6 +176,60 @@ def test_verifying_twice_is_verifying_once() -> None:
     assert [edge.reason for edge in twice.edges] == [edge.reason for edge in once.edges]
 
 
+@pytest.mark.parametrize("reason", [Reason.VERIFICATION, Reason.ROBUST])
+def test_what_an_earlier_verification_turned_down_is_judged_anew(reason: Reason) -> None:
+    graph = line((0, 2, 0.0), (2, 4, 0.0))
+    refused = graph.edges[5].evolve(verdict=Verdict.REJECTED, reason=reason)
+    unregistered = graph.edges[6].evolve(verdict=Verdict.REJECTED, reason=Reason.OVERLAP)
+    graph = graph.with_edges((*graph.edges[:5], refused, unregistered))
+
+    edges = verify(graph, settings=VerificationSettings()).graph.edges
+
+    assert (edges[5].verdict, edges[5].reason) == (Verdict.ACCEPTED, Reason.NONE)
+    assert (edges[6].verdict, edges[6].reason) == (Verdict.REJECTED, Reason.OVERLAP)
+
+
+def test_an_edge_a_person_accepted_needs_no_path() -> None:
+    graph = line((0, 4, 0.0))
+    graph = graph.with_edges((*graph.edges[:5], graph.edges[5].evolve(decided_by="Ada")))
+
+    edge = verify(graph, settings=VerificationSettings()).graph.edges[5]
+
+    assert edge.paths == 0
+    assert edge.verdict is Verdict.ACCEPTED
+
+
+def test_without_a_robust_solve_only_paths_turn_a_loop_down() -> None:
+    stated = np.diag([1e6] * 3 + [1e4] * 3)
+    graph = line((0, 4, 1.5))
+    graph = graph.with_edges(tuple(edge.evolve(information=stated) for edge in graph.edges))
+
+    plain = verify(graph, settings=PATHS_ONLY).graph.edges[5]
+    robust = verify(graph, settings=VerificationSettings()).graph.edges[5]
+
+    assert plain.verdict is Verdict.UNVERIFIED
+    assert (robust.verdict, robust.reason) == (Verdict.REJECTED, Reason.ROBUST)
+
+
+@pytest.mark.parametrize("robust", ["gnc", "cauchy"])
+def test_after_the_robust_solve_poses_and_paths_are_those_of_the_edges_that_stayed(
+    robust: str,
+) -> None:
+    clean, _ = office_graph(np.random.default_rng(5), nodes=150)
+    graph = inject_random(clean, np.random.default_rng(6), 20)
+    settings = VerificationSettings(robust=robust, limit_m=1.5)  # type: ignore[arg-type]
+
+    result = verify(graph, settings=settings)
+
+    assert len(result.outliers) > 0
+    fresh = PathIndex.build(relations(result.graph.edges), nodes=len(graph), max_edges=3)
+    kept = np.array([edge.in_graph for edge in result.graph.edges])
+    counts = np.array([edge.paths for edge in result.graph.edges])
+    np.testing.assert_array_equal(counts[kept], fresh.count[kept])
+    again = optimize(result.graph, kernel="none")
+    assert result.chi2_after == pytest.approx(again.chi2, rel=1e-6)
+
+
 @pytest.mark.parametrize("robust", ["gnc", "cauchy"])
 def test_a_false_loop_no_path_reaches_falls_to_the_robust_solve(robust: str) -> None:
     clean, truth = office_graph(np.random.default_rng(5), nodes=150)
@@ -196,6 +251,15 @@ def test_the_cycle_variant_counts_the_edge_itself_as_a_path_without_error() -> N
     result = verify(graph, settings=VerificationSettings(variant="cycle", robust="none"))
 
     assert result.graph.edges[5].verification_m == pytest.approx(0.15)
+
+
+def test_the_cycle_variant_knows_triangles_only() -> None:
+    graph = line((0, 3, 0.3))
+
+    result = verify(graph, settings=VerificationSettings(variant="cycle", robust="none"))
+
+    assert result.graph.edges[5].paths == 0
+    assert result.graph.edges[5].verdict is Verdict.UNVERIFIED
 
 
 def test_the_record_is_plain_json_and_names_the_rejected() -> None:
