@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3
+from recon4.progress import Silent
+from recon4.recording.ingest import ingest
 from recon4.registration.odometry import Odometry
 from recon4.registration.result import StopReason
 from recon4.registration.scans import make_scan, register_scans, search_scans
 from recon4.settings import ScanSettings, Settings
+from recon4.store.frames import FrameStore
 from tests.benchmarks.loaders import muehlburg, nclt, nclt_truth, one_sensor
 from tests.benchmarks.real_sequences import corridor
 
@@ -98,6 +101,23 @@ def test_a_car_that_starts_to_drive_is_followed(data):
 
     assert not any(step.lost for step in steps)
     assert 4.0 < np.linalg.norm(steps[-1].T_odom_body.t - steps[0].T_odom_body.t) < 12.0
+
+
+def test_a_scanner_at_rest_does_not_drift(data, tmp_path):
+    pcap = data("packets/veloview/vlp-16-test-90deg-1-50-frames.pcap")
+    ingest(
+        [pcap], tmp_path, rig=None, imu=None, gnss=None, settings=Settings().ingest,
+        progress=Silent(),
+    )  # fmt: skip
+    frames = FrameStore.open(tmp_path)
+    resting = [frames[k] for k in range(1, 29)]  # after 1.5 s somebody moves it
+
+    steps = track(resting, frames.rig)
+
+    T = SE3.stack(step.T_odom_body for step in steps)
+    off = T[0].inverse() @ T
+    assert np.linalg.norm(off.t, axis=1).max() < 0.005
+    assert np.rad2deg(off.angle()).max() < 0.05
 
 
 def test_frames_of_another_place_are_lost_and_the_way_goes_on_after_them(corridor_frames, data):
