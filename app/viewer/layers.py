@@ -7,8 +7,12 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+from numpy.typing import NDArray
+
 from app.viewer.palette import Rgb
-from recon4.model.pose_graph import Edge, EdgeKind, Reason, Verdict
+from recon4.geometry.se3 import Array
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,14 +44,36 @@ ACCEPTED_COLORS: dict[EdgeKind, Rgb] = {
 }
 REJECTED_COLOR: Rgb = (244, 67, 54)
 UNVERIFIED_COLOR: Rgb = (158, 158, 158)
+DECIDED_COLORS: dict[Verdict, Rgb] = {
+    Verdict.ACCEPTED: (206, 147, 216),
+    Verdict.UNVERIFIED: (206, 147, 216),
+    Verdict.REJECTED: (255, 112, 190),
+}
+"""What a person decided."""
 
 HIDDEN_AT_FIRST = {Reason.OVERLAP}
 """Pairs that never overlapped are many and say little."""
+
+FINAL = Layer("trajectory", "Trajectory", (255, 179, 0))
+ODOMETRY = Layer("odometry", "Trajectory before the graph", (128, 110, 200), shown=False)
+FRAMES = Layer("frames", "Multiframes: body frames", (144, 164, 174), shown=False)
+LIDARS = Layer("lidars", "LiDAR frames at the multiframe", (0, 188, 212), shown=False)
+GNSS_USED = Layer("gnss/used", "GNSS positions, used", (102, 187, 106), shown=False)
+GNSS_REJECTED = Layer("gnss/rejected", "GNSS positions, rejected", REJECTED_COLOR, shown=False)
+GRAVITY = Layer("gravity", "Gravity (down) and axes of the map", (255, 255, 255), shown=False)
+NORTH = Layer("north", "North", (239, 83, 80))
+GRID = Layer("grid", "Grid", (96, 108, 118))
+
+ORDER = {"decided": 0, "accepted": 1, "unverified": 2, "rejected": 3}
 
 
 def edge_layer(edge: Edge) -> Layer:
     """The layer an edge belongs to."""
     kind = KIND_WORDS[edge.kind]
+    if edge.decided_by != "auto":
+        verdict = "rejected" if edge.verdict is Verdict.REJECTED else "accepted"
+        words = f"Operator's decisions, {verdict}"
+        return Layer(f"decided/{verdict}", words, DECIDED_COLORS[edge.verdict], width_px=3.0)
     if edge.verdict is Verdict.REJECTED:
         reason = str(edge.reason) or "no reason given"
         return Layer(
@@ -63,11 +89,43 @@ def edge_layer(edge: Edge) -> Layer:
 
 
 def edge_layers(edges: Sequence[Edge]) -> tuple[Layer, ...]:
-    """The layers of all edges with their counts: accepted, unverified, then rejected."""
+    """The layers of all edges with their counts: a person's, accepted, unverified, rejected."""
     counts = Counter(edge_layer(edge) for edge in edges)
-    order = {"accepted": 0, "unverified": 1, "rejected": 2}
     rows = [replace(layer, count=count) for layer, count in counts.items()]
-    return tuple(sorted(rows, key=lambda row: (order[row.key.split("/")[0]], row.key)))
+    return tuple(sorted(rows, key=lambda row: (ORDER[row.key.split("/")[0]], row.key)))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EdgeTable:
+    """The edges of a graph in columns, to draw and pick them quickly."""
+
+    graph: PoseGraph
+    layers: tuple[Layer, ...]
+    layer: NDArray[np.intp]
+    """Row in `layers` of each edge, (E,)."""
+    ends: NDArray[np.intp]
+    """Its nodes, (E, 2)."""
+    error_share: Array
+    """Error by its limit; NaN = not known, (E,)."""
+    chi2: Array
+    """(E,)"""
+
+    @staticmethod
+    def of(graph: PoseGraph) -> EdgeTable:
+        """The table of a graph."""
+        edges = graph.edges
+        layers = edge_layers(edges)
+        row_of = {layer.key: row for row, layer in enumerate(layers)}
+        limit = np.array([edge.limit_m for edge in edges])
+        error = np.array([edge.error_m for edge in edges])
+        return EdgeTable(
+            graph,
+            layers,
+            np.array([row_of[edge_layer(edge).key] for edge in edges], dtype=np.intp),
+            np.array([(edge.i, edge.j) for edge in edges], dtype=np.intp).reshape(-1, 2),
+            error / np.where(limit > 0.0, limit, np.nan),
+            np.array([edge.chi2 for edge in edges]),
+        )
 
 
 def _path(words: str) -> str:

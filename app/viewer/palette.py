@@ -40,6 +40,17 @@ def table(palette: Palette) -> NDArray[np.uint8]:
     return np.ascontiguousarray(rgba[:, :3])
 
 
+@cache
+def sensor_colors() -> NDArray[np.uint8]:
+    """One color a sensor, (S, 3)."""
+    return np.array(SENSOR_COLORS, dtype=np.uint8)
+
+
+def distinct_colors(numbers: NDArray[Any]) -> NDArray[np.uint8]:
+    """Colors of whole numbers such that neighbors differ clearly, (N,) -> (N, 3)."""
+    return table("turbo")[(numbers.astype(np.int64) * 97) % 256]
+
+
 def paint(values: NDArray[Any], span: Range, palette: Palette) -> NDArray[np.uint8]:
     """Colors of values, (N,) -> (N, 3); what is outside the range gets the color of its end."""
     width = max(span.high - span.low, 1e-12)

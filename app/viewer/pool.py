@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import sys
+from collections import Counter
 from pathlib import Path
 
 from app.errors import ViewerFailed
@@ -14,13 +15,35 @@ STARTS_WITHIN_S = 60.0
 """A viewer that has not named its port by then will not [s]."""
 
 
+class Sockets:
+    """Counts the browsers that look, in all and by person."""
+
+    def __init__(self, *, most: int, most_a_person: int) -> None:
+        self._most, self._most_a_person = most, most_a_person
+        self._open: Counter[str] = Counter()
+
+    def enter(self, person: str) -> bool:
+        """Count one more; False, and nothing counted, if that is too many."""
+        if self._open.total() >= self._most or self._open[person] >= self._most_a_person:
+            return False
+        self._open[person] += 1
+        return True
+
+    def leave(self, person: str) -> None:
+        """Count one less."""
+        self._open[person] -= 1
+
+
 class ViewerPool:
     """Starts viewers when they are asked for and knows their ports."""
 
-    def __init__(self, *, idle_s: float, points: int, logs: Path) -> None:
+    def __init__(
+        self, *, idle_s: float, points: int, logs: Path, jobs: Path, sockets: Sockets
+    ) -> None:
+        self.sockets = sockets
         self._points = points
         self._idle_s = idle_s
-        self._logs = logs
+        self._logs, self._jobs = logs, jobs
         self._running: dict[Path, tuple[asyncio.subprocess.Process, int]] = {}
         self._starting: dict[Path, asyncio.Lock] = {}
 
@@ -47,7 +70,7 @@ class ViewerPool:
         with (self._logs / f"{project.name}.txt").open("ab") as log:
             process = await asyncio.create_subprocess_exec(
                 *(sys.executable, "-m", "app.viewer.process", str(project)),
-                *(str(self._idle_s), str(self._points)),
+                *(str(self._idle_s), str(self._points), str(self._jobs)),
                 stdin=asyncio.subprocess.PIPE,
                 stdout=asyncio.subprocess.PIPE,
                 stderr=log,

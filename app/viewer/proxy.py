@@ -7,7 +7,9 @@ on loopback and is reached only through here, after the `Guard` has checked host
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
+import time
 
 import msgspec.msgpack
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
@@ -15,51 +17,77 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 from websockets.typing import Subprotocol
 
+from app.access.people import May, person
 from app.deps import parts
 from app.errors import AppError
 
 router = APIRouter()
 log = logging.getLogger(__name__)
 
-ALLOWED = frozenset(
+LOOKING = frozenset(
     {
         "ViewerCameraMessage",
         "ScenePointerMessage",
         "SceneNodeClickMessage",
-        "SceneNodeDragMessage",
-        "TransformControlsUpdateMessage",
-        "TransformControlsDragStartMessage",
-        "TransformControlsDragEndMessage",
         "GuiUpdateMessage",
         "GuiButtonHoldMessage",
         "GuiFormSubmitMessage",
         "GuiFormDirtyMessage",
         "GuiCloseModalMessage",
         "CommandTriggerMessage",
-        "GetRenderResponseMessage",
+        "LocalStorageGetItemResponseMessage",
     }
 )
-"""What a browser may send. Sharing, uploads and everything unknown are dropped."""
+"""What whoever may look may send: it changes that person's own view and nothing else."""
+REVIEWING = frozenset(
+    {
+        "SceneNodeDragMessage",
+        "TransformControlsUpdateMessage",
+        "TransformControlsDragStartMessage",
+        "TransformControlsDragEndMessage",
+    }
+)
+"""What moves things, beside that."""
 
 MAX_MESSAGE_BYTES = 1 << 16
-"""Longer messages from the browser are dropped; a rendered picture may be larger."""
+"""Longer messages from a browser are dropped."""
+MESSAGES_A_SECOND = 120.0
+"""A browser's messages are read no faster; a moving camera tells of itself 60 times a second."""
+BURST = 240
+"""So many may come at once."""
+STALLED_S = 30.0
+"""A browser that takes nothing for so long is disconnected [s]."""
+TOO_MANY, STALLED = 4429, 4408
+"""Close codes: too many viewers; the browser took nothing for too long."""
 
 
 @router.websocket("/projects/{project_id}/viewer")
 async def relay(browser: WebSocket, project_id: str) -> None:
     """Connect a browser with the viewer of a project."""
     server = parts(browser)
+    who = person(browser)
+    offered = [Subprotocol(name) for name in browser.scope["subprotocols"]]
+    if not server.viewers.sockets.enter(who.name):
+        await browser.accept(subprotocol=offered[0] if offered else None)
+        await browser.close(TOO_MANY, reason="too many viewers are open; close one and try again")
+        return
     try:
         port = await server.viewers.port(server.projects.folder(project_id))
+        await _connect(browser, port, offered, may_review=who.may(May.REVIEW))
     except AppError as error:
         log.warning("%s", error)
         await browser.close(1008, reason=str(error)[:120])
-        return
-    offered = [Subprotocol(name) for name in browser.scope["subprotocols"]]
+    finally:
+        server.viewers.sockets.leave(who.name)
+
+
+async def _connect(
+    browser: WebSocket, port: int, offered: list[Subprotocol], *, may_review: bool
+) -> None:
     viewer = connect(
         f"ws://127.0.0.1:{port}",
         subprotocols=offered or None,
-        max_size=None,  # it is ours; a scene comes as one message of many megabytes
+        max_size=None,  # it is ours
         compression=None,
         ping_interval=None,
         max_queue=2,
@@ -67,13 +95,13 @@ async def relay(browser: WebSocket, project_id: str) -> None:
     )
     async with viewer as upstream:
         await browser.accept(subprotocol=upstream.subprotocol)
-        await _pump(browser, upstream)
+        await _pump(browser, upstream, may_review=may_review)
 
 
-async def _pump(browser: WebSocket, viewer: ClientConnection) -> None:
+async def _pump(browser: WebSocket, viewer: ClientConnection, *, may_review: bool) -> None:
     """Carry messages both ways until one side leaves; then tell the other."""
     ways = {
-        asyncio.create_task(_from_browser(browser, viewer)),
+        asyncio.create_task(_from_browser(browser, viewer, may_review=may_review)),
         asyncio.create_task(_to_browser(browser, viewer)),
     }
     try:
@@ -86,35 +114,69 @@ async def _pump(browser: WebSocket, viewer: ClientConnection) -> None:
         await asyncio.gather(*ways, return_exceptions=True)
 
 
-async def _from_browser(browser: WebSocket, viewer: ClientConnection) -> None:
+async def _from_browser(browser: WebSocket, viewer: ClientConnection, *, may_review: bool) -> None:
+    rate = Rate(MESSAGES_A_SECOND, BURST)
     while (message := await browser.receive())["type"] == "websocket.receive":
         data = message.get("bytes")
-        if data is not None and allowed(data):
-            try:
-                await viewer.send(data)
-            except ConnectionClosed:
-                return
+        if data is None or not passes(data, may_review=may_review):
+            continue
+        if (wait_s := rate.wait_s(time.monotonic())) > 0.0:
+            await asyncio.sleep(wait_s)  # unread messages then hold up their sender, nobody else
+        try:
+            await viewer.send(data)
+        except ConnectionClosed:
+            return
 
 
 async def _to_browser(browser: WebSocket, viewer: ClientConnection) -> None:
+    code = 1012
     try:
         async for data in viewer:
-            await browser.send_bytes(data if isinstance(data, bytes) else data.encode())
+            whole = data if isinstance(data, bytes) else data.encode()
+            await asyncio.wait_for(browser.send_bytes(whole), STALLED_S)
     except WebSocketDisconnect:
         return
+    except TimeoutError:
+        log.warning("a browser took nothing for %.0f s: disconnected", STALLED_S)
+        code = STALLED
     except ConnectionClosed:
         log.info("viewer connection lost")
-    await browser.close(1012)
+    with contextlib.suppress(TimeoutError):
+        await asyncio.wait_for(browser.close(code), 1.0)
 
 
-def allowed(data: bytes) -> bool:
+class Rate:
+    """How fast messages are read: a bucket of tokens that fills steadily."""
+
+    def __init__(self, a_second: float, burst: int) -> None:
+        self._a_second, self._burst = a_second, float(burst)
+        self._tokens = self._burst
+        self._at_s: float | None = None
+
+    def wait_s(self, now_s: float) -> float:
+        """Take a token; how long to wait before using it [s]."""
+        since_s = 0.0 if self._at_s is None else now_s - self._at_s
+        self._at_s = now_s
+        self._tokens = min(self._tokens + since_s * self._a_second, self._burst) - 1.0
+        return max(-self._tokens / self._a_second, 0.0)
+
+
+def passes(data: bytes, *, may_review: bool) -> bool:
     """Whether a browser's message may reach viser, which reads it with the same decoder."""
+    if len(data) > MAX_MESSAGE_BYTES:
+        log.warning("dropped a message of %d bytes from a browser", len(data))
+        return False
     try:
         message = msgspec.msgpack.decode(data)
     except (msgspec.DecodeError, RecursionError):
         return False
     kind = message.get("type") if isinstance(message, dict) else None
-    if not isinstance(kind, str) or kind not in ALLOWED:
+    if not isinstance(kind, str) or not allowed(kind, may_review):
         log.warning("dropped a message of kind %.40r from a browser", kind)
         return False
-    return len(data) <= MAX_MESSAGE_BYTES or kind == "GetRenderResponseMessage"
+    return True
+
+
+def allowed(message_type: str, may_review: bool) -> bool:
+    """Whether a person may send messages of a kind. Sharing, uploads and all unknown ones never."""
+    return message_type in LOOKING or (may_review and message_type in REVIEWING)

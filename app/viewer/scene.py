@@ -1,168 +1,102 @@
-"""What is to be seen: a project and a view in, nodes and a legend out. Knows no viser.
+"""What is to be seen beside the points: a project and a view in, nodes out. Knows no viser.
 
 Coordinates are those of the map frame. Whatever becomes float32 is first moved to the origin of
 its node, which stays float64: far from zero float32 steps by centimetres.
+
+Long lines are cut into pieces, so that a walk that grows resends its last piece only.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any, Literal, get_args
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.viewer.layers import Layer, edge_layer, edge_layers
-from app.viewer.palette import SENSOR_COLORS, Palette, Range, Rgb, paint, usual_range
-from recon4.geometry.se3 import Array
-from recon4.model.pose_graph import PoseGraph
+from app.viewer.cloud import Cloud
+from app.viewer.layers import (
+    FINAL,
+    FRAMES,
+    GNSS_REJECTED,
+    GNSS_USED,
+    GRAVITY,
+    GRID,
+    LIDARS,
+    NORTH,
+    ODOMETRY,
+    EdgeTable,
+    Layer,
+)
+from app.viewer.multiframes import Multiframes
+from app.viewer.nodes import AxesNode, GridNode, LabelNode, LinesNode, Node
+from app.viewer.palette import Range, Rgb, paint
+from app.viewer.view import ColorBy, Position, View
+from recon4.geometry.se3 import SE3, Array
 from recon4.model.trajectory import Trajectory
 
-ColorBy = Literal["normalized intensity", "raw intensity", "height", "time", "sensor"]
-COLOR_BY: tuple[ColorBy, ...] = get_args(ColorBy)
-
-UNITS: dict[ColorBy, str] = {
-    "normalized intensity": "",
-    "raw intensity": "as the sensor gave it",
-    "height": "m above the origin",
-    "time": "s since the start",
-    "sensor": "",
-}
-
-FINAL = Layer("trajectory", "Trajectory", (255, 179, 0))
-ODOMETRY = Layer("odometry", "Trajectory before the graph", (128, 110, 200), shown=False)
-FRAMES = Layer("frames", "Body frames at the nodes", (144, 164, 174), shown=False)
-GRID = Layer("grid", "Grid", (96, 108, 118))
 CLOSED_M = 2.0
 """Start and end nearer than this share a label [m]."""
 MOST_FRAMES = 1000
 """More body frames than this are thinned out."""
+MOST_POSES = 20_000
+"""A trajectory of more poses is thinned out for drawing."""
+PIECE = 500
+"""Segments of a line, or edges, that are sent together."""
+MARK_M = 0.12
+"""Half the size of the crosses at GNSS positions and measured points [m]."""
+MEASURED_COLOR: Rgb = (255, 235, 59)
+ERROR_RANGE = Range(0.0, 1.0)
+CHI2_RANGE = Range(0.0, 20.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Tile:
-    """Points of one tile of the map; any first part of them covers all of the tile."""
+class GnssMarks:
+    """Where a receiver said the antenna was."""
 
-    name: str
-    origin_m: Array
-    """Where the tile's own coordinates begin in the map [m], (3,)."""
-    p_tile: NDArray[np.float32]
-    """Points from there [m], (N, 3)."""
-    columns: dict[ColorBy, NDArray[Any]]
-    """Values to color by, (N,) each; those the map does not have are missing."""
+    p_map: Array
+    """[m], (M, 3)"""
+    used: NDArray[np.bool_]
+    """False = rejected as an outlier, (M,)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Content:
     """What a project has to show so far."""
 
-    tiles: tuple[Tile, ...] = ()
-    points_in_map: int = 0
+    cloud: Cloud | None = None
     trajectory: Trajectory | None = None
-    """``T_map_body`` of the last finished stage."""
+    """``T_map_body`` of the last finished stage, or as far as the running one has come."""
     odometry: Trajectory | None = None
     """``T_odom_body``, before the graph."""
-    graph: PoseGraph | None = None
+    edges: EdgeTable | None = None
+    multiframes: Multiframes | None = None
     sensors: tuple[str, ...] = ()
     """Names of the LiDARs."""
+    gnss: GnssMarks | None = None
+    crs: str = ""
+    """Name of the CRS the map lies in; empty = nowhere on earth."""
 
     @property
     def colors(self) -> tuple[ColorBy, ...]:
         """What the points can be colored by."""
-        return tuple(c for c in COLOR_BY if self.tiles and c in self.tiles[0].columns)
+        return self.cloud.colors if self.cloud else ()
 
     @property
     def layers(self) -> tuple[Layer, ...]:
         """What can be switched on and off."""
-        own = [(FINAL, self.trajectory), (ODOMETRY, self.odometry), (FRAMES, self.graph)]
-        edges = edge_layers(self.graph.edges) if self.graph else ()
-        return (*(layer for layer, there in own if there is not None), *edges, GRID)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class View:
-    """What a person chose to see."""
-
-    color_by: ColorBy = "normalized intensity"
-    palette: Palette = "viridis"
-    point_size_m: float = 0.02
-    layers: frozenset[str] = frozenset()
-    """Keys of the layers that are on."""
-
-
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Node:
-    """Something on screen."""
-
-    path: str
-    position_m: Array
-    """Origin of its coordinates in the map [m], (3,)."""
-    visible: bool = True
-
-
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class PointsNode(Node):
-    """Points."""
-
-    p_node: NDArray[np.float32]
-    """(N, 3)"""
-    rgb: NDArray[np.uint8]
-    """(N, 3)"""
-    size_m: float
-
-
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class LinesNode(Node):
-    """Line segments."""
-
-    segments: NDArray[np.float32]
-    """Start and end of each, (N, 2, 3)."""
-    rgb: Rgb
-    width_px: float
-
-
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class AxesNode(Node):
-    """Coordinate axes: x red, y green, z blue."""
-
-    p_node: NDArray[np.float32]
-    """(N, 3)"""
-    quat_wxyz: Array
-    """(N, 4)"""
-    length_m: float
-
-
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class GridNode(Node):
-    """A horizontal grid around its position."""
-
-    width_m: float
-    cell_m: float
-    rgb: Rgb
-
-
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class LabelNode(Node):
-    """A word in space."""
-
-    text: str
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Legend:
-    """What the colors mean."""
-
-    color_by: ColorBy | None
-    """None = there are no points."""
-    palette: Palette
-    span: Range
-    unit: str
-    sensors: tuple[tuple[str, Rgb], ...] = ()
-    layers: tuple[Layer, ...] = ()
-    points: int = 0
-    points_in_map: int = 0
-    grid_cell_m: float = 0.0
+        own = [
+            (FINAL, self.trajectory is not None),
+            (ODOMETRY, self.odometry is not None),
+            (FRAMES, self.edges is not None),
+            (LIDARS, self.multiframes is not None),
+            (GNSS_USED, self.gnss is not None),
+            (GNSS_REJECTED, self.gnss is not None),
+        ]
+        edges = self.edges.layers if self.edges else ()
+        rest = (NORTH, GRAVITY, GRID) if self.crs else (GRAVITY, GRID)
+        return (*(layer for layer, there in own if there), *edges, *rest)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -186,40 +120,20 @@ class Bounds:
 def describe(content: Content, view: View) -> list[Node]:
     """List what is on screen. A layer that is off is there and invisible: showing it is instant."""
     box = bounds(content)
-    nodes: list[Node] = [*_points(content, view)]
+    nodes: list[Node] = []
     for layer, line in ((FINAL, content.trajectory), (ODOMETRY, content.odometry)):
         if line is not None and len(line) > 1:
-            nodes.append(_path(layer, line, layer.key in view.layers))
+            nodes += _path(layer, line, view.shows(layer))
     if content.trajectory is not None and len(content.trajectory) > 1:
-        nodes += _ends(content.trajectory, FINAL.key in view.layers)
-    if content.graph is not None:
-        nodes += [*_edges(content.graph, view), _frames(content.graph, FRAMES.key in view.layers)]
-    nodes.append(_grid(box, GRID.key in view.layers))
-    return nodes
-
-
-def legend(content: Content, view: View) -> Legend:
-    """Say what the colors of the same view mean."""
-    shown = content.tiles and view.color_by in content.colors
-    return Legend(
-        color_by=view.color_by if shown else None,
-        palette=view.palette,
-        span=span_of(content, view.color_by) if shown else Range(0.0, 1.0),
-        unit=UNITS[view.color_by],
-        sensors=tuple(
-            (name, SENSOR_COLORS[k % len(SENSOR_COLORS)]) for k, name in enumerate(content.sensors)
-        ),
-        layers=tuple(layer for layer in content.layers if layer.key in view.layers),
-        points=sum(len(tile.p_tile) for tile in content.tiles),
-        points_in_map=content.points_in_map,
-        grid_cell_m=grid_cell_m(bounds(content)),
-    )
-
-
-def span_of(content: Content, color_by: ColorBy) -> Range:
-    """Range of the values over all tiles."""
-    columns = [tile.columns[color_by] for tile in content.tiles if len(tile.p_tile)]
-    return usual_range(np.concatenate(columns)) if columns else Range(0.0, 1.0)
+        nodes += _ends(content.trajectory, view.shows(FINAL))
+    if content.edges is not None:
+        nodes += [*_edges(content.edges, view), _frames(content.edges, view)]
+    if content.multiframes is not None and content.trajectory is not None:
+        nodes += _lidars(content.multiframes, content.trajectory, view)
+    if content.gnss is not None:
+        nodes += _gnss(content.gnss, view)
+    nodes += [*_directions(content, box, view), _grid(box, view.shows(GRID))]
+    return [*nodes, *_measurements(view)]
 
 
 def bounds(content: Content) -> Bounds:
@@ -227,12 +141,14 @@ def bounds(content: Content) -> Bounds:
 
     A hundredth of the points may lie outside: what was seen far away through doors and panes.
     """
-    step = max(1, sum(len(tile.p_tile) for tile in content.tiles) // 50_000)
-    seen = [tile.origin_m + tile.p_tile[::step] for tile in content.tiles if len(tile.p_tile)]
-    corners = [*np.percentile(np.concatenate(seen), [1.0, 99.0], axis=0)] if seen else []
+    corners: list[Array] = []
+    if content.cloud is not None and len(content.cloud.base):
+        base = content.cloud.base
+        step = max(1, len(base) // 50_000)
+        corners += [*(base.origin_m + np.percentile(base.p_part[::step], [1.0, 99.0], axis=0))]
     for line in (content.trajectory, content.odometry):
         if line is not None and len(line):
-            corners += [*_ends_of(line.T_a_b.t)]
+            corners += [line.T_a_b.t.min(axis=0), line.T_a_b.t.max(axis=0)]
             break
     if not corners:
         return Bounds()
@@ -247,43 +163,34 @@ def grid_cell_m(box: Bounds) -> float:
     return 100.0
 
 
-def _ends_of(points: NDArray[Any]) -> Iterator[Array]:
-    if len(points):
-        yield np.asarray(points.min(axis=0), dtype=np.float64)
-        yield np.asarray(points.max(axis=0), dtype=np.float64)
+def _path(layer: Layer, line: Trajectory, visible: bool) -> Iterator[LinesNode]:
+    t = line.T_a_b.t[:: max(1, -(-len(line) // MOST_POSES))]
+    for piece, begin in enumerate(range(0, len(t) - 1, PIECE)):
+        p = t[begin : begin + PIECE + 1]
+        yield _lines(
+            f"/{layer.key}/{piece}",
+            np.stack([p[:-1], p[1:]], axis=1),
+            layer.rgb,
+            width_px=2.5,
+            visible=visible,
+        )
 
 
-def _points(content: Content, view: View) -> Iterator[PointsNode]:
-    if view.color_by not in content.colors:
-        return
-    span = span_of(content, view.color_by)
-    for tile in content.tiles:
-        if len(tile.p_tile):
-            yield PointsNode(
-                path=f"/map/{tile.name}",
-                position_m=tile.origin_m,
-                p_node=tile.p_tile,
-                rgb=_colors(tile.columns[view.color_by], span, view),
-                size_m=view.point_size_m,
-            )
-
-
-def _colors(values: NDArray[Any], span: Range, view: View) -> NDArray[np.uint8]:
-    if view.color_by == "sensor":
-        known = np.array(SENSOR_COLORS, dtype=np.uint8)
-        return known[values.astype(np.intp) % len(known)]
-    return paint(values, span, view.palette)
-
-
-def _path(layer: Layer, line: Trajectory, visible: bool) -> LinesNode:
-    origin = line.T_a_b.t[0]
-    p = (line.T_a_b.t - origin).astype(np.float32)
+def _lines(
+    path: str,
+    segments_m: Array,
+    rgb: Rgb | NDArray[np.uint8],
+    *,
+    width_px: float,
+    visible: bool,
+) -> LinesNode:
+    origin = segments_m[0, 0] if len(segments_m) else np.zeros(3)
     return LinesNode(
-        path=f"/{layer.key}",
+        path=path,
         position_m=origin,
-        segments=np.stack([p[:-1], p[1:]], axis=1),
-        rgb=layer.rgb,
-        width_px=2.5,
+        segments=(segments_m - origin).astype(np.float32),
+        rgb=rgb,
+        width_px=width_px,
         visible=visible,
     )
 
@@ -296,39 +203,105 @@ def _ends(line: Trajectory, visible: bool) -> Iterator[LabelNode]:
         yield _label("end", last_m, visible)
 
 
-def _label(text: str, p_map: Array, visible: bool) -> LabelNode:
-    path = f"/labels/{text.replace(' ', '-')}"
+def _label(text: str, p_map: Array, visible: bool, *, key: str = "") -> LabelNode:
+    path = f"/labels/{key or text.replace(' ', '-')}"
     return LabelNode(path=path, position_m=p_map, text=text, visible=visible)
 
 
-def _edges(graph: PoseGraph, view: View) -> Iterator[LinesNode]:
-    t = graph.T_map_body.t
-    origin = t[0] if len(t) else np.zeros(3)
-    p = (t - origin).astype(np.float32)
-    keys = np.array([edge_layer(edge).key for edge in graph.edges])
-    ends = np.array([(edge.i, edge.j) for edge in graph.edges], dtype=np.intp).reshape(-1, 2)
-    for layer in edge_layers(graph.edges):
-        yield LinesNode(
-            path=f"/edges/{layer.key}",
-            position_m=origin,
-            segments=p[ends[keys == layer.key]],
-            rgb=layer.rgb,
-            width_px=layer.width_px,
-            visible=layer.key in view.layers,
-        )
+def _edges(table: EdgeTable, view: View) -> Iterator[LinesNode]:
+    t = table.graph.T_map_body.t
+    for row, layer in enumerate(table.layers):
+        mine = np.flatnonzero(table.layer == row)
+        rgb = _edge_colors(table, mine, layer, view)
+        for piece, begin in enumerate(range(0, len(mine), PIECE)):
+            part = slice(begin, begin + PIECE)
+            yield _lines(
+                f"/edges/{layer.key}/{piece}",
+                t[table.ends[mine[part]]],
+                layer.rgb if rgb is None else rgb[part],
+                width_px=layer.width_px,
+                visible=view.shows(layer),
+            )
 
 
-def _frames(graph: PoseGraph, visible: bool) -> AxesNode:
-    T = graph.T_map_body[slice(None, None, max(1, -(-len(graph) // MOST_FRAMES)))]
+def _edge_colors(
+    table: EdgeTable, rows: NDArray[np.intp], layer: Layer, view: View
+) -> NDArray[np.uint8] | None:
+    """Colors by a figure, grey where it is not known; None = the layer's own."""
+    if view.edge_color == "verdict":
+        return None
+    by_error = view.edge_color == "error / limit"
+    values = (table.error_share if by_error else table.chi2)[rows]
+    rgb = paint(values, ERROR_RANGE if by_error else CHI2_RANGE, "turbo")
+    rgb[~np.isfinite(values)] = 110
+    return rgb
+
+
+def _frames(table: EdgeTable, view: View) -> AxesNode:
+    T = table.graph.T_map_body
+    T = T[slice(None, None, max(1, -(-len(T.t) // MOST_FRAMES)))]
+    return _axes("/frames", T, length_m=0.4, visible=view.shows(FRAMES))
+
+
+def _lidars(multiframes: Multiframes, line: Trajectory, view: View) -> Iterator[Node]:
+    """Axes of each LiDAR, and of the body, where they were at the multiframe under the scrubber."""
+    T_map_body = multiframes.pose(view.moment, line)
+    if T_map_body is None:
+        return
+    visible = view.shows(LIDARS)
+    T_map_sensor = SE3(T_map_body.R[None], T_map_body.t[None]) @ multiframes.T_body_sensor
+    yield _axes("/lidars/sensors", T_map_sensor, length_m=0.3, visible=visible)
+    yield _axes(
+        "/lidars/body", SE3(T_map_body.R[None], T_map_body.t[None]), length_m=0.6, visible=visible
+    )
+    for name, t in zip(multiframes.sensors, T_map_sensor.t, strict=True):
+        yield _label(name, t, visible, key=f"lidar-{name}")
+
+
+def _axes(path: str, T: SE3, *, length_m: float, visible: bool) -> AxesNode:
     origin = T.t[0] if len(T.t) else np.zeros(3)
     return AxesNode(
-        path="/frames",
+        path=path,
         position_m=origin,
         p_node=(T.t - origin).astype(np.float32),
         quat_wxyz=np.roll(T.quat_xyzw(), 1, axis=-1),
-        length_m=0.4,
+        length_m=length_m,
         visible=visible,
     )
+
+
+def _gnss(marks: GnssMarks, view: View) -> Iterator[LinesNode]:
+    for layer, rows in ((GNSS_USED, marks.used), (GNSS_REJECTED, ~marks.used)):
+        step = max(1, int(rows.sum()) // MOST_POSES)
+        p = marks.p_map[rows][::step]
+        yield _lines(
+            f"/{layer.key}", crosses(p), layer.rgb, width_px=1.5, visible=view.shows(layer)
+        )
+
+
+def crosses(p: Array) -> Array:
+    """Three short lines through each point, (N, 3) -> (3 N, 2, 3)."""
+    arms = np.eye(3) * MARK_M
+    both = np.stack([p[:, None] - arms, p[:, None] + arms], axis=2)
+    return np.asarray(both.reshape(-1, 2, 3))
+
+
+def _directions(content: Content, box: Bounds, view: View) -> Iterator[Node]:
+    """Down, the axes of the map, and north, at the lower south-west corner of the box."""
+    corner, length_m = box.low_m, max(0.08 * box.size_m, 1.0)
+    down = np.stack([corner, corner - [0.0, 0.0, length_m]])[None]
+    on = view.shows(GRAVITY)
+    yield _lines("/gravity", down, GRAVITY.rgb, width_px=3.0, visible=on)
+    yield _axes("/map-axes", SE3(np.eye(3)[None], corner[None]), length_m=length_m, visible=on)
+    yield _label("down", down[0, 1], on)
+    if not content.crs:
+        return
+    north = corner + np.array([0.0, 2.0 * length_m, 0.0])
+    wings = 0.3 * length_m * np.array([[1.0, -1.0, 0.0], [-1.0, -1.0, 0.0]])
+    arrow = np.array([[corner, north], *([north, north + wing] for wing in wings)])
+    on = view.shows(NORTH)
+    yield _lines("/north", arrow, NORTH.rgb, width_px=3.0, visible=on)
+    yield _label("N", north, on, key="north")
 
 
 def _grid(box: Bounds, visible: bool) -> GridNode:
@@ -343,3 +316,31 @@ def _grid(box: Bounds, visible: bool) -> GridNode:
         rgb=GRID.rgb,
         visible=visible,
     )
+
+
+def _measurements(view: View) -> Iterator[Node]:
+    for number, points in enumerate(view.measurements, start=1):
+        p = np.array(points)
+        lines = [crosses(p), *([p[None]] if len(p) == 2 else [])]
+        yield _lines(
+            f"/measured/{number}",
+            np.concatenate(lines),
+            MEASURED_COLOR,
+            width_px=2.5,
+            visible=True,
+        )
+        yield _label(measured_words(number, points), p.mean(axis=0), True, key=f"m{number}")
+
+
+def measured_words(number: int, points: tuple[Position, ...]) -> str:
+    """What a label says of a measurement."""
+    if len(points) == 1:
+        x, y, z = points[0]
+        return f"{number}: {x:.3f} {y:.3f} {z:.3f}"
+    return f"{number}: {np.linalg.norm(np.subtract(points[0], points[1])):.3f} m"
+
+
+def as_position(p: NDArray[Any]) -> Position:
+    """A point as plain numbers."""
+    x, y, z = (float(value) for value in p)
+    return x, y, z

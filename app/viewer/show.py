@@ -7,66 +7,207 @@ person has a view of their own, and nothing heavy stays in the buffer that viser
 from __future__ import annotations
 
 import time
+from collections import OrderedDict
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import viser
 from viser import _messages
 
-from app.viewer.scene import (
-    AxesNode,
-    Bounds,
-    GridNode,
-    LabelNode,
-    LinesNode,
-    Node,
-    PointsNode,
-)
+from app.viewer.lod import Camera
+from app.viewer.nodes import AxesNode, GridNode, LabelNode, LinesNode, Node, PointsNode, alike
+from app.viewer.pick import Ray
+from app.viewer.scene import Bounds
+from recon4.geometry.se3 import Array, matrix_from_quat
 
 PHONE_WIDTH_PX = 700
-PHONE_BUDGET = 300_000
+KEPT = "recon4.view."
+"""Name under which a browser keeps the view of a project."""
+NARROW_FOV_RAD, USUAL_FOV_RAD = np.deg2rad(6.0), np.deg2rad(75.0)
+GROWN = 0.2
+"""A map that grew by this share is put into the picture anew."""
+AWAY = np.array([0.0, -0.75, 0.75])
+"""From where a box is looked at, times its size: south and above."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Drawn:
+    node: PointsNode
+    handle: Any
+    style: object
 
 
 class Screen:
     """Keeps what one client sees equal to the last nodes it was given."""
 
-    def __init__(self, client: viser.ClientHandle, points: int) -> None:
+    def __init__(self, client: viser.ClientHandle, project: str, *, begins_at: Bounds) -> None:
         self._client = client
-        self._points = points
+        self._put_m = start_m(begins_at)
+        self._box_m = begins_at.size_m
+        self._key = KEPT + project
         self._shown: dict[str, tuple[Node, Any]] = {}
+        self._points: OrderedDict[str, _Drawn] = OrderedDict()
+        self._map = client.scene.add_frame("/map", show_axes=False)
 
     @property
-    def budget(self) -> int:
-        """Points this client's graphics can be trusted with."""
-        phone = self._client.camera.image_width < PHONE_WIDTH_PX
-        return min(PHONE_BUDGET, self._points) if phone else self._points
+    def gui(self) -> viser.GuiApi:
+        """Where the controls go."""
+        return self._client.gui
+
+    @property
+    def phone(self) -> bool:
+        """Whether it is a small screen."""
+        return self._client.camera.image_width < PHONE_WIDTH_PX
+
+    @property
+    def camera(self) -> Camera:
+        """Where the person looks from just now."""
+        camera = self._client.camera
+        return Camera(
+            np.array(camera.position),
+            matrix_from_quat(np.roll(camera.wxyz, -1)),
+            float(camera.fov),
+            int(camera.image_width),
+            int(camera.image_height),
+        )
+
+    def on_camera(self, moved: Callable[[], None]) -> None:
+        """Call whenever the camera has moved; it must be quick."""
+
+        async def tell(_: viser.CameraHandle) -> None:
+            moved()
+
+        self._client.camera.on_update(tell)
+
+    def on_click(self, clicked: Callable[[Ray], None]) -> None:
+        """Call with the line of sight of every click or tap on the scene."""
+
+        @self._client.scene.on_click()
+        def tell(event: viser.SceneClickEvent) -> None:
+            camera = self.camera
+            direction = np.array(event.ray_direction)
+            pixel_rad = 1.0 / camera.focal_px
+            ray = Ray(np.array(event.ray_origin), direction / np.linalg.norm(direction), pixel_rad)
+            clicked(ray)
 
     def show(self, nodes: Iterable[Node]) -> None:
-        """Draw the nodes and nothing else; only what differs is sent."""
+        """Draw the nodes and nothing else beside the map; only what differs is sent."""
         with self._client.atomic():
             fresh = {node.path: (node, self._update(node)) for node in nodes}
             for path in self._shown.keys() - fresh.keys():
                 self._shown[path][1].remove()
         self._shown = fresh
 
-    def look_at(self, box: Bounds) -> None:
-        """Put the camera so that all of a box is seen, from the south and above."""
-        away = max(box.size_m, 5.0)
-        self._client.camera.position = box.center_m + away * np.array([0.0, -0.75, 0.75])
-        self._client.camera.look_at = box.center_m
+    def put(self, nodes: Iterable[PointsNode], style: object) -> None:
+        """Show parts of the map; those that are there are only colored."""
+        with self._client.atomic():
+            for node in nodes:
+                before = self._points.pop(node.path, None)
+                if before is None:
+                    handle = self._draw(node)
+                else:
+                    handle = before.handle
+                    _recolor(handle, before.node, node)
+                self._points[node.path] = _Drawn(node, handle, style)
+        self._client.flush()  # now, not at viser's next tick
+
+    def keep_only(self, paths: set[str], spare: int) -> None:
+        """Hide the other parts of the map; of them as many points as are spared stay loaded."""
+        with self._client.atomic():
+            for path in [path for path in reversed(self._points) if path not in paths]:
+                drawn = self._points[path]
+                spare -= len(drawn.node.p_node)
+                if spare < 0:
+                    drawn.handle.remove()
+                    del self._points[path]
+                elif drawn.handle.visible:
+                    drawn.handle.visible = False
+
+    def has(self, path: str, style: object) -> bool:
+        """Whether a part of the map is on screen in this style."""
+        drawn = self._points.get(path)
+        return drawn is not None and drawn.style == style and bool(drawn.handle.visible)
+
+    def part(self, path: str) -> PointsNode | None:
+        """A part of the map as it was drawn last."""
+        drawn = self._points.get(path)
+        return None if drawn is None else drawn.node
+
+    def show_map(self, visible: bool) -> None:
+        """Show the map or not; nothing is sent again."""
+        if self._map.visible != visible:
+            self._map.visible = visible
+
+    def forget_map(self) -> None:
+        """Take the map off the screen: there is another one."""
+        self.keep_only(set(), -1)
+
+    @property
+    def behind(self) -> int:
+        """Messages the browser has not taken yet. viser tells nobody, so its buffer is asked."""
+        return len(self._client._websock_connection.get_message_buffer().message_from_id)
+
+    def answers_within_s(self, limit_s: float) -> float | None:
+        """How long the browser takes to answer after all that was sent [s]; None = longer."""
+        began_s = time.monotonic()
+        try:
+            self._client.local_storage.get_item("recon4.ping", timeout=limit_s)
+        except (TimeoutError, RuntimeError):
+            return None
+        return time.monotonic() - began_s
+
+    def kept_view(self, limit_s: float) -> tuple[str | None, float | None]:
+        """The view this browser kept, as text from outside, and how long the answer took [s]."""
+        began_s = time.monotonic()
+        try:
+            kept = self._client.local_storage.get_item(self._key, timeout=limit_s)
+        except (TimeoutError, RuntimeError):
+            return None, None
+        return kept, time.monotonic() - began_s
+
+    def keep_view(self, text: str) -> None:
+        """Have the browser keep a view."""
+        self._client.local_storage.set_item(self._key, text)
+
+    def look_at(self, box: Bounds, direction: Array = AWAY) -> None:
+        """Put the camera so that all of a box is seen from a direction."""
+        self._put_m = box.center_m + max(box.size_m, 5.0) * direction
+        with self._client.atomic():
+            self._client.camera.position = self._put_m
+            self._client.camera.look_at = box.center_m
+
+    def follow(self, box: Bounds) -> None:
+        """Keep a growing map in the picture as long as the person leaves the camera alone."""
+        grown = abs(box.size_m - self._box_m) > GROWN * self._box_m
+        if grown and np.allclose(self._client.camera.position, self._put_m, atol=1e-3):
+            self.look_at(box)
+        self._box_m = box.size_m
+
+    def toggle_narrow(self) -> None:
+        """Nearly parallel rays from far away, or the usual angle of view from near; same size."""
+        camera = self._client.camera
+        fov_rad = USUAL_FOV_RAD if camera.fov < 2.0 * NARROW_FOV_RAD else NARROW_FOV_RAD
+        away = np.array(camera.position) - np.array(camera.look_at)
+        scale = np.tan(camera.fov / 2.0) / np.tan(fov_rad / 2.0)
+        with self._client.atomic():
+            camera.fov = fov_rad
+            camera.position = np.array(camera.look_at) + scale * away
+
+    def download(self, name: str, text: str) -> None:
+        """Give the person a file."""
+        self._client.send_file_download(name, text.encode(), save_immediately=True)
+
+    def tell(self, words: str) -> None:
+        """Say something that vanishes again."""
+        self._client.add_notification(words, "", auto_close_seconds=3.0)
 
     def _update(self, node: Node) -> Any:
         if node.path not in self._shown:
             return self._draw(node)
         before, handle = self._shown[node.path]
-        if isinstance(node, PointsNode) and isinstance(before, PointsNode):
-            alike = before.p_node is node.p_node
-            if alike:
-                _recolor(handle, before, node)
-        else:
-            alike = _alike(before, node)
-        if not alike:
+        if not alike(before, node):
             return self._draw(node)
         if before.visible != node.visible:
             handle.visible = node.visible
@@ -91,7 +232,7 @@ class Screen:
                 return scene.add_line_segments(
                     node.path,
                     node.segments,
-                    np.array(node.rgb, dtype=np.uint8),
+                    _ends_alike(node.rgb),
                     thickness=node.width_px,
                     thickness_units="screen",
                     **place,
@@ -140,6 +281,8 @@ class Viewer:
             dark_mode=True, show_logo=False, show_share_button=False, control_width="small"
         )
         self._server.gui.main_panel.dock_right()  # beside the map, not over it
+        assert self._server.get_host() == "127.0.0.1"
+        assert 1023 < self.port < 65536
         self._left_s = time.monotonic()
         self._server.on_client_connect(on_client)
         self._server.on_client_disconnect(self._left)
@@ -154,6 +297,11 @@ class Viewer:
         """Seconds since the last client left (or since the start); 0 while there is one."""
         return 0.0 if self._server.get_clients() else time.monotonic() - self._left_s
 
+    def begin_at(self, box: Bounds) -> None:
+        """Where a new client's camera is at first; one that reconnects keeps its own."""
+        self._server.initial_camera.position = start_m(box)
+        self._server.initial_camera.look_at = box.center_m
+
     def stop(self) -> None:
         """End it."""
         self._server.stop()
@@ -163,20 +311,22 @@ class Viewer:
         self._on_leave(client)
 
 
+def start_m(box: Bounds) -> Array:
+    """Where a new client's camera is [m], (3,)."""
+    return box.center_m + max(box.size_m, 5.0) * AWAY
+
+
 def _recolor(handle: Any, before: PointsNode, node: PointsNode) -> None:
-    """Same points: send what changed of the rest (viser compares the colors itself)."""
-    handle.colors = node.rgb
+    """Same points: send what changed of the rest."""
+    if before.rgb is not node.rgb:
+        handle.colors = node.rgb
     if before.size_m != node.size_m:
         handle.point_size = node.size_m
+    if not handle.visible:
+        handle.visible = True
 
 
-def _alike(before: Node, node: Node) -> bool:
-    """Whether two nodes differ at most in being visible."""
-    if type(before) is not type(node):
-        return False
-    names = [name for kind in type(node).__mro__ for name in getattr(kind, "__slots__", ())]
-    return all(
-        np.array_equal(getattr(before, name), getattr(node, name))
-        for name in names
-        if name != "visible"
-    )
+def _ends_alike(rgb: Any) -> Any:
+    """Colors of lines as viser wants them: one, or one for each end of each segment."""
+    colors = np.asarray(rgb, dtype=np.uint8)
+    return colors if colors.ndim == 1 else np.repeat(colors[:, None], 2, axis=1)

@@ -83,14 +83,18 @@ def verify(
     watcher.advance()
     rounds = reject_worst_first(paths, free=~of.protected, limit_m=settings.limit_m)
     graph = _with_rejected(graph, [row for rows in rounds for row in rows], Reason.VERIFICATION)
+    _tell_verdicts(graph.edges, [row for rows in rounds for row in rows], watcher)
     watcher.advance()
     solution, outliers = _solve(graph, settings)
     graph = _with_rejected(graph.with_poses(solution.T_map_body), outliers, Reason.ROBUST)
     paths.remove(outliers)
     watcher.advance()
     over = of.protected & paths.alive & (paths.median_m > settings.limit_m)
+    edges = _with_figures(graph.edges, paths, solution.edge_chi2)
+    unconfirmed = [row for row, edge in enumerate(edges) if edge.verdict is Verdict.UNVERIFIED]
+    _tell_verdicts(edges, [*outliers, *unconfirmed], watcher)
     return Verification(
-        graph=graph.with_edges(_with_figures(graph.edges, paths, solution.edge_chi2)),
+        graph=graph.with_edges(edges),
         rounds=tuple(tuple(rows) for rows in rounds),
         flagged=tuple(np.flatnonzero(over).tolist()),
         outliers=tuple(outliers),
@@ -154,6 +158,16 @@ def _with_figures(edges: tuple[Edge, ...], paths: PathIndex, edge_chi2: Array) -
             )
         )
     return tuple(out)
+
+
+def _tell_verdicts(edges: tuple[Edge, ...], rows: list[int], watcher: Progress) -> None:
+    """What became of some edges, for whoever watches them while the job runs."""
+    if rows:
+        told = [
+            [e.i, e.j, e.kind.value, e.verdict.value, e.reason.value]
+            for e in (edges[row] for row in rows)
+        ]
+        watcher.event("verdicts", edges=told)
 
 
 def _told(edge: Edge, row: int) -> dict[str, Any]:

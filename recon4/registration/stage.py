@@ -17,6 +17,8 @@ from recon4.settings import Settings
 from recon4.store.arrays import save_trajectory
 from recon4.store.frames import FrameStore
 
+_TOLD_EVERY, _TOLD_AT_ONCE = 5, 4
+"""The pose of every so-manieth multiframe is told while it runs, some at a time."""
 _DENSE_NS = 9_000_000
 """Poses of the dense trajectory are at least this far apart [ns] (at most about 100 Hz)."""
 
@@ -49,6 +51,8 @@ def run_odometry(
         if step.lost:
             progress.event("lost", frame_id=step.frame_id, t_ns=step.t_mid_ns)
         steps.append(step)
+        if len(steps) % (_TOLD_EVERY * _TOLD_AT_ONCE) == 0:
+            _tell_poses(steps[-_TOLD_EVERY * _TOLD_AT_ONCE :: _TOLD_EVERY], progress)
     save_trajectory(out / "trajectory.npz", dense_trajectory(steps))
     _save_steps(out / "steps.npz", steps)
     lost = sum(step.lost for step in steps)
@@ -59,6 +63,17 @@ def run_odometry(
         "warnings": [remark] if remark else [],
         "gnss": aid is not None,
     }
+
+
+def _tell_poses(steps: list[OdometryStep], progress: Progress) -> None:
+    """Some poses, for whoever watches the walk grow."""
+    T = SE3.stack(step.T_odom_body for step in steps)
+    progress.event(
+        "poses",
+        t_ns=[step.t_mid_ns for step in steps],
+        t_m=np.round(T.t, 3).tolist(),
+        quat_xyzw=np.round(T.quat_xyzw(), 5).tolist(),
+    )
 
 
 def dense_trajectory(steps: list[OdometryStep]) -> Trajectory:

@@ -1,31 +1,35 @@
 """A real viser behind the proxy."""
 
+import json
 import os
 import signal
+import time
 from urllib.parse import urlsplit
 
 import msgspec.msgpack
+import numpy as np
 import psutil
 import pytest
-import viser
-import zstandard
 from viser import _messages
 from websockets.exceptions import ConnectionClosed
-from websockets.sync.client import connect
-from websockets.typing import Subprotocol
 
+from app.jobs.events import EventWriter
+from app.viewer import proxy
 from app.viewer.page import SHIMS
-from app.viewer.proxy import allowed
-from tests.project_builder import build_project
+from app.viewer.pool import Sockets
+from app.viewer.proxy import Rate, allowed, passes
+from recon4.model.pose_graph import Reason
+from tests.project_builder import build_project, loop_walk, verified_graph
 from tests.service.running import server_thread
+from tests.service.viser_client import camera, viewing
 
-PROTOCOL = Subprotocol(f"viser-v{viser.__version__}")
+POINTS = 60_000
 
 
 @pytest.fixture(scope="module")
 def root(tmp_path_factory):
     root = tmp_path_factory.mktemp("projects")
-    build_project(root / "office", points=5000)
+    build_project(root / "office", points=POINTS)
     return root
 
 
@@ -35,77 +39,137 @@ def server(root):
         yield running
 
 
-def open_viewer(server):
-    return connect(
-        f"ws://{urlsplit(server.url).netloc}/projects/office/viewer",
-        origin=server.url,
-        subprotocols=[PROTOCOL],
-        compression=None,
-        max_size=None,
-        proxy=None,
-    )
+@pytest.fixture
+def looking(server):
+    """A client that has everything."""
+    with viewing(server.url) as client:
+        client.send(camera((8.0, 3.0, 1.5)))
+        client.until(lambda c: c.shown == POINTS and "60\u202f000 of" in c.html())
+        yield client
 
 
-def camera():
-    return msgspec.msgpack.encode(
-        {
-            "type": "ViewerCameraMessage",
-            "wxyz": (1.0, 0.0, 0.0, 0.0),
-            "position": (1.0, 1.0, 1.0),
-            "fov": 1.0,
-            "near": 0.01,
-            "far": 1000.0,
-            "image_height": 900,
-            "image_width": 1440,
-            "look_at": (0.0, 0.0, 0.0),
-            "up_direction": (0.0, 0.0, 1.0),
-        }
-    )
+def test_a_browser_gets_the_map_the_trajectory_and_the_edges_by_verdict(looking):
+    assert {
+        "/trajectory/0",
+        "/edges/accepted/loop/0",
+        "/edges/unverified/loop/0",
+        "/edges/rejected/verification-median-limit/0",
+        "/grid",
+    } <= looking.nodes.keys()
+    assert "Points by normalized intensity" in looking.html()
+    assert "60\u202f000 of 60\u202f000 points" in looking.html()
 
 
-def until(socket, *texts):
-    """What viser sent, unpacked, up to the message after which all the texts have been seen."""
-    received = b""
-    while not all(text in received for text in texts):
-        message = socket.recv(timeout=30.0)
-        packed = int.from_bytes(message[8:16], "little")
-        received += zstandard.ZstdDecompressor().decompress(message[16 : 16 + packed])
-    return received
+def test_the_key_for_raw_intensity_sends_colors_only(looking):
+    before = looking.bytes
+    looking.press("Raw or normalized")
+    looking.until(lambda c: "Points by raw intensity" in c.html())
+    looking.rest()
+
+    assert looking.colored == POINTS
+    assert looking.bytes - before < POINTS * 3 + 10_000
+    assert looking.widget("Color by")["value"] == "raw intensity"
 
 
-def test_a_browser_gets_the_map_the_trajectory_and_the_edges_by_verdict(server):
-    with open_viewer(server) as socket:
-        socket.send(camera())
-        seen = until(socket, b"PointCloudMessage", b"/grid", b"Points by normalized intensity")
+def test_a_range_set_by_a_person_is_in_the_legend_until_it_is_taken_back(looking):
+    looking.set("Color by", "height")
+    looking.until(lambda c: "Points by height" in c.html())
+    looking.set("Range to", 2.25)
+    looking.until(lambda c: "<span>2.25</span>" in c.html())
 
-    assert b"/map/0_0_0" in seen
-    assert b"/trajectory" in seen
-    assert b"/edges/accepted/loop" in seen
-    assert b"/edges/unverified/loop" in seen
-    assert b"/edges/rejected/verification-median-limit" in seen
-    assert b"5\xe2\x80\xaf000 of 5\xe2\x80\xaf000 points" in seen
+    looking.set("Range of the map", True)
+
+    looking.until(lambda c: "<span>2.25</span>" not in c.html())
+
+
+def test_a_layer_switched_off_is_hidden_and_nothing_is_sent_again(looking):
+    before = looking.bytes
+    looking.set("Accepted, loop", False)
+
+    looking.until(lambda c: not c.visible["/edges/accepted/loop/0"])
+
+    assert looking.bytes - before < 5000
+
+
+def test_a_click_on_an_edge_says_what_it_is_and_where_to_review_it(looking):
+    start, end = rejected_edge()
+    away = np.array([0.2, 0.3, 5.0])
+
+    looking.click((start + end) / 2.0 + away, -away)
+    looking.until(lambda c: "verification median" in c.html() and "Open in review" in c.html())
+
+    assert 'href="/projects/office/review/?edge=' in looking.html()
+    looking.until(lambda c: "/picked/edge" in c.nodes)
+
+
+def test_two_clicks_measure_the_room_and_the_browser_keeps_it(looking):
+    looking.press("Measure")
+    looking.until(lambda c: "Stop measuring" in str(c.widgets))
+    for aim in ((0.0, -1.0, 0.02), (0.0, 1.0, 0.02)):
+        looking.click((9.8, 3.0, 1.5), aim)
+        time.sleep(0.1)  # a person's second click comes later, too
+    looking.until(lambda c: "Horizontal" in c.html() and "/measured/1" in c.nodes)
+    looking.until(lambda c: "measurements" in c.storage.get("recon4.view.office", ""))
+    looking.rest()
+
+    (points,) = json.loads(looking.storage["recon4.view.office"])["measurements"]
+    assert abs(points[0][1]) < 1e-6 and abs(points[1][1] - 10.0) < 1e-5
+
+
+def test_a_point_picked_comes_with_time_sensor_and_intensities(looking):
+    looking.click((9.8, 3.0, 1.5), (0.0, 1.0, 0.05))
+
+    looking.until(lambda c: "Normalized" in c.html() and "Multiframe" in c.html())
+
+
+def test_after_a_reconnect_the_view_is_as_it_was_and_the_camera_is_left_alone(server):
+    storage = {}
+    with viewing(server.url, storage=storage) as client:
+        client.send(camera((8.0, 3.0, 1.5)))
+        client.until(lambda c: c.shown == POINTS)
+        client.set("Color by", "height")
+        client.set("Trajectory", False)
+        client.until(lambda c: '"trajectory": false' in c.storage.get("recon4.view.office", ""))
+
+    with viewing(server.url, storage=storage) as client:
+        client.send(camera((8.0, 3.0, 1.5)))
+        client.until(lambda c: c.shown == POINTS and "Points by height" in c.html())
+        client.rest()
+
+        assert not client.nodes["/trajectory/0"].get("visible", client.visible["/trajectory/0"])
+        assert client.widget("Color by")["value"] == "height"
+        assert [m for m in client.cameras if not m["initial"]] == []
+
+
+def test_a_browser_that_answers_nothing_still_gets_the_map(server):
+    with viewing(server.url) as client:
+        client.answers = False
+        client.send(camera())
+        client.until(lambda c: c.shown == POINTS)
 
 
 def test_asking_for_a_public_tunnel_reaches_nobody_and_the_session_goes_on(server, caplog):
-    with open_viewer(server) as socket:
-        socket.send(msgspec.msgpack.encode({"type": "ShareUrlRequest"}))
-        socket.send(b"\xc1 not a message")
-        socket.send(camera())
-        seen = until(socket, b"PointCloudMessage")
+    with viewing(server.url) as client:
+        client.send({"type": "ShareUrlRequest"})
+        client.socket.send(b"\xc1 not a message")
+        client.send(camera())
+        client.until(lambda c: c.shown)
 
-    assert b"ShareUrlUpdated" not in seen
     assert "dropped a message of kind 'ShareUrlRequest'" in caplog.text
 
 
-def test_of_all_messages_viser_knows_only_looking_and_operating_pass():
+@pytest.mark.parametrize("may_review", [False, True])
+def test_of_all_messages_viser_knows_only_looking_and_operating_pass(may_review):
     kinds = {kind.__name__ for kind in _messages.Message.get_subclasses()}
 
-    passed = {kind for kind in kinds if allowed(msgspec.msgpack.encode({"type": kind}))}
+    passed = {kind for kind in kinds if allowed(kind, may_review)}
 
     assert len(kinds) > 100
     assert {"ViewerCameraMessage", "GuiUpdateMessage", "SceneNodeClickMessage"} <= passed
+    assert ("TransformControlsUpdateMessage" in passed) == may_review
     assert not [kind for kind in passed if "Share" in kind or "Upload" in kind or "File" in kind]
-    assert not [kind for kind in passed if "Javascript" in kind or "LocalStorage" in kind]
+    assert not [kind for kind in passed if "Javascript" in kind or "SetItem" in kind]
+    assert not passed - kinds
 
 
 @pytest.mark.parametrize(
@@ -113,47 +177,94 @@ def test_of_all_messages_viser_knows_only_looking_and_operating_pass():
     [b"", b"\x00", b"\x90", msgspec.msgpack.encode({"type": ["ViewerCameraMessage"]})],
 )
 def test_what_is_no_message_does_not_pass(data):
-    assert not allowed(data)
+    assert not passes(data, may_review=True)
 
 
-def test_a_long_message_does_not_pass():
-    message = {"type": "GuiUpdateMessage", "uuid": "x", "updates": {"value": "x" * 100_000}}
+def test_a_message_passes_up_to_64_kibibytes():
+    def message(size):
+        told = {"type": "GuiUpdateMessage", "uuid": "x", "updates": {"value": "x" * size}}
+        return msgspec.msgpack.encode(told)
 
-    assert not allowed(msgspec.msgpack.encode(message))
+    assert passes(message(65_000), may_review=False)
+    assert not passes(message(65_536), may_review=True)
 
 
-def test_the_viewer_listens_on_loopback_only(server, root):
-    with open_viewer(server) as socket:
-        socket.send(camera())
-        until(socket, b"PointCloudMessage")
-        listening = [
-            connection.laddr.ip
-            for connection in viewer_process(root).net_connections("inet")
-            if connection.status == psutil.CONN_LISTEN
-        ]
+def test_messages_are_read_no_faster_than_allowed():
+    rate = Rate(100.0, 50)
+    waits = [rate.wait_s(now_s=10.0) for _ in range(150)]
+
+    assert waits[:50] == [0.0] * 50
+    np.testing.assert_allclose(np.diff(waits[50:]), 0.01)
+    assert rate.wait_s(now_s=12.0) == 0.0
+
+
+def test_a_flood_of_messages_arrives_late_but_whole(server):
+    with viewing(server.url) as client:
+        client.send(camera())
+        client.until(lambda c: c.shown == POINTS)
+        for k in range(500):
+            client.set("Point size", 0.005 + 0.005 * (k % 2))
+        client.set("Point size", 0.2)
+
+        waited_s = client.until(lambda c: '"point_size_m": 0.2' in str(c.storage))
+
+    assert waited_s > 1.0
+
+
+def test_sockets_are_counted_in_all_and_by_person():
+    sockets = Sockets(most=3, most_a_person=2)
+
+    assert [sockets.enter(who) for who in "aaabc"] == [True, True, False, True, False]
+    sockets.leave("a")
+    assert sockets.enter("c") and not sockets.enter("b")
+
+
+def test_one_viewer_too_many_is_told_so_and_the_others_stay(root):
+    with (
+        server_thread(root, viewer_sockets=2) as server,
+        viewing(server.url) as first,
+        viewing(server.url) as second,
+    ):
+        with viewing(server.url) as third, pytest.raises(ConnectionClosed) as closed:
+            third.socket.recv(timeout=10.0)
+        assert closed.value.rcvd.code == 4429
+
+        for client in (first, second):
+            client.send(camera())
+            client.until(lambda c: c.shown == POINTS)
+
+
+def test_the_viewer_listens_on_loopback_only(looking, root):
+    listening = [
+        connection.laddr.ip
+        for connection in viewer_process(root).net_connections("inet")
+        if connection.status == psutil.CONN_LISTEN
+    ]
 
     assert listening == ["127.0.0.1"]
 
 
-def test_a_killed_viewer_is_started_again_for_the_next_connection(server, root):
-    with open_viewer(server) as socket:
-        socket.send(camera())
-        until(socket, b"PointCloudMessage")
+def test_a_killed_viewer_is_there_again_soon(server, root):
+    with viewing(server.url) as client:
+        client.send(camera())
+        client.until(lambda c: c.shown == POINTS)
         os.kill(viewer_process(root).pid, signal.SIGKILL)
         with pytest.raises(ConnectionClosed):
-            until(socket, b"never sent")
+            client.until(lambda c: False)
 
-    with open_viewer(server) as socket:
-        socket.send(camera())
-        assert b"/map/0_0_0" in until(socket, b"PointCloudMessage")
+    began_s = time.monotonic()
+    with viewing(server.url) as client:
+        client.send(camera())
+        client.until(lambda c: c.shown == POINTS and "/edges/accepted/loop/0" in c.nodes)
+    assert time.monotonic() - began_s < 20.0  # 2 s on a quiet machine
 
 
 def test_a_viewer_ends_with_its_server(tmp_path):
     build_project(tmp_path / "office", points=100)
     with server_thread(tmp_path) as server:
-        with open_viewer(server) as socket:
-            socket.send(camera())
-            until(socket, b"PointCloudMessage")
+        with viewing(server.url) as client:
+            client.send(camera())
+            client.until(lambda c: c.shown)
         viewer = viewer_process(tmp_path)
 
     assert not viewer.is_running()
@@ -162,9 +273,9 @@ def test_a_viewer_ends_with_its_server(tmp_path):
 def test_a_viewer_nobody_looks_at_ends_by_itself(tmp_path):
     build_project(tmp_path / "office", points=100)
     with server_thread(tmp_path, viewer_idle_s=0.5) as server:
-        with open_viewer(server) as socket:
-            socket.send(camera())
-            until(socket, b"PointCloudMessage")
+        with viewing(server.url) as client:
+            client.send(camera())
+            client.until(lambda c: c.shown)
             viewer = viewer_process(tmp_path)
 
         viewer.wait(timeout=20.0)
@@ -172,15 +283,64 @@ def test_a_viewer_nobody_looks_at_ends_by_itself(tmp_path):
 
 def test_new_artifacts_appear_while_one_looks(tmp_path):
     build_project(tmp_path / "office", with_map=False)
-    with server_thread(tmp_path) as server, open_viewer(server) as socket:
-        socket.send(camera())
-        before = until(socket, b"/trajectory", b"/grid")
+    with server_thread(tmp_path) as server, viewing(server.url) as client:
+        client.send(camera())
+        client.until(lambda c: "/trajectory/0" in c.nodes)
+        assert not client.points
 
         build_project(tmp_path / "office", points=100)
-        after = until(socket, b"/map/0_0_0", b"/edges/accepted/loop")
+        client.until(lambda c: c.shown == 100 and "/edges/accepted/loop/0" in c.nodes)
 
-    assert b"/map" not in before
-    assert b"PointCloudMessage" in after
+
+def test_what_a_running_job_finds_appears_while_it_runs(tmp_path):
+    build_project(tmp_path / "office", with_map=False)
+    folder = tmp_path / ".recon4" / "jobs" / "j1"
+    folder.mkdir(parents=True)
+    (folder / "request.json").write_text(json.dumps({"project": str(tmp_path / "office")}))
+    (folder / "heartbeat").touch()
+    job = EventWriter(folder / "events.jsonl", folder / "cancel")
+    with server_thread(tmp_path) as server, viewing(server.url) as client:
+        client.send(camera())
+        job.event("stage", stage="graph", state="running")
+        job.event("nodes", t_ns=[1, 2, 3], t_m=[[0, 0, 0], [4, 0, 0], [4, 4, 0]])
+        job.event("edge", i=0, j=2, edge_kind="loop", verdict="accepted", reason="", overlap=0.4)
+        client.until(lambda c: "/edges/accepted/loop/0" in c.nodes)
+
+        verdict = [0, 2, "loop", "rejected", "verification median > limit"]
+        job.event("verdicts", edges=[verdict])
+        client.until(lambda c: "/edges/rejected/verification-median-limit/0" in c.nodes)
+
+        assert "/edges/accepted/loop/0" not in client.nodes
+    job.close()
+
+
+def test_a_browser_that_takes_nothing_is_disconnected_and_harms_nobody(
+    tmp_path, monkeypatch, caplog
+):
+    monkeypatch.setattr(proxy, "STALLED_S", 1.0)
+    build_project(tmp_path / "office", points=1_000_000)
+    with (
+        server_thread(tmp_path) as server,
+        viewing(server.url, buffer_bytes=1 << 16) as stalled,
+        viewing(server.url) as other,
+    ):
+        for client in (stalled, other):
+            client.send(camera((8.0, 3.0, 1.5)))
+            client.until(lambda c: c.shown > 150_000 and "Palette" in str(c.widgets))
+        stalled.set("Fewer when this browser is slow", False)  # a million points at once
+        before = viewer_process(tmp_path).memory_info().rss
+        for k in range(40):  # the first of them takes none of this
+            stalled.set("Palette", ("turbo", "grey")[k % 2])
+            other.press("Raw or normalized")
+            words = f"Points by {('raw', 'normalized')[k % 2]} intensity"
+            other.until(lambda c, words=words: words in c.html())
+        grown = viewer_process(tmp_path).memory_info().rss - before
+        deadline_s = time.monotonic() + 20.0
+        while "took nothing" not in caplog.text and time.monotonic() < deadline_s:
+            other.rest()
+
+    assert "took nothing" in caplog.text
+    assert grown < 64 << 20
 
 
 def test_the_page_is_viser_with_our_repairs_and_a_policy(server):
@@ -210,3 +370,10 @@ def viewer_process(root):
     ]
     assert len(mine) == 1
     return mine[0]
+
+
+def rejected_edge():
+    """Ends of an edge of the project that verification turned down [m]."""
+    graph = verified_graph(loop_walk())
+    edge = next(e for e in graph.edges if e.reason is Reason.VERIFICATION)
+    return graph.T_map_body.t[edge.i], graph.T_map_body.t[edge.j]

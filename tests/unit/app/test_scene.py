@@ -3,93 +3,159 @@
 import numpy as np
 import pytest
 
-from app.viewer.layers import edge_layer, edge_layers
-from app.viewer.palette import Range, paint, table, usual_range
-from app.viewer.panels import legend_html
+from app.viewer.cloud import Cloud
+from app.viewer.layers import EdgeTable, edge_layer, edge_layers
+from app.viewer.legend import legend
+from app.viewer.legend_html import facts_html, legend_html
+from app.viewer.nodes import LinesNode
+from app.viewer.palette import Range, distinct_colors, paint, table, usual_range
 from app.viewer.scene import (
     Content,
-    LinesNode,
-    PointsNode,
-    Tile,
-    View,
+    GnssMarks,
     bounds,
     describe,
     grid_cell_m,
-    legend,
+    measured_words,
 )
 from app.viewer.source import ProjectSource
+from app.viewer.view import View
+from app.viewer.words import Facts, edge_facts, measurement_facts, measurements_csv
+from recon4.mapping.tile import FIELDS
+from recon4.mapping.tiles import TileWriter
+from recon4.model.pose_graph import Verdict
 from tests.project_builder import build_project, loop_walk, verified_graph
-
-FAR_M = np.array([500_000.0, 5_400_000.0, 300.0])
-
-
-def tile(p_tile, origin_m=(0.0, 0.0, 0.0)):
-    z = p_tile[:, 2]
-    columns = {"height": z, "sensor": np.zeros(len(z), np.uint8)}
-    return Tile("0_0_0", np.asarray(origin_m), p_tile.astype(np.float32), columns)
 
 
 @pytest.fixture
 def content():
     walk = loop_walk()
-    return Content(trajectory=walk, odometry=walk, graph=verified_graph(walk), sensors=("a<b>",))
+    table = EdgeTable.of(verified_graph(walk))
+    return Content(trajectory=walk, odometry=walk, edges=table, sensors=("a<b>",))
+
+
+def cloud_of(folder, p_tile, ijk=(0, 0, 0), tile_m=10.0):
+    columns = {
+        name: np.zeros((len(p_tile), width) if width > 1 else len(p_tile), dtype)
+        for name, (dtype, width) in FIELDS.items()
+    }
+    columns["xyz"] = np.asarray(p_tile, dtype=np.float32)
+    with TileWriter(folder, list(FIELDS), tile_m=tile_m) as writer:
+        writer.facts = {"voxel_m": 0.01, "crs": None}
+        writer.append(ijk, columns)
+    return Cloud(folder)
 
 
 def all_on(content, **changes):
-    return View(layers=frozenset(layer.key for layer in content.layers), **changes)
+    return View(chosen={layer.key: True for layer in content.layers}, **changes)
 
 
-def test_far_from_the_origin_points_keep_their_millimetres():
-    p = np.array([[0.001, 0.002, 0.003], [9.999, 9.998, 2.0]])
-    content = Content(tiles=(tile(p, FAR_M),), points_in_map=2)
+def test_far_from_the_origin_points_keep_their_millimetres(tmp_path):
+    p = np.array([[0.001, 0.002, 0.003], [9.999, 9.998, 2.0]] * 200)
+    cloud = cloud_of(tmp_path / "map", p, ijk=(50_000, 540_000, 30))
 
-    nodes = describe(content, View(color_by="height"))
-    points = next(node for node in nodes if isinstance(node, PointsNode))
+    drawn = [cloud.base, *(cloud.part((0, k)) for k in range(1, len(cloud.boxes.sizes[0])))]
+    places = np.concatenate([part.origin_m + part.p_part for part in drawn])
 
-    assert points.p_node.dtype == np.float32
-    np.testing.assert_allclose(points.position_m + points.p_node, FAR_M + p, rtol=0, atol=1e-6)
+    assert all(part.p_part.dtype == np.float32 for part in drawn)
+    expected = np.array([500_000.0, 5_400_000.0, 300.0]) + p
+    np.testing.assert_allclose(np.sort(places, axis=0), np.sort(expected, axis=0), atol=1e-6)
 
 
 def test_every_edge_is_drawn_once_in_the_layer_of_its_verdict(content):
+    graph = content.edges.graph
     nodes = describe(content, all_on(content))
 
-    lines = {n.path: n for n in nodes if isinstance(n, LinesNode) and n.path.startswith("/edges/")}
-    drawn = {path: len(node.segments) for path, node in lines.items()}
+    drawn = {}
+    for node in nodes:
+        if isinstance(node, LinesNode) and node.path.startswith("/edges/"):
+            key = node.path.removeprefix("/edges/").rpartition("/")[0]
+            drawn[key] = drawn.get(key, 0) + len(node.segments)
 
-    assert sum(drawn.values()) == len(content.graph.edges)
-    assert drawn["/edges/accepted/odometry"] == len(content.graph) - 1
-    assert drawn == {f"/edges/{r.key}": r.count for r in edge_layers(content.graph.edges)}
+    assert sum(drawn.values()) == len(graph.edges)
+    assert drawn["accepted/odometry"] == len(graph) - 1
+    assert drawn == {row.key: row.count for row in edge_layers(graph.edges)}
 
 
 def test_an_edge_runs_from_node_to_node(content):
-    edge = content.graph.edges[0]
-    path = f"/edges/{edge_layer(edge).key}"
+    graph = content.edges.graph
+    path = f"/edges/{edge_layer(graph.edges[0]).key}/0"
 
     node = next(n for n in describe(content, all_on(content)) if n.path == path)
 
     ends = node.position_m + node.segments[0]
-    np.testing.assert_allclose(ends, content.graph.T_map_body.t[[edge.i, edge.j]], atol=1e-5)
+    np.testing.assert_allclose(ends, graph.T_map_body.t[list((0, 1))], atol=1e-5)
+
+
+def test_what_a_person_decided_has_a_layer_and_a_color_of_its_own(content):
+    edge = content.edges.graph.edges[0]
+
+    kept = edge_layer(edge.evolve(decided_by="Ada"))
+    turned_down = edge_layer(edge.evolve(decided_by="Ada", verdict=Verdict.REJECTED))
+
+    others = {layer.rgb for layer in edge_layers(content.edges.graph.edges)}
+    assert kept.key == "decided/accepted" and turned_down.key == "decided/rejected"
+    assert len({kept.rgb, turned_down.rgb} - others) == 2
+
+
+def test_edges_by_error_are_grey_where_no_error_is_known(content):
+    edges = list(content.edges.graph.edges)
+    edges[0] = edges[0].evolve(error_m=0.05, limit_m=0.05)
+    edges[1] = edges[1].evolve(error_m=0.0, limit_m=0.05)
+    content = Content(edges=EdgeTable.of(content.edges.graph.with_edges(tuple(edges))))
+
+    nodes = describe(content, all_on(content, edge_color="error / limit"))
+
+    rgb = next(n.rgb for n in nodes if n.path == "/edges/accepted/odometry/0")
+    np.testing.assert_array_equal(rgb[:3], [table("turbo")[255], table("turbo")[0], [110] * 3])
+
+
+def test_a_walk_that_grows_changes_its_last_piece_only(content):
+    whole = content.trajectory
+    before = {n.path: n for n in describe(Content(trajectory=whole[:590]), View())}
+    after = {n.path: n for n in describe(Content(trajectory=whole), View())}
+
+    np.testing.assert_array_equal(before["/trajectory/0"].segments, after["/trajectory/0"].segments)
+    assert len(before["/trajectory/1"].segments) < len(after["/trajectory/1"].segments)
 
 
 def test_a_layer_that_is_off_is_invisible_but_there(content):
-    shown = {node.path: node.visible for node in describe(content, View())}
+    off = View(chosen={layer.key: False for layer in content.layers})
 
-    assert not shown["/trajectory"] and not shown["/grid"]
-    assert not any(on for path, on in shown.items() if path.startswith("/edges/"))
+    shown = {node.path: node.visible for node in describe(content, off)}
+
+    assert "/edges/accepted/loop/0" in shown
+    assert not any(shown.values())
+
+
+def test_positions_of_a_receiver_are_sorted_into_used_and_rejected():
+    p = np.arange(9.0).reshape(3, 3)
+    marks = GnssMarks(p, np.array([True, False, True]))
+
+    nodes = {node.path: node for node in describe(Content(gnss=marks, crs="EPSG:5514"), View())}
+
+    used, rejected = nodes["/gnss/used"], nodes["/gnss/rejected"]
+    assert len(used.segments) == 6 and len(rejected.segments) == 3
+    middles = rejected.position_m + rejected.segments.mean(axis=1)
+    np.testing.assert_allclose(middles, [p[1]] * 3, atol=1e-6)
+    assert "/north" in nodes
+
+
+def test_without_a_place_on_earth_there_is_no_north(content):
+    assert not any("north" in node.path for node in describe(content, View()))
 
 
 def test_nothing_finished_yet_is_an_empty_room_with_a_grid():
-    nodes = describe(Content(), View(layers=frozenset({"grid"})))
+    nodes = [node.path for node in describe(Content(), View()) if node.visible]
 
-    assert [node.path for node in nodes] == ["/grid"]
+    assert nodes == ["/grid"]
     assert legend(Content(), View()).color_by is None
 
 
-def test_what_was_seen_far_away_does_not_move_the_camera():
+def test_what_was_seen_far_away_does_not_move_the_camera(tmp_path):
     rng = np.random.default_rng(1)
     p = np.concatenate([rng.uniform(0.0, 10.0, (1000, 3)), [[900.0, 900.0, 900.0]]])
 
-    box = bounds(Content(tiles=(tile(p),)))
+    box = bounds(Content(cloud=cloud_of(tmp_path / "map", p)))
 
     assert box.size_m < 11.0
     assert grid_cell_m(box) == 1.0
@@ -107,33 +173,53 @@ def test_a_constant_value_has_a_color_and_no_value_a_range():
     assert usual_range(np.array([np.nan])) == Range(0.0, 1.0)
 
 
-def test_the_legend_escapes_what_people_named(content):
-    p = np.zeros((1, 3))
-    with_points = Content(tiles=(tile(p),), points_in_map=1, sensors=content.sensors)
+def test_multiframes_that_follow_each_other_differ_in_color():
+    rgb = distinct_colors(np.arange(1000, dtype=np.uint32)).astype(int)
 
-    text = legend_html(legend(with_points, View(color_by="sensor")))
+    assert np.linalg.norm(np.diff(rgb, axis=0), axis=1).min() > 60.0
+
+
+def test_the_legend_and_the_facts_escape_what_people_named(tmp_path, content):
+    content = Content(cloud=cloud_of(tmp_path / "map", np.zeros((9, 3))), sensors=content.sensors)
+
+    text = legend_html(legend(content, View(color_by="sensor")))
+    text += facts_html([Facts("<i>", (("<u>", "<s>"),), ("<q>", '/"><script>'))])
 
     assert "a&lt;b&gt;" in text and "a<b>" not in text
+    assert not any(tag in text for tag in ("<i>", "<u>", "<s>", "<q>", "<script>"))
 
 
-def test_a_small_budget_takes_an_even_part_of_every_tile(tmp_path):
-    build_project(tmp_path / "office", points=10_000)
-    source = ProjectSource(tmp_path / "office")
+def test_an_edge_picked_leads_to_its_review(content):
+    row = next(k for k, e in enumerate(content.edges.graph.edges) if e.verdict == "rejected")
+    edge = content.edges.graph.edges[row]
 
-    few, all_of_them = source.content(1000), source.content(10**9)
+    facts = edge_facts(content.edges, row, "my office")
 
-    assert 990 <= sum(len(tile.p_tile) for tile in few.tiles) <= 1000
-    assert len(few.tiles) == len(all_of_them.tiles) == 4
-    assert sum(len(tile.p_tile) for tile in all_of_them.tiles) == few.points_in_map == 10_000
+    assert facts.link == ("Open in review", f"/projects/my%20office/review/?edge={edge.i}-{edge.j}")
+    assert ("Verdict", "rejected") in facts.rows
+    assert ("Reason", str(edge.reason)) in facts.rows
+    assert "Error" not in dict(facts.rows)
+
+
+def test_a_distance_is_told_with_its_parts():
+    points = ((1.0, 1.0, 1.0), (4.0, 5.0, -11.0))
+
+    rows = dict(measurement_facts(1, points).rows)
+    table = measurements_csv([points, ((1.0, 2.0, 3.0),)]).splitlines()
+
+    assert rows == {"Distance": "13.0000 m", "Horizontal": "5.0000 m", "Vertical": "-12.0000 m"}
+    assert table[1].endswith(",13.00000,5.00000,-12.00000")
+    assert table[2] == "2,1.00000,2.00000,3.00000,,,,,,"
+    assert measured_words(1, points) == "1: 13.000 m"
 
 
 def test_the_source_notices_new_artifacts_once(tmp_path):
     build_project(tmp_path / "office", with_map=False)
-    source = ProjectSource(tmp_path / "office")
+    source = ProjectSource(tmp_path / "office", tmp_path / "jobs")
 
     unchanged = source.changed()
     build_project(tmp_path / "office", points=100)
 
     assert not unchanged
     assert source.changed() and not source.changed()
-    assert source.content(100).graph is not None
+    assert source.content.edges is not None and len(source.content.cloud) == 100

@@ -1,0 +1,62 @@
+"""What the colors of a view mean."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.viewer.cloud import sensor_names
+from app.viewer.layers import Layer
+from app.viewer.palette import Palette, Range, Rgb
+from app.viewer.scene import CHI2_RANGE, ERROR_RANGE, Content, bounds, grid_cell_m
+from app.viewer.view import UNITS, ColorBy, EdgeColor, View
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Legend:
+    """What the colors mean."""
+
+    color_by: ColorBy | None
+    """None = there are no points."""
+    palette: Palette
+    span: Range
+    unit: str
+    sensors: tuple[tuple[str, Rgb], ...] = ()
+    layers: tuple[Layer, ...] = ()
+    points: int = 0
+    """Shown just now."""
+    points_in_map: int = 0
+    grid_cell_m: float = 0.0
+    edge_color: EdgeColor = "verdict"
+    edge_span: Range = ERROR_RANGE
+
+
+def legend(content: Content, view: View, *, points: int = 0) -> Legend:
+    """Say what the colors of a view mean.
+
+    Args:
+        content: What there is.
+        view: What a person chose.
+        points: How many points of the map are on screen.
+    """
+    shown = content.cloud is not None and view.color_by in content.colors
+    return Legend(
+        color_by=view.color_by if shown else None,
+        palette=view.palette,
+        span=span_of(content, view) if shown else Range(0.0, 1.0),
+        unit=UNITS[view.color_by],
+        sensors=sensor_names(content.sensors),
+        layers=tuple(layer for layer in content.layers if view.shows(layer)),
+        points=points,
+        points_in_map=len(content.cloud) if content.cloud else 0,
+        grid_cell_m=grid_cell_m(bounds(content)),
+        edge_color=view.edge_color,
+        edge_span=CHI2_RANGE if view.edge_color == "chi²" else ERROR_RANGE,
+    )
+
+
+def span_of(content: Content, view: View) -> Range:
+    """Ends of the palette: a person's, else those of the map."""
+    mine = view.range_of(view.color_by)
+    if mine is not None or content.cloud is None:
+        return mine or Range(0.0, 1.0)
+    return content.cloud.span(view.color_by)

@@ -1,0 +1,161 @@
+"""What a running job has found, from the very events its stages tell."""
+
+import json
+import os
+import time
+
+import numpy as np
+import pytest
+
+from app.jobs.events import EventWriter
+from app.viewer.live import JobWatch, Live
+from app.viewer.source import ProjectSource
+from recon4.model.pose_graph import EdgeKind, Reason, Verdict
+from tests.project_builder import build_project
+
+POSES = {
+    "kind": "poses",
+    "t_ns": [100, 200],
+    "t_m": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]],
+    "quat_xyzw": [[0.0, 0.0, 0.0, 1.0]] * 2,
+}
+NODES = {"kind": "nodes", "t_ns": [1, 2, 3], "t_m": [[0, 0, 0], [1, 0, 0], [2, 0, 0]]}
+
+
+def edge(i=0, j=2, verdict="accepted", reason=""):
+    return {
+        "kind": "edge", "i": i, "j": j, "edge_kind": "loop", "verdict": verdict,
+        "reason": reason, "overlap": 0.5, "error_m": None, "limit_m": 0.03,
+    }  # fmt: skip
+
+
+def running(stage):
+    return {"kind": "stage", "stage": stage, "state": "running"}
+
+
+def fed(*events):
+    live = Live()
+    for event in events:
+        live.take(event)
+    return live
+
+
+def loops(live):
+    return [e for e in live.graph.edges if e.kind is EdgeKind.LOOP]
+
+
+def test_the_walk_grows_with_the_poses_told():
+    later = {**POSES, "t_ns": [300, 400]}
+
+    live = fed(running("odometry"), POSES, later)
+
+    np.testing.assert_array_equal(live.trajectory.t_ns, [100, 200, 300, 400])
+
+
+def test_edges_lie_between_the_nodes_where_they_are_by_now():
+    moved = {"kind": "nodes", "t_m": [[0, 0, 0], [1, 0, 0], [2, 5, 0]]}
+
+    live = fed(running("graph"), NODES, edge(), moved)
+
+    assert [(e.i, e.j) for e in loops(live)] == [(0, 2)]
+    np.testing.assert_array_equal(live.graph.T_map_body.t[2], [2, 5, 0])
+    assert sum(e.kind is EdgeKind.ODOMETRY for e in live.graph.edges) == 2
+
+
+def test_a_loop_is_rejected_with_its_reason_when_verification_says_so():
+    verdicts = {"kind": "verdicts", "edges": [[0, 2, "loop", "rejected", Reason.ROBUST.value]]}
+
+    live = fed(running("graph"), NODES, edge(), running("verification"), verdicts)
+
+    assert [(e.verdict, e.reason) for e in loops(live)] == [(Verdict.REJECTED, Reason.ROBUST)]
+
+
+def test_a_pair_tried_again_is_one_edge_with_its_last_verdict():
+    live = fed(running("graph"), NODES, edge(verdict="rejected", reason="not converged"), edge())
+
+    assert [e.verdict for e in loops(live)] == [Verdict.ACCEPTED]
+
+
+def test_a_new_run_forgets_the_one_before():
+    live = fed(running("graph"), NODES, edge(), {"kind": "run"})
+
+    assert live.graph is None and live.trajectory is None and live.stage == ""
+
+
+@pytest.mark.parametrize(
+    "event",
+    [{}, {"kind": "edge"}, {**edge(), "verdict": "?"}, {**POSES, "t_ns": [1]}, {"kind": "new"}],
+)
+def test_an_event_that_makes_no_sense_changes_nothing(event):
+    live = fed(running("graph"), NODES, event)
+
+    assert loops(live) == []
+
+
+@pytest.fixture
+def job(tmp_path):
+    folder = tmp_path / "jobs" / "j1"
+    folder.mkdir(parents=True)
+    request = {"project": str(tmp_path / "office"), "inputs": {}}
+    (folder / "request.json").write_text(json.dumps(request))
+    (folder / "heartbeat").touch()
+    writer = EventWriter(folder / "events.jsonl", folder / "cancel")
+    yield folder, writer
+    writer.close()
+
+
+def told(writer, event):
+    writer.event(event["kind"], **{k: v for k, v in event.items() if k != "kind"})
+
+
+def test_the_events_of_the_projects_own_job_are_followed(tmp_path, job):
+    _, writer = job
+    watch = JobWatch(tmp_path / "office", tmp_path / "jobs")
+    other = JobWatch(tmp_path / "street", tmp_path / "jobs")
+
+    told(writer, running("odometry"))
+    told(writer, POSES)
+
+    assert watch.changed() and not watch.changed()
+    assert len(watch.live.trajectory) == 2
+    assert not other.changed() and other.live.trajectory is None
+
+
+@pytest.mark.parametrize("how", ["outcome", "silence"])
+def test_a_job_that_is_over_is_followed_no_more(tmp_path, job, how):
+    folder, writer = job
+    watch = JobWatch(tmp_path / "office", tmp_path / "jobs")
+    told(writer, running("odometry"))
+    watch.changed()
+
+    if how == "outcome":
+        (folder / "outcome.json").write_text("{}")
+    else:
+        long_ago = time.time() - 100.0
+        os.utime(folder / "heartbeat", (long_ago, long_ago))
+
+    assert watch.changed() and watch.live.stage == ""
+
+
+def test_while_odometry_runs_again_the_results_of_before_are_not_shown(tmp_path, job):
+    build_project(tmp_path / "office", points=100)
+    source = ProjectSource(tmp_path / "office", tmp_path / "jobs")
+    assert source.content.cloud is not None
+
+    told(job[1], running("odometry"))
+    told(job[1], POSES)
+
+    assert source.changed()
+    assert source.content.cloud is None and source.content.edges is None
+    assert len(source.content.trajectory) == 2
+
+
+def test_edges_of_a_running_search_are_shown(tmp_path, job):
+    build_project(tmp_path / "office", with_map=False)
+    source = ProjectSource(tmp_path / "office", tmp_path / "jobs")
+
+    for event in (running("graph"), NODES, edge(verdict="rejected", reason="error > limit")):
+        told(job[1], event)
+
+    assert source.changed()
+    assert "rejected/error-limit" in {layer.key for layer in source.content.edges.layers}

@@ -1,0 +1,88 @@
+"""What lies under a click."""
+
+import numpy as np
+import pytest
+
+from app.viewer.cloud import Cloud
+from app.viewer.layers import EdgeTable
+from app.viewer.pick import Ray, pick_edge, pick_point
+from app.viewer.view import View
+from tests.project_builder import ROOM_M, build_project, loop_walk, verified_graph
+
+
+@pytest.fixture(scope="module")
+def room(tmp_path_factory):
+    root = tmp_path_factory.mktemp("projects") / "office"
+    build_project(root, points=400_000)
+    return Cloud(next(root.glob("artifacts/*/tiles.json")).parent)
+
+
+def ray(origin, target, pixel_rad=0.0015):
+    direction = np.subtract(target, origin)
+    return Ray(np.array(origin, float), direction / np.linalg.norm(direction), pixel_rad)
+
+
+@pytest.mark.parametrize("target", [(16.0, 3.3, 1.1), (9.8, 10.0, 2.0), (5.0, 2.0, 0.0)])
+def test_a_click_on_a_wall_gives_a_point_of_that_wall(room, target):
+    found = pick_point(room, ray((9.0, 3.0, 1.5), target))
+
+    axis = int(np.argmax(np.isclose(target, [16.0, 10.0, 0.0])))
+    assert abs(found.p_map[axis] - target[axis]) < 1e-5
+    assert np.linalg.norm(np.subtract(found.p_map, target)) < 0.12
+
+
+def test_it_is_the_nearest_of_all_points_to_the_ray(room):
+    at = ray((9.0, 3.0, 1.5), (16.0, 3.3, 1.1))
+    found = pick_point(room, at)
+
+    every = np.concatenate([tile.xyz_m() for tile in room.tiles]) - at.origin_m
+    depth = every @ at.direction
+    off = np.linalg.norm(every - depth[:, None] * at.direction, axis=1) / depth
+    off[(depth < 0.0) | (np.linalg.norm(every + at.origin_m - found.p_map, axis=1) > 1.0)] = np.inf
+    nearest = every[np.argmin(off)] + at.origin_m
+    np.testing.assert_allclose(found.p_map, nearest, atol=1e-9)
+
+
+def test_a_pillar_hides_the_wall_behind_it(room):
+    found = pick_point(room, ray((6.0, 5.0, 1.0), (16.0, 5.0, 1.0)))
+
+    assert abs(found.p_map[0] - 7.7) < 0.05
+
+
+def test_the_point_comes_with_all_its_columns(room):
+    found = pick_point(room, ray((9.0, 3.0, 1.5), (16.0, 3.3, 1.1)))
+
+    for tile in room.tiles:
+        rows = np.flatnonzero((tile.xyz_m() == found.p_map).all(axis=1))
+        for row in rows.tolist():
+            columns = tile.read(["t_ns", "sensor", "intensity", "intensity_normalized"])
+            assert found.t_ns == columns["t_ns"][row]
+            assert found.sensor == columns["sensor"][row]
+            assert found.intensity == columns["intensity"][row]
+            assert found.intensity_normalized == pytest.approx(columns["intensity_normalized"][row])
+            return
+    raise AssertionError("no such point")
+
+
+@pytest.mark.parametrize("target", [(8.0, 5.0, 50.0), (-40.0, 60.0, 30.0)])
+def test_a_click_into_the_air_gives_nothing(room, target):
+    assert pick_point(room, ray((8.0, 3.0, ROOM_M[2] + 1.0), target)) is None
+
+
+def test_the_edge_under_the_click_is_found_and_hidden_ones_are_not():
+    graph = verified_graph(loop_walk())
+    table = EdgeTable.of(graph)
+    for row, edge in enumerate(graph.edges):
+        if edge.verdict == "rejected" and edge.reason.value.startswith("verification"):
+            middle = graph.T_map_body.t[[edge.i, edge.j]].mean(axis=0)
+            away = ray(middle + np.array([0.3, 0.2, 9.0]), middle)
+
+            assert table.graph.edges[pick_edge(table, View(), away)] is edge
+            hidden = View(chosen={table.layers[table.layer[row]].key: False})
+            assert pick_edge(table, hidden, away) != row
+
+
+def test_a_click_beside_all_edges_finds_none():
+    table = EdgeTable.of(verified_graph(loop_walk()))
+
+    assert pick_edge(table, View(), ray((0.0, 0.0, 9.0), (0.0, 0.1, 0.0))) is None

@@ -1,0 +1,63 @@
+"""The view a browser keeps, and what comes back from it."""
+
+import json
+
+import pytest
+
+from app.viewer.layers import FINAL
+from app.viewer.palette import Range
+from app.viewer.view import View, view_from_json
+
+VIEW = View(
+    color_by="raw intensity",
+    palette="turbo",
+    ranges={"height": (0.0, 2.5)},
+    point_size_m=0.01,
+    chosen={"trajectory": False},
+    points="map and multiframe",
+    moment=7,
+    window_s=2.0,
+    edge_color="chi²",
+    detail=500_000,
+    adapt=False,
+    measurements=(((1.0, 2.0, 3.0),), ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0))),
+)
+
+
+def test_a_view_survives_the_way_through_a_browser():
+    assert view_from_json(VIEW.to_json()) == VIEW
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"color_by": "<script>"},
+        {"palette": None},
+        {"ranges": {"height": [0.0, "x"]}},
+        {"ranges": {"height": [0.0, float("nan")]}},
+        {"moment": "many"},
+        {"measurements": [[[1, 2, 3], [4, 5, 6], [7, 8, 9]]]},
+        {"measurements": [[[1, 2]]]},
+        {"chosen": 5},
+    ],
+)
+def test_a_view_that_is_not_ours_is_as_good_as_none(changes):
+    assert view_from_json(json.dumps({**json.loads(VIEW.to_json()), **changes})) is None
+
+
+@pytest.mark.parametrize("text", [None, "", "[]", "3", "{}", "[" * 100_000])
+def test_text_that_is_no_view_is_none(text):
+    assert view_from_json(text) is None
+
+
+def test_what_a_person_did_not_switch_is_as_it_is_at_first():
+    assert View().shows(FINAL)
+    assert not View().with_layer(FINAL.key, on=False).shows(FINAL)
+
+
+def test_a_range_belongs_to_what_the_points_are_colored_by():
+    view = View(color_by="height").with_range(Range(1.0, 2.0))
+
+    assert view.range_of("height") == Range(1.0, 2.0)
+    assert view.range_of("time") is None
+    assert view.with_range(None).range_of("height") is None
