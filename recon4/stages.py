@@ -28,12 +28,18 @@ def _frames(
     gnss: Path | None,
 ) -> dict[str, Any]:
     from recon4.recording.ingest import ingest
-    from recon4.store.frames import FrameStore
 
     ingest(
         recordings, out, rig=rig, imu=imu, gnss=gnss, settings=settings.ingest, progress=progress
     )
-    store = FrameStore.open(out)
+    return frames_figures(out)
+
+
+def frames_figures(folder: Path) -> dict[str, Any]:
+    """Figures of the stage ``frames``; a live capture has made its artifact by itself."""
+    from recon4.store.frames import FrameStore
+
+    store = FrameStore.open(folder)
     return {
         "multiframes": len(store),
         "points": store.points,
@@ -172,7 +178,7 @@ ODOMETRY = Stage(
 GRAPH = Stage("graph", 4, _MATCHING, _graph)
 VERIFICATION = Stage("verification", 2, ("verification", "graph"), _verification)
 REVIEW = Stage("review", 1, ("verification", "graph"), _review)
-REFINE = Stage("refine", 1, ("segments", "planes", "odometry", "graph", "refine"), _refine)
+REFINE = Stage("refine", 2, ("segments", "planes", "odometry", "graph", "refine"), _refine)
 LEVEL = Stage("level", 3, ("level", "gnss"), _level)
 INTENSITY = Stage("intensity", 2, ("intensity",), _intensity)
 MAP = Stage("map", 1, ("map",), _map)

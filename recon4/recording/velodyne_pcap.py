@@ -91,9 +91,9 @@ class VelodynePcap:
         """Stream the whole recording once; the shots of one sensor come in order of time."""
         batches = (self._batches(path) for path in self._paths)
         for path, datagrams in heapq.merge(*batches, key=lambda batch: int(batch[1].t_ns[0])):
+            yield from self._decode_samples(datagrams)  # first: points are mapped with them
             for channel in self._channels:
                 yield from self._decode(channel, path, datagrams)
-            yield from self._decode_samples(datagrams)
         for channel in self._channels:
             yield channel.data.flush()
         fragments = self._report.counts["records_fragment"]

@@ -1,0 +1,52 @@
+"""Intensity made comparable while walking: a running table by sensor, ring and range."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import Array
+
+_RANGE_BIN_M = 2.0
+_RANGES = 32
+_MEMORY = 20_000.0
+"""Points a bin remembers."""
+
+
+class LiveIntensity:
+    """Mean and deviation a bin so far; the finished map has the better table (``intensity``)."""
+
+    def __init__(self, sensors: int) -> None:
+        shape = (sensors, 128, _RANGES)
+        self._count = np.zeros(shape)
+        self._mean = np.zeros(shape)
+        self._square = np.zeros(shape)
+
+    def normalize(
+        self,
+        intensity: NDArray[Any],
+        sensor: NDArray[Any],
+        ring: NDArray[Any],
+        range_m: Array,
+    ) -> NDArray[np.uint8]:
+        """Learn from points, then give their intensities with mean 128 and deviation 48 a bin.
+
+        Args:
+            intensity: As measured, (N,).
+            sensor: Row of the sensor, (N,).
+            ring: Ring, (N,).
+            range_m: Range [m], (N,).
+        """
+        bins = np.minimum(range_m / _RANGE_BIN_M, _RANGES - 1).astype(np.intp)
+        at = np.ravel_multi_index((sensor, np.minimum(ring, 127), bins), self._count.shape)
+        value = intensity.astype(np.float64)
+        fresh = np.bincount(at, minlength=self._count.size).reshape(self._count.shape)
+        for table, weight in ((self._mean, value), (self._square, value**2)):
+            total = np.bincount(at, weight, self._count.size).reshape(self._count.shape)
+            table += (total - fresh * table) / np.maximum(self._count + fresh, 1.0)
+        self._count = np.minimum(self._count + fresh, _MEMORY)
+        mean = self._mean.ravel()[at]
+        sd = np.sqrt(np.maximum(self._square.ravel()[at] - mean**2, 1.0))
+        return np.clip(128.0 + 48.0 * (value - mean) / sd, 0.0, 255.0).astype(np.uint8)

@@ -1,0 +1,221 @@
+"""The mapper: a process that follows a capture file, maps it, and keeps the frames for the project.
+
+``python -m recon4.live.mapper PROJECT`` reads the file the recorder writes, at most as fast as it
+grows. It may be killed and started again at any time: it begins at the start of the file and
+catches up. It talks JSON lines on a Unix socket (``docs/live.md``): the messages of `LiveMap`,
+``notes`` (repairs and warnings of the reader) and, at the end, ``done``.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+import shutil
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from recon4.errors import Recon4Error
+from recon4.live.growing import GrowingFile, Growth
+from recon4.live.line_server import LineServer
+from recon4.live.live_map import LiveMap, Message
+from recon4.live.project_files import finish
+from recon4.live.session import Session, load_session, stretched
+from recon4.model.multiframe import Multiframe
+from recon4.model.rig import Rig, load_rig
+from recon4.model.samples import STANDARD_GRAVITY_M_S2, GnssSamples, ImuSamples
+from recon4.progress import Silent
+from recon4.recording.ingest import Live, ingest
+from recon4.settings import Settings, preset
+
+log = logging.getLogger(__name__)
+
+LATE_NS = 700_000_000
+"""A multiframe older than that when its turn comes is thinned out, every other one [ns]."""
+_LONGEST_LINE = 32 << 20
+
+
+class Mapper:
+    """Reads and maps in a thread; the event loop listens to the recorder and talks."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._rig: Rig = load_rig(session.rig)
+        self._settings: Settings = preset(session.preset)
+        self._map = LiveMap(self._rig, self._settings)
+        self._mapping = threading.Lock()
+        self._growth = Growth()
+        self._live = Live(self._open, self._watch)
+        self._loop = asyncio.get_running_loop()
+        self._lines = LineServer(greet=self._greeting, hear=lambda told: None)
+        self._notes: Message = {"kind": "notes", "warnings": [], "counts": {}}
+        self._told_s = 0.0
+        self._skip_next = False
+
+    async def run(self, on_ready: Callable[[], None]) -> int:
+        """Map until the recorder has ended; exit code."""
+        await self._lines.listen(self._session.socket("mapper"))
+        for sign in (signal.SIGTERM, signal.SIGINT):
+            self._loop.add_signal_handler(sign, self._growth.complete)
+        following = asyncio.create_task(self._follow())
+        await asyncio.to_thread(warm_up, self._rig, self._settings)
+        on_ready()
+        try:
+            outcome = await asyncio.to_thread(self._read)
+        except Recon4Error as error:
+            log.exception("mapping ended")
+            outcome = {"kind": "done", "frames": 0, "problem": str(error)}
+        following.cancel()
+        await asyncio.gather(following, return_exceptions=True)
+        self._lines.say(outcome)
+        await self._lines.close()
+        return 1 if outcome.get("problem") else 0
+
+    async def _follow(self) -> None:
+        """Hear from the recorder how far the file is; when it is gone the file is complete."""
+        with suppress(ConnectionError, FileNotFoundError):
+            reader, writer = await asyncio.open_unix_connection(
+                self._session.socket("recorder"), limit=_LONGEST_LINE
+            )
+            while line := await reader.readline():
+                told = json.loads(line)
+                if told["kind"] == "written":
+                    self._growth.reached(told["bytes"])
+                elif told["kind"] == "stopped":
+                    break
+            writer.close()
+        self._growth.reached(self._session.capture.stat().st_size)
+        self._growth.complete()
+
+    def _read(self) -> Message:
+        out = self._session.folder / "frames"
+        shutil.rmtree(out, ignore_errors=True)
+        out.mkdir(parents=True)
+        ingest(
+            [self._session.capture],
+            out,
+            rig=self._rig,
+            imu=None,
+            gnss=None,
+            settings=self._settings.ingest,
+            progress=Silent(),
+            live=self._live,
+        )
+        began_s = time.monotonic()
+        frames = finish(self._session, out, self._settings)
+        seconds = round(time.monotonic() - began_s, 2)
+        return {"kind": "done", "frames": frames, "seconds": seconds, "problem": ""}
+
+    def _open(self, path: Path) -> Any:
+        return GrowingFile(path, self._growth)
+
+    def _watch(self, item: Multiframe | ImuSamples | GnssSamples) -> None:
+        if isinstance(item, ImuSamples):
+            self._map.extend_imu(item)
+        elif isinstance(item, GnssSamples):
+            self._say(_fix(item))
+        elif self._is_late(item):
+            self._map.thin()
+        else:
+            with self._mapping:
+                told = self._map.push(item)
+            told[0]["age_s"] = round((self._now_ns() - told[0]["t_ns"]) / 1e9, 3)
+            for message in told:
+                self._say(message)
+            self._tell_notes()
+
+    def _is_late(self, frame: Multiframe) -> bool:
+        """Whether to leave a frame out of the mapping: every other one, while behind."""
+        late = self._now_ns() - frame.t_ns - frame.duration_ns > LATE_NS
+        self._skip_next = late and not self._skip_next
+        return self._skip_next
+
+    def _now_ns(self) -> int:
+        return stretched(time.time_ns(), self._session.speed)
+
+    def _tell_notes(self) -> None:
+        if time.monotonic() - self._told_s < 1.0:
+            return
+        self._told_s = time.monotonic()
+        report = self._live.report
+        notes = {"warnings": report.warnings[-20:], "counts": dict(report.counts)}
+        self._notes = {"kind": "notes", **notes}
+        self._say(self._notes)
+
+    def _say(self, message: Message) -> None:
+        self._loop.call_soon_threadsafe(self._lines.say, message)
+
+    def _greeting(self) -> list[Message]:
+        with self._mapping:
+            return [*self._map.everything(), self._notes]
+
+
+def _fix(gnss: GnssSamples) -> Message:
+    sd = gnss.sd_enu_m[-1]
+    return {
+        "kind": "fix",
+        "t_ns": int(gnss.t_ns[-1]),
+        "quality": int(gnss.quality[-1]),
+        "lat_rad": float(gnss.lat_rad[-1]),
+        "lon_rad": float(gnss.lon_rad[-1]),
+        "sd_m": None if sd[0] != sd[0] else [round(float(v), 3) for v in sd],
+    }
+
+
+def warm_up(rig: Rig, settings: Settings) -> None:
+    """Load the compiled kernels on made-up multiframes: the first real ones must not be late."""
+    live_map = LiveMap(rig, settings)
+    rng = np.random.default_rng(0)
+    ring, step = np.meshgrid(np.arange(16), np.arange(900))
+    azimuth, elevation = step.ravel() * 2 * np.pi / 900, np.deg2rad(2.0 * ring.ravel() - 15)
+    ray = np.stack([np.cos(azimuth), np.sin(azimuth), np.tan(elevation)], axis=1)
+    reach_m = 3.0 / np.abs(ray).max(axis=1, keepdims=True) + rng.normal(0, 0.01, (len(ray), 1))
+    count = len(ray)
+    for k in range(3):
+        t_ns = k * 100_000_000
+        imu_ns = t_ns + 10_000_000 * np.arange(11, dtype=np.int64)
+        accel = np.tile([0.0, 0.0, STANDARD_GRAVITY_M_S2], (11, 1))
+        live_map.extend_imu(ImuSamples(imu_ns, np.zeros((11, 3)), accel))
+        frame = Multiframe(
+            frame_id=k,
+            t_ns=t_ns,
+            duration_ns=100_000_000,
+            xyz=(ray * reach_m).astype(np.float32),
+            intensity=np.full(count, 30, np.uint8),
+            ring=ring.ravel().astype(np.uint8),
+            sensor=np.zeros(count, np.uint8),
+            echo=np.zeros(count, np.uint8),
+            dt_ns=np.sort(rng.integers(0, 100_000_000, count)).astype(np.int32),
+        )
+        live_map.push(frame)
+
+
+def main(project: Path) -> int:
+    """Follow the capture of a project; says ``ready`` on its output once it listens."""
+    logging.basicConfig(level=logging.INFO, format="%(asctime)s %(name)s %(message)s")
+
+    def say_ready() -> None:
+        sys.stdout.write("ready\n")
+        sys.stdout.flush()
+
+    async def run() -> int:
+        return await Mapper(session).run(say_ready)
+
+    try:
+        session = load_session(project)
+        return asyncio.run(run())
+    except Recon4Error as error:
+        sys.stderr.write(f"{error}\n")
+        return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1])))

@@ -1,0 +1,94 @@
+"""Odometry of a capture that goes on: takes the IMU as it comes, and doubts it when it must."""
+
+from __future__ import annotations
+
+from collections import deque
+
+import numpy as np
+
+from recon4.geometry.se3 import SE3
+from recon4.model.multiframe import Multiframe
+from recon4.model.rig import Rig
+from recon4.model.samples import ImuSamples
+from recon4.recording.samples import join
+from recon4.registration.odometry import Odometry, OdometryStep
+from recon4.settings import Settings
+
+_TRIED_FRAMES = 20
+"""The IMU is doubted on so many of the last multiframes, and at most once in so many."""
+_BAD_FRAMES = 8
+"""Of those, lost or far off: so many raise the doubt."""
+_FAR_M = 0.08
+_BETTER = 0.75
+
+
+class Tracker:
+    """`Odometry` with ``push``, whose IMU samples come in pieces."""
+
+    def __init__(self, rig: Rig, settings: Settings) -> None:
+        self._rig, self._settings = rig, settings
+        self._offset_ns = round(rig.imu_time_offset_s * 1e9)
+        self._waiting: list[ImuSamples] = []
+        self._odometry: Odometry | None = None
+        self._recent: deque[tuple[Multiframe, bool]] = deque(maxlen=_TRIED_FRAMES)
+        self._imu: deque[ImuSamples] = deque(maxlen=1000)
+        self._since_doubt = 0
+        self.T_map_odom = SE3.identity()
+        """Where the frame of the odometry lies; moved when a place is recognized."""
+        self.with_imu = False
+        """Whether the motion comes from an IMU."""
+        self.remark = ""
+        """What the operator should know of the IMU; empty = nothing."""
+
+    def extend_imu(self, imu: ImuSamples) -> None:
+        """Take samples as they were read."""
+        imu = ImuSamples(imu.t_ns + self._offset_ns, imu.gyro_rad_s, imu.accel_m_s2)
+        self._imu.append(imu)
+        if self._odometry is None:
+            self._waiting.append(imu)
+        else:
+            self._odometry.extend_imu(imu)
+
+    def push(self, frame: Multiframe) -> OdometryStep:
+        """Register the next multiframe; poses are in the frame `T_map_odom` places."""
+        if self._odometry is None:
+            imu = join(self._waiting)
+            self.with_imu = imu is not None and len(imu) > 1
+            self._odometry = Odometry(self._rig, self._settings, imu)
+            self._waiting.clear()
+        step = self._odometry.push(frame)
+        self._recent.append((frame, step.lost or not step.error_m < _FAR_M))
+        self._since_doubt += 1
+        bad = sum(is_bad for _, is_bad in self._recent)
+        if self.with_imu and bad >= _BAD_FRAMES and self._since_doubt >= _TRIED_FRAMES:
+            self._since_doubt = 0
+            return self._doubt(step)
+        return step
+
+    def move(self, T_map_body: SE3, step: OdometryStep) -> None:
+        """From now on the map has this pose at the step's time."""
+        self.T_map_odom = T_map_body @ step.T_odom_body.inverse()
+
+    def _doubt(self, step: OdometryStep) -> OdometryStep:
+        """Go on without the IMU if the last multiframes fit clearly better without it."""
+        frames = [frame for frame, _ in self._recent]
+        with_imu, _, _ = self._tried(frames, join(list(self._imu)))
+        without, odometry, last = self._tried(frames, None)
+        if not without < _BETTER * with_imu:
+            return step
+        T_map_body = self.T_map_odom @ step.T_odom_body
+        self._odometry, self.with_imu = odometry, False
+        self.remark = (
+            "the IMU contradicts the LiDARs and is not used: is it mounted as the rig file says "
+            "(upside down?), its clock the same?"
+        )
+        self.move(T_map_body, last)
+        return last
+
+    def _tried(
+        self, frames: list[Multiframe], imu: ImuSamples | None
+    ) -> tuple[float, Odometry, OdometryStep]:
+        odometry = Odometry(self._rig, self._settings, imu)
+        steps = [odometry.push(frame) for frame in frames]
+        errors = [1.0 if step.lost else np.nan_to_num(step.error_m, nan=1.0) for step in steps[1:]]
+        return float(np.mean(errors)), odometry, steps[-1]
