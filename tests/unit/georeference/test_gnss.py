@@ -198,6 +198,13 @@ def test_a_straight_line_does_not_roll() -> None:
     assert worst_m(result, line) < 0.08
 
 
+def soft(graph: PoseGraph) -> PoseGraph:
+    """A walk whose edges promise twenty times less: no match for loops that agree."""
+    return graph.with_edges(
+        tuple(edge.evolve(information=edge.information / 400.0) for edge in graph.edges)
+    )
+
+
 def with_loops(
     graph: PoseGraph, true: Trajectory, *, shift_m: float, **changes: object
 ) -> PoseGraph:
@@ -221,7 +228,7 @@ def test_loops_stay_or_fall_by_what_the_positions_say(
     true: Trajectory, gnss: GnssSamples, shift_m: float, kept: int
 ) -> None:
     graph, dense = slam(true, np.random.default_rng(1))
-    graph = with_loops(graph, true, shift_m=shift_m)
+    graph = with_loops(soft(graph), true, shift_m=shift_m)
     unregistered = graph.edges[0].evolve(
         j=50, kind=EdgeKind.LOOP, verdict=Verdict.REJECTED, reason=Reason.OVERLAP
     )
@@ -235,7 +242,7 @@ def test_loops_stay_or_fall_by_what_the_positions_say(
     assert all(edge.reason is Reason.ROBUST for edge in loops if not edge.in_graph)
     assert len(result.rejected) == LOOPS - kept
     assert result.to_json()["edges_rejected"] == list(result.rejected)
-    assert worst_m(result, true) < 0.08
+    assert worst_m(result, true) < 0.15
     assert result.used.mean() > 0.98
 
 
