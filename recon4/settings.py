@@ -315,6 +315,9 @@ class RefineSettings:
     """Every so many multiframes are built into the map; all of them are moved."""
     gate_m: float = 0.1
     """Segments farther from their plane do not match [m]."""
+    min_gap_s: float = 6.0
+    """A multiframe is matched with points at least so much earlier or later only [s]
+    (requirements A12 L-4); 0, or a recording shorter than three gaps: with all, its own as well."""
     step_sd_m: float = 0.001
     """How much the correction may change from one multiframe to the next [m] …"""
     step_sd_rad: float = 2e-4
@@ -325,6 +328,9 @@ class RefineSettings:
     """The same for its rotation [rad]."""
     converged_step_m: float = 4e-3
     """Stop once no multiframe moves farther than this [m]."""
+
+    def __post_init__(self) -> None:
+        _require(self.min_gap_s >= 0.0, "min_gap_s must be 0 or more", self.min_gap_s)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -122,16 +122,35 @@ def intensity_charts(curves: tuple[Dependency, ...]) -> Charts:
     out: Charts = []
     for curve in curves:
         series = [
-            ("as measured", curve.x, curve.raw, GREY),
-            ("normalized", curve.x, curve.normalized, BLUE),
+            ("as measured", curve.mean.x, curve.mean.raw, GREY),
+            ("normalized", curve.mean.x, curve.mean.normalized, BLUE),
         ]
         svg = lines(f"intensity-{curve.name}", series, labels=(curve.label, "mean intensity"))
         words = (
-            f"Intensity by {curve.name}: the curve's deviation falls from "
-            f"{curve.spread_raw:.2f} to {curve.spread_normalized:.2f}."
+            f"Mean intensity by {curve.name}: the curve's deviation was "
+            f"{curve.mean.spread_raw:.2f} and is {curve.mean.spread_normalized:.2f}."
         )
         out.append((svg, words))
+        out += _same_surface_chart(curve)
     return out
+
+
+def _same_surface_chart(curve: Dependency) -> Charts:
+    same = curve.same
+    if same is None:
+        return []
+    series = [
+        ("as measured", same.x, same.raw, GREY),
+        ("normalized", same.x, same.normalized, BLUE),
+    ]
+    label = "over that of the same surface"
+    svg = lines(f"intensity-same-{curve.name}", series, labels=(curve.label, label))
+    words = (
+        f"The same, each point over the intensity of its own surface, so that it does not count "
+        f"what lies where: the deviation falls from {100.0 * same.spread_raw:.1f} % to "
+        f"{100.0 * same.spread_normalized:.1f} %."
+    )
+    return [(svg, words)]
 
 
 def _tracking_charts(steps: dict[str, NDArray[Any]], time: str) -> Charts:
@@ -145,7 +164,9 @@ def _tracking_charts(steps: dict[str, NDArray[Any]], time: str) -> Charts:
         svg = lines("tracking-error", series, labels=(time, "registration error [cm]"))
         out.append((svg, "Odometry: mean distance of matched segments from the local map."))
     if "share" in steps:
-        series = [("", t_s, 100.0 * steps["share"].astype(np.float64), GREEN)]
+        matched = 100.0 * steps["share"].astype(np.float64)
+        matched[0] = np.nan  # the first has nothing to match
+        series = [("", t_s, matched, GREEN)]
         svg = lines("tracking-share", series, labels=(time, "matched [%]"))
         out.append((svg, "Odometry: share of the segments that found a partner."))
     return out

@@ -77,7 +77,8 @@ def lines(
     chart = Chart(name)
     for label, x, y, color in series:
         few = thinned(len(x))
-        chart.axes.plot(x[few], y[few], color=color, lw=1.3, label=label)
+        at, shown = broken_at_holes(x[few], y[few])
+        chart.axes.plot(at, shown, color=color, lw=1.3, marker=".", ms=2.5, label=label)
     chart.axes.set(xlabel=labels[0], ylabel=labels[1])
     chart.axes.set_ylim(bottom=min(0.0, chart.axes.get_ylim()[0]))
     return chart.svg()
@@ -120,6 +121,7 @@ def histogram(
     if log:
         chart.axes.set_xscale("log")
         chart.axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    chart.axes.yaxis.get_major_locator().set_params(integer=True)
     chart.axes.set(xlabel=labels[0], ylabel=labels[1], xlim=(low, 1.05 * high))
     return chart.svg()
 
@@ -139,6 +141,15 @@ def cumulative(name: str, distance_m: Array, counts: Array, *, marks_m: Sequence
         xlabel="distance to the model [cm]", ylabel="points nearer [%]", ylim=(0, 101), xlim=(0, 10)
     )
     return chart.svg(legend=False)
+
+
+def broken_at_holes(x: Array, y: Array) -> tuple[Array, Array]:
+    """A curve with NaN where three times the usual step is missing, so that no line bridges it."""
+    if len(x) < 3:
+        return x, y
+    step = np.diff(x)
+    after = np.flatnonzero(step > 3.0 * np.median(step)) + 1
+    return np.insert(x, after, np.nan), np.insert(y.astype(np.float64), after, np.nan)
 
 
 def thinned(count: int, most: int = 1500) -> Any:

@@ -52,7 +52,7 @@ def headline(findings: list[Finding]) -> tuple[Level, str]:
 def find(facts: ReportFacts, results: Results, drift: DriftClosed | None) -> list[Finding]:
     """Everything worth saying, worst first."""
     found = [*_tracking(results), *_loops(results.graph), *_closed(drift)]
-    found += [*_imported(results), *_accuracy(facts)]
+    found += [*_levelled(results), *_imported(results), *_accuracy(facts)]
     found += [Finding(Level.WARNING, text) for text in facts.warnings]
     return sorted(found, key=lambda finding: -finding.level)
 
@@ -113,6 +113,13 @@ def _closed(drift: DriftClosed | None) -> list[Finding]:
             Finding(Level.WARNING, text + _cm(float(np.percentile(drift.loop_after_m, 95))) + ".")
         )
     return out
+
+
+def _levelled(results: Results) -> list[Finding]:
+    if results.georeference.get("levelling", {}).get("source") != "none":
+        return []
+    text = "The map is not levelled: heights and slopes in it are those of the sensor's first pose."
+    return [Finding(Level.WARNING, text)]
 
 
 def _imported(results: Results) -> list[Finding]:

@@ -20,6 +20,7 @@ from recon4.report.edges import edge_rows
 from recon4.report.facts import ReportFacts
 from recon4.report.findings import find, headline
 from recon4.report.maps import map_chunks, rasterize
+from recon4.report.words import imported_rows, placed_rows
 from recon4.settings import Settings, preset
 from recon4.store.atomic import write_text
 
@@ -74,19 +75,24 @@ def render(facts: ReportFacts) -> str:
         edge_rows=edge_rows(results.graph) if results.graph is not None else [],
         accuracy=pictures.accuracy_pictures(facts),
         intensity=pictures.intensity_pictures(results, rasters),
-        placed=_flat(results.georeference),
+        placed=placed_rows(results.georeference),
         placed_charts=pictures.georeference_pictures(results),
-        imported=_flat({k: v for k, v in results.imported.items() if k not in _TOLD}),
+        imported=imported_rows(results.imported),
         changed=changed_settings(facts.settings, facts.preset),
         all_settings=_flat(asdict(facts.settings)),
-        frame=f"{facts.crs} (metres)" if facts.crs else "local map frame, z up (metres)",
+        frame=_frame(facts, results),
         total_s=sum(stage.seconds for stage in facts.stages),
         peak_bytes=max((stage.peak_bytes for stage in facts.stages), default=0),
     )
     return page.encode("utf-8", errors="replace").decode("utf-8")  # names that are not text
 
 
-_TOLD = {"warnings", "derived", "outcome"}
+def _frame(facts: ReportFacts, results: Results) -> str:
+    """What the coordinates mean."""
+    if facts.crs:
+        return f"{facts.crs} (metres)"
+    levelled = results.georeference.get("levelling", {}).get("source") != "none"
+    return f"local map frame, {'z up' if levelled else 'not levelled'} (metres)"
 
 
 def changed_settings(settings: Settings, preset_name: str) -> list[tuple[str, str, str]]:

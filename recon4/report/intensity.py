@@ -20,45 +20,66 @@ _CLASSES = {"range": "range_m", "incidence": "incidence_deg"}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Curve:
+    """Intensity in classes of one quantity, before and after."""
+
+    x: Array
+    """The classes that hold points, (N,)."""
+    raw: Array
+    """(N,)."""
+    normalized: Array
+    """(N,)."""
+    spread_raw: float
+    """Standard deviation of the classes' values, weighted by points."""
+    spread_normalized: float
+    """The same after normalization: the smaller, the flatter the curve."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Dependency:
     """Mean intensity in classes of one quantity."""
 
     name: str
     label: str
     """Name of the axis with its unit."""
-    x: Array
-    """The classes that hold points, (N,)."""
-    raw: Array
-    """Mean raw intensity, (N,)."""
-    normalized: Array
-    """Mean normalized intensity, (N,)."""
-    spread_raw: float
-    """Standard deviation of the classes' means, weighted by points."""
-    spread_normalized: float
-    """The same after normalization: the smaller, the flatter the curve."""
+    mean: Curve
+    """Mean intensity."""
+    same: Curve | None
+    """Intensity over that of the same surface; None = not known."""
 
 
 def dependencies(diagnostics: Mapping[str, NDArray[np.floating]]) -> tuple[Dependency, ...]:
     """Curves from ``diagnostics.npz`` of the stage ``intensity``, those that have points."""
-    curves = [_curve(diagnostics, name, label) for name, label in _NAMES]
+    curves = [_dependency(diagnostics, name, label) for name, label in _NAMES]
     return tuple(curve for curve in curves if curve is not None)
 
 
-def _curve(
+def _dependency(
     diagnostics: Mapping[str, NDArray[np.floating]], name: str, label: str
 ) -> Dependency | None:
-    columns = [diagnostics.get(f"{name}_{part}") for part in ("count", "before", "after")]
-    count, before, after = columns
+    count, before, after = (diagnostics.get(f"{name}_{k}") for k in ("count", "before", "after"))
     if count is None or before is None or after is None:
         return None
-    used = (count >= _MIN_POINTS) & np.isfinite(before[0]) & np.isfinite(after[0])
+    classes = diagnostics.get(_CLASSES.get(name, ""), np.arange(len(count)))
+    mean = _curve(classes, count, before[0], after[0])
+    if mean is None:
+        return None
+    same, seen = diagnostics.get(f"{name}_same"), diagnostics.get(f"{name}_same_count")
+    compared = None if same is None or seen is None else _curve(classes, seen, same[0], same[1])
+    return Dependency(name, label, mean, compared)
+
+
+def _curve(
+    classes: NDArray[np.generic],
+    count: NDArray[np.floating],
+    raw: NDArray[np.floating],
+    normalized: NDArray[np.floating],
+) -> Curve | None:
+    used = (count >= _MIN_POINTS) & np.isfinite(raw) & np.isfinite(normalized)
     if not used.any():
         return None
-    classes = diagnostics.get(_CLASSES.get(name, ""), np.arange(len(count)))
-    raw, normalized, weight = before[0][used], after[0][used], count[used]
-    return Dependency(
-        name=name,
-        label=label,
+    raw, normalized, weight = raw[used], normalized[used], count[used]
+    return Curve(
         x=classes[used].astype(np.float64),
         raw=raw.astype(np.float64),
         normalized=normalized.astype(np.float64),

@@ -36,6 +36,9 @@ Result = TypeVar("Result")
 _CHUNK = 16
 """Multiframes a thread takes at a time."""
 
+_SHORT = 3
+"""In a recording shorter than so many gaps in time there is little else than what is near."""
+
 
 @dataclass(frozen=True, slots=True)
 class Round:
@@ -151,12 +154,21 @@ class _Sweep:
         return planes
 
     def match(self, planes: PlaneMap) -> tuple[KnotSystem, float, float]:
-        """Normal equations of every multiframe against the map; a share of 0 if nothing matches."""
+        """Normal equations of every multiframe against the map; a share of 0 if nothing matches.
+
+        With ``refine.min_gap_s`` the map is made to forget what lies nearer in time than that to
+        the multiframes being matched, and is given it back afterwards.
+        """
         count = len(self._frames)
         H, g = np.zeros((count, 12, 12)), np.zeros((count, 12))
         distances: list[float] = []
         shares: list[float] = []
-        results = self._in_order(lambda row: self._match_one(planes, row), 1)
+        absent = _Absent(planes, self._gap_rows(), self._settings.refine.map_stride)
+
+        def forget(chunk: range) -> None:
+            absent.move_to(chunk, self._ends, count)
+
+        results = self._in_order(lambda row: self._match_one(planes, row), 1, before=forget)
         for row, found in enumerate(results):
             if found is not None:
                 H[row], g[row], mean_m, share = found
@@ -194,14 +206,54 @@ class _Sweep:
         scale = self._settings.odometry.information_scale
         return scale * found.H, scale * found.g, found.mean_m, found.share
 
-    def _in_order(self, work: Callable[[int], Result], stride: int) -> Iterator[Result]:
-        """What ``work`` makes of the multiframes, a few at a time on several threads."""
+    def _gap_rows(self) -> int:
+        """Multiframes within the gap; 0 = a multiframe may match its own points."""
+        durations = self._frames.index["duration_ns"]
+        rows = int(np.ceil(self._settings.refine.min_gap_s * 1e9 / max(1, int(durations.min()))))
+        return rows if len(self._frames) >= _SHORT * rows else 0
+
+    def _in_order(
+        self,
+        work: Callable[[int], Result],
+        stride: int,
+        *,
+        before: Callable[[range], None] = lambda _: None,
+    ) -> Iterator[Result]:
+        """What ``work`` makes of the multiframes, a few at a time on several threads.
+
+        ``before`` is called with the rows of these few, while no thread works.
+        """
         rows = range(0, len(self._frames), stride)
         with ThreadPoolExecutor(self._settings.graph.workers) as pool:
             for first in range(0, len(rows), _CHUNK):
                 chunk = rows[first : first + _CHUNK]
+                before(chunk)
                 yield from pool.map(work, chunk)
                 self._progress.advance(len(chunk))
+
+
+class _Absent:
+    """Multiframes that the map has forgotten for a while, and their points to give back."""
+
+    def __init__(self, planes: PlaneMap, gap_rows: int, stride: int) -> None:
+        self._planes, self._gap_rows, self._stride = planes, gap_rows, stride
+        self._ends: dict[int, Array] = {}
+        self._next = 0
+
+    def move_to(self, rows: range, ends: Callable[[int], Array | None], count: int) -> None:
+        """Take out what is near in time to some rows, later than those of the call before."""
+        if self._gap_rows == 0:
+            return
+        first, last = rows[0] - self._gap_rows, rows[-1] + self._gap_rows
+        for row in [row for row in self._ends if row < first]:
+            self._planes.add(self._ends.pop(row))
+        for row in range(self._next, min(last + 1, count), self._stride):
+            self._next = row + self._stride
+            placed = ends(row)
+            if placed is not None:
+                self._planes.remove(placed)
+                self._ends[row] = placed
+        self._planes.fit()
 
 
 def _knots(frames: FrameStore) -> Times:

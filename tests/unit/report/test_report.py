@@ -136,6 +136,8 @@ def facts(tmp_path: Path) -> ReportFacts:
         channel_count=np.full(32, 1000),
         channel_before=np.stack([np.linspace(20, 60, 32), np.ones(32)]),
         channel_after=np.stack([np.full(32, 40.0), np.ones(32)]),
+        channel_same_count=np.full(32, 500),
+        channel_same=np.stack([np.linspace(0.8, 1.2, 32), np.ones(32)]),
     )
     return ReportFacts(
         title="office walk",
@@ -169,7 +171,8 @@ def test_the_report_says_what_was_found(facts: ReportFacts) -> None:
         "900.0 MB",
         "verification median > limit",
         "Residuals of the 9 fixes used; 0 were left out.",
-        "falls from 11.91 to 0.00",
+        "deviation was 11.91 and is 0.00",
+        "deviation falls from 11.9 % to 0.0 %",
     ):
         assert words in text, words
 

@@ -9,7 +9,9 @@ from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import save_graph
 from recon4.progress import Silent
-from recon4.semi_rigid.refine import corrected_by_graph, refine, refine_trajectory
+from recon4.registration.segments import sample_segments
+from recon4.registration.submap import place_segments
+from recon4.semi_rigid.refine import _Sweep, corrected_by_graph, refine, refine_trajectory
 from recon4.settings import Settings, override
 from recon4.store.arrays import load_trajectory, save_trajectory
 from tests.scanned_room import strolling, walk, without_points
@@ -100,6 +102,57 @@ def test_without_any_match_nothing_moves(stroll):
 
     assert rounds == []
     np.testing.assert_array_equal(result.T_a_b.t, start.T_a_b.t)
+
+
+# -- points far in time only
+
+
+def matched(stroll, gap_s):
+    """Which multiframes find a match in a map that holds the first multiframe only."""
+    settings = override(SETTINGS, [f"refine.min_gap_s={gap_s}", "refine.map_stride=1000"])
+    frames = lost_none(stroll)
+    sweep = _Sweep(stroll, stroll.truth, frames, settings=settings, progress=Silent())
+    system, _, _ = sweep.match(sweep.build())
+    return system.H.any(axis=(1, 2))
+
+
+def test_a_multiframe_does_not_match_points_near_in_time(stroll):
+    assert matched(stroll, 0.0).all()
+    assert not matched(stroll, 0.7)[:8].any()
+    assert matched(stroll, 0.7)[-5:].all()
+
+
+def test_a_short_recording_matches_all_it_has(stroll):
+    assert matched(stroll, 1.1).all()
+
+
+def test_the_map_is_whole_again_after_a_sweep_but_for_the_end(stroll):
+    settings = override(SETTINGS, ["refine.min_gap_s=0.3"])
+    sweep = _Sweep(stroll, stroll.truth, lost_none(stroll), settings=settings, progress=Silent())
+    planes, whole = sweep.build(), sweep.build()
+
+    sweep.match(planes)
+
+    frame, early = stroll[2], stroll.truth.at(stroll.t_mid_ns[2:3]).t[0]
+    segments = sample_segments(frame, stroll.rig, settings.segments)
+    ends = place_segments(segments, frame.t_ns, frame.duration_ns, stroll.truth)
+    fraction = np.full(len(ends), 0.5)
+    a, b = (
+        p.match(ends.mean(axis=1), fraction, center=early, finest=0, gate_m=0.1)
+        for p in (planes, whole)
+    )
+    assert a.matches > 0.95 * b.matches
+    assert a.mean_m == pytest.approx(b.mean_m, rel=0.1)
+
+
+def test_points_far_in_time_straighten_a_bend_more_than_its_own(stroll):
+    start = bent(stroll.truth)
+    own, far = (
+        refined(stroll, start, settings=override(SETTINGS, [f"refine.min_gap_s={gap_s}"]))[0]
+        for gap_s in (0.0, 0.5)
+    )
+
+    assert off_m(far, stroll.truth) < 0.9 * off_m(own, stroll.truth)
 
 
 # -- the stage

@@ -1,0 +1,121 @@
+"""What the stages wrote down, in words and units for the tables of the report."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from datetime import UTC, datetime
+from typing import Any
+
+from recon4.evaluation.table import number
+
+Rows = list[tuple[str, str]]
+_SOURCES = {
+    "imu": "gravity felt by the IMU",
+    "ins": "orientations of the INS",
+    "floor": "the dominant floor",
+    "none": "not levelled: neither IMU nor floor says what is level",
+}
+_NO_ROW = {"t_ns", "used", "residual_enu_m", "wkt", "warnings", "derived", "outcome"}
+"""Shown as charts, as lists of their own, or too long for a row."""
+
+
+def placed_rows(georeference: Mapping[str, Any]) -> Rows:
+    """Rows of ``georeference.json``: how the map lies."""
+    level = dict(georeference.get("levelling", {}))
+    out: Rows = []
+    source = level.pop("source", None)
+    if source is not None:
+        out.append(("levelled by", _SOURCES.get(source, str(source))))
+    if source != "none":
+        out += _rows(level, "levelling: ")
+    inner = dict(georeference.get("georeference", {}))
+    if "georeferenced" in inner:
+        out.append(("georeferenced", "yes" if inner.pop("georeferenced") else "no"))
+    out += _rows(inner, "") + _rows(georeference.get("crs") or {}, "CRS: ")
+    rest = {k: v for k, v in georeference.items() if k not in {"levelling", "georeference", "crs"}}
+    return out + _rows(rest, "")
+
+
+def imported_rows(report: Mapping[str, Any]) -> Rows:
+    """Rows of ``report.json``: what was read."""
+    out: Rows = []
+    for name, value in report.items():
+        if name == "sensors":
+            out += [(f"sensor {one.get('name', '')}", _sensor(one)) for one in value]
+        elif name == "counts":
+            out += _rows(value, "count: ")
+        elif name == "gaps":
+            out.append(("gaps", f"{len(value)}" if value else "none"))
+        elif name in {"imu", "gnss"}:
+            out += _rows(value, f"{name.upper()}: ") if value else [(name.upper(), "none")]
+        elif name == "duration_ns":
+            out.append(("length of a multiframe", quantity("duration_ms", value / 1e6)[1]))
+        else:
+            out += _rows({name: value}, "")
+    return out
+
+
+def quantity(name: str, value: Any) -> tuple[str, str]:
+    """A name without its unit, and the value with it."""
+    words = name.replace("_", " ")
+    if name.endswith("_ns") and isinstance(value, int):
+        moment = datetime.fromtimestamp(value / 1e9, UTC)
+        text = moment.isoformat(timespec="milliseconds").replace("+00:00", "")
+        return words.removesuffix(" ns"), f"{text.replace('T', ' ')} (sensor's clock, UTC)"
+    for ending, unit, digits in _UNITS:
+        if name.endswith(ending):
+            return words.removesuffix(ending.replace("_", " ")), _text(value, digits) + (
+                f" {unit}" if value is not None else ""
+            )
+    return words, _text(value, 3)
+
+
+_UNITS = (
+    ("lat_deg", "°", 8),
+    ("lon_deg", "°", 8),
+    ("_deg", "°", 3),
+    ("_enu_m", "m (east, north, up)", 3),
+    ("_m", "m", 3),
+    ("_ms", "ms", 1),
+    ("_hz", "Hz", 2),
+)
+
+
+def _rows(values: Mapping[str, Any], prefix: str) -> Rows:
+    out: Rows = []
+    for name, value in values.items():
+        if name in _NO_ROW:
+            continue
+        if isinstance(value, Mapping):
+            out += _rows(value, f"{prefix}{name.replace('_', ' ')} ")
+        else:
+            words, text = quantity(name, value)
+            out.append((prefix + (words or name), text))
+    return out
+
+
+def _sensor(one: Mapping[str, Any]) -> str:
+    parts = [str(one.get("model", ""))]
+    parts += [f"{name} {one[name]}" for name in ("topic", "address", "port") if one.get(name)]
+    if "points" in one:
+        parts.append(f"{_text(one['points'], 0)} points")
+    if one.get("rotation_hz"):
+        parts.append(f"{_text(one['rotation_hz'], 2)} Hz")
+    return ", ".join(part for part in parts if part)
+
+
+def _text(value: Any, digits: int) -> str:
+    if value is None:
+        return "–"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, int):
+        return f"{value:,}".replace(",", "\u202f") if abs(value) >= 10_000 else str(value)
+    if isinstance(value, float):
+        return number(value + 0.0, digits)
+    if isinstance(value, str):
+        return value
+    if isinstance(value, Iterable):
+        items = list(value)
+        return ", ".join(_text(v, digits) for v in items) if len(items) <= 6 else f"{len(items)}"
+    return str(value)

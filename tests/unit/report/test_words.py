@@ -1,0 +1,88 @@
+"""Tables of the report: words and units instead of names of fields."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from recon4.report.artifacts import Results
+from recon4.report.figures import broken_at_holes
+from recon4.report.findings import Level, find
+from recon4.report.html import render
+from recon4.report.words import imported_rows, placed_rows, quantity
+from tests.unit.report.test_report import facts  # noqa: F401
+
+MOMENT = ("t first", "2014-11-04 02:46:49.554 (sensor's clock, UTC)")
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "row"),
+    [
+        ("roll_deg", -0.0, ("roll", "0.000 °")),
+        ("height_m", 276.76837, ("height", "276.768 m")),
+        ("rotation_hz", 19.9714, ("rotation", "19.97 Hz")),
+        ("rmse_enu_m", [0.28767, 0.2, 0.5], ("rmse", "0.288, 0.200, 0.500 m (east, north, up)")),
+        ("spread_deg", None, ("spread", "–")),
+        ("points_near", 12_345, ("points near", "12\u202f345")),
+        ("usable", True, ("usable", "yes")),
+        ("t_first_ns", 1415069209554522896, MOMENT),
+    ],
+)  # fmt: skip
+def test_quantities_have_their_unit(name, value, row):
+    assert quantity(name, value) == row
+
+
+def test_a_map_that_nothing_levelled_says_so_and_lists_no_angles():
+    placed = {
+        "levelling": {"source": "none", "roll_deg": 0.0, "spread_deg": None},
+        "georeference": {"georeferenced": False, "reason": "no GNSS in the recording"},
+    }
+
+    rows = dict(placed_rows(placed))
+
+    assert rows["levelled by"].startswith("not levelled")
+    assert rows["georeferenced"] == "no"
+    assert rows["reason"] == "no GNSS in the recording"
+    assert not [name for name in rows if "roll" in name]
+
+
+def test_import_names_each_sensor_and_what_is_missing():
+    report = {
+        "sensors": [{"name": "lidar", "model": "VLP-16", "port": 2368, "points": 699_704}],
+        "duration_ns": 50_000_000,
+        "counts": {"points_near": 696},
+        "gaps": [],
+        "imu": None,
+        "warnings": ["shown elsewhere"],
+    }
+
+    rows = imported_rows(report)
+
+    assert rows == [
+        ("sensor lidar", "VLP-16, port 2368, 699\u202f704 points"),
+        ("length of a multiframe", "50.0 ms"),
+        ("count: points near", "696"),
+        ("gaps", "none"),
+        ("IMU", "none"),
+    ]
+
+
+def test_a_map_that_is_not_level_is_a_warning_and_not_called_z_up(facts, tmp_path: Path):  # noqa: F811
+    unlevel = '{"levelling": {"source": "none"}}'
+    (tmp_path / "level" / "georeference.json").write_text(unlevel)
+
+    page = render(facts)
+    found = find(facts, Results(georeference={"levelling": {"source": "none"}}), None)
+
+    assert "local map frame, not levelled (metres)" in page
+    assert [f for f in found if f.level is Level.WARNING and "not levelled" in f.text]
+    assert not find(facts, Results(georeference={"levelling": {"source": "imu"}}), None)
+
+
+def test_no_line_is_drawn_over_a_hole_in_a_curve():
+    x = np.array([0.0, 1.0, 2.0, 9.0, 10.0])
+
+    at, shown = broken_at_holes(x, np.arange(5))
+
+    assert np.isnan(at).tolist() == [False, False, False, True, False, False]
+    assert shown[~np.isnan(at)].tolist() == [0, 1, 2, 3, 4]
