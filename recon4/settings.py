@@ -172,7 +172,11 @@ class OdometrySettings:
     """Pose of each multiframe from the ones before (V §2.4, requirements A3, A5)."""
 
     history: int = 10
-    """Keyframes in the local map."""
+    """Keyframes in the local map; multiframes that line odometry looks back on."""
+    history_mode: Literal["joined", "averaged"] = "joined"
+    """Line odometry: ``joined`` registers to the lines of the history together, ``averaged`` to
+    each of them, the mean of the poses being taken (V Table 3.1, multi-frame; as many times the
+    work)."""
     keyframe_m: float = 0.3
     """A multiframe joins the local map once the body moved so far [m] …"""
     keyframe_rad: float = 0.26
@@ -495,9 +499,22 @@ PRESETS: dict[str, Settings] = {
     ),
     "thesis": Settings(
         registration=RegistrationSettings(solver="svd", max_iterations=500),
-        odometry=OdometrySettings(use_imu=False),
-        graph=GraphSettings(mode="verification"),
+        odometry=OdometrySettings(
+            use_imu=False, use_gnss=False, history=1, history_mode="averaged", line_sd_rad=0.02
+        ),
+        graph=GraphSettings(
+            mode="verification",
+            exhaustive=True,
+            retry_rounds=0,
+            source_reach=0,
+            target_reach=0,
+            min_share=0.0,
+            min_degeneracy=0.0,
+            loop_sd_m=0.1,
+            loop_sd_rad=0.01,
+        ),
         verification=VerificationSettings(robust="none"),
+        gnss=GnssSettings(judge_edges=False),
         intensity=IntensitySettings(method="bins", min_contrast=0.0),
     ),
 }

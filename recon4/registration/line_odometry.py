@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import deque
+from dataclasses import replace
 
 import numpy as np
 
 from recon4.geometry.lines import Lines
-from recon4.geometry.se3 import SE3, interpolate, so3_exp, so3_log
+from recon4.geometry.se3 import SE3, interpolate, mean_rotation, so3_exp, so3_log
 from recon4.kernels.imu import place_points
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
@@ -78,10 +79,15 @@ class LineOdometry:
         return Lines.through(a[apart], b[apart])
 
     def _register(self, lines: Lines) -> Registration:
-        target = Lines(
+        if self._settings.odometry.history_mode == "averaged":
+            return averaged([self._register_to(old, lines) for old in self._history])
+        joined = Lines(
             np.concatenate([old.mid for old in self._history]),
             np.concatenate([old.dir for old in self._history]),
         )
+        return self._register_to(joined, lines)
+
+    def _register_to(self, target: Lines, lines: Lines) -> Registration:
         settings = self._settings.registration
         return register_lines(
             LineTarget(target), lines, guess=SE3.identity(), portion=settings.portion,
@@ -125,3 +131,17 @@ class LineOdometry:
             lost,
             np.diag(np.repeat([o.line_sd_rad, o.line_sd_m], 3) ** 2),
         )
+
+
+def averaged(found: list[Registration]) -> Registration:
+    """The simple mean of the poses that converged (V §3.1); rotations after Markley."""
+    good = [one for one in found if one.converged]
+    if not good:
+        return found[-1]
+    T = SE3.stack(one.T_target_source for one in good)
+    return replace(
+        good[-1],
+        T_target_source=SE3(mean_rotation(T.R), T.t.mean(axis=0)),
+        error_m=float(np.mean([one.error_m for one in good])),
+        iterations=max(one.iterations for one in good),
+    )

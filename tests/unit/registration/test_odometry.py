@@ -7,8 +7,9 @@ from recon4.geometry.se3 import SE3, align_points
 from recon4.model.samples import ImuSamples
 from recon4.progress import Silent
 from recon4.recording.poses import read_tum
-from recon4.registration.line_odometry import LineOdometry
+from recon4.registration.line_odometry import LineOdometry, averaged
 from recon4.registration.odometry import Odometry
+from recon4.registration.result import Registration, StopReason
 from recon4.registration.select import make_odometry
 from recon4.registration.stage import dense_trajectory, run_odometry
 from recon4.settings import Settings, override, preset
@@ -225,12 +226,16 @@ def test_the_thesis_preset_takes_lines(stroll):
     assert isinstance(make_odometry(stroll.rig, Settings(), None), Odometry)
 
 
-def test_lines_follow_a_slow_motion():
+@pytest.mark.parametrize("mode", ["joined", "averaged"])
+def test_lines_follow_a_slow_motion(mode):
     def slow(t_s):
         return SE3.exp(np.asarray(t_s)[:, None] * [0, 0, 0.05, 0.15, 0.05, 0.0])
 
     recording = walk(slow, 8, with_imu=False)
-    settings = override(THESIS, ["registration.max_iterations=60"])
+    settings = override(
+        THESIS,
+        ["registration.max_iterations=60", "odometry.history=3", f"odometry.history_mode={mode}"],
+    )
 
     steps = push_all(LineOdometry(recording.rig, settings), recording)
 
@@ -238,6 +243,21 @@ def test_lines_follow_a_slow_motion():
     assert worst_from_start(T, truth) < 0.06
     assert all(step.converged for step in steps)
     np.testing.assert_array_equal(steps[3].t_ns, [T0_NS + 3 * FRAME_NS, T0_NS + 4 * FRAME_NS])
+
+
+def test_the_poses_against_a_history_are_averaged_over_those_that_converged():
+    def found(x_m, stop):
+        T = SE3.from_rpy(0.0, 0.0, x_m, [x_m, 0.0, 0.0])
+        return Registration(T, stop, 30, 0.02, 0.0, 0.5, np.eye(6), 0.1)
+
+    good, bad = StopReason.STEADY_ERROR, StopReason.LIMIT
+    mean = averaged([found(0.1, good), found(9.0, bad), found(0.3, good)])
+    none = averaged([found(0.1, bad), found(0.3, bad)])
+
+    np.testing.assert_allclose(mean.T_target_source.t, [0.2, 0.0, 0.0], atol=1e-12)
+    np.testing.assert_allclose(mean.T_target_source.rpy(), [0.0, 0.0, 0.2], atol=1e-9)
+    assert mean.converged
+    assert not none.converged
 
 
 def test_lines_take_the_gyroscope_if_they_may(stroll):
