@@ -7,7 +7,7 @@ import ipaddress
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import sqlalchemy as sa
@@ -143,6 +143,8 @@ class Access:
     log: AuditLog
     door: Door
     engine: sa.Engine
+    rates: dict[str, Buckets] = field(default_factory=dict)
+    """How much of what each person started lately."""
 
     def close(self) -> None:
         """Let go of the file."""

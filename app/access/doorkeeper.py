@@ -59,7 +59,8 @@ class Doorkeeper:
         elif visit is None:
             await self._app(scope, receive, send)
         else:
-            await asyncio.to_thread(access.sessions.note, visit.session)
+            if access.sessions.unnoted(visit.session):
+                await asyncio.to_thread(access.sessions.note, visit.session)
             await Watch(access, visit.session, scope).run(self._app, receive, send)
 
     def _judge(self, scope: Scope, visit: Visit | None) -> Refusal | None:
@@ -114,7 +115,7 @@ class Watch:
     def _still(self) -> bool:
         """Whether the session goes on; messages of a browser keep it from going idle."""
         session = self._access.sessions.alive(self._session.id)
-        if session is not None and self._active:
+        if session is not None and self._active and self._access.sessions.unnoted(session):
             self._active = False
             self._access.sessions.note(session)
         return session is not None

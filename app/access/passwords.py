@@ -88,7 +88,7 @@ def hashed(password: str) -> str:
 def fits(password: str, stored: str | None) -> bool:
     """Whether a password is the one hashed; takes as long when there is none."""
     try:
-        return HASHER.verify(stored or STAND_IN, _normal(password)) and stored is not None
+        return HASHER.verify(stored or STAND_IN, _normal(password)) and bool(stored)
     except (VerificationError, InvalidHashError):
         return False
 

@@ -141,11 +141,14 @@ class Sessions:
         found = self._select(SESSIONS.c.id == session_id)
         return found[0] if found and not found[0].over(self._clock()) else None
 
+    def unnoted(self, session: Session) -> bool:
+        """Whether it is some time since it was noted that it is in use."""
+        return self._clock() - session.seen_s > NOTED_EVERY_S
+
     def note(self, session: Session) -> None:
         """Note that it is in use."""
         now_s = self._clock()
-        if now_s - session.seen_s > NOTED_EVERY_S:
-            self._write(SESSIONS.update().where(SESSIONS.c.id == session.id).values(seen_s=now_s))
+        self._write(SESSIONS.update().where(SESSIONS.c.id == session.id).values(seen_s=now_s))
 
     def prove(self, session_id: str) -> str:
         """The password was given again: a new token for the same session."""

@@ -1,0 +1,94 @@
+"""Servers with TLS and login for tests, and people who sign in to them."""
+
+from __future__ import annotations
+
+import ssl
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+import httpx
+from websockets.sync.client import ClientConnection, connect
+from websockets.typing import Subprotocol
+
+from app.access.door import open_access
+from app.access.people import Role
+from tests.service.running import Running, server_thread
+
+PASSWORD = "three green owls dance"
+ROLES = {"vera": Role.VIEWER, "otto": Role.OPERATOR, "rita": Role.REVIEWER, "anna": Role.ADMIN}
+"""Name -> role of everybody on the servers of tests."""
+
+
+@dataclass(frozen=True)
+class Secure:
+    """A running server with login."""
+
+    running: Running
+
+    @property
+    def url(self) -> str:
+        return self.running.url
+
+    @property
+    def root(self) -> Path:
+        return self.running.root
+
+    @property
+    def host(self) -> str:
+        return urlsplit(self.url).netloc
+
+    def trust(self) -> ssl.SSLContext:
+        """Trusts the server's made certificate and no other."""
+        return ssl.create_default_context(cafile=self.root / ".recon4" / "tls" / "certificate.pem")
+
+    def client(self, **options: Any) -> httpx.Client:
+        """Somebody who has not signed in."""
+        return httpx.Client(base_url=self.url, verify=self.trust(), timeout=30.0, **options)
+
+    @contextmanager
+    def signed_in(self, name: str, password: str = PASSWORD) -> Iterator[httpx.Client]:
+        """Somebody who has; every request carries the token."""
+        with self.client() as client:
+            answer = client.post("/api/login", json={"name": name, "password": password})
+            assert answer.status_code == 200, answer.text
+            client.headers["X-Recon4-Token"] = answer.json()["token"]
+            yield client
+
+    def websocket(self, path: str, client: httpx.Client, **options: Any) -> ClientConnection:
+        """A WebSocket with the cookies of a client."""
+        cookies = "; ".join(f"{name}={value}" for name, value in client.cookies.items())
+        given = {"origin": self.url, "additional_headers": {"Cookie": cookies} if cookies else {}}
+        return connect(
+            f"wss://{self.host}{path}",
+            ssl=self.trust(),
+            compression=None,
+            max_size=None,
+            proxy=None,
+            **{**given, **options},
+        )
+
+    def viewer(self, client: httpx.Client, **options: Any) -> ClientConnection:
+        """The viewer's WebSocket of the project ``office``."""
+        import viser
+
+        protocol = Subprotocol(f"viser-v{viser.__version__}")
+        path = "/projects/office/viewer"
+        return self.websocket(path, client, subprotocols=[protocol], **options)
+
+
+@contextmanager
+def secure_server(root: Path, **settings: Any) -> Iterator[Secure]:
+    """A server with TLS and login, everybody of `ROLES` known."""
+    state = root / ".recon4"
+    state.mkdir(exist_ok=True)
+    access = open_access(state, login=True)
+    if not access.accounts.all():
+        for name, role in ROLES.items():
+            access.accounts.add(name, role, PASSWORD)
+    access.close()
+    with server_thread(root, lan=True, **settings) as running:
+        yield Secure(running)
