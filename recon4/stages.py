@@ -28,12 +28,18 @@ def _frames(
     gnss: Path | None,
 ) -> dict[str, Any]:
     from recon4.recording.ingest import ingest
-    from recon4.store.frames import FrameStore
 
     ingest(
         recordings, out, rig=rig, imu=imu, gnss=gnss, settings=settings.ingest, progress=progress
     )
-    store = FrameStore.open(out)
+    return frames_figures(out)
+
+
+def frames_figures(folder: Path) -> dict[str, Any]:
+    """Figures of the stage ``frames``; a live capture has made its artifact by itself."""
+    from recon4.store.frames import FrameStore
+
+    store = FrameStore.open(folder)
     return {
         "multiframes": len(store),
         "points": store.points,
