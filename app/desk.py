@@ -18,8 +18,10 @@ from app.errors import DeskFailed
 from app.settings import ONE_THREAD
 
 T = TypeVar("T")
-Kind = Literal["look", "review", "slices"]
-"""``look``: what a recording holds, pictures; ``review``: pairs and optimizing; ``slices``."""
+Kind = Literal["look", "review", "pairs", "slices", "surveys"]
+"""``look``: what a recording holds, pictures; ``review``: graphs, solving, signing; ``pairs``:
+points of two places, and registering them; ``slices``: pictures of cuts;
+``surveys``: what takes longer, and files of unknown origin: references, exports, checks."""
 
 MOST_MEMORY_BYTES = 12 << 30
 """Address space of a child; a hostile file ends the child, not the machine."""

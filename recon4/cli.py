@@ -260,23 +260,28 @@ def verify(
     project: Annotated[Path, typer.Argument(help="Folder that `recon4 process --out` made.")],
     as_json: JsonOption = False,
 ) -> None:
-    """Read every byte of a project again and compare it with the hashes kept."""
+    """Read every byte of a project again; compare hashes, the journal's chain and signatures."""
     from dataclasses import asdict
 
+    from recon4.review.audit import audit_review
     from recon4.store.audit import audit
     from recon4.terminal import watcher
 
     with watcher() as progress:
-        found = audit(project, progress)
+        found, reviewed = audit(project, progress), audit_review(project, progress)
+    damaged = [*found.damaged, *reviewed.damaged]
     if as_json:
-        _write_json(asdict(found))
+        told = {"rows": reviewed.rows, "approvals": reviewed.approvals, "damaged": damaged}
+        _write_json(asdict(found) | told)
     else:
         for name in found.unknown:
             _write(f"not of recon4, left alone: artifacts/{name}")
-        for what in found.damaged:
+        for what in damaged:
             _write(f"damaged: {what}")
-        _write(f"{found.checked} checked, {len(found.damaged)} damaged")
-    if found.damaged:
+        for what in reviewed.approvals:
+            _write(what)
+        _write(f"{found.checked + reviewed.rows} checked, {len(damaged)} damaged")
+    if damaged:
         raise typer.Exit(1)
 
 

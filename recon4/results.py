@@ -19,6 +19,8 @@ from recon4.recording.poses import write_tum
 from recon4.report.artifacts import way_m
 from recon4.report.facts import InputFile, ReportFacts, StageTiming
 from recon4.report.html import write_report
+from recon4.review.approval import approval_of, put_back
+from recon4.review.stamp import stamp_file
 from recon4.settings import Settings, to_json
 from recon4.store.arrays import load_trajectory
 from recon4.store.atomic import atomic_file, copy_file, write_json
@@ -82,6 +84,8 @@ class Summary:
     """How each stage went, in order: key, version, times, memory, reused, figures."""
     versions: Mapping[str, str]
     settings: Mapping[str, Any]
+    approval: Mapping[str, Any] | None
+    """Who approved these results, when, as which version; null = a draft."""
     hashes: Mapping[str, Mapping[str, str]]
     """SHA-256 of ``inputs`` and of ``results``, by file name."""
     folder: Path
@@ -112,6 +116,9 @@ def publish(
     facts = _facts(runs, about, created=created)
     for write in track(_writers(root, runs, facts), progress, what="results", unit="files"):
         write()
+    approval = approval_of(root, {name: run.artifact.key for name, run in runs.items()})
+    if approval:
+        put_back(root, approval)
     summary = Summary(
         name=about.project["name"],
         created=created,
@@ -130,6 +137,7 @@ def publish(
         stages=tuple(_stage(run) for run in runs.values()),
         versions=versions(),
         settings=to_json(about.settings),
+        approval=asdict(approval.stamp) if approval else None,
         hashes={
             "inputs": {file["name"]: file["sha256"] for file in about.project["inputs"]},
             "results": {name: hash_file(root / name) for name in RESULTS},
@@ -141,7 +149,7 @@ def publish(
 
 
 def export_map(project: Path, path: Path, *, crs: str, progress: Progress) -> int:
-    """Write the map of a finished run as LAZ or PLY.
+    """Write the map of a finished run as LAZ or PLY; if it was approved, the file says so.
 
     Args:
         project: The project folder.
@@ -160,14 +168,19 @@ def export_map(project: Path, path: Path, *, crs: str, progress: Progress) -> in
     artifacts = read_artifacts(project)
     if "map" not in artifacts:
         raise StoreError(f"{project} has no map yet: run recon4 process")
+    if path.suffix not in (".laz", ".ply"):
+        raise ConfigError(f"a map is written as .laz or .ply, got {path.name}")
     place = read_crs(artifacts["level"], crs)
     to_crs = place.to_crs if place else None
     if path.suffix == ".laz":
         wkt = place.wkt if place else None
-        return export_laz(artifacts["map"], path, crs=wkt, to_crs=to_crs, progress=progress)
-    if path.suffix == ".ply":
-        return export_ply(artifacts["map"], path, to_crs=to_crs, progress=progress)
-    raise ConfigError(f"a map is written as .laz or .ply, got {path.name}")
+        count = export_laz(artifacts["map"], path, crs=wkt, to_crs=to_crs, progress=progress)
+    else:
+        count = export_ply(artifacts["map"], path, to_crs=to_crs, progress=progress)
+    approval = approval_of(project, {name: folder.name for name, folder in artifacts.items()})
+    if approval:
+        stamp_file(path, path, approval.stamp)
+    return count
 
 
 def _writers(

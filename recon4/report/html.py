@@ -14,6 +14,7 @@ from recon4.evaluation.table import number, share
 from recon4.mapping.tiles import TileSet
 from recon4.model.pose_graph import EdgeKind
 from recon4.report import pictures
+from recon4.report.approval import draft_block
 from recon4.report.artifacts import Results, read_results, way_m
 from recon4.report.drift import DriftClosed, drift_closed
 from recon4.report.edges import edge_rows
@@ -65,6 +66,7 @@ def render(facts: ReportFacts) -> str:
         facts=facts,
         results=results,
         findings=findings,
+        approval=draft_block(),
         level=level.name.lower(),
         verdict=verdict,
         key_figures=_key_figures(facts, results, drift, tiles),

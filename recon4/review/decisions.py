@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from recon4.errors import StoreError
+from recon4.errors import ConfigError, StoreError
 from recon4.geometry.se3 import SE3, Array
 from recon4.store.hashing import hash_json
 
@@ -90,15 +90,17 @@ class Decision:
 
     def __post_init__(self) -> None:
         if self.who in ("", AUTOMATIC):
-            raise ValueError(f"a decision is made by a person, not by {self.who!r}")
+            raise ConfigError(f"a decision is made by a person, not by {self.who!r}")
         if (self.pair is None) == (self.kind in ABOUT_PAIRS):
-            raise ValueError(
+            raise ConfigError(
                 f"a decision to {self.kind} names {'a' if self.pair is None else 'no'} pair"
             )
         if self.pair is not None and not 0 <= self.pair[0] < self.pair[1]:
-            raise ValueError(f"a pair is two multiframes, the earlier first, got {self.pair}")
+            raise ConfigError(f"a pair is two multiframes, the earlier first, got {self.pair}")
+        if len(self.T_i_j) not in (0, 7) or not np.isfinite(self.T_i_j).all():
+            raise ConfigError("a pose is x y z and a quaternion x y z w, all finite")
         if (self.measurement is None) == (self.kind in MEASURED):
-            raise ValueError(f"a decision to {self.kind} with or without a measurement")
+            raise ConfigError(f"a decision to {self.kind} with or without a measurement")
 
     def body(self) -> dict[str, Any]:
         """What the journal keeps beside its columns, as JSON values."""

@@ -1,0 +1,252 @@
+"""HTTP face of the review: parse, delegate, answer."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Depends, Query, Response
+from fastapi.responses import FileResponse
+from starlette.concurrency import run_in_threadpool
+from starlette.requests import Request
+
+from app.access.audit import audit
+from app.access.people import May, Person, Who, fresh_login, needs
+from app.deps import Parts, Server
+from app.errors import Conflict, Problem
+from app.jobs.model import JobState
+from app.review.model import (
+    AlignmentView,
+    Approve,
+    Frame,
+    Guess,
+    NewDecision,
+    ReviewView,
+    RowView,
+    StandingView,
+    Step,
+)
+from recon4.review.approval import NotApprovable, latest_approval
+from recon4.review.approval import approve as sign
+from recon4.review.decisions import Decided, Decision, Kind, fold
+from recon4.review.journal import JournalMoved, NothingToTakeBack, Row, append, read_rows
+from recon4.review.pairs import align, pair_facts, pair_points, walk_facts
+from recon4.review.source import Source
+from recon4.review.state import decisions_in_map
+
+LOOK = [Depends(needs(May.LOOK))]
+REVIEW = [Depends(needs(May.REVIEW))]
+SIGN = [Depends(needs(May.REVIEW)), Depends(fresh_login)]
+PREFIX = "/api/projects/{project_id}/review"
+SIGNING_LIMIT_S = 1800.0
+"""A map of tens of gigabytes is read and written once for its approval."""
+
+router = APIRouter(
+    prefix=PREFIX,
+    tags=["review"],
+    responses={403: {"model": Problem}, 404: {"model": Problem}, 409: {"model": Problem}},
+)
+page = APIRouter()
+
+WEB = Path(__file__).parents[2] / "web"
+
+
+@page.get("/projects/{project_id}/review/", include_in_schema=False, dependencies=LOOK)
+def review_page(project_id: str, server: Server) -> FileResponse:
+    server.projects.folder(project_id)
+    return FileResponse(WEB / "review.html")
+
+
+@router.get("", dependencies=LOOK, summary="State of the review")
+def read_review(project_id: str, server: Server, who: Who) -> ReviewView:
+    """What stands, what can be taken back, and whether the map knows of it."""
+    return _view(project_id, server, who)
+
+
+@router.get("/queue", dependencies=LOOK, summary="Pairs to decide about")
+async def read_queue(project_id: str, server: Server) -> Response:
+    """All pairs but odometry, those that would move the map most first.
+
+    ``columns`` names what each of the ``rows`` holds. Figures are those before any decision.
+    """
+    root = server.projects.folder(project_id)
+    source = await run_in_threadpool(Source.of, root)
+    told = await server.reviews.queue(root, source.key)
+    return Response(told, media_type="application/json")
+
+
+@router.get("/walk", dependencies=LOOK, summary="Moments of the walk")
+async def read_walk(project_id: str, server: Server) -> dict[str, Any]:
+    """Nodes of the graph: multiframe, seconds since the start, position."""
+    root = server.projects.folder(project_id)
+    return await server.desk.run("pairs", walk_facts, root)
+
+
+@router.get("/pair", dependencies=LOOK, summary="One pair")
+async def read_pair(
+    project_id: str, server: Server, frame_i: Frame, frame_j: Frame
+) -> dict[str, Any]:
+    """Poses of a pair, tried or not, and its alternative paths one by one."""
+    root = server.projects.folder(project_id)
+    return await server.desk.run("pairs", pair_facts, root, (frame_i, frame_j))
+
+
+@router.get("/points", dependencies=LOOK, summary="Points of a pair")
+async def read_points(
+    project_id: str,
+    server: Server,
+    *,
+    frame_i: Frame,
+    frame_j: Frame,
+    reach: Annotated[int, Query(ge=0, le=10)] = 0,
+) -> Response:
+    """Points of two multiframes and ``reach`` others before and after each, at most 30 000 each.
+
+    Little-endian: ``R4PP``, uint32 version (1), uint32 numbers of points of i and of j, then
+    float32 x y z of the points of i in the body frame at i, then of j at j [m].
+    """
+    root = server.projects.folder(project_id)
+    told = await server.desk.run("pairs", pair_points, root, (frame_i, frame_j), reach)
+    return Response(told, media_type="application/octet-stream")
+
+
+@router.post("/align", dependencies=REVIEW, summary="Register a pair")
+async def align_pair(project_id: str, guess: Guess, server: Server) -> AlignmentView:
+    """Register two places as the search does, from a first guess; decides nothing."""
+    root, pair = server.projects.folder(project_id), (guess.frame_i, guess.frame_j)
+    found = await server.desk.run("pairs", align, root, pair, tuple(guess.T_i_j))
+    told = found.to_json()["measurement"]
+    figures = ("overlap", "error_m", "limit_m", "degeneracy", "iterations")
+    return AlignmentView(
+        measurement=server.reviews.remember(root, pair, found) if found.converged else "",
+        T_i_j=list(found.measurement.T_i_j),
+        converged=found.converged,
+        reason=found.reason,
+        **{name: told[name] for name in figures},
+    )
+
+
+@router.post("/decisions", status_code=201, dependencies=REVIEW, summary="Decide")
+def decide(project_id: str, new: NewDecision, server: Server, who: Who) -> ReviewView:
+    """Append a decision to the journal; it is on the disk when this answers."""
+    root, pair = server.projects.folder(project_id), (new.frame_i, new.frame_j)
+    measured = new.kind in ("replace", "add")
+    decision = Decision(
+        kind=Kind(new.kind),
+        who=who.name,
+        why=new.why,
+        pair=pair,
+        T_i_j=tuple(new.T_i_j),
+        measurement=server.reviews.measurement(root, pair, new.measurement) if measured else None,
+    )
+    append(root, decision)
+    return _view(project_id, server, who)
+
+
+@router.post("/undo", status_code=201, dependencies=REVIEW, summary="Undo")
+def undo(project_id: str, step: Step, server: Server, who: Who) -> ReviewView:
+    """Take back the last decision, whoever made it."""
+    return _step(Kind.UNDO, project_id, step, server=server, who=who)
+
+
+@router.post("/redo", status_code=201, dependencies=REVIEW, summary="Redo")
+def redo(project_id: str, step: Step, server: Server, who: Who) -> ReviewView:
+    """Decide again what was taken back last."""
+    return _step(Kind.REDO, project_id, step, server=server, who=who)
+
+
+@router.get("/effect", dependencies=LOOK, summary="What the decisions do")
+async def read_effect(project_id: str, server: Server) -> dict[str, Any]:
+    """The graph solved with what stands now: chi², moves, conflicts, without making a new map.
+
+    ``superseded`` is true, and nothing else there, when somebody decided something meanwhile.
+    """
+    root = server.projects.folder(project_id)
+    source = await run_in_threadpool(Source.of, root)
+    decided, before = _now_and_before(await run_in_threadpool(read_rows, root))
+    told = await server.reviews.effect(root, source.key, decided, before)
+    return {"superseded": True} if told is None else told
+
+
+@router.get("/journal", dependencies=LOOK, summary="Journal")
+def read_journal(
+    project_id: str, server: Server, most: Annotated[int, Query(ge=1, le=1000)] = 200
+) -> list[RowView]:
+    """Who decided what, when and why; the newest first."""
+    rows = read_rows(server.projects.folder(project_id))
+    names = ("seq", "time", "who", "kind", "frame_i", "frame_j", "why", "hash")
+    return [RowView(**{n: getattr(row, n) for n in names}) for row in reversed(rows[-most:])]
+
+
+@router.post("/approve", status_code=201, dependencies=SIGN, summary="Approve verification")
+async def approve(
+    project_id: str, asked: Approve, request: Request, *, server: Server, who: Who
+) -> ReviewView:
+    """Sign the results as they are; a version is kept that no later run or decision changes."""
+    root = server.projects.folder(project_id)
+    if await run_in_threadpool(_busy, project_id, server):
+        raise Conflict("a job of this project waits or runs; approve when it is done")
+    signer = {"who": who.name, "role": str(who.role), "why": asked.why}
+    key = server.settings.state / "signing.key"
+    try:
+        approval = await server.desk.run(
+            "review", sign, root, key, signer, asked.confirmed, limit_s=SIGNING_LIMIT_S
+        )
+    except NotApprovable as error:
+        raise Conflict(str(error)) from error
+    what = f"{project_id} version {approval.version} {approval.hash}"
+    await run_in_threadpool(audit, request, "approve", what)
+    return await run_in_threadpool(_view, project_id, server, who)
+
+
+def _step(kind: Kind, project_id: str, step: Step, *, server: Parts, who: Person) -> ReviewView:
+    root = server.projects.folder(project_id)
+    try:
+        append(root, Decision(kind=kind, who=who.name, why=step.why), after_seq=step.after_seq)
+    except (NothingToTakeBack, JournalMoved) as error:
+        raise Conflict(str(error)) from error
+    return _view(project_id, server, who)
+
+
+def _view(project_id: str, server: Parts, who: Person) -> ReviewView:
+    root = server.projects.folder(project_id)
+    rows = read_rows(root)
+    decided = fold(row.decision() for row in rows)
+    in_map = decisions_in_map(root)
+    return ReviewView(
+        seq=len(rows),
+        key=decided.key,
+        undoable=decided.undoable,
+        redoable=decided.redoable,
+        standing=[
+            StandingView(
+                frame_i=one.pair[0],
+                frame_j=one.pair[1],
+                accepted=one.accepted,
+                who=one.who,
+                why=one.why,
+                measured=one.measurement is not None,
+                T_i_j=list(one.measurement.T_i_j) if one.measurement else [],
+            )
+            for one in decided.standing
+        ],
+        in_map=in_map == decided.key,
+        finished=in_map is not None,
+        busy=_busy(project_id, server),
+        may_review=who.may(May.REVIEW),
+        may_process=who.may(May.PROCESS),
+        approval=latest_approval(root, rows),
+    )
+
+
+def _busy(project_id: str, server: Parts) -> bool:
+    jobs = server.jobs.of_project(project_id)
+    return any(job.state in (JobState.QUEUED, JobState.RUNNING) for job in jobs)
+
+
+def _now_and_before(rows: Sequence[Row]) -> tuple[Decided, Decided]:
+    """What stands, and what stood before the last decision."""
+    decisions = [row.decision() for row in rows]
+    decisions = [one for one in decisions if one.kind is not Kind.APPROVE]
+    return fold(decisions), fold(decisions[:-1])

@@ -1,0 +1,80 @@
+"""What the server remembers between the requests of a review; the journal is in the project."""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+from collections import OrderedDict
+from pathlib import Path
+from typing import Any
+
+from app.desk import Desk
+from app.errors import Conflict
+from recon4.review.decisions import Decided, Measurement, Pair
+from recon4.review.pairs import Alignment
+from recon4.review.preview import preview
+from recon4.review.queue import queue_json
+
+_MOST_MEASUREMENTS = 500
+_MOST_QUEUES = 4
+
+
+class Reviews:
+    """One a server."""
+
+    def __init__(self, desk: Desk) -> None:
+        self._desk = desk
+        self._measured: OrderedDict[str, tuple[Path, Pair, Measurement]] = OrderedDict()
+        self._queues: OrderedDict[tuple[Path, str], bytes] = OrderedDict()
+        self._wanted: dict[Path, tuple[str, str]] = {}
+        self._effects: dict[Path, tuple[tuple[str, str, str], dict[str, Any]]] = {}
+        self._turns: dict[Path, asyncio.Lock] = {}
+
+    # -- measurements: what a decision brings was measured by the program, not sent by a browser
+
+    def remember(self, root: Path, pair: Pair, alignment: Alignment) -> str:
+        """Keep a registration; returns its name."""
+        name = secrets.token_hex(12)
+        self._measured[name] = (root, pair, alignment.measurement)
+        if len(self._measured) > _MOST_MEASUREMENTS:
+            self._measured.popitem(last=False)
+        return name
+
+    def measurement(self, root: Path, pair: Pair, name: str) -> Measurement:
+        """A registration of this pair.
+
+        Raises:
+            Conflict: If it is not known (any more), or of another pair.
+        """
+        found = self._measured.get(name)
+        if found is None or found[:2] != (root, pair):
+            raise Conflict("this alignment is not known any more; align the pair again")
+        return found[2]
+
+    # -- the queue: the same for the same graph
+
+    async def queue(self, root: Path, key: str) -> bytes:
+        """`recon4.review.queue.queue_json`, made once a graph."""
+        known = (root, key)
+        if known not in self._queues:
+            self._queues[known] = await self._desk.run("review", queue_json, root)
+            if len(self._queues) > _MOST_QUEUES:
+                self._queues.popitem(last=False)
+        return self._queues[known]
+
+    # -- the quick look: the latest wins
+
+    async def effect(
+        self, root: Path, key: str, decided: Decided, before: Decided
+    ) -> dict[str, Any] | None:
+        """`recon4.review.preview.preview`; None if somebody decided something meanwhile."""
+        known = (key, decided.key, before.key)
+        mine = (decided.key, before.key)
+        self._wanted[root] = mine
+        async with self._turns.setdefault(root, asyncio.Lock()):
+            if self._wanted[root] != mine:
+                return None
+            if root not in self._effects or self._effects[root][0] != known:
+                told = await self._desk.run("review", preview, root, decided, before)
+                self._effects[root] = (known, told)
+            return self._effects[root][1]

@@ -1,0 +1,245 @@
+"""Approving: a signed statement about a finished run, and a copy that nothing changes any more.
+
+``versions/<n>/approval.json`` holds the statement, its SHA-256, the hashes of the files issued with
+it, and an Ed25519 signature over both. A row in the journal makes it count; it is written last.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import secrets
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from recon4.errors import StoreError
+from recon4.review.decisions import Decided, Decision, Kind, fold
+from recon4.review.journal import Row, append, broken, head, read_rows
+from recon4.review.signature import sign
+from recon4.review.stamp import Stamp, stamp_file
+from recon4.review.state import artifact_keys, decisions_in_map, read_summary
+from recon4.store.atomic import atomic_file, atomic_folder, sweep, write_json
+from recon4.store.hashing import hash_file, hash_json
+from recon4.store.project import Project
+
+VERSIONS = "versions"
+FORMAT = 1
+_FIGURES = ("points", "way_m", "duration_s", "multiframes", "lost", "edges", "crs", "warnings")
+
+
+class NotApprovable(StoreError):
+    """The results cannot be approved as they are."""
+
+
+@dataclass(frozen=True, slots=True)
+class Approval:
+    """One that counts."""
+
+    version: int
+    hash: str
+    """SHA-256 of the statement."""
+    folder: Path
+    """Holds the files issued with it."""
+    stamp: Stamp
+
+
+@dataclass(frozen=True, slots=True)
+class _Asked:
+    """What is to be signed, and by whom."""
+
+    summary: dict[str, Any]
+    decided: Decided
+    rows: Sequence[Row]
+    signer: Mapping[str, str]
+    conflicts: int
+
+    @property
+    def keys(self) -> dict[str, str]:
+        return artifact_keys(self.summary)
+
+
+def approve(root: Path, key_file: Path, signer: Mapping[str, str], confirmed: bool) -> Approval:
+    """Sign the results of a project as they are and keep them as a new version.
+
+    Args:
+        root: The project folder; nobody else may work in it meanwhile.
+        key_file: Private key of the server; made when it is missing.
+        signer: ``who``, ``role`` and ``why``.
+        confirmed: Sign although accepted pairs do not fit; needs a reason.
+
+    Raises:
+        NotApprovable: If there is no finished run, decisions are not in it, it is damaged, or
+            there are conflicts and nobody confirmed them with a reason.
+        StoreError: If the project is in use or cannot be written (`NoSpace`: disk full).
+    """
+    with Project.open(root):
+        asked = _asked(root, signer)
+        _refuse(root, asked, confirmed=confirmed)
+        (root / VERSIONS).mkdir(exist_ok=True)
+        sweep(root / VERSIONS)
+        version = 1 + sum(row.kind == Kind.APPROVE for row in asked.rows)
+        approval = _issue(root, asked, version=version, key_file=key_file)
+        facts = {"version": version, "approval": approval.hash, "artifacts": hash_json(asked.keys)}
+        decision = Decision(kind=Kind.APPROVE, who=signer["who"], why=signer["why"], facts=facts)
+        append(root, decision, after_seq=len(asked.rows))
+        put_back(root, approval)
+        _link(approval.folder / "summary.json", root / "summary.json")
+    return approval
+
+
+def approval_of(root: Path, keys: Mapping[str, str]) -> Approval | None:
+    """The newest approval of results made of these artifacts; None if nobody approved them.
+
+    Raises:
+        StoreError: If it counts but is not there or damaged.
+    """
+    wanted = hash_json(dict(keys))
+    for row in reversed(read_rows(root)):
+        facts = row.decision().facts or {}
+        if row.kind == Kind.APPROVE and facts.get("artifacts") == wanted:
+            folder = root / VERSIONS / str(facts["version"])
+            return _read(folder, facts["version"], facts["approval"])
+    return None
+
+
+def latest_approval(root: Path, rows: Sequence[Row]) -> dict[str, Any] | None:
+    """The newest approval for people; ``current`` = the results in the folder are those.
+
+    Raises:
+        StoreError: If a file is damaged.
+    """
+    for row in reversed(rows):
+        if row.kind == Kind.APPROVE:
+            facts = row.decision().facts or {}
+            summary = read_summary(root)
+            now = hash_json(artifact_keys(summary)) if summary else ""
+            told = {"version": facts["version"], "hash": facts["approval"], "who": row.who}
+            return told | {
+                "time": row.time, "why": row.why, "current": now == facts["artifacts"],
+            }  # fmt: skip
+    return None
+
+
+def put_back(root: Path, approval: Approval) -> None:
+    """Make the results in the project folder those that were issued."""
+    for path in sorted(approval.folder.iterdir()):
+        if path.name not in ("approval.json", "summary.json"):
+            _link(path, root / path.name)
+
+
+def _asked(root: Path, signer: Mapping[str, str]) -> _Asked:
+    summary = read_summary(root)
+    if summary is None:
+        raise NotApprovable("there is no finished map yet: nothing to approve")
+    rows = read_rows(root)
+    if told := broken(rows):
+        raise NotApprovable(f"the journal is not what was written: {told[0]}")
+    decided = fold(row.decision() for row in rows)
+    return _Asked(summary, decided, rows, signer, _conflicts(root, summary))
+
+
+def _conflicts(root: Path, summary: dict[str, Any]) -> int:
+    key = artifact_keys(summary).get("review")
+    if key is None:
+        return 0
+    path = root / "artifacts" / key / "review.json"
+    try:
+        return len(json.loads(path.read_text("utf-8"))["conflicts"])
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise StoreError(f"{path} cannot be read: {error}") from error
+
+
+def _refuse(root: Path, asked: _Asked, *, confirmed: bool) -> None:
+    if decisions_in_map(root) != asked.decided.key:
+        raise NotApprovable("the map does not know the last decisions: make a new map first")
+    if asked.conflicts and not (confirmed and asked.signer["why"].strip()):
+        raise NotApprovable(
+            f"{asked.conflicts} accepted pairs do not fit the graph: settle them, or confirm them "
+            "with a reason"
+        )
+    for name, sha256 in asked.summary["hashes"]["results"].items():
+        path = root / name
+        if not path.is_file() or hash_file(path) != sha256:
+            raise NotApprovable(f"{name} is not what the run wrote: make a new map first")
+
+
+def _issue(root: Path, asked: _Asked, *, version: int, key_file: Path) -> Approval:
+    """Write ``versions/<n>/``; it counts once the journal says so."""
+    folder = root / VERSIONS / str(version)
+    if folder.exists():  # of an approval that was cut off before it counted
+        folder.rename(folder.with_name(f"unfinished-{version}-{secrets.token_hex(3)}"))
+    time = datetime.now(UTC).isoformat(timespec="seconds")
+    statement = _statement(root, asked, version=version, time=time)
+    stamp = Stamp(
+        version=version,
+        who=asked.signer["who"],
+        role=asked.signer["role"],
+        time=time,
+        hash=hash_json(statement),
+    )
+    with atomic_folder(folder) as made:
+        for name in asked.summary["hashes"]["results"]:
+            stamp_file(root / name, made / name, stamp)
+        _write_summary(made, asked.summary, stamp)
+        issued = {path.name: hash_file(path) for path in sorted(made.iterdir())}
+        signature = sign({"hash": stamp.hash, "issued": issued}, key_file)
+        told = {"statement": statement, "hash": stamp.hash, "issued": issued}
+        write_json(made / "approval.json", told | {"signature": signature})
+        for path in made.iterdir():
+            path.chmod(0o444)
+    return Approval(version, stamp.hash, folder, stamp)
+
+
+def _statement(root: Path, asked: _Asked, *, version: int, time: str) -> dict[str, Any]:
+    summary = asked.summary
+    figures = {name: summary[name] for name in _FIGURES if name in summary}
+    last = {stage["stage"]: stage.get("figures", {}) for stage in summary["stages"]}
+    graph = last.get("review") or last.get("verification", {})
+    return {
+        "format": FORMAT,
+        "project": summary["name"],
+        "version": version,
+        **{name: asked.signer[name] for name in ("who", "role", "why")},
+        "time": time,
+        "figures": figures | {"chi2": graph.get("chi2_after"), "conflicts": asked.conflicts},
+        "artifacts": asked.keys,
+        "inputs": summary["hashes"]["inputs"],
+        "results": summary["hashes"]["results"],
+        "journal": {
+            "rows": len(asked.rows),
+            "head": head(asked.rows),
+            "decisions": asked.decided.key,
+        },
+    }
+
+
+def _write_summary(folder: Path, summary: dict[str, Any], stamp: Stamp) -> None:
+    """The summary vouches for the files as they were issued."""
+    hashes = {path.name: hash_file(path) for path in sorted(folder.iterdir())}
+    told = dict(summary) | {"approval": json.loads(stamp.words())}
+    told["hashes"] = dict(summary["hashes"]) | {"results": hashes}
+    write_json(folder / "summary.json", told)
+
+
+def _read(folder: Path, version: int, sha256: str) -> Approval:
+    try:
+        told = json.loads((folder / "approval.json").read_text("utf-8"))
+        said = told["statement"]
+        stamp = Stamp(
+            version=version, who=said["who"], role=said["role"], time=said["time"], hash=sha256
+        )
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise StoreError(f"{folder}/approval.json cannot be read: {error!r}") from error
+    return Approval(version, sha256, folder, stamp)
+
+
+def _link(source: Path, target: Path) -> None:
+    """The same file under another name; a file system without links gets a copy."""
+    with atomic_file(target) as temporary:
+        try:
+            os.link(source, temporary)
+        except OSError:
+            temporary.write_bytes(source.read_bytes())

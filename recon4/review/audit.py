@@ -1,0 +1,88 @@
+"""Are the journal and the approvals of a project what was written and signed?"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from recon4.progress import Progress, track
+from recon4.review.approval import VERSIONS
+from recon4.review.decisions import Kind
+from recon4.review.journal import Row, broken, read_rows
+from recon4.review.signature import fingerprint, is_signed
+from recon4.store.hashing import hash_file, hash_json
+
+
+@dataclass(frozen=True, slots=True)
+class ReviewAudit:
+    """What was found."""
+
+    rows: int
+    """Of the journal."""
+    approvals: tuple[str, ...]
+    """Those that hold, in words."""
+    damaged: tuple[str, ...]
+    """What differs, in words; empty = all is well."""
+
+
+def audit_review(root: Path, progress: Progress) -> ReviewAudit:
+    """Follow the chain of the journal; check the signature and the files of every approval.
+
+    Raises:
+        StoreError: If the journal cannot be read.
+    """
+    rows = read_rows(root)
+    damaged = [f"journal: {what}" for what in broken(rows)]
+    approvals, counted = [], set()
+    approving = [row for row in rows if row.kind == Kind.APPROVE]
+    for row in track(approving, progress, what="approvals", unit="versions"):
+        facts = json.loads(row.body)["facts"]
+        version = int(facts["version"])
+        counted.add(str(version))
+        wrong, key = _check(root / VERSIONS / str(version), row, facts["approval"])
+        damaged += [f"version {version}: {what}" for what in wrong]
+        if not wrong:
+            approvals.append(f"version {version}, approved by {row.who}, {row.time}, key {key}")
+    damaged += _surplus(root / VERSIONS, counted)
+    return ReviewAudit(len(rows), tuple(approvals), tuple(damaged))
+
+
+def _check(folder: Path, row: Row, sha256: str) -> tuple[list[str], str]:
+    """What is wrong with a version, and the short name of the key that signed it."""
+    try:
+        told = json.loads((folder / "approval.json").read_text("utf-8"))
+        statement, issued, signature = told["statement"], told["issued"], told["signature"]
+        key = fingerprint(signature["public_key"])
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        return [f"approval.json cannot be read: {error!r}"], ""
+    wrong = []
+    if hash_json(statement) != sha256 or told["hash"] != sha256:
+        wrong.append("the statement is not the one in the journal")
+    if not is_signed({"hash": sha256, "issued": issued}, signature):
+        wrong.append("the signature does not hold")
+    if statement["journal"]["head"] != row.prev_hash:
+        wrong.append("it was signed over another journal")
+    return wrong + _files(folder, issued), key
+
+
+def _files(folder: Path, issued: dict[str, Any]) -> list[str]:
+    there = {path.name for path in folder.iterdir()} - {"approval.json"}
+    wrong = [f"{name} is missing" for name in sorted(issued.keys() - there)]
+    wrong += [f"{name} does not belong here" for name in sorted(there - issued.keys())]
+    both: Sequence[str] = sorted(there & issued.keys())
+    return wrong + [f"{n} has other bytes" for n in both if hash_file(folder / n) != issued[n]]
+
+
+def _surplus(folder: Path, counted: set[str]) -> list[str]:
+    """Versions the journal does not know; those cut off before they counted are named so."""
+    if not folder.is_dir():
+        return []
+    names = sorted(path.name for path in folder.iterdir())
+    return [
+        f"versions/{name} is in no row of the journal"
+        for name in names
+        if name not in counted and not name.startswith(("unfinished-", "."))
+    ]

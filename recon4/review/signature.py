@@ -1,0 +1,90 @@
+"""Ed25519 signatures of the server (the only importer of cryptography outside of TLS)."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+from cryptography.exceptions import InvalidSignature
+from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey, Ed25519PublicKey
+from cryptography.hazmat.primitives.serialization import (
+    Encoding,
+    NoEncryption,
+    PrivateFormat,
+    PublicFormat,
+    load_pem_private_key,
+)
+
+from recon4.errors import StoreError
+from recon4.store.atomic import atomic_file
+
+ALGORITHM = "Ed25519"
+
+
+def sign(value: object, key_file: Path) -> dict[str, str]:
+    """Sign a JSON value.
+
+    Args:
+        value: What is signed, as `canonical` bytes.
+        key_file: The private key, PEM; made when it is missing, readable by its owner only.
+
+    Returns:
+        ``algorithm``, ``public_key`` and ``value`` (hexadecimal), ``key`` (short name of the key).
+
+    Raises:
+        StoreError: If the key cannot be read or made.
+    """
+    private = _private_key(key_file)
+    public = private.public_key().public_bytes(Encoding.Raw, PublicFormat.Raw)
+    return {
+        "algorithm": ALGORITHM,
+        "public_key": public.hex(),
+        "key": fingerprint(public.hex()),
+        "value": private.sign(canonical(value)).hex(),
+    }
+
+
+def is_signed(value: object, signature: dict[str, Any]) -> bool:
+    """Whether the signature is one of this value by the key it names."""
+    try:
+        public = Ed25519PublicKey.from_public_bytes(bytes.fromhex(signature["public_key"]))
+        public.verify(bytes.fromhex(signature["value"]), canonical(value))
+    except (InvalidSignature, KeyError, TypeError, ValueError):
+        return False
+    return signature.get("algorithm") == ALGORITHM
+
+
+def fingerprint(public_key: str) -> str:
+    """Short name of a public key (hexadecimal): the first 16 digits of its SHA-256."""
+    return hashlib.sha256(bytes.fromhex(public_key)).hexdigest()[:16]
+
+
+def canonical(value: object) -> bytes:
+    """The bytes of a JSON value: keys sorted, no spaces, no NaN."""
+    text = json.dumps(value, sort_keys=True, separators=(",", ":"), allow_nan=False)
+    return text.encode()
+
+
+def _private_key(path: Path) -> Ed25519PrivateKey:
+    if not path.exists():
+        _make(path)
+    try:
+        key = load_pem_private_key(path.read_bytes(), password=None)
+    except (OSError, ValueError) as error:
+        raise StoreError(f"the key for signatures, {path}, cannot be read: {error}") from error
+    if not isinstance(key, Ed25519PrivateKey):
+        raise StoreError(f"the key for signatures, {path}, is not of the kind {ALGORITHM}")
+    return key
+
+
+def _make(path: Path) -> None:
+    pem = Ed25519PrivateKey.generate().private_bytes(
+        Encoding.PEM, PrivateFormat.PKCS8, NoEncryption()
+    )
+    with atomic_file(path) as temporary:
+        descriptor = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+        with os.fdopen(descriptor, "wb") as file:
+            file.write(pem)

@@ -1,0 +1,109 @@
+"""Result files that say who approved them.
+
+The file is copied with a few words more; nothing of what it holds is written anew.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import struct
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+from recon4.errors import StoreError
+from recon4.report.approval import approved_block, replace_block
+from recon4.store.atomic import atomic_file
+
+VLR_USER = b"recon4"
+VLR_RECORD = 1
+_VLR = struct.Struct("<H16sHH32s")
+_POINTS_AT, _EVLRS_AT = 96, 235
+_HEADER_BYTES = 375
+"""Of LAS 1.4, the only version `recon4.export.laz` writes."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stamp:
+    """What an approved file carries."""
+
+    version: int
+    who: str
+    role: str
+    time: str
+    """UTC, ISO 8601."""
+    hash: str
+    """SHA-256 of the signed statement in ``versions/<version>/approval.json``."""
+
+    def words(self) -> str:
+        """JSON in ASCII on one line."""
+        return json.dumps(asdict(self))
+
+
+def stamp_file(source: Path, target: Path, stamp: Stamp) -> None:
+    """Copy a result with its approval in it; source and target may be the same.
+
+    Raises:
+        StoreError: If the file is of a kind that cannot carry it, or cannot be written.
+    """
+    write = _WRITERS.get(target.suffix)
+    if write is None:
+        raise StoreError(f"{target.name} cannot carry an approval")
+    with source.open("rb") as read, atomic_file(target) as temporary, temporary.open("wb") as file:
+        write(read, file, stamp)
+
+
+def _laz(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
+    """One more variable length record, user id ``recon4``; all that lies behind moves along."""
+    header = bytearray(source.read(_HEADER_BYTES))
+    if len(header) < _HEADER_BYTES or header[:4] != b"LASF" or header[25] != 4:
+        raise StoreError("a LAZ file of version 1.4 was expected")
+    words = stamp.words().encode()
+    record = _VLR.pack(0, VLR_USER, VLR_RECORD, len(words), b"approval") + words
+    points_at, count = struct.unpack_from("<II", header, _POINTS_AT)
+    evlrs_at, evlrs = struct.unpack_from("<QI", header, _EVLRS_AT)
+    struct.pack_into("<II", header, _POINTS_AT, points_at + len(record), count + 1)
+    if evlrs:
+        struct.pack_into("<Q", header, _EVLRS_AT, evlrs_at + len(record))
+    target.write(header + source.read(points_at - _HEADER_BYTES) + record)
+    (table_at,) = struct.unpack("<q", source.read(8))
+    target.write(struct.pack("<q", table_at + len(record) if table_at >= 0 else table_at))
+    shutil.copyfileobj(source, target, 1 << 20)
+
+
+def _after_first_line(prefix: str) -> Callable[[BinaryIO, BinaryIO, Stamp], None]:
+    def write(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
+        target.write(source.readline())
+        target.write(f"{prefix} recon4 approval {stamp.words()}\n".encode("ascii"))
+        shutil.copyfileobj(source, target, 1 << 20)
+
+    return write
+
+
+def _tum(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
+    target.write(f"# recon4 approval {stamp.words()}\n".encode("ascii"))
+    shutil.copyfileobj(source, target, 1 << 20)
+
+
+def _json(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
+    if source.read(1) != b"{":
+        raise StoreError("a JSON object was expected")
+    target.write(f'{{"approval": {stamp.words()}, '.encode("ascii"))
+    shutil.copyfileobj(source, target, 1 << 20)
+
+
+def _html(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
+    block = approved_block(**asdict(stamp))
+    target.write(replace_block(source.read().decode("utf-8"), block).encode("utf-8"))
+
+
+_WRITERS: dict[str, Callable[[BinaryIO, BinaryIO, Stamp], None]] = {
+    ".laz": _laz,
+    ".ply": _after_first_line("comment"),
+    ".g2o": _after_first_line("#"),
+    ".tum": _tum,
+    ".json": _json,
+    ".html": _html,
+}

@@ -1,0 +1,50 @@
+"""Whether the results of a project were made with the decisions that stand."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from recon4.errors import StoreError
+from recon4.review.decisions import NOTHING_DECIDED
+from recon4.store.stage import read_manifest
+
+
+def read_summary(root: Path) -> dict[str, Any] | None:
+    """``summary.json`` of the latest run that came to its end; None if there is none.
+
+    Raises:
+        StoreError: If it is damaged.
+    """
+    path = root / "summary.json"
+    if not path.is_file():
+        return None
+    try:
+        told = json.loads(path.read_text("utf-8"))
+    except (OSError, ValueError) as error:
+        raise StoreError(f"{path} cannot be read: {error}") from error
+    if not isinstance(told, dict):
+        raise StoreError(f"{path}: expected an object")
+    return told
+
+
+def artifact_keys(summary: dict[str, Any]) -> dict[str, str]:
+    """Stage -> key of the artifact its results were made of."""
+    return {stage["stage"]: stage["key"] for stage in summary.get("stages", [])}
+
+
+def decisions_in_map(root: Path) -> str | None:
+    """`Decided.key` of the decisions the results were made with; None if there are no results.
+
+    Raises:
+        StoreError: If a file is damaged.
+    """
+    summary = read_summary(root)
+    if summary is None:
+        return None
+    review = artifact_keys(summary).get("review")
+    if review is None:
+        return NOTHING_DECIDED.key
+    key: str = read_manifest(root / "artifacts" / review)["recipe"]["inputs"]["decisions"]
+    return key
