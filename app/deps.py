@@ -12,10 +12,13 @@ from app.access.door import Access
 from app.desk import Desk
 from app.jobs.store import JobStore
 from app.jobs.supervisor import Supervisor
+from app.live.store import Captures
 from app.projects.picture import Pictures
 from app.projects.store import ProjectStore
 from app.projects.trash import Trash
+from app.review.store import Reviews
 from app.settings import ServerSettings
+from app.slices.store import Slices
 from app.uploads.store import UploadStore
 from app.viewer.pool import ViewerPool
 
@@ -34,6 +37,9 @@ class Parts:
     supervisor: Supervisor
     viewers: ViewerPool
     desk: Desk
+    captures: Captures
+    reviews: Reviews
+    slices: Slices
 
 
 def parts(connection: HTTPConnection) -> Parts:

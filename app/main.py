@@ -39,12 +39,18 @@ from app.listen import (
     urls,
     uvicorn_config,
 )
+from app.live import routes as live_routes
+from app.live.store import Captures
 from app.maintenance import look_after
 from app.projects import routes as project_routes
 from app.projects.picture import Pictures
 from app.projects.store import ProjectStore
 from app.projects.trash import Trash
+from app.review import routes as review_routes
+from app.review.store import Reviews
 from app.settings import ServerSettings
+from app.slices import routes as slice_routes
+from app.slices.store import Slices
 from app.uploads import routes as upload_routes
 from app.uploads.store import UploadStore
 from app.viewer import page, proxy
@@ -74,6 +80,11 @@ def create_app(settings: ServerSettings) -> FastAPI:
         app.include_router(part.router)
     for part in (page, proxy):
         app.include_router(part.router, dependencies=MAY_LOOK)
+    for part in (review_routes, slice_routes):
+        app.include_router(part.router)
+        app.include_router(part.page)
+    for router in (live_routes.router, live_routes.page):
+        app.include_router(router)
     for router in (upload_routes.files, upload_routes.router):
         app.include_router(router)
     app.mount("/web", StaticFiles(directory=WEB), name="web")
@@ -123,6 +134,8 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
     jobs = JobStore(settings.state / "jobs.sqlite")
     supervisor = Supervisor(jobs, settings)
     desk = Desk()
+    captures = Captures(settings.root)
+    projects = ProjectStore(settings.root, settings.import_roots)
     viewers = ViewerPool(
         idle_s=settings.viewer_idle_s,
         points=settings.viewer_points,
@@ -137,7 +150,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
     app.state.parts = Parts(
         settings=settings,
         access=access,
-        projects=ProjectStore(settings.root, settings.import_roots),
+        projects=projects,
         pictures=Pictures(settings.state / "pictures"),
         trash=trash,
         uploads=uploads,
@@ -145,10 +158,14 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
         supervisor=supervisor,
         viewers=viewers,
         desk=desk,
+        captures=captures,
+        reviews=Reviews(desk),
+        slices=Slices(desk, projects, settings.state / "slices"),
     )
     watching = [
         asyncio.create_task(supervisor.run()),
         asyncio.create_task(look_after(jobs, uploads, trash)),
+        asyncio.create_task(captures.adopt()),
     ]
     try:
         yield
@@ -156,6 +173,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
         for task in watching:
             task.cancel()
         await asyncio.gather(*watching, return_exceptions=True)
+        await captures.leave()
         desk.close()
         supervisor.close()
         await viewers.close()

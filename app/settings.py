@@ -65,6 +65,9 @@ class ServerSettings:
     trash_s: float = 7 * 86400.0
     """A deleted project can be brought back for this long [s]."""
 
+    live_address: str = "0.0.0.0"
+    """Of the network card the sensors of a live capture send to; 0.0.0.0 = any."""
+
     def __post_init__(self) -> None:
         if not self.lan:
             _refuse_open_network(self.host)

@@ -1,0 +1,138 @@
+"""What is known of a running capture, as the phones are shown it; and what each of them lacks."""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+import time
+from dataclasses import dataclass, field
+from typing import Any
+
+Message = dict[str, Any]
+
+POINTS_AT_ONCE = 20_000
+"""Points in one message: 140 kB, so that a slow phone sees the map grow."""
+BYTES_A_POINT = 7
+_KEPT = ("status", "notes", "fix", "plan", "gaps", "loop")
+"""Kinds of which only the newest counts."""
+_MOST_MARKS = 500
+
+
+@dataclass(slots=True)
+class Cursor:
+    """What one phone has already."""
+
+    generation: int = -1
+    points: int = 0
+    path: int = 0
+    marks: int = 0
+    versions: dict[str, int] = field(default_factory=dict)
+
+
+class Picture:
+    """Takes messages of recorder and mapper in; gives every phone what it lacks.
+
+    Memory is bounded by the preview (400 k points) and the way, however many phones there are:
+    a phone that does not listen has a cursor that stays behind, nothing more.
+    """
+
+    def __init__(self) -> None:
+        self._changed = asyncio.Event()
+        self.version = 0
+        self.newest: dict[str, Message] = {}
+        """Kind -> its last message."""
+        self._versions: dict[str, int] = {}
+        self._generation, self._voxel_m = 0, 0.0
+        self._voxels, self._values = bytearray(), bytearray()
+        self._path: list[list[float]] = []
+        self._marks: list[Message] = []
+
+    @property
+    def points(self) -> int:
+        """Points known."""
+        return len(self._values)
+
+    def take(self, told: Message) -> None:
+        """Take a message in."""
+        match told.get("kind"):
+            case "points":
+                self._take_points(told)
+            case "path":
+                self._path = list(told["points"])
+            case "pose":
+                self.newest["pose"] = told
+                self._bump("pose")
+                if not told["lost"]:
+                    self._path.append(told["p"])
+            case "mark":
+                self._marks.append(told)
+                del self._marks[:-_MOST_MARKS]
+            case kind if kind in _KEPT:
+                self.newest[kind] = told
+                self._bump(kind)
+            case _:
+                return
+        self.version += 1
+        self._changed.set()
+        self._changed = asyncio.Event()
+
+    async def news(self, version: int, *, timeout_s: float) -> None:
+        """Return when something is newer than a version, or after a while."""
+        if self.version != version:
+            return
+        try:
+            await asyncio.wait_for(self._changed.wait(), timeout_s)
+        except TimeoutError:
+            return
+
+    def lacking(self, cursor: Cursor, *, most: int = POINTS_AT_ONCE) -> tuple[Message, bytes]:
+        """What a phone with this cursor lacks, at most so many points; moves the cursor.
+
+        Returns:
+            A message of JSON values, and the points it announces under ``points``: int16 x, y, z
+            of each, then a uint8 value of each.
+        """
+        told: Message = {"t": time.time()}
+        for kind, version in self._versions.items():
+            if cursor.versions.get(kind) != version:
+                told[kind] = self.newest[kind]
+                cursor.versions[kind] = version
+        if cursor.path > len(self._path):
+            cursor.path = 0
+        if cursor.path < len(self._path):
+            told["path"] = {"start": cursor.path, "points": self._path[cursor.path :]}
+            cursor.path = len(self._path)
+        if cursor.marks < len(self._marks):
+            told["marks"] = self._marks[cursor.marks :]
+            cursor.marks = len(self._marks)
+        return told, self._lacking_points(cursor, told, min(most, POINTS_AT_ONCE))
+
+    def complete(self, cursor: Cursor) -> bool:
+        """Whether a phone has all points."""
+        return cursor.generation == self._generation and cursor.points >= self.points
+
+    def _lacking_points(self, cursor: Cursor, told: Message, most: int) -> bytes:
+        if cursor.generation != self._generation or cursor.points > self.points:
+            cursor.generation, cursor.points = self._generation, 0
+        start, end = cursor.points, min(cursor.points + most, self.points)
+        if start == end:
+            return b""
+        told["points"] = {
+            "generation": self._generation, "start": start, "count": end - start,
+            "voxel_m": self._voxel_m, "total": self.points,
+        }  # fmt: skip
+        cursor.points = end
+        return bytes(self._voxels[6 * start : 6 * end] + self._values[start:end])
+
+    def _take_points(self, told: Message) -> None:
+        if told["generation"] != self._generation or told["start"] == 0:
+            self._generation, self._voxel_m = told["generation"], told["voxel_m"]
+            self._voxels.clear()
+            self._values.clear()
+        if told["start"] != self.points:
+            return  # told twice around a new connection
+        self._voxels += base64.b64decode(told["voxels"])
+        self._values += base64.b64decode(told["values"])
+
+    def _bump(self, kind: str) -> None:
+        self._versions[kind] = self._versions.get(kind, 0) + 1

@@ -1,0 +1,153 @@
+"""HTTP face of live capture: parse, delegate, answer."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal
+
+from fastapi import APIRouter, Depends, WebSocket, WebSocketDisconnect
+from fastapi.responses import FileResponse
+from pydantic import BaseModel, ConfigDict, Field
+from starlette.requests import Request
+
+from app.access.audit import audit
+from app.access.people import May, Who, needs
+from app.deps import Server, parts
+from app.errors import Problem
+from app.live.phone import Phone, state_of
+from app.live.store import Captures
+
+LOOK = [Depends(needs(May.LOOK))]
+CAPTURE = [Depends(needs(May.CAPTURE))]
+WEB = Path(__file__).parents[2] / "web"
+
+router = APIRouter(
+    prefix="/api/live",
+    tags=["live capture"],
+    responses={404: {"model": Problem}, 409: {"model": Problem}},
+)
+page = APIRouter()
+
+MOST_PHONES = 32
+
+
+class NewCapture(BaseModel):
+    """What to capture."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    project: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]{0,63}$")
+    """Name of the new project's folder."""
+    rig: str = "4recon"
+    """Name of a shipped rig or path of a rig file on the server."""
+    preset: str = "indoor"
+    place: str = Field(default="", max_length=200)
+    """What the place is called."""
+
+
+class NewMark(BaseModel):
+    """A note of the operator."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    what: Literal["point", "place"] = "point"
+    text: str = Field(default="", max_length=500)
+
+
+class CaptureView(BaseModel):
+    """How a capture stands."""
+
+    project: str
+    state: str
+    """``recording``, ``paused``, ``finishing`` or ``ready`` (to be processed)."""
+    words: list[dict[str, str]]
+    """Warnings, the most urgent first: level (``bad``, ``care``, ``info``) and text."""
+    rates: dict[str, float]
+    """Datagrams a second of each LiDAR, the IMU and the GNSS receiver."""
+    phones: int
+    may_capture: bool
+    """Whether who asks may steer it."""
+
+
+@page.get("/live", include_in_schema=False, dependencies=LOOK)
+def live_page() -> FileResponse:
+    return FileResponse(WEB / "live.html")
+
+
+@router.get("", dependencies=LOOK, summary="State of the capture")
+def read_capture(server: Server, who: Who) -> CaptureView:
+    """The capture that runs, or the last one."""
+    return _view(server.captures, who.may(May.CAPTURE))
+
+
+@router.post("", status_code=201, dependencies=CAPTURE, summary="Start a capture")
+async def start_capture(new: NewCapture, request: Request, server: Server, who: Who) -> CaptureView:
+    """Open the sensors' ports and record; the recording is a project from its first moment."""
+    rig = str(server.projects.importable(new.rig)) if Path(new.rig).suffix else new.rig
+    capture = await server.captures.start(
+        new.project, rig, preset=new.preset, address=server.settings.live_address
+    )
+    if new.place:
+        await capture.steer({"do": "mark", "what": "place", "text": new.place, "who": who.name})
+    audit(request, "live.start", new.project)
+    return _view(server.captures, may_capture=True)
+
+
+@router.post("/stop", dependencies=CAPTURE, summary="Stop recording")
+async def stop_capture(request: Request, server: Server) -> CaptureView:
+    """Stop; the project is ready soon after."""
+    capture = await server.captures.stop()
+    audit(request, "live.stop", capture.project)
+    return _view(server.captures, may_capture=True)
+
+
+@router.post("/pause", dependencies=CAPTURE, summary="Record nothing for a while")
+async def pause_capture(server: Server) -> CaptureView:
+    """What comes in until `resume` is counted but not recorded."""
+    await server.captures.capture().steer({"do": "pause"})
+    return _view(server.captures, may_capture=True)
+
+
+@router.post("/resume", dependencies=CAPTURE, summary="Record again")
+async def resume_capture(server: Server) -> CaptureView:
+    """End a pause. Stand where the pause began."""
+    await server.captures.capture().steer({"do": "resume"})
+    return _view(server.captures, may_capture=True)
+
+
+@router.post("/marks", status_code=201, dependencies=CAPTURE, summary="Mark a point of interest")
+async def add_mark(mark: NewMark, server: Server, who: Who) -> dict[str, str]:
+    """Note something here and now; on the disk before it appears in the stream."""
+    told = {"do": "mark", "what": mark.what, "text": mark.text, "who": who.name}
+    await server.captures.capture().steer(told)
+    return {"status": "noted"}
+
+
+@router.websocket("/stream", dependencies=LOOK)
+async def stream(socket: WebSocket) -> None:
+    """The map so far and everything new, as far as this phone lacks it (``docs/live.md``)."""
+    captures = parts(socket).captures
+    if captures.listeners >= MOST_PHONES:
+        await socket.close(4429, "too many phones")
+        return
+    await socket.accept()
+    captures.listeners += 1
+    try:
+        await Phone(socket, captures).serve()
+    except (WebSocketDisconnect, TimeoutError, ValueError, RuntimeError):
+        pass  # gone, stalled, or no phone of ours: one of ours comes back and says what it has
+    finally:
+        captures.listeners -= 1
+
+
+def _view(captures: Captures, may_capture: bool) -> CaptureView:
+    capture = captures.capture()
+    state = state_of(captures, capture)
+    return CaptureView(
+        project=capture.project,
+        state=capture.state,
+        words=state["words"],
+        rates=state["rates"],
+        phones=captures.listeners,
+        may_capture=may_capture,
+    )

@@ -1,0 +1,107 @@
+"""The capture of this computer: there is one at a time, as there is one set of ports."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from pathlib import Path
+from typing import Any
+
+from app.errors import Conflict, NotFound
+from app.live.capture import Capture, unfinished
+from recon4.errors import StoreError
+from recon4.live.project_files import begin
+from recon4.live.session import load_session
+from recon4.model.rig import Rig, load_rig
+
+log = logging.getLogger(__name__)
+
+STOPS_WITHIN_S = 20.0
+
+
+class Captures:
+    """Starts captures and remembers the last one."""
+
+    def __init__(self, root: Path) -> None:
+        self._root = root
+        self._capture: Capture | None = None
+        self._rig: Rig | None = None
+        self._starting = asyncio.Lock()
+        self.listeners = 0
+        """Phones that look."""
+
+    @property
+    def newest(self) -> Capture | None:
+        """The capture that runs, or the last one."""
+        return self._capture
+
+    def capture(self) -> Capture:
+        """The capture that runs, or the last one.
+
+        Raises:
+            NotFound: If there was none since the server started.
+        """
+        if self._capture is None:
+            raise NotFound("nothing is being captured")
+        return self._capture
+
+    @property
+    def rig(self) -> Rig:
+        """What is on the backpack of `capture`."""
+        assert self._rig is not None
+        return self._rig
+
+    async def start(self, project: str, rig: str | Path, **how: Any) -> Capture:
+        """Start a capture.
+
+        Args:
+            project: Name of its folder, checked.
+            rig: Name of a shipped rig or path of a rig file.
+            how: Fields of `Session`.
+
+        Raises:
+            Conflict: If one runs, or the recorder cannot start.
+            ConfigError: If the rig is wrong.
+            StoreError: If the folder cannot be used.
+        """
+        async with self._starting:
+            if self._capture is not None and not self._capture.over:
+                raise Conflict(f"{self._capture.project} is being captured: stop it first")
+            loaded = load_rig(rig)
+            session = await asyncio.to_thread(begin, self._root / project, loaded, **how)
+            capture = Capture(session)
+            await capture.start()
+            self._capture, self._rig = capture, loaded
+            return capture
+
+    async def adopt(self) -> None:
+        """Follow the capture an earlier server started, if its recorder still runs."""
+        for project in unfinished(self._root):
+            try:
+                session = load_session(project)
+                rig = load_rig(session.rig)
+            except StoreError as error:
+                log.warning("%s", error)
+                continue
+            if not session.socket("recorder").exists():
+                continue
+            capture = Capture(session)
+            await capture.follow()
+            self._capture, self._rig = capture, rig
+            log.warning("%s: its recorder still runs and is followed again", project.name)
+            return
+
+    async def stop(self) -> Capture:
+        """Stop recording; the map of what was recorded is completed.
+
+        Raises:
+            NotFound, Conflict: If nothing is being captured.
+        """
+        capture = self.capture()
+        await capture.steer({"do": "stop"})
+        return capture
+
+    async def leave(self) -> None:
+        """Stop following; recorder and mapper go on."""
+        if self._capture is not None:
+            await self._capture.leave()

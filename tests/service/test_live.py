@@ -1,0 +1,113 @@
+"""A real capture: recorder, mapper, server and phones, fed by a replay of a simulated walk."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import secrets
+import threading
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+from websockets.asyncio.client import connect
+
+from recon4.live.replay import replay
+from recon4.progress import Silent
+from recon4.simulation.simulate import simulate
+from tests.service.running import server_thread
+
+SECONDS = 8.0
+
+
+@pytest.fixture(scope="module")
+def walk(tmp_path_factory):
+    out = tmp_path_factory.mktemp("walk")
+    simulate("office", out, seconds=SECONDS, seed=3, progress=Silent())
+    return out
+
+
+@pytest.fixture
+def server(tmp_path):
+    root = tmp_path / "projects"
+    root.mkdir()
+    address = ".".join(["127", *(str(secrets.randbelow(250) + 2) for _ in range(3))])
+    with server_thread(root, live_address=address) as running:
+        yield running
+
+
+class Phone:
+    """What a phone knows after some messages."""
+
+    def __init__(self):
+        self.voxels = np.zeros((0, 3), np.int16)
+        self.newest = {}
+        self.path = 0
+        self.bytes = 0
+
+    async def look(self, server, met, have=None, seconds=60.0):
+        url = server.url.replace("http", "ws") + "/api/live/stream"
+        async with asyncio.timeout(seconds):
+            async with connect(url, origin=server.url, max_size=None) as socket:
+                await socket.send(json.dumps({"have": have} if have else {}))
+                async for text in socket:
+                    told = json.loads(text)
+                    self.bytes += len(text)
+                    self.newest |= told
+                    if "path" in told:
+                        self.path = told["path"]["start"] + len(told["path"]["points"])
+                    if "points" in told:
+                        data = await socket.recv()
+                        self.bytes += len(data)
+                        self._take(told["points"], data)
+                    if met(self, told):
+                        return self
+
+    def _take(self, points, data):
+        assert len(data) == 7 * points["count"]
+        fresh = np.frombuffer(data, np.int16, 3 * points["count"]).reshape(-1, 3)
+        assert points["start"] in (0, len(self.voxels))
+        known = self.voxels if points["start"] else self.voxels[:0]
+        self.voxels = np.concatenate([known, fresh])
+
+
+def start(server, walk, project="walk"):
+    answer = server.post(
+        "/api/live", json={"project": project, "rig": "4recon", "preset": "indoor"}
+    )
+    assert answer.status_code == 201, answer.text
+    return answer.json()
+
+
+@contextmanager
+def sending(server, walk):
+    thread = threading.Thread(
+        target=replay,
+        args=(walk,),
+        kwargs={"progress": Silent(), "target": server.app.state.parts.settings.live_address},
+    )
+    thread.start()
+    yield
+    thread.join()
+
+
+def test_a_walk_is_seen_on_the_phone_and_is_a_project_when_it_ends(server, walk):
+    start(server, walk)
+    phone = Phone()
+
+    with sending(server, walk):
+        asyncio.run(phone.look(server, lambda p, told: len(p.voxels) > 5000 and p.path > 10))
+        assert server.post("/api/live/marks", json={"text": "crack"}).status_code == 201
+    assert server.post("/api/live/stop").json()["project"] == "walk"
+    asyncio.run(phone.look(server, lambda p, told: told.get("state") == "ready",
+                           have={"project": "walk", "generation": 0, "points": len(phone.voxels),
+                                 "path": phone.path, "marks": 0}))  # fmt: skip
+
+    assert phone.newest["marks"][0]["text"] == "crack"
+    assert phone.newest["pose"]["imu"] is True
+    assert phone.newest["words"] is not None
+    extent_m = np.ptp(phone.voxels, axis=0) * phone.newest["points"]["voxel_m"]
+    assert 5.0 < extent_m[0] < 60.0
+    assert len(np.unique(phone.voxels, axis=0)) == len(phone.voxels)
+    project = server.get("/api/projects/walk").json()
+    assert [stage["stage"] for stage in project["stages"]] == ["frames"]
