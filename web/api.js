@@ -1,10 +1,11 @@
 // The only module that talks to the server.
 
 export class ApiError extends Error {
-  constructor(status, { error, detail }) {
+  constructor(status, { error, detail, problems = {} }) {
     super(typeof detail === "string" ? detail : detail.map((one) => `${one.loc.at(-1)}: ${one.msg}`).join("; "));
     this.name = error ?? "Invalid";
     this.status = status;
+    this.problems = problems;
   }
 }
 
@@ -80,8 +81,77 @@ export const browse = (folder) => request("GET", `/api/recordings?folder=${name(
 export const addJob = (job) => request("POST", "/api/jobs", job);
 export const cancelJob = (id) => request("POST", `/api/jobs/${name(id)}/cancel`);
 export const retryJob = (id) => request("POST", `/api/jobs/${name(id)}/retry`);
-export const readLog = (id) => request("GET", `/api/jobs/${name(id)}/log?lines=200`);
+export const readLog = (id, offset) => request("GET", `/api/jobs/${name(id)}/log/since?offset=${offset}`);
+export const logUrl = (id) => `/api/jobs/${name(id)}/log/file`;
+export const listJobsOf = (id) => request("GET", `/api/projects/${name(id)}/jobs`);
+export const lookAt = (path) => request("GET", `/api/look?path=${name(path)}`);
+export const readSettings = (preset) => request("GET", `/api/settings?of=${name(preset)}`);
+export const checkSettings = (preset, settings) => request("POST", "/api/settings/check", { preset, settings });
+export const renameProject = (id, words) => request("PATCH", `/api/projects/${name(id)}`, { name: words });
+export const deleteProject = (id) => request("DELETE", `/api/projects/${name(id)}`);
+export const listTrash = () => request("GET", "/api/trash");
+export const restoreProject = (id) => request("POST", `/api/trash/${name(id)}/restore`);
+export const removeProject = (id) => request("DELETE", `/api/trash/${name(id)}`);
+export const readServer = () => request("GET", "/api/server");
 export const readOpenApi = () => request("GET", "/openapi.json");
+
+// -- uploads: JSON for what is sent, tus 1.0 for the bytes
+
+export const listUploads = () => request("GET", "/api/uploads");
+export const readUpload = (id) => request("GET", `/api/uploads/${name(id)}`);
+export const beginUpload = (upload) => request("POST", "/api/uploads", upload);
+export const listUploadFiles = (id) => request("GET", `/api/uploads/${name(id)}/files`);
+export const removeUpload = (id) => request("DELETE", `/api/uploads/${name(id)}`);
+
+async function tus(method, path, { headers = {}, body, signal } = {}) {
+  let response;
+  try {
+    const all = { "Tus-Resumable": "1.0.0", ...(method === "HEAD" ? {} : await changeHeaders(method)), ...headers };
+    response = await fetch(path, { method, headers: all, body, signal, cache: "no-store" });
+  } catch (error) {
+    if (error.name === "AbortError") throw error;
+    throw new ApiError(0, { error: "Offline", detail: "The server does not answer" });
+  }
+  if (response.ok) return response;
+  const text = await response.text();
+  let answer = { detail: text || `The server says ${response.status}` };
+  try {
+    answer = JSON.parse(text);
+  } catch {
+    // not ours: a proxy in between, or the answer to HEAD, which has no body
+  }
+  if (response.status === 401) leaveForLogin();
+  throw new ApiError(response.status, answer);
+}
+
+async function bytesHeaders(bytes) {
+  const type = { "Content-Type": "application/offset+octet-stream" };
+  if (!crypto.subtle) return type;
+  const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", bytes));
+  return { ...type, "Upload-Checksum": `sha256 ${btoa(String.fromCharCode(...digest))}` };
+}
+
+const base64 = (text) => btoa(String.fromCharCode(...new TextEncoder().encode(text)));
+
+/** Announces a file of an upload, with its first bytes; gives {url, offset}. */
+export async function createFile(upload, path, length, bytes, signal) {
+  const headers = {
+    "Upload-Length": String(length),
+    "Upload-Metadata": `upload ${base64(upload)},relativePath ${base64(path)}`,
+    ...(await bytesHeaders(bytes)),
+  };
+  const answer = await tus("POST", "/api/uploads/files", { headers, body: bytes, signal });
+  return { url: answer.headers.get("Location"), offset: Number(answer.headers.get("Upload-Offset")) };
+}
+
+/** Sends bytes of a file; gives the offset the server has now. */
+export async function sendBytes(url, offset, bytes, signal) {
+  const headers = { "Upload-Offset": String(offset), ...(await bytesHeaders(bytes)) };
+  const answer = await tus("PATCH", url, { headers, body: bytes, signal });
+  return Number(answer.headers.get("Upload-Offset"));
+}
+
+export const readOffset = async (url) => Number((await tus("HEAD", url)).headers.get("Upload-Offset"));
 
 export const projectUrl = (id) => `/projects/${name(id)}/`;
 export const viewerUrl = (id) => `/projects/${name(id)}/viewer/`;

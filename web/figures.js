@@ -21,6 +21,6 @@ export const figures = (summary) =>
 
 /** The few words under a project's name. */
 export function headline(summary) {
-  if (summary.way_m === undefined) return [];
+  if (summary.way_m == null) return [];
   return [`${summary.way_m.toFixed(0)} m of way`, `${count(summary.points)} points`];
 }

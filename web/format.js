@@ -39,14 +39,20 @@ export function stateOf(project, view) {
   return project?.finished || state === "succeeded" ? "finished" : "unfinished";
 }
 
-/** A running job in one line: what, how far, how fast, how long still. */
-export function progressWords({ status, fraction }) {
+/** How far the whole run is and how long it still takes. */
+export function overallWords({ overall, overall_eta_s, status }) {
   if (!status.what) return "Starting";
+  const left = overall_eta_s === null ? [] : [`about ${seconds(overall_eta_s)} left`];
+  return [`${Math.round(overall * 100)} % of the run`, ...left].join(" · ");
+}
+
+/** The piece of work in hand in one line: how far, how fast, how long still. */
+export function progressWords({ status, fraction }) {
   const parts = [fraction === null ? `${count(status.done)} ${status.unit}` : `${Math.round(fraction * 100)} %`];
   if (status.rate_per_s > 0) {
     const rate = status.rate_per_s;
     parts.push(`${rate < 10 ? rate.toFixed(1) : count(rate)} ${status.unit}/s`);
   }
   if (status.eta_s !== null) parts.push(`${seconds(status.eta_s)} left`);
-  return parts.join(" · ");
+  return `This part ${parts.join(" · ")}`;
 }

@@ -1,8 +1,12 @@
-// <new-job>: the form that starts a job, with a browser of the server's folders.
+// <new-job>: the form that starts a job: a recording, a name, a preset, settings.
+// With `again` it starts one like another: in the same project, or as a new one that keeps finished stages.
 
-import { addJob, browse, projectUrl, readChoices } from "./api.js";
+import { addJob, projectUrl, readChoices } from "./api.js";
 import { attempt, make } from "./dom.js";
-import { bytes } from "./format.js";
+import "./folder_browser.js";
+import "./recording_look.js";
+import "./setting_editor.js";
+import "./upload_box.js";
 
 const field = (words, control, hint) =>
   make("label", {}, make("span", {}, words), control, hint ? make("small", {}, hint) : null);
@@ -10,90 +14,129 @@ const field = (words, control, hint) =>
 const slug = (path) =>
   path.split("/").at(-1).replace(/\.[^.]*$/, "").replace(/[^A-Za-z0-9._-]+/g, "-").replace(/^[^A-Za-z0-9]+/, "").slice(0, 64);
 
+const text = (name, more = {}) => make("input", { name, autocomplete: "off", spellcheck: false, ...more });
+
 class NewJob extends HTMLElement {
-  #recording = make("input", { name: "recording", required: true, autocomplete: "off", spellcheck: false });
-  #project = make("input", {
-    name: "project", required: true, autocomplete: "off", spellcheck: false,
-    pattern: "[A-Za-z0-9][A-Za-z0-9._\\-]{0,63}", title: "Letters, digits, dot, dash and underscore",
+  #recording = text("recording", { required: true, onchange: () => this.#look() });
+  #browser = make("folder-browser", { onpick: (event) => this.#choose(event.detail) });
+  #found = make("recording-look");
+  #project = text("project", {
+    required: true, pattern: "[A-Za-z0-9][A-Za-z0-9._\\-]{0,63}", title: "Letters, digits, dot, dash and underscore",
+    oninput: () => this.#touched.add("project"),
   });
-  #preset = make("select", { name: "preset" });
-  #rig = make("select", { name: "rig" }, make("option", { value: "" }, "Guess from the recording"));
-  #imu = make("input", { name: "imu", autocomplete: "off", spellcheck: false });
-  #gnss = make("input", { name: "gnss", autocomplete: "off", spellcheck: false });
-  #folder = make("div", { className: "folder", hidden: true });
+  #preset = make("select", { name: "preset", onchange: () => { this.#touched.add("preset"); this.#editor.show(this.#preset.value); } });
+  #rig = make("select", { name: "rig", onchange: () => this.#touched.add("rig") }, make("option", { value: "" }, "Guess from the recording"));
+  #imu = text("imu", { oninput: () => this.#touched.add("imu") });
+  #gnss = text("gnss", { oninput: () => this.#touched.add("gnss") });
+  #editor = make("setting-editor");
+  #settings = make("details", {}, make("summary", {}, "All settings"), this.#editor);
   #message = make("p", { className: "error", role: "alert" });
+  #touched = new Set(); // fields a person filled in: no suggestion overwrites them
+  #others = []; // recordings of the job that is done again, beside the first
+  #again = null;
 
   async connectedCallback() {
-    const look = make("button", { type: "button", onclick: () => this.#toggle() }, "Browse…");
-    const form = make(
-      "form",
-      { onsubmit: (event) => this.#submit(event) },
-      field("Recording on this computer", this.#recording, "File or folder: pcap, bag, mcap, frames"),
-      look,
-      this.#folder,
-      field("Project name", this.#project),
-      field("Preset", this.#preset),
-      field("Rig", this.#rig),
+    this.replaceChildren(
       make(
-        "details", {}, make("summary", {}, "IMU and GNSS files"),
-        field("IMU, CSV", this.#imu, "Empty: what the recording has"),
-        field("GNSS, CSV", this.#gnss, "Empty: what the recording has"),
+        "form", { onsubmit: (event) => this.#submit(event) },
+        ...(this.#again ? [] : [make("upload-box", { onrecording: (event) => this.#choose(event.detail), onchosen: (event) => this.#suggest({ project: slug(event.detail).toLowerCase() }) })]),
+        field(this.#again ? "Recording" : "Or a recording on the server", this.#recording, "File or folder: pcap, bag, mcap, frames"),
+        make("button", { type: "button", onclick: () => this.#browser.toggle() }, "Browse…"),
+        this.#browser,
+        this.#found,
+        field("Project name", this.#project, this.#again ? "The same name: run again in this project. Another: a new project. Finished stages that the change does not touch are kept." : ""),
+        field("Preset", this.#preset),
+        field("Rig", this.#rig),
+        make(
+          "details", {}, make("summary", {}, "IMU and GNSS files"),
+          field("IMU, CSV", this.#imu, "Empty: what the recording has"),
+          field("GNSS, CSV", this.#gnss, "Empty: what the recording has"),
+        ),
+        this.#settings,
+        make("button", { className: "primary" }, "Start"),
+        this.#message,
       ),
-      make("button", { className: "primary" }, "Start"),
-      this.#message,
     );
-    this.#recording.addEventListener("change", () => this.#suggest());
-    this.replaceChildren(form);
+    this.#settings.addEventListener("toggle", () => this.#settings.open && this.#editor.show(this.#preset.value));
     const choices = await attempt(this.#message, readChoices);
     const option = (name) => make("option", { value: name }, name);
     this.#preset.append(...(choices?.presets ?? []).map(option));
     this.#rig.append(...(choices?.rigs ?? []).map(option));
+    if (this.#again) this.#fill(this.#again);
   }
 
-  #suggest() {
-    if (!this.#project.value) this.#project.value = slug(this.#recording.value);
+  /** A job to do again; set before the form is shown. */
+  set again(job) {
+    this.#again = job;
   }
 
-  async #toggle() {
-    this.#folder.hidden = !this.#folder.hidden;
-    if (!this.#folder.hidden) await this.#open("");
+  #fill({ project, inputs }) {
+    const [first = "", ...others] = inputs.recordings;
+    this.#others = others;
+    this.#recording.value = first;
+    this.#suggest({ project, ...inputs });
+    for (const name of ["project", "preset", "rig", "imu", "gnss"]) this.#touched.add(name);
+    this.#editor.set(inputs.settings);
+    if (inputs.settings.length) this.#settings.open = true;
   }
 
-  async #open(path) {
-    const entries = await attempt(this.#message, () => browse(path));
-    if (!entries) return;
-    const up = path.split("/").slice(0, -1).join("/");
-    const row = (words, note, onclick) =>
-      make("button", { type: "button", onclick }, make("span", {}, words), make("small", {}, note));
-    const choose = (chosen) => {
-      this.#recording.value = chosen;
-      this.#folder.hidden = true;
-      this.#suggest();
+  #choose(path) {
+    this.#recording.value = path;
+    this.#others = [];
+    this.#look();
+  }
+
+  async #look() {
+    const path = this.#recording.value.trim();
+    this.#suggest({ project: slug(path) });
+    const found = await this.#found.look(path);
+    if (found) this.#suggest(found);
+  }
+
+  /** Puts values into the fields no person has filled in. */
+  #suggest({ project, preset, rig, imu, gnss }) {
+    const put = (name, input, value) => {
+      if (value === undefined || this.#touched.has(name)) return;
+      if (name === "rig" && value && ![...input.options].some((one) => one.value === value)) {
+        input.append(make("option", { value }, value.split("/").at(-1)));
+      }
+      input.value = value;
     };
-    this.#folder.replaceChildren(
-      make("p", { className: "path" }, path || "Folders of this server"),
-      ...(path ? [row("↩ All folders", "", () => this.#open("")), row("Use this folder", "", () => choose(path))] : []),
-      ...(up && path ? [row("↑ Up", "", () => this.#open(up))] : []),
-      ...entries.map((entry) =>
-        entry.folder
-          ? row(`${entry.name}/`, "", () => this.#open(entry.path))
-          : row(entry.name, bytes(entry.bytes), () => choose(entry.path)),
-      ),
-    );
+    put("project", this.#project, project);
+    put("preset", this.#preset, preset);
+    put("rig", this.#rig, rig);
+    put("imu", this.#imu, imu);
+    put("gnss", this.#gnss, gnss);
+    if (preset !== undefined && this.#settings.open) this.#editor.show(this.#preset.value);
   }
 
   async #submit(event) {
     event.preventDefault();
     const job = {
       project: this.#project.value,
-      recordings: [this.#recording.value],
+      recordings: [this.#recording.value.trim(), ...this.#others],
       preset: this.#preset.value,
       rig: this.#rig.value,
       imu: this.#imu.value,
       gnss: this.#gnss.value,
+      settings: this.#editor.texts(),
+      clone_of: this.#again && this.#again.project !== this.#project.value ? this.#again.project : "",
     };
-    const added = await attempt(this.#message, () => addJob(job));
+    const added = await attempt(this.#message, () => this.#add(job));
     if (added) location.assign(projectUrl(added.job.project));
+  }
+
+  async #add(job) {
+    try {
+      return await addJob(job);
+    } catch (error) {
+      if (error.problems) {
+        this.#settings.open = true;
+        await this.#editor.show(this.#preset.value);
+        if (this.#editor.complain(error.problems)) throw new Error("Some settings are wrong, see above");
+      }
+      throw error;
+    }
   }
 }
 

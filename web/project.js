@@ -1,15 +1,17 @@
 // One project: the map, the figures, the results, the job.
 
-import { ApiError, fileUrl, readLog, readProject, reportUrl, viewerUrl, watchJobs } from "./api.js";
+import { ApiError, fileUrl, readProject, reportUrl, viewerUrl, watchJobs } from "./api.js";
 import { fill, make } from "./dom.js";
 import { figures } from "./figures.js";
 import { bytes, seconds, stateOf, when } from "./format.js";
 import { badge } from "./job_status.js";
 import "./page_head.js";
+import "./project_tools.js";
 
 const id = decodeURIComponent(location.pathname.split("/")[2]);
 const byId = (name) => document.getElementById(name);
 const status = document.querySelector("job-status");
+const log = document.querySelector("job-log");
 const STAGE_WORDS = { done: "✓ Done", reused: "✓ Kept from before", running: "▶ Running" };
 let project = null;
 let view = null;
@@ -19,6 +21,7 @@ function draw() {
   document.title = `${name} · recon4`;
   document.querySelector("page-head").name = name;
   byId("title").textContent = name;
+  document.querySelector("project-tools").name = name;
   const facts = project
     ? [project.preset && `preset ${project.preset}`, project.rig && `rig ${project.rig}`, bytes(project.bytes), when(project.updated)]
     : [];
@@ -69,17 +72,14 @@ function drawStages() {
 }
 
 function showMap() {
-  if (!project?.viewable || byId("viewer").querySelector("iframe")) return;
+  const walking = view?.job.state === "running" && view.status.stages.some((row) => row.stage === "odometry");
+  if (!(project?.viewable || walking) || byId("viewer").querySelector("iframe")) return;
   byId("viewer").replaceChildren(make("iframe", { src: viewerUrl(id), title: "Map in 3-D" }));
 }
 
-async function drawLog() {
-  const log = byId("log");
-  log.hidden = !view;
-  if (!view || !log.open) return;
-  const pre = log.querySelector("pre");
-  pre.textContent = await readLog(view.job.id);
-  pre.scrollTop = pre.scrollHeight;
+function drawLog() {
+  if (view) log.job = view.job.id;
+  log.read();
 }
 
 async function reload() {
@@ -104,7 +104,10 @@ function onJob(fresh) {
   drawLog();
 }
 
-byId("log").addEventListener("toggle", drawLog);
+document.querySelector("project-tools").addEventListener("renamed", (event) => {
+  project = event.detail;
+  draw();
+});
 watchJobs(onJob, (linked) => {
   document.querySelector("page-head").linked = linked;
 });

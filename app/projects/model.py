@@ -97,7 +97,7 @@ class ProjectCard:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Entry:
+class FolderEntry:
     """A file or folder a recording may be picked from."""
 
     name: str

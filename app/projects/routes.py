@@ -12,7 +12,7 @@ from app.deps import Parts, Server
 from app.errors import Conflict, Problem
 from app.jobs.model import JobState
 from app.projects.look import Found, look_at
-from app.projects.model import Entry, Project, ProjectCard
+from app.projects.model import FolderEntry, Project, ProjectCard
 from app.projects.trash import Deleted
 
 router = APIRouter(
@@ -125,7 +125,7 @@ async def picture(project_id: str, server: Server) -> FileResponse:
     responses={403: {"model": Problem}},
     summary="Folders of this computer",
 )
-def browse(server: Server, folder: str = "") -> list[Entry]:
+def browse(server: Server, folder: str = "") -> list[FolderEntry]:
     """Files and folders of this computer a recording may be picked from."""
     return server.projects.browse(folder)
 

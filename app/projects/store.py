@@ -14,8 +14,8 @@ from app.projects.clone import clone_artifacts
 from app.projects.model import (
     RESULTS,
     STAGE_ORDER,
-    Entry,
     FinishedStage,
+    FolderEntry,
     Project,
     ProjectCard,
     ResultFile,
@@ -132,7 +132,7 @@ class ProjectStore:
             raise NotFound(f"no such file or folder: {path[:200]!r}")
         return real
 
-    def browse(self, folder: str) -> list[Entry]:
+    def browse(self, folder: str) -> list[FolderEntry]:
         """What lies in a folder, or the folders to begin with when none is given.
 
         Raises:
@@ -292,7 +292,7 @@ def _weigh(folder: Path) -> tuple[int, float]:
     return size, changed_s
 
 
-def _entry(path: Path, name: str) -> Entry:
+def _entry(path: Path, name: str) -> FolderEntry:
     folder = path.is_dir()
     size = 0 if folder or not path.is_file() else path.stat().st_size
-    return Entry(name=name, path=str(path), folder=folder, bytes=size)
+    return FolderEntry(name=name, path=str(path), folder=folder, bytes=size)

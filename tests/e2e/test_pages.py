@@ -141,8 +141,9 @@ def test_a_job_is_started_watched_cancelled_and_resumed(server, page, tmp_path, 
     expect(page.get_by_role("heading", name="morning-walk")).to_be_visible()
     expect(page.locator("job-status")).to_contain_text("Odometry")
     expect(page.get_by_role("row").filter(has_text="frames")).to_contain_text("Done")
-    page.get_by_text("Log").click()
-    expect(page.locator("pre")).to_contain_text("Odometry")
+    page.get_by_text("Log", exact=True).click()
+    expect(page.locator("job-log pre")).to_contain_text("Odometry")
+    expect(page.locator("job-status")).to_contain_text("% of the run")
     fits(page)
     picture(page, "running")
     page.get_by_role("button", name="Cancel").click()
@@ -159,7 +160,7 @@ def test_a_job_is_started_watched_cancelled_and_resumed(server, page, tmp_path, 
 def test_a_refusal_is_shown_in_words(server, page, look):
     page.goto(server.url)
 
-    page.get_by_label("Recording on this computer").fill("/etc/passwd")
+    page.get_by_label("Or a recording on the server").fill("/etc/passwd")
     page.get_by_label("Project name").fill("office")
     page.get_by_role("button", name="Start").click()
 
@@ -172,11 +173,10 @@ def test_the_keyboard_is_enough_to_start_a_job(server, page, tmp_path, look):
     (tmp_path / "empty.pcap").write_bytes(b"")
     page.goto(server.url)
 
-    page.get_by_label("Recording on this computer").focus()
+    page.get_by_label("Or a recording on the server").focus()
     page.keyboard.type(str(tmp_path / "empty.pcap"))
     page.keyboard.press("Tab")
-    page.keyboard.press("Tab")
-    expect(page.get_by_label("Project name")).to_be_focused()
+    expect(page.get_by_label("Project name")).to_have_value("empty")
     page.keyboard.press("Enter")
 
     expect(page.locator("job-status")).to_contain_text("empty.pcap holds no points")
@@ -193,5 +193,11 @@ def test_a_hostile_link_to_the_viewer_stays_with_our_server(finished, page, look
 def test_the_api_is_described_without_internet(finished, page, look, picture):
     page.goto(f"{finished.url}/api")
 
-    expect(page.get_by_role("heading", name="POST /api/jobs", exact=True)).to_be_visible()
+    route = page.locator("#post-api-jobs")
+    route.locator("summary").click()
+
+    expect(page.get_by_role("heading", name="Jobs")).to_be_visible()
+    expect(route.get_by_role("row").filter(has_text="recordings")).to_contain_text("list of string")
+    expect(route.locator(".copy pre")).to_contain_text("curl -X POST -H 'Content-Type")
     fits(page)
+    picture(page, "api")

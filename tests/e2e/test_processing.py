@@ -1,0 +1,171 @@
+"""Whoever processes recordings: upload, look, settings, run again, delete, in a real browser."""
+
+import os
+import random
+import shutil
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.e2e.test_pages import fits
+from tests.service.running import SLOW, open_gate, recording_with_gate, server_thread
+
+pytestmark = pytest.mark.e2e
+
+
+@pytest.fixture
+def server(tmp_path):
+    (tmp_path / "server").mkdir()
+    with server_thread(tmp_path / "server", worker=SLOW) as running:
+        yield running
+
+
+@pytest.fixture
+def once(look):
+    if look != ("desktop", "light"):
+        pytest.skip("once is enough")
+
+
+@pytest.fixture
+def capture(data, tmp_path):
+    """A real capture on the operator's own computer."""
+    return shutil.copy(
+        data("packets/mrpt") / "sample_velodyne_vlp16_gps.pcap", tmp_path / "Ranní pochůzka.pcap"
+    )
+
+
+def chooser(page, *, folder=False):
+    return page.locator("upload-box input[type=file]").nth(1 if folder else 0)
+
+
+def test_a_recording_is_uploaded_looked_into_and_suits_the_form(server, page, capture, picture):
+    page.goto(server.url)
+
+    chooser(page).set_input_files(capture)
+
+    expect(page.locator("upload-box")).to_contain_text("On the server")
+    expect(page.locator("recording-look")).to_contain_text("VLP-16")
+    expect(page.get_by_label("Project name")).to_have_value("ranni-pochuzka")
+    page.get_by_text("All settings").click()
+    page.get_by_label("Find a setting").fill("voxel")
+    field = (
+        page.locator("setting-editor .group")
+        .filter(has_text="The point map")
+        .get_by_label("voxel_m")
+    )
+    field.fill("7")
+    field.press("Tab")
+    expect(page.locator("setting-editor")).to_contain_text("voxel_m must be 0 to 1, got 7")
+    fits(page)
+    picture(page, "upload")
+    page.get_by_role("button", name="Start").click()
+    expect(page.get_by_text("Some settings are wrong, see above")).to_be_visible()
+    expect(field).to_be_focused()
+
+
+def test_an_upload_goes_on_after_the_page_was_closed(server, page, tmp_path, once):
+    data = random.Random(3).randbytes(40_000_000)
+    walk = tmp_path / "walk.bag"
+    walk.write_bytes(data)
+    page.on("dialog", lambda dialog: dialog.accept())
+    patches = 0
+
+    def only_two(route):
+        nonlocal patches
+        patches += route.request.method == "PATCH"
+        route.abort() if patches > 2 else route.continue_()
+
+    page.route("**/api/uploads/files/**", only_two)
+    page.goto(server.url)
+    chooser(page).set_input_files(walk)
+    expect(page.locator("upload-box")).to_contain_text("Interrupted")
+    page.unroute("**/api/uploads/files/**")
+    page.reload()
+
+    left = page.get_by_role("list", name="Unfinished uploads")
+    expect(left).to_contain_text("25 MB of 40 MB are here. Choose the same file again")
+    chooser(page).set_input_files(walk)
+
+    expect(page.locator("upload-box")).to_contain_text("On the server")
+    path = Path(page.get_by_label("Or a recording on the server").input_value())
+    assert path.read_bytes() == data
+    assert len(server.get("/api/uploads").json()) == 1
+
+
+def test_an_upload_is_paused_continued_and_removed(server, page, tmp_path, once):
+    (tmp_path / "walk.bag").write_bytes(bytes(60_000_000))
+    page.route(
+        "**/api/uploads/files/**", lambda route: (page.wait_for_timeout(300), route.continue_())
+    )
+    page.goto(server.url)
+    box = page.locator("upload-box")
+
+    chooser(page).set_input_files(tmp_path / "walk.bag")
+    page.get_by_role("button", name="Pause").click()
+    expect(box).to_contain_text("Paused")
+    page.get_by_role("button", name="Continue").click()
+    expect(box).to_contain_text("MB/s")
+    page.get_by_role("button", name="Pause").click()
+    page.get_by_role("button", name="Remove").click()
+
+    expect(page.get_by_text("Drop a file or folder here")).to_be_visible()
+    assert server.get("/api/uploads").json() == []
+
+
+def test_a_folder_is_uploaded_with_its_names(server, page, tmp_path, once):
+    walk = tmp_path / "KITTI walk"
+    (walk / "clouds").mkdir(parents=True)
+    for n in range(12):
+        (walk / "clouds" / f"{n:06d}.bin").write_bytes(bytes(16 * n))
+    (walk / ".DS_Store").write_bytes(b"x")
+    page.goto(server.url)
+
+    chooser(page, folder=True).set_input_files(walk)
+
+    expect(page.locator("upload-box")).to_contain_text("KITTI walk, 12 files On the server")
+    folder = Path(page.get_by_label("Or a recording on the server").input_value())
+    assert sorted(p.name for p in (folder / "clouds").iterdir())[-1] == "000011.bin"
+    assert (folder / "clouds" / "000011.bin").stat().st_size == 176
+
+
+def test_a_dropped_file_is_taken(server, page, once):
+    page.goto(server.url)
+    transfer = page.evaluate_handle(
+        """() => { const one = new DataTransfer();
+        one.items.add(new File(["no recording"], "notes.txt")); return one; }"""
+    )
+
+    page.locator(".drop").dispatch_event("drop", {"dataTransfer": transfer})
+
+    expect(page.locator("upload-box")).to_contain_text("notes.txt On the server")
+    expect(page.locator("recording-look")).to_contain_text("no reader recognizes it")
+
+
+def test_a_project_is_run_again_as_a_clone_renamed_deleted_and_brought_back(server, page, once):
+    recording = recording_with_gate(server.root / "walk")
+    job = server.start("office", recording)
+    gate = open_gate(recording)
+    server.wait_state(job, "succeeded")
+    page.goto(f"{server.url}/projects/office/")
+
+    page.get_by_text("Run again, with other settings").click()
+    expect(page.get_by_label("Recording")).to_have_value(str(recording))
+    page.get_by_label("Project name").fill("office-thin")
+    page.get_by_role("button", name="Start").click()
+
+    expect(page.get_by_role("heading", name="office-thin")).to_be_visible()
+    expect(page.locator("#state")).to_contain_text("Finished")
+    page.get_by_text("Rename or delete").click()
+    page.get_by_label("Name", exact=True).fill("Kancelář")
+    page.get_by_role("button", name="Rename").click()
+    expect(page.get_by_role("heading", name="Kancelář")).to_be_visible()
+    page.get_by_role("button", name="Delete…").click()
+    page.get_by_role("dialog").get_by_role("button", name="Delete").click()
+    expect(page.get_by_role("link", name="office")).to_be_visible()
+    expect(page.get_by_role("link", name="Kancelář")).to_have_count(0)
+    page.get_by_text("Recently deleted").click()
+    page.get_by_role("button", name="Bring back office-thin").click()
+
+    expect(page.get_by_role("link", name="Kancelář")).to_be_visible()
+    os.close(gate)

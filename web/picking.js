@@ -1,0 +1,25 @@
+// Files and folders out of a drop or a file input, with their names below the folder. No network.
+
+export const ofInput = (input) =>
+  [...input.files].map((file) => ({ file, name: file.webkitRelativePath || file.name }));
+
+/** Everything that was dropped; folders are walked through. */
+export async function ofDrop(transfer) {
+  const entries = [...transfer.items].map((item) => item.webkitGetAsEntry?.()).filter(Boolean);
+  const found = [];
+  for (const entry of entries) await walk(entry, entry.name, found);
+  return found;
+}
+
+async function walk(entry, name, found) {
+  if (entry.isFile) {
+    found.push({ file: await new Promise((resolve, reject) => entry.file(resolve, reject)), name });
+    return;
+  }
+  const reader = entry.createReader();
+  for (;;) {
+    const some = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
+    if (some.length === 0) return; // a browser hands out a hundred at a time
+    for (const one of some) await walk(one, `${name}/${one.name}`, found);
+  }
+}
