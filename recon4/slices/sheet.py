@@ -257,9 +257,9 @@ def approval_words(approval: Mapping[str, Any] | None) -> str:
     """Who approved a map and when, for sheets and files."""
     if not approval:
         return "Not approved"
-    who = str(approval.get("name") or approval.get("who") or "?")
-    when = str(approval.get("time") or approval.get("when") or approval.get("created") or "")
-    return f"Approved by {who[:80]} {when[:40]}".strip()
+    who, role, when = (str(approval.get(key, ""))[:80] for key in ("who", "role", "time"))
+    version, digest = str(approval.get("version", ""))[:10], str(approval.get("hash", ""))[:16]
+    return f"Approved by {who} ({role}) {when}, version {version}, statement {digest}"
 
 
 def source_words(artifact_key: str) -> str:

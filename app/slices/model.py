@@ -1,0 +1,214 @@
+"""What the slices are asked and what they answer."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from recon4.slices.colors import ColorBy, Ground
+from recon4.slices.cut import MOST_SLICES, MOST_THICKNESS_M, Cut, free, horizontal, vertical
+
+Coordinate = Annotated[float, Field(ge=-1e8, le=1e8, allow_inf_nan=False)]
+Xy = tuple[Coordinate, Coordinate]
+Xyz = tuple[Coordinate, Coordinate, Coordinate]
+MOST_SIDE_PX = 4096
+
+
+class Strict(BaseModel):
+    """No unknown keys."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class CutSpec(Strict):
+    """Where to cut."""
+
+    kind: Literal["horizontal", "vertical", "free"]
+    z_m: Coordinate = 0.0
+    """Height of a horizontal cut [m]."""
+    a_m: Xy = (0.0, 0.0)
+    """First point of a vertical cut, seen from above [m]."""
+    b_m: Xy = (1.0, 0.0)
+    """Second point of a vertical cut [m]."""
+    origin_m: Xyz = (0.0, 0.0, 0.0)
+    """A point of a free plane [m]."""
+    normal: Xyz = (0.0, 0.0, 1.0)
+    """Normal of a free plane."""
+    thickness_m: float = Field(default=0.10, gt=0.0, le=MOST_THICKNESS_M)
+
+    def cut(self) -> Cut:
+        """The cut it describes.
+
+        Raises:
+            ConfigError: If it is no plane.
+        """
+        if self.kind == "horizontal":
+            return horizontal(self.z_m, thickness_m=self.thickness_m)
+        if self.kind == "vertical":
+            return vertical(self.a_m, self.b_m, thickness_m=self.thickness_m)
+        return free(self.origin_m, self.normal, thickness_m=self.thickness_m)
+
+
+class WindowSpec(Strict):
+    """Part of a cut, in its own coordinates [m]."""
+
+    left: Coordinate
+    bottom: Coordinate
+    right: Coordinate
+    top: Coordinate
+
+
+class Look(Strict):
+    """How a slice is shown."""
+
+    cut: CutSpec
+    window: WindowSpec | None = None
+    """None = all of it."""
+    color: ColorBy = "height"
+    low: float | None = Field(default=None, allow_inf_nan=False)
+    """Value at the low end of the colors; None = as usual for what is seen."""
+    high: float | None = Field(default=None, allow_inf_nan=False)
+    reference: str = ""
+    """Id of a reference; empty = none."""
+    method: Literal["plane", "point"] = "plane"
+    source: str = ""
+    """``""`` = the latest map, ``map:KEY`` = an earlier one, ``project:ID`` = that of another."""
+
+
+class AskPicture(Look):
+    """A picture of a slice for the screen."""
+
+    width: int = Field(ge=16, le=MOST_SIDE_PX)
+    height: int = Field(ge=16, le=MOST_SIDE_PX)
+    ground: Ground = "light"
+    page: str = Field(default="", max_length=40)
+    """Who asks: of several requests of one page only the latest is answered."""
+
+
+class PictureView(BaseModel):
+    """A picture and what is on it."""
+
+    png: str
+    """Base64."""
+    window: WindowSpec
+    """What it shows: the window asked for, widened to the shape of the picture."""
+    pixel_m: float
+    points: int
+    """Points of the map in the window."""
+    name: str
+    """Of the cut, in words."""
+    low: float
+    high: float
+    colors: list[str]
+    """Colors from low to high, as ``#rrggbb``."""
+    axes: tuple[str, str]
+    """What goes to the right and up."""
+    origin_m: Xyz
+    u: Xyz
+    v: Xyz
+    offset_m: float
+    seconds: float
+
+
+class AskPick(Strict):
+    """A place on a slice."""
+
+    cut: CutSpec
+    uv: Xy
+    radius_m: float = Field(default=0.05, gt=0.0, le=5.0)
+    source: str = ""
+
+
+class PickView(BaseModel):
+    """The nearest point of the map there."""
+
+    found: bool
+    p_map: Xyz = (0.0, 0.0, 0.0)
+    p_crs: Xyz | None = None
+    uv: Xy = (0.0, 0.0)
+    about: dict[str, float] = {}
+
+
+class AskCompare(Strict):
+    """A table of slices against a reference."""
+
+    reference: str = Field(min_length=1)
+    method: Literal["plane", "point"] = "plane"
+    cuts: list[CutSpec] = Field(default=[], max_length=MOST_SLICES)
+    """None = eight spread over the map, 2 cm thick (V §3.2)."""
+    source: str = ""
+
+
+class AddReference(Strict):
+    """A file on this computer becomes a reference."""
+
+    path: str = Field(min_length=1, max_length=4096)
+    name: str = Field(default="", max_length=100, pattern=r"^[^\x00-\x1f\x7f]*$")
+    frame: Literal["map", "crs"] = "map"
+    """Whether its coordinates are those of the map's own frame or of its CRS."""
+
+
+class AskAlign(Strict):
+    """Lay a reference onto the map."""
+
+    how: Literal["none", "icp", "pairs"]
+    p_map: list[Xyz] = Field(default=[], max_length=100)
+    p_reference: list[Xyz] = Field(default=[], max_length=100)
+
+
+class AskExport(Look):
+    """A file of slices."""
+
+    count: int = Field(default=1, ge=1, le=MOST_SLICES)
+    spacing_m: float = Field(default=0.5, ge=-1000.0, le=1000.0)
+    size: Literal["a4", "a3", "a2", "a1"] = "a4"
+    scale: int = 0
+    flat: bool = False
+
+
+class ControlFile(Strict):
+    """A survey's file, as it is."""
+
+    name: str = Field(default="points.csv", max_length=200)
+    base64: str = Field(max_length=900_000)
+    order: Literal["EN", "NE"] | None = None
+
+
+class ControlSpec(Strict):
+    """A surveyed point."""
+
+    id: str = Field(min_length=1, max_length=64)
+    xyz_m: Xyz
+    role: Literal["control", "check"] = "check"
+    radius_m: float = Field(default=0.0, ge=0.0, le=10.0)
+
+
+class ControlState(Strict):
+    """The control and check points of a project, and where they were found in the map."""
+
+    points: list[ControlSpec] = Field(default=[], max_length=5000)
+    frame: Literal["map", "crs"] = "map"
+    picks: dict[str, Xyz] = {}
+    """Id -> place in the map's frame [m]."""
+
+
+class SliceFacts(BaseModel):
+    """What can be cut."""
+
+    points: int
+    bounds_m: tuple[Xyz, Xyz]
+    fields: list[str]
+    sensors: list[str]
+    seconds: float
+    """Length of the walk."""
+    key: str
+    """Of the map."""
+    crs: str
+    frame: str
+    """Frame, axes and unit in words."""
+    approval: str
+    """Who approved the map, or that nobody did."""
+    references: list[dict[str, Any]]
+    sources: list[dict[str, str]]
+    """Other maps to compare with: ``id``, ``words``."""

@@ -1,0 +1,266 @@
+"""HTTP face of the slices: parse, delegate, answer."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+from functools import partial
+from pathlib import Path
+from typing import Any, Literal
+
+from fastapi import APIRouter, Depends
+from fastapi.responses import FileResponse, PlainTextResponse
+from starlette.background import BackgroundTask
+from starlette.concurrency import run_in_threadpool
+
+from app.access.people import May, needs
+from app.deps import Server
+from app.errors import BadRequest, Problem
+from app.slices import work
+from app.slices.model import (
+    AddReference,
+    AskAlign,
+    AskCompare,
+    AskExport,
+    AskPick,
+    AskPicture,
+    ControlFile,
+    ControlState,
+    PickView,
+    PictureView,
+    SliceFacts,
+    Xyz,
+)
+from recon4.errors import ConfigError
+
+LOOK = [Depends(needs(May.LOOK))]
+PROCESS = [Depends(needs(May.PROCESS))]
+WEB = Path(__file__).parents[2] / "web"
+
+router = APIRouter(
+    prefix="/api/projects/{project_id}/slices",
+    tags=["slices"],
+    dependencies=LOOK,
+    responses={404: {"model": Problem}, 422: {"model": Problem}},
+)
+page = APIRouter()
+
+
+@page.get("/projects/{project_id}/slices/", include_in_schema=False, dependencies=LOOK)
+def slices_page(project_id: str, server: Server) -> FileResponse:
+    server.projects.folder(project_id)
+    return FileResponse(WEB / "slices.html")
+
+
+@router.get("", summary="What can be cut")
+async def read_facts(project_id: str, server: Server, source: str = "") -> SliceFacts:
+    """Bounds, frame, fields, references and the other maps to compare with."""
+    slices = server.slices
+    artifacts = await run_in_threadpool(slices.artifacts, project_id, source)
+    told = {
+        "references": await run_in_threadpool(slices.references, project_id),
+        "sources": await run_in_threadpool(slices.sources, project_id),
+        "approval": await run_in_threadpool(slices.approval, project_id),
+    }
+    return await slices.newest("", work.facts, artifacts, told)
+
+
+@router.post("/picture", summary="A picture of a slice")
+async def picture(project_id: str, ask: AskPicture, server: Server) -> PictureView:
+    """All points of the map in the window, at full resolution.
+
+    Of the requests of one ``page`` only the latest is answered; the others get 409.
+    """
+    slices = server.slices
+    artifacts = await run_in_threadpool(slices.artifacts, project_id, ask.source)
+    reference = slices.reference(project_id, ask.reference)
+    ask.cut.cut()  # a plane without meaning is refused before it waits
+    return await slices.newest(ask.page, work.picture, artifacts["map"], reference, ask)
+
+
+@router.get("/overview", response_class=FileResponse, summary="The map from above")
+async def overview(project_id: str, server: Server, source: str = "") -> FileResponse:
+    """A transparent PNG; ``/overview/window`` says what it shows."""
+    return FileResponse(await _overview(project_id, server, source), media_type="image/png")
+
+
+@router.get("/overview/window", summary="What the picture from above shows")
+async def overview_window(project_id: str, server: Server, source: str = "") -> dict[str, Any]:
+    """Left, bottom, right and top in the map [m]."""
+    image = await _overview(project_id, server, source)
+    return work.read_kept(image.with_suffix(".json"))
+
+
+@router.post("/pick", summary="The point of the map at a place of a slice")
+async def pick(project_id: str, ask: AskPick, server: Server) -> PickView:
+    """Coordinates of the full-resolution point nearest to the place, in the map and its CRS."""
+    artifacts = await run_in_threadpool(server.slices.artifacts, project_id, ask.source)
+    return await server.slices.newest(
+        "", work.pick_point, artifacts, ask.cut.cut(), ask.uv, ask.radius_m
+    )
+
+
+@router.get("/doubles", summary="Double walls")
+async def doubles(project_id: str, server: Server, source: str = "") -> dict[str, Any]:
+    """Places where two visits put one surface at two places, the widest apart first."""
+    artifacts = await run_in_threadpool(server.slices.artifacts, project_id, source)
+    folder = artifacts["map"]
+    path = await server.slices.kept(
+        f"{Path(folder).name}-doubles.json",
+        lambda out: server.slices.long(work.double_walls, folder, str(out)),
+    )
+    return work.read_kept(path)
+
+
+@router.post("/compare", summary="Slices against a reference")
+async def compare(project_id: str, ask: AskCompare, server: Server) -> dict[str, Any]:
+    """Mean distance and shares within 2 and 5 cm of every slice (V Table 3.2)."""
+    artifacts = await run_in_threadpool(server.slices.artifacts, project_id, ask.source)
+    reference = server.slices.reference(project_id, ask.reference)
+    return await server.slices.long(work.comparison, artifacts["map"], reference, ask)
+
+
+@router.post("/references", status_code=201, dependencies=PROCESS, summary="Add a reference")
+async def add_reference(project_id: str, add: AddReference, server: Server) -> dict[str, Any]:
+    """A cloud or mesh on this computer (PLY, PCD, LAS, LAZ, E57, XYZ, CSV, OBJ, STL)."""
+    path = await run_in_threadpool(server.projects.importable, add.path)
+    artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
+    out = await run_in_threadpool(server.slices.new_reference, project_id)
+    in_crs = artifacts if add.frame == "crs" else None
+    facts = await server.slices.long(work.add_reference, str(path), str(out), add.name, in_crs)
+    return {"id": out.name} | facts
+
+
+@router.delete(
+    "/references/{reference_id}", status_code=204, dependencies=PROCESS, summary="Remove it"
+)
+def remove_reference(project_id: str, reference_id: str, server: Server) -> None:
+    """Forget a reference; the file it was made of stays."""
+    server.slices.remove_reference(project_id, reference_id)
+
+
+@router.post("/references/{reference_id}/align", dependencies=PROCESS, summary="Align it")
+async def align(
+    project_id: str, reference_id: str, ask: AskAlign, server: Server
+) -> dict[str, Any]:
+    """Lay a reference onto the map: by ICP, by pairs of points, or as its file says."""
+    artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
+    folder = server.slices.reference(project_id, reference_id)
+    pairs = (ask.p_map, ask.p_reference)
+    return await server.slices.long(work.align_reference, artifacts["map"], folder, ask.how, pairs)
+
+
+@router.get("/export.{ending}", response_class=FileResponse, summary="A file of slices")
+async def export(
+    project_id: str,
+    ending: Literal["png", "svg", "pdf", "tif", "dxf", "laz", "csv"],
+    ask: str,
+    server: Server,
+) -> FileResponse:
+    """PNG, SVG and PDF are sheets at a true scale; ``ask`` is an AskExport as JSON."""
+    asked = _parsed(ask)
+    slices = server.slices
+    artifacts = await run_in_threadpool(slices.artifacts, project_id, asked.source)
+    told = {
+        "project": server.projects.get(project_id).name,
+        "key": Path(artifacts["map"]).name,
+        "approval": await run_in_threadpool(slices.approval, project_id),
+    }
+    if asked.source:
+        told["approval"] = "Not approved"  # the approval is that of the latest map alone
+    out = await run_in_threadpool(slices.place_for, f".{ending}")
+    reference = slices.reference(project_id, asked.reference)
+    try:
+        write = partial(work.export, reference=reference, told=told)
+        await slices.long(write, artifacts, asked, str(out))
+    except BaseException:
+        out.unlink(missing_ok=True)
+        raise
+    return FileResponse(
+        out,
+        filename=f"{project_id}-slice.{ending}",
+        media_type="application/octet-stream",
+        background=BackgroundTask(out.unlink, missing_ok=True),
+    )
+
+
+@router.post("/control/preview", dependencies=PROCESS, summary="Look at a survey's file")
+async def preview_control(project_id: str, file: ControlFile, server: Server) -> dict[str, Any]:
+    """What a CSV seems to hold, and what has to be decided before it counts."""
+    server.projects.folder(project_id)
+    try:
+        data = base64.b64decode(file.base64, validate=True)
+    except (binascii.Error, ValueError) as error:
+        raise BadRequest("the file must be sent as base64") from error
+    return await server.slices.long(work.preview_control, data, file.name, file.order)
+
+
+@router.get("/control", summary="Control and check points")
+def read_control(project_id: str, server: Server) -> ControlState:
+    """As kept, with where they were found in the map."""
+    return server.slices.control(project_id)
+
+
+@router.put("/control", dependencies=PROCESS, summary="Keep control and check points")
+def keep_control(project_id: str, state: ControlState, server: Server) -> ControlState:
+    """Safely on disk when this answers."""
+    server.slices.keep_control(project_id, state)
+    return state
+
+
+@router.get("/control/report", summary="Residuals")
+async def control_report(project_id: str, server: Server) -> dict[str, Any]:
+    """Map minus survey, control and check points apart, with pass or fail."""
+    artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
+    state = await run_in_threadpool(server.slices.control, project_id)
+    points = [point.model_dump() for point in state.points]
+    return await server.slices.newest(
+        "", work.control_report, artifacts, points, state.frame, state.picks
+    )
+
+
+@router.get("/control/surface", summary="The map's surface at a surveyed point")
+async def surface(project_id: str, point: str, server: Server) -> dict[str, Any]:
+    """Where a point lies in the map, and the foot of it on the surface beside it."""
+    artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
+    state = await run_in_threadpool(server.slices.control, project_id)
+    found: list[Xyz] = [one.xyz_m for one in state.points if one.id == point]
+    if not found:
+        raise ConfigError(f"no point {point[:64]!r}")
+    return await server.slices.newest("", work.surface_at, artifacts, found[0], state.frame)
+
+
+@router.get("/compare.csv", response_class=PlainTextResponse, summary="The table as CSV")
+async def compare_csv(project_id: str, ask: str, server: Server) -> PlainTextResponse:
+    """``ask`` is an AskCompare as JSON."""
+    asked = _parsed_compare(ask)
+    artifacts = await run_in_threadpool(server.slices.artifacts, project_id, asked.source)
+    reference = server.slices.reference(project_id, asked.reference)
+    text = await server.slices.long(work.comparison_csv, artifacts["map"], reference, asked)
+    head = {"Content-Disposition": f'attachment; filename="{project_id}-comparison.csv"'}
+    return PlainTextResponse(text, media_type="text/csv; charset=utf-8", headers=head)
+
+
+async def _overview(project_id: str, server: Server, source: str) -> Path:
+    artifacts = await run_in_threadpool(server.slices.artifacts, project_id, source)
+    folder = artifacts["map"]
+    return await server.slices.kept(
+        f"{Path(folder).name}-above.png",
+        lambda out: server.slices.newest(
+            "", work.overview, folder, str(out), str(out.with_suffix(".json"))
+        ),
+    )
+
+
+def _parsed(text: str) -> AskExport:
+    try:
+        return AskExport.model_validate_json(text)
+    except ValueError as error:
+        raise ConfigError(f"what to export is not understood: {error}") from error
+
+
+def _parsed_compare(text: str) -> AskCompare:
+    try:
+        return AskCompare.model_validate_json(text)
+    except ValueError as error:
+        raise ConfigError(f"what to compare is not understood: {error}") from error

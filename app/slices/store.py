@@ -1,0 +1,198 @@
+"""Which map a request means, what was kept of it, and whose turn it is."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import re
+import secrets
+import shutil
+from collections import OrderedDict
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+from app.desk import Desk
+from app.errors import Conflict, NotFound
+from app.projects.store import PROJECT_ID, ProjectStore
+from app.slices import work
+from app.slices.model import ControlState
+from recon4.errors import StoreError
+from recon4.store.atomic import write_json
+from recon4.store.project import read_artifacts, read_stages
+
+T = TypeVar("T")
+_KEY = re.compile(r"[0-9a-f]{16,64}")
+_REFERENCE = re.compile(r"[0-9a-f]{12}")
+MOST_REFERENCES = 20
+MOST_PAGES = 256
+LONG_S = 1800.0
+"""A reference of gigabytes takes minutes."""
+
+
+class Superseded(Conflict):
+    """The page asked for something newer meanwhile."""
+
+
+class Slices:
+    """Of all projects. Keeps pictures from above and checks of maps beside the queue of jobs."""
+
+    def __init__(self, desk: Desk, projects: ProjectStore, kept: Path) -> None:
+        self._desk = desk
+        self._projects = projects
+        self._kept = kept
+        self._newest: OrderedDict[str, int] = OrderedDict()
+        self._turn = asyncio.Lock()
+        self._making: dict[Path, asyncio.Lock] = {}
+
+    # -- which map
+
+    def artifacts(self, project_id: str, source: str = "") -> dict[str, str]:
+        """Folders of the run that a request means.
+
+        Raises:
+            NotFound: If there is no such map.
+        """
+        kind, _, name = source.partition(":")
+        if kind == "project" and PROJECT_ID.fullmatch(name):
+            return self._latest(name)
+        if kind == "map" and _KEY.fullmatch(name):
+            found = self._latest(project_id)
+            earlier = self._projects.folder(project_id) / "artifacts" / name
+            if not (earlier / "tiles.json").is_file():
+                raise NotFound(f"project {project_id} has no map {name[:16]} any more")
+            return found | {"map": str(earlier)}
+        if source:
+            raise NotFound(f"no map {source[:80]!r}")
+        return self._latest(project_id)
+
+    def sources(self, project_id: str) -> list[dict[str, str]]:
+        """Other maps to set beside the latest: earlier ones, and those of other projects."""
+        root = self._projects.folder(project_id)
+        current = Path(self._latest(project_id)["map"]).name
+        rows = [row for row in read_stages(root) if row.stage == "map" and row.key != current]
+        earlier = [
+            {"id": f"map:{row.key}", "words": f"Map of {row.finished[:16].replace('T', ' ')}"}
+            for row in sorted(rows, key=lambda row: row.finished, reverse=True)
+            if (root / "artifacts" / row.key / "tiles.json").is_file()
+        ]
+        others = [
+            {"id": f"project:{card.id}", "words": f"Project {card.name}"}
+            for card in self._projects.all()
+            if card.pictured and card.id != project_id
+        ]
+        return earlier[:20] + others[:200]
+
+    def approval(self, project_id: str) -> str:
+        """Who approved the latest results, in words."""
+        from recon4.slices.sheet import approval_words
+
+        try:
+            told = json.loads((self._projects.folder(project_id) / "summary.json").read_text())
+        except (OSError, ValueError):
+            return approval_words(None)
+        found = told.get("approval") if isinstance(told, dict) else None
+        return approval_words(found if isinstance(found, dict) else None)
+
+    # -- references and control points, files of the project
+
+    def references(self, project_id: str) -> list[dict[str, Any]]:
+        """References of a project."""
+        return work.references_in(self._folder(project_id) / "references")
+
+    def reference(self, project_id: str, reference_id: str) -> str:
+        """Folder of a reference; empty when none is meant.
+
+        Raises:
+            NotFound: If there is no such reference.
+        """
+        if not reference_id:
+            return ""
+        folder = self._folder(project_id) / "references" / reference_id
+        if not _REFERENCE.fullmatch(reference_id) or not (folder / "reference.json").is_file():
+            raise NotFound(f"no reference {reference_id[:20]!r} in project {project_id}")
+        return str(folder)
+
+    def new_reference(self, project_id: str) -> Path:
+        """Where a new one goes.
+
+        Raises:
+            Conflict: If there are too many.
+        """
+        if len(self.references(project_id)) >= MOST_REFERENCES:
+            raise Conflict(f"a project has at most {MOST_REFERENCES} references; remove one first")
+        folder = self._folder(project_id) / "references"
+        folder.mkdir(parents=True, exist_ok=True)
+        return folder / secrets.token_hex(6)
+
+    def remove_reference(self, project_id: str, reference_id: str) -> None:
+        """Remove one; the file it was made of stays."""
+        folder = Path(self.reference(project_id, reference_id))
+        gone = folder.with_name(f".tmp-{secrets.token_hex(6)}-{folder.name}")
+        folder.rename(gone)
+        shutil.rmtree(gone)
+
+    def control(self, project_id: str) -> ControlState:
+        """Control and check points of a project; none at first.
+
+        Raises:
+            StoreError: If the file is damaged.
+        """
+        path = self._folder(project_id) / "control.json"
+        if not path.exists():
+            return ControlState()
+        try:
+            return ControlState.model_validate_json(path.read_text("utf-8"))
+        except (OSError, ValueError) as error:
+            raise StoreError(f"{path.name} cannot be read: {error}") from error
+
+    def keep_control(self, project_id: str, state: ControlState) -> None:
+        """Keep them, safely on disk."""
+        folder = self._folder(project_id)
+        folder.mkdir(exist_ok=True)
+        write_json(folder / "control.json", state.model_dump(mode="json"))
+
+    # -- work
+
+    async def newest(self, page: str, function: Callable[..., T], *args: object) -> T:
+        """Run in the child for pictures; of several requests of a page only the latest.
+
+        Raises:
+            Superseded: If the page asked for something newer while this one waited.
+        """
+        number = self._newest.get(page, 0) + 1
+        self._newest[page] = number
+        self._newest.move_to_end(page)
+        while len(self._newest) > MOST_PAGES:
+            self._newest.popitem(last=False)
+        async with self._turn:
+            if page and self._newest.get(page, number) != number:
+                raise Superseded("a newer picture was asked for")
+            return await self._desk.run("slices", function, *args)
+
+    async def long(self, function: Callable[..., T], *args: object) -> T:
+        """Run what may take minutes, or reads a user's file, in a child of its own."""
+        return await self._desk.run("surveys", function, *args, limit_s=LONG_S)
+
+    async def kept(self, name: str, make: Callable[[Path], Any]) -> Path:
+        """A file made once a map."""
+        path = self._kept / name
+        async with self._making.setdefault(path, asyncio.Lock()):
+            if not path.exists():
+                self._kept.mkdir(parents=True, exist_ok=True)
+                await make(path)
+        return path
+
+    def place_for(self, ending: str) -> Path:
+        """A new file for an export, to be removed when it was sent."""
+        folder = self._kept / "exports"
+        folder.mkdir(parents=True, exist_ok=True)
+        return folder / f"{secrets.token_hex(8)}{ending}"
+
+    def _folder(self, project_id: str) -> Path:
+        return self._projects.folder(project_id) / "slices"
+
+    def _latest(self, project_id: str) -> dict[str, str]:
+        self._projects.map_artifact(project_id)  # says what is missing
+        found = read_artifacts(self._projects.folder(project_id))
+        return {stage: str(folder) for stage, folder in found.items()}

@@ -1,0 +1,360 @@
+"""What the slices' child processes do. Arguments and results are plain values."""
+
+from __future__ import annotations
+
+import base64
+import json
+import time
+from dataclasses import asdict, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from app.slices.model import (
+    AskCompare,
+    AskExport,
+    AskPicture,
+    Look,
+    PickView,
+    PictureView,
+    SliceFacts,
+    WindowSpec,
+    Xyz,
+)
+from recon4.errors import ConfigError
+from recon4.geometry.se3 import SE3
+from recon4.mapping.tiles import TileSet
+from recon4.slices.align import align_by_icp, align_by_pairs
+from recon4.slices.colors import SENSOR_COLORS, ColorBy, Ground, Span, table
+from recon4.slices.compare import compare, to_csv, to_json, usual_cuts
+from recon4.slices.control import ControlPoint, read_control, residuals
+from recon4.slices.cut import Cut, horizontal
+from recon4.slices.doubles import find_double_walls
+from recon4.slices.export import write_csv, write_dxf, write_geotiff, write_laz
+from recon4.slices.frames import Frame, frame_of
+from recon4.slices.imports import import_reference, set_alignment
+from recon4.slices.pick import nearest_surface, pick
+from recon4.slices.picture import Paper, Picture, draw, png
+from recon4.slices.points import Window, extent
+from recon4.slices.reference import Method, Reference, load_reference, read_facts
+from recon4.slices.sheet import Words, axis_words, lay_out, source_words, write_sheet
+from recon4.store.atomic import atomic_file, null_for_nan, write_json
+
+Artifacts = dict[str, str]
+"""Stage -> folder of its artifact."""
+FINEST_M = 0.005
+"""Pixel of a GeoTIFF, unless it would get too large [m]."""
+MOST_GEOTIFF_PX = 6000
+
+
+@lru_cache(maxsize=4)
+def tiles_of(folder: str) -> TileSet:
+    """A map; its folder is named by its content, so it never changes."""
+    return TileSet.open(Path(folder))
+
+
+@lru_cache(maxsize=2)
+def _reference(folder: str, method: Method, changed_ns: int) -> Reference:
+    return load_reference(Path(folder), method=method)
+
+
+def reference_of(folder: str, method: Method) -> Reference | None:
+    """A reference, read anew only when it was aligned anew."""
+    if not folder:
+        return None
+    facts = Path(folder) / "reference.json"
+    changed_ns = facts.stat().st_mtime_ns if facts.exists() else 0
+    return _reference(folder, method, changed_ns)
+
+
+def facts(artifacts: Artifacts, told: dict[str, Any]) -> SliceFacts:
+    """What can be cut; ``told`` is what the front knows already."""
+    tiles, frame = tiles_of(artifacts["map"]), _frame(artifacts)
+    low, high = (_xyz(np.nan_to_num(corner)) for corner in tiles.bounds_m)
+    times = tiles.facts["time_ns"] or [0, 0]
+    return SliceFacts(
+        points=len(tiles),
+        bounds_m=(low, high),
+        fields=list(tiles.fields),
+        sensors=[str(name) for name in tiles.facts.get("sensors", [])],
+        seconds=(times[1] - times[0]) / 1e9,
+        key=Path(artifacts["map"]).name,
+        crs=frame.crs,
+        frame=frame.words,
+        **told,
+    )
+
+
+def picture(map_folder: str, reference: str, ask: AskPicture) -> PictureView:
+    """A picture of a slice for the screen."""
+    began = time.perf_counter()
+    tiles, cut = tiles_of(map_folder), ask.cut.cut()
+    window = _shaped(_window(ask, tiles, cut), ask.width / ask.height)
+    paper = Paper(window, (window.right - window.left) / ask.width)
+    made = draw(tiles, cut, paper, color=ask.color, reference=reference_of(reference, ask.method))
+    span = span_of(ask, made)
+    image = base64.b64encode(png(made.rgba(span, ask.ground))).decode()
+    return PictureView(
+        png=image,
+        window=WindowSpec(**asdict(window)),
+        pixel_m=paper.pixel_m,
+        points=made.points,
+        name=cut.name,
+        low=span.low,
+        high=span.high,
+        colors=_stops(ask.color, ask.ground),
+        axes=axis_words(cut),
+        origin_m=cut.origin_m,
+        u=cut.u,
+        v=cut.v,
+        offset_m=cut.offset_m,
+        seconds=time.perf_counter() - began,
+    )
+
+
+def overview(map_folder: str, image: str, about: str) -> None:
+    """The map from above as a transparent picture, kept; walls are dark, floors are not."""
+    tiles = tiles_of(map_folder)
+    low, high = tiles.bounds_m
+    if not np.isfinite(low).all():
+        raise ConfigError("the map has no points")
+    middle, height = float(low[2] + high[2]) / 2.0, float(high[2] - low[2]) + 0.1
+    cut = horizontal(middle, thickness_m=height)
+    margin = 0.02 * float((high - low)[:2].max()) + 0.1
+    window = Window(low[0] - margin, low[1] - margin, high[0] + margin, high[1] + margin)
+    pixel_m = max(window.right - window.left, window.top - window.bottom) / 1200.0
+    made = draw(tiles, cut, Paper(window, pixel_m))
+    dense = np.log1p(made.count / max(1.0, float(np.percentile(made.count[made.count > 0], 75))))
+    rgba = np.zeros((*dense.shape, 4), np.uint8)
+    rgba[..., :3] = (100, 116, 130)
+    rgba[..., 3] = (255.0 * np.clip(dense / 1.6, 0.0, 1.0)).astype(np.uint8)
+    shown = Window(
+        window.left,
+        window.top - dense.shape[0] * pixel_m,
+        window.left + dense.shape[1] * pixel_m,
+        window.top,
+    )
+    # The picture comes last: whoever finds it finds its window too.
+    write_json(Path(about), {name: float(value) for name, value in asdict(shown).items()})
+    with atomic_file(Path(image)) as temporary:
+        temporary.write_bytes(png(rgba))
+
+
+def pick_point(
+    artifacts: Artifacts, cut: Cut, uv: tuple[float, float], radius_m: float
+) -> PickView:
+    """The point of the map nearest to a place on a slice."""
+    found = pick(tiles_of(artifacts["map"]), cut, uv, radius_m=radius_m)
+    if found is None:
+        return PickView(found=False)
+    return PickView(
+        found=True,
+        p_map=found.p_map,
+        p_crs=_in_crs(_frame(artifacts), found.p_map),
+        uv=found.uv,
+        about=found.about,
+    )
+
+
+def double_walls(map_folder: str, out: str) -> None:
+    """The check of the whole map, kept as JSON."""
+    found = find_double_walls(tiles_of(map_folder))
+    told = asdict(found) | {"share": found.share}
+    write_json(Path(out), null_for_nan(told))
+
+
+def comparison(map_folder: str, reference: str, ask: AskCompare) -> dict[str, Any]:
+    """V Table 3.2 of some slices."""
+    tiles = tiles_of(map_folder)
+    against = reference_of(reference, ask.method)
+    assert against is not None
+    cuts = [spec.cut() for spec in ask.cuts] or usual_cuts(tiles)
+    found = to_json(compare(tiles, cuts, against))
+    told: dict[str, Any] = null_for_nan(found)
+    return told | {"reference": against.name, "method": ask.method}
+
+
+def comparison_csv(map_folder: str, reference: str, ask: AskCompare) -> str:
+    """The same as CSV."""
+    tiles = tiles_of(map_folder)
+    against = reference_of(reference, ask.method)
+    assert against is not None
+    return to_csv(compare(tiles, [spec.cut() for spec in ask.cuts] or usual_cuts(tiles), against))
+
+
+def add_reference(path: str, out: str, name: str, artifacts: Artifacts | None) -> dict[str, Any]:
+    """Read a file of unknown origin; ``artifacts`` when it is in the map's CRS."""
+    frame = _frame(artifacts) if artifacts else None
+    if frame is not None and frame.to_crs is None:
+        raise ConfigError("the map is local: a reference in a CRS cannot be laid onto it")
+    return import_reference(Path(path), Path(out), name=name, frame=frame)
+
+
+def align_reference(
+    map_folder: str, reference: str, how: str, pairs: tuple[list[Xyz], list[Xyz]]
+) -> dict[str, Any]:
+    """Lay a reference onto the map; what it was before is forgotten."""
+    folder = Path(reference)
+    if how == "none":
+        return set_alignment(folder, SE3.identity(), words="none")
+    if how == "pairs":
+        p_map, p_reference = np.array(pairs[0]), np.array(pairs[1])
+        T, left_m = align_by_pairs(p_map.reshape(-1, 3), p_reference.reshape(-1, 3))
+        words = f"{len(left_m)} pairs, {100.0 * float(left_m.max()):.1f} cm left at most"
+        return set_alignment(folder, T, words=words)
+    against = reference_of(reference, "plane")
+    assert against is not None
+    T = align_by_icp(tiles_of(map_folder), against, rng=np.random.default_rng(1))
+    return set_alignment(folder, T, words="ICP, point to plane")
+
+
+def export(
+    artifacts: Artifacts, ask: AskExport, out: str, *, reference: str, told: dict[str, str]
+) -> str:
+    """Write a file of slices; its ending says which."""
+    path = Path(out)
+    tiles, frame = tiles_of(artifacts["map"]), _frame(artifacts)
+    cuts = ask.cut.cut().repeated(ask.count, spacing_m=ask.spacing_m)
+    window = Window(**ask.window.model_dump()) if ask.window else None
+    if path.suffix == ".laz":
+        write_laz(tiles, cuts, path, frame=frame, window=window)
+    elif path.suffix == ".csv":
+        write_csv(tiles, cuts, path, frame=frame, window=window)
+    elif path.suffix == ".dxf":
+        write_dxf(tiles, cuts, path, frame=frame, window=window, flat=ask.flat)
+    elif path.suffix == ".tif":
+        _export_geotiff(artifacts, ask, path, reference=reference)
+    else:
+        _export_sheet(artifacts, ask, path, reference=reference, told=told)
+    return out
+
+
+def _export_geotiff(artifacts: Artifacts, ask: AskExport, path: Path, *, reference: str) -> None:
+    tiles, cut = tiles_of(artifacts["map"]), ask.cut.cut()
+    window = _window(ask, tiles, cut)
+    side_m = max(window.right - window.left, window.top - window.bottom)
+    paper = Paper(window, max(FINEST_M, side_m / MOST_GEOTIFF_PX))
+    against = reference_of(reference, ask.method)
+    made = draw(tiles, cut, paper, color=ask.color, reference=against)
+    write_geotiff(made, path, frame=_frame(artifacts), span=span_of(ask, made))
+
+
+def _export_sheet(
+    artifacts: Artifacts, ask: AskExport, path: Path, *, reference: str, told: dict[str, str]
+) -> None:
+    tiles, cut = tiles_of(artifacts["map"]), ask.cut.cut()
+    against = reference_of(reference, ask.method)
+    layout = lay_out(_window(ask, tiles, cut), ask.size, ask.scale)
+    made = draw(tiles, cut, layout.paper, color=ask.color, reference=against)
+    words = Words(
+        project=told["project"],
+        frame=_frame(artifacts).words,
+        sources=source_words(told["key"]),
+        approval=told["approval"],
+        reference=against.name if against else "",
+        sensors=tuple(str(name) for name in tiles.facts.get("sensors", [])),
+    )
+    write_sheet(made, layout, path, span=span_of(ask, made), words=words)
+
+
+def preview_control(data: bytes, name: str, order: str | None) -> dict[str, Any]:
+    """What a survey's file seems to hold."""
+    return asdict(read_control(data, name=name, order=order))  # type: ignore[arg-type]
+
+
+def control_report(
+    artifacts: Artifacts, points: list[dict[str, Any]], frame: str, picks: dict[str, Xyz]
+) -> dict[str, Any]:
+    """Residuals of the points that were found in the map."""
+    own = _frame(artifacts)
+    surveyed = [ControlPoint(**point) for point in points]
+    measured = {name: np.array(p_map) for name, p_map in picks.items()}
+    if frame == "crs":
+        if own.to_crs is None:
+            raise ConfigError("the map is local: points of a CRS have no place in it")
+        measured = {name: own.to_crs(p[None])[0] for name, p in measured.items()}
+    told: dict[str, Any] = null_for_nan(asdict(residuals(surveyed, measured)))
+    return told
+
+
+def surface_at(artifacts: Artifacts, xyz_m: Xyz, frame: str) -> dict[str, Any]:
+    """Where a surveyed point lies in the map, and the map's surface beside it."""
+    p = np.array(xyz_m)
+    if frame == "crs":
+        p = _frame(artifacts).from_crs(p[None])[0]
+    found = nearest_surface(tiles_of(artifacts["map"]), p)
+    return {"p_map": _xyz(p), "surface": None if found is None else _xyz(found)}
+
+
+def references_in(folder: Path) -> list[dict[str, Any]]:
+    """The references of a project, by name."""
+    entries = sorted(folder.iterdir()) if folder.is_dir() else []
+    return [
+        {"id": entry.name} | read_facts(entry)
+        for entry in entries
+        if not entry.name.startswith(".") and (entry / "reference.json").is_file()
+    ]
+
+
+def span_of(ask: Look, made: Picture) -> Span:
+    """The ends of the colors: as asked, else as usual."""
+    low = made.span.low if ask.low is None else ask.low
+    high = made.span.high if ask.high is None else ask.high
+    if not high > low:
+        raise ConfigError(f"colors need a low end below the high end, got {low} and {high}")
+    return Span(low, high)
+
+
+def _window(ask: Look, tiles: TileSet, cut: Cut) -> Window:
+    if ask.window is not None:
+        return Window(**ask.window.model_dump())
+    all_of_it = extent(tiles, cut)
+    margin = 0.03 * max(all_of_it.right - all_of_it.left, all_of_it.top - all_of_it.bottom) + 0.05
+    return Window(
+        all_of_it.left - margin,
+        all_of_it.bottom - margin,
+        all_of_it.right + margin,
+        all_of_it.top + margin,
+    )
+
+
+def _shaped(window: Window, aspect: float) -> Window:
+    """Widened to a shape, about its middle."""
+    width, height = window.right - window.left, window.top - window.bottom
+    if not (width > 0.0 and height > 0.0):
+        return window  # refused by the paper, in words
+    more_u = max(0.0, height * aspect - width) / 2.0
+    more_v = max(0.0, width / aspect - height) / 2.0
+    return replace(
+        window,
+        left=window.left - more_u,
+        right=window.right + more_u,
+        bottom=window.bottom - more_v,
+        top=window.top + more_v,
+    )
+
+
+def _stops(color: ColorBy, ground: Ground) -> list[str]:
+    if color == "sensor":
+        return [f"#{r:02x}{g:02x}{b:02x}" for r, g, b in SENSOR_COLORS]
+    return [f"#{r:02x}{g:02x}{b:02x}" for r, g, b in table(color, ground)[::15].tolist()]
+
+
+def _frame(artifacts: Artifacts) -> Frame:
+    return frame_of({stage: Path(folder) for stage, folder in artifacts.items()})
+
+
+def _in_crs(frame: Frame, p_map: Xyz) -> Xyz | None:
+    return _xyz(frame.to_crs(np.array([p_map]))[0]) if frame.to_crs else None
+
+
+def _xyz(values: Any) -> Xyz:
+    x, y, z = (float(value) for value in values)
+    return x, y, z
+
+
+def read_kept(path: Path) -> dict[str, Any]:
+    """JSON that a child kept."""
+    return dict(json.loads(path.read_text("utf-8")))

@@ -1,0 +1,262 @@
+"""The slices over HTTP, on a real server with real child processes."""
+
+import base64
+import io
+import json
+import threading
+
+import httpx
+import laspy
+import numpy as np
+import pytest
+from PIL import Image
+
+from tests.project_builder import ROOM_M, build_project
+from tests.service.running import server_thread
+
+Z1 = {"kind": "horizontal", "z_m": 1.5, "thickness_m": 0.2}
+BASE = "/api/projects/office/slices"
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    root = tmp_path_factory.mktemp("slices")
+    build_project(root / "office", points=120_000)
+    build_project(root / "other", points=20_000)
+    build_project(root / "young", with_map=False)
+    with server_thread(root) as running:
+        yield running
+
+
+CUT_PLY = (
+    b"ply\nformat binary_little_endian 1.0\nelement vertex 1000\nproperty float x\n"
+    b"property float y\nproperty float z\nend_header\n"
+) + bytes(120)
+
+
+def ask(**changes):
+    return {"cut": Z1, "width": 400, "height": 300} | changes
+
+
+def sent(server, path, body):
+    return server.post(BASE + path, json=body)
+
+
+def exported(server, ending, **changes):
+    asked = json.dumps({"cut": Z1} | changes)
+    return server.get(f"{BASE}/export.{ending}", params={"ask": asked})
+
+
+def test_the_page_is_told_what_can_be_cut(server):
+    told = server.get(BASE).json()
+
+    assert told["points"] == 120_000
+    assert told["bounds_m"][1] == pytest.approx(ROOM_M, abs=0.35)
+    assert told["frame"] == "map frame (local), x y z, z up, metres"
+    assert told["approval"] == "Not approved"
+    assert [source["id"] for source in told["sources"]] == ["project:other"]
+
+
+def test_a_picture_shows_the_room_from_all_its_points(server):
+    told = sent(server, "/picture", ask(color="sensor")).json()
+
+    image = Image.open(io.BytesIO(base64.b64decode(told["png"])))
+    assert image.size == (400, 300)
+    window = told["window"]
+    assert (window["right"] - window["left"]) / told["pixel_m"] == pytest.approx(400)
+    assert window["left"] < 0 and window["right"] > ROOM_M[0]
+    assert told["points"] > 3000 and told["name"] == "z = 1.500 m"
+    assert np.asarray(image)[..., 3].any()
+
+
+def test_a_window_is_kept_to_and_only_widened_to_the_shape(server):
+    window = {"left": 2.0, "bottom": 1.0, "right": 6.0, "top": 2.0}
+
+    told = sent(server, "/picture", ask(window=window)).json()
+
+    assert told["window"]["left"] == 2.0 and told["window"]["right"] == 6.0
+    assert told["window"]["bottom"] == pytest.approx(0.0)
+
+
+def test_of_several_pictures_a_page_asks_for_the_latest_is_answered(server):
+    answers = {}
+
+    def one(k):
+        body = ask(page="p1", cut=Z1 | {"z_m": 1.0 + k / 10})
+        answers[k] = httpx.post(f"{server.url}{BASE}/picture", json=body, timeout=60.0)
+
+    threads = [threading.Thread(target=one, args=(k,)) for k in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+
+    codes = sorted(answer.status_code for answer in answers.values())
+    assert codes.count(200) >= 1 and set(codes) <= {200, 409}
+    assert all(a.json()["error"] == "Superseded" for a in answers.values() if a.status_code == 409)
+
+
+def test_a_picked_point_is_one_of_the_map(server):
+    found = sent(server, "/pick", {"cut": Z1, "uv": [0.0, 5.0], "radius_m": 0.3}).json()
+
+    assert found["found"] and found["p_map"][0] == pytest.approx(0.0, abs=1e-6)
+    assert abs(found["p_map"][2] - 1.5) <= 0.1
+    assert found["p_crs"] is None
+
+
+def test_nothing_is_picked_where_nothing_is(server):
+    found = sent(server, "/pick", {"cut": Z1, "uv": [100.0, 5.0]}).json()
+
+    assert not found["found"]
+
+
+def test_the_map_from_above_comes_with_its_window(server):
+    image = server.get(f"{BASE}/overview")
+    window = server.get(f"{BASE}/overview/window").json()
+
+    picture = Image.open(io.BytesIO(image.content))
+    across, up = window["right"] - window["left"], window["top"] - window["bottom"]
+    assert picture.width / picture.height == pytest.approx(across / up, rel=0.01)
+    assert window["left"] < 0 < ROOM_M[0] < window["right"]
+
+
+def test_a_reference_is_added_compared_aligned_and_removed(server):
+    path = server.root / "walls.xyz"
+    y = np.arange(0, 10, 0.05)
+    lines = [f"{x} {a:.3f} {z:.2f}" for x in (0.03, 16.03) for a in y for z in np.arange(0, 3, 0.1)]
+    path.write_text("\n".join(lines))
+
+    added = sent(server, "/references", {"path": str(path), "name": "Walls"}).json()
+    cut = {"kind": "free", "origin_m": [0, 5, 1], "normal": [1, 0, 0], "thickness_m": 0.04}
+    table = sent(server, "/compare", {"reference": added["id"], "cuts": [cut]}).json()
+    seen = sent(
+        server, "/picture", ask(color="distance", reference=added["id"], width=160, height=100)
+    )
+    csv = server.get(
+        f"{BASE}/compare.csv",
+        params={"ask": json.dumps({"reference": added["id"], "cuts": [cut]})},
+    )
+    pairs = {
+        "p_map": [[0, 0, 0], [1, 0, 0], [0, 1, 0]],
+        "p_reference": [[1, 0, 0], [2, 0, 0], [1, 1, 0]],
+    }
+    moved = sent(server, f"/references/{added['id']}/align", {"how": "pairs"} | pairs).json()
+    gone = httpx.delete(f"{server.url}{BASE}/references/{added['id']}", timeout=30)
+
+    assert added["points"] == len(lines) and added["name"] == "Walls"
+    assert table["point_weighted"]["mean_m"] == pytest.approx(0.034, abs=0.006)
+    assert table["point_weighted"]["share_2cm"] == 0.0
+    assert table["point_weighted"]["share_5cm"] > 0.9
+    assert seen.json()["low"] == 0.0 and seen.json()["high"] == 0.1
+    assert csv.text.startswith("slice,points,outliers,mean_cm") and "weighted" in csv.text
+    assert moved["T_map_reference"][0][3] == pytest.approx(-1.0)
+    assert "3 pairs" in moved["alignment"]
+    assert gone.status_code == 204 and server.get(BASE).json()["references"] == []
+    assert path.exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "words"),
+    [
+        ("cut.ply", CUT_PLY, "cut: 1000 points"),
+        ("nothing.laz", b"LASF" + bytes(300), "not a sound LAS/LAZ"),
+        ("words.csv", b"a;b;c\nd;e;f\n", "numbers"),
+        ("picture.png", b"\x89PNG\r\n\x1a\n" + bytes(200), "expected a PLY"),
+    ],
+)
+def test_a_damaged_reference_is_refused_in_words(server, name, content, words):
+    path = server.root / name
+    path.write_bytes(content)
+
+    answer = sent(server, "/references", {"path": str(path)})
+
+    assert answer.status_code == 422 and words in answer.json()["detail"]
+    assert server.get(BASE).json()["references"] == []
+    assert list((server.root / "office" / "slices" / "references").iterdir()) == []
+
+
+def test_a_reference_outside_of_the_folders_is_refused(server):
+    answer = sent(server, "/references", {"path": "/etc/passwd"})
+
+    assert answer.status_code == 403
+
+
+def test_exports_open_in_other_programs(server):
+    laz = exported(server, "laz")
+    with laspy.open(io.BytesIO(laz.content)) as file:
+        points = file.read()
+    png = Image.open(io.BytesIO(exported(server, "png", size="a4").content))
+    svg = exported(server, "svg").text
+    csv = exported(server, "csv", count=2, spacing_m=0.5).text.splitlines()
+
+    assert np.abs(points.z - 1.5).max() <= 0.1005 and len(points) > 3000
+    assert png.size == (3507, 2480)
+    assert svg.startswith("<?xml") and "office" in svg and "Not approved" in svg
+    assert csv[0].startswith("# recon4 slice") and len({line[:2] for line in csv[2:]}) == 2
+    assert list((server.root / ".recon4" / "slices" / "exports").iterdir()) == []
+
+
+def test_an_export_of_nothing_is_refused_in_words(server):
+    answer = exported(server, "laz", cut=Z1 | {"z_m": 90.0})
+
+    assert answer.status_code == 422 and "no points" in answer.json()["detail"]
+    assert list((server.root / ".recon4" / "slices" / "exports").iterdir()) == []
+
+
+def test_double_walls_are_looked_for_once_a_map(server):
+    first = server.get(f"{BASE}/doubles").json()
+    again = server.get(f"{BASE}/doubles").json()
+
+    assert first == again
+    assert first["walls"] == [] and first["points"] == 120_000
+
+
+def test_control_points_are_looked_at_kept_and_judged(server):
+    text = "\ufeffID;X;Y;Z\nA;0,02;5;1,5\nB;16;5,01;1,5\n"
+    file = {"name": "p.csv", "base64": base64.b64encode(text.encode()).decode()}
+
+    preview = sent(server, "/control/preview", file).json()
+    state = {"points": preview["points"], "picks": {"A": [0, 5, 1.5], "B": [16, 5, 1.5]}}
+    kept = httpx.put(f"{server.url}{BASE}/control", json=state, timeout=30)
+    report = server.get(f"{BASE}/control/report").json()
+    near = server.get(f"{BASE}/control/surface", params={"point": "A"}).json()
+
+    assert preview["question"].startswith("Point A: is 0.020 the easting")
+    assert kept.status_code == 200
+    assert report["rows"][0]["east_m"] == pytest.approx(-0.02)
+    assert all(report["figures"][0]["passed"].values())
+    assert report["figures"][0]["role"] == "check"
+    assert near["surface"][0] == pytest.approx(0.0, abs=0.01)
+
+
+def test_another_project_can_be_set_beside(server):
+    here = sent(server, "/picture", ask()).json()
+    there = sent(server, "/picture", ask(source="project:other")).json()
+
+    assert there["points"] < here["points"] / 3
+
+
+@pytest.mark.parametrize(
+    ("changes", "status"),
+    [
+        ({"cut": Z1 | {"thickness_m": 0}}, 422),
+        ({"cut": {"kind": "free", "normal": [0, 0, 0]}}, 422),
+        ({"cut": {"kind": "vertical", "a_m": [1, 1], "b_m": [1, 1]}}, 422),
+        ({"width": 100_000}, 422),
+        ({"window": {"left": 0, "right": 0, "bottom": 0, "top": 1}}, 422),
+        ({"color": "distance"}, 422),
+        ({"reference": "../../etc"}, 404),
+        ({"source": "project:../x"}, 404),
+        ({"source": "map:0123456789abcdef"}, 404),
+        ({"unknown": 1}, 422),
+    ],
+)
+def test_a_request_without_meaning_is_refused(server, changes, status):
+    answer = sent(server, "/picture", ask(**changes))
+
+    assert answer.status_code == status
+    assert answer.json()["detail"]
+
+
+def test_a_project_without_a_map_says_so(server):
+    assert server.get("/api/projects/young/slices").status_code == 404
