@@ -70,7 +70,7 @@ export const addPerson = (person) => request("POST", "/api/people", person);
 export const changePerson = (who, changes) => request("PATCH", `/api/people/${name(who)}`, changes);
 export const listSessions = () => request("GET", "/api/sessions");
 export const endSession = (id) => request("DELETE", `/api/sessions/${name(id)}`);
-export const readAudit = (before) => request("GET", `/api/audit?most=50${before ? `&before=${before}` : ""}`);
+export const readAudit = (before) => request("GET", `/api/audit?most=25${before ? `&before=${before}` : ""}`);
 
 const name = encodeURIComponent;
 
@@ -168,4 +168,55 @@ export function watchJobs(onJob, onLink) {
     onLink(false);
     if (source.readyState === EventSource.CLOSED) request("GET", "/api/me").catch(() => {}); // signed out?
   });
+}
+
+// -- review
+
+const review = (id, path = "") => `/api/projects/${name(id)}/review${path}`;
+const ofPair = ([i, j]) => `frame_i=${i}&frame_j=${j}`;
+
+export const reviewUrl = (id) => `/projects/${name(id)}/review/`;
+export const readReview = (id) => request("GET", review(id));
+export const readQueue = (id) => request("GET", review(id, "/queue"));
+export const readWalk = (id) => request("GET", review(id, "/walk"));
+export const readPair = (id, pair) => request("GET", review(id, `/pair?${ofPair(pair)}`));
+export const readEffect = (id) => request("GET", review(id, "/effect"));
+export const readJournal = (id) => request("GET", review(id, "/journal"));
+export const decide = (id, decision) => request("POST", review(id, "/decisions"), decision);
+export const stepBack = (id, seq) => request("POST", review(id, "/undo"), { after_seq: seq });
+export const stepForth = (id, seq) => request("POST", review(id, "/redo"), { after_seq: seq });
+export const alignPair = (id, [i, j], guess) => request("POST", review(id, "/align"), { frame_i: i, frame_j: j, T_i_j: guess });
+export const fitPoints = (id, p_i, p_j) => request("POST", review(id, "/fit"), { p_i, p_j });
+export const approveMap = (id, why, confirmed) => request("POST", review(id, "/approve"), { why, confirmed });
+
+/** Points of both places of a pair, {i, j}: Float32Array of x y z in the body frame of each [m]. */
+export async function readPoints(id, pair, reach) {
+  const response = await fetch(review(id, `/points?${ofPair(pair)}&reach=${reach}`)).catch(() => {
+    throw new ApiError(0, { detail: "The server does not answer. Is it still running?" });
+  });
+  if (!response.ok) throw new ApiError(response.status, await response.json());
+  const data = await response.arrayBuffer();
+  const head = new DataView(data);
+  const [counted, other] = [head.getUint32(8, true), head.getUint32(12, true)];
+  return { i: new Float32Array(data, 16, 3 * counted), j: new Float32Array(data, 16 + 12 * counted, 3 * other) };
+}
+
+// -- live capture
+
+export const liveUrl = "/live";
+export const readCapture = () => request("GET", "/api/live");
+export const startCapture = (capture) => request("POST", "/api/live", capture);
+export const steerCapture = (what) => request("POST", `/api/live/${name(what)}`);
+export const markHere = (mark) => request("POST", "/api/live/marks", mark);
+
+/** Opens the stream of a capture; tell it what this page has, it tells what is new. */
+export function openLiveStream(have, { onMessage, onPoints, onClose }) {
+  const socket = new WebSocket(`${location.protocol.replace("http", "ws")}//${location.host}/api/live/stream`);
+  socket.binaryType = "arraybuffer";
+  socket.addEventListener("open", () => socket.send(JSON.stringify({ have })));
+  socket.addEventListener("message", ({ data }) =>
+    typeof data === "string" ? onMessage(JSON.parse(data)) : onPoints(data),
+  );
+  socket.addEventListener("close", onClose);
+  return socket;
 }

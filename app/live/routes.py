@@ -13,7 +13,8 @@ from starlette.requests import Request
 from app.access.audit import audit
 from app.access.people import May, Who, needs
 from app.deps import Server, parts
-from app.errors import Problem
+from app.errors import Conflict, Problem
+from app.jobs.routes import JobView, NewJob, add_job
 from app.live.phone import Phone, state_of
 from app.live.store import Captures
 
@@ -113,6 +114,26 @@ async def resume_capture(server: Server) -> CaptureView:
     """End a pause. Stand where the pause began."""
     await server.captures.capture().steer({"do": "resume"})
     return _view(server.captures, may_capture=True)
+
+
+@router.post(
+    "/process",
+    status_code=201,
+    dependencies=[Depends(needs(May.PROCESS))],
+    summary="Make the map of a capture that has ended",
+)
+def process_capture(request: Request, server: Server) -> JobView:
+    """Start the usual job on the project; its frames are there already."""
+    session = server.captures.capture().session
+    if not server.captures.capture().over:
+        raise Conflict("the capture goes on: stop it first")
+    new = NewJob(
+        project=session.project.name,
+        recordings=[str(session.capture)],
+        preset=session.preset,
+        rig=str(session.rig),
+    )
+    return add_job(new, server, request)
 
 
 @router.post("/marks", status_code=201, dependencies=CAPTURE, summary="Mark a point of interest")

@@ -1,0 +1,105 @@
+// What this page knows of the capture, kept over lost links: it asks only for what it lacks.
+
+import { openLiveStream } from "./api.js";
+
+const SILENT_MS = 6000;
+const AGAIN_MS = 1000;
+
+export class LiveScene {
+  project = "";
+  state = "";
+  path = [];
+  marks = [];
+  gaps = [];
+  me = null;
+  plan = null;
+  showPlan = true;
+  newest = {};
+  total = 0;
+  #cloud; #on; #socket; #heard = 0; #coming = null; #generation = -1;
+
+  constructor(cloud, handlers) {
+    this.#cloud = cloud;
+    this.#on = handlers;
+    this.#connect();
+    setInterval(() => this.#checkLink(), 500);
+    addEventListener("online", () => this.#connectAgain());
+    document.addEventListener("visibilitychange", () => document.hidden || this.#checkLink());
+  }
+
+  get have() {
+    return {
+      project: this.project, generation: this.#generation, points: this.#cloud.count,
+      path: this.path.length, marks: this.marks.length,
+    };
+  }
+
+  #connect() {
+    this.#heard = performance.now();
+    const socket = (this.#socket = openLiveStream(this.have, {
+      onMessage: (told) => socket === this.#socket && this.#take(told),
+      onPoints: (data) => socket === this.#socket && this.#takePoints(data),
+      onClose: () => socket === this.#socket && this.#lost(),
+    }));
+  }
+
+  #lost() {
+    this.#socket = null;
+    this.#coming = null;
+    this.#on.link(false);
+    setTimeout(() => this.#socket ?? this.#connect(), AGAIN_MS);
+  }
+
+  #connectAgain() {
+    const socket = this.#socket;
+    if (!socket) return;
+    socket.close();
+    this.#lost();
+  }
+
+  #checkLink() {
+    if (this.#socket && performance.now() - this.#heard > SILENT_MS) this.#connectAgain();
+  }
+
+  #take(told) {
+    this.#heard = performance.now();
+    this.#on.link(true);
+    if (told.project && told.project !== this.project) this.#forget(told.project);
+    this.state = told.state ?? this.state;
+    Object.assign(this.newest, told);
+    if (told.points) {
+      this.#coming = told.points;
+      this.total = told.points.total;
+    }
+    if (told.path) this.path.splice(told.path.start, Infinity, ...told.path.points);
+    if (told.pose) this.me = told.pose;
+    for (const mark of told.marks ?? [])
+      if (mark.what === "point") this.marks.push({ ...mark, p: this.me?.p ?? [0, 0, 0] });
+      else this.marks.push({ ...mark, p: [0, 0, 0], hidden: true });
+    if (told.gaps) this.gaps = told.gaps.gaps;
+    if (told.plan) this.#on.plan(told.plan);
+    this.#on.news();
+  }
+
+  #takePoints(data) {
+    this.#heard = performance.now();
+    const coming = this.#coming;
+    if (!coming) return;
+    if (coming.start === 0) this.#cloud.clear();
+    this.#generation = coming.generation;
+    this.#cloud.add(data, coming.count, coming.voxel_m);
+    this.#coming = null;
+    this.#on.news();
+  }
+
+  #forget(project) {
+    this.project = project;
+    this.path = [];
+    this.marks = [];
+    this.gaps = [];
+    this.me = this.plan = null;
+    this.newest = {};
+    this.#generation = -1;
+    this.#cloud.clear();
+  }
+}
