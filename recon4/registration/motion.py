@@ -18,6 +18,8 @@ _FREE_SD = (0.01, 0.05, 0.3, 0.3)
 rate [rad/s]."""
 _REST_NS = 500_000_000
 """Samples so near to a time tell which way is up then [ns]; if there is none, the nearest does."""
+_KEPT_NS = 60_000_000_000
+"""Of an IMU that is still measuring, samples are kept for so long [ns]."""
 _SLOT_S = 0.02
 """Without an IMU the motion is sampled this often [s]."""
 
@@ -77,6 +79,7 @@ class ImuMotion:
     """Motion predicted by an IMU, rotated into the body."""
 
     def __init__(self, imu: ImuSamples, rig: Rig, settings: OdometrySettings) -> None:
+        self._rig = rig
         self._t_ns = imu.t_ns
         self._gyro, self._accel = _in_body(imu, rig)
         self._has_accel = bool(np.isfinite(self._accel).all())
@@ -84,6 +87,14 @@ class ImuMotion:
         self._noise = np.array([s.gyro_noise, s.accel_noise, s.gyro_bias_walk, s.accel_bias_walk])
         if not self._has_accel:
             self._noise[1] = s.free_accel
+
+    def extend(self, imu: ImuSamples) -> None:
+        """Take samples that follow, of a capture that goes on; old ones are forgotten."""
+        gyro, accel = _in_body(imu, self._rig)
+        kept = self._t_ns > imu.t_ns[-1] - _KEPT_NS
+        self._t_ns = np.concatenate([self._t_ns[kept], imu.t_ns])
+        self._gyro = np.concatenate([self._gyro[kept], gyro])
+        self._accel = np.concatenate([self._accel[kept], accel])
 
     def covers(self, start_ns: int, end_ns: int) -> bool:
         """Whether there are samples all through a time, without a hole of more than 50 ms."""
@@ -190,7 +201,7 @@ def _in_body(imu: ImuSamples, rig: Rig) -> tuple[Array, Array]:
     """Turn rate and specific force at the body's origin, in body axes."""
     R_body_imu, r = rig.T_body_imu.R, rig.T_body_imu.t
     gyro, accel = imu.gyro_rad_s @ R_body_imu.T, imu.accel_m_s2 @ R_body_imu.T
-    if np.linalg.norm(r) > 1e-3:
+    if np.linalg.norm(r) > 1e-3 and len(imu) > 1:
         turn_accel = np.gradient(gyro, imu.t_ns * 1e-9, axis=0)
         accel = accel - np.cross(turn_accel, r) - np.cross(gyro, np.cross(gyro, r))
     return np.ascontiguousarray(gyro), np.ascontiguousarray(accel)

@@ -89,6 +89,12 @@ class Odometry:
         self._last_keyframe = SE3.identity()
         self._lost_frames = 0
 
+    def extend_imu(self, imu: ImuSamples) -> None:
+        """Take IMU samples that follow those given at first; a capture that goes on has them
+        only now. Nothing happens if there was no IMU at first."""
+        if isinstance(self._motion, ImuMotion):
+            self._motion.extend(imu)
+
     def push(self, frame: Multiframe) -> OdometryStep:
         """Register the next multiframe; frames come in the order of their time."""
         segments = sample_segments(frame, self._rig, self._settings.segments)
