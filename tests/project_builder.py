@@ -10,12 +10,15 @@ import numpy as np
 from recon4.geometry.se3 import SE3
 from recon4.mapping.tile import FIELDS
 from recon4.mapping.tiles import TileWriter
+from recon4.model.multiframe import Multiframe
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.model.rig import Rig, Sensor
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import save_graph
 from recon4.progress import Progress, Silent
 from recon4.settings import Settings
 from recon4.store.arrays import save_trajectory
+from recon4.store.frames import FrameWriter
 from recon4.store.project import Project
 from recon4.store.stage import Input, Stage, StageRunner
 
@@ -49,6 +52,12 @@ def build_project(root: Path, *, points: int = 60_000, with_map: bool = True) ->
         "peak_bytes": 812_000_000,
     }
     (root / "summary.json").write_text(json.dumps(figures))
+
+
+def add_multiframes(root: Path) -> None:
+    """Give a project the multiframes of the walk: few points each, seen from where it was."""
+    with Project.open(root) as project:
+        StageRunner(project, Settings(), Silent()).run(Stage("frames", 1, (), _frames))
 
 
 def loop_walk() -> Trajectory:
@@ -99,6 +108,39 @@ def room_points(rng: np.random.Generator, count: int) -> np.ndarray:
     p[pillar, 0] = (x + 0.3 * np.cos(angle))[pillar]
     p[pillar, 1] = (5.0 + 0.3 * np.sin(angle))[pillar]
     return p
+
+
+def _frames(*, out: Path, settings: Settings, progress: Progress) -> None:
+    rng, walk = np.random.default_rng(8), loop_walk()
+    sensors = tuple(
+        Sensor(name=name, model="VLP-16", T_body_sensor=SE3.from_rpy(0.0, pitch, 0.0, [0.0, 0, z]))
+        for name, pitch, z in (("horizontal", 0.0, 0.3), ("vertical", np.pi / 2.0, 0.5))
+    )
+    nothing = {"imu_time_offset_s": 0.0, "p_body_antenna": np.zeros(3), "gnss_time_offset_s": 0.0}
+    rig = Rig(name="4RECON", sensors=sensors, T_body_imu=SE3.identity(), **nothing)
+    with FrameWriter(out, rig) as writer:
+        for k, t_ns in enumerate(walk.t_ns[:-1].tolist()):
+            writer.append(_multiframe(k, t_ns, walk.T_a_b[k], rig, rng))
+
+
+def _multiframe(
+    k: int, t_ns: int, T_map_body: SE3, rig: Rig, rng: np.random.Generator
+) -> Multiframe:
+    p_body = T_map_body.inverse() @ room_points(rng, 400)
+    sensor = (np.arange(400) >= 200).astype(np.uint8)
+    T_sensor_body = rig.T_body_sensor.inverse()
+    xyz = np.where(sensor[:, None] == 0, T_sensor_body[0] @ p_body, T_sensor_body[1] @ p_body)
+    return Multiframe(
+        frame_id=k,
+        t_ns=t_ns,
+        duration_ns=100_000_000,
+        xyz=xyz.astype(np.float32),
+        intensity=rng.integers(0, 255, 400).astype(np.uint16),
+        ring=rng.integers(0, 16, 400).astype(np.uint8),
+        sensor=sensor,
+        echo=np.zeros(400, np.uint8),
+        dt_ns=np.zeros(400, np.int32),
+    )
 
 
 def _odometry(*, out: Path, settings: Settings, progress: Progress, walk: Trajectory) -> None:

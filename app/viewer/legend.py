@@ -28,6 +28,8 @@ class Legend:
     grid_cell_m: float = 0.0
     edge_color: EdgeColor = "verdict"
     edge_span: Range = ERROR_RANGE
+    multiframes: str = ""
+    """Which of them are on screen; empty = none."""
 
 
 def legend(content: Content, view: View, *, points: int = 0) -> Legend:
@@ -51,7 +53,19 @@ def legend(content: Content, view: View, *, points: int = 0) -> Legend:
         grid_cell_m=grid_cell_m(bounds(content)),
         edge_color=view.edge_color,
         edge_span=CHI2_RANGE if view.edge_color == "chi²" else ERROR_RANGE,
+        multiframes=multiframe_words(content, view),
     )
+
+
+def multiframe_words(content: Content, view: View) -> str:
+    """Which multiframes are on screen, and when they were measured."""
+    frames = content.multiframes
+    if frames is None or view.points == "map":
+        return ""
+    rows = frames.window(view.moment, view.window_s)
+    begin_s = (frames.t_mid_ns[rows[0]] - frames.t_mid_ns[0]) * 1e-9
+    named = f"Multiframe {rows[0]}" if len(rows) == 1 else f"Multiframes {rows[0]} to {rows[-1]}"
+    return f"{named} of {len(frames)}, at {begin_s:.1f} s"
 
 
 def span_of(content: Content, view: View) -> Range:

@@ -20,6 +20,8 @@ def legend_html(legend: Legend) -> str:
     if legend.color_by is not None:
         points = f"<b>Points by {html.escape(legend.color_by)}</b>{_scale(legend)}"
         points += f"<div>{count(legend.points)} of {count(legend.points_in_map)} points</div>"
+    if legend.multiframes:
+        points += f"<div>{html.escape(legend.multiframes)}</div>"
     if legend.edge_color == "verdict":
         lines = "".join(_swatch(counted(row), row.rgb, line=True) for row in legend.layers)
     else:

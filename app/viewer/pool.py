@@ -59,6 +59,13 @@ class ViewerPool:
                 self._running[project] = await self._start(project)
             return self._running[project][1]
 
+    async def give_up(self, project: Path, port: int) -> None:
+        """End the viewer that had this port and does not answer there; `port` starts another."""
+        async with self._starting.setdefault(project, asyncio.Lock()):
+            running = self._running.get(project)
+            if running is not None and running[1] == port:
+                await _end(self._running.pop(project)[0])
+
     async def close(self) -> None:
         """End all viewers."""
         for process, _ in self._running.values():

@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Any
 
 from app.viewer.palette import table
-from app.viewer.scene import bounds
 from app.viewer.seat import Seat
 from app.viewer.show import Viewer
 from app.viewer.source import ProjectSource
@@ -67,12 +66,10 @@ def main(project: Path, idle_s: float, *, points: int, jobs: Path) -> None:
     source = ProjectSource(project, jobs)
     seats = Seats(source, project.name, points)
     viewer = Viewer(on_client=seats.take, on_leave=seats.leave)
-    viewer.begin_at(bounds(source.content))
     answer.write(json.dumps({"port": viewer.port}) + "\n")
     answer.flush()
     while not over.wait(LOOK_EVERY_S) and viewer.idle_s < idle_s:
         if source.changed():
-            viewer.begin_at(bounds(source.content))
             seats.refresh()
     viewer.stop()
 

@@ -10,16 +10,18 @@ import asyncio
 import contextlib
 import logging
 import time
+from pathlib import Path
 
 import msgspec.msgpack
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from websockets.asyncio.client import ClientConnection, connect
-from websockets.exceptions import ConnectionClosed
+from websockets.exceptions import ConnectionClosed, InvalidHandshake
 from websockets.typing import Subprotocol
 
 from app.access.people import May, person
 from app.deps import parts
-from app.errors import AppError
+from app.errors import AppError, ViewerFailed
+from app.viewer.pool import ViewerPool
 
 router = APIRouter()
 log = logging.getLogger(__name__)
@@ -55,6 +57,8 @@ MESSAGES_A_SECOND = 120.0
 """A browser's messages are read no faster; a moving camera tells of itself 60 times a second."""
 BURST = 240
 """So many may come at once."""
+ATTEMPTS = 3
+"""A viewer is started at most so often for one connection."""
 STALLED_S = 30.0
 """A browser that takes nothing for so long is disconnected [s]."""
 TOO_MANY, STALLED = 4429, 4408
@@ -72,8 +76,13 @@ async def relay(browser: WebSocket, project_id: str) -> None:
         await browser.close(TOO_MANY, reason="too many viewers are open; close one and try again")
         return
     try:
-        port = await server.viewers.port(server.projects.folder(project_id))
-        await _connect(browser, port, offered, may_review=who.may(May.REVIEW))
+        folder = server.projects.folder(project_id)
+        viewer = await _viewer(server.viewers, folder, offered)
+        try:
+            await browser.accept(subprotocol=viewer.subprotocol)
+            await _pump(browser, viewer, may_review=who.may(May.REVIEW))
+        finally:
+            await viewer.close()
     except AppError as error:
         log.warning("%s", error)
         await browser.close(1008, reason=str(error)[:120])
@@ -81,21 +90,26 @@ async def relay(browser: WebSocket, project_id: str) -> None:
         server.viewers.sockets.leave(who.name)
 
 
-async def _connect(
-    browser: WebSocket, port: int, offered: list[Subprotocol], *, may_review: bool
-) -> None:
-    viewer = connect(
-        f"ws://127.0.0.1:{port}",
-        subprotocols=offered or None,
-        max_size=None,  # it is ours
-        compression=None,
-        ping_interval=None,
-        max_queue=2,
-        proxy=None,
-    )
-    async with viewer as upstream:
-        await browser.accept(subprotocol=upstream.subprotocol)
-        await _pump(browser, upstream, may_review=may_review)
+async def _viewer(
+    viewers: ViewerPool, project: Path, offered: list[Subprotocol]
+) -> ClientConnection:
+    """A connection with the viewer of a project; one that was killed just now is started anew."""
+    for _ in range(ATTEMPTS):
+        port = await viewers.port(project)
+        try:
+            return await connect(
+                f"ws://127.0.0.1:{port}",
+                subprotocols=offered or None,
+                max_size=None,  # it is ours
+                compression=None,
+                ping_interval=None,
+                max_queue=2,
+                proxy=None,
+            )
+        except (OSError, InvalidHandshake) as error:
+            log.warning("viewer of %s: %s", project.name, error)
+            await viewers.give_up(project, port)
+    raise ViewerFailed(f"the viewer of {project.name} ends as soon as it starts")
 
 
 async def _pump(browser: WebSocket, viewer: ClientConnection, *, may_review: bool) -> None:

@@ -44,8 +44,10 @@ class Screen:
 
     def __init__(self, client: viser.ClientHandle, project: str, *, begins_at: Bounds) -> None:
         self._client = client
-        self._put_m = start_m(begins_at)
+        self._put_m: Array | None = None
         self._box_m = begins_at.size_m
+        if _is_fresh(client.camera):
+            self.look_at(begins_at)
         self._key = KEPT + project
         self._shown: dict[str, tuple[Node, Any]] = {}
         self._points: OrderedDict[str, _Drawn] = OrderedDict()
@@ -173,17 +175,18 @@ class Screen:
 
     def look_at(self, box: Bounds, direction: Array = AWAY) -> None:
         """Put the camera so that all of a box is seen from a direction."""
-        self._put_m = box.center_m + max(box.size_m, 5.0) * direction
+        self._put_m = start_m(box, direction)
         with self._client.atomic():
             self._client.camera.position = self._put_m
             self._client.camera.look_at = box.center_m
 
     def follow(self, box: Bounds) -> None:
         """Keep a growing map in the picture as long as the person leaves the camera alone."""
-        grown = abs(box.size_m - self._box_m) > GROWN * self._box_m
-        if grown and np.allclose(self._client.camera.position, self._put_m, atol=1e-3):
+        if self._put_m is None or abs(box.size_m - self._box_m) < GROWN * self._box_m:
+            return
+        if np.allclose(self._client.camera.position, self._put_m, atol=1e-3):
+            self._box_m = box.size_m
             self.look_at(box)
-        self._box_m = box.size_m
 
     def toggle_narrow(self) -> None:
         """Nearly parallel rays from far away, or the usual angle of view from near; same size."""
@@ -297,11 +300,6 @@ class Viewer:
         """Seconds since the last client left (or since the start); 0 while there is one."""
         return 0.0 if self._server.get_clients() else time.monotonic() - self._left_s
 
-    def begin_at(self, box: Bounds) -> None:
-        """Where a new client's camera is at first; one that reconnects keeps its own."""
-        self._server.initial_camera.position = start_m(box)
-        self._server.initial_camera.look_at = box.center_m
-
     def stop(self) -> None:
         """End it."""
         self._server.stop()
@@ -311,9 +309,20 @@ class Viewer:
         self._on_leave(client)
 
 
-def start_m(box: Bounds) -> Array:
-    """Where a new client's camera is [m], (3,)."""
-    return box.center_m + max(box.size_m, 5.0) * AWAY
+def start_m(box: Bounds, direction: Array = AWAY) -> Array:
+    """From where all of a box is seen [m], (3,)."""
+    return np.asarray(box.center_m + max(box.size_m, 5.0) * direction)
+
+
+def _is_fresh(camera: viser.CameraHandle) -> bool:
+    """Whether a page was just loaded: viser's camera begins three meters off on each axis.
+
+    One that reconnects tells where the person left it. (viser's own ``initial_camera`` would put
+    it back to the beginning then.)
+    """
+    return np.allclose(np.abs(camera.position), 3.0, atol=1e-3) and np.allclose(
+        camera.look_at, 0.0, atol=1e-3
+    )
 
 
 def _recolor(handle: Any, before: PointsNode, node: PointsNode) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -33,13 +34,14 @@ AFRESH = {"frames": (), "odometry": ("frames",), "graph": ("frames", "odometry")
 
 
 class ProjectSource:
-    """The newest of a project. Used by one thread; the `Content` it makes by many."""
+    """The newest of a project; one thread looks for changes, many use what there is."""
 
     def __init__(self, project: Path, jobs: Path) -> None:
         self._project = project
         self._watch = JobWatch(project, jobs)
         self._artifacts: dict[str, Path] = {}
         self._made: dict[tuple[str, Path], Any] = {}
+        self._lock = threading.Lock()
         self.content = Content()
         self.changed()
 
@@ -62,6 +64,8 @@ class ProjectSource:
 
     def crs_coordinates(self, p_map: Array) -> tuple[str, Array] | None:
         """Name of the CRS and coordinates of points (N, 3) in it; None = nowhere on earth."""
+        if not self.content.crs:
+            return None
         from recon4.georeference.stage import read_crs  # brings pyproj and much of scipy
 
         transform = self._of_stage("level", lambda path: read_crs(path), name="crs")
@@ -88,14 +92,16 @@ class ProjectSource:
     def _once(self, name: str, folder: Path, make: Any) -> Any:
         """What is made of an artifact, made once; artifacts never change."""
         key = (name, folder)
-        if key not in self._made:
-            self._made = {k: v for k, v in self._made.items() if k[1] in self._artifacts.values()}
-            try:
-                self._made[key] = make(folder)
-            except Recon4Error as error:
-                log.warning("%s of %s: %s", name, folder.name, error)
-                self._made[key] = None
-        return self._made[key]
+        with self._lock:
+            if key not in self._made:
+                used = set(self._artifacts.values())
+                self._made = {k: made for k, made in self._made.items() if k[1] in used}
+                try:
+                    self._made[key] = make(folder)
+                except Recon4Error as error:
+                    log.warning("%s of %s: %s", name, folder.name, error)
+                    self._made[key] = None
+            return self._made[key]
 
     def _of_stage(self, stage: str, make: Any, *, name: str = "") -> Any:
         folder = self._artifacts.get(stage)

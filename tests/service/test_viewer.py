@@ -19,7 +19,7 @@ from app.viewer.page import SHIMS
 from app.viewer.pool import Sockets
 from app.viewer.proxy import Rate, allowed, passes
 from recon4.model.pose_graph import Reason
-from tests.project_builder import build_project, loop_walk, verified_graph
+from tests.project_builder import add_multiframes, build_project, loop_walk, verified_graph
 from tests.service.running import server_thread
 from tests.service.viser_client import camera, viewing
 
@@ -30,6 +30,7 @@ POINTS = 60_000
 def root(tmp_path_factory):
     root = tmp_path_factory.mktemp("projects")
     build_project(root / "office", points=POINTS)
+    add_multiframes(root / "office")
     return root
 
 
@@ -120,6 +121,28 @@ def test_a_point_picked_comes_with_time_sensor_and_intensities(looking):
     looking.click((9.8, 3.0, 1.5), (0.0, 1.0, 0.05))
 
     looking.until(lambda c: "Normalized" in c.html() and "Multiframe" in c.html())
+
+
+def test_a_single_multiframe_is_shown_with_all_its_points_and_a_window_with_more(looking):
+    looking.set("Show", "multiframe")
+    looking.set("Multiframe", 120)
+    looking.until(lambda c: "Multiframe 120 of 599, at 12.0 s" in c.html())
+    looking.until(lambda c: c.points.get("/multiframe") == 400 and not c.visible["/map"])
+
+    looking.set("Window", 1.0)
+    looking.until(lambda c: c.points.get("/multiframe") == 11 * 400)
+
+    looking.set("Show", "map")
+    looking.until(lambda c: "/multiframe" not in c.points and c.visible["/map"])
+
+
+def test_playing_goes_on_from_multiframe_to_multiframe(looking):
+    looking.press("Play")
+    looking.until(lambda c: "Multiframe 2 of 599" in c.html())
+    looking.press("Play")
+    looking.rest()
+
+    assert "/multiframe" in looking.points and looking.visible["/map"]
 
 
 def test_after_a_reconnect_the_view_is_as_it_was_and_the_camera_is_left_alone(server):

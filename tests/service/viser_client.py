@@ -122,7 +122,7 @@ class ViserClient:
                 self.nodes[name]["props"].update(message["updates"])
             case _ if "props" in message:
                 self.nodes[name] = message
-                self.visible[name] = True
+                self.visible.setdefault(name, True)
 
     def _panel(self, message: dict[str, Any]) -> None:
         uuid = message.get("uuid", "")
@@ -155,9 +155,9 @@ class ViserClient:
         return "".join(widget["props"]["content"] for widget in blocks)
 
     def widget(self, label: str) -> dict[str, Any]:
-        return next(
-            w for w in self.widgets.values() if w["props"].get("label", "").startswith(label)
-        )
+        known = [w for w in self.widgets.values() if w["type"] != "GuiFolderMessage"]
+        exact = [w for w in known if w["props"].get("label") == label]
+        return (exact or [w for w in known if w["props"].get("label", "").startswith(label)])[0]
 
     def set(self, label: str, value: Any) -> None:
         """Operate a widget; pressing a button is setting it to True."""
