@@ -24,9 +24,9 @@ function person({ name, role, disabled, created }) {
   return make(
     "tr", {},
     make("th", { scope: "row" }, name),
-    make("td", {}, choice),
-    make("td", { className: disabled ? "bad" : "good" }, disabled ? "✕ Disabled" : "✓ May sign in"),
-    make("td", {}, make("time", {}, when(created))),
+    make("td", { "data-label": "Role" }, choice),
+    make("td", { "data-label": "State", className: disabled ? "bad" : "good" }, disabled ? "✕ Disabled" : "✓ May sign in"),
+    make("td", { "data-label": "Since" }, make("time", {}, when(created))),
     make("td", {}, make("div", { className: "actions" }, lock)),
   );
 }
@@ -47,11 +47,11 @@ async function reload() {
 function entry({ time, person: who, address, action, object, outcome }) {
   return make(
     "tr", {},
-    make("td", {}, make("time", { dateTime: time }, when(time))),
-    make("td", {}, who),
-    make("td", {}, address),
-    make("td", {}, make("b", {}, action), " ", make("code", {}, object)),
-    make("td", { className: outcome === "done" ? "" : "bad" }, OUTCOMES[outcome] ?? outcome),
+    make("th", { scope: "row" }, make("time", { dateTime: time }, when(time))),
+    make("td", { "data-label": "Who" }, who),
+    make("td", { "data-label": "From" }, address),
+    make("td", { "data-label": "What" }, make("span", {}, make("b", {}, action), " ", make("code", {}, object))),
+    make("td", { "data-label": "Outcome", className: outcome === "done" ? "" : "bad" }, OUTCOMES[outcome] ?? outcome),
   );
 }
 

@@ -39,10 +39,10 @@ class SessionList extends HTMLElement {
     return make(
       "tr", {},
       make("th", { scope: "row" }, session.person),
-      make("td", { title: session.agent }, device(session.agent)),
-      make("td", {}, session.address),
-      make("td", {}, make("time", {}, moment(session.began_s))),
-      make("td", {}, make("time", {}, moment(session.seen_s))),
+      make("td", { title: session.agent, "data-label": "Device" }, device(session.agent)),
+      make("td", { "data-label": "From" }, session.address),
+      make("td", { "data-label": "Signed in" }, make("time", {}, moment(session.began_s))),
+      make("td", { "data-label": "Last seen" }, make("time", {}, moment(session.seen_s))),
       make("td", {}, make("div", { className: "actions" }, current ? make("span", { className: "here" }, "✓ This one") : end)),
     );
   }

@@ -1,0 +1,215 @@
+"""Signing in, out, and what admins do, in a real browser over TLS."""
+
+from collections.abc import Iterator
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.e2e.conftest import EXPECTED_NOISE, SCREENS
+from tests.project_builder import build_project
+from tests.service.running import server_thread
+from tests.service.secure import PASSWORD, Secure, secure_server
+
+pytestmark = pytest.mark.e2e
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    root = tmp_path_factory.mktemp("projects")
+    build_project(root / "office", points=20_000)
+    with secure_server(root) as running:
+        yield running
+
+
+@pytest.fixture
+def page(browser, look) -> Iterator[Page]:
+    """A browser that takes the made certificate, as people do after comparing the fingerprint."""
+    screen, scheme = look
+    width, height = SCREENS[screen]
+    context = browser.new_context(
+        viewport={"width": width, "height": height},
+        color_scheme=scheme,
+        has_touch=screen == "phone",
+        is_mobile=screen == "phone",
+        ignore_https_errors=True,
+    )
+    context.set_default_timeout(60_000)
+    page = context.new_page()
+    complaints: list[str] = []
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on("console", lambda message: message.type == "error" and complaints.append(message.text))
+    yield page
+    context.close()
+    noise = (*EXPECTED_NOISE, "status of 422")
+    assert [text for text in complaints if not any(one in text for one in noise)] == []
+
+
+def once(look):
+    if look != ("desktop", "dark"):
+        pytest.skip("once is enough")
+
+
+def sign_in(page, server: Secure, name: str, path: str = "/"):
+    page.goto(server.url + path)
+    page.get_by_label("Name").fill(name)
+    page.get_by_label("Password", exact=True).fill(PASSWORD)
+    page.keyboard.press("Enter")
+    page.wait_for_url(server.url + path)
+
+
+def fits(page):
+    """Nothing sticks out to the side, and everything to press is large enough."""
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    small = page.evaluate(
+        """[...document.querySelectorAll('button, input:not([type=checkbox]), select, .bar a')]
+        .filter((one) => one.checkVisibility() && one.getBoundingClientRect().height < 44)
+        .map((one) => one.outerHTML.slice(0, 80))"""
+    )
+    assert small == []
+
+
+def test_one_is_led_to_the_login_and_back_to_where_one_wanted_to_go(server, page, picture):
+    page.goto(f"{server.url}/projects/office/")
+    expect(page.get_by_role("heading", name="Sign in")).to_be_visible()
+    expect(page.get_by_label("Name")).to_be_focused()
+    fits(page)
+
+    page.get_by_label("Name").fill("rita")
+    page.get_by_label("Password", exact=True).fill("wrong wrong wrong")
+    page.get_by_role("button", name="Sign in").click()
+    expect(page.get_by_role("alert")).to_have_text("name and password do not fit")
+    fits(page)
+    picture(page, "login")
+
+    page.get_by_label("Password", exact=True).fill(PASSWORD)
+    page.get_by_role("button", name="Sign in").click()
+    page.wait_for_url(f"{server.url}/projects/office/")
+    expect(page.get_by_role("heading", name="office")).to_be_visible()
+    expect(page.get_by_role("link", name="Account of rita, reviewer")).to_be_visible()
+
+
+def test_signing_out_leads_to_the_login_and_nothing_is_left(server, page):
+    sign_in(page, server, "vera")
+    expect(page.get_by_role("listitem").filter(has_text="office")).to_be_visible()
+    expect(page.get_by_role("link", name="People")).to_have_count(0)
+    fits(page)
+
+    page.get_by_role("button", name="Sign out").click()
+    expect(page.get_by_role("heading", name="Sign in")).to_be_visible()
+    page.go_back()
+    expect(page.get_by_role("heading", name="Sign in")).to_be_visible()
+
+    assert page.context.cookies(server.url + "/api/me") == [] or not any(
+        cookie["name"] == "__Host-sid" for cookie in page.context.cookies()
+    )
+
+
+def test_a_hostile_link_to_the_login_does_not_lead_away(server, page, look):
+    once(look)
+    page.goto(f"{server.url}/login#next=//evil.example/x")
+    page.get_by_label("Name").fill("vera")
+    page.get_by_label("Password", exact=True).fill(PASSWORD)
+    page.keyboard.press("Enter")
+
+    page.wait_for_url(f"{server.url}/")
+
+
+def test_no_script_reads_the_session(server, page, look):
+    once(look)
+    sign_in(page, server, "vera")
+
+    assert page.evaluate("document.cookie") == ""
+    assert page.evaluate("JSON.stringify([localStorage, sessionStorage])") == "[{},{}]"
+
+
+def test_the_viewer_works_behind_the_login(server, page, look):
+    once(look)
+    sign_in(page, server, "vera", "/projects/office/")
+
+    viewer = page.frame_locator("iframe")
+    expect(viewer.get_by_text("map frame · z up · metres")).to_be_visible()
+    page.frames[-1].wait_for_function("window.__viserMutable?.canvas")
+
+
+def test_an_admin_adds_a_person_changes_a_role_and_reads_the_log(server, page, look, picture):
+    screen, scheme = look
+    name = f"Žofie {screen} {scheme}"
+    sign_in(page, server, "anna", "/people")
+
+    form = page.locator("#add")
+    form.get_by_label("Name").fill(name)
+    form.get_by_label("Role").select_option("operator")
+    form.get_by_label("First password").fill("password1234")
+    form.get_by_role("button", name="Add").click()
+    expect(form.get_by_role("alert")).to_contain_text("guessed too easily")
+    form.get_by_label("First password").fill(PASSWORD)
+    form.get_by_role("button", name="Add").click()
+
+    row = page.locator("#people tr").filter(has_text=name)
+    expect(row).to_contain_text("May sign in")
+    row.get_by_label(f"Role of {name}").select_option("reviewer")
+    expect(page.locator("#audit tr").first).to_contain_text("set role")
+    row.get_by_role("button", name=f"Disable {name}").click()
+    expect(row).to_contain_text("Disabled")
+    expect(page.locator("#chain")).to_contain_text("chain whole")
+    expect(page.locator("session-list")).to_contain_text("This one")
+    fits(page)
+    page.evaluate("scrollTo(0, 0)")
+    picture(page, "people")
+
+
+def test_ones_own_sessions_are_listed_and_another_is_ended(server, page, picture):
+    with server.signed_in("otto"):
+        sign_in(page, server, "otto", "/account")
+        expect(page.get_by_role("heading", name="otto, operator")).to_be_visible()
+        rows = page.locator("session-list tbody tr")
+        expect(rows.filter(has_text="This one")).to_have_count(1)
+        fits(page)
+        picture(page, "account")
+        before = rows.count()
+
+        rows.filter(has_not_text="This one").first.get_by_role("button").click()
+
+        expect(rows).to_have_count(before - 1)
+
+
+def test_what_is_signed_with_a_name_asks_for_the_password_again(server, page, look, picture):
+    if look[1] != "dark":
+        pytest.skip("one color is enough")
+    sign_in(page, server, "anna", "/people")
+    access = server.running.app.state.parts.access
+    clock = access.sessions._clock
+    access.sessions._clock = lambda: clock() + 1200.0
+    try:
+        row = page.locator("#people tr").filter(has_text="rita")
+        row.get_by_label("Role of rita").select_option("reviewer")
+        dialog = page.get_by_role("dialog", name="Your password again")
+        expect(dialog.get_by_label("Password")).to_be_focused()
+        picture(page, "password-again")
+        page.keyboard.type("wrong wrong wrong")
+        page.keyboard.press("Enter")
+        expect(dialog.get_by_role("alert")).to_have_text("name and password do not fit")
+        page.keyboard.type(PASSWORD)
+        page.keyboard.press("Enter")
+        expect(dialog).to_be_hidden()
+        expect(page.locator("#audit tr").first).to_contain_text("set role")
+    finally:
+        access.sessions._clock = clock
+
+
+def test_the_first_admin_is_made_in_the_browser(tmp_path, page, look, picture):
+    if look[1] != "light":
+        pytest.skip("one color is enough")
+    with server_thread(tmp_path, lan=True) as running:
+        token = running.app.state.parts.access.door.open_setup()
+        page.goto(f"{running.url}/login#setup={token}")
+        expect(page.get_by_role("heading", name="Make the first admin")).to_be_visible()
+        assert token not in page.url
+        fits(page)
+        picture(page, "setup")
+        page.get_by_label("Name").fill("Anna")
+        page.get_by_label("Password", exact=True).fill(PASSWORD)
+        page.get_by_role("button", name="Make admin and sign in").click()
+
+        expect(page.get_by_role("link", name="People")).to_be_visible()
+        page.goto("about:blank")  # else its event stream is cut by the end of the server
