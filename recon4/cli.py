@@ -177,6 +177,9 @@ def serve(
     port: Annotated[int, typer.Option(help="Port; 0 = any free one.")] = 8000,
     tls_cert: Annotated[Path | None, typer.Option(help="Your certificate chain, PEM.")] = None,
     tls_key: Annotated[Path | None, typer.Option(help="Its key, PEM.")] = None,
+    points: Annotated[
+        int, typer.Option(min=50_000, help="At most so many points of a map to one browser.")
+    ] = 3_000_000,
     show: Annotated[bool, typer.Option("--open", help="Open it in this browser.")] = False,
 ) -> None:
     """Show projects in the browser: results, jobs, 3D viewer. Ctrl-C ends it."""
@@ -192,6 +195,7 @@ def serve(
             tls_key=tls_key,
             names=names_from_environment(),
             recordings=recordings_from_environment(),
+            viewer_points=points,
         )
     except ConfigError as error:
         raise typer.BadParameter(str(error)) from error
