@@ -50,6 +50,20 @@ class Guess(BaseModel):
     T_i_j: PoseNumbers
 
 
+Point = Annotated[list[Finite], Field(min_length=3, max_length=3)]
+
+
+class PointPairs(BaseModel):
+    """The same points in both places."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    p_i: Annotated[list[Point], Field(min_length=3, max_length=20)]
+    """In the body frame of the first [m]."""
+    p_j: Annotated[list[Point], Field(min_length=3, max_length=20)]
+    """In the body frame of the second [m]."""
+
+
 class Approve(BaseModel):
     """Sign the map as it is."""
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
+import numpy as np
 from fastapi import APIRouter, Depends, Query, Response
 from fastapi.responses import FileResponse
 from starlette.concurrency import run_in_threadpool
@@ -22,6 +23,7 @@ from app.review.model import (
     Frame,
     Guess,
     NewDecision,
+    PointPairs,
     ReviewView,
     RowView,
     StandingView,
@@ -31,7 +33,7 @@ from recon4.review.approval import NotApprovable, latest_approval
 from recon4.review.approval import approve as sign
 from recon4.review.decisions import Decided, Decision, Kind, fold
 from recon4.review.journal import JournalMoved, NothingToTakeBack, Row, append, read_rows
-from recon4.review.pairs import align, pair_facts, pair_points, walk_facts
+from recon4.review.pairs import align, fit_points, pair_facts, pair_points, walk_facts
 from recon4.review.source import Source
 from recon4.review.state import decisions_in_map
 
@@ -125,6 +127,12 @@ async def align_pair(project_id: str, guess: Guess, server: Server) -> Alignment
         reason=found.reason,
         **{name: told[name] for name in figures},
     )
+
+
+@router.post("/fit", dependencies=REVIEW, summary="Fit picked points")
+def fit_picked(picked: PointPairs) -> list[float]:
+    """``T_i_j`` that lays the second place's points on the first's; decides nothing."""
+    return list(fit_points(np.array(picked.p_i), np.array(picked.p_j)))
 
 
 @router.post("/decisions", status_code=201, dependencies=REVIEW, summary="Decide")

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
-from recon4.geometry.se3 import SE3, Array
+from recon4.geometry.se3 import SE3, Array, align_points
 from recon4.mapping.place import place
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Reason
 from recon4.pose_graph.pairs import Pair as TriedPair
@@ -40,6 +40,8 @@ MOST_REACH = 10
 """Multiframes before and after that may be shown along."""
 _VOXEL_M = 0.04
 _MOST_RANGE_M = 60.0
+_LEAST_SPREAD_M = 0.1
+"""Points picked must spread at least this far across the line they lie along [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,6 +149,25 @@ def align(root: Path, pair: Pair, guess: tuple[float, ...]) -> Alignment:
     if not reason and found.overlap < source.settings.overlap.threshold:
         reason = Reason.OVERLAP
     return Alignment(found, tried.converged, str(reason))
+
+
+def fit_points(p_i: Array, p_j: Array) -> tuple[float, ...]:
+    """``T_i_j`` of three or more points that a person found in both places, as `numbers_of`.
+
+    Args:
+        p_i: Points in the body frame at i [m], (N, 3).
+        p_j: The same points in the body frame at j [m], (N, 3).
+
+    Raises:
+        ConfigError: If there are fewer than three, or they lie on a line.
+    """
+    if len(p_i) < 3 or len(p_i) != len(p_j):
+        raise ConfigError(f"three pairs of points are needed, got {min(len(p_i), len(p_j))}")
+    for name, points in (("first", p_i), ("second", p_j)):
+        spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+        if spread[1] < _LEAST_SPREAD_M:
+            raise ConfigError(f"the points in the {name} place lie on a line; pick another one")
+    return numbers_of(align_points(p_i, p_j))
 
 
 def walk_facts(root: Path) -> dict[str, Any]:

@@ -1,0 +1,299 @@
+"""Loops decided about by keyboard, by mouse and by touch; a map made anew, approved, exported."""
+
+import json
+import shutil
+
+import pytest
+from playwright.sync_api import expect
+
+from recon4.review.journal import broken, read_rows
+from tests.review_project import make
+from tests.service.running import server_thread
+
+pytestmark = pytest.mark.e2e
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("made") / "office"
+    make(folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def running(tmp_path_factory):
+    with server_thread(tmp_path_factory.mktemp("served"), worker="tests.review_project") as one:
+        yield one
+
+
+@pytest.fixture
+def root(made, running):
+    folder = running.root / f"office{len(list(running.root.iterdir()))}"
+    shutil.copytree(made, folder)
+    return folder
+
+
+@pytest.fixture
+def opened(running, root, page):
+    page.goto(f"{running.url}/projects/{root.name}/review/")
+    expect(page.locator(".queue li").first).to_be_visible()
+    return page
+
+
+def only(look, *screens):
+    if look not in [tuple(screen.split()) for screen in screens]:
+        pytest.skip("once is enough")
+
+
+def settled(page):
+    """The points of the pair in hand are there."""
+    expect(page.locator(".view-empty")).to_be_empty()
+    expect(page.locator("#pair dl")).to_be_visible()
+
+
+def fits(page):
+    """Nothing sticks out to the side, and everything to press is large enough."""
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    small = page.evaluate(
+        """[...document.querySelectorAll('button:not(.link), select, summary, .check, .bar a')]
+        .filter((one) => one.checkVisibility() && one.getBoundingClientRect().height < 44)
+        .map((one) => one.outerHTML.slice(0, 80))"""
+    )
+    assert small == []
+
+
+def colored(page):
+    """How many pixels of the pair view are red, green and both."""
+    return page.evaluate(
+        """() => {
+        const canvas = document.querySelector('.view-stage canvas');
+        const data = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+        let [red, green, both] = [0, 0, 0];
+        for (let k = 0; k < data.length; k += 4) {
+          const [r, g] = [data[k] > 200, data[k + 1] > 180];
+          if (r && g) both += 1; else if (r) red += 1; else if (g) green += 1;
+        }
+        return [red, green, both];
+      }"""
+    )
+
+
+def nearest_pixel(page, color, x, y):
+    """The pixel of that color nearest to a place on the canvas."""
+    return page.evaluate(
+        """([color, x, y]) => {
+        const canvas = document.querySelector('.view-stage canvas');
+        const data = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+        let [best, far] = [null, Infinity];
+        for (let v = 0; v < canvas.height; v += 1)
+          for (let u = 0; u < canvas.width; u += 1) {
+            const k = 4 * (v * canvas.width + u);
+            const [r, g] = [data[k] > 200, data[k + 1] > 180];
+            if ((color === 'red' ? r && !g : g && !r) && Math.hypot(u - x, v - y) < far)
+              [best, far] = [[u, v], Math.hypot(u - x, v - y)];
+          }
+        return best;
+      }""",
+        [color, x, y],
+    )
+
+
+def test_a_hundred_loops_are_reviewed_without_the_mouse(opened, root, look):
+    only(look, "desktop light")
+    page = opened
+
+    page.keyboard.press("j")
+    settled(page)
+    for k in range(100):
+        page.keyboard.press("r" if k < 2 else "a")
+
+    expect(page.locator("review-queue")).to_contain_text("100 decided by people")
+    rows = read_rows(root)
+    assert [row.kind for row in rows] == ["reject"] * 2 + ["accept"] * 98
+    assert len({(row.frame_i, row.frame_j) for row in rows}) == 100
+    assert broken(rows) == []
+    expect(page.locator("#effect")).not_to_contain_text("solving")
+    expect(page.locator("#effect")).to_contain_text("chi²")
+    for _ in range(3):
+        page.keyboard.press("Control+z")
+    expect(page.locator("review-queue")).to_contain_text("97 decided by people")
+    page.keyboard.press("Control+y")
+    expect(page.locator("review-queue")).to_contain_text("98 decided by people")
+
+
+def test_the_page_says_what_a_decision_does(opened, look, picture):
+    page = opened
+    page.keyboard.press("j")
+    settled(page)
+    expect(page.locator("#pair")).to_contain_text("outlier in the robust solution")
+    red, green, _ = colored(page)
+    assert min(red, green) > 500
+    fits(page)
+    picture(page, "review")
+
+    page.keyboard.press("a")
+
+    expect(page.locator("#effect")).to_contain_text("Accepted, but does not fit")
+    expect(page.locator("#effect")).to_contain_text("Largest moves of the last decision")
+    expect(page.locator("#signing")).to_contain_text("does not know the last decisions")
+    expect(page.get_by_role("button", name="Approve verification…")).to_be_disabled()
+    fits(page)
+    picture(page, "review-effect")
+
+
+def test_views_and_comparison_show_other_pictures(opened, look):
+    only(look, "desktop dark", "phone light")
+    page = opened
+    page.keyboard.press("j")
+    settled(page)
+    seen = {tuple(colored(page))}
+
+    for name in ("Side", "Free", "Cut", "Graph", "Odometry"):
+        page.get_by_role("button", name=name, exact=True).click()
+        page.wait_for_timeout(200)
+        seen.add(tuple(colored(page)))
+
+    assert len(seen) == 6
+    page.get_by_label("Upright cut").check()
+    for _ in range(4):
+        page.keyboard.press("]")
+    expect(page.locator(".view-words")).to_contain_text("at 0.20 m")
+
+
+def test_a_wrong_loop_is_laid_right_by_keys_and_becomes_an_edge(opened, root, look, picture):
+    only(look, "desktop dark")
+    page = opened
+    page.keyboard.press("j")
+    settled(page)
+    _, _, before = colored(page)
+
+    for _ in range(8):
+        page.keyboard.press("ArrowDown")
+    expect(page.locator("#said")).to_have_text("Moved by hand. Enter refines from here")
+    page.keyboard.press("Enter")
+    expect(page.locator("#said")).to_contain_text("Enter creates the edge")
+    page.wait_for_timeout(200)
+    picture(page, "review-aligned")
+    _, _, after = colored(page)
+    page.keyboard.press("w")
+    page.keyboard.type("was off by half a metre")
+    page.keyboard.press("Escape")
+    page.keyboard.press("Enter")
+
+    expect(page.locator("review-queue")).to_contain_text("1 decided by people")
+    (row,) = read_rows(root)
+    assert (row.kind, row.why) == ("replace", "was off by half a metre")
+    assert row.decision().measurement.error_m < 0.03
+    assert after > 2 * before
+    expect(page.locator("#effect")).to_contain_text("chi²")
+    expect(page.locator("#effect .bad")).to_have_count(0)
+
+
+def test_a_place_is_dragged_turned_and_dropped_again(opened, look):
+    only(look, "desktop light")
+    page = opened
+    page.keyboard.press("j")
+    settled(page)
+    box = page.locator(".view-stage canvas").bounding_box()
+    before = page.evaluate("document.querySelector('pair-view').pose")
+    at = page.evaluate(
+        """() => { const view = document.querySelector('pair-view');
+        const p = view.pose; return view.on(p); }"""
+    )
+    x, y = box["x"] + at[0], box["y"] + at[1]
+
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 40, y - 20, steps=4)
+    page.mouse.up()
+    moved = page.evaluate("document.querySelector('pair-view').pose")
+    page.mouse.move(x + 40 + 66, y - 20)
+    page.mouse.down()
+    page.mouse.move(x + 40 + 60, y - 20 - 25, steps=4)
+    page.mouse.up()
+    turned = page.evaluate("document.querySelector('pair-view').pose")
+    page.keyboard.press("Escape")
+
+    assert sum(abs(a - b) for a, b in zip(before[:3], moved[:3], strict=True)) > 0.1
+    assert before[3:] == pytest.approx(moved[3:])
+    assert moved[:3] == pytest.approx(turned[:3])
+    assert abs(turned[5] - moved[5]) > 0.1
+    assert page.evaluate("document.querySelector('pair-view').pose") == pytest.approx(before)
+
+
+def test_three_picked_pairs_lay_the_second_place(opened, look):
+    only(look, "desktop light")
+    page = opened
+    page.keyboard.press("j")
+    settled(page)
+    page.keyboard.press("p")
+    box = page.locator(".view-stage canvas").bounding_box()
+    said = page.locator(".view-words")
+
+    expect(said).to_contain_text("point 1 of 3 in the first (red)")
+    for dx, dy in ((-150, -120), (150, -120), (0, 130)):
+        for color in ("red", "green"):
+            u, v = nearest_pixel(page, color, box["width"] / 2 + dx, box["height"] / 2 + dy)
+            page.mouse.click(box["x"] + u, box["y"] + v)
+
+    expect(page.locator("#said")).to_have_text("Moved by hand. Enter refines from here")
+
+
+def test_a_loop_is_added_between_two_moments(opened, root, look, picture):
+    only(look, "desktop dark", "phone light")
+    page = opened
+
+    page.get_by_role("button", name="Add loop").click()
+    dialog = page.get_by_role("dialog")
+    expect(dialog).to_contain_text("multiframe 119")
+    picture(page, "review-moments")
+    page.get_by_label("Second moment (green)").fill("62")
+    page.get_by_label("First moment (red)").fill("31")
+    page.get_by_role("button", name="Look at this pair").click()
+    settled(page)
+    expect(page.locator("#pair")).to_contain_text("Multiframes 31 and 62")
+    expect(page.get_by_role("button", name="Accept")).to_be_disabled()
+    page.get_by_role("button", name="Refine").click()
+    page.get_by_role("button", name="Create edge").click()
+
+    expect(page.locator("review-queue")).to_contain_text("1 decided by people")
+    (row,) = read_rows(root)
+    assert (row.kind, row.frame_i, row.frame_j) == ("add", 31, 62)
+
+
+def test_the_help_sheet_lists_the_keys(opened, look, picture):
+    only(look, "desktop light")
+    opened.keyboard.press("?")
+
+    expect(opened.get_by_role("dialog")).to_contain_text("Undo")
+    picture(opened, "review-keys")
+    opened.keyboard.press("Escape")
+    expect(opened.get_by_role("dialog")).to_have_count(0)
+
+
+def test_decide_make_a_new_map_approve_export(running, opened, root, look, picture):
+    only(look, "desktop dark")
+    page = opened
+    job = {"project": root.name, "recordings": [str(root / "project.json")]}
+    first = running.post("/api/jobs", json=job).json()["job"]["id"]
+    running.wait_state(first, "succeeded")
+    page.keyboard.press("j")
+    settled(page)
+    page.keyboard.press("r")
+    expect(page.locator("#signing")).to_contain_text("does not know the last decisions")
+
+    page.get_by_role("button", name="Make a new map").click()
+    expect(page.locator("#signing")).to_contain_text("was made with these decisions")
+    page.get_by_role("button", name="Approve verification…").click()
+    page.get_by_label("Remark").fill("compared with the plan")
+    page.get_by_role("button", name="Sign").click()
+
+    expect(page.locator("#signing")).to_contain_text("Approved: version 1 by local")
+    page.get_by_text("Journal", exact=True).click()
+    expect(page.locator("#journal")).to_contain_text("approved the map")
+    picture(page, "review-approved")
+    approval = json.loads((root / "versions" / "1" / "approval.json").read_text())
+    with page.expect_popup() as report:
+        page.evaluate(f"open('/api/projects/{root.name}/report')")
+    expect(report.value.get_by_text("Version 1, approved by local")).to_be_visible()
+    expect(report.value.get_by_text(approval["hash"])).to_be_visible()

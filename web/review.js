@@ -1,0 +1,391 @@
+// The review: loops by influence, each looked at, decided, measured anew; the map approved.
+
+import { alignPair, approveMap, decide, fitPoints, listJobsOf, readEffect, readJournal, readPair, readPoints, readQueue, readReview, readWalk, retryJob, stepBack, stepForth, watchJobs } from "./api.js";
+import { attempt, make } from "./dom.js";
+import { apart } from "./review_math.js";
+import { askForMoments, askToSign, showKeys } from "./review_dialogs.js";
+import { showEffect, showJournal, showPair, showSigning } from "./review_panels.js";
+import { keyOf, length } from "./review_words.js";
+import { withPassword } from "./sign_again.js";
+import "./page_head.js";
+import "./review_queue.js";
+import "./review_view.js";
+
+const id = decodeURIComponent(location.pathname.split("/")[2]);
+const byId = (name) => document.getElementById(name);
+const queue = document.querySelector("review-queue");
+const view = document.querySelector("pair-view");
+const message = byId("message");
+const loaded = new Map();
+let state = null;
+let effect = null;
+let effectAsked = 0;
+let effectShown = 0;
+let hand = null; // the pair in hand: {pair, row, facts, found, moved, busy}
+let last = Promise.resolve();
+let limit_m = 0.1;
+
+document.title = `Review of ${id} · recon4`;
+
+// -- one pair
+
+async function fetched(pair) {
+  const key = `${keyOf(pair)} ${view.reach}`;
+  if (!loaded.has(key)) {
+    loaded.set(key, Promise.all([readPair(id, pair), readPoints(id, pair, view.reach)]));
+    if (loaded.size > 8) loaded.delete(loaded.keys().next().value);
+  }
+  return loaded.get(key).catch((error) => {
+    loaded.delete(key);
+    throw error;
+  });
+}
+
+async function take(pair) {
+  const row = queue.get(keyOf(pair)) ?? newRow(pair);
+  hand = { pair, row, facts: null, found: null, moved: false, busy: false };
+  const mine = hand;
+  drawHand();
+  view.clear("Reading points…");
+  message.textContent = "";
+  try {
+    const [facts, points] = await fetched(pair);
+    if (hand !== mine) return;
+    mine.facts = facts;
+    view.set(points, { odometry: facts.odometry, predicted: facts.predicted, after: poseOf(mine) }, facts.upright);
+    drawHand();
+    for (const next of queue.neighbors()) fetched([next.frame_i, next.frame_j]).catch(() => {});
+  } catch (error) {
+    if (hand === mine) {
+      view.clear("No points to show");
+      message.textContent = error.message;
+    }
+  }
+}
+
+const standingOf = (pair) => state?.standing.find((one) => one.frame_i === pair[0] && one.frame_j === pair[1]);
+
+function poseOf({ pair, facts }) {
+  const stands = standingOf(pair);
+  return stands?.measured ? stands.T_i_j : (facts.measured ?? facts.predicted);
+}
+
+/** A pair the program never tried. */
+function newRow(pair) {
+  const nothing = { influence_m: null, overlap: null, error_m: null, limit_m: null, degeneracy: null, verification_m: null, chi2: null };
+  return decorated({ frame_i: pair[0], frame_j: pair[1], t_i_s: 0, t_j_s: 0, kind: "manual", verdict: "rejected", reason: "", measured: false, paths: 0, ...nothing });
+}
+
+function decorated(row) {
+  row.key = keyOf([row.frame_i, row.frame_j]);
+  row.title = `Multiframes ${row.frame_i} and ${row.frame_j}`;
+  return Object.assign(row, decidedAbout(row));
+}
+
+/** What holds for a pair: a person's decision, else what the program says now, else said at first. */
+function decidedAbout(row) {
+  const stands = standingOf([row.frame_i, row.frame_j]);
+  if (stands) return { state: stands.accepted ? "accepted" : "rejected", who: stands.who, why: stands.why };
+  const is = (pairs) => pairs?.some((p) => p[0] === row.frame_i && p[1] === row.frame_j);
+  const now = is(effect?.all.turned_down) ? "rejected" : is(effect?.all.taken_back) ? "accepted" : row.verdict;
+  return { state: now, who: "", why: "" };
+}
+
+function drawHand() {
+  showPair(byId("pair"), hand?.row, hand?.facts, hand?.found, limit_m);
+  const can = Boolean(state?.may_review && hand);
+  for (const [name, button] of Object.entries(buttons)) button.disabled = !can && !["add", "keys"].includes(name);
+  if (!hand || !state) return;
+  const stands = standingOf(hand.pair);
+  buttons.restore.disabled = !can || !stands;
+  buttons.accept.disabled = !can || (!hand.row.measured && !stands?.measured);
+  buttons.undo.disabled = !state.may_review || !state.undoable;
+  buttons.redo.disabled = !state.may_review || !state.redoable;
+  buttons.refine.disabled = !can || hand.busy || !hand.facts;
+  buttons.refine.firstChild.textContent = hand.busy ? "Refining…" : hand.found?.measurement && !hand.moved ? "Create edge" : "Refine";
+  byId("said").textContent = handWords();
+}
+
+function handWords() {
+  if (!hand.facts) return "";
+  if (hand.found && !hand.moved) {
+    const { found } = hand;
+    const [m, degrees] = apart(found.T_i_j, hand.facts.predicted);
+    const moved = `${length(m)} and ${degrees.toFixed(2)}° from the graph`;
+    if (!found.converged) return "It did not converge: move it nearer and refine again";
+    return found.reason ? `Refined, ${moved}. The program would turn it down: ${found.reason}` : `Refined, ${moved}. Enter creates the edge`;
+  }
+  if (hand.moved) return "Moved by hand. Enter refines from here";
+  return !hand.row.measured && !standingOf(hand.pair)?.measured ? "Never registered: refine it before it can be accepted" : "";
+}
+
+// -- decisions, one after the other in the order of the keys
+
+function inTurn(action) {
+  last = last.then(() => attempt(message, action));
+  return last;
+}
+
+function become(fresh) {
+  if (!fresh) return;
+  const seqBefore = state?.seq;
+  state = fresh;
+  const added = state.standing.filter((one) => !queue.get(keyOf([one.frame_i, one.frame_j])));
+  for (const one of added) queue.add(decorated({ ...newRow([one.frame_i, one.frame_j]), measured: true }));
+  refreshRows();
+  showSigning(byId("signing"), state, { remake, approve });
+  drawHand();
+  if (seqBefore !== state.seq) look();
+  if (byId("journal").open) drawJournal();
+}
+
+function refreshRows() {
+  const changed = [];
+  for (const row of allRows) {
+    const now = decidedAbout(row);
+    if (now.state !== row.state || now.who !== row.who || now.why !== row.why) {
+      Object.assign(row, now);
+      changed.push(row.key);
+    }
+  }
+  queue.refresh(changed);
+}
+
+function decideNow(kind, more = {}) {
+  if (!hand || !state?.may_review) return undefined;
+  const { pair, row, facts } = hand;
+  const stands = standingOf(pair);
+  if (kind === "restore" && !stands) return undefined;
+  if (kind === "accept" && !row.measured && !stands?.measured) {
+    message.textContent = "This pair was never registered: refine it first";
+    return undefined;
+  }
+  const why = reason.value.trim();
+  reason.value = "";
+  const seen = row.measured ? (facts?.measured ?? []) : [];
+  const body = { kind, frame_i: pair[0], frame_j: pair[1], T_i_j: seen, why, ...more };
+  const sent = inTurn(async () => become(await decide(id, body)));
+  if (onwards.checked && kind !== "restore") queue.step(1);
+  return sent;
+}
+
+const undo = () => state?.may_review && inTurn(async () => become(await stepBack(id, state.seq)));
+const redo = () => state?.may_review && inTurn(async () => become(await stepForth(id, state.seq)));
+
+/** Register from where it lies; once registered and not moved since, make it an edge. */
+async function enter() {
+  if (!hand?.facts || hand.busy || !state?.may_review) return;
+  const mine = hand;
+  if (mine.found?.measurement && !mine.moved) {
+    const known = mine.row.kind !== "manual" && queue.get(mine.row.key);
+    await decideNow(known ? "replace" : "add", { measurement: mine.found.measurement });
+    mine.found = null;
+    if (hand === mine) drawHand();
+    return;
+  }
+  mine.busy = true;
+  drawHand();
+  const found = await attempt(message, () => alignPair(id, mine.pair, view.pose));
+  mine.busy = false;
+  if (found && hand === mine) {
+    [mine.found, mine.moved] = [found, false];
+    view.pose = found.T_i_j;
+  }
+  if (hand === mine) drawHand();
+}
+
+function drop() {
+  if (!hand?.facts) return;
+  if (view.isPicking) return view.stopPicking();
+  [hand.found, hand.moved] = [null, false];
+  view.pose = poseOf(hand);
+  drawHand();
+}
+
+function pick() {
+  if (!hand?.facts) return;
+  view.pick(async ({ p_i, p_j }) => {
+    const pose = await attempt(message, () => fitPoints(id, p_i, p_j));
+    if (!pose) return;
+    view.pose = pose;
+    hand.moved = true;
+    drawHand();
+  });
+}
+
+// -- what the decisions do
+
+async function look() {
+  const mine = ++effectAsked;
+  drawEffect();
+  if (!state.standing.length && !state.undoable && !state.redoable) {
+    effect = null;
+  } else {
+    const told = await attempt(message, () => readEffect(id));
+    if (mine !== effectAsked || !told || told.superseded) return;
+    effect = told;
+    for (const part of [effect.last, effect.all]) for (const move of part.moves) move.t_s = (move.t_ns - began_ns) / 1e9;
+    const chi2 = new Map(effect.edges.map((one) => [keyOf(one.pair), one.chi2]));
+    for (const row of allRows) if (chi2.has(row.key)) row.chi2 = chi2.get(row.key);
+  }
+  effectShown = mine;
+  refreshRows();
+  drawEffect();
+  drawHand();
+}
+
+const drawEffect = () => showEffect(byId("effect"), effect, { working: effectShown < effectAsked, choose: (pair) => take(pair) });
+
+async function drawJournal() {
+  const rows = await attempt(message, () => readJournal(id));
+  if (rows) showJournal(byId("journal").querySelector("ol"), rows);
+}
+
+async function remake(error) {
+  await attempt(error, async () => {
+    const [newest] = await listJobsOf(id);
+    if (!newest) throw new Error("This project was made on the command line: run the same recon4 process again, it takes the decisions in");
+    await retryJob(newest.job.id);
+    become(await readReview(id));
+  });
+}
+
+function approve() {
+  askToSign(effect?.conflicts.length ?? 0, async (why, confirmed) => {
+    become(await withPassword(() => approveMap(id, why, confirmed)));
+    return true;
+  });
+}
+
+// -- buttons and keys
+
+const reason = make("input", { autocomplete: "off", maxLength: 500, placeholder: "Reason (optional)", ariaLabel: "Reason" });
+const onwards = make("input", { type: "checkbox", checked: true });
+const button = (words, key, action, name = "") => make("button", { type: "button", className: name, onclick: action, title: `${words} (${key})` }, make("span", {}, words), make("kbd", {}, key));
+const buttons = {
+  previous: button("Previous", "K", () => queue.step(-1)),
+  next: button("Next", "J", () => queue.step(1)),
+  accept: button("Accept", "A", () => decideNow("accept"), "yes"),
+  reject: button("Reject", "R", () => decideNow("reject"), "no"),
+  restore: button("Restore", "U", () => decideNow("restore")),
+  refine: button("Refine", "Enter", enter),
+  pick: button("Pick points", "P", pick),
+  undo: button("Undo", "Ctrl Z", undo),
+  redo: button("Redo", "Ctrl Y", redo),
+  add: button("Add loop", "L", addLoop),
+  keys: button("Keys", "?", showKeys),
+};
+byId("decision").append(
+  make("div", { className: "row main" }, buttons.previous, buttons.reject, buttons.accept, buttons.next),
+  make("div", { className: "row" }, buttons.restore, buttons.refine, buttons.pick, buttons.undo, buttons.redo),
+  make("div", { className: "row reason" }, reason, make("label", { className: "check" }, onwards, make("span", {}, "Go on to the next after a decision"))),
+);
+
+queue.tools.append(buttons.add, buttons.keys);
+
+async function addLoop() {
+  const walk = await attempt(message, () => readWalk(id));
+  if (walk) askForMoments(walk, hand?.pair, take);
+}
+
+const TURN = Math.PI / 180;
+const PRESS = {
+  j: () => queue.step(1),
+  k: () => queue.step(-1),
+  a: () => decideNow("accept"),
+  r: () => decideNow("reject"),
+  u: () => decideNow("restore"),
+  Backspace: () => decideNow("restore"),
+  p: pick,
+  l: addLoop,
+  v: () => view.viewNext(),
+  b: () => view.compareNext(),
+  w: () => reason.focus(),
+  "[": () => view.moveCut(-1),
+  "]": () => view.moveCut(1),
+  "+": () => view.zoom(1.25),
+  "-": () => view.zoom(0.8),
+  "?": showKeys,
+  Enter: enter,
+  Escape: drop,
+};
+const MOVE = {
+  ArrowLeft: (m) => view.nudge(-m, 0),
+  ArrowRight: (m) => view.nudge(m, 0),
+  ArrowUp: (m) => view.nudge(0, m),
+  ArrowDown: (m) => view.nudge(0, -m),
+  PageUp: (m) => view.lift(m),
+  PageDown: (m) => view.lift(-m),
+  Comma: (m, turn) => view.nudge(0, 0, turn),
+  Period: (m, turn) => view.nudge(0, 0, -turn),
+};
+
+function onKey(event) {
+  if (document.querySelector("dialog[open]")) return;
+  if (event.target.matches("input:not([type=checkbox], [type=range]), select")) {
+    if (event.key === "Escape" || (event.key === "Enter" && event.target === reason)) event.target.blur();
+    return;
+  }
+  if (event.ctrlKey || event.metaKey) {
+    const key = event.key.toLowerCase();
+    if (key !== "z" && key !== "y") return;
+    event.preventDefault();
+    if (key === "y" || event.shiftKey) redo();
+    else undo();
+    return;
+  }
+  const move = MOVE[event.code] ?? MOVE[event.key];
+  const slider = event.target.matches("input");
+  if (move && !slider && hand?.facts) {
+    event.preventDefault();
+    const step = event.shiftKey ? 0.2 : event.altKey ? 10 : 1;
+    move(0.05 * step, TURN * (event.shiftKey ? 0.1 : event.altKey ? 10 : 1));
+    return;
+  }
+  if (event.key === "Enter" && event.target.matches("button, summary, a")) return;
+  const press = PRESS[event.key] ?? (event.altKey ? undefined : PRESS[event.key.toLowerCase()]);
+  if (!press) return;
+  event.preventDefault();
+  press();
+}
+
+// -- begin
+
+let allRows = [];
+let began_ns = 0;
+
+queue.addEventListener("chosen", (event) => {
+  const row = queue.get(event.detail);
+  take([row.frame_i, row.frame_j]);
+});
+view.addEventListener("laid", () => {
+  hand.moved = true;
+  drawHand();
+});
+view.addEventListener("reach", () => hand && take(hand.pair));
+byId("journal").addEventListener("toggle", drawJournal);
+document.addEventListener("keydown", onKey);
+
+async function begin() {
+  view.clear("Ordering the loops by influence…");
+  const [fresh, told] = await Promise.all([readReview(id), readQueue(id)]);
+  ({ began_ns, limit_m } = told);
+  state = fresh;
+  allRows = told.rows.map((row) => decorated(Object.fromEntries(told.columns.map((name, k) => [name, row[k]]))));
+  queue.rows = allRows;
+  view.clear(allRows.length ? "J takes the first pair" : "This walk has no pair to decide about");
+  state = { ...fresh, seq: -1 };
+  become(fresh);
+}
+
+watchJobs(
+  async ({ job }) => {
+    if (job.project === id && state) become(await attempt(message, () => readReview(id)));
+  },
+  (linked) => {
+    document.querySelector("page-head").linked = linked;
+  },
+);
+drawHand();
+await attempt(message, begin);
+if (message.textContent) view.clear("Nothing to review");
