@@ -5,9 +5,14 @@ export const ofInput = (input) =>
 
 /** Everything that was dropped; folders are walked through. */
 export async function ofDrop(transfer) {
-  const entries = [...transfer.items].map((item) => item.webkitGetAsEntry?.()).filter(Boolean);
+  const dropped = [...transfer.items].filter((item) => item.kind === "file");
+  // all are taken at once: a browser forgets them when the event is over
+  const taken = dropped.map((item) => item.webkitGetAsEntry?.() ?? item.getAsFile()).filter(Boolean);
   const found = [];
-  for (const entry of entries) await walk(entry, entry.name, found);
+  for (const one of taken) {
+    if (one instanceof File) found.push({ file: one, name: one.name });
+    else await walk(one, one.name, found);
+  }
   return found;
 }
 

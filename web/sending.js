@@ -39,6 +39,7 @@ export class Sending extends EventTarget {
   #samples = [];
   #chunk = CHUNK;
   #stop = null;
+  #run = Promise.resolve(); // one at a time
 
   constructor({ name, files }) {
     super();
@@ -57,18 +58,26 @@ export class Sending extends EventTarget {
     return this.rate > 0 ? (this.total - this.sent) / this.rate : null;
   }
 
-  async start() {
-    this.#stop = new AbortController();
-    this.#samples = [];
+  /** Sends what is not there yet. */
+  start() {
+    const stop = new AbortController();
+    const before = this.#run;
+    this.#stop = stop;
     this.#tell("sending", "");
+    this.#run = before.then(() => this.#go(stop));
+    return this.#run;
+  }
+
+  async #go(stop) {
+    this.#samples = [];
     try {
-      await this.#find();
-      if (!this.#upload.finished) await this.#sendAll();
-      this.recording = (await this.#again(() => readUpload(this.#upload.id))).recording;
+      await this.#find(stop.signal);
+      if (!this.#upload.finished) await this.#sendAll(stop.signal);
+      this.recording = (await this.#again(stop.signal, () => readUpload(this.#upload.id))).recording;
       this.#tell("done", "");
     } catch (error) {
-      if (this.state === "sending" || this.state === "trying") this.#tell("failed", error.message);
-      this.#stop.abort();
+      if (!stop.signal.aborted) this.#tell("failed", error.message);
+      stop.abort();
     }
   }
 
@@ -78,41 +87,40 @@ export class Sending extends EventTarget {
   }
 
   async remove() {
-    this.#tell("removed", "");
-    this.#stop?.abort();
+    this.pause();
     if (this.#upload) await removeUpload(this.#upload.id);
+    this.#tell("removed", "");
   }
 
   /** The upload of these files: one begun before, or a new one. */
-  async #find() {
+  async #find(signal) {
     const mark = await fingerprint(this.files);
-    const uploads = await this.#again(listUploads);
+    const uploads = await this.#again(signal, listUploads);
     const same = (one) => one.fingerprint === mark && one.bytes === this.total && one.files === this.files.length;
     this.#upload = uploads.find(same) ?? (await beginUpload({ name: this.name, files: this.files.length, bytes: this.total, fingerprint: mark }));
     if (this.#upload.finished) return;
-    const rows = await this.#again(() => listUploadFiles(this.#upload.id));
+    const rows = await this.#again(signal, () => listUploadFiles(this.#upload.id));
     this.#known = new Map(rows.map((row) => [row.name, row]));
     this.#count();
   }
 
-  async #sendAll() {
+  async #sendAll(signal) {
     const waiting = this.files.filter(({ file, name }) => this.#known.get(name)?.offset !== file.size || !this.#known.has(name));
     const lane = async () => {
-      for (let next = waiting.shift(); next; next = waiting.shift()) await this.#sendFile(next);
+      for (let next = waiting.shift(); next; next = waiting.shift()) await this.#sendFile(next, signal);
     };
     await Promise.all(Array.from({ length: AT_ONCE }, lane));
   }
 
-  async #sendFile({ file, name }) {
+  async #sendFile({ file, name }, signal) {
     do {
-      await this.#again(async (again) => {
+      await this.#again(signal, async (again) => {
         const row = this.#known.get(name);
         if (row && again) row.offset = await readOffset(row.url);
         if (row && row.offset === file.size) return;
         const from = row?.offset ?? 0;
         const began = performance.now();
         const bytes = await readBytes(file.slice(from, from + this.#chunk), name);
-        const signal = this.#stop.signal;
         if (row) row.offset = await sendBytes(row.url, from, bytes, signal);
         else this.#known.set(name, await createFile(this.#upload.id, name, file.size, bytes, signal));
         this.#suit((performance.now() - began) / 1000);
@@ -128,17 +136,18 @@ export class Sending extends EventTarget {
   }
 
   /** Tries until it goes, as long as another try can help. */
-  async #again(action) {
+  async #again(signal, action) {
     for (let wait = 1, again = false; ; wait = Math.min(wait * 2, LONGEST_WAIT_S), again = true) {
+      if (signal.aborted) throw new Error("stopped");
       try {
         const result = await action(again);
         if (this.state === "trying") this.#tell("sending", "");
         return result;
       } catch (error) {
         const helps = [0, 409, 423, 429, 460, 502, 503, 504].includes(error.status);
-        if (!helps || this.#stop.signal.aborted) throw error;
+        if (!helps || signal.aborted) throw error;
         this.#tell("trying", `${error.message}; trying again in ${wait} s`);
-        await pauseFor(wait, this.#stop.signal);
+        await pauseFor(wait, signal);
       }
     }
   }

@@ -25,7 +25,13 @@ FLAGS = [
     "--disable-sync",
 ]
 SCREENS = {"desktop": (1440, 900), "phone": (390, 844)}
-EXPECTED_NOISE = ("status of 40", "GPU stall", "THREE.Clock", "ViewerCameraMessage but websocket")
+EXPECTED_NOISE = (
+    "status of 4",
+    "net::ERR_FAILED",
+    "GPU stall",
+    "THREE.Clock",
+    "ViewerCameraMessage but websocket",
+)
 
 
 @pytest.fixture(scope="session")

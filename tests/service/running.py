@@ -45,9 +45,11 @@ class Running:
         assert answer.status_code == 201, answer.text
         return answer.json()["job"]["id"]
 
-    def wait(self, job_id: str, met: Callable[[dict[str, Any]], bool]) -> dict[str, Any]:
+    def wait(
+        self, job_id: str, met: Callable[[dict[str, Any]], bool], *, most_s: float = 60.0
+    ) -> dict[str, Any]:
         """The first view of the job, from the event stream, that meets a condition."""
-        deadline_s = time.monotonic() + 60.0
+        deadline_s = time.monotonic() + most_s
         with httpx.stream("GET", f"{self.url}/api/events", timeout=30.0) as stream:
             view = self.get(f"/api/jobs/{job_id}").json()  # what is over is not told again
             if met(view):

@@ -1,0 +1,60 @@
+"""Many kills of server and workers in real runs: ``… kills.py [--runs 10] [--kills 8]``.
+
+Each run is killed evenly over all stages and must end in the bytes of an unbroken one, with no
+stage run twice to its end.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import tempfile
+import time
+from collections import Counter
+from pathlib import Path
+
+from recon4.progress import Silent
+from recon4.simulation.simulate import simulate
+from tests.service import killing
+
+
+def main() -> None:
+    """Run, compare and print."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--runs", type=int, default=10)
+    parser.add_argument("--kills", type=int, default=8)
+    given = parser.parse_args()
+    top = Path(tempfile.mkdtemp(prefix="recon4-kills-"))
+    try:
+        simulate("office", top / "walk", seconds=5.0, seed=3, bag=False, progress=Silent())
+        whole = prepared(top, "whole")
+        killing.run(whole, killing.request_for(whole), kills=0, seed=0)
+        expected = killing.results(whole / "office"), killing.artifacts(whole / "office")
+        hits: Counter[tuple[str, str]] = Counter()
+        began = time.perf_counter()
+        for seed in range(given.runs):
+            root = prepared(top, f"run{seed}")
+            survived = killing.run(root, killing.request_for(root), kills=given.kills, seed=seed)
+            found = killing.results(root / "office"), killing.artifacts(root / "office")
+            assert found == expected, f"run {seed} ended in other bytes: {survived}"
+            twice = {k: n for k, n in killing.completed(root, survived).items() if n > 1}
+            assert not twice, f"run {seed} did stages twice: {twice}"
+            hits.update(survived.hits)
+            shutil.rmtree(root)
+            print(f"run {seed}: {len(survived.hits)} kills survived", flush=True)
+        print(f"{hits.total()} kills in {time.perf_counter() - began:.0f} s, all the same bytes")
+        for (victim, stage), n in sorted(hits.items()):
+            print(f"  {victim:7} in {stage:13} {n}")
+    finally:
+        shutil.rmtree(top, ignore_errors=True)
+
+
+def prepared(top: Path, name: str) -> Path:
+    """A folder of projects with the walk in it."""
+    (top / name).mkdir()
+    shutil.copytree(top / "walk", top / name / "walk")
+    return top / name
+
+
+if __name__ == "__main__":
+    main()
