@@ -21,6 +21,7 @@ STAGE_ORDER = (
     "odometry",
     "graph",
     "verification",
+    "review",
     "carried",
     "refine",
     "level",
