@@ -55,11 +55,13 @@ class Live:
             case "poses":
                 self._poses += zip(event["t_ns"], event["t_m"], event["quat_xyzw"], strict=True)
             case "nodes":
-                self._nodes_ns = event.get("t_ns") or self._nodes_ns
                 self._nodes_m = event["t_m"]
+                if event.get("t_ns"):
+                    self._nodes_ns = event["t_ns"]
+                    for k in range(len(self._nodes_ns) - 1):
+                        self._add({"i": k, "j": k + 1, **ODOMETRY_EDGE})
             case "edge":
-                edge = _edge(event)
-                self._edges[edge.i, edge.j, edge.kind.value] = edge
+                self._add(event)
             case "verdicts":
                 for i, j, kind, verdict, reason in event["edges"]:
                     self._judge((i, j, kind), Verdict(verdict), Reason(reason))
@@ -73,6 +75,10 @@ class Live:
                 self._nodes_ns, self._nodes_m, self._edges = [], [], {}
         elif self.stage == stage:
             self.stage = ""
+
+    def _add(self, event: dict[str, Any]) -> None:
+        edge = _edge(event)
+        self._edges[edge.i, edge.j, edge.kind.value] = edge
 
     def _judge(self, pair: Pair, verdict: Verdict, reason: Reason) -> None:
         if pair in self._edges:
@@ -98,10 +104,9 @@ class Live:
             return None
         t_m = np.array(self._nodes_m[:n], dtype=np.float64).reshape(-1, 3)
         T = SE3(np.tile(np.eye(3), (n, 1, 1)), t_m)
-        odometry = (_edge({"i": k, "j": k + 1, **ODOMETRY_EDGE}) for k in range(n - 1))
-        found = (edge for edge in self._edges.values() if max(edge.i, edge.j) < n)
+        edges = tuple(edge for edge in self._edges.values() if max(edge.i, edge.j) < n)
         t_ns = np.array(self._nodes_ns[:n], dtype=np.int64)
-        return PoseGraph(np.arange(n), t_ns, T, (*odometry, *found))
+        return PoseGraph(np.arange(n), t_ns, T, edges)
 
 
 class JobWatch:

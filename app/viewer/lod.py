@@ -93,6 +93,11 @@ class Camera:
     height_px: int
 
     @property
+    def aspect(self) -> float:
+        """Width by height of the picture."""
+        return self.width_px / max(self.height_px, 1)
+
+    @property
     def focal_px(self) -> float:
         """Pixels a length takes at its own distance."""
         return self.height_px / (2.0 * np.tan(self.fov_rad / 2.0))
@@ -154,7 +159,7 @@ def choose(boxes: TileBoxes, camera: Camera, budget: int) -> list[Chunk]:
 def in_sight(boxes: TileBoxes, camera: Camera) -> NDArray[np.bool_]:
     """Tiles that are not wholly outside one of the four sides of the view, (T,)."""
     tall = np.tan(camera.fov_rad / 2.0)
-    wide = tall * camera.width_px / max(camera.height_px, 1)
+    wide = tall * camera.aspect
     inward = np.array(
         [[-1.0, 0.0, wide], [1.0, 0.0, wide], [0.0, -1.0, tall], [0.0, 1.0, tall], [0.0, 0.0, 1.0]]
     )

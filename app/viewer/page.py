@@ -26,11 +26,12 @@ addEventListener('pointerdown', (event) => {
 Document.prototype.hasFocus = function () { return !document.hidden; };
 document.addEventListener('visibilitychange', () =>
   dispatchEvent(new Event(document.hidden ? 'blur' : 'focus')));
-// On a phone the controls would cover half of the map: fold them up once.
+// On a phone the controls would cover half of the map: fold them up once they are all there.
 if (innerWidth < 576) new MutationObserver((_, watch) => {
-  const title = [...document.querySelectorAll('#root div')].find((one) =>
-    !one.firstElementChild && one.textContent === 'Connected');
-  if (title) { watch.disconnect(); title.click(); }
+  const said = (words) => [...document.querySelectorAll('#root *')].find((one) =>
+    !one.firstElementChild && one.textContent === words);
+  const title = said('Connected');
+  if (title && said('Edges by')) { watch.disconnect(); title.click(); }
 }).observe(document, { childList: true, subtree: true, characterData: true });
 </script>
 <style>

@@ -175,7 +175,7 @@ class Screen:
 
     def look_at(self, box: Bounds, direction: Array = AWAY) -> None:
         """Put the camera so that all of a box is seen from a direction."""
-        self._put_m = start_m(box, direction)
+        self._put_m = start_m(box, direction, aspect=self.camera.aspect)
         with self._client.atomic():
             self._client.camera.position = self._put_m
             self._client.camera.look_at = box.center_m
@@ -309,9 +309,10 @@ class Viewer:
         self._on_leave(client)
 
 
-def start_m(box: Bounds, direction: Array = AWAY) -> Array:
-    """From where all of a box is seen [m], (3,)."""
-    return np.asarray(box.center_m + max(box.size_m, 5.0) * direction)
+def start_m(box: Bounds, direction: Array = AWAY, *, aspect: float) -> Array:
+    """From where all of a box is seen on a screen of some width by height [m], (3,)."""
+    away = max(box.size_m, 5.0) * max(1.0, 0.9 / max(aspect, 0.1))
+    return np.asarray(box.center_m + away * direction)
 
 
 def _is_fresh(camera: viser.CameraHandle) -> bool:

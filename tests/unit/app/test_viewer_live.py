@@ -11,7 +11,14 @@ from app.jobs.events import EventWriter
 from app.viewer.live import JobWatch, Live
 from app.viewer.source import ProjectSource
 from recon4.model.pose_graph import EdgeKind, Reason, Verdict
+from recon4.pose_graph.files import load_graph
+from recon4.pose_graph.search import build_graph
+from recon4.pose_graph.verification import verify
+from recon4.progress import Silent
+from recon4.registration.stage import run_odometry
+from recon4.settings import Settings, VerificationSettings, override
 from tests.project_builder import build_project
+from tests.scanned_room import strolling, walk
 
 POSES = {
     "kind": "poses",
@@ -159,3 +166,26 @@ def test_edges_of_a_running_search_are_shown(tmp_path, job):
 
     assert source.changed()
     assert "rejected/error-limit" in {layer.key for layer in source.content.edges.layers}
+
+
+def test_what_real_stages_tell_makes_the_graph_they_leave(tmp_path):
+    frames, events = walk(strolling, 24), Silent()
+    settings = override(Settings(), ["graph.workers=1", "graph.node_stride=3"])
+    for name in ("odometry", "graph"):
+        (tmp_path / name).mkdir()
+    run_odometry(frames, tmp_path / "odometry", settings=settings, progress=events)
+    build_graph(
+        frames, tmp_path / "odometry", tmp_path / "graph", settings=settings, progress=events
+    )
+    searched = load_graph(tmp_path / "graph")
+    verify(searched, settings=VerificationSettings(limit_m=1e-4), progress=events)
+    verified = verify(searched, settings=VerificationSettings(limit_m=1e-4)).graph
+
+    told = [{"kind": kind, **json.loads(json.dumps(facts))} for kind, facts in events.events]
+    live = fed(running("graph"), *told)
+
+    assert len(live.trajectory) == 4  # every fifth pose of the first twenty
+    np.testing.assert_allclose(live.graph.T_map_body.t, searched.T_map_body.t, atol=1e-3)
+    verdicts = {(e.i, e.j, e.kind): (e.verdict, e.reason) for e in verified.edges}
+    assert {(e.i, e.j, e.kind): (e.verdict, e.reason) for e in live.graph.edges} == verdicts
+    assert Reason.VERIFICATION in {reason for _, reason in verdicts.values()}
