@@ -1,0 +1,96 @@
+// What is cut and how it is shown; the address of the page is this state. No DOM, no network.
+
+const NUMBERS = { z: 1.5, t: 0.1, step: 0.1, count: 1, spacing: 0.5 };
+const LISTS = { a: [0, 0], b: [1, 0], o: [0, 0, 0], n: [0, 0, 1] };
+const WORDS = { kind: "horizontal", color: "height", ref: "", method: "plane", beside: "", besideColor: "", source: "" };
+const MAYBE = ["lo", "hi", "u", "v", "m"];
+
+export const COLORS = {
+  height: "Height",
+  intensity: "Intensity",
+  normalized: "Normalized intensity",
+  time: "Time",
+  sensor: "Sensor",
+  distance: "Distance to reference",
+};
+
+/** State out of the query of an address; what makes no sense is left at its usual value. */
+export function parse(query) {
+  const given = new URLSearchParams(query);
+  const number = (text, usual) => (text !== null && text !== "" && Number.isFinite(Number(text)) ? Number(text) : usual);
+  const state = {};
+  for (const [key, usual] of Object.entries(NUMBERS)) state[key] = number(given.get(key), usual);
+  for (const key of MAYBE) state[key] = number(given.get(key), null);
+  for (const [key, usual] of Object.entries(WORDS)) state[key] = given.get(key) ?? usual;
+  for (const [key, usual] of Object.entries(LISTS)) {
+    const list = (given.get(key) ?? "").split(",").map((text) => number(text, NaN));
+    state[key] = list.length === usual.length && list.every(Number.isFinite) ? list : [...usual];
+  }
+  if (!["horizontal", "vertical", "free"].includes(state.kind)) state.kind = "horizontal";
+  if (!(state.color in COLORS)) state.color = "height";
+  if (!(state.t > 0)) state.t = NUMBERS.t;
+  state.given = given.has("kind");
+  return state;
+}
+
+const short = (x) => String(Number(x.toFixed(4)));
+
+/** The query that `parse` reads; only what differs from the usual. */
+export function format(state) {
+  const query = new URLSearchParams({ kind: state.kind });
+  const used = { horizontal: ["z"], vertical: ["a", "b"], free: ["o", "n"] }[state.kind];
+  for (const key of used) query.set(key, [state[key]].flat().map(short).join(","));
+  for (const [key, usual] of Object.entries(NUMBERS)) if (key !== "z" && state[key] !== usual) query.set(key, short(state[key]));
+  for (const key of MAYBE) if (state[key] !== null) query.set(key, key === "m" ? String(Number(state[key].toPrecision(5))) : short(state[key]));
+  for (const [key, usual] of Object.entries(WORDS)) if (key !== "kind" && state[key] !== usual) query.set(key, state[key]);
+  return query.toString().replaceAll("%2C", ",").replaceAll("%3A", ":");
+}
+
+/** The cut as the server takes it. */
+export function cutOf(state) {
+  const thickness_m = state.t;
+  if (state.kind === "horizontal") return { kind: state.kind, z_m: state.z, thickness_m };
+  if (state.kind === "vertical") return { kind: state.kind, a_m: state.a, b_m: state.b, thickness_m };
+  return { kind: state.kind, origin_m: state.o, normal: state.n, thickness_m };
+}
+
+/** Unit normal of the cut, as the server has it. */
+export function normalOf(state) {
+  if (state.kind === "horizontal") return [0, 0, 1];
+  if (state.kind === "vertical") {
+    const [dx, dy] = [state.b[0] - state.a[0], state.b[1] - state.a[1]];
+    const length = Math.hypot(dx, dy) || 1;
+    return [dy / length, -dx / length, 0];
+  }
+  const length = Math.hypot(...state.n) || 1;
+  return state.n.map((x) => x / length);
+}
+
+/** The same cut farther along its normal. */
+export function moved(state, distance) {
+  const n = normalOf(state);
+  const shift = (p) => p.map((x, k) => x + distance * n[k]);
+  if (state.kind === "horizontal") return { ...state, z: state.z + distance };
+  if (state.kind === "vertical") return { ...state, a: shift(state.a), b: shift(state.b) };
+  return { ...state, o: shift(state.o) };
+}
+
+/** A horizontal cut has the map's x and y, a vertical one starts at a, a free one at o: the view of one is none of another. */
+export const unframed = (state) => ({ ...state, u: null, v: null, m: null });
+
+/** 1, 2 or 5 times a power of ten, at least `least`. */
+export function roundStep(least) {
+  const power = 10 ** Math.floor(Math.log10(least));
+  return power * [1, 2, 5, 10].find((s) => s * power >= least * 0.999);
+}
+
+/** Azimuth (clockwise from y) and steepness (0 = level plane) of a normal, in degrees. */
+export function anglesOf([x, y, z]) {
+  const flat = Math.hypot(x, y);
+  return { azimuth: (Math.round((Math.atan2(x, y) * 1800) / Math.PI) / 10 + 360) % 360, tilt: Math.round((Math.atan2(flat, z) * 1800) / Math.PI) / 10 };
+}
+
+export function normalFrom({ azimuth, tilt }) {
+  const [a, t] = [(azimuth * Math.PI) / 180, (tilt * Math.PI) / 180];
+  return [Math.sin(t) * Math.sin(a), Math.sin(t) * Math.cos(a), Math.cos(t)];
+}
