@@ -24,6 +24,8 @@ _CLOCKS_NS = 10_000_000_000
 _KEPT_SHARE = 0.2
 """A first or last revolution with fewer than this share of the usual points is left out."""
 _FALLBACK_HZ = 10.0
+LONGEST_WAIT_S = 10.0
+"""Readers may hand on several seconds of one sensor at a time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +61,12 @@ class Assembler:
     """
 
     def __init__(
-        self, rig: Rig, *, settings: IngestSettings, report: ImportReport, wait_s: float = 10.0
+        self,
+        rig: Rig,
+        *,
+        settings: IngestSettings,
+        report: ImportReport,
+        wait_s: float = LONGEST_WAIT_S,
     ) -> None:
         """Start empty.
 
@@ -68,7 +75,7 @@ class Assembler:
             settings: Rate, range limits and what a gap is.
             report: Told of everything that is dropped.
             wait_s: A sensor that is silent for so long while another delivers no longer holds the
-                frames up [s]. Readers hand on several seconds of one sensor at a time.
+                frames up [s].
         """
         self._settings, self._report = settings, report
         self._wait_ns = int(wait_s * 1e9)

@@ -125,7 +125,7 @@ def ingest(
     recording = open_recording(
         paths, rig, settings=settings, report=report, open_file=live.open_file
     )
-    assembler = Assembler(recording.rig, settings=settings, report=report)
+    assembler = Assembler(recording.rig, settings=settings, report=report, wait_s=recording.wait_s)
     found = _Samples()
     with FrameWriter(out, recording.rig) as writer:
         written = _Written()

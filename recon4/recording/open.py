@@ -13,7 +13,7 @@ from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory
-from recon4.recording.assemble import Gap
+from recon4.recording.assemble import LONGEST_WAIT_S, Gap
 from recon4.recording.bag_recording import BagRecording
 from recon4.recording.bags import STORAGE_SUFFIXES
 from recon4.recording.cloud_files import is_cloud_file, read_cloud
@@ -26,7 +26,7 @@ from recon4.recording.positions import PositionSamples
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream, choose_rig
 from recon4.recording.shots import Shots
-from recon4.recording.velodyne_pcap import PacketStream, VelodynePcap
+from recon4.recording.velodyne_pcap import WAIT_S, PacketStream, VelodynePcap
 from recon4.settings import IngestSettings
 
 Item = Shots | Multiframe | ImuSamples | GnssSamples | Trajectory
@@ -75,6 +75,8 @@ class Recording:
     """How long it is, roughly [s]; 0 = unknown."""
     gaps: tuple[Gap, ...] = ()
     """Those known before reading."""
+    wait_s: float = LONGEST_WAIT_S
+    """How far one sensor's shots may come ahead of another's [s], see `Assembler`."""
 
 
 def recognize(path: Path) -> Kind:
@@ -129,7 +131,7 @@ def open_recording(
             rig = choose_rig(lidars_of_packets(files, settings, report), report)
         pcap = VelodynePcap(files, rig, settings=settings, report=report, open_file=open_file)
         read = partial(_read_pcap, pcap)
-        return Recording(kind, pcap.rig, read, stream_seconds(pcap.streams))
+        return Recording(kind, pcap.rig, read, stream_seconds(pcap.streams), wait_s=WAIT_S)
     if kind is Kind.FRAMES:
         return _open_frames(paths, rig, settings, report)
     bag = BagRecording(

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import EmptyRecording
+from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times
 from recon4.recording.datagram_samples import SampleDecoder
 from recon4.recording.packets import Payloads, as_packets, sound_packets
@@ -103,6 +104,48 @@ def scan_pcap(
     streams.sort(key=lambda stream: KINDS.index(stream.kind))
     offsets = {s.source: s.utc_offset_ns for s in streams if s.kind == "position"}
     return [_with_utc(stream, offsets.get(stream.source)) for stream in streams]
+
+
+def fits(sensor: Sensor, source: str, port: int) -> bool:
+    """Whether packets of a sender to a port may be a sensor's."""
+    return sensor.address in {"", source} and sensor.port == port
+
+
+def late_stream(
+    path: Path, datagrams: Datagrams, sensor: Sensor, *, claimed: set[tuple[str, int]]
+) -> PacketStream | None:
+    """The data stream of a sensor that was not in the head of a file, from its first packets.
+
+    Args:
+        path: The file.
+        datagrams: Some of its datagrams.
+        sensor: Not found so far.
+        claimed: Senders and ports of the data streams known already.
+    """
+    rows = np.flatnonzero((datagrams.port == sensor.port) & (datagrams.length == DATA_SIZE))
+    for source in dict.fromkeys(datagrams.source[rows].tolist()):
+        address = address_text(source)
+        if (address, sensor.port) in claimed or not fits(sensor, address, sensor.port):
+            continue
+        mine = rows[datagrams.source[rows] == source]
+        payloads = datagrams.payloads(mine, DATA_SIZE)
+        sound = sound_packets(payloads, ImportReport())
+        if not sound.any():
+            continue
+        times = datagrams.t_ns[mine][sound]
+        return PacketStream(
+            file=path,
+            source=address,
+            port=sensor.port,
+            kind="data",
+            packets=len(times),
+            t_first_ns=int(times[0]),
+            t_last_ns=int(times[-1]),
+            t_end_ns=int(times[-1]),
+            whole=False,
+            return_mode=int(as_packets(payloads[sound])["return_mode"][0]),
+        )
+    return None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -13,17 +13,31 @@ from recon4.errors import EmptyRecording
 from recon4.geometry.se3 import SE3
 from recon4.model.rig import Rig, Sensor
 from recon4.recording.datagram_samples import SampleDecoder
-from recon4.recording.packet_streams import PacketStream, address_number, scan_pcap
+from recon4.recording.packet_streams import (
+    PacketStream,
+    address_number,
+    fits,
+    late_stream,
+    scan_pcap,
+)
 from recon4.recording.pcap import Datagrams, OpenFile, open_plain, read_pcap
 from recon4.recording.positions import PositionDecoder, PositionSamples
 from recon4.recording.report import ImportReport
 from recon4.recording.sensor_clock import SensorClock
 from recon4.recording.shots import Shots
+from recon4.recording.slots import in_slots
 from recon4.recording.velodyne import PacketDecoder
 from recon4.recording.velodyne_models import DATA_SIZE, POSITION_SIZE, velodyne_model
 from recon4.settings import IngestSettings
 
 __all__ = ["PacketStream", "VelodynePcap", "scan_pcap"]
+
+WAIT_S = 1.0
+"""A sensor silent for so long holds the others' frames up no longer: datagrams are read in the
+order in which they came, a slot at a time (`in_slots`)."""
+_FOREIGN_SHARE = 0.2
+"""A stream with fewer packets than this share of the largest one's is of no sensor of the rig
+unless its port (and address) says so."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,8 +55,9 @@ class VelodynePcap:
     """The recording in one or several capture files, all sensors on one clock.
 
     ``rig`` is the one given; without one, a rig with one sensor a data stream, all mounted at the
-    origin. Streams go to the sensors of a given rig by address and port; a sensor left over gets a
-    stream left over, in order, and the report says so.
+    origin. Streams go to the sensors of a given rig by address and port, but no trickle when a full
+    stream fits too; a sensor left over gets a stream left over, in order, and the report says so.
+    A sensor that is not in the heads of the files is read from when it first sends.
     """
 
     def __init__(
@@ -66,13 +81,14 @@ class VelodynePcap:
 
         Raises:
             UnknownFormat: If a file is not a capture file.
-            EmptyRecording: If there is no Velodyne data packet in the heads of the files.
+            EmptyRecording: If there is no Velodyne data packet in the heads of the files and no
+                rig that says where to look for later ones.
             ConfigError: If the model of a sensor is not decoded from packets.
         """
         self._report = report
         self.streams = [s for path in paths for s in scan_pcap(path, open_file=open_file)]
         groups = _sensors_of(self.streams)
-        if not groups:
+        if not groups and rig is None:
             seen = ", ".join(f"{s.packets} packets to port {s.port}" for s in self.streams)
             raise EmptyRecording(
                 f"{paths[0].name}: no Velodyne data packets (1206 bytes of UDP payload); "
@@ -82,7 +98,9 @@ class VelodynePcap:
             for remark in stream.remarks if rig is None else ():
                 report.warn(f"{stream.label}: {remark}")
         self.rig = rig or _rig_of(groups)
-        self._channels = self._assign(groups, settings)
+        self._settings = settings
+        self._channels = self._assign(groups)
+        self._claimed = {(s.source, s.port) for s in self.streams if s.kind == "data"}
         self._samples = SampleDecoder(report)
         self._paths = list(paths)
         self._open = open_file
@@ -92,6 +110,7 @@ class VelodynePcap:
         batches = (self._batches(path) for path in self._paths)
         for path, datagrams in heapq.merge(*batches, key=lambda batch: int(batch[1].t_ns[0])):
             yield from self._decode_samples(datagrams)  # first: points are mapped with them
+            self._find_late(datagrams)
             for channel in self._channels:
                 yield from self._decode(channel, path, datagrams)
         for channel in self._channels:
@@ -108,7 +127,22 @@ class VelodynePcap:
         return {channel.sensor.name: channel.data.rotation_hz for channel in self._channels}
 
     def _batches(self, path: Path) -> Iterator[tuple[Path, Datagrams]]:
-        return ((path, batch) for batch in read_pcap(path, self._report, self._open) if len(batch))
+        return ((path, slot) for slot in in_slots(read_pcap(path, self._report, self._open)))
+
+    def _find_late(self, datagrams: Datagrams) -> None:
+        """Read from now on sensors that were silent in the heads of the files."""
+        if len(self._channels) == len(self.rig.sensors):
+            return
+        there = {channel.sensor.name for channel in self._channels}
+        for row, sensor in enumerate(self.rig.sensors):
+            if sensor.name in there:
+                continue
+            stream = late_stream(self._paths[0], datagrams, sensor, claimed=self._claimed)
+            if stream is not None:
+                self._claimed.add((stream.source, stream.port))
+                streams = tuple(replace(stream, file=path) for path in self._paths)
+                self._channels.append(self._channel(row, streams))
+                self._report.derive(f"{sensor.name}: sends only later, from {stream.label}")
 
     def _decode(
         self, channel: _Channel, path: Path, datagrams: Datagrams
@@ -140,9 +174,7 @@ class VelodynePcap:
         texts = [datagrams.buffer[a:b].tobytes() for a, b in zip(starts, ends, strict=True)]
         yield PositionSamples(*self._samples.push(datagrams.t_ns[rows].tolist(), texts))
 
-    def _assign(
-        self, groups: list[tuple[PacketStream, ...]], settings: IngestSettings
-    ) -> list[_Channel]:
+    def _assign(self, groups: list[tuple[PacketStream, ...]]) -> list[_Channel]:
         chosen = _match(self.rig.sensors, groups, self._report)
         channels = []
         for row, sensor in enumerate(self.rig.sensors):
@@ -152,12 +184,10 @@ class VelodynePcap:
                     f"to port {sensor.port}"
                 )
                 continue
-            channels.append(self._channel(row, chosen[row], settings))
+            channels.append(self._channel(row, chosen[row]))
         return channels
 
-    def _channel(
-        self, row: int, streams: tuple[PacketStream, ...], settings: IngestSettings
-    ) -> _Channel:
+    def _channel(self, row: int, streams: tuple[PacketStream, ...]) -> _Channel:
         sensor = self.rig.sensors[row]
         clock = SensorClock(
             sensor.name,
@@ -165,7 +195,7 @@ class VelodynePcap:
             report=self._report,
             utc_offset_ns=streams[0].utc_offset_ns,
         )
-        data = PacketDecoder(row, sensor, settings=settings, report=self._report, clock=clock)
+        data = PacketDecoder(row, sensor, settings=self._settings, report=self._report, clock=clock)
         positions = PositionDecoder(sensor, clock=clock, report=self._report)
         return _Channel(sensor, streams, data, positions)
 
@@ -213,19 +243,18 @@ def _match(
     chosen: dict[int, tuple[PacketStream, ...]] = {}
     left = list(groups)
     for row in sorted(range(len(sensors)), key=lambda row: not sensors[row].address):
-        sensor = sensors[row]
-        for streams in left:
-            fits = sensor.address in {"", streams[0].source} and sensor.port == streams[0].port
-            if fits:
-                chosen[row] = streams
-                left.remove(streams)
-                break
+        fitting = [s for s in left if fits(sensors[row], s[0].source, s[0].port)]
+        if fitting:
+            chosen[row] = _full(fitting, fitting)[0]
+            left.remove(chosen[row])
+    likely = _full(left, groups)
     for row in (row for row in range(len(sensors)) if row not in chosen):
-        if not left:
+        if not likely:
             break
-        streams = min(left, key=lambda streams: streams[0].port != sensors[row].port)
+        streams = min(likely, key=lambda streams: streams[0].port != sensors[row].port)
         chosen[row] = streams
         left.remove(streams)
+        likely.remove(streams)
         report.derive(
             f"{sensors[row].name}: taken from {streams[0].label}, the rig expects "
             f"{sensors[row].address or 'any address'} to port {sensors[row].port}"
@@ -233,3 +262,11 @@ def _match(
     for streams in left:
         report.warn(f"{streams[0].label}: the rig has no sensor for these packets; not read")
     return chosen
+
+
+def _full(
+    some: list[tuple[PacketStream, ...]], all_of: list[tuple[PacketStream, ...]]
+) -> list[tuple[PacketStream, ...]]:
+    """Those that are no trickle beside the largest of others."""
+    most = max((sum(s.packets for s in streams) for streams in all_of), default=0)
+    return [k for k in some if sum(s.packets for s in k) >= _FOREIGN_SHARE * most]

@@ -2,8 +2,10 @@
 
 import shutil
 import threading
+import time
 
 import numpy as np
+import pytest
 
 from recon4.live.growing import GrowingFile, Growth
 from recon4.model.multiframe import COLUMNS
@@ -48,8 +50,30 @@ def frames_of(path, out, live=None):
     return FrameStore.open(out)
 
 
-def test_a_growing_capture_gives_the_frames_of_the_finished_file(tmp_path):
-    whole = walk(tmp_path / "whole.pcap")
+def trouble(t_ns, payloads, *, seed, silent=(0.0, 0.0)):
+    """Packets as a bad network delivers them, and none for a while."""
+    rng = np.random.default_rng(seed)
+    since_s = (t_ns - t_ns[0]) / 1e9
+    kept = (rng.random(len(t_ns)) > 0.3) & ~((since_s >= silent[0]) & (since_s < silent[1]))
+    rows = np.flatnonzero(kept)
+    rows = np.sort(np.concatenate([rows, rng.choice(rows, len(rows) // 20)]))
+    return t_ns[rows] + rng.integers(0, 40_000_000, len(rows)), payloads[rows]
+
+
+def bad_walk(path):
+    """Losses, duplicates, late packets; one LiDAR wakes up late, the other one sleeps for 2 s."""
+    return capture(
+        path,
+        (FIRST, 2368, trouble(*spin(7500), seed=1, silent=(4.0, 6.07))),
+        (SECOND, 2369, trouble(*spin(7500), seed=2, silent=(0.0, 6.55))),
+        ("10.0.0.9", 2368, spin(30)),
+        ("10.0.0.9", 2369, (spin(30)[0], np.zeros((30, 99), np.uint8))),
+    )
+
+
+@pytest.mark.parametrize("make", [walk, bad_walk])
+def test_a_growing_capture_gives_the_frames_of_the_finished_file(tmp_path, make):
+    whole = make(tmp_path / "whole.pcap")
     growing = shutil.copy(whole, tmp_path / "growing.pcap")
     growth = Growth()
     size = whole.stat().st_size
@@ -58,6 +82,7 @@ def test_a_growing_capture_gives_the_frames_of_the_finished_file(tmp_path):
     def write():
         for cut in [*cuts, size]:
             growth.reached(cut)
+            time.sleep(0.001)  # lets the reader see the pieces
         growth.complete()
 
     writer = threading.Timer(0.05, write)
@@ -71,9 +96,34 @@ def test_a_growing_capture_gives_the_frames_of_the_finished_file(tmp_path):
         assert (a.t_ns, a.frame_id) == (b.t_ns, b.frame_id)
         for name in COLUMNS:
             np.testing.assert_array_equal(getattr(a, name), getattr(b, name))
-    assert len(live.imu) == len(later.imu) > 700
-    np.testing.assert_array_equal(live.imu.t_ns, later.imu.t_ns)
-    assert live.report["counts"] == later.report["counts"]
+    assert live.report == later.report | {"recordings": ["growing.pcap"]}
+    if make is walk:
+        assert len(live.imu) == len(later.imu) > 700
+        np.testing.assert_array_equal(live.imu.t_ns, later.imu.t_ns)
+    else:
+        assert {int(k) for frame in live for k in np.unique(frame.sensor)} == {0, 1}
+        assert live.report["counts"]["packets_duplicate"] > 200
+
+
+def test_a_sensor_that_is_silent_from_the_start_holds_the_other_up_for_a_second(tmp_path):
+    path = capture(tmp_path / "one.pcap", (FIRST, 2368, spin(5000)))  # 6.6 s
+    growth, shown, enough = Growth(), [], threading.Event()
+
+    def watch(frame):
+        shown.append(frame)
+        if len(shown) == 48:
+            enough.set()
+
+    live = Live(lambda path: GrowingFile(path, growth), watch)
+    reading = threading.Thread(target=frames_of, args=(path, tmp_path / "out", live))
+    reading.start()
+    growth.reached(path.stat().st_size)
+
+    came = enough.wait(20.0)
+    growth.complete()
+    reading.join()
+
+    assert came
 
 
 def test_reading_waits_until_there_is_something(tmp_path):

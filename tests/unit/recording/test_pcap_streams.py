@@ -234,3 +234,59 @@ def test_both_sensors_are_on_one_clock_though_neither_has_gps(tmp_path):
     assert abs(firsts[0] - firsts[1]) < 10_000
     assert abs(firsts[0] - T0_NS) < LATENCY_NS
     assert len([text for text in report.warnings if "no GPS drives it" in text]) == 2
+
+
+def late(t0_ns, count=300):
+    return spin(count, t0_ns=t0_ns)
+
+
+def test_a_sensor_that_wakes_up_late_is_read_from_then_on(tmp_path):
+    path = capture(
+        tmp_path / "late.pcap",
+        (FIRST, 2368, spin(5500)),
+        (SECOND, 2369, late(T0_NS + 7_000_000_000)),
+    )
+
+    _, points, _, report = read([path], rig(sensor("a"), sensor("b", port=2369)))
+
+    assert points == {0: 5500 * 384, 1: 300 * 384}
+    assert any("b: sends only later" in text for text in report.derived)
+
+
+def test_lidars_switched_on_after_the_imu_are_found(tmp_path):
+    texts = np.zeros((4100, 20), np.uint8)
+    path = capture(
+        tmp_path / "late.pcap",
+        (FIRST, 8309, (T0_NS + 5_000_000 * np.arange(4100), texts)),
+        (SECOND, 2368, late(T0_NS + 21_000_000_000)),
+    )
+
+    assert read([path], rig(sensor("a")))[1] == {0: 300 * 384}
+
+
+def test_a_few_packets_of_a_stranger_are_not_taken_for_a_silent_sensor(tmp_path):
+    path = capture(
+        tmp_path / "stranger.pcap",
+        ("10.9.9.9", 2368, late(T0_NS - 100_000_000, count=20)),
+        (FIRST, 2368, spin(1000)),
+    )
+
+    _, points, _, report = read([path], rig(sensor("a"), sensor("b", port=2369)))
+
+    assert points == {0: 1000 * 384}
+    assert any("10.9.9.9" in text and "not read" in text for text in report.warnings)
+
+
+def test_a_rig_with_addresses_keeps_a_third_lidar_out(tmp_path):
+    path = capture(
+        tmp_path / "third.pcap",
+        ("10.9.9.9", 2368, spin(1000)),
+        (FIRST, 2368, spin(900)),
+        (SECOND, 2369, spin(800)),
+    )
+
+    _, points, _, _ = read(
+        [path], rig(sensor("a", address=FIRST), sensor("b", port=2369, address=SECOND))
+    )
+
+    assert points == {0: 900 * 384, 1: 800 * 384}

@@ -25,6 +25,7 @@ from scipy.spatial import cKDTree
 from recon4.recording.packets import as_packets
 from recon4.recording.pcap import read_pcap
 from recon4.recording.report import ImportReport
+from recon4.recording.samples import join
 from recon4.recording.shots import Shots
 from recon4.recording.velodyne import PacketDecoder, decode_packets
 from recon4.recording.velodyne_models import DATA_SIZE, DUAL, MODELS, velodyne_model
@@ -269,7 +270,7 @@ def test_monterey_is_on_gps_time_with_positions_and_inertial_samples(data):
     shots = [part for part in parts if isinstance(part, Shots) and len(part)]
     samples = [part for part in parts if not isinstance(part, Shots)]
     gnss = next(part.gnss for part in samples if part.gnss)
-    imu = next(part.imu for part in samples if part.imu)
+    imu = join([part.imu for part in samples if part.imu])
     assert (recording.rig.sensors[0].model, len(imu)) == ("HDL-32E", 299)
     # $GPRMC,220632 on 2012-12-11; the first shot 1.2 s later.
     assert gnss.t_ns[0] == np.datetime64("2012-12-11T22:06:32", "ns").astype(np.int64)
