@@ -40,15 +40,17 @@ export const readMe = () => (whoami ??= request("GET", "/api/me"));
 /** Whether somebody is signed in already; for the login page. */
 export const isSignedIn = async () => (await fetch("/api/me")).ok;
 
+const BEFORE_LOGIN = ["/login", "/pair"];
+
 /** Headers a request that changes something must carry; for those that do not go through here. */
 export async function changeHeaders(method = "POST") {
-  if (method === "GET" || location.pathname === "/login") return {};
+  if (method === "GET" || BEFORE_LOGIN.includes(location.pathname)) return {};
   const { token } = await readMe();
   return token ? { "X-Recon4-Token": token } : {};
 }
 
 function leaveForLogin() {
-  if (location.pathname !== "/login") location.assign(`/login#next=${encodeURIComponent(location.pathname)}`);
+  if (!BEFORE_LOGIN.includes(location.pathname)) location.assign(`/login#next=${encodeURIComponent(location.pathname)}`);
 }
 
 /** Keeps who is signed in from an answer that tells: the token has changed. */
@@ -201,6 +203,15 @@ export async function readPoints(id, pair, reach) {
   return { i: new Float32Array(data, 16, 3 * counted), j: new Float32Array(data, 16 + 12 * counted, 3 * other) };
 }
 
+// -- phones
+
+export const readPairing = () => request("GET", "/api/pairing");
+export const invitePhone = (role) => request("POST", "/api/pairing/invitations", { role });
+export const approvePhone = (code, role) => request("POST", "/api/pairing/approve", { code, role });
+export const redeemInvitation = (token) => request("POST", "/api/pairing/redeem", { token });
+export const askToPair = (phone) => request("POST", "/api/pairing/requests", { name: phone });
+export const claimPairing = (token) => request("POST", "/api/pairing/claim", { token });
+
 // -- live capture
 
 export const liveUrl = "/live";
@@ -220,3 +231,26 @@ export function openLiveStream(have, { onMessage, onPoints, onClose }) {
   socket.addEventListener("close", onClose);
   return socket;
 }
+
+// -- slices
+
+const slices = (id) => `/api/projects/${name(id)}/slices`;
+const asked = (ask) => name(JSON.stringify(ask));
+
+export const readSliceFacts = (id, source = "") => request("GET", `${slices(id)}?source=${name(source)}`);
+export const readSlice = (id, ask) => request("POST", `${slices(id)}/picture`, ask);
+export const aboveUrl = (id, version) => `${slices(id)}/overview?v=${name(version)}`;
+export const readAboveWindow = (id) => request("GET", `${slices(id)}/overview/window`);
+export const pickOnSlice = (id, ask) => request("POST", `${slices(id)}/pick`, ask);
+export const readDoubleWalls = (id, source = "") => request("GET", `${slices(id)}/doubles?source=${name(source)}`);
+export const compareSlices = (id, ask) => request("POST", `${slices(id)}/compare`, ask);
+export const compareCsvUrl = (id, ask) => `${slices(id)}/compare.csv?ask=${asked(ask)}`;
+export const sliceFileUrl = (id, ending, ask) => `${slices(id)}/export.${ending}?ask=${asked(ask)}`;
+export const addReference = (id, add) => request("POST", `${slices(id)}/references`, add);
+export const removeReference = (id, one) => request("DELETE", `${slices(id)}/references/${name(one)}`);
+export const alignReference = (id, one, ask) => request("POST", `${slices(id)}/references/${name(one)}/align`, ask);
+export const lookAtControl = (id, file) => request("POST", `${slices(id)}/control/preview`, file);
+export const readControl = (id) => request("GET", `${slices(id)}/control`);
+export const keepControl = (id, state) => request("PUT", `${slices(id)}/control`, state);
+export const readControlReport = (id) => request("GET", `${slices(id)}/control/report`);
+export const readSurface = (id, point) => request("GET", `${slices(id)}/control/surface?point=${name(point)}`);
