@@ -12,6 +12,8 @@ log = logging.getLogger("recon4.job")
 
 SHARE_OF_MEMORY = 0.7
 MOST_FILES = 4096
+NICENESS = 10
+"""Workers stand back, so that the pages answer while they work."""
 PR_SET_NO_NEW_PRIVS = 38
 
 
@@ -31,6 +33,7 @@ def confine(memory_bytes: int) -> None:
     Args:
         memory_bytes: From `allowed_memory`.
     """
+    os.nice(NICENESS)
     _limit(resource.RLIMIT_DATA, memory_bytes)
     _limit(resource.RLIMIT_NOFILE, MOST_FILES)
     _limit(resource.RLIMIT_CORE, 0)

@@ -1,0 +1,81 @@
+"""How far a whole run is, from what its worker said."""
+
+import pytest
+
+from app.jobs.endings import ending
+from app.jobs.overall import Overall, after, share
+
+
+def fold(*events):
+    overall = Overall()
+    for event in events:
+        overall = after(overall, event)
+    return overall
+
+
+def stage(name, state, t):
+    return {"kind": "stage", "stage": name, "state": state, "t": t}
+
+
+def piece(what, done, t):
+    return {"kind": "progress", "what": what, "done": done, "total": 100, "seconds": 1.0, "t": t}
+
+
+RUN = {"kind": "run", "t": 100.0}
+
+
+def test_a_run_that_has_half_of_its_first_stage_is_half_of_its_share_further():
+    overall = fold(
+        RUN,
+        stage("frames", "running", 101.0),
+        piece("frames", 0, 101.0),
+        piece("frames", 50, 104.0),
+    )
+
+    assert overall.fraction == pytest.approx(share("hash") + 0.49 * share("frames"))
+
+
+def test_the_time_left_follows_from_what_was_really_worked():
+    """Half of the run was found finished: a tenth in 10 s leaves four tenths for 40 s."""
+    overall = Overall(began_s=0.0, now_s=10.0, past=0.6, reused=0.5)
+
+    assert overall.eta_s == pytest.approx(40.0)
+
+
+def test_nothing_is_promised_at_the_very_beginning():
+    assert fold(RUN).eta_s is None
+
+
+def test_the_fraction_never_falls_and_ends_at_one():
+    told = [RUN, piece("hash walk.pcap", 0, 100.0), piece("hash walk.pcap", 100, 101.0)]
+    for name in ("frames", "odometry", "graph"):
+        told += [stage(name, "running", 102.0)]
+        for _ in range(4):  # the search goes over the pairs again and again
+            told += [piece("pairs", done, 103.0) for done in (0, 30, 100)]
+        told += [stage(name, "done", 104.0)]
+    told += [piece("results", 0, 105.0), piece("results", 100, 106.0)]
+    fractions = [fold(*told[: k + 1]).fraction for k in range(len(told))]
+
+    assert fractions == sorted(fractions)
+    assert fractions[-1] < 1.0
+    assert Overall(over=True).fraction == 1.0
+
+
+def test_another_worker_begins_anew():
+    assert fold(RUN, stage("map", "running", 101.0), {"kind": "run", "t": 200.0}) == Overall(
+        began_s=200.0, now_s=200.0
+    )
+
+
+@pytest.mark.parametrize(
+    ("code", "words"),
+    [
+        (-11, "SIGSEGV"),
+        (-9, "memory of the computer"),
+        (-99, "signal 99"),
+        (3, "exit code 3"),
+        (None, "no server"),
+    ],
+)
+def test_an_ending_is_told_in_words(code, words):
+    assert words in ending(code)
