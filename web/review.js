@@ -122,7 +122,10 @@ function handWords() {
 // -- decisions, one after the other in the order of the keys
 
 function inTurn(action) {
-  last = last.then(() => attempt(message, action));
+  last = last.then(async () => {
+    await attempt(message, action);
+    if (message.textContent) become(await readReview(id).catch(() => null)); // somebody else may have decided
+  });
   return last;
 }
 

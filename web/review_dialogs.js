@@ -15,6 +15,7 @@ function open(title, ...children) {
 export function showKeys() {
   const rows = KEYS.map(([keys, words]) => make("tr", {}, make("th", { scope: "row" }, make("kbd", {}, keys)), make("td", {}, words)));
   const dialog = open("Keys", make("table", {}, make("tbody", {}, ...rows)), make("button", { type: "button", onclick: () => dialog.close() }, "Close"));
+  dialog.classList.add("wide");
 }
 
 /** Asks for a reason and, if there are conflicts, for confirmation; `sign(why, confirmed)`. */

@@ -11,13 +11,14 @@ const SHOW = {
   all: ["All registered pairs", (row) => row.measured],
   apart: ["Too little overlap", (row) => !row.measured],
 };
-const MOST = 400;
+const PAGE = 300; // rows in the list at a time
 
 class ReviewQueue extends HTMLElement {
   #rows = [];
   #byKey = new Map();
   #shown = [];
   #chosen = null;
+  #page = 0;
   #show = make("select", { ariaLabel: "Which pairs" });
   #reason = make("select", { ariaLabel: "Why turned down" });
   #count = make("p", { className: "quiet", role: "status" });
@@ -83,7 +84,8 @@ class ReviewQueue extends HTMLElement {
   choose(key) {
     const before = this.#chosen;
     this.#chosen = key;
-    this.refresh([before, key]);
+    if (this.#pageOf(key) === this.#page) this.refresh([before, key]);
+    else this.#list.replaceChildren(...this.#turnTo(key));
     this.#list.querySelector("[aria-current]")?.scrollIntoView({ block: "nearest" });
     this.#say();
     this.dispatchEvent(new CustomEvent("chosen", { detail: key }));
@@ -93,15 +95,24 @@ class ReviewQueue extends HTMLElement {
     const matches = SHOW[this.#show.value][1];
     const reason = this.#reason.value;
     this.#shown = this.#rows.filter((row) => matches(row) && (!reason || row.reason === reason));
-    this.#list.replaceChildren(...this.#shown.slice(0, MOST).map((row) => this.#item(row)));
+    this.#list.replaceChildren(...this.#turnTo(this.#chosen));
     this.#say();
+  }
+
+  #pageOf(key) {
+    return Math.floor(Math.max(0, this.#shown.findIndex((row) => row.key === key)) / PAGE);
+  }
+
+  /** The rows of the page on which a pair is. */
+  #turnTo(key) {
+    this.#page = this.#pageOf(key);
+    return this.#shown.slice(this.#page * PAGE, (this.#page + 1) * PAGE).map((row) => this.#item(row));
   }
 
   #say() {
     const at = this.#shown.findIndex((row) => row.key === this.#chosen) + 1;
     const decided = this.#shown.filter((row) => row.who).length;
-    const more = this.#shown.length > MOST ? `, the first ${MOST} listed` : "";
-    this.#count.textContent = this.#shown.length ? `${at || "–"} of ${this.#shown.length}${more} · ${decided} decided by people` : "None";
+    this.#count.textContent = this.#shown.length ? `${at || "–"} of ${this.#shown.length} · ${decided} decided by people` : "None";
   }
 
   #item(row) {

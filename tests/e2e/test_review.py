@@ -184,7 +184,7 @@ def test_a_wrong_loop_is_laid_right_by_keys_and_becomes_an_edge(opened, root, lo
     (row,) = read_rows(root)
     assert (row.kind, row.why) == ("replace", "was off by half a metre")
     assert row.decision().measurement.error_m < 0.03
-    assert after > 2 * before
+    assert after > 1.5 * before
     expect(page.locator("#effect")).to_contain_text("chi²")
     expect(page.locator("#effect .bad")).to_have_count(0)
 
@@ -217,7 +217,7 @@ def test_a_place_is_dragged_turned_and_dropped_again(opened, look):
     assert sum(abs(a - b) for a, b in zip(before[:3], moved[:3], strict=True)) > 0.1
     assert before[3:] == pytest.approx(moved[3:])
     assert moved[:3] == pytest.approx(turned[:3])
-    assert abs(turned[5] - moved[5]) > 0.1
+    assert abs(sum(a * b for a, b in zip(moved[3:], turned[3:], strict=True))) < 0.995
     assert page.evaluate("document.querySelector('pair-view').pose") == pytest.approx(before)
 
 
@@ -252,7 +252,7 @@ def test_a_loop_is_added_between_two_moments(opened, root, look, picture):
     page.get_by_role("button", name="Look at this pair").click()
     settled(page)
     expect(page.locator("#pair")).to_contain_text("Multiframes 31 and 62")
-    expect(page.get_by_role("button", name="Accept")).to_be_disabled()
+    expect(page.locator("#decision").get_by_role("button", name="Accept")).to_be_disabled()
     page.get_by_role("button", name="Refine").click()
     page.get_by_role("button", name="Create edge").click()
 
