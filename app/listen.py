@@ -70,6 +70,14 @@ def certificate_of(settings: ServerSettings) -> Certificate | None:
     return made_certificate(settings.state / "tls", hosts_of(settings).names)
 
 
+def presented_fingerprint(settings: ServerSettings) -> str | None:
+    """SHA-256 of the certificate this server shows; None = it speaks no TLS."""
+    if not settings.lan:
+        return None
+    chain = settings.tls_certificate or settings.state / "tls" / "certificate.pem"
+    return Certificate(chain, chain, own=False).fingerprint()
+
+
 @contextmanager
 def only_one(settings: ServerSettings) -> Iterator[None]:
     """Hold the folder: two servers would start every job twice.
@@ -114,7 +122,8 @@ def listening(settings: ServerSettings) -> Iterator[socket.socket]:
         StoreError: If it cannot listen there.
     """
     family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
-    with socket.socket(family) as listener:
+    # asyncio turns Nagle's delay (40 ms an answer) off only where the protocol is named
+    with socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP) as listener:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             listener.bind((settings.host, settings.port))

@@ -15,7 +15,7 @@ from fastapi.staticfiles import StaticFiles
 from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 
 from app import errors, server_routes
-from app.access import admin_routes
+from app.access import admin_routes, pairing_routes
 from app.access import routes as access_routes
 from app.access.door import Access, open_access
 from app.access.guard import Guard
@@ -76,7 +76,9 @@ def create_app(settings: ServerSettings) -> FastAPI:
     pinned = settings.tls_certificate is not None
     app.add_middleware(Guard, hosts=hosts_of(settings), login=settings.lan, pinned=pinned)
     errors.install(app)
-    for part in (access_routes, admin_routes, project_routes, job_routes, choices, server_routes):
+    for part in (access_routes, admin_routes, pairing_routes, project_routes, job_routes):
+        app.include_router(part.router)
+    for part in (choices, server_routes):
         app.include_router(part.router)
     for part in (page, proxy):
         app.include_router(part.router, dependencies=MAY_LOOK)
@@ -200,6 +202,8 @@ def _add_pages(app: FastAPI) -> None:
 
     page("/", "index.html", MAY_LOOK)
     page("/account", "account.html", MAY_LOOK)
+    page("/phone", "phone.html", MAY_LOOK)
+    page("/pair", "pair.html", anyone)
     page("/login", "login.html", anyone)
     page("/people", "people.html", administer)
     page("/api", "api.html", administer)

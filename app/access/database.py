@@ -40,8 +40,10 @@ SESSIONS = sa.Table(
     sa.Column("seen_s", sa.Float, nullable=False),
     sa.Column("address", sa.String, nullable=False),
     sa.Column("agent", sa.String, nullable=False),
+    sa.Column("phone_role", sa.String, nullable=True),
 )
-"""``person`` is a key of `PEOPLE`; times are in seconds since 1970."""
+"""``person`` is a key of `PEOPLE`; times are in seconds since 1970; ``phone_role`` is that of a
+phone the person let in, NULL for a login."""
 
 BROWSERS = sa.Table(
     "browsers",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hmac
-import ipaddress
 import threading
 import time
 from collections.abc import Callable
@@ -16,9 +15,10 @@ from app.access import passwords
 from app.access.accounts import Account, Accounts, key
 from app.access.audit import AuditLog
 from app.access.database import open_database
+from app.access.pairing import Pairings
 from app.access.people import Role
 from app.access.sessions import Sessions, hash_of, new_token
-from app.access.throttle import Buckets, Waits
+from app.access.throttle import Buckets, Waits, network
 from app.errors import Refused, TooMany, WrongPassword
 
 WRONG = "name and password do not fit"
@@ -143,6 +143,7 @@ class Access:
     log: AuditLog
     door: Door
     engine: sa.Engine
+    pairings: Pairings
     rates: dict[str, Buckets] = field(default_factory=dict)
     """How much of what each person started lately."""
 
@@ -168,17 +169,5 @@ def open_access(state: Path, *, login: bool, clock: Callable[[], float] = time.t
         log=AuditLog(engine, clock),
         door=Door(accounts, sessions),
         engine=engine,
+        pairings=Pairings(),
     )
-
-
-def network(address: str) -> str:
-    """An address as guesses are counted: one household has 2^64 of IPv6."""
-    try:
-        parsed = ipaddress.ip_address(address)
-    except ValueError:
-        return address
-    if isinstance(parsed, ipaddress.IPv6Address):
-        if parsed.ipv4_mapped is not None:
-            return str(parsed.ipv4_mapped)
-        return str(ipaddress.ip_network((parsed, 64), strict=False))
-    return str(parsed)

@@ -21,7 +21,8 @@ COOKIE = "__Host-sid"
 BROWSER_COOKIE = "__Host-browser"
 FORM_HEADER = "X-Recon4-Token"
 
-OPEN_PATHS = frozenset({"/login", "/api/login", "/api/setup", "/healthz"})
+PAIRING = frozenset({"/pair", "/api/pairing/redeem", "/api/pairing/requests", "/api/pairing/claim"})
+OPEN_PATHS = PAIRING | {"/login", "/api/login", "/api/setup", "/healthz"}
 """What is answered without a session, besides the files of `OPEN_FOLDER`; tested."""
 OPEN_FOLDER = "/web/"
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})

@@ -109,6 +109,18 @@ def anybody() -> None:
     """The dependency of the few routes that answer before login: ``Depends(anybody)``."""
 
 
+def signed_in_by_hand(connection: HTTPConnection) -> Person:
+    """A dependency for what a phone that was let in may not, as ending its owner's sessions.
+
+    Raises:
+        Refused: If a phone asks.
+    """
+    session = connection.scope["state"].get("session")
+    if session is not None and session.phone:
+        raise Refused("a phone that was let in may not do that; sign in with your password")
+    return person(connection)
+
+
 def fresh_login(connection: HTTPConnection) -> Person:
     """A dependency for what is signed with one's name: the password was given a moment ago.
 

@@ -11,8 +11,9 @@ from pydantic import BaseModel, ConfigDict, Field
 from app.access.audit import address, audit
 from app.access.door import Access, Caller, Entered
 from app.access.doorkeeper import BROWSER_COOKIE, COOKIE, cookie
-from app.access.people import LOCAL, MAY, May, Role, Who, anybody, needs
-from app.access.sessions import BROWSER_KNOWN_S, LIVES, Session, form_token
+from app.access.pairing import Leave
+from app.access.people import LOCAL, MAY, May, Role, Who, anybody, needs, signed_in_by_hand
+from app.access.sessions import BROWSER_KNOWN_S, LIVES, PHONE_LIFE, Session, form_token
 from app.deps import Server
 from app.errors import AppError, Conflict, Problem, TooMany
 
@@ -24,6 +25,8 @@ router = APIRouter(
 ANYBODY = Depends(anybody)
 SIGNED_IN = Depends(needs(May.LOOK))
 """Whoever is signed in may look."""
+BY_HAND = Depends(signed_in_by_hand)
+"""Not for a phone somebody let in."""
 
 Text = Annotated[str, Field(max_length=1000)]
 
@@ -108,7 +111,7 @@ def set_up(given: Setup, request: Request, response: Response, server: Server) -
     return _welcome(access, request, response, entered=entered)
 
 
-@router.post("/login/again", dependencies=[SIGNED_IN])
+@router.post("/login/again", dependencies=[SIGNED_IN, BY_HAND])
 def login_again(given: Again, request: Request, response: Response, server: Server) -> Me:
     """Give the password again, as approval asks for; the cookie changes."""
     access = _with_login(server.access)
@@ -119,7 +122,7 @@ def login_again(given: Again, request: Request, response: Response, server: Serv
         _note_failure(access, request, session.person, error)
         raise
     token = access.sessions.prove(session.id)
-    _set_cookie(response, token, session.role)
+    _set_cookie(response, token, LIVES[session.role].whole_s)
     audit(request, "sign in again", session.id)
     return _me(access, session.person, role=session.role, token=token)
 
@@ -142,7 +145,7 @@ def read_me(request: Request, who: Who, server: Server) -> Me:
     return _me(server.access, who.name, role=who.role, token=token)
 
 
-@router.post("/me/password", dependencies=[SIGNED_IN])
+@router.post("/me/password", dependencies=[SIGNED_IN, BY_HAND])
 def change_password(given: NewPassword, request: Request, response: Response, server: Server) -> Me:
     """Change one's own password; all other sessions end."""
     access = _with_login(server.access)
@@ -156,13 +159,13 @@ def change_password(given: NewPassword, request: Request, response: Response, se
     return _welcome(access, request, response, entered=entered)
 
 
-@router.get("/me/sessions", dependencies=[SIGNED_IN])
+@router.get("/me/sessions", dependencies=[SIGNED_IN, BY_HAND])
 def list_my_sessions(request: Request, who: Who, server: Server) -> list[SessionView]:
     """One's own sessions."""
     return views(request, server.access.sessions.all(person=who.name))
 
 
-@router.delete("/me/sessions/{session_id}", status_code=204, dependencies=[SIGNED_IN])
+@router.delete("/me/sessions/{session_id}", status_code=204, dependencies=[SIGNED_IN, BY_HAND])
 def end_my_session(session_id: str, request: Request, who: Who, server: Server) -> None:
     """End one of one's own sessions."""
     server.access.sessions.end(session_id, person=who.name)
@@ -173,6 +176,17 @@ def views(request: Request, sessions: list[Session]) -> list[SessionView]:
     """Sessions as they are shown."""
     mine: Session | None = request.scope["state"].get("session")
     return [SessionView(session=one, current=bool(mine and mine.id == one.id)) for one in sessions]
+
+
+def enter_paired(access: Access, request: Request, response: Response, *, leave: Leave) -> Me:
+    """Begin the session of a phone somebody let in, and hand over its cookie."""
+    caller = _caller(request)
+    token = access.sessions.begin(
+        leave.person, address=caller.address, agent=caller.agent, phone_role=leave.role
+    )
+    access.log.add(leave.person, caller.address, action="pair phone", what=leave.role)
+    _set_cookie(response, token, PHONE_LIFE.whole_s)
+    return _me(access, leave.person, role=leave.role, token=token)
 
 
 def _with_login(access: Access) -> Access:
@@ -196,7 +210,7 @@ def _welcome(access: Access, request: Request, response: Response, *, entered: E
     if before is not None and access.sessions.alive(before.id):
         access.sessions.end(before.id)
     access.log.add(name, address(request), action="sign in", what=role)
-    _set_cookie(response, entered.session, role)
+    _set_cookie(response, entered.session, LIVES[role].whole_s)
     response.set_cookie(
         BROWSER_COOKIE,
         entered.browser,
@@ -209,11 +223,11 @@ def _welcome(access: Access, request: Request, response: Response, *, entered: E
     return _me(access, name, role=role, token=entered.session)
 
 
-def _set_cookie(response: Response, token: str, role: Role) -> None:
+def _set_cookie(response: Response, token: str, lasts_s: float) -> None:
     response.set_cookie(
         COOKIE,
         token,
-        max_age=int(LIVES[role].whole_s),
+        max_age=int(lasts_s),
         path="/",
         secure=True,
         httponly=True,

@@ -41,6 +41,8 @@ LIVES = {
     Role.REVIEWER: Life(12 * HOUR_S, 2 * HOUR_S),
     Role.ADMIN: Life(8 * HOUR_S, 0.5 * HOUR_S),
 }
+PHONE_LIFE = Life(12 * HOUR_S, 12 * HOUR_S)
+"""A phone lies in a pocket for hours of a walk."""
 BELIEVED_S = 2.0
 """What was looked up is believed so long: a session ended by another process ends then [s]."""
 NOTED_EVERY_S = 30.0
@@ -65,10 +67,12 @@ class Session:
     address: str
     agent: str
     """What the browser calls itself."""
+    phone: bool = False
+    """Whether it is a phone somebody let in; ``person`` is who did, ``role`` the phone's own."""
 
     def over(self, now_s: float) -> bool:
         """Whether its time is up."""
-        life = LIVES[self.role]
+        life = PHONE_LIFE if self.phone else LIVES[self.role]
         return now_s - self.began_s > life.whole_s or now_s - self.seen_s > life.idle_s
 
 
@@ -94,8 +98,8 @@ class Sessions:
         self._believed: dict[str, tuple[float, Visit]] = {}
         self._lock = threading.Lock()
 
-    def begin(self, name: str, *, address: str, agent: str) -> str:
-        """A new session of a person.
+    def begin(self, name: str, *, address: str, agent: str, phone_role: Role | None = None) -> str:
+        """A new session of a person, or of a phone a person let in.
 
         Returns:
             Its token, which is kept nowhere.
@@ -107,6 +111,7 @@ class Sessions:
             "person": key(name),
             "address": address,
             "agent": printable(agent[:120]),
+            "phone_role": phone_role,
             **dict.fromkeys(("began_s", "proved_s", "seen_s"), now_s),
         }
         longest_s = max(life.whole_s for life in LIVES.values())
@@ -205,8 +210,11 @@ class Sessions:
 
     def _select(self, condition: sa.ColumnElement[bool]) -> list[Session]:
         join = sa.join(SESSIONS, PEOPLE, SESSIONS.c.person == PEOPLE.c.key)
-        own = [column for column in SESSIONS.c if column.name not in ("token_hash", "person")]
-        query = sa.select(*own, PEOPLE.c.name.label("person"), PEOPLE.c.role)
+        left_out = ("token_hash", "person", "phone_role")
+        own = [column for column in SESSIONS.c if column.name not in left_out]
+        role = sa.func.coalesce(SESSIONS.c.phone_role, PEOPLE.c.role).label("role")
+        phone = SESSIONS.c.phone_role.is_not(None).label("phone")
+        query = sa.select(*own, PEOPLE.c.name.label("person"), role, phone)
         query = query.select_from(join).where(condition, ~PEOPLE.c.disabled)
         with self._engine.connect() as connection:
             rows = connection.execute(query.order_by(SESSIONS.c.began_s.desc())).mappings()

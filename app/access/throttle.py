@@ -5,6 +5,7 @@ Kept in memory: a restart forgets it, which guessing passwords across the networ
 
 from __future__ import annotations
 
+import ipaddress
 import threading
 import time
 from collections import OrderedDict
@@ -86,3 +87,16 @@ class Buckets:
             if key in self._left:
                 left, then_s = self._left[key]
                 self._left[key] = (min(float(self._burst), left + 1.0), then_s)
+
+
+def network(address: str) -> str:
+    """An address as guesses are counted: one household has 2^64 of IPv6."""
+    try:
+        parsed = ipaddress.ip_address(address)
+    except ValueError:
+        return address
+    if isinstance(parsed, ipaddress.IPv6Address):
+        if parsed.ipv4_mapped is not None:
+            return str(parsed.ipv4_mapped)
+        return str(ipaddress.ip_network((parsed, 64), strict=False))
+    return str(parsed)

@@ -3,15 +3,17 @@
 import contextlib
 import sqlite3
 import threading
+from dataclasses import asdict
 
 import pytest
 
+from app.access.audit import link
 from app.access.certificate import made_certificate, own_certificate
-from app.access.door import Caller, Door, network, open_access
+from app.access.door import Caller, Door, open_access
 from app.access.hosts import own_names
 from app.access.people import LOCAL, Role
 from app.access.sessions import LIVES, form_token
-from app.access.throttle import Buckets, Waits
+from app.access.throttle import Buckets, Waits, network
 from app.errors import Conflict, NotFound, Refused, TooMany, WeakPassword, WrongPassword
 from recon4.errors import ConfigError
 
@@ -327,6 +329,22 @@ def test_the_log_is_a_chain_that_shows_what_was_changed(access, tmp_path):
 
     assert (whole.entries, whole.broken_at) == (5, None)
     assert access.log.check().broken_at == 3
+
+
+def test_a_row_forged_together_with_its_hash_shows_at_the_next(access, tmp_path):
+    for k in range(5):
+        access.log.add("Anna", "?", action="start job", what=f"office {k}")
+    newest = access.log.newest(5)
+    forged = asdict(newest[2]) | {"person": "Bert"}
+    forged["hash"] = link(newest[3].hash, forged)
+
+    with sqlite3.connect(tmp_path / "access.sqlite") as file:
+        file.execute("DROP TRIGGER audit_no_update")
+        values = (forged["person"], forged["hash"])
+        file.execute("UPDATE audit SET person = ?, hash = ? WHERE number = 3", values)
+    file.close()
+
+    assert access.log.check().broken_at == 4
 
 
 def test_a_row_taken_out_shows(access, tmp_path):
