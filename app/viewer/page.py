@@ -27,12 +27,12 @@ Document.prototype.hasFocus = function () { return !document.hidden; };
 document.addEventListener('visibilitychange', () =>
   dispatchEvent(new Event(document.hidden ? 'blur' : 'focus')));
 // On a phone the controls would cover half of the map: fold them up once they are all there.
-if (innerWidth < 576) new MutationObserver((_, watch) => {
+addEventListener('DOMContentLoaded', () => innerWidth < 576 && new MutationObserver((_, watch) => {
   const said = (words) => [...document.querySelectorAll('#root *')].find((one) =>
     !one.firstElementChild && one.textContent === words);
   const title = said('Connected');
   if (title && said('Edges by')) { watch.disconnect(); title.click(); }
-}).observe(document, { childList: true, subtree: true, characterData: true });
+}).observe(document, { childList: true, subtree: true, characterData: true }));
 </script>
 <style>
 #frame-words { position: fixed; left: 0; top: 0; z-index: 5; padding: 4px 10px;

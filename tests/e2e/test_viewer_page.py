@@ -1,0 +1,139 @@
+"""The viewer as people use it: keys, clicks, taps, a viewer process that dies."""
+
+import os
+import re
+import signal
+
+import numpy as np
+import psutil
+import pytest
+from playwright.sync_api import expect
+
+from app.viewer.cloud import Cloud
+from app.viewer.scene import Content, bounds
+from app.viewer.show import start_m
+from recon4.model.pose_graph import Reason
+from tests.project_builder import add_multiframes, build_project, loop_walk, verified_graph
+from tests.service.running import server_thread
+
+pytestmark = pytest.mark.e2e
+
+POINTS = 60_000
+FOV_RAD = np.deg2rad(75.0)
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    root = tmp_path_factory.mktemp("projects")
+    build_project(root / "office", points=POINTS)
+    add_multiframes(root / "office")
+    with server_thread(root) as running:
+        yield running
+
+
+@pytest.fixture
+def viewer(finished, page):
+    """The viewer alone on the page, with all of the map drawn."""
+    page.goto(f"{finished.url}/projects/office/viewer/")
+    page.wait_for_function("window.__viserMutable?.canvas")
+    expect(page.get_by_text("60 000 of 60 000 points")).to_be_attached()
+    page.locator(".mantine-Notification-closeButton").click()  # there is no graphics card
+    return page
+
+
+def at_first(root, aspect):
+    """Where a new viewer's camera is, and what it looks at [m]."""
+    artifact = next((root / "office").glob("artifacts/*/tiles.json")).parent
+    box = bounds(Content(cloud=Cloud(artifact), trajectory=loop_walk()))
+    return start_m(box, aspect=aspect), box.center_m
+
+
+def on_screen(page, root, p_map):
+    """Pixel of a point of the map while the camera is where it began."""
+    box = page.evaluate("window.__viserMutable.canvas.getBoundingClientRect().toJSON()")
+    eye, target = at_first(root, box["width"] / box["height"])
+    ahead = (target - eye) / np.linalg.norm(target - eye)
+    right = np.cross(ahead, [0.0, 0.0, 1.0])
+    right /= np.linalg.norm(right)
+    to_point = np.asarray(p_map) - eye
+    x, y = to_point @ right, to_point @ np.cross(ahead, right)
+    scale = box["height"] / 2.0 / np.tan(FOV_RAD / 2.0) / (to_point @ ahead)
+    return box["x"] + box["width"] / 2.0 + scale * x, box["y"] + box["height"] / 2.0 + scale * y
+
+
+def touch(page, look, at):
+    """A click, or on a phone a tap."""
+    if look[0] == "phone":
+        page.touchscreen.tap(*at)
+    else:
+        page.mouse.click(*at)
+
+
+def test_a_click_or_tap_on_a_rejected_edge_says_why_and_leads_to_its_review(
+    finished, viewer, look, picture
+):
+    graph = verified_graph(loop_walk())
+    edge = next(e for e in graph.edges if e.reason is Reason.VERIFICATION)
+    middle = graph.T_map_body.t[[edge.i, edge.j]].mean(axis=0)
+
+    touch(viewer, look, on_screen(viewer, finished.root, middle))
+
+    link = viewer.get_by_role("link", name="Open in review", include_hidden=True)
+    expect(link).to_have_attribute("href", f"/projects/office/review/?edge={edge.i}-{edge.j}")
+    expect(viewer.get_by_text("verification median > limit", exact=True)).to_be_attached()
+    picture(viewer, "viewer-edge")
+
+
+def test_keys_toggle_the_intensity_and_measure_the_room(finished, viewer, look, picture):
+    if look != ("desktop", "dark"):
+        pytest.skip("once is enough")
+    viewer.keyboard.press("n")
+    expect(viewer.get_by_text("Points by raw intensity")).to_be_visible()
+
+    viewer.keyboard.press("m")
+    expect(viewer.get_by_role("button", name="Stop measuring")).to_be_attached()
+    for corner in ((2.0, 7.5, 0.0), (14.0, 7.5, 0.0)):
+        viewer.mouse.click(*on_screen(viewer, finished.root, corner))
+        expect(viewer.get_by_text("x y z, m")).to_be_attached()
+        viewer.wait_for_timeout(500)
+    expect(viewer.get_by_text("Horizontal", exact=True)).to_be_attached()
+    told = viewer.locator("tr").filter(has_text="Distance").last.inner_text()
+
+    assert abs(float(told.split()[1]) - 12.0) < 0.5
+    picture(viewer, "viewer-measure")
+
+
+def test_the_scrubber_shows_single_multiframes(viewer, look, picture):
+    if look != ("desktop", "light"):
+        pytest.skip("once is enough")
+    viewer.get_by_role("combobox", name="Show").click()
+    viewer.get_by_role("option", name="map and multiframe").click()
+    expect(viewer.get_by_text("Multiframe 0 of 599, at 0.0 s")).to_be_visible()
+    viewer.evaluate("document.activeElement.blur()")  # keys are for the map again
+    viewer.keyboard.press("p")
+    expect(viewer.get_by_text(re.compile(r"Multiframe [1-9]\d* of 599, at"))).to_be_visible()
+    viewer.keyboard.press("p")
+
+    picture(viewer, "viewer-multiframe")
+
+
+def test_a_viewer_that_is_killed_comes_back_with_camera_and_colors(finished, viewer, look):
+    if look != ("desktop", "dark"):
+        pytest.skip("once is enough")
+    viewer.keyboard.press("n")
+    expect(viewer.get_by_text("Points by raw intensity")).to_be_visible()
+    viewer.keyboard.press("7")
+    camera = "window.__viserMutable.camera.position.toArray()"
+    viewer.wait_for_timeout(2000)
+    before = viewer.evaluate(camera)
+
+    process = next(
+        one
+        for one in psutil.Process().children(recursive=True)
+        if "app.viewer.process" in one.cmdline()
+    )
+    os.kill(process.pid, signal.SIGKILL)
+    expect(viewer.get_by_text("Points by raw intensity")).not_to_be_attached()
+
+    expect(viewer.get_by_text("Points by raw intensity")).to_be_visible()
+    np.testing.assert_allclose(viewer.evaluate(camera), before, atol=1e-3)
