@@ -15,6 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.access.audit import audit
 from app.access.people import May, needs
+from app.access.rates import at_most
 from app.deps import Parts, Server
 from app.errors import NoRoom, NotFound, Problem, TooMany
 from app.jobs.model import Inputs, Job, JobState
@@ -32,6 +33,7 @@ router = APIRouter(
     responses={404: {"model": Problem}, 409: {"model": Problem}},
 )
 PROCESS = [Depends(needs(May.PROCESS))]
+START = [*PROCESS, Depends(at_most(10, within_s=3600.0, what="jobs"))]
 REFUSALS: dict[int | str, dict[str, Any]] = {
     status: {"model": Problem} for status in (403, 429, 507)
 }
@@ -88,7 +90,7 @@ def list_jobs(server: Server) -> list[JobView]:
     return [_view(server, job) for job in server.jobs.latest().values()]
 
 
-@router.post("/jobs", status_code=201, responses=REFUSALS, dependencies=PROCESS, summary="Start")
+@router.post("/jobs", status_code=201, responses=REFUSALS, dependencies=START, summary="Start")
 def add_job(new: NewJob, server: Server, request: Request) -> JobView:
     """Put a job in the queue.
 
@@ -128,7 +130,7 @@ def cancel_job(job_id: str, server: Server, request: Request) -> JobView:
     "/jobs/{job_id}/retry",
     status_code=201,
     responses=REFUSALS,
-    dependencies=PROCESS,
+    dependencies=START,
     summary="Resume",
 )
 def retry_job(job_id: str, server: Server, request: Request) -> JobView:

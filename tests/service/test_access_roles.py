@@ -18,6 +18,7 @@ from app.main import create_app
 from app.settings import ServerSettings
 from app.viewer.proxy import LOOKING
 from tests.project_builder import build_project
+from tests.service.running import SLOW, recording_with_gate
 from tests.service.secure import ROLES, secure_server
 from tests.service.viser_client import ViserClient, camera
 
@@ -209,3 +210,16 @@ def test_asked_too_often_a_session_is_told_when_to_come_back(server):
     assert refused
     assert int(refused[0].headers["retry-after"]) >= 1
     assert (static.status_code, others.status_code) == (200, 200)
+
+
+def test_a_person_starts_ten_jobs_an_hour_and_refused_ones_do_not_count(tmp_path):
+    with secure_server(tmp_path, worker=SLOW) as server, server.signed_in("otto") as client:
+        for _ in range(12):
+            assert client.post("/api/jobs", json={}).status_code == 422
+        statuses = []
+        for k in range(11):
+            recording = recording_with_gate(tmp_path / f"walk {k}")
+            job = {"project": f"walk-{k}", "recordings": [str(recording)]}
+            statuses.append(client.post("/api/jobs", json=job).status_code)
+
+    assert statuses == [201] * 10 + [429]
