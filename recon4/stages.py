@@ -175,10 +175,10 @@ FRAMES = Stage("frames", 3, ("ingest",), _frames)
 ODOMETRY = Stage(
     "odometry", 8, ("segments", "registration", "planes", "scans", "odometry"), _odometry
 )
-GRAPH = Stage("graph", 4, _MATCHING, _graph)
+GRAPH = Stage("graph", 5, _MATCHING, _graph)
 VERIFICATION = Stage("verification", 2, ("verification", "graph"), _verification)
 REVIEW = Stage("review", 1, ("verification", "graph"), _review)
-REFINE = Stage("refine", 2, ("segments", "planes", "odometry", "graph", "refine"), _refine)
+REFINE = Stage("refine", 3, ("segments", "planes", "odometry", "graph", "refine"), _refine)
 LEVEL = Stage("level", 3, ("level", "gnss"), _level)
 INTENSITY = Stage("intensity", 2, ("intensity",), _intensity)
 MAP = Stage("map", 1, ("map",), _map)

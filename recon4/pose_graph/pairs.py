@@ -115,7 +115,7 @@ class PairRegistrar:
                 target, source, guess=pair.T_i_j, portion=share, settings=settings
             )
         return register_to_planes(
-            target, ends.mean(axis=1), guess=pair.T_i_j, planes=self._settings.planes,
+            target, ends.reshape(-1, 3), guess=pair.T_i_j, planes=self._settings.planes,
             settings=settings,
         )  # fmt: skip
 

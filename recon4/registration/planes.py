@@ -26,7 +26,7 @@ def register_to_planes(
 
     Args:
         target: Planes in the target frame.
-        source: Midpoints of segments in the source frame [m], (N, 3).
+        source: Points in the source frame [m], (N, 3): both ends of segments.
         guess: First ``T_target_source``; large cubes and a wide gate come first, so that it may
             be off by up to a meter.
         planes: How many sizes of cubes there are.

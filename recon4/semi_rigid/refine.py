@@ -192,11 +192,11 @@ class _Sweep:
         frame = self._frames[row]
         segments = sample_segments(frame, self._frames.rig, self._settings.segments)
         ends = place_segments(segments, frame.t_ns, frame.duration_ns, self._trajectory)
-        fraction = 0.5 * (segments.a_s + segments.b_s) / (frame.duration_ns * 1e-9)
+        times_s = np.stack([segments.a_s, segments.b_s], axis=1)
         center = self._trajectory.at(np.array([frame.t_mid_ns])).t[0]
         found = planes.match(
-            ends.mean(axis=1),
-            fraction,
+            ends.reshape(-1, 3),
+            times_s.reshape(-1) / (frame.duration_ns * 1e-9),
             center=center,
             finest=0,
             gate_m=self._settings.refine.gate_m,

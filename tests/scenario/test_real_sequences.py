@@ -5,6 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
+from recon4.cli import main
+from recon4.evaluation.trajectories import read_tum
 from recon4.geometry.se3 import SE3
 from recon4.progress import Silent
 from recon4.recording.ingest import ingest
@@ -17,6 +19,8 @@ from tests.benchmarks.loaders import muehlburg, nclt, nclt_truth, one_sensor
 from tests.benchmarks.real_sequences import corridor
 
 SCANS = ScanSettings()
+AT_REST = "packets/veloview/vlp-16-test-90deg-1-50-frames.pcap"
+"""A VLP-16 that stands for 1.5 s (multiframes 1 to 28); then somebody moves it."""
 FAR_AND_TURNED = 318
 """Key scan of nclt-hdl32 after which the vehicle is 8.2 m away and turned by 154°."""
 
@@ -104,19 +108,32 @@ def test_a_car_that_starts_to_drive_is_followed(data):
 
 
 def test_a_scanner_at_rest_does_not_drift(data, tmp_path):
-    pcap = data("packets/veloview/vlp-16-test-90deg-1-50-frames.pcap")
+    pcap = data(AT_REST)
     ingest(
         [pcap], tmp_path, rig=None, imu=None, gnss=None, settings=Settings().ingest,
         progress=Silent(),
     )  # fmt: skip
     frames = FrameStore.open(tmp_path)
-    resting = [frames[k] for k in range(1, 29)]  # after 1.5 s somebody moves it
+    resting = [frames[k] for k in range(1, 29)]
 
     steps = track(resting, frames.rig)
 
     T = SE3.stack(step.T_odom_body for step in steps)
     off = T[0].inverse() @ T
     assert np.linalg.norm(off.t, axis=1).max() < 0.005
+    assert np.rad2deg(off.angle()).max() < 0.05
+
+
+def test_the_finished_trajectory_of_a_scanner_at_rest_does_not_drift(data, tmp_path):
+    pcap, few = data(AT_REST), ["--set", "map.voxel_m=0.1"]
+
+    assert main(["process", str(pcap), "--out", str(tmp_path / "rest"), *few]) == 0
+
+    T = read_tum(tmp_path / "rest" / "trajectory.tum")
+    resting = T[slice(*np.searchsorted(T.t_ns, T.t_ns[0] + np.array([0, 1_500_000_000])))].T_a_b
+    off = resting[0].inverse() @ resting
+    assert len(resting.t) > 20
+    assert np.linalg.norm(off.t, axis=1).max() < 0.01
     assert np.rad2deg(off.angle()).max() < 0.05
 
 

@@ -55,7 +55,7 @@ def register(solver, target, source, guess, **changes):
         planes = PlaneMap(PLANES)
         planes.add(np.ascontiguousarray(target.reshape(-1, 3)))
         return register_to_planes(
-            planes, source.mean(axis=1), guess=guess, planes=PLANES, settings=settings
+            planes, source.reshape(-1, 3), guess=guess, planes=PLANES, settings=settings
         )
     return register_lines(
         LineTarget(Lines.through(target[:, 0], target[:, 1])),
@@ -145,7 +145,11 @@ def test_the_limit_of_rounds_is_not_convergence(solver, target_ends, source_ends
     planes.add(np.ascontiguousarray(target_ends.reshape(-1, 3)))
     if solver == "planes":
         found = register_to_planes(
-            planes, source_ends.mean(axis=1), guess=SE3.identity(), planes=PLANES, settings=settings
+            planes,
+            source_ends.reshape(-1, 3),
+            guess=SE3.identity(),
+            planes=PLANES,
+            settings=settings,
         )
     else:
         lines = Lines.through(target_ends[:, 0], target_ends[:, 1])
