@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 import recon4
+from recon4.cli_live import live
 from recon4.cli_users import users
 from recon4.errors import Cancelled, ConfigError, Recon4Error
 
@@ -35,6 +36,7 @@ app = typer.Typer(
 )
 
 app.add_typer(users, name="users")
+app.add_typer(live)
 
 _INTERRUPTED = 130
 """What shells give a program that Ctrl-C ended; typer turns the interrupt into this code."""
@@ -169,7 +171,7 @@ def export(
 
 
 @app.command()
-def serve(
+def serve(  # noqa: PLR0913 - what a server can be started with
     root: Annotated[Path, typer.Argument(help="Folder that holds project folders.")] = Path(),
     *,
     lan: Annotated[bool, typer.Option("--lan", help="For others: TLS and login together.")] = False,
@@ -180,6 +182,9 @@ def serve(
     points: Annotated[
         int, typer.Option(min=50_000, help="At most so many points of a map to one browser.")
     ] = 3_000_000,
+    live_address: Annotated[
+        str, typer.Option(help="Network card the sensors of a live capture send to; all.")
+    ] = "0.0.0.0",
     show: Annotated[bool, typer.Option("--open", help="Open it in this browser.")] = False,
 ) -> None:
     """Show projects in the browser: results, jobs, 3D viewer. Ctrl-C ends it."""
@@ -196,6 +201,7 @@ def serve(
             names=names_from_environment(),
             recordings=recordings_from_environment(),
             viewer_points=points,
+            live_address=live_address,
         )
     except ConfigError as error:
         raise typer.BadParameter(str(error)) from error

@@ -5,14 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from recon4.model.rig import Rig
+from recon4.model.rig import Rig, Sensor
 
 Level = Literal["bad", "care", "info"]
+Told = dict[str, Any]
 
 _TURN_RAD_S = 3.0
 _LATE_S = 1.5
 _LOW_DISK_S = 600
-_SILENT_PER_S = 10.0
+_SILENT_S = 1.5
+_GRACE_S = 3.0
+"""After the start nothing has to come yet."""
+_MOST_LOST = 0.01
+_UNSURE_SHARE, _UNSURE_ERROR_M, _UNSURE_GAP_M = 0.4, 0.08, 0.25
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +28,7 @@ class Word:
     text: str
 
 
-def words(rig: Rig, newest: dict[str, dict[str, Any]], problem: str) -> list[Word]:
+def words(rig: Rig, newest: dict[str, Told], problem: str) -> list[Word]:
     """Warnings from the newest messages.
 
     Args:
@@ -32,42 +37,46 @@ def words(rig: Rig, newest: dict[str, dict[str, Any]], problem: str) -> list[Wor
         problem: Of the capture itself.
     """
     found = [Word("bad", problem)] if problem else []
-    status, pose = newest.get("status", {}), newest.get("pose", {})
-    found += _disk(status) + _sensors(rig, status, newest) + _drops(status)
-    if pose.get("lost"):
-        found.append(Word("bad", "Tracking lost: stop, then go back a few steps"))
-    elif (pose.get("turn_rad_s") or 0.0) > _TURN_RAD_S:
-        found.append(Word("care", "Turn slower"))
-    if pose.get("remark"):
-        found.append(Word("care", f"{pose['remark'][0].upper()}{pose['remark'][1:]}"))
-    if (pose.get("age_s") or 0.0) > _LATE_S:
-        late = f"The preview is {pose['age_s']:.0f} s behind; the recording is not"
-        found.append(Word("care", late))
-    found += _reader(newest.get("notes", {})) + _position(newest)
+    status = newest.get("status")
+    if status:
+        found += [*_disk(status), *_sensors(rig, status), *_samples(rig, status)]
+        found += [*_strangers(rig, status), *_drops(status)]
+    found += [*_tracking(newest.get("pose", {})), *_reader(newest.get("notes", {}))]
+    found += _position(newest.get("fix"))
     order: dict[Level, int] = {"bad": 0, "care": 1, "info": 2}
     return sorted(found, key=lambda word: order[word.level])
 
 
-def rates(rig: Rig, status: dict[str, Any]) -> dict[str, float]:
+def rates(rig: Rig, status: Told) -> dict[str, float]:
     """Datagrams a second of each sensor of a rig, of its IMU and GNSS."""
-    per_port: dict[int, float] = {}
-    for sender in status.get("senders", []):
-        per_port[sender["port"]] = per_port.get(sender["port"], 0.0) + sender["per_s"]
-    found = {sensor.name: per_port.get(sensor.port, 0.0) for sensor in rig.sensors}
-    return found | {
-        "IMU": per_port.get(rig.imu_port, 0.0),
-        "GNSS": per_port.get(rig.gnss_port, 0.0),
-    }
+    senders = status.get("senders", [])
+    found = {s.name: sum(_data_rate(one) for one in _mine(s, senders)) for s in rig.sensors}
+    for name, port in (("IMU", rig.imu_port), ("GNSS", rig.gnss_port)):
+        found[name] = sum(one["per_s"] for one in senders if port and one["port"] == port)
+    return found
 
 
-def _disk(status: dict[str, Any]) -> list[Word]:
-    if not status:
-        return []
+def _mine(sensor: Sensor, senders: list[Told]) -> list[Told]:
+    """Senders that may be this sensor: they send data packets to its port."""
+    return [
+        one
+        for one in senders
+        if one["port"] == sensor.port
+        and sensor.address in {"", one["source"]}
+        and (_data_rate(one) > 0 or one.get("silent_s", 0.0) > 0.5)
+    ]
+
+
+def _data_rate(sender: Told) -> float:
+    rate: float = sender["data_per_s"] if "data_per_s" in sender else sender["per_s"]
+    return rate
+
+
+def _disk(status: Told) -> list[Word]:
     found = []
-    file, disk = status["file"], status["disk"]
+    file, left_s = status["file"], status["disk"]["left_s"]
     if file["problem"]:
         found.append(Word("bad", f"Nothing is recorded: {file['problem']}"))
-    left_s = disk["left_s"]
     if left_s is not None and left_s < _LOW_DISK_S:
         found.append(Word("bad", f"Disk full in {max(left_s, 0) // 60} min"))
     if status["paused"]:
@@ -75,48 +84,127 @@ def _disk(status: dict[str, Any]) -> list[Word]:
     return found
 
 
-def _sensors(rig: Rig, status: dict[str, Any], newest: dict[str, dict[str, Any]]) -> list[Word]:
-    if not status or (not status["senders"] and status["seconds"] < 3.0):
-        return []
+def _sensors(rig: Rig, status: Told) -> list[Word]:
+    silent_s = {s.name: _silent_s(_mine(s, status["senders"]), status) for s in rig.sensors}
+    silent = {name: seconds for name, seconds in silent_s.items() if seconds >= _SILENT_S}
+    if silent and len(silent) == len(silent_s):
+        shortest = min(silent.values())
+        text = f"No LiDAR sends anything for {_seconds(shortest)}: check power and cables"
+        return [Word("bad", text)]
+    return [Word("bad", f"{name} LiDAR silent for {_seconds(s)}") for name, s in silent.items()]
+
+
+def _silent_s(senders: list[Told], status: Told) -> float:
+    """For how long none of some senders was heard [s]; 0 in the first moments."""
+    if senders:
+        return float(min(one.get("silent_s", 0.0) for one in senders))
+    return float(status["seconds"]) if status["seconds"] >= _GRACE_S else 0.0
+
+
+def _samples(rig: Rig, status: Told) -> list[Word]:
     found = []
-    by_name = rates(rig, status)
-    silent = [s.name for s in rig.sensors if by_name[s.name] < _SILENT_PER_S]
-    if len(silent) == len(rig.sensors):
-        found.append(Word("bad", "No LiDAR sends anything: check power and cables"))
-    else:
-        found += [Word("bad", f"{name} LiDAR is silent") for name in silent]
-    if by_name["IMU"] < 1.0:
+    imu = [one for one in status["senders"] if one["port"] == rig.imu_port]
+    silent_s = _silent_s(imu, status)
+    if rig.imu_port and imu and silent_s >= _SILENT_S:
+        found.append(Word("care", f"IMU silent for {_seconds(silent_s)}: turn slowly"))
+    elif silent_s >= _SILENT_S:
         found.append(Word("care", "No IMU: walk and turn slowly"))
-    foreign = [
-        sender
-        for sender in status["senders"]
-        if sender["port"] in {s.port for s in rig.sensors} and 0 < sender["per_s"] < _SILENT_PER_S
-    ]
-    if foreign and not silent:
-        found.append(Word("info", f"Foreign traffic from {foreign[0]['source']}"))
+    if status.get("serial"):
+        found.append(Word("care", f"GNSS receiver: {status['serial']}"))
     return found
 
 
-def _drops(status: dict[str, Any]) -> list[Word]:
-    if not status:
-        return []
-    lost = status["kernel_drops"] + status["file"]["dropped"]
-    return [Word("bad", f"{lost} packets were lost: this computer is too busy")] if lost else []
+def _strangers(rig: Rig, status: Told) -> list[Word]:
+    """Senders to a LiDAR's port that are none of the rig's, or send something else."""
+    ports: dict[int, list[Sensor]] = {}
+    for sensor in rig.sensors:
+        ports.setdefault(sensor.port, []).append(sensor)
+    found = []
+    for port, sensors in ports.items():
+        there = [one for one in status["senders"] if one["port"] == port and one["per_s"] > 0]
+        there.sort(key=lambda one: -_data_rate(one))
+        known = {s.address for s in sensors if s.address} or {
+            one["source"] for one in there[: len(sensors)]
+        }
+        strangers = sorted({one["source"] for one in there if one["source"] not in known})
+        mixed = [one for one in there if one["per_s"] - _data_rate(one) > 0]
+        if strangers:
+            some = ", ".join(strangers[:3]) + (" …" if len(strangers) > 3 else "")
+            found.append(Word("info", f"Foreign traffic on port {port} from {some}"))
+        elif mixed:
+            text = f"Packets on port {port} that are none of a LiDAR, from {mixed[0]['source']}"
+            found.append(Word("info", text))
+    return found
 
 
-def _reader(notes: dict[str, Any]) -> list[Word]:
+def _drops(status: Told) -> list[Word]:
+    found = []
+    if status["kernel_drops"]:
+        count = status["kernel_drops"]
+        found.append(Word("bad", f"{count} packets were lost: this computer is too busy"))
+    if status["file"]["dropped"]:
+        count = status["file"]["dropped"]
+        text = f"{count} packets are not in the recording: the disk was full or too slow"
+        found.append(Word("bad", text))
+    return found
+
+
+def _tracking(pose: Told) -> list[Word]:
+    found = []
+    if pose.get("lost"):
+        found.append(Word("bad", "Tracking lost: stop, then go back a few steps"))
+    elif (pose.get("turn_rad_s") or 0.0) > _TURN_RAD_S:
+        found.append(Word("care", "Turn slower"))
+    elif _unsure(pose):
+        found.append(Word("care", "Tracking is unsure: walk slower, look at more walls"))
+    if pose.get("remark"):
+        found.append(Word("care", f"{pose['remark'][0].upper()}{pose['remark'][1:]}"))
+    if (pose.get("age_s") or 0.0) > _LATE_S:
+        thinned = ", it leaves frames out" if pose.get("thinned") else ""
+        late = f"The preview is {pose['age_s']:.0f} s behind{thinned}; the recording is whole"
+        found.append(Word("care", late))
+    return found
+
+
+def _unsure(pose: Told) -> bool:
+    share, error_m, gap_m = (pose.get(name) for name in ("share", "error_m", "gap_m"))
+    return bool(
+        (share is not None and share < _UNSURE_SHARE and pose.get("frame_id", 0) > 0)
+        or (error_m is not None and error_m > _UNSURE_ERROR_M)
+        or (gap_m is not None and gap_m > _UNSURE_GAP_M)
+    )
+
+
+def _reader(notes: Told) -> list[Word]:
     found = [Word("care", text) for text in notes.get("warnings", [])[-3:]]
-    counts = notes.get("counts", {})
-    packets = counts.get("packets", 0)
-    missing = counts.get("packets_missing", 0)
-    if packets > 1000 and missing > 0.01 * packets:
+    recent: Told = notes.get("recent") or {}
+    packets, missing = recent.get("packets", 0), recent.get("packets_missing", 0)
+    if packets > 1000 and missing > _MOST_LOST * packets:
         share = 100.0 * missing / (packets + missing)
         found.append(Word("care", f"{share:.0f} % of the packets never arrived: check the cable"))
+    for name, what in (
+        ("packets_duplicate", "came twice: the copies are left out"),
+        ("packets_out_of_order", "came out of order: put right"),
+        ("packets_late", "came too late for their frame"),
+        ("packets_wrong_length", "on a LiDAR's port have a wrong size: left out"),
+    ):
+        if packets > 1000 and recent.get(name, 0) > _MOST_LOST * packets:
+            found.append(Word("info", f"{100 * recent[name] / packets:.0f} % of packets {what}"))
     return found
 
 
-def _position(newest: dict[str, dict[str, Any]]) -> list[Word]:
-    fix = newest.get("fix")
-    if fix and fix["quality"] not in (4, 5):
-        return [Word("info", "GNSS without RTK fix")]
-    return []
+def _position(fix: Told | None) -> list[Word]:
+    if not fix:
+        return []
+    if fix.get("jumped_m"):
+        text = f"GNSS jumped by {fix['jumped_m']:.0f} m: the map is made without it"
+        return [Word("care", text)]
+    sd_m = fix.get("sd_m")
+    within = f", ±{max(sd_m[:2]):.2g} m" if sd_m else ""
+    if fix["quality"] == 0:
+        return [Word("info", "GNSS has no position")]
+    return [] if fix["quality"] in (4, 5) else [Word("info", f"GNSS without RTK fix{within}")]
+
+
+def _seconds(seconds: float) -> str:
+    return f"{seconds:.0f} s" if seconds < 120 else f"{seconds / 60:.0f} min"

@@ -24,9 +24,11 @@ from typing import Any
 import numpy as np
 
 from recon4.errors import Recon4Error
+from recon4.live.gnss_watch import GnssWatch
 from recon4.live.growing import GrowingFile, Growth
 from recon4.live.line_server import LineServer
 from recon4.live.live_map import LiveMap, Message
+from recon4.live.notes import Notes
 from recon4.live.project_files import finish
 from recon4.live.session import Session, load_session, stretched
 from recon4.model.multiframe import Multiframe
@@ -56,15 +58,17 @@ class Mapper:
         self._live = Live(self._open, self._watch)
         self._loop = asyncio.get_running_loop()
         self._lines = LineServer(greet=self._greeting, hear=lambda told: None)
-        self._notes: Message = {"kind": "notes", "warnings": [], "counts": {}}
+        self._gnss, self._notes = GnssWatch(), Notes(self._live.report)
+        self._newest_notes = self._notes.message(time.monotonic())
         self._told_s = 0.0
         self._skip_next = False
+        self._given_up = False
 
     async def run(self, on_ready: Callable[[], None]) -> int:
         """Map until the recorder has ended; exit code."""
         await self._lines.listen(self._session.socket("mapper"))
         for sign in (signal.SIGTERM, signal.SIGINT):
-            self._loop.add_signal_handler(sign, self._growth.complete)
+            self._loop.add_signal_handler(sign, self._give_up)
         following = asyncio.create_task(self._follow())
         await asyncio.to_thread(warm_up, self._rig, self._settings)
         on_ready()
@@ -82,17 +86,34 @@ class Mapper:
     async def _follow(self) -> None:
         """Hear from the recorder how far the file is; when it is gone the file is complete."""
         with suppress(ConnectionError, FileNotFoundError):
-            reader, writer = await asyncio.open_unix_connection(
-                self._session.socket("recorder"), limit=_LONGEST_LINE
-            )
+            while not await self._hear_recorder():
+                pass  # it let us go as we were slow: connect again
+        self._growth.reached(self._session.capture.stat().st_size)
+        self._growth.complete()
+
+    async def _hear_recorder(self) -> bool:
+        """Whether it said that it has stopped; else the connection is gone.
+
+        Raises:
+            ConnectionError, FileNotFoundError: If there is no recorder.
+        """
+        reader, writer = await asyncio.open_unix_connection(
+            self._session.socket("recorder"), limit=_LONGEST_LINE
+        )
+        try:
             while line := await reader.readline():
                 told = json.loads(line)
                 if told["kind"] == "written":
                     self._growth.reached(told["bytes"])
                 elif told["kind"] == "stopped":
-                    break
+                    return True
+        finally:
             writer.close()
-        self._growth.reached(self._session.capture.stat().st_size)
+        return False
+
+    def _give_up(self) -> None:
+        """End soon, without frames for the project."""
+        self._given_up = True
         self._growth.complete()
 
     def _read(self) -> Message:
@@ -109,6 +130,8 @@ class Mapper:
             progress=Silent(),
             live=self._live,
         )
+        if self._given_up:
+            return {"kind": "done", "frames": 0, "problem": "the mapper was told to stop"}
         began_s = time.monotonic()
         frames = finish(self._session, out, self._settings)
         seconds = round(time.monotonic() - began_s, 2)
@@ -121,7 +144,7 @@ class Mapper:
         if isinstance(item, ImuSamples):
             self._map.extend_imu(item)
         elif isinstance(item, GnssSamples):
-            self._say(_fix(item))
+            self._say(self._gnss.push(item))
         elif self._is_late(item):
             self._map.thin()
         else:
@@ -145,29 +168,15 @@ class Mapper:
         if time.monotonic() - self._told_s < 1.0:
             return
         self._told_s = time.monotonic()
-        report = self._live.report
-        notes = {"warnings": report.warnings[-20:], "counts": dict(report.counts)}
-        self._notes = {"kind": "notes", **notes}
-        self._say(self._notes)
+        self._newest_notes = self._notes.message(self._told_s)
+        self._say(self._newest_notes)
 
     def _say(self, message: Message) -> None:
         self._loop.call_soon_threadsafe(self._lines.say, message)
 
     def _greeting(self) -> list[Message]:
         with self._mapping:
-            return [*self._map.everything(), self._notes]
-
-
-def _fix(gnss: GnssSamples) -> Message:
-    sd = gnss.sd_enu_m[-1]
-    return {
-        "kind": "fix",
-        "t_ns": int(gnss.t_ns[-1]),
-        "quality": int(gnss.quality[-1]),
-        "lat_rad": float(gnss.lat_rad[-1]),
-        "lon_rad": float(gnss.lon_rad[-1]),
-        "sd_m": None if sd[0] != sd[0] else [round(float(v), 3) for v in sd],
-    }
+            return [*self._map.everything(), self._newest_notes]
 
 
 def warm_up(rig: Rig, settings: Settings) -> None:

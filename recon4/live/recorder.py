@@ -26,15 +26,19 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
-from recon4.errors import Recon4Error
+from recon4.errors import ConfigError, Recon4Error
 from recon4.live.capture_file import CaptureFile, Datagram
 from recon4.live.line_server import LineServer
 from recon4.live.ports import Port, open_ports
+from recon4.live.serial_line import SerialLine
 from recon4.live.session import Session, load_session, stretched
 from recon4.model.rig import Rig, load_rig
+from recon4.recording.velodyne_models import DATA_SIZE
 from recon4.store.atomic import write_json
 
 STATUS_EVERY_S = 0.5
+_MOST_SENDERS = 64
+"""Told apart; a flood of strangers is counted together."""
 _AT_ONCE = 256
 """Datagrams fetched from a port before the others have their turn."""
 
@@ -54,8 +58,14 @@ class Recorder:
         self._lines = LineServer(greet=self._greeting, hear=self._hear)
         self._ports = open_ports(rig, address=session.address)
         self._file = CaptureFile(session.capture, on_written=self._written)
+        self._serial = self._open_serial(rig)
         self._counts: Counter[tuple[str, int]] = Counter()
         self._counted: Counter[tuple[str, int]] = Counter()
+        self._data: Counter[tuple[str, int]] = Counter()
+        """Those of the size of a LiDAR's data packets."""
+        self._data_counted: Counter[tuple[str, int]] = Counter()
+        self._heard_s: dict[tuple[str, int], float] = {}
+        """When each sender was last heard."""
         self._counted_s = self._began_s = time.monotonic()
         self._began_ns = time.time_ns()
         self._paused = False
@@ -63,6 +73,17 @@ class Recorder:
         self._rates: list[dict[str, Any]] = []
         self._over = asyncio.Event()
         self._why = "stopped"
+
+    def _open_serial(self, rig: Rig) -> SerialLine | None:
+        if not rig.gnss_serial:
+            return None
+        if not rig.gnss_port:
+            raise ConfigError("gnss: serial needs a port: its sentences are kept as if sent to it")
+
+        def take(datagram: Datagram) -> None:
+            self._loop.call_soon_threadsafe(self._take, datagram)
+
+        return SerialLine(rig.gnss_serial, rig.gnss_port, take=take)
 
     async def run(self, on_ready: Callable[[], None]) -> None:
         """Record until told to stop."""
@@ -84,6 +105,9 @@ class Recorder:
             self._receive(port)
             self._loop.remove_reader(port.socket)
             port.socket.close()
+        if self._serial is not None:
+            await asyncio.to_thread(self._serial.close)
+            await asyncio.sleep(0)  # its last sentences are taken
         await asyncio.to_thread(self._file.close)
         outcome = {"why": self._why, **self.status()}
         write_json(self._session.outcome, outcome)
@@ -98,7 +122,12 @@ class Recorder:
             self._take(datagram)
 
     def _take(self, datagram: Datagram) -> None:
-        self._counts[datagram.source[0], datagram.port] += 1
+        sender = datagram.source[0], datagram.port
+        if sender not in self._counts and len(self._counts) >= _MOST_SENDERS:
+            sender = "others", datagram.port
+        self._counts[sender] += 1
+        self._data[sender] += len(datagram.payload) == DATA_SIZE
+        self._heard_s[sender] = time.monotonic()
         if self._paused:
             self._skipped += 1
         else:
@@ -112,12 +141,19 @@ class Recorder:
     def _tell_status(self) -> None:
         now_s = time.monotonic()
         seconds = now_s - self._counted_s
-        fresh = self._counts - self._counted
+        fresh, data = self._counts - self._counted, self._data - self._data_counted
         self._rates = [
-            {"source": source, "port": port, "per_s": round(fresh[source, port] / seconds, 1)}
-            for source, port in sorted(self._counts)
+            {
+                "source": sender[0],
+                "port": sender[1],
+                "per_s": round(fresh[sender] / seconds, 1),
+                "data_per_s": round(data[sender] / seconds, 1),
+                "silent_s": round(now_s - self._heard_s[sender], 1),
+            }
+            for sender in sorted(self._counts)
         ]
         self._counted, self._counted_s = Counter(self._counts), now_s
+        self._data_counted = Counter(self._data)
         self._lines.say({"kind": "status", **self.status()})
         if not self._disk()["enough"]:
             self._why = "the disk is nearly full"
@@ -134,6 +170,7 @@ class Recorder:
             "senders": self._rates,
             "ports": {str(port.number): port.words for port in self._ports},
             "kernel_drops": sum(port.kernel_drops for port in self._ports),
+            "serial": None if self._serial is None else self._serial.problem,
             "file": asdict(self._file.state()),
             "disk": self._disk(),
         }

@@ -47,6 +47,7 @@ MAY_IMPORT = {
     "recon4": {"recon4"},
     "recon4/cli.py": {"recon4", "app"},
     "recon4/cli_users.py": {"recon4.errors", "app"},
+    "recon4/cli_live.py": {"recon4", "app.live.words"},
     "app": {"app", "recon4"},
 }
 """Place -> prefixes of our own modules it may import; the longest place that fits counts."""
@@ -55,6 +56,7 @@ NOBODY_IMPORTS = {"recon4.cli": {"recon4/__main__.py"}, "recon4.pipeline": {"rec
 """The two ends of the program, and who may call them."""
 
 ONLY_HERE = {
+    "serial": {"recon4/live/serial_line.py"},
     "gtsam": {"recon4/pose_graph/solve.py"},
     "open3d": {"recon4/simulation/raycast.py"},
     "laspy": {"recon4/export/laz.py", "recon4/slices/clouds.py"},
@@ -68,7 +70,7 @@ ONLY_HERE = {
     "ezdxf": {"recon4/slices/export.py"},
     "fastapi": {"app"},
     "uvicorn": {"app"},
-    "typer": {"recon4/cli.py", "recon4/cli_users.py"},
+    "typer": {"recon4/cli.py", "recon4/cli_users.py", "recon4/cli_live.py"},
     "cryptography": {"app/access/certificate.py", "recon4/review/signature.py"},
     "argon2": {"app/access/passwords.py"},
     "rich": {"recon4/terminal.py"},

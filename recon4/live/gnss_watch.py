@@ -1,0 +1,51 @@
+"""GNSS while walking: shown, watched for jumps, and never let near the map."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from recon4.model.samples import GnssSamples
+
+EARTH_M = 6_371_000.0
+_FASTEST_M_S = 10.0
+_NOISE_M = 10.0
+"""Fixes may differ by that at any time."""
+SHOWN_S = 30.0
+
+
+class GnssWatch:
+    """Takes fixes, says how good they are and whether they jumped."""
+
+    def __init__(self) -> None:
+        self._last: tuple[int, float, float] | None = None
+        self._jump = (0, 0.0)
+
+    def push(self, gnss: GnssSamples) -> dict[str, Any]:
+        """The message ``fix`` of ``docs/live.md`` for the newest of some fixes."""
+        rows = zip(gnss.t_ns.tolist(), gnss.lat_rad.tolist(), gnss.lon_rad.tolist(), strict=True)
+        for t_ns, lat_rad, lon_rad in rows:
+            self._take(t_ns, lat_rad, lon_rad)
+        sd_m = gnss.sd_enu_m[-1]
+        t_ns = int(gnss.t_ns[-1])
+        jumped = t_ns - self._jump[0] < SHOWN_S * 1e9
+        return {
+            "kind": "fix",
+            "t_ns": t_ns,
+            "quality": int(gnss.quality[-1]),
+            "lat_rad": float(gnss.lat_rad[-1]),
+            "lon_rad": float(gnss.lon_rad[-1]),
+            "sd_m": None if not np.isfinite(sd_m).all() else [round(float(v), 3) for v in sd_m],
+            "jumped_m": round(self._jump[1], 1) if jumped else None,
+        }
+
+    def _take(self, t_ns: int, lat_rad: float, lon_rad: float) -> None:
+        if self._last is not None:
+            before_ns, before_lat, before_lon = self._last
+            north_m = EARTH_M * (lat_rad - before_lat)
+            east_m = EARTH_M * (lon_rad - before_lon) * float(np.cos(lat_rad))
+            moved_m = float(np.hypot(north_m, east_m))
+            if moved_m > _NOISE_M + _FASTEST_M_S * (t_ns - before_ns) / 1e9:
+                self._jump = (t_ns, moved_m)
+        self._last = (t_ns, lat_rad, lon_rad)

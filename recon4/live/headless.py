@@ -1,0 +1,137 @@
+"""A capture without a server: recorder and mapper as child processes, lines for a terminal."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import signal
+import sys
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+from recon4.errors import ConfigError
+from recon4.live.session import Session
+
+SAY_EVERY_S = 2.0
+_STARTS_WITHIN_S = 60.0
+_MAPPER_STARTS = 3
+_LONGEST_LINE = 32 << 20
+
+Newest = dict[str, dict[str, Any]]
+
+
+class Headless:
+    """Starts both processes, follows what they say, and stops them in good order."""
+
+    def __init__(self, session: Session, *, say: Callable[[Newest, str], None]) -> None:
+        """Prepare.
+
+        Args:
+            session: Of a project that was begun.
+            say: Called every `SAY_EVERY_S` with the newest message of each kind and what is wrong
+                with the capture itself.
+        """
+        self._session, self._say = session, say
+        self._newest: Newest = {}
+        self._problem = ""
+        self._stopping = asyncio.Event()
+
+    async def run(self, seconds: float | None) -> Newest:
+        """Record until SIGINT, SIGTERM, the time is over or the recorder ends by itself.
+
+        Returns:
+            The newest message of each kind, among them ``done`` of the mapper.
+
+        Raises:
+            ConfigError: If a process cannot start, in its own words.
+        """
+        recorder = await self._spawn("recorder")
+        loop = asyncio.get_running_loop()
+        for sign in (signal.SIGTERM, signal.SIGINT):
+            loop.add_signal_handler(sign, self._stopping.set)
+        stopping = asyncio.create_task(self._stop_after(seconds, recorder))
+        saying = asyncio.create_task(self._say_now_and_then())
+        hearing = asyncio.create_task(self._hear("recorder"))
+        try:
+            await self._map()
+            await recorder.wait()
+            await hearing
+        finally:
+            self._stopping.set()
+            await stopping
+            saying.cancel()
+            await asyncio.gather(saying, return_exceptions=True)
+        return self._newest
+
+    async def _map(self) -> None:
+        """Keep a mapper running until it is done."""
+        for _ in range(_MAPPER_STARTS):
+            mapper = await self._spawn("mapper")
+            await self._hear("mapper")
+            await mapper.wait()
+            if "done" in self._newest:
+                return
+            self._problem = "the mapper died and was started again; the recording goes on"
+        self._problem = "the map stopped growing; the recording goes on"
+
+    async def _stop_after(
+        self, seconds: float | None, recorder: asyncio.subprocess.Process
+    ) -> None:
+        with suppress(TimeoutError):
+            await asyncio.wait_for(self._stopping.wait(), seconds)
+        with suppress(ProcessLookupError):
+            recorder.terminate()
+        await recorder.wait()
+
+    async def _hear(self, name: str) -> None:
+        with suppress(OSError):
+            reader, writer = await asyncio.open_unix_connection(
+                self._session.socket(name), limit=_LONGEST_LINE
+            )
+            while line := await reader.readline():
+                told = json.loads(line)
+                self._newest[told["kind"]] = told
+            writer.close()
+
+    async def _say_now_and_then(self) -> None:
+        while True:
+            await asyncio.sleep(SAY_EVERY_S)
+            self._say(self._newest, self._problem)
+
+    async def _spawn(self, name: str) -> asyncio.subprocess.Process:
+        log_path = self._session.folder / f"{name}.txt"
+        with log_path.open("ab") as log_file:
+            process = await asyncio.create_subprocess_exec(
+                *(sys.executable, "-m", f"recon4.live.{name}", str(self._session.project)),
+                stdin=asyncio.subprocess.DEVNULL,
+                stdout=asyncio.subprocess.PIPE,
+                stderr=log_file,
+                start_new_session=True,  # Ctrl-C is for us alone
+            )
+        assert process.stdout is not None
+        with suppress(TimeoutError):
+            if await asyncio.wait_for(process.stdout.readline(), _STARTS_WITHIN_S) == b"ready\n":
+                return process
+        with suppress(ProcessLookupError):
+            process.kill()
+        await process.wait()
+        lines = log_path.read_text("utf-8", "replace").splitlines()
+        raise ConfigError(lines[-1] if lines else f"the {name} did not start")
+
+
+def progress_line(newest: Newest, began_s: float) -> str:
+    """How a capture stands, in one line."""
+    status, pose = newest.get("status", {}), newest.get("pose", {})
+    rates = [f"{s['port']}: {s['per_s']:.0f}/s" for s in status.get("senders", [])]
+    file = status.get("file", {})
+    parts = [
+        f"{time.monotonic() - began_s:6.0f} s",
+        f"{file.get('written_bytes', 0) / 1e6:8.1f} MB",
+        ", ".join(rates) or "nothing comes in",
+    ]
+    if pose:
+        walked = newest.get("loop", {}).get("walked_m", 0.0)
+        parts.append("lost" if pose["lost"] else f"frame {pose['frame_id']}, {walked:.0f} m walked")
+    return " | ".join(parts)

@@ -1,0 +1,204 @@
+"""Every trouble is said in words; nothing is said when all is well."""
+
+import pytest
+
+from app.live.words import rates, words
+from recon4.model.rig import load_rig, parse_rig
+
+RIG = load_rig("4recon")
+WITH_ADDRESSES = parse_rig(
+    """
+    [[sensor]]
+    name = "horizontal"
+    address = "10.0.0.1"
+    [[sensor]]
+    name = "vertical"
+    port = 2369
+    address = "10.0.0.2"
+    """,
+    where="test",
+)
+
+
+def sender(port, per_s=754.0, *, source="10.0.0.1", data_per_s=None, silent_s=0.0):
+    data_per_s = (per_s if port < 3000 else 0.0) if data_per_s is None else data_per_s
+    return {"source": source, "port": port, "per_s": per_s, "data_per_s": data_per_s,
+            "silent_s": silent_s}  # fmt: skip
+
+
+FIRST = sender(2368)
+SECOND = sender(2369, source="10.0.0.2")
+IMU = sender(8309, 200.0)
+
+
+def status(*senders, **changed):
+    told = {
+        "senders": list(senders or (FIRST, SECOND, IMU)),
+        "seconds": 60.0,
+        "paused": False,
+        "kernel_drops": 0,
+        "serial": None,
+        "file": {"problem": "", "dropped": 0},
+        "disk": {"left_s": 7200},
+    }
+    return told | changed
+
+
+def said(told=None, *, rig=RIG, problem="", **newest):
+    found = words(rig, {"status": told or status(), **newest}, problem)
+    return [(word.level, word.text) for word in found]
+
+
+POSE = {"frame_id": 9, "lost": False, "turn_rad_s": 0.5, "age_s": 0.2, "share": 0.9,
+        "error_m": 0.02, "gap_m": 0.01, "remark": "", "thinned": 0}  # fmt: skip
+
+
+def test_nothing_is_said_when_all_is_well():
+    fix = {"quality": 4, "sd_m": [0.01, 0.01, 0.02], "jumped_m": None}
+    notes = {"warnings": [], "counts": {"packets": 9999}, "recent": {"packets": 9999}}
+
+    assert said(pose=POSE, fix=fix, notes=notes) == []
+    assert said(rig=WITH_ADDRESSES, pose=POSE) == []
+
+
+def test_in_the_first_moments_nothing_has_to_come():
+    assert said(status(sender(9999), seconds=1.0)) == []
+
+
+@pytest.mark.parametrize(
+    ("senders", "text"),
+    [
+        ((FIRST, sender(2369, 0.0, silent_s=3.2), IMU), "vertical LiDAR silent for 3 s"),
+        ((FIRST, IMU), "vertical LiDAR silent for 60 s"),
+        ((FIRST, sender(2369, 5.0, data_per_s=0.0), IMU), "vertical LiDAR silent for 60 s"),
+        (
+            (sender(2368, 0.0, silent_s=4.0), sender(2369, 0.0, silent_s=200.0), IMU),
+            "No LiDAR sends anything for 4 s: check power and cables",
+        ),
+        ((IMU,), "No LiDAR sends anything for 60 s: check power and cables"),
+    ],
+)
+def test_a_silent_lidar_is_named_with_how_long(senders, text):
+    assert ("bad", text) in said(status(*senders))
+
+
+def test_another_sender_on_the_port_of_a_silent_sensor_does_not_hide_it():
+    stranger = sender(2369, 754.0, source="10.0.0.9")
+
+    found = said(status(FIRST, stranger, IMU), rig=WITH_ADDRESSES)
+
+    assert ("bad", "vertical LiDAR silent for 60 s") in found
+    assert ("info", "Foreign traffic on port 2369 from 10.0.0.9") in found
+
+
+@pytest.mark.parametrize("rig", [RIG, WITH_ADDRESSES])
+def test_foreign_traffic_is_named(rig):
+    stranger = sender(2368, 300.0, source="10.0.0.7", data_per_s=100.0)
+
+    assert said(status(FIRST, SECOND, IMU, stranger), rig=rig) == [
+        ("info", "Foreign traffic on port 2368 from 10.0.0.7")
+    ]
+
+
+def test_the_rate_of_a_lidar_counts_its_data_packets():
+    mixed = sender(2368, 800.0, data_per_s=754.0)
+
+    found = rates(RIG, status(mixed, SECOND, IMU))
+
+    assert found == {"horizontal": 754.0, "vertical": 754.0, "IMU": 200.0, "GNSS": 0.0}
+    assert "none of a LiDAR" in said(status(mixed, SECOND, IMU))[0][1]
+
+
+@pytest.mark.parametrize(
+    ("told", "level", "text"),
+    [
+        (status(FIRST, SECOND), "care", "No IMU: walk and turn slowly"),
+        (
+            status(FIRST, SECOND, sender(8309, 0.0, silent_s=5.0)),
+            "care",
+            "IMU silent for 5 s: turn slowly",
+        ),
+        (status(serial="/dev/x: gone"), "care", "GNSS receiver: /dev/x: gone"),
+        (status(kernel_drops=7), "bad", "7 packets were lost: this computer is too busy"),
+        (
+            status(file={"problem": "", "dropped": 5}),
+            "bad",
+            "5 packets are not in the recording: the disk was full or too slow",
+        ),
+        (
+            status(file={"problem": "the disk is full", "dropped": 0}),
+            "bad",
+            "Nothing is recorded: the disk is full",
+        ),
+        (status(disk={"left_s": 185}), "bad", "Disk full in 3 min"),
+        (status(paused=True), "info", "Paused: nothing is recorded"),
+    ],
+)
+def test_the_recorder_is_heard(told, level, text):
+    assert said(told) == [(level, text)]
+
+
+@pytest.mark.parametrize(
+    ("pose", "level", "text"),
+    [
+        ({"lost": True}, "bad", "Tracking lost: stop, then go back a few steps"),
+        ({"turn_rad_s": 3.5}, "care", "Turn slower"),
+        ({"share": 0.3}, "care", "Tracking is unsure: walk slower, look at more walls"),
+        ({"gap_m": 0.4}, "care", "Tracking is unsure: walk slower, look at more walls"),
+        ({"error_m": 0.2}, "care", "Tracking is unsure: walk slower, look at more walls"),
+        ({"remark": "the IMU lies"}, "care", "The IMU lies"),
+        ({"age_s": 3.0}, "care", "The preview is 3 s behind; the recording is whole"),
+        (
+            {"age_s": 3.0, "thinned": 8},
+            "care",
+            "The preview is 3 s behind, it leaves frames out; the recording is whole",
+        ),
+    ],
+)
+def test_the_mapper_is_heard(pose, level, text):
+    assert said(pose=POSE | pose) == [(level, text)]
+
+
+@pytest.mark.parametrize(
+    ("recent", "level", "text"),
+    [
+        ({"packets_missing": 3000}, "care", "30 % of the packets never arrived: check the cable"),
+        (
+            {"packets_duplicate": 700},
+            "info",
+            "10 % of packets came twice: the copies are left out",
+        ),
+        ({"packets_out_of_order": 700}, "info", "10 % of packets came out of order: put right"),
+        ({"packets_late": 70}, "info", None),
+    ],
+)
+def test_what_the_reader_repairs_is_said_while_it_happens(recent, level, text):
+    counts = {"packets": 10**6, "packets_missing": 10**5}
+
+    found = said(notes={"warnings": [], "counts": counts, "recent": {"packets": 7000} | recent})
+
+    assert found == ([(level, text)] if text else [])
+
+
+def test_a_clock_that_runs_freely_is_said():
+    text = "horizontal: its clock is +5.000 s off the recorder's and no GPS drives it"
+
+    assert said(notes={"warnings": [text]}) == [("care", text)]
+
+
+@pytest.mark.parametrize(
+    ("fix", "level", "text"),
+    [
+        ({"jumped_m": 50.2}, "care", "GNSS jumped by 50 m: the map is made without it"),
+        ({"quality": 1, "sd_m": [2.0, 3.1, 5.0]}, "info", "GNSS without RTK fix, ±3.1 m"),
+        ({"quality": 0}, "info", "GNSS has no position"),
+    ],
+)
+def test_gnss_is_judged(fix, level, text):
+    assert said(fix={"quality": 4, "sd_m": None, "jumped_m": None} | fix) == [(level, text)]
+
+
+def test_the_most_urgent_comes_first():
+    found = said(status(paused=True, kernel_drops=3), problem="gone", pose=POSE | {"remark": "x"})
+
+    assert [level for level, _ in found] == ["bad", "bad", "care", "info"]
