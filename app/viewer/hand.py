@@ -15,7 +15,7 @@ from app.viewer.scene import MEASURED_COLOR, crosses
 from app.viewer.show import Screen
 from app.viewer.source import ProjectSource
 from app.viewer.view import MOST_MEASUREMENTS, Position, View
-from app.viewer.words import edge_facts, measurement_facts, measurements_csv, point_facts
+from app.viewer.words import Facts, edge_facts, measurement_facts, measurements_csv, point_facts
 from recon4.geometry.se3 import Array
 
 PICKED_COLOR = (255, 255, 255)
@@ -111,7 +111,7 @@ class Hand:
             self._edge = None
             return False
         self._edge, self._last = table.graph.T_map_body.t[table.ends[row]], None
-        self._panel.tell_picked(edge_facts(table, row, self._project))
+        self._tell(edge_facts(table, row, self._project))
         return True
 
     def _pick_point(self, ray: Ray) -> PickedPoint | None:
@@ -127,8 +127,15 @@ class Hand:
             began_ns=content.cloud.began_ns,
             crs=self._source.crs_coordinates(np.array([point.p_map])),
         )
-        self._panel.tell_picked(facts)
+        self._tell(facts)
         return point
+
+    def _tell(self, facts: Facts) -> None:
+        """Say it in the panel; on a phone, where that is folded, over the map too."""
+        self._panel.tell_picked(facts)
+        if self._screen.phone:
+            words = "; ".join(f"{name}: {value}" for name, value in facts.rows)
+            self._screen.tell(facts.title, words)
 
 
 def _mark(path: str, segments_m: Array, rgb: tuple[int, int, int]) -> LinesNode:

@@ -202,9 +202,9 @@ class Screen:
         """Give the person a file."""
         self._client.send_file_download(name, text.encode(), save_immediately=True)
 
-    def tell(self, words: str) -> None:
-        """Say something that vanishes again."""
-        self._client.add_notification(words, "", auto_close_seconds=3.0)
+    def tell(self, title: str, words: str) -> None:
+        """Say something over the map that vanishes again."""
+        self._client.add_notification(title, words, auto_close_seconds=8.0)
 
     def _update(self, node: Node) -> Any:
         if node.path not in self._shown:

@@ -103,6 +103,18 @@ def test_a_click_on_an_edge_says_what_it_is_and_where_to_review_it(looking):
     looking.until(lambda c: "/picked/edge" in c.nodes)
 
 
+def test_on_a_phone_what_was_tapped_is_said_over_the_map(server):
+    start, end = rejected_edge()
+    away = np.array([0.2, 0.3, 5.0])
+    with viewing(server.url) as client:
+        client.send(camera(width=390, height=844))
+        client.until(lambda c: c.shown)
+
+        client.click((start + end) / 2.0 + away, -away)
+
+        client.until(lambda c: "verification median" in str(c.notes))
+
+
 def test_two_clicks_measure_the_room_and_the_browser_keeps_it(looking):
     looking.press("Measure")
     looking.until(lambda c: "Stop measuring" in str(c.widgets))

@@ -58,6 +58,7 @@ class ViserClient:
         self.commands: dict[str, str] = {}
         self.files: dict[str, bytes] = {}
         self.cameras: list[dict[str, Any]] = []
+        self.notes: list[str] = []
         self.bytes = 0
         self.colored = 0
         """Points whose colors were sent anew."""
@@ -99,6 +100,8 @@ class ViserClient:
             self.points[message["name"]] = sizes[_buffer(message["props"]["points"])] // 12
         if kind.startswith("LocalStorage"):
             self._storage(message)
+        elif kind.startswith("Notification"):
+            self.notes.append(str(message))
         elif kind.startswith("SetCamera"):
             self.cameras.append(message)
         elif kind == "RegisterCommandMessage":
