@@ -9,6 +9,7 @@ from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import save_graph
 from recon4.progress import Silent
+from recon4.registration.plane_map import Match
 from recon4.registration.segments import sample_segments
 from recon4.registration.submap import place_segments
 from recon4.semi_rigid.refine import _Sweep, corrected_by_graph, refine, refine_trajectory
@@ -102,6 +103,30 @@ def test_without_any_match_nothing_moves(stroll):
 
     assert rounds == []
     np.testing.assert_array_equal(result.T_a_b.t, start.T_a_b.t)
+
+
+class Asked:
+    """Stands in for the map: remembers which points it was asked for, and finds nothing."""
+
+    def match(self, p_map, fraction, **_):
+        self.p_map, self.fraction = p_map, fraction
+        nan = np.full(len(p_map), np.nan)
+        return Match(np.zeros((12, 12)), np.zeros(12), nan, 0, np.nan, 0.0, 0.0)
+
+
+def test_both_ends_of_a_segment_are_held_against_the_map_each_at_its_own_time(stroll):
+    sweep = _Sweep(stroll, stroll.truth, lost_none(stroll), settings=SETTINGS, progress=Silent())
+    frame, asked = stroll[25], Asked()
+
+    assert sweep._match_one(asked, 25) is None
+
+    t_ns = frame.t_ns + np.rint(asked.fraction * frame.duration_ns).astype(np.int64)
+    back = stroll.truth.at(t_ns).inverse()
+    segments = sample_segments(frame, stroll.rig, SETTINGS.segments)
+    ends = np.stack([segments.a_body, segments.b_body], axis=1).reshape(-1, 3)
+    p_body = np.einsum("nij,nj->ni", back.R, asked.p_map) + back.t
+    np.testing.assert_allclose(p_body, ends, atol=1e-4)
+    assert np.ptp(asked.fraction) > 0.9
 
 
 # -- points far in time only
