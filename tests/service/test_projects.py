@@ -1,8 +1,11 @@
 """Projects, results and pages over HTTP."""
 
+import socket
+
 import httpx
 import pytest
 
+from app.listen import listening
 from app.main import serve
 from app.settings import ServerSettings
 from recon4.errors import StoreError
@@ -91,6 +94,12 @@ def test_two_servers_do_not_share_a_folder(tmp_path):
 
         with pytest.raises(StoreError, match="another server runs"):
             serve(ServerSettings(root=tmp_path, port=0))
+
+
+def test_answers_are_not_held_back_by_the_network(tmp_path):
+    """Where the protocol is not named, asyncio leaves 40 ms of Nagle's delay in each answer."""
+    with listening(ServerSettings(root=tmp_path, port=0)) as listener:
+        assert listener.proto == socket.IPPROTO_TCP
 
 
 def test_a_taken_port_is_told(tmp_path):
