@@ -47,6 +47,7 @@ def test_a_recording_is_uploaded_looked_into_and_suits_the_form(server, page, ca
     expect(page.locator("upload-box")).to_contain_text("On the server")
     expect(page.locator("recording-look")).to_contain_text("VLP-16")
     expect(page.get_by_label("Project name")).to_have_value("ranni-pochuzka")
+    picture(page, "upload")
     page.get_by_text("All settings").click()
     page.get_by_label("Find a setting").fill("voxel")
     field = (
@@ -58,7 +59,6 @@ def test_a_recording_is_uploaded_looked_into_and_suits_the_form(server, page, ca
     field.press("Tab")
     expect(page.locator("setting-editor")).to_contain_text("voxel_m must be 0 to 1, got 7")
     fits(page)
-    picture(page, "upload")
     page.get_by_role("button", name="Start").click()
     expect(page.get_by_text("Some settings are wrong, see above")).to_be_visible()
     expect(field).to_be_focused()
