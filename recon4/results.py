@@ -12,6 +12,7 @@ from recon4.errors import ConfigError, StoreError
 from recon4.export.laz import export_laz
 from recon4.export.ply import export_ply
 from recon4.georeference.stage import read_crs
+from recon4.model.pose_graph import Verdict
 from recon4.pose_graph.files import load_graph
 from recon4.pose_graph.g2o import write_g2o
 from recon4.progress import Progress, track
@@ -74,7 +75,7 @@ class Summary:
     points: int
     """In the map."""
     edges: Mapping[str, int]
-    """Pairs tried by verdict."""
+    """Pairs tried by verdict, as ``edges.json`` has them: positions had the last word."""
     warnings: tuple[str, ...]
     seconds: float
     """Wall clock of all stages, of the earlier run where reused [s]."""
@@ -130,7 +131,7 @@ def publish(
         multiframes=runs["frames"].figures["multiframes"],
         lost=runs["odometry"].figures["lost"],
         points=runs["map"].figures["points"],
-        edges=(runs.get("review") or runs["verification"]).figures["edges"],
+        edges=edges_by_verdict(runs["level"].artifact.folder),
         warnings=(*runs["frames"].figures["warnings"], *_later_warnings(runs)),
         seconds=round(sum(run.done.seconds for run in runs.values()), 3),
         peak_bytes=max(run.done.peak_bytes for run in runs.values()),
@@ -146,6 +147,16 @@ def publish(
     )
     write_json(root / SUMMARY, summary.to_json())
     return summary
+
+
+def edges_by_verdict(artifact: Path) -> dict[str, int]:
+    """How many pairs a graph holds of each verdict.
+
+    Args:
+        artifact: Folder of a stage that leaves a graph; ``level`` for the finished one.
+    """
+    edges = load_graph(artifact).edges
+    return {str(v): sum(edge.verdict is v for edge in edges) for v in Verdict}
 
 
 def export_map(project: Path, path: Path, *, crs: str, progress: Progress) -> int:

@@ -1,0 +1,19 @@
+import numpy as np
+
+from recon4.model.pose_graph import Reason, Verdict
+from recon4.pose_graph.files import save_graph
+from recon4.results import edges_by_verdict
+from tests.benchmarks.false_loops import office_graph
+
+
+def test_edges_are_counted_as_the_finished_graph_has_them(tmp_path):
+    graph, _ = office_graph(np.random.default_rng(1), nodes=12)
+    turned_down = [
+        edge.evolve(verdict=Verdict.REJECTED, reason=Reason.ROBUST) for edge in graph.edges[-3:]
+    ]
+    unverified = graph.edges[-4].evolve(verdict=Verdict.UNVERIFIED)
+    save_graph(tmp_path, graph.with_edges((*graph.edges[:-4], unverified, *turned_down)))
+
+    assert edges_by_verdict(tmp_path) == {
+        "accepted": len(graph.edges) - 4, "rejected": 3, "unverified": 1
+    }  # fmt: skip
