@@ -19,6 +19,7 @@ import typer
 
 import recon4
 from recon4.cli_live import live
+from recon4.cli_slices import slices
 from recon4.cli_users import users
 from recon4.errors import Cancelled, ConfigError, Recon4Error
 
@@ -37,6 +38,7 @@ app = typer.Typer(
 
 app.add_typer(users, name="users")
 app.add_typer(live)
+app.add_typer(slices)
 
 _INTERRUPTED = 130
 """What shells give a program that Ctrl-C ended; typer turns the interrupt into this code."""

@@ -34,7 +34,7 @@ class SliceView extends HTMLElement {
     canvas.addEventListener("pointerleave", () => (this.#hover.value = ""));
     canvas.addEventListener("wheel", (event) => this.#wheel(event), { passive: false });
     canvas.addEventListener("keydown", (event) => this.#key(event));
-    new ResizeObserver(() => this.draw()).observe(this);
+    new ResizeObserver(() => (this.#center ? this.#changed() : this.draw())).observe(this);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
   }
 

@@ -20,7 +20,7 @@ const first = make("slice-view");
 const second = make("slice-view", { className: "second" });
 const swipe = make("input", { type: "range", min: 0, max: 100, value: 50, ariaLabel: "Swipe between the two slices", className: "swipe" });
 const captions = [make("p", { className: "caption" }), make("p", { className: "caption second" })];
-const reading = make("p", { className: "reading", role: "status" });
+const reading = make("p", { className: "readout", role: "status" });
 const facing = make("div", { className: "facing" });
 let facts = null;
 let state = parse(location.search);
@@ -37,6 +37,7 @@ function change(next, { keep = false } = {}) {
   const elsewhere = format({ ...before, color: "", t: 0 }) !== format({ ...state, color: "", t: 0 });
   if (!keep && elsewhere) clearMeasure();
   if (state.u === null) first.frame = second.frame = null;
+  else if (next.m) first.frame = second.frame = { u: state.u, v: state.v, m: state.m };
   history.replaceState(null, "", `?${format(state)}`);
   above.state = state;
   panel.show(state);

@@ -21,7 +21,8 @@ from recon4.slices.reference import read_facts
 from recon4.store.atomic import atomic_folder, write_json
 
 TILE_M = 5.0
-NORMAL_CELL_M = 0.05
+NORMAL_CELLS_M = (0.05, 0.10, 0.20)
+"""Normals come from neighborhoods of three of the smallest of these cells that hold enough."""
 _BURST = 4_000_000
 _MOST_TRIANGLES = 20_000_000
 
@@ -80,7 +81,7 @@ def write_tiles(chunks: Iterable[Array], out: Path) -> TileSet:
             for ijk in sorted(names):
                 xyz = np.fromfile(names[ijk], np.float32).reshape(-1, 3)
                 xyz = xyz[progressive(_spatial(xyz))]
-                normal = local_normals(np.ascontiguousarray(xyz), NORMAL_CELL_M).normal
+                normal = _normals(np.ascontiguousarray(xyz))
                 t_ns = np.zeros(len(xyz), np.int64)
                 writer.append(ijk, {"xyz": xyz, "normal": normal, "t_ns": t_ns})
                 names[ijk].unlink()
@@ -117,6 +118,16 @@ def _deal_out(chunks: Iterable[Array], place: Path) -> dict[tuple[int, int, int]
                 with file.open("ab") as out:
                     out.write(local.astype(np.float32).tobytes())
     return names
+
+
+def _normals(xyz: NDArray[np.float32]) -> NDArray[np.float32]:
+    out = np.zeros_like(xyz)
+    for cell_m in NORMAL_CELLS_M:
+        missing = ~out.any(axis=1)
+        if not missing.any():
+            break
+        out[missing] = local_normals(xyz, cell_m).normal[missing]
+    return out
 
 
 def _spatial(xyz: NDArray[np.float32]) -> NDArray[np.intp]:

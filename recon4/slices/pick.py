@@ -12,7 +12,8 @@ from recon4.slices.cut import Cut, Vector
 from recon4.slices.points import Window, points_in
 
 _DESCRIBED = ("intensity", "sensor", "ring", "frame_id", "t_ns")
-_MARGIN_M = 1e-4
+_PLANE_M = 0.10
+"""Radius of the part of a surface that is taken for a plane [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +54,7 @@ def pick(tiles: TileSet, cut: Cut, uv: tuple[float, float], *, radius_m: float) 
 def nearest_surface(tiles: TileSet, p_map: Array, *, radius_m: float = 0.3) -> Array | None:
     """Where the map's surface is beside given coordinates [m], (3,).
 
-    The foot of the point on the plane through the points within 5 cm of the nearest one; the
+    The foot of the point on the plane through the points within 10 cm of the nearest one; the
     nearest point itself where they are no plane. None if nothing is within the radius.
     """
     low, high = p_map - radius_m, p_map + radius_m
@@ -70,7 +71,7 @@ def nearest_surface(tiles: TileSet, p_map: Array, *, radius_m: float = 0.3) -> A
     if not len(points):
         return None
     nearest = points[np.argmin(off)]
-    around = points[np.linalg.norm(points - nearest, axis=1) <= 0.05]
+    around = points[np.linalg.norm(points - nearest, axis=1) <= _PLANE_M]
     if len(around) < 8:
         return np.asarray(nearest)
     middle = around.mean(axis=0)

@@ -100,8 +100,8 @@ class Picture:
         hit = self.count > 0
         out[hit, :3] = paint(self.value[hit], span, color=self.color, ground=ground)
         ink = 1.0 - 0.4 ** np.minimum(self.count[hit], 8)
-        under = self.reference[hit]
-        out[hit, 3] = np.where(under, 255, (255.0 * ink).astype(np.uint8))
+        full = self.reference[hit] | (self.color in _FIRST_OF_PIXEL)
+        out[hit, 3] = np.where(full, 255, (255.0 * ink).astype(np.uint8))
         return out
 
 

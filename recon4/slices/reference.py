@@ -169,7 +169,7 @@ def mesh_lines(mesh: Mesh, cut: Cut) -> Array:
     for i, j in ((0, 1), (1, 2), (2, 0)):
         with np.errstate(divide="ignore", invalid="ignore"):
             s = d[:, i] / (d[:, i] - d[:, j])
-        point = corner[:, i, :2] + s[:, None] * (corner[:, j, :2] - corner[:, i, :2])
+            point = corner[:, i, :2] + s[:, None] * (corner[:, j, :2] - corner[:, i, :2])
         point[above[:, i] == above[:, j]] = np.nan
         ends.append(point)
     three = np.stack(ends, axis=1)

@@ -70,7 +70,7 @@ ONLY_HERE = {
     "ezdxf": {"recon4/slices/export.py"},
     "fastapi": {"app"},
     "uvicorn": {"app"},
-    "typer": {"recon4/cli.py", "recon4/cli_users.py", "recon4/cli_live.py"},
+    "typer": {"recon4/cli.py", "recon4/cli_users.py", "recon4/cli_live.py", "recon4/cli_slices.py"},
     "cryptography": {"app/access/certificate.py", "recon4/review/signature.py"},
     "argon2": {"app/access/passwords.py"},
     "rich": {"recon4/terminal.py"},

@@ -1,0 +1,182 @@
+"""The page of slices as a geodesist uses it."""
+
+import re
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.e2e.test_pages import fits
+from tests.project_builder import build_project
+from tests.service.running import server_thread
+
+pytestmark = pytest.mark.e2e
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    root = tmp_path_factory.mktemp("sliced")
+    build_project(root / "office", points=120_000)
+    build_project(root / "earlier", points=60_000)
+    with server_thread(root) as running:
+        yield running
+
+
+def opened(page, server, query=""):
+    page.goto(f"{server.url}/projects/office/slices/{query}")
+    expect(page.locator(".facing strong")).to_be_visible()
+    rested(page)
+
+
+def rested(page):
+    expect(page.locator("body.drawing")).to_have_count(0)
+
+
+def test_a_slice_is_shown_with_frame_units_and_legend(server, page, picture):
+    opened(page, server, "?kind=horizontal&z=1.5&color=intensity")
+
+    expect(page.locator(".facing")).to_contain_text("z = 1.500 m")
+    expect(page.locator(".facing")).to_contain_text("map frame (local), x y z, z up, metres")
+    expect(page.get_by_role("img", name=re.compile("Slice z = 1.500 m, .* points"))).to_be_visible()
+    expect(page.get_by_label("Low end of the colors")).to_be_visible()
+    fits(page)
+    picture(page, "slices")
+
+
+def test_keys_step_turn_and_thicken_and_the_address_keeps_it(server, page):
+    opened(page, server, "?kind=horizontal&z=1.5")
+
+    page.keyboard.press("]")
+    expect(page.locator(".facing")).to_contain_text("z = 1.600 m")
+    page.keyboard.press("PageDown")
+    page.keyboard.press("[")
+    expect(page.locator(".facing")).to_contain_text("z = 1.400 m")
+    page.keyboard.press("-")
+    expect(page.locator(".facing")).to_contain_text("5 cm thick")
+    page.keyboard.press("v")
+    expect(page.locator(".facing")).to_contain_text("Vertical")
+    page.keyboard.press("c")
+    expect(page.locator("#legend")).to_contain_text("Intensity")
+    page.keyboard.press("?")
+    expect(page.get_by_role("heading", name="Keys")).to_be_visible()
+    page.keyboard.press("Escape")
+    rested(page)
+    address = page.url
+    page.goto("about:blank")
+    page.goto(address)
+
+    expect(page.locator(".facing")).to_contain_text("Vertical")
+    expect(page.locator(".facing")).to_contain_text("5 cm thick")
+
+
+def test_a_drag_on_the_map_from_above_cuts_there(server, page, picture):
+    opened(page, server)
+    above = page.locator("slice-above")
+    above.scroll_into_view_if_needed()
+    box = above.bounding_box()
+    middle = box["y"] + box["height"] / 2
+
+    page.mouse.move(box["x"] + box["width"] * 0.3, middle)
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"] * 0.5, middle, steps=3)
+    page.mouse.move(box["x"] + box["width"] * 0.7, middle, steps=3)
+    page.mouse.up()
+
+    expect(page.locator(".facing")).to_contain_text("azimuth 90.0°")
+    rested(page)
+    picture(page, "slices-vertical")
+
+
+def test_a_distance_is_measured_between_two_points_of_the_map(server, page):
+    opened(page, server, "?kind=horizontal&z=1.5&t=0.4&u=8&v=5&m=0.05")
+    view = page.locator("slice-view").first
+    box = view.bounding_box()
+    to_px = lambda u, v: (  # noqa: E731
+        box["x"] + box["width"] / 2 + (u - 8) / 0.05,
+        box["y"] + box["height"] / 2 - (v - 5) / 0.05,
+    )
+
+    page.keyboard.press("m")
+    page.mouse.click(*to_px(8.0, 0.0))
+    expect(page.locator(".readout")).to_contain_text("x y z")
+    page.mouse.click(*to_px(8.0, 10.0))
+
+    reading = page.locator(".readout")
+    expect(reading).to_contain_text("Distance")
+    horizontal = float(re.search(r"horizontal ([\d.]+) m", reading.inner_text())[1])
+    assert horizontal == pytest.approx(10.0, abs=0.5)
+
+
+def test_two_slices_stand_side_by_side_and_move_together(server, page, picture):
+    opened(page, server, "?kind=horizontal&z=1.5")
+
+    page.get_by_label("Map beside").select_option("project:earlier")
+    second = page.locator("slice-view").nth(1)
+    expect(second).to_be_visible()
+    expect(page.locator(".caption.second")).to_contain_text("Project earlier")
+    rested(page)
+    picture(page, "slices-beside")
+    page.get_by_role("button", name="Swipe").click()
+
+    expect(page.get_by_label("Swipe between the two slices")).to_be_visible()
+    frames = page.locator("slice-view").evaluate_all("views => views.map((view) => view.frame)")
+    assert frames[0] == frames[1]
+
+
+def test_no_double_wall_is_found_where_there_is_none(server, page):
+    opened(page, server)
+
+    page.get_by_text("Double walls", exact=True).click()
+    page.get_by_role("button", name="Look for double walls").click()
+
+    expect(page.locator(".verdict")).to_contain_text(re.compile("No double wall|Not checked"))
+
+
+def test_a_reference_is_compared_and_shown(server, page, picture):
+    path = server.root / "walls.xyz"
+    rows = [
+        f"{x} {y / 20:.2f} {z / 10:.1f}"
+        for x in (0.03, 16.03)
+        for y in range(200)
+        for z in range(30)
+    ]
+    path.write_text("\n".join(rows))
+    opened(page, server, "?kind=horizontal&z=1.5")
+
+    page.get_by_text("Compare with a reference").click()
+    page.get_by_label("Path of the reference").fill(str(path))
+    page.get_by_role("button", name="Add reference").click()
+    expect(page.locator("#legend")).to_contain_text("Distance to reference [cm]")
+    page.get_by_label("Slices to compare").select_option("this")
+    page.get_by_role("button", name="Compare", exact=True).click()
+
+    expect(page.get_by_role("row", name=re.compile("Average by points"))).to_be_visible()
+    expect(page.get_by_role("link", name="Download CSV")).to_be_visible()
+    fits(page)
+    picture(page, "slices-reference")
+    page.get_by_role("button", name="Remove").click()
+    expect(page.get_by_role("button", name="Remove")).to_have_count(0)
+
+
+def test_a_survey_is_imported_and_judged(server, page):
+    opened(page, server)
+
+    page.get_by_text("Control and check points").click()
+    survey = {"name": "p.csv", "mimeType": "text/csv", "buffer": b"ID;X;Y;Z\nA;0,02;5;1,5\n"}
+    page.get_by_label("Survey file").set_input_files(survey)
+    expect(page.get_by_text("is 0.020 the easting")).to_be_visible()
+    page.get_by_role("button", name="Use, in the map's frame").click()
+    page.get_by_role("button", name="A on the nearest surface").click()
+
+    expect(page.get_by_role("row", name=re.compile("^A "))).to_contain_text("-2.0")
+    expect(page.get_by_text("✓ mean horizontal ≤ 14 cm")).to_be_visible()
+
+
+def test_a_sheet_is_downloaded(server, page):
+    opened(page, server, "?kind=horizontal&z=1.5")
+
+    page.get_by_text("Export", exact=True).click()
+    with page.expect_download() as download:
+        page.get_by_role("link", name="SVG").click()
+
+    assert download.value.suggested_filename == "office-slice.svg"
+    assert download.value.path().stat().st_size > 5000

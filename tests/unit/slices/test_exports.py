@@ -1,0 +1,276 @@
+import csv
+import math
+
+import ezdxf
+import laspy
+import numpy as np
+import pytest
+import rasterio
+import rasterio.transform
+
+from recon4.errors import ConfigError, CorruptFile, GeoreferenceError
+from recon4.georeference.crs import CrsTransform, Origin
+from recon4.slices.control import ControlPoint, read_control, residual_csv, residuals
+from recon4.slices.cut import horizontal, vertical
+from recon4.slices.export import write_csv, write_dxf, write_geotiff, write_laz
+from recon4.slices.frames import Frame, frame_of
+from recon4.slices.pick import nearest_surface, pick
+from recon4.slices.picture import Paper, draw
+from recon4.slices.points import Window, points_in
+from recon4.slices.sheet import Words, approval_words, grid_step_m, lay_out, write_sheet
+from tests.unit.slices.room_map import wall, write_map
+
+BRNO = CrsTransform(
+    Origin(lat_rad=math.radians(49.2265), lon_rad=math.radians(16.5967), height_m=275.0)
+)
+LOCAL = Frame("", "", None)
+PLACED = Frame(BRNO.crs, BRNO.wkt, BRNO.to_crs)
+CUT = horizontal(0.5, thickness_m=0.2)
+
+
+@pytest.fixture(scope="module")
+def tiles(tmp_path_factory):
+    rng = np.random.default_rng(12)
+    p, normal = wall(rng, 40_000, x_m=1.0)
+    n = len(p)
+    return write_map(
+        tmp_path_factory.mktemp("map") / "m",
+        p,
+        normal=normal,
+        intensity=rng.integers(0, 255, n).astype(np.uint16),
+        sensor=rng.integers(0, 2, n).astype(np.uint8),
+    )
+
+
+def inside(tiles, *cuts):
+    return [np.concatenate([cut.to_map(p.uvd) for p in points_in(tiles, cut)]) for cut in cuts]
+
+
+def test_a_dxf_has_a_layer_a_slice_in_metres_and_opens_without_complaint(tiles, tmp_path):
+    cuts = CUT.repeated(3, spacing_m=0.3)
+
+    count = write_dxf(tiles, cuts, tmp_path / "s.dxf", frame=LOCAL)
+
+    drawing = ezdxf.readfile(tmp_path / "s.dxf")
+    points = list(drawing.modelspace())
+    layers = {point.dxf.layer for point in points}
+    assert drawing.audit().errors == [] and drawing.units == ezdxf.units.M
+    assert len(points) == count > 300
+    assert sorted(layers) == ["SLICE_001_Z_0_500", "SLICE_002_Z_0_800", "SLICE_003_Z_1_100"]
+    assert len({point.dxf.handle for point in points}) == count
+    z = np.array([p.dxf.location.z for p in points if p.dxf.layer == "SLICE_002_Z_0_800"])
+    assert np.abs(z - 0.8).max() <= 0.1001
+
+
+def test_a_flat_dxf_has_the_section_on_the_sheet(tiles, tmp_path):
+    cut = vertical((0.0, 1.0), (4.0, 1.0), thickness_m=0.2)
+
+    write_dxf(tiles, [cut], tmp_path / "s.dxf", frame=LOCAL, flat=True)
+
+    xyz = np.array([p.dxf.location.xyz for p in ezdxf.readfile(tmp_path / "s.dxf").modelspace()])
+    assert np.abs(xyz[:, 0] - 1.0).max() < 0.06
+    assert np.ptp(xyz[:, 1]) > 1.5 and np.abs(xyz[:, 2]).max() == 0.0
+
+
+def test_a_laz_holds_the_points_of_the_slice_in_the_crs(tiles, tmp_path):
+    count = write_laz(tiles, [CUT], tmp_path / "s.laz", frame=PLACED)
+
+    with laspy.open(tmp_path / "s.laz") as file:
+        found, crs = file.read(), file.header.parse_crs()
+    expected = BRNO.to_crs(inside(tiles, CUT)[0])
+    assert crs.to_epsg() == 32633 and len(found) == count == len(expected)
+    assert np.sort(found.x) == pytest.approx(np.sort(expected[:, 0]), abs=0.0006)
+    assert list(tmp_path.iterdir()) == [tmp_path / "s.laz"]
+
+
+def test_a_csv_holds_every_point_with_place_and_coordinates(tiles, tmp_path):
+    count = write_csv(tiles, [CUT], tmp_path / "s.csv", frame=LOCAL)
+
+    lines = (tmp_path / "s.csv").read_text().splitlines()
+    rows = list(csv.DictReader(lines[1:]))
+    x = np.array([float(row["x_m"]) for row in rows])
+    assert lines[0] == "# recon4 slice, map frame (local), x y z, z up, metres"
+    assert len(rows) == count and np.abs(x - 1.0).max() < 0.06
+    assert float(rows[0]["z_m"]) == pytest.approx(0.5 + float(rows[0]["off_m"]), abs=2e-4)
+
+
+def test_a_geotiff_lies_where_the_crs_says(tiles, tmp_path):
+    picture = draw(tiles, CUT, Paper(Window(0.0, -1.0, 3.0, 5.0), 0.02), color="intensity")
+
+    write_geotiff(picture, tmp_path / "s.tif", frame=PLACED, span=picture.span)
+
+    with rasterio.open(tmp_path / "s.tif") as file:
+        bands = file.read()
+        rows, columns = np.nonzero(bands[3])
+        xs, ys = rasterio.transform.xy(file.transform, rows, columns)
+        xs, ys = np.asarray(xs), np.asarray(ys)
+        assert file.crs.to_epsg() == 32633 and file.count == 4
+    expected = BRNO.to_crs(inside(tiles, CUT)[0])
+    assert xs.mean() == pytest.approx(expected[:, 0].mean(), abs=0.01)
+    assert ys.mean() == pytest.approx(expected[:, 1].mean(), abs=0.05)
+    assert np.ptp(ys) == pytest.approx(np.ptp(expected[:, 1]), abs=0.05)
+
+
+def test_a_geotiff_of_a_section_has_its_own_metres(tiles, tmp_path):
+    cut = vertical((0.0, 1.0), (4.0, 1.0), thickness_m=0.5)
+    picture = draw(tiles, cut, Paper(Window(0.0, -1.0, 4.0, 3.0), 0.01))
+
+    write_geotiff(picture, tmp_path / "s.tif", frame=PLACED, span=picture.span)
+
+    with rasterio.open(tmp_path / "s.tif") as file:
+        assert file.transform @ (0, 0) == pytest.approx((0.0, 3.0))
+        assert file.transform @ (400, 400) == pytest.approx((4.0, -1.0))
+        assert file.crs is None or file.crs.to_epsg() is None
+
+
+def test_a_picture_too_large_for_one_transformation_is_refused(tiles, tmp_path):
+    picture = draw(tiles, CUT, Paper(Window(-40e3, -40e3, 40e3, 40e3), 100.0))
+    small = draw(tiles, CUT, Paper(Window(-40e3, -40e3, 40e3, 40e3), 100.0))
+    object.__setattr__(small.paper, "pixel_m", 0.01)
+
+    with pytest.raises(GeoreferenceError, match="smaller window"):
+        write_geotiff(small, tmp_path / "s.tif", frame=PLACED, span=picture.span)
+
+
+@pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
+def test_a_sheet_is_the_same_file_each_time(tiles, tmp_path, ending):
+    layout = lay_out(Window(0.0, -1.0, 3.0, 5.0))
+    picture = draw(tiles, CUT, layout.paper)
+    words = Words("office", LOCAL.words, "recon4", approval_words(None))
+
+    for name in ("a", "b"):
+        write_sheet(picture, layout, tmp_path / f"{name}.{ending}", span=picture.span, words=words)
+
+    first, again = (tmp_path / f"{name}.{ending}" for name in ("a", "b"))
+    assert first.read_bytes() == again.read_bytes() and first.stat().st_size > 10_000
+
+
+def test_a_sheet_has_a_usual_scale_at_which_all_fits():
+    layout = lay_out(Window(0.0, 0.0, 40.0, 10.0), "a4")
+
+    window = layout.window
+    assert layout.scale == 200
+    assert (window.right - window.left) * 1000 / 200 == pytest.approx(297 - 18 - 8)
+    assert (window.left + window.right) / 2 == pytest.approx(20.0)
+    assert layout.paper.width == round(271 / 25.4 * 300)
+
+
+def test_an_unusual_scale_is_refused():
+    with pytest.raises(ConfigError, match="one of"):
+        lay_out(Window(0, 0, 1, 1), scale=37)
+
+
+def test_grid_lines_are_at_round_numbers():
+    assert [grid_step_m(x) for x in (14.0, 15.0, 50.0, 0.3)] == [1.0, 2.0, 5.0, 0.05]
+
+
+def test_an_approved_map_says_by_whom():
+    told = {"version": 2, "who": "Ada", "role": "reviewer", "time": "T", "hash": "ab" * 32}
+
+    assert approval_words(told) == f"Approved by Ada (reviewer) T, version 2, statement {'ab' * 8}"
+    assert approval_words(None) == "Not approved"
+
+
+def test_coordinates_of_the_crs_lead_back_to_the_map():
+    p = np.random.default_rng(1).uniform(-300, 300, (50, 3))
+
+    assert np.abs(PLACED.from_crs(BRNO.to_crs(p)) - p).max() < 1e-5
+
+
+def test_coordinates_of_another_place_are_refused():
+    with pytest.raises(GeoreferenceError):
+        PLACED.from_crs(np.array([[-5e6, 9e6, 0.0]]))
+
+
+def test_a_map_without_a_place_is_local(tiles):
+    folder = tiles.tiles[0].folder.parent
+
+    assert frame_of({"map": folder}).words == "map frame (local), x y z, z up, metres"
+
+
+def test_the_nearest_point_of_the_slice_is_picked(tiles):
+    every = inside(tiles, CUT)[0]
+    target = every[7]
+
+    found = pick(tiles, CUT, (float(target[0]) + 1e-4, float(target[1])), radius_m=0.02)
+
+    assert found is not None and found.p_map == pytest.approx(target, abs=1e-9)
+    assert pick(tiles, CUT, (3.0, 3.0), radius_m=0.1) is None
+
+
+def test_the_foot_on_the_surface_is_found(tiles):
+    foot = nearest_surface(tiles, np.array([1.08, 2.0, 1.0]))
+
+    assert foot == pytest.approx([1.0, 2.0, 1.0], abs=0.008)
+    assert nearest_surface(tiles, np.array([3.0, 2.0, 1.0])) is None
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "ID,X,Y,Z\nA,1.5,2.5,3.5\n",
+        "\ufeffID;X;Y;Z;Radius\nA;1,5;2,5;3,5;0,1\n",
+        "A\t1,5\t2,5\t3,5\n",
+        "name,height,north,east\nA,3.5,2.5,1.5\n",
+        '"A","1.5","2.5","3.5"\r\n',
+    ],
+)
+def test_surveys_of_all_kinds_are_understood(text):
+    found = read_control(text.encode())
+
+    assert found.points[0].xyz_m == (1.5, 2.5, 3.5) and found.skipped == ()
+    assert bool(found.question) == ("north" not in text)
+
+
+def test_the_order_is_asked_for_and_can_be_turned():
+    data = b"A,5400000.0,600000.0,300\n"
+
+    found, turned = read_control(data), read_control(data, order="NE")
+
+    assert "is 5400000.000 the easting" in found.question
+    assert turned.points[0].xyz_m == (600000.0, 5400000.0, 300.0) and turned.question == ""
+
+
+def test_lines_that_say_nothing_are_named_not_dropped():
+    found = read_control(b"ID,X,Y,Z\nA,1,2,3\nB,1,x,3\nA,9,9,9\nC,1,inf,3\n")
+
+    assert [point.id for point in found.points] == ["A"]
+    assert [words.split(":")[0] for words in found.skipped] == ["line 3", "line 4", "line 5"]
+
+
+@pytest.mark.parametrize("data", [b"", b"\0\0\0", b"a,b\n", "žluťoučký".encode("utf-16")])
+def test_a_file_without_points_is_refused(data):
+    with pytest.raises(CorruptFile):
+        read_control(data, name="p.csv")
+
+
+def test_control_and_check_points_are_judged_apart():
+    points = [
+        ControlPoint("A", (0.0, 0.0, 0.0), "control"),
+        ControlPoint("B", (10.0, 0.0, 0.0)),
+        ControlPoint("C", (0.0, 10.0, 0.0)),
+        ControlPoint("D", (5.0, 5.0, 5.0)),
+    ]
+    measured = {
+        "A": np.array([1.0, 0.0, 0.0]),
+        "B": np.array([10.03, 0.04, 0.0]),
+        "C": np.array([0.03, 10.04, -0.25]),
+    }
+
+    found = residuals(points, measured)
+
+    check, control = found.figures
+    assert found.judged_by == "check" and found.missing == ("D",)
+    assert (check.role, check.points, control.points) == ("check", 2, 1)
+    assert check.mean_2d_m == pytest.approx(0.05) and check.max_up_m == pytest.approx(0.25)
+    assert check.rmse_m == pytest.approx((0.03, 0.04, 0.25 / math.sqrt(2)))
+    assert check.passed["mean horizontal ≤ 14 cm"] and not check.passed["mean height ≤ 12 cm"]
+    assert not check.passed["largest height ≤ 24 cm"]
+    assert check.relative_m < 0.01 and check.passed["distances between points ≤ 5 cm"]
+    assert not control.passed["largest horizontal ≤ 28 cm"]
+
+
+def test_a_name_that_looks_like_a_formula_is_defused():
+    table = residual_csv(residuals([ControlPoint("=1+1", (0.0, 0.0, 0.0))], {"=1+1": np.zeros(3)}))
+
+    assert table.splitlines()[1].startswith("'=1+1,check,0.0000")
