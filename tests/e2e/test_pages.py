@@ -177,6 +177,8 @@ def test_the_keyboard_is_enough_to_start_a_job(server, page, tmp_path, look):
     page.keyboard.type(str(tmp_path / "empty.pcap"))
     page.keyboard.press("Tab")
     expect(page.get_by_label("Project name")).to_have_value("empty")
+    page.keyboard.press("Tab")  # over the button Browse
+    expect(page.get_by_label("Project name")).to_be_focused()
     page.keyboard.press("Enter")
 
     expect(page.locator("job-status")).to_contain_text("empty.pcap holds no points")
