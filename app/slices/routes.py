@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
-from fastapi import APIRouter, Depends
+from fastapi import APIRouter, Depends, Response
 from fastapi.responses import FileResponse, PlainTextResponse
 from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
@@ -134,9 +134,10 @@ async def add_reference(project_id: str, add: AddReference, server: Server) -> d
 @router.delete(
     "/references/{reference_id}", status_code=204, dependencies=PROCESS, summary="Remove it"
 )
-def remove_reference(project_id: str, reference_id: str, server: Server) -> None:
+def remove_reference(project_id: str, reference_id: str, server: Server) -> Response:
     """Forget a reference; the file it was made of stays."""
     server.slices.remove_reference(project_id, reference_id)
+    return Response(status_code=204)  # without a content type: there is no JSON in it
 
 
 @router.post("/references/{reference_id}/align", dependencies=PROCESS, summary="Align it")
