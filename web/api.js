@@ -34,8 +34,8 @@ async function request(method, path, body) {
 
 let whoami = null;
 
-/** Who is signed in: {name, role, may, login, token}; asked once a page. */
-export const readMe = () => (whoami ??= request("GET", "/api/me"));
+/** Who is signed in: {name, role, may, login, token}; asked once a page, or `again`. */
+export const readMe = (again = false) => (again ? request("GET", "/api/me") : (whoami ??= request("GET", "/api/me")));
 
 /** Whether somebody is signed in already; for the login page. */
 export const isSignedIn = async () => (await fetch("/api/me")).ok;
@@ -215,6 +215,7 @@ export const claimPairing = (token) => request("POST", "/api/pairing/claim", { t
 // -- live capture
 
 export const liveUrl = "/live";
+/** The capture that runs or the last one; null if there was none. */
 export const readCapture = () => request("GET", "/api/live");
 export const startCapture = (capture) => request("POST", "/api/live", capture);
 export const steerCapture = (what) => request("POST", `/api/live/${name(what)}`);

@@ -1,29 +1,52 @@
 // The operator's page: is everything captured?
 
-import { markHere, projectUrl, readChoices, readMe, startCapture, steerCapture } from "./api.js";
+import { readMe } from "./api.js";
 import { CloudCanvas } from "./cloud_canvas.js";
 import { attempt, fill, make } from "./dom.js";
+import { drawActions, mark, nameThePlace } from "./live_actions.js";
 import { Camera, moveByPointer } from "./live_camera.js";
 import { drawOverlay, planPicture } from "./live_overlay.js";
 import { LiveScene } from "./live_scene.js";
+import { clock, coverageWords, hint, sensorWords, stateWords } from "./live_words.js";
 
+const HEAD_M = 0.5;
+const COLORS = ["path", "gap", "me", "ink", "sky", "accent", "well", "poor"];
 const byId = (id) => document.getElementById(id);
 const cloud = new CloudCanvas(byId("points"));
 const camera = new Camera();
 const overlay = byId("overlay").getContext("2d");
-const STATES = { none: "Nothing is recorded", recording: "Recording", paused: "Paused", finishing: "Finishing", ready: "Ready" };
-let [follow, byHeight, linked, mayCapture, due] = [true, false, true, false, false];
+const dark = matchMedia("(prefers-color-scheme: dark)");
+let [follow, byHeight, ceiling, linked, due] = [true, false, false, true, false];
+let chosen = -1; // of the gaps
+let me = null; // who looks
+let battery = null;
 
 const scene = new LiveScene(cloud, {
   news: () => (drawWords(), redraw()),
   link: (yes) => {
-    if (yes !== linked) (linked = yes), drawWords();
+    if (yes === linked) return;
+    linked = yes;
+    drawWords();
   },
-  plan: async (plan) => {
-    scene.plan = await planPicture(plan);
-    redraw();
-  },
+  plan: paintPlan,
 });
+
+async function paintPlan(plan) {
+  const { poor, well } = styles();
+  scene.plan = await planPicture(plan, [poor, well]);
+  redraw();
+}
+
+/** The colors are others now. */
+function repaint() {
+  if (scene.plan) paintPlan(scene.newest.plan);
+  redraw();
+}
+
+function styles() {
+  const style = getComputedStyle(document.body);
+  return Object.fromEntries(COLORS.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
+}
 
 function redraw() {
   if (!due) requestAnimationFrame(draw);
@@ -39,167 +62,121 @@ function draw() {
       [canvas.width, canvas.height] = [Math.round(width * ratio), Math.round(height * ratio)];
   if (follow && scene.me) camera.target = [...scene.me.p];
   const z = scene.me?.p[2] ?? 0;
-  cloud.heights = [z - 1.6, z + 1.8];
+  cloud.heights = [z - 1.6, z + (ceiling ? 1.8 : HEAD_M)];
   cloud.draw({
     turn: camera.turn,
     target: camera.target,
     scale: [(2 * camera.pxPerM) / width, (2 * camera.pxPerM) / height],
     size: Math.max(1.5, cloud.voxelM * camera.pxPerM * ratio),
+    top: ceiling || !scene.me ? 1e6 : z + HEAD_M,
     byHeight,
-    ink: document.body.classList.contains("sun") || matchMedia("(prefers-color-scheme: light)").matches,
+    ink: document.body.classList.contains("sun") || !dark.matches,
   });
-  const style = getComputedStyle(document.body);
-  const styles = Object.fromEntries(["path", "gap", "me", "ink", "sky", "accent"].map((n) => [n, style.getPropertyValue(`--${n}`)]));
-  const shown = { ...scene, marks: scene.marks.filter((mark) => !mark.hidden) };
-  drawOverlay(overlay, { width, height, ratio }, camera, shown, styles);
-}
-
-function clock(seconds) {
-  const s = Math.floor(seconds);
-  const pad = (n) => String(n).padStart(2, "0");
-  return s >= 3600 ? `${Math.floor(s / 3600)}:${pad(Math.floor(s / 60) % 60)}:${pad(s % 60)}` : `${Math.floor(s / 60)}:${pad(s % 60)}`;
+  const foot = byId("bottom").getBoundingClientRect().top - byId("map").getBoundingClientRect().top;
+  const marks = scene.marks.filter((one) => one.what === "point" && one.p);
+  drawOverlay(overlay, { width, height, ratio, foot }, camera, { ...scene, marks, chosen }, styles());
 }
 
 function drawWords() {
   const { state, newest } = scene;
-  const status = newest.status;
-  byId("state").textContent = linked ? STATES[state] ?? "Connecting" : "No link. The recording goes on";
-  byId("state").className = !linked ? "bad" : state === "recording" ? "on" : "";
-  byId("time").textContent = status && state !== "none" ? clock(status.seconds) : "";
-  fill(byId("sensors"), ...sensorChips(newest, status));
-  fill(byId("words"), ...(newest.words ?? []).slice(0, 3).map((word) => make("li", { className: word.level }, word.text)));
-  byId("hint").textContent = state === "none" ? "" : hint(newest);
-  drawActions(state);
+  const { words, look } = stateWords(state, linked);
+  byId("state").textContent = words;
+  byId("state").className = look;
+  const place = scene.marks.findLast((one) => one.what === "place")?.text;
+  byId("place").textContent = state === "none" ? "" : place ?? scene.project;
+  const walked = newest.loop?.walked_m ? ` · ${Math.round(newest.loop.walked_m)} m` : "";
+  byId("time").textContent = newest.status && state !== "none" ? clock(newest.status.seconds) + walked : "";
+  fill(byId("sensors"), ...sensorWords(newest, state, battery).map(({ words: said, bad }) => make("li", { className: bad ? "bad" : "" }, said)));
+  const warnings = cloud.works ? (newest.words ?? []) : [...(newest.words ?? []), { level: "info", text: "This browser cannot draw points (no WebGL 2); plan, way and warnings work" }];
+  fill(byId("words"), ...warnings.slice(0, 3).map((word) => make("li", { className: word.level }, word.text)));
+  drawCoverage();
+  const mayCapture = me?.may.includes("capture") ?? null;
+  drawActions({ state, project: scene.project, mayCapture, linked, loop: () => scene.newest.loop });
 }
 
-function sensorChips(newest, status) {
-  if (!status || scene.state === "ready") return [];
-  const chips = Object.entries(newest.rates ?? {})
-    .filter(([name, rate]) => name !== "GNSS" || rate > 0)
-    .map(([name, rate]) => make("li", { className: rate < 1 ? "bad" : "" }, rate < 1 ? `${name}: silent` : `${name} ${Math.round(rate)}/s`));
-  const fix = newest.fix && { 1: "single", 2: "DGNSS", 4: "RTK fixed", 5: "RTK float" }[newest.fix.quality];
-  if (fix) chips.push(make("li", {}, newest.fix.sd_m ? `GNSS ${fix} ±${Math.round(100 * newest.fix.sd_m[0])} cm` : `GNSS ${fix}`));
-  const left = status.disk.left_s;
-  if (left !== null) chips.push(make("li", { className: left < 600 ? "bad" : "" }, `disk ${left > 7200 ? `${Math.floor(left / 3600)} h` : `${Math.floor(left / 60)} min`}`));
-  if (battery) chips.push(make("li", { className: battery.level < 0.15 ? "bad" : "" }, `phone ${Math.round(100 * battery.level)} %`));
-  return chips;
+function drawCoverage() {
+  const { newest, state } = scene;
+  byId("coverage").hidden = !newest.gaps || newest.gaps.well === null || state === "none";
+  if (chosen >= (newest.gaps?.gaps.length ?? 0)) chosen = -1;
+  const { well, poor, words, count, all, one } = coverageWords(newest.gaps, chosen);
+  byId("well").textContent = well;
+  byId("poor").textContent = poor;
+  byId("gap-words").textContent = words;
+  byId("gap").disabled = count === 0;
+  byId("gap").ariaLabel = all;
+  byId("hint").textContent = one || (state ? hint(state, newest, me?.may.includes("capture") ?? null) : "");
 }
-
-function hint(newest) {
-  const { gaps, loop } = newest;
-  const parts = [];
-  if (gaps?.gaps.length) parts.push(`${gaps.gaps.length} ${gaps.gaps.length === 1 ? "place" : "places"} not seen yet`);
-  else if (gaps && gaps.well !== null) parts.push("No gaps near your way");
-  if (gaps?.well) parts.push(`${Math.round(100 * gaps.well)} % of the walls seen well`);
-  if (loop?.walked_m > 5)
-    parts.push(loop.closed ? "loop closed" : loop.start_m < 4 ? "at the start, loop not closed yet" : `return to the start (${Math.round(loop.start_m)} m)`);
-  return parts.join(" · ");
-}
-
-let shownActions = "";
-function drawActions(state) {
-  const key = `${state}/${mayCapture}/${scene.project}`;
-  if (key === shownActions) return;
-  shownActions = key;
-  const button = (words, className, onclick) => make("button", { type: "button", className, onclick }, words);
-  const steer = (what) => () => attempt(byId("message"), () => steerCapture(what));
-  const rows = {
-    none: [button("Start…", "primary", begin)],
-    recording: [button("Mark", "", note), button("Pause", "", steer("pause")), button("Stop", "stop", stop)],
-    paused: [button("Resume", "primary", steer("resume")), button("Stop", "stop", stop)],
-    ready: [
-      make("a", { className: "button", href: projectUrl(scene.project) }, "Project"),
-      button("Make the map", "primary", process),
-      button("New…", "", begin),
-    ],
-  };
-  byId("actions").replaceChildren(...(mayCapture ? (rows[state] ?? []) : []));
-}
-
-async function stop() {
-  if (confirm("Stop recording?")) await attempt(byId("message"), () => steerCapture("stop"));
-}
-
-async function process() {
-  const view = await attempt(byId("message"), () => steerCapture("process"));
-  if (view) location.assign(projectUrl(view.job.project));
-}
-
-async function begin() {
-  const form = byId("begin-form");
-  const choices = await attempt(byId("message"), readChoices);
-  if (!choices) return;
-  const option = (name) => make("option", { value: name }, name);
-  form.rig.replaceChildren(...choices.rigs.map(option));
-  form.preset.replaceChildren(...choices.presets.map(option));
-  const now = new Date(Date.now() - 60_000 * new Date().getTimezoneOffset()).toISOString();
-  form.project.value = `walk-${now.slice(0, 16).replace(/[:T]/g, "-")}`;
-  byId("begin").showModal();
-}
-
-byId("begin-form").addEventListener("submit", async (event) => {
-  if (event.submitter?.value !== "start") return;
-  event.preventDefault();
-  const form = event.target;
-  const capture = { project: form.project.value, rig: form.rig.value, preset: form.preset.value, place: form.place.value };
-  if (await attempt(byId("begin-message"), () => startCapture(capture))) byId("begin").close();
-});
-
-function note() {
-  byId("note-form").reset();
-  byId("note").showModal();
-}
-
-byId("note-form").addEventListener("submit", (event) => {
-  if (event.submitter?.value === "mark") attempt(byId("message"), () => markHere({ text: event.target.text.value }));
-});
 
 const press = (id, yes) => byId(id).setAttribute("aria-pressed", String(yes));
-const views = {
-  tilt: () => (camera.tilt(), press("tilt", !camera.above)),
-  follow: () => press("follow", (follow = !follow)),
-  color: () => ((byHeight = !byHeight), (byId("color").textContent = byHeight ? "Height" : "Intensity")),
-  plan: () => press("plan", (scene.showPlan = !scene.showPlan)),
-  sun: () => press("sun", document.body.classList.toggle("sun")),
-};
-for (const [id, act] of Object.entries(views)) byId(id).addEventListener("click", () => (act(), redraw()));
 
-const KEYS = {
-  t: views.tilt, f: views.follow, c: views.color, g: views.plan, s: views.sun,
-  "+": () => camera.zoom(1.25), "-": () => camera.zoom(0.8),
-  ArrowLeft: () => byHand(() => camera.pan(60, 0)), ArrowRight: () => byHand(() => camera.pan(-60, 0)),
-  ArrowUp: () => byHand(() => camera.pan(0, 60)), ArrowDown: () => byHand(() => camera.pan(0, -60)),
-};
-addEventListener("keydown", (event) => {
-  const typing = event.target.closest("input, select, dialog");
-  const act = KEYS[event.key] ?? KEYS[event.key.toLowerCase()];
-  if (!act || typing || event.ctrlKey || event.metaKey) return;
-  event.preventDefault();
-  act();
-  redraw();
-});
+function nextGap() {
+  if (!scene.gaps.length) return;
+  chosen = (chosen + 1) % scene.gaps.length;
+  byHand(() => (camera.target = [...scene.gaps[chosen].p, scene.me?.p[2] ?? 0]));
+  if (!scene.showPlan) views.plan();
+  drawCoverage();
+}
 
 function byHand(act) {
   press("follow", (follow = false));
   act();
 }
 
+const views = {
+  tilt: () => (camera.tilt(), press("tilt", !camera.above)),
+  follow: () => ((chosen = -1), press("follow", (follow = !follow)), drawCoverage()),
+  color: () => ((byHeight = !byHeight), (byId("color").textContent = byHeight ? "Height" : "Intensity")),
+  plan: () => press("plan", (scene.showPlan = !scene.showPlan)),
+  sun: () => (press("sun", document.body.classList.toggle("sun")), repaint()),
+  gap: nextGap,
+};
+for (const [id, act] of Object.entries(views)) byId(id).addEventListener("click", () => (act(), redraw()));
+
+function showAll(yes) {
+  byId("ceiling").checked = ceiling = yes;
+  redraw();
+}
+
+function help() {
+  byId("about").textContent = me ? `${me.login ? `Signed in as ${me.name}, ${me.role}. ` : ""}${scene.total.toLocaleString("en")} points on this phone.` : "";
+  byId("name-it").hidden = !me?.may.includes("capture") || !["recording", "paused"].includes(scene.state);
+  byId("more").showModal();
+}
+
+byId("help").addEventListener("click", help);
+byId("name-it").addEventListener("click", nameThePlace);
+byId("ceiling").addEventListener("change", (event) => showAll(event.target.checked));
+
+const KEYS = {
+  t: views.tilt, f: views.follow, c: views.color, g: views.plan, s: views.sun, n: nextGap, "?": help,
+  h: () => showAll(!ceiling),
+  m: () => scene.state === "recording" && me?.may.includes("capture") && mark(),
+  "+": () => camera.zoom(1.25), "-": () => camera.zoom(0.8),
+  ArrowLeft: () => byHand(() => camera.pan(60, 0)), ArrowRight: () => byHand(() => camera.pan(-60, 0)),
+  ArrowUp: () => byHand(() => camera.pan(0, 60)), ArrowDown: () => byHand(() => camera.pan(0, -60)),
+};
+addEventListener("keydown", (event) => {
+  const typing = event.target.closest?.("input, select, dialog");
+  const act = KEYS[event.key] ?? KEYS[event.key.toLowerCase()];
+  if (!act || typing || event.ctrlKey || event.metaKey || event.altKey) return;
+  event.preventDefault();
+  act();
+  redraw();
+});
+
 moveByPointer(byId("overlay"), camera, {
   onMove: redraw,
   onHand: (panned) => panned && follow && press("follow", (follow = false)),
 });
 
-let battery = null;
-navigator.getBattery?.().then((found) => (battery = found));
-navigator.wakeLock?.request("screen").catch(() => {}); // a dark phone shows no warnings
-document.addEventListener("visibilitychange", () => document.hidden || navigator.wakeLock?.request("screen").catch(() => {}));
+/** A dark phone shows no warnings; where this is not possible the phone darkens as it always does. */
+const stayAwake = () => document.hidden || navigator.wakeLock?.request("screen").catch(() => {});
+stayAwake();
+document.addEventListener("visibilitychange", stayAwake);
+navigator.getBattery?.().then((found) => (battery = found), () => {});
 new ResizeObserver(redraw).observe(byId("map"));
-if (!cloud.works) byId("message").textContent = "This browser cannot draw points (WebGL 2); the plan and the warnings work";
+new ResizeObserver(redraw).observe(byId("bottom"));
+dark.addEventListener("change", repaint);
 
-async function readRights() {
-  const me = await attempt(byId("message"), readMe);
-  mayCapture = me?.may.includes("capture") ?? false;
-  shownActions = "";
-  drawWords();
-}
-readRights();
+me = (await attempt(byId("message"), readMe)) ?? null;
+drawWords();

@@ -1,9 +1,11 @@
 // What this page knows of the capture, kept over lost links: it asks only for what it lacks.
 
-import { openLiveStream } from "./api.js";
+import { openLiveStream, readMe } from "./api.js";
 
-const SILENT_MS = 6000;
-const AGAIN_MS = 1000;
+const SILENT_MS = 5000;
+const CONNECT_MS = 3000;
+const AGAIN_MS = 700;
+const HERE_EVERY_MS = 30_000;
 
 export class LiveScene {
   project = "";
@@ -16,13 +18,14 @@ export class LiveScene {
   showPlan = true;
   newest = {};
   total = 0;
-  #cloud; #on; #socket; #heard = 0; #coming = null; #generation = -1;
+  #cloud; #on; #socket; #heard = 0; #coming = null; #generation = -1; #open = false;
 
   constructor(cloud, handlers) {
     this.#cloud = cloud;
     this.#on = handlers;
     this.#connect();
     setInterval(() => this.#checkLink(), 500);
+    setInterval(() => this.#sayHere(), HERE_EVERY_MS);
     addEventListener("online", () => this.#connectAgain());
     document.addEventListener("visibilitychange", () => document.hidden || this.#checkLink());
   }
@@ -36,6 +39,7 @@ export class LiveScene {
 
   #connect() {
     this.#heard = performance.now();
+    this.#open = false;
     const socket = (this.#socket = openLiveStream(this.have, {
       onMessage: (told) => socket === this.#socket && this.#take(told),
       onPoints: (data) => socket === this.#socket && this.#takePoints(data),
@@ -47,6 +51,7 @@ export class LiveScene {
     this.#socket = null;
     this.#coming = null;
     this.#on.link(false);
+    readMe(true).catch(() => {}); // signed out meanwhile? then this leads to the login
     setTimeout(() => this.#socket ?? this.#connect(), AGAIN_MS);
   }
 
@@ -58,11 +63,18 @@ export class LiveScene {
   }
 
   #checkLink() {
-    if (this.#socket && performance.now() - this.#heard > SILENT_MS) this.#connectAgain();
+    const patience = this.#open ? SILENT_MS : CONNECT_MS;
+    if (this.#socket && performance.now() - this.#heard > patience) this.#connectAgain();
+  }
+
+  /** Somebody looks: the session does not go idle. */
+  #sayHere() {
+    if (this.#open && !document.hidden) this.#socket?.send("{}");
   }
 
   #take(told) {
     this.#heard = performance.now();
+    this.#open = true;
     this.#on.link(true);
     if (told.project && told.project !== this.project) this.#forget(told.project);
     this.state = told.state ?? this.state;
@@ -73,9 +85,7 @@ export class LiveScene {
     }
     if (told.path) this.path.splice(told.path.start, Infinity, ...told.path.points);
     if (told.pose) this.me = told.pose;
-    for (const mark of told.marks ?? [])
-      if (mark.what === "point") this.marks.push({ ...mark, p: this.me?.p ?? [0, 0, 0] });
-      else this.marks.push({ ...mark, p: [0, 0, 0], hidden: true });
+    this.marks.push(...(told.marks ?? []));
     if (told.gaps) this.gaps = told.gaps.gaps;
     if (told.plan) this.#on.plan(told.plan);
     this.#on.news();

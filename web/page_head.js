@@ -1,6 +1,6 @@
 // <page-head>: the bar on top of every page. On the pages of a project it leads to the others.
 
-import { projectUrl, readMe, signOut } from "./api.js";
+import { liveUrl, projectUrl, readCapture, readMe, signOut } from "./api.js";
 import { make } from "./dom.js";
 
 const PAGES = [
@@ -26,13 +26,19 @@ class PageHead extends HTMLElement {
       this.#account,
     );
     if (inProject) this.name = decodeURIComponent(id);
-    readMe().then((me) => this.#show(me), (error) => (this.#link.textContent = error.message));
+    readMe().then((me) => this.#greet(me), (error) => (this.#link.textContent = error.message));
+  }
+
+  async #greet(me) {
+    this.#show(me, me.may.includes("capture"));
+    if (!me.may.includes("capture")) this.#show(me, (await readCapture()) !== null);
   }
 
   /** Who is signed in, and what only some may open. */
-  #show({ name, role, may, login }) {
+  #show({ name, role, may, login }, live) {
     const admin = may.includes("administer");
     this.#account.replaceChildren(
+      ...(live ? [make("a", { href: liveUrl }, "Live")] : []),
       ...(admin ? [make("a", { href: "/api" }, "API"), make("a", { href: "/people" }, "People")] : []),
       ...(login ? [
         make("a", { className: "who", href: "/account", ariaLabel: `Account of ${name}, ${role}` }, make("b", {}, name), make("span", { className: "role" }, role)),

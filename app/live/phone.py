@@ -10,8 +10,8 @@ from typing import Any
 
 from fastapi import WebSocket
 
-from app.live.capture import Capture
-from app.live.picture import Cursor
+from app.live.capture import Capture, State
+from app.live.picture import BYTES_A_POINT, Cursor
 from app.live.store import Captures
 from app.live.words import rates, words
 
@@ -21,10 +21,10 @@ STILL_HERE_S = 2.0
 """… and at least this often."""
 STALLED_S = 30.0
 """A phone that takes nothing for so long is let go; it comes back by itself."""
-POINTS_A_SECOND = 30_000
-"""1.7 Mbit/s for points, so that a phone's link stays free for what is newest …"""
-POINTS_AT_FIRST = 60_000
-"""… after a first look."""
+BYTES_A_SECOND = 220_000
+"""1.8 Mbit/s for all a phone is told: points get what is left beside what is newest …"""
+BYTES_AT_FIRST = 420_000
+"""… after a first look at 60 000 points."""
 
 
 class Phone:
@@ -33,7 +33,8 @@ class Phone:
     def __init__(self, socket: WebSocket, captures: Captures) -> None:
         self._socket, self._captures = socket, captures
         self._leaving: asyncio.Task[None] | None = None
-        self._allowance = float(POINTS_AT_FIRST)
+        self._state: dict[str, Any] = {}
+        self._allowance = float(BYTES_AT_FIRST)
 
     async def serve(self) -> None:
         """Tell it until it leaves.
@@ -69,16 +70,23 @@ class Phone:
         before_s = time.monotonic()
         while self._captures.newest is capture and not self._leaving.done():
             version, now_s = picture.version, time.monotonic()
-            self._allowance += POINTS_A_SECOND * (now_s - before_s)
-            self._allowance, before_s = min(self._allowance, POINTS_AT_FIRST), now_s
-            told, points = picture.lacking(cursor, most=int(self._allowance))
-            self._allowance -= told.get("points", {}).get("count", 0)
-            await self._send(told | state_of(self._captures, capture))
+            self._allowance += BYTES_A_SECOND * (now_s - before_s)
+            self._allowance, before_s = min(self._allowance, BYTES_AT_FIRST), now_s
+            most = max(0, int(self._allowance) // BYTES_A_POINT)
+            told, points = picture.lacking(cursor, most=most)
+            self._allowance -= len(points)
+            await self._send(told | self._changed(state_of(self._captures, capture)))
             if points:
                 await asyncio.wait_for(self._socket.send_bytes(points), STALLED_S)
             await self._rest(SHOWN_EVERY_S)
             if picture.complete(cursor):
                 await picture.news(version, timeout_s=STILL_HERE_S)
+
+    def _changed(self, state: dict[str, Any]) -> dict[str, Any]:
+        """Only what this phone was not told like that before."""
+        fresh = {key: value for key, value in state.items() if self._state.get(key) != value}
+        self._state = state
+        return fresh
 
     async def _rest(self, seconds: float) -> None:
         """Wait, but not for a phone that has left."""
@@ -87,6 +95,7 @@ class Phone:
 
     async def _send(self, told: dict[str, Any]) -> None:
         text = json.dumps(told, separators=(",", ":"))
+        self._allowance -= len(text)
         await asyncio.wait_for(self._socket.send_text(text), STALLED_S)
 
     async def _left(self) -> None:
@@ -107,12 +116,13 @@ def cursor_of(have: Any, capture: Capture) -> Cursor:
 
 
 def state_of(captures: Captures, capture: Capture) -> dict[str, Any]:
-    """What is told with every message."""
-    newest = capture.picture.newest
+    """How the capture stands; what its sensors do only while it listens to them."""
+    listens = capture.state in (State.RECORDING, State.PAUSED)
+    newest = capture.picture.newest if listens else {}
     said = words(captures.rig, newest, capture.problem)
     return {
         "project": capture.project,
         "state": capture.state,
         "words": [asdict(word) for word in said],
-        "rates": rates(captures.rig, newest.get("status", {})),
+        "rates": rates(captures.rig, newest["status"]) if "status" in newest else {},
     }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import base64
+import math
 import time
 from dataclasses import dataclass, field
 from typing import Any
@@ -16,6 +17,8 @@ BYTES_A_POINT = 7
 _KEPT = ("status", "notes", "fix", "plan", "gaps", "loop")
 """Kinds of which only the newest counts."""
 _MOST_MARKS = 500
+_PATH_STEP_M = 0.25
+"""The way is kept a point every so far: an hour's walk is a few thousand."""
 
 
 @dataclass(slots=True)
@@ -58,14 +61,16 @@ class Picture:
             case "points":
                 self._take_points(told)
             case "path":
-                self._path = list(told["points"])
+                self._path = []
+                for place in told["points"]:
+                    self._go_to(place)
             case "pose":
                 self.newest["pose"] = told
                 self._bump("pose")
                 if not told["lost"]:
-                    self._path.append(told["p"])
+                    self._go_to(told["p"])
             case "mark":
-                self._marks.append(told)
+                self._marks.append(told | {"p": self._here()})
                 del self._marks[:-_MOST_MARKS]
             case kind if kind in _KEPT:
                 self.newest[kind] = told
@@ -123,6 +128,15 @@ class Picture:
         }  # fmt: skip
         cursor.points = end
         return bytes(self._voxels[6 * start : 6 * end] + self._values[start:end])
+
+    def _go_to(self, place: list[float]) -> None:
+        if not self._path or math.dist(self._path[-1], place) >= _PATH_STEP_M:
+            self._path.append([round(value, 2) for value in place])
+
+    def _here(self) -> list[float] | None:
+        """Where the walk is now; None before the first pose."""
+        place: list[float] | None = self.newest.get("pose", {}).get("p")
+        return place
 
     def _take_points(self, told: Message) -> None:
         if told["generation"] != self._generation or told["start"] == 0:

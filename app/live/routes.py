@@ -76,8 +76,10 @@ def live_page() -> FileResponse:
 
 
 @router.get("", dependencies=LOOK, summary="State of the capture")
-def read_capture(server: Server, who: Who) -> CaptureView:
-    """The capture that runs, or the last one."""
+def read_capture(server: Server, who: Who) -> CaptureView | None:
+    """The capture that runs, or the last one; null if there was none since the server started."""
+    if server.captures.newest is None:
+        return None
     return _view(server.captures, who.may(May.CAPTURE))
 
 
