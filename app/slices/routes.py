@@ -60,7 +60,7 @@ async def read_facts(project_id: str, server: Server, source: str = "") -> Slice
     told = {
         "references": await run_in_threadpool(slices.references, project_id),
         "sources": await run_in_threadpool(slices.sources, project_id),
-        "approval": await run_in_threadpool(slices.approval, project_id),
+        "approval": await run_in_threadpool(slices.approval_words, project_id),
     }
     return await slices.newest("", work.facts, artifacts, told)
 
@@ -165,10 +165,9 @@ async def export(
     told = {
         "project": server.projects.get(project_id).name,
         "key": Path(artifacts["map"]).name,
-        "approval": await run_in_threadpool(slices.approval, project_id),
+        # the approval is that of the latest map alone
+        "approval": None if asked.source else await run_in_threadpool(slices.approval, project_id),
     }
-    if asked.source:
-        told["approval"] = "Not approved"  # the approval is that of the latest map alone
     out = await run_in_threadpool(slices.place_for, f".{ending}")
     reference = slices.reference(project_id, asked.reference)
     try:

@@ -83,18 +83,20 @@ class Slices:
         ]
         return earlier[:20] + others[:200]
 
-    def approval(self, project_id: str) -> str:
-        """Who approved the latest results, in words."""
-        from recon4.slices.sheet import approval_words
-
+    def approval(self, project_id: str) -> dict[str, Any] | None:
+        """Who approved the latest results, as ``summary.json`` has it; None = nobody."""
         try:
             told = json.loads((self._projects.folder(project_id) / "summary.json").read_text())
         except (OSError, ValueError):
-            return approval_words(None)
+            return None
         found = told.get("approval") if isinstance(told, dict) else None
-        return approval_words(found if isinstance(found, dict) else None)
+        return found if isinstance(found, dict) else None
 
-    # -- references and control points, files of the project
+    def approval_words(self, project_id: str) -> str:
+        """The same in words."""
+        from recon4.slices.sheet import approval_words
+
+        return approval_words(self.approval(project_id))
 
     def references(self, project_id: str) -> list[dict[str, Any]]:
         """References of a project."""

@@ -26,6 +26,7 @@ from app.slices.model import (
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3
 from recon4.mapping.tiles import TileSet
+from recon4.review.stamp import Stamp, stamp_file
 from recon4.slices.align import align_by_icp, align_by_pairs
 from recon4.slices.colors import SENSOR_COLORS, ColorBy, Ground, Span, table
 from recon4.slices.compare import compare, to_csv, to_json, usual_cuts
@@ -39,7 +40,14 @@ from recon4.slices.pick import nearest_surface, pick
 from recon4.slices.picture import Paper, Picture, draw, png
 from recon4.slices.points import Window, extent
 from recon4.slices.reference import Method, Reference, load_reference, read_facts
-from recon4.slices.sheet import Words, axis_words, lay_out, source_words, write_sheet
+from recon4.slices.sheet import (
+    Words,
+    approval_words,
+    axis_words,
+    lay_out,
+    source_words,
+    write_sheet,
+)
 from recon4.store.atomic import atomic_file, null_for_nan, write_json
 
 Artifacts = dict[str, str]
@@ -211,9 +219,9 @@ def align_reference(
 
 
 def export(
-    artifacts: Artifacts, ask: AskExport, out: str, *, reference: str, told: dict[str, str]
+    artifacts: Artifacts, ask: AskExport, out: str, *, reference: str, told: dict[str, Any]
 ) -> str:
-    """Write a file of slices; its ending says which."""
+    """Write a file of slices; its ending says which. It carries the approval, if there is one."""
     path = Path(out)
     tiles, frame = tiles_of(artifacts["map"]), _frame(artifacts)
     cuts = ask.cut.cut().repeated(ask.count, spacing_m=ask.spacing_m)
@@ -225,24 +233,30 @@ def export(
     elif path.suffix == ".dxf":
         write_dxf(tiles, cuts, path, frame=frame, window=window, flat=ask.flat)
     elif path.suffix == ".tif":
-        _export_geotiff(artifacts, ask, path, reference=reference)
+        _export_geotiff(artifacts, ask, path, reference=reference, told=told)
     else:
         _export_sheet(artifacts, ask, path, reference=reference, told=told)
+    if told["approval"] and path.suffix in (".laz", ".csv", ".dxf"):
+        stamp_file(path, path, Stamp(**told["approval"]))
     return out
 
 
-def _export_geotiff(artifacts: Artifacts, ask: AskExport, path: Path, *, reference: str) -> None:
+def _export_geotiff(
+    artifacts: Artifacts, ask: AskExport, path: Path, *, reference: str, told: dict[str, Any]
+) -> None:
     tiles, cut = tiles_of(artifacts["map"]), ask.cut.cut()
     window = _window(ask, tiles, cut)
     side_m = max(window.right - window.left, window.top - window.bottom)
     paper = Paper(window, max(FINEST_M, side_m / MOST_GEOTIFF_PX))
     against = reference_of(reference, ask.method)
     made = draw(tiles, cut, paper, color=ask.color, reference=against)
-    write_geotiff(made, path, frame=_frame(artifacts), span=span_of(ask, made))
+    words = f"{told['project']}: {approval_words(told['approval'])}"
+    frame = _frame(artifacts)
+    write_geotiff(made, path, frame=frame, span=span_of(ask, made), words=words)
 
 
 def _export_sheet(
-    artifacts: Artifacts, ask: AskExport, path: Path, *, reference: str, told: dict[str, str]
+    artifacts: Artifacts, ask: AskExport, path: Path, *, reference: str, told: dict[str, Any]
 ) -> None:
     tiles, cut = tiles_of(artifacts["map"]), ask.cut.cut()
     against = reference_of(reference, ask.method)
@@ -252,7 +266,7 @@ def _export_sheet(
         project=told["project"],
         frame=_frame(artifacts).words,
         sources=source_words(told["key"]),
-        approval=told["approval"],
+        approval=approval_words(told["approval"]),
         reference=against.name if against else "",
         sensors=tuple(str(name) for name in tiles.facts.get("sensors", [])),
     )

@@ -87,6 +87,12 @@ def _tum(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
     shutil.copyfileobj(source, target, 1 << 20)
 
 
+def _dxf(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
+    """A comment (group 999) before the first section."""
+    target.write(f"999\nrecon4 approval {stamp.words()}\n".encode("ascii"))
+    shutil.copyfileobj(source, target, 1 << 20)
+
+
 def _json(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
     if source.read(1) != b"{":
         raise StoreError("a JSON object was expected")
@@ -103,6 +109,8 @@ _WRITERS: dict[str, Callable[[BinaryIO, BinaryIO, Stamp], None]] = {
     ".laz": _laz,
     ".ply": _after_first_line("comment"),
     ".g2o": _after_first_line("#"),
+    ".csv": _after_first_line("#"),
+    ".dxf": _dxf,
     ".tum": _tum,
     ".json": _json,
     ".html": _html,

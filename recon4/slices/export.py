@@ -147,12 +147,19 @@ def layer_name(number: int, cut: Cut) -> str:
 
 
 def write_geotiff(
-    picture: Picture, path: Path, *, frame: Frame, span: Span, ground: Ground = "light"
+    picture: Picture,
+    path: Path,
+    *,
+    frame: Frame,
+    span: Span,
+    ground: Ground = "light",
+    words: str = "",
 ) -> None:
     """The picture as GeoTIFF, colored, transparent where nothing is.
 
     A horizontal slice of a georeferenced map carries its CRS, and a transformation that is exact
     at its middle. Everything else has the coordinates of the cut (u, v in metres) and no CRS.
+    ``words`` become the file's description.
 
     Raises:
         GeoreferenceError: If the picture is so large that a pixel would be off by its half.
@@ -166,6 +173,7 @@ def write_geotiff(
         text = isinstance(values, str)
         tags.tagtype[tag] = 2 if text else (3 if tag == _GEO_KEYS else 12)
         tags[tag] = values if text else tuple(values)
+    tags[TiffImagePlugin.IMAGEDESCRIPTION] = words.encode("ascii", "replace").decode()
     image = Image.fromarray(picture.rgba(span, ground))
     with atomic_file(path) as temporary:
         image.save(temporary, format="TIFF", compression="tiff_adobe_deflate", tiffinfo=tags)

@@ -5,6 +5,7 @@ import io
 import json
 import threading
 
+import ezdxf
 import httpx
 import laspy
 import numpy as np
@@ -194,6 +195,31 @@ def test_exports_open_in_other_programs(server):
     assert svg.startswith("<?xml") and "office" in svg and "Not approved" in svg
     assert csv[0].startswith("# recon4 slice") and len({line[:2] for line in csv[2:]}) == 2
     assert list((server.root / ".recon4" / "slices" / "exports").iterdir()) == []
+
+
+def test_an_export_of_an_approved_map_says_so(server):
+    summary = server.root / "office" / "summary.json"
+    before = summary.read_text()
+    stamp = {
+        "version": 2,
+        "who": "Eva",
+        "role": "reviewer",
+        "time": "2026-11-21",
+        "hash": "ab" * 32,
+    }
+    summary.write_text(json.dumps(json.loads(before) | {"approval": stamp}))
+
+    files = {ending: exported(server, ending).content for ending in ("laz", "csv", "dxf", "tif")}
+    summary.write_text(before)
+
+    with laspy.open(io.BytesIO(files["laz"])) as laz:
+        (told,) = [vlr for vlr in laz.header.vlrs if vlr.user_id == "recon4"]
+        assert json.loads(told.record_data_bytes()) == stamp
+        assert laz.read().header.point_count > 1000
+    assert json.loads(files["csv"].splitlines()[1].removeprefix(b"# recon4 approval ")) == stamp
+    assert json.dumps(stamp).encode() in files["dxf"][:400]
+    assert ezdxf.read(io.StringIO(files["dxf"].decode())).modelspace().query("POINT").first
+    assert b"Approved by Eva (reviewer)" in files["tif"]
 
 
 def test_an_export_of_nothing_is_refused_in_words(server):
