@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -138,6 +140,47 @@ def test_growing_keeps_everything():
     assert one.share > 0.99
     np.testing.assert_array_equal(one.residual_m, other.residual_m)
     np.testing.assert_allclose(one.residual_m[np.isfinite(one.residual_m)], 0.02, atol=1e-6)
+
+
+def test_a_cube_with_one_point_outlives_the_growing_of_the_tables():
+    few = 0.02 + 0.16 * np.random.default_rng(3).random((SETTINGS.min_points, 3))
+    few[:, 2] = 0.1
+    floor = np.random.default_rng(5).uniform([160, -40, -40], [240, 40, 40], (60_000, 3))
+
+    planes = made_of(few[:1], floor, few[1:])
+
+    assert hold(planes, few).share == 1.0
+
+
+def test_a_map_that_moves_along_for_long_does_not_fill_up():
+    rng = np.random.default_rng(5)
+    planes = PlaneMap(SETTINGS)
+    for k in range(12):
+        here = rng.uniform(-30, 30, (8000, 3)) * [1.0, 1.0, 0.01] + [100.0 * k, 0.0, 0.0]
+        planes.add(here)
+        planes.remove(here)
+
+    assert len(planes._keys) <= 1 << 17
+
+
+def test_a_plane_is_less_sure_far_from_its_center():
+    # Few points, noisy, of a sensor that says it is exact: the plane's own error counts.
+    rng = np.random.default_rng(4)
+    p = np.column_stack([rng.uniform(0.0, 0.2, (12, 2)), rng.normal(0.1, 0.006, 12)])
+    sure = replace(SETTINGS, point_sd_m=1e-4)
+    planes = PlaneMap(sure)
+    planes.add(p)
+    across, along, _ = np.linalg.eigvalsh(np.cov(p.T, bias=True))
+    n = np.linalg.eigh(np.cov(p.T, bias=True))[1][:, 0]
+    center = p.mean(axis=0)
+    u = np.cross(n, [0.0, 1.0, 0.0])
+    at_edge = center + 0.08 * u / np.linalg.norm(u)
+
+    near, far = (float(np.trace(hold(planes, q[None]).H[3:6, 3:6])) for q in (center, at_edge))
+
+    variance = across / 12
+    grown = 1e-8 + variance * (1.0 + 0.08**2 / along)
+    assert near / far == pytest.approx(grown / (1e-8 + variance), rel=1e-6)
 
 
 def test_points_beyond_the_gate_do_not_match():

@@ -166,6 +166,64 @@ def test_the_limit_of_rounds_is_not_convergence(solver, target_ends, source_ends
     assert not found.converged
 
 
+class Told(PlaneMap):
+    """A map of planes that remembers how it was asked."""
+
+    def __init__(self, settings):
+        super().__init__(settings)
+        self.finest, self.gate_m = [], []
+
+    def match(self, *args, finest, gate_m, **more):
+        self.finest.append(finest)
+        self.gate_m.append(gate_m)
+        return super().match(*args, finest=finest, gate_m=gate_m, **more)
+
+
+def test_large_cubes_and_a_wide_gate_come_first_and_the_narrow_gate_has_its_turn(target_ends):
+    planes = Told(PLANES)
+    planes.add(np.ascontiguousarray(target_ends.reshape(-1, 3)))
+
+    found = register_to_planes(
+        planes, target_ends.reshape(-1, 3), guess=SE3.identity(), planes=PLANES,
+        settings=settings_of("planes"),
+    )  # fmt: skip
+
+    rounds = slice(found.iterations)
+    assert planes.finest[:4] == [3, 2, 1, 0]
+    assert planes.gate_m[rounds] == sorted(planes.gate_m[rounds], reverse=True)
+    # The guess is the truth: steps are small from the first round on, yet all gates are tried.
+    assert (planes.gate_m[0], planes.gate_m[rounds][-1]) == (1.0, 0.15)
+
+
+def corner(count, *, off_m=0.0, seed=1):
+    """Points of a floor and two walls that meet, at some distance before them, (3 count, 3)."""
+    rng = np.random.default_rng(seed)
+    walls = []
+    for axis in range(3):
+        p = rng.uniform(0.0, 6.0, (count, 3))
+        p[:, axis] = 0.05 + off_m
+        walls.append(p)
+    return np.concatenate(walls)
+
+
+def test_the_error_counts_what_lies_too_far_off_to_register_but_not_what_is_elsewhere():
+    planes = PlaneMap(PLANES)
+    planes.add(corner(60_000))
+    there, before, elsewhere = (
+        corner(count, off_m=off_m, seed=seed)
+        for seed, (count, off_m) in enumerate([(1200, 0.0), (600, 0.3), (200, 0.9)], start=2)
+    )
+
+    found = register_to_planes(
+        planes, np.concatenate([there, before, elsewhere]), guess=SE3.identity(), planes=PLANES,
+        settings=settings_of("planes"),
+    )  # fmt: skip
+
+    assert gap_m(found.T_target_source, SE3.identity()) < 0.02
+    # A third of what counts lies 0.3 m off; the tenth that lies 0.9 m off would make it 0.18.
+    assert found.error_m == pytest.approx(0.1, abs=0.03)
+
+
 def test_a_solution_far_from_the_guess_is_unstable(target_ends, source_ends):
     found = register("planes", target_ends, source_ends, SE3.identity(), max_move_m=0.1)
 
