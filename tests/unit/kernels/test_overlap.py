@@ -21,7 +21,7 @@ def ring_of(azimuth_deg, range_m, per_bin=6):
 
 
 def test_a_bin_holds_its_smallest_range_and_one_with_few_points_is_empty():
-    near, far = ring_of(0, 4.0, 1), ring_of(0, 9.0, 5)
+    near, far = ring_of(0, 4.0, 1), ring_of(0, 9.0, 4)
     few = ring_of(40, 3.0, 4)
 
     buffer = nearest_ranges(np.concatenate([near, far, few]), 180, 90, 5)
@@ -29,6 +29,12 @@ def test_a_bin_holds_its_smallest_range_and_one_with_few_points_is_empty():
     assert buffer.shape == (180, 90)
     assert buffer[90, 45] == pytest.approx(4.0, rel=1e-4)
     assert np.count_nonzero(buffer) == 1
+
+
+def test_straight_up_is_in_the_last_row():
+    buffer = nearest_ranges(np.tile([0.0, 0.0, 3.0], (5, 1)), 180, 90, 5)
+
+    assert np.argwhere(buffer).tolist() == [[90, 89]]
 
 
 def test_points_at_the_origin_have_no_direction():

@@ -77,11 +77,13 @@ def test_keeping_fewer_keeps_the_shortest_of_the_same_draws():
     )
 
 
-def test_a_segment_across_a_depth_edge_is_dropped():
-    near, far = rings_of(2, 720, 2.0), rings_of(2, 720, 4.0)
+@pytest.mark.parametrize(("far_m", "kept"), [(2.6, 36 * KEPT), (2.8, 0)])
+def test_a_segment_across_a_depth_edge_is_dropped(far_m, kept):
+    # 0.34 of the nearer range of 2 m are 0.68 m.
+    near, far = rings_of(2, 720, 2.0), rings_of(2, 720, far_m)
     xyz = np.where(near[1][:, None] == 0, near[0], far[0])
 
-    assert len(draw(xyz, near[1])) == 0
+    assert len(draw(xyz, near[1], bins=36, generated=400)) == kept
 
 
 def test_an_empty_ring_is_skipped():
@@ -93,6 +95,14 @@ def test_an_empty_ring_is_skipped():
     assert len(a) == 36 * 5
     assert (ring[there][a] == 0).all()
     assert (ring[there][b] == 2).all()
+
+
+@pytest.mark.parametrize(("upper", "joined"), [(3, True), (4, False)])
+def test_rings_far_apart_are_not_joined_however_many_between_are_empty(upper, joined):
+    xyz, ring = rings_of(5, 1800)
+    there = (ring == 0) | (ring == upper)
+
+    assert (len(draw(xyz[there], ring[there], rings=5)) > 0) == joined
 
 
 def test_empty_cells_give_nothing():
