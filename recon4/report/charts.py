@@ -31,8 +31,8 @@ def walk_charts(
     time = "time from the start [s]"
     if drift is not None:
         series = [("", drift.t_s, 100.0 * drift.moved_m, BLUE)]
-        svg = lines("drift", series, labels=(time, "final − odometry [cm]"))
-        out.append((svg, "How far the final trajectory lies from the odometry: the drift closed."))
+        svg = lines("drift", series, labels=(time, "final − odometry [cm]"), least=1.0)
+        out.append((svg, "How far the final trajectory lies from the odometry."))
     if drift is not None and len(drift.loop_before_m):
         groups = [
             ("odometry", 100.0 * drift.loop_before_m, ORANGE),
@@ -41,7 +41,8 @@ def walk_charts(
         svg = histogram("loops", groups, labels=("disagreement of a loop [cm]", "loops"), log=True)
         out.append((svg, "Accepted loops against the odometry and against the final poses."))
     series = [("", t_s, final.T_a_b.t[:, 2], BLUE)]
-    out.append((lines("height", series, labels=(time, "height [m]")), "Height of the body."))
+    svg = lines("height", series, labels=(time, "height [m]"), least=0.1)
+    out.append((svg, "Height of the body."))
     out += _tracking_charts(steps, time)
     return out
 

@@ -71,16 +71,27 @@ class Chart:
 
 
 def lines(
-    name: str, series: Sequence[tuple[str, Array, Array, str]], *, labels: tuple[str, str]
+    name: str,
+    series: Sequence[tuple[str, Array, Array, str]],
+    *,
+    labels: tuple[str, str],
+    least: float = 0.0,
 ) -> str:
-    """Curves ``(label, x, y, color)`` with axes named ``labels``."""
+    """Curves ``(label, x, y, color)`` with axes named ``labels``.
+
+    The vertical axis spans at least ``least``: what is smaller is nothing, and must look like it.
+    """
     chart = Chart(name)
     for label, x, y, color in series:
         few = thinned(len(x))
         at, shown = broken_at_holes(x[few], y[few])
         chart.axes.plot(at, shown, color=color, lw=1.3, marker=".", ms=2.5, label=label)
     chart.axes.set(xlabel=labels[0], ylabel=labels[1])
-    chart.axes.set_ylim(bottom=min(0.0, chart.axes.get_ylim()[0]))
+    low, high = chart.axes.get_ylim()
+    low = min(0.0, low)
+    if high - low < least:
+        low, high = (0.0, least) if low == 0.0 else (-0.5 * least, 0.5 * least)
+    chart.axes.set_ylim(low, high)
     return chart.svg()
 
 

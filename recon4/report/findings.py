@@ -102,11 +102,9 @@ def _closed(drift: DriftClosed | None) -> list[Finding]:
     text = (
         f"The pose graph moved the end of the walk by {_cm(drift.end_m)} and no pose by more than "
     )
-    out.append(
-        Finding(
-            Level.NOTE if drift.largest_m > 1.0 else Level.GOOD, text + _cm(drift.largest_m) + "."
-        )
-    )
+    # Without a loop a small move says nothing about the drift.
+    fine = drift.largest_m <= 1.0 and len(drift.loop_after_m) > 0
+    out.append(Finding(Level.GOOD if fine else Level.NOTE, text + _cm(drift.largest_m) + "."))
     if len(drift.loop_after_m) and np.percentile(drift.loop_after_m, 95) > 0.10:
         text = "One accepted loop in twenty still disagrees with the map by more than "
         out.append(

@@ -123,7 +123,8 @@ def _key_figures(
             ("edges kept / tried", f"{_grouped(kept)} / {_grouped(len(results.graph.edges))}", "")
         )
     if drift is not None:
-        out.append(("largest drift closed", number(drift.largest_m, 1, 100.0), "cm"))
+        name = "largest drift closed" if len(drift.loop_after_m) else "largest correction"
+        out.append((name, number(drift.largest_m, 1, 100.0), "cm"))
     if facts.evaluation is not None and facts.evaluation.relative is not None:
         e_r = facts.evaluation.relative.point_weighted.mean_m
         out.append(("e_r", number(e_r, 2, 100.0), "cm"))

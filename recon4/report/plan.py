@@ -11,7 +11,8 @@ from recon4.geometry.se3 import Array
 from recon4.report.figures import thinned
 from recon4.report.maps import Frame, View
 
-_WIDTH = 1000.0
+_LONGEST = 1000.0
+"""Units of the longer side: a tall picture is shown smaller, and its letters must not shrink."""
 _TICKS = 6
 
 
@@ -44,25 +45,25 @@ def plan_svg(
         css: Class of the picture of the map (``ink`` is turned white on dark pages).
         marks: Places to mark: class and point (3,).
     """
-    scale = _WIDTH / (frame.width * frame.pixel_m)
-    height = scale * frame.height * frame.pixel_m
-    place = _Place(view, frame, scale, height)
+    scale = _LONGEST / (max(frame.width, frame.height) * frame.pixel_m)
+    width, height = (scale * n * frame.pixel_m for n in (frame.width, frame.height))
+    place = _Place(view, frame, scale, width, height)
     out = [
-        f'<svg class="plan" role="img" viewBox="-58 -28 {_WIDTH + 70:.0f} {height + 102:.0f}">',
+        f'<svg class="plan" role="img" viewBox="-58 -28 {width + 70:.0f} {height + 102:.0f}">',
         f"<title>the map {view.name}</title>",
         _axes(place, view, frame),
     ]
     if png is not None:
         data = b64encode(png).decode("ascii")
         out.append(
-            f'<image class="{css}" width="{_WIDTH:.0f}" height="{height:.1f}" '
+            f'<image class="{css}" width="{width:.1f}" height="{height:.1f}" '
             f'href="data:image/png;base64,{data}"/>'
         )
     out += [f'<path class="{path.css}" d="{place.path(path.pieces)}"/>' for path in paths]
     for name, point in marks:
         x, y = place.of(point[None])[0]
         out.append(f'<circle class="{name}" cx="{x:.1f}" cy="{y:.1f}" r="8"/>')
-    out += [_scale_bar(scale, height), "</svg>"]
+    out += [_scale_bar(scale, width, height), "</svg>"]
     return "".join(out)
 
 
@@ -88,6 +89,7 @@ class _Place:
     view: View
     frame: Frame
     scale: float
+    width: float
     height: float
 
     def of(self, points: Array) -> Array:
@@ -108,18 +110,18 @@ class _Place:
 def _axes(place: _Place, view: View, frame: Frame) -> str:
     extent = (frame.width * frame.pixel_m, frame.height * frame.pixel_m)
     step = nice_step(max(extent), _TICKS)
-    out = [f'<rect class="edge" width="{_WIDTH:.0f}" height="{place.height:.1f}"/>']
+    out = [f'<rect class="edge" width="{place.width:.1f}" height="{place.height:.1f}"/>']
     for value in _multiples(frame.left_m, extent[0], step):
         x = (value - frame.left_m) * place.scale
         out.append(f'<path class="grid" d="M{x:.1f} 0V{place.height:.1f}"/>')
         out.append(f'<text x="{x:.1f}" y="{place.height + 26:.1f}" class="mid">{value:g}</text>')
     for value in _multiples(frame.bottom_m, extent[1], step):
         y = place.height - (value - frame.bottom_m) * place.scale
-        out.append(f'<path class="grid" d="M0 {y:.1f}H{_WIDTH:.0f}"/>')
+        out.append(f'<path class="grid" d="M0 {y:.1f}H{place.width:.1f}"/>')
         out.append(f'<text x="-8" y="{y + 6:.1f}" class="end">{value:g}</text>')
     right, up = view.labels
     out.append(
-        f'<text x="{_WIDTH:.0f}" y="{place.height + 62:.1f}" class="end">{right} [m] →</text>'
+        f'<text x="{place.width:.1f}" y="{place.height + 62:.1f}" class="end">{right} [m] →</text>'
     )
     out.append(f'<text x="-50" y="-10">{up} [m] ↑</text>')
     return "".join(out)
@@ -130,9 +132,9 @@ def _multiples(start: float, extent: float, step: float) -> list[float]:
     return [round(k * step, 9) for k in range(first, last + 1)]
 
 
-def _scale_bar(scale: float, height: float) -> str:
-    length_m = nice_step(_WIDTH / scale, 5)
-    width = length_m * scale
+def _scale_bar(scale: float, width: float, height: float) -> str:
+    length_m = nice_step(width / scale, 5)
+    end = length_m * scale
     y = height + 60.0
-    bar = f'<path class="bar" d="M0 {y - 6:.1f}V{y:.1f}H{width:.1f}V{y - 6:.1f}"/>'
-    return f'{bar}<text x="{width + 8:.1f}" y="{y + 1:.1f}">{length_m:g} m</text>'
+    bar = f'<path class="bar" d="M0 {y - 6:.1f}V{y:.1f}H{end:.1f}V{y - 6:.1f}"/>'
+    return f'{bar}<text x="{end + 8:.1f}" y="{y + 1:.1f}">{length_m:g} m</text>'

@@ -59,6 +59,8 @@ def quantity(name: str, value: Any) -> tuple[str, str]:
     """A name without its unit, and the value with it."""
     words = name.replace("_", " ")
     if name.endswith("_ns") and isinstance(value, int):
+        if value < _FIRST_DATE_NS:
+            return words.removesuffix(" ns"), f"{value / 1e9:.3f} s (a clock without a date)"
         moment = datetime.fromtimestamp(value / 1e9, UTC)
         text = moment.isoformat(timespec="milliseconds").replace("+00:00", "")
         return words.removesuffix(" ns"), f"{text.replace('T', ' ')} (sensor's clock, UTC)"
@@ -69,6 +71,9 @@ def quantity(name: str, value: Any) -> tuple[str, str]:
             )
     return words, _text(value, 3)
 
+
+_FIRST_DATE_NS = 365 * 86_400 * 10**9
+"""Times of the first year of the epoch were counted from some start, not read off a calendar."""
 
 _UNITS = (
     ("lat_deg", "°", 8),

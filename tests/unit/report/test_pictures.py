@@ -93,6 +93,30 @@ def test_a_plan_draws_a_point_where_its_coordinates_say() -> None:
     assert (x1 - x0, y0 - y1) == pytest.approx((10 * scale, 10 * scale), abs=0.2)
 
 
+@pytest.mark.parametrize(("x_m", "y_m"), [(4.0, 40.0), (40.0, 4.0)])
+def test_a_tall_plan_is_no_longer_than_a_wide_one(x_m: float, y_m: float) -> None:
+    raster = rasterize(lambda: [chunk([[0.0, 0.0, 0.0], [x_m, y_m, 0.0]])])[0]
+
+    svg = ElementTree.fromstring(plan_svg(b"", ABOVE, raster.frame))
+
+    image = svg.find("image")
+    assert image is not None
+    width, height = (float(image.get(name, "")) for name in ("width", "height"))
+    assert max(width, height) == pytest.approx(1000.0, abs=0.1)
+    assert width / height == pytest.approx(raster.frame.width / raster.frame.height, rel=1e-3)
+
+
+def test_less_than_the_least_span_looks_like_nothing() -> None:
+    x = np.arange(3.0)
+    series = [("", x, np.array([-2e-4, -3e-4, -2.5e-4]), "#000000")]
+
+    wide = lines("height", series, labels=("t", "z"), least=0.1)
+
+    assert "0.04" in wide
+    assert "0.0003" not in wide
+    assert "0.0003" in lines("height", series, labels=("t", "z"))
+
+
 def test_charts_are_pictures_that_take_the_color_of_the_page() -> None:
     svg = lines("one", [("a < b", np.arange(9.0), np.arange(9.0), "#0072b2")], labels=("s", "m"))
 

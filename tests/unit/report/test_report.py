@@ -223,7 +223,22 @@ def test_no_accepted_loop_is_a_warning(facts: ReportFacts, tmp_path: Path) -> No
     graph = graph_of(loop_walk())
     save_graph(tmp_path / "verification", graph.with_edges(graph.edges[:19]))
 
-    assert "No loop was accepted" in render(facts)
+    text = render(facts)
+    assert "No loop was accepted" in text
+    assert "largest correction" in text
+    assert "largest drift closed" not in text
+
+
+def test_a_recording_of_one_place_has_no_empty_table_of_pairs(
+    facts: ReportFacts, tmp_path: Path
+) -> None:
+    graph = graph_of(loop_walk())
+    save_graph(tmp_path / "verification", graph.with_edges(()))
+
+    text = Tags(render(facts)).text
+
+    assert "None: the recording is too short for two places to compare." in text
+    assert "verdict" not in text.split("Pairs tried")[1].split("Where they are")[0]
 
 
 def test_a_report_without_any_artifact_can_still_be_written(

@@ -26,6 +26,7 @@ MOMENT = ("t first", "2014-11-04 02:46:49.554 (sensor's clock, UTC)")
         ("points_near", 12_345, ("points near", "12\u202f345")),
         ("usable", True, ("usable", "yes")),
         ("t_first_ns", 1415069209554522896, MOMENT),
+        ("t_last_ns", 2_200_000_000, ("t last", "2.200 s (a clock without a date)")),
     ],
 )  # fmt: skip
 def test_quantities_have_their_unit(name, value, row):
