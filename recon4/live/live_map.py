@@ -17,8 +17,10 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.imu import place_points
 from recon4.live.coverage import CELL_M, Coverage
 from recon4.live.live_intensity import LiveIntensity
+from recon4.live.loops import LoopGate
 from recon4.live.places import Places
 from recon4.live.preview import Chunk, Preview
+from recon4.live.recovery import Recovery
 from recon4.live.tracker import Tracker
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
@@ -35,10 +37,9 @@ COVERAGE_RAYS = 1500
 """… and for the plan."""
 SUMMARY_EVERY_NS = 1_000_000_000
 _SEARCH_AFTER = 5
-"""After so many lost multiframes in a row the place is searched, and again after as many."""
+"""After so many lost multiframes in a row the place is searched, now and then after as many."""
 _LOOP_WITHIN_M = 4.0
 _LOOP_WALKED_M = 20.0
-_LOOP_SHARE, _LOOP_DEGENERACY = 0.6, 0.02
 _MOST_PATH = 20_000
 
 
@@ -53,7 +54,10 @@ class LiveMap:
         self._intensity = LiveIntensity(len(rig.sensors))
         self._path: deque[list[float]] = deque(maxlen=_MOST_PATH)
         self._lost, self._thinned, self._relocated = 0, 0, 0
+        self._lost_steps = 0
+        self._recovery: Recovery | None = None
         self._summary_ns = 0
+        self._gate = LoopGate()
         self._loop: Message = {"kind": "loop", "near": False, "closed": False}
         self._plan: dict[str, Any] = {}
         self._gaps: Message = {"kind": "gaps", "gaps": [], "well": None}
@@ -74,7 +78,7 @@ class LiveMap:
             second ``plan``, ``gaps`` and ``loop``.
         """
         step = self.tracker.push(frame)
-        lost = self._find_again(frame, step)
+        step, lost = self._follow(frame, step)
         T_map_body = self.tracker.T_map_odom @ step.T_odom_body
         told = [self._pose(frame, step, T_map_body, lost=lost)]
         if lost:
@@ -93,21 +97,31 @@ class LiveMap:
             told.append(_points(self._preview.since(0)))
         return [*told, *([self._plan] if self._plan else []), self._gaps, self._loop]
 
-    def _find_again(self, frame: Multiframe, step: OdometryStep) -> bool:
-        """Whether the frame is lost, after the map so far was searched for it now and then."""
-        if not step.lost:
-            self._lost = 0
-            return False
-        self._lost += 1
-        if self._lost % _SEARCH_AFTER or not len(self._places):
-            return True
-        believed = self.tracker.T_map_odom @ step.T_odom_body
-        found = self._places.relocate(self._midpoints(frame), believed)
+    def _follow(self, frame: Multiframe, step: OdometryStep) -> tuple[OdometryStep, bool]:
+        """The step to go on with, and whether the body is lost.
+
+        A few lost multiframes are forgiven: the odometry finds back by itself. After
+        `_SEARCH_AFTER` it begins anew, and what it sees is searched for in the map so far; until
+        it is found nothing is added to the map.
+        """
+        self._lost_steps = self._lost_steps + 1 if step.lost else 0
+        self._lost = self._lost + 1 if step.lost or self._recovery else 0
+        if self._lost_steps >= _SEARCH_AFTER:
+            step = self.tracker.start_over(frame)
+            self._lost_steps = 0
+            if self._recovery is None and len(self._places):
+                self._recovery = Recovery(self._places, np.array(self._path[-1]))
+            return step, True
+        if self._recovery is None or step.lost:
+            return step, step.lost
+        if self._lost % _SEARCH_AFTER:
+            return step, True
+        found = self._recovery.search(self._midpoints(frame), step.T_odom_body)
         if found is None:
-            return True
-        self.tracker.move(found, step)
+            return step, True
+        self.tracker.T_map_odom, self._recovery = found, None
         self._lost, self._relocated = 0, self._relocated + 1
-        return False
+        return step, False
 
     def _midpoints(self, frame: Multiframe) -> Array:
         segments = sample_segments(frame, self._rig, self._settings.segments)
@@ -172,17 +186,18 @@ class LiveMap:
         place = self._places.revisited(
             T_map_body.t, within_m=_LOOP_WITHIN_M, walked_before_m=_LOOP_WALKED_M
         )
-        self._loop = self._loop | {
+        found = None if place is None else self._places.locate(source, T_map_body, place)
+        drifted = self._gate.judge(found, T_map_body)
+        self._loop = {
+            "kind": "loop",
             "near": place is not None,
+            "closed": self._gate.closed,
+            "drift_m": round(self._gate.drift_m, 3) if self._gate.closed else None,
             "walked_m": round(self._places.walked_m, 1),
             "start_m": round(float(np.linalg.norm(T_map_body.t - start_m)), 1),
         }
-        found = None if place is None else self._places.locate(source, T_map_body, place)
-        if found is None or found.share < _LOOP_SHARE or found.degeneracy < _LOOP_DEGENERACY:
-            return  # a corridor looks alike all along
-        moved_m = float(np.linalg.norm(found.T_target_source.t - T_map_body.t))
-        self._loop |= {"closed": True, "drift_m": round(moved_m, 3)}
-        self.tracker.move(found.T_target_source, step)
+        if drifted and found is not None:
+            self.tracker.move(found.T_target_source, step)
 
 
 def _in_body(frame: Multiframe, rig: Rig) -> Array:

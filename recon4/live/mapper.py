@@ -37,6 +37,7 @@ from recon4.model.samples import STANDARD_GRAVITY_M_S2, GnssSamples, ImuSamples
 from recon4.progress import Silent
 from recon4.recording.ingest import Live, ingest
 from recon4.settings import Settings, preset
+from recon4.store.atomic import write_json
 
 log = logging.getLogger(__name__)
 
@@ -134,6 +135,8 @@ class Mapper:
             return {"kind": "done", "frames": 0, "problem": "the mapper was told to stop"}
         began_s = time.monotonic()
         frames = finish(self._session, out, self._settings)
+        if not self._session.outcome.exists():
+            write_json(self._session.outcome, {"why": "the recorder died"})
         seconds = round(time.monotonic() - began_s, 2)
         return {"kind": "done", "frames": frames, "seconds": seconds, "problem": ""}
 

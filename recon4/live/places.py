@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array, so3_exp
+from recon4.live.plan_match import plan_guesses
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.planes import register_to_planes
 from recon4.registration.result import Registration
@@ -18,7 +19,13 @@ _SEGMENTS = 3000
 """Kept of a place; 72 kB. An hour of walking is 4000 places."""
 _AROUND = 3
 """Places before and after one that make up its local map."""
-_YAWS_RAD = np.deg2rad([0.0, 45.0, -45.0, 90.0, -90.0, 135.0, -135.0, 180.0])
+_SURE_SHARE, _SURE_DEGENERACY = 0.5, 0.02
+"""What a view must have to be found without a good guess."""
+_LEVELS = 2
+"""Cells of 0.2 and 0.4 m: guesses are that good, and coarser planes of few points mislead."""
+_GUESSES = 3
+_FLOOR_M, _CEILING_M = 0.9, 0.8
+"""Between so far below and so far above the body there are walls."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,6 +41,7 @@ class Places:
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
+        self._planes = replace(settings.planes, levels=_LEVELS)
         self._places: list[_Place] = []
         self._walked_m = 0.0
         self._last_m: Array | None = None
@@ -86,7 +94,7 @@ class Places:
             self._local_map(place),
             source,
             guess=guess,
-            planes=self._settings.planes,
+            planes=self._planes,
             settings=self._settings.registration,
         )
         g = self._settings.graph
@@ -99,30 +107,35 @@ class Places:
         )
         return found if fits else None
 
-    def relocate(self, source: Array, T_map_body: SE3) -> SE3 | None:
-        """Where a view is after tracking was lost: near the last pose believed, any heading.
+    def near(self, p_map: Array, *, most: int, apart_m: float = 0.0) -> list[int]:
+        """The nearest places, so far apart from each other."""
+        away = [float(np.linalg.norm(p.T_map_body.t - p_map)) for p in self._places]
+        chosen: list[int] = []
+        for k in np.argsort(away).tolist():
+            here = self._places[k].T_map_body.t
+            others = [np.linalg.norm(self._places[c].T_map_body.t - here) for c in chosen]
+            if len(chosen) < most and min(others, default=np.inf) >= apart_m:
+                chosen.append(int(k))
+        return chosen
+
+    def relocate(self, source: Array, R: Array, place: int) -> list[tuple[SE3, float]]:
+        """Where a view may be near a place, whatever its heading: poses with the share that fits.
 
         Args:
             source: Midpoints of segments in the body [m], (N, 3).
-            T_map_body: The pose believed; its roll and pitch are taken for true.
+            R: Attitude of the body, (3, 3); its roll and pitch are taken for true.
+            place: Row of a place.
         """
-        best: Registration | None = None
-        for place in self._candidates(T_map_body.t):
-            for yaw in _YAWS_RAD:
-                R = so3_exp([0.0, 0.0, yaw]) @ T_map_body.R
-                found = self.locate(source, SE3(R, self._places[place].T_map_body.t), place)
-                if found is not None and (best is None or found.share > best.share):
-                    best = found
-            if best is not None:
-                return best.T_target_source
-        return None
-
-    def _candidates(self, p_map: Array) -> list[int]:
-        """The last places first, then the nearest ones."""
-        count = len(self._places)
-        away = [float(np.linalg.norm(p.T_map_body.t - p_map)) for p in self._places]
-        near = [int(k) for k in np.argsort(away)[:3]]
-        return list(dict.fromkeys([*range(count - 1, max(count - 4, -1), -2), *near]))
+        T = self._places[place].T_map_body
+        level = SE3(R, np.zeros(3)) @ source
+        target = np.concatenate([self._in_map(k) for k in self._around(place)]) - T.t
+        found: list[Registration] = []
+        for yaw, shift_m in plan_guesses(_walls(target), _walls(level), most=_GUESSES):
+            guess = SE3(so3_exp([0.0, 0.0, yaw]) @ R, T.t + np.append(shift_m, 0.0))
+            one = self.locate(source, guess, place)
+            if one is not None and one.share >= _SURE_SHARE and one.degeneracy >= _SURE_DEGENERACY:
+                found.append(one)
+        return [(one.T_target_source, one.share) for one in found]
 
     def _nearest(self, rows: list[int], p_map: Array, within_m: float) -> int | None:
         if not rows:
@@ -132,8 +145,19 @@ class Places:
         return rows[best] if away[best] <= within_m else None
 
     def _local_map(self, place: int) -> PlaneMap:
-        planes = PlaneMap(self._settings.planes)
-        for k in range(max(place - _AROUND, 0), min(place + _AROUND + 1, len(self._places))):
-            one = self._places[k]
-            planes.add(np.ascontiguousarray(one.T_map_body @ one.ends_body.astype(np.float64)))
+        planes = PlaneMap(self._planes)
+        for k in self._around(place):
+            planes.add(self._in_map(k))
         return planes
+
+    def _around(self, place: int) -> range:
+        return range(max(place - _AROUND, 0), min(place + _AROUND + 1, len(self._places)))
+
+    def _in_map(self, place: int) -> Array:
+        one = self._places[place]
+        return np.ascontiguousarray(one.T_map_body @ one.ends_body.astype(np.float64))
+
+
+def _walls(p_m: Array) -> Array:
+    """Points between floor and ceiling, in plan; heights count from the body."""
+    return p_m[(p_m[:, 2] > -_FLOOR_M) & (p_m[:, 2] < _CEILING_M), :2]

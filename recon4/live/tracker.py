@@ -33,6 +33,8 @@ class Tracker:
         self._recent: deque[tuple[Multiframe, bool]] = deque(maxlen=_TRIED_FRAMES)
         self._imu: deque[ImuSamples] = deque(maxlen=1000)
         self._since_doubt = 0
+        self._believed = SE3.identity()
+        """Where the body was when it was last not lost, in the map."""
         self.T_map_odom = SE3.identity()
         """Where the frame of the odometry lies; moved when a place is recognized."""
         self.with_imu = False
@@ -57,12 +59,23 @@ class Tracker:
             self._odometry = Odometry(self._rig, self._settings, imu)
             self._waiting.clear()
         step = self._odometry.push(frame)
+        if not step.lost:
+            self._believed = self.T_map_odom @ step.T_odom_body
         self._recent.append((frame, step.lost or not step.error_m < _FAR_M))
         self._since_doubt += 1
         bad = sum(is_bad for _, is_bad in self._recent)
         if self.with_imu and bad >= _BAD_FRAMES and self._since_doubt >= _TRIED_FRAMES:
             self._since_doubt = 0
             return self._doubt(step)
+        return step
+
+    def start_over(self, frame: Multiframe) -> OdometryStep:
+        """Begin a new odometry with a multiframe; the body is believed to be where it was."""
+        last = self._believed
+        imu = join(list(self._imu)) if self.with_imu else None
+        self._odometry = Odometry(self._rig, self._settings, imu)
+        step = self._odometry.push(frame)
+        self.move(last, step)
         return step
 
     def move(self, T_map_body: SE3, step: OdometryStep) -> None:

@@ -1,6 +1,7 @@
 """A real recorder process on real sockets."""
 
 import json
+import os
 import secrets
 import signal
 import socket
@@ -8,12 +9,15 @@ import subprocess
 import sys
 import time
 from contextlib import contextmanager
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from recon4.errors import ConfigError
 from recon4.live.capture_file import CaptureFile, Datagram
 from recon4.live.replay import Shipment, moved, replay
+from recon4.live.serial_line import parse_device
 from recon4.live.session import Session
 from recon4.progress import Silent
 from recon4.recording.pcap import read_pcap
@@ -250,3 +254,113 @@ def test_a_replay_comes_in_at_the_speed_it_was_recorded_with_its_samples(session
     assert set(batch.source.tolist()) == {0x7FA801C9}
     steps = batch.t_ns - batch.t_ns[0] - (t_ns - t_ns[0])
     assert np.median(np.abs(steps)) < 20e6
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_kill_at_any_moment_loses_at_most_the_last_second(session, seed):
+    killed_after_s = np.random.default_rng(seed).uniform(1.2, 3.2)
+    sent_s = []
+    with recording(session) as (process, _):
+        udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        began_s = time.monotonic()
+        while time.monotonic() - began_s < killed_after_s:
+            udp.sendto(len(sent_s).to_bytes(4, "little") + bytes(1202), (session.address, 2368))
+            sent_s.append(time.monotonic())
+            time.sleep(0.0007)
+        killed_s = time.monotonic()
+        process.kill()
+        process.wait(20)
+        udp.close()
+
+    found, _ = numbers(session.capture)
+    assert found == list(range(len(found)))
+    assert killed_s - sent_s[len(found) - 1] < 1.0
+    # A crash of the computer loses what was not synced: that is counted, see `synced_bytes`.
+
+
+def test_what_the_kernel_drops_is_counted(session):
+    with recording(session) as (process, talk):
+        send(session, 10)
+        talk.hear("status", lambda told: told["file"]["datagrams"] == 10)
+        process.send_signal(signal.SIGSTOP)
+        sent = 60_000
+        send(session, sent, size=1206, start=10)
+        process.send_signal(signal.SIGCONT)
+        talk.hear("status", lambda told: told["file"]["datagrams"] > 1000)
+        send(session, 5, start=10 + sent)  # the kernel tells with the next one
+        told = talk.hear("status", lambda told: told["kernel_drops"] > 0)
+        talk.say(do="stop")
+        told = talk.hear("stopped")
+
+    assert told["file"]["datagrams"] + told["kernel_drops"] == 10 + sent + 5
+    assert told["kernel_drops"] > 100
+
+
+def test_after_a_full_disk_recording_goes_on(tmp_path):
+    code = """
+import resource, signal, sys, time
+from pathlib import Path
+from recon4.live.capture_file import CaptureFile, Datagram
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+unlimited = resource.getrlimit(resource.RLIMIT_FSIZE)[1]
+file = CaptureFile(Path(sys.argv[1]), on_written=lambda size: None)
+problems = []
+for k in range(300):
+    if k == 100: resource.setrlimit(resource.RLIMIT_FSIZE, (50_000, unlimited))
+    if k == 200: resource.setrlimit(resource.RLIMIT_FSIZE, (unlimited, unlimited))
+    file.add(Datagram(k, ("127.0.0.1", 5), 2368, k.to_bytes(4, "little") + bytes(1202)))
+    if k % 10 == 9:
+        while file.state().waiting_bytes: time.sleep(0.01)
+        time.sleep(0.02)
+        problems.append(file.state().problem)
+file.close()
+print(file.state().dropped, problems[5], "/", problems[15], "/", problems[-1])
+"""
+    path = tmp_path / "walk.pcap"
+
+    done = subprocess.run([sys.executable, "-c", code, path], capture_output=True, text=True)
+
+    assert done.stdout.strip() == "100  / the disk is full /", done.stderr
+    assert numbers(path)[0] == [*range(100), *range(200, 300)]
+
+
+def test_a_nearly_full_disk_stops_the_recording_in_good_order(session):
+    session = replace(session, least_free_bytes=1 << 62)
+    session.save()
+
+    with recording(session) as (process, talk):
+        stopped = talk.hear("stopped")
+        assert process.wait(20) == 0
+
+    assert stopped["why"] == "the disk is nearly full"
+    assert json.loads(session.outcome.read_text())["why"] == "the disk is nearly full"
+
+
+def test_sentences_of_a_serial_receiver_are_in_the_capture(session):
+    ours, theirs = os.openpty()
+    name = os.ttyname(theirs)
+    session.rig.write_text(
+        f'name = "test"\n[[sensor]]\nname = "lidar"\n[gnss]\nserial = "{name}:115200"\n'
+    )
+    sentence = b"$GPGGA,120000.00,4912.0,N,01636.0,E,4,12,0.8,250.0,M,44.0,M,1.0,0001*7B"
+    with recording(session) as (process, talk):
+        talk.hear("status", lambda told: told["serial"] == "")
+        os.write(ours, sentence[:30])
+        os.write(ours, sentence[30:] + b"\r\n" + sentence + b"\r\n")
+        talk.hear("status", lambda told: told["file"]["datagrams"] == 2)
+        os.close(ours)  # pulled out
+        os.close(theirs)
+        talk.hear("status", lambda told: name in told["serial"])
+        talk.say(do="stop")
+        process.wait(20)
+
+    (batch,) = read_pcap(session.capture, ImportReport())
+    assert batch.port.tolist() == [8310, 8310]
+    assert batch.payloads(np.array([1]), len(sentence)).tobytes() == sentence
+
+
+@pytest.mark.parametrize("text", ["/dev/x:fast", ":9600", "/dev/x:0"])
+def test_a_serial_device_that_is_none_is_refused(text):
+    with pytest.raises(ConfigError, match="DEVICE:BAUD"):
+        parse_device(text)
+    assert parse_device("/dev/ttyUSB0") == ("/dev/ttyUSB0", 9600)
