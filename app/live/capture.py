@@ -19,7 +19,7 @@ from recon4.live.session import Session
 log = logging.getLogger(__name__)
 
 STARTS_WITHIN_S = 60.0
-_MAPPER_STARTS = 3
+_MAPPER_STARTS = 5
 """A mapper that died so often is given up; the recording goes on."""
 
 
@@ -47,6 +47,7 @@ class Capture:
         self._tasks: list[asyncio.Task[None]] = []
         self._over = asyncio.Event()
         self._mapper_starts = 0
+        self._recorder_died = False
 
     @property
     def project(self) -> str:
@@ -118,6 +119,7 @@ class Capture:
             self._recorder = None
         self.state = State.FINISHING
         if not self.session.outcome.exists():
+            self._recorder_died = True
             self.problem = "the recorder died; what it recorded until then is safe"
 
     async def _follow_mapper(self) -> None:
@@ -128,20 +130,25 @@ class Capture:
                 async with linked(self.session.socket("mapper")) as link:
                     async for told in link.lines():
                         if told["kind"] == "done":
-                            done, self.problem = True, told["problem"] or self.problem
+                            done, self.problem = True, told["problem"] or self._at_the_end()
                         self.picture.take(told)
             except OSError:
                 pass  # none listens yet
             if not done:
                 self._mapper_starts += 1
                 process, problem = await self._spawn("mapper")
-                self.problem = problem if process is None else self.problem
+                if process is None:
+                    self.problem = problem
         if not done:
             self.problem = "the map stopped growing (its process died); the recording goes on"
         while self._recorder is not None:
             await self.picture.news(self.picture.version, timeout_s=1.0)
         self.state = State.READY
         self._over.set()
+
+    def _at_the_end(self) -> str:
+        """What is still wrong when the frames are ready; the mapper's troubles are over."""
+        return self.problem if self._recorder_died else ""
 
     async def _spawn(self, name: str) -> tuple[asyncio.subprocess.Process | None, str]:
         """Start a process of the capture; None and what it said if it does not get ready."""
@@ -167,6 +174,6 @@ class Capture:
 
 
 def unfinished(root: Path) -> list[Path]:
-    """Projects whose recorder still runs, of an earlier server."""
+    """Projects of an earlier server whose capture was not brought to an end."""
     sessions = root.glob("*/live/session.json")
     return [path.parents[1] for path in sessions if not (path.parent / "outcome.json").exists()]

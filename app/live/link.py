@@ -45,3 +45,12 @@ async def linked(path: Path) -> AsyncIterator[Link]:
         yield Link(reader, writer)
     finally:
         writer.close()
+
+
+async def listens(path: Path) -> bool:
+    """Whether a process listens on a path."""
+    try:
+        async with linked(path):
+            return True
+    except OSError:
+        return False

@@ -9,9 +9,10 @@ from typing import Any
 
 from app.errors import Conflict, NotFound
 from app.live.capture import Capture, unfinished
-from recon4.errors import StoreError
+from app.live.link import listens
+from recon4.errors import ConfigError, StoreError
 from recon4.live.project_files import begin
-from recon4.live.session import load_session
+from recon4.live.session import Session, load_session
 from recon4.model.rig import Rig, load_rig
 
 log = logging.getLogger(__name__)
@@ -75,21 +76,25 @@ class Captures:
             return capture
 
     async def adopt(self) -> None:
-        """Follow the capture an earlier server started, if its recorder still runs."""
+        """Follow the capture an earlier server started; if its recorder died, complete its map."""
+        found: list[tuple[bool, float, Session, Rig]] = []
         for project in unfinished(self._root):
             try:
                 session = load_session(project)
                 rig = load_rig(session.rig)
-            except StoreError as error:
+            except (StoreError, ConfigError) as error:
                 log.warning("%s", error)
                 continue
-            if not session.socket("recorder").exists():
-                continue
-            capture = Capture(session)
-            await capture.follow()
-            self._capture, self._rig = capture, rig
-            log.warning("%s: its recorder still runs and is followed again", project.name)
+            began_s = session.rig.stat().st_mtime
+            found.append((await listens(session.socket("recorder")), began_s, session, rig))
+        if not found:
             return
+        alive, _, session, rig = max(found, key=lambda one: one[:2])
+        capture = Capture(session)
+        await capture.follow()
+        self._capture, self._rig = capture, rig
+        what = "still runs and is followed again" if alive else "died: its map is completed"
+        log.warning("%s: its recorder %s", session.project.name, what)
 
     async def stop(self) -> Capture:
         """Stop recording; the map of what was recorded is completed.
