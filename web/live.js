@@ -95,6 +95,7 @@ function drawWords() {
 }
 
 function drawCoverage() {
+  byId("map").dataset.points = cloud.count;
   const { newest, state } = scene;
   byId("coverage").hidden = !newest.gaps || newest.gaps.well === null || state === "none";
   if (chosen >= (newest.gaps?.gaps.length ?? 0)) chosen = -1;

@@ -43,7 +43,7 @@ export function hint(state, { loop }, mayCapture) {
   if (state === "finishing") return "What was recorded is safe; its map is being completed";
   if (state === "ready") return mayCapture ? "Everything is stored. Now make the map" : "The walk is over; everything is stored";
   if (state === "paused") return "Stay here: go on where the pause began";
-  if (!loop || loop.walked_m <= 5) return "Walk slowly, doors open, through every room";
+  if (!loop || !(loop.walked_m > 5)) return "Walk slowly, doors open, through every room";
   if (loop.closed) return "✓ Loop closed";
   if (loop.start_m < NEAR_START_M) return "At the start, loop not closed yet";
   return `Loop open: return to the start, ${Math.round(loop.start_m)} m`;

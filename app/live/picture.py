@@ -16,7 +16,8 @@ POINTS_AT_ONCE = 20_000
 BYTES_A_POINT = 7
 _KEPT = ("status", "notes", "fix", "plan", "gaps", "loop")
 """Kinds of which only the newest counts."""
-_MOST_MARKS = 500
+_PLACED_WITHIN_NS = 10_000_000_000
+"""A mark appears without a place if the mapping does not come to its moment."""
 _PATH_STEP_M = 0.25
 """The way is kept a point every so far: an hour's walk is a few thousand."""
 
@@ -49,6 +50,8 @@ class Picture:
         self._voxels, self._values = bytearray(), bytearray()
         self._path: list[list[float]] = []
         self._marks: list[Message] = []
+        self._unplaced: list[Message] = []
+        """Marks of moments the mapping has not come to."""
 
     @property
     def points(self) -> int:
@@ -69,12 +72,13 @@ class Picture:
                 self._bump("pose")
                 if not told["lost"]:
                     self._go_to(told["p"])
+                self._place_marks(told["t_ns"])
             case "mark":
-                self._marks.append(told | {"p": self._here()})
-                del self._marks[:-_MOST_MARKS]
+                self._take_mark(told)
+            case "done":
+                self._place_marks(None)
             case kind if kind in _KEPT:
-                self.newest[kind] = told
-                self._bump(kind)
+                self._keep(kind, told)
             case _:
                 return
         self.version += 1
@@ -133,10 +137,23 @@ class Picture:
         if not self._path or math.dist(self._path[-1], place) >= _PATH_STEP_M:
             self._path.append([round(value, 2) for value in place])
 
-    def _here(self) -> list[float] | None:
-        """Where the walk is now; None before the first pose."""
-        place: list[float] | None = self.newest.get("pose", {}).get("p")
-        return place
+    def _keep(self, kind: str, told: Message) -> None:
+        self.newest[kind] = told
+        self._bump(kind)
+        if kind == "status":
+            self._place_marks(told["t_ns"] - _PLACED_WITHIN_NS)
+
+    def _take_mark(self, told: Message) -> None:
+        self._unplaced.append(told)
+        if told.get("what") != "point":
+            self._place_marks(told["t_ns"])
+
+    def _place_marks(self, until_ns: int | None) -> None:
+        """Put marks to where the walk is now, those until a moment or all of them."""
+        place = self.newest.get("pose", {}).get("p")
+        due = [m for m in self._unplaced if until_ns is None or m["t_ns"] <= until_ns]
+        self._unplaced = [mark for mark in self._unplaced if mark not in due]
+        self._marks += [mark | {"p": place} for mark in due]
 
     def _take_points(self, told: Message) -> None:
         if told["generation"] != self._generation or told["start"] == 0:

@@ -1,0 +1,132 @@
+"""Ten phones look at a walk, one of them stalls: ages, bytes and memory at the server's edge.
+
+``python tests/benchmarks/live_phones.py RECORDING [--seconds 60]`` starts a server, its recorder
+and mapper on this computer, replays a recording at true speed and looks on with Python clients.
+An age is from the end of a multiframe on the sensors' clock to its pose at the client.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import json
+import tempfile
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import httpx
+import numpy as np
+import psutil
+from websockets.asyncio.client import connect
+
+from recon4.live.replay import replay
+from recon4.progress import Silent
+from tests.service.running import server_process
+
+PHONES = 10
+STALLS_AFTER_S = 5.0
+
+
+class Ended(Exception):
+    """The replay has gone on for long enough."""
+
+
+class Phone:
+    """What one phone saw."""
+
+    def __init__(self, stalls: bool) -> None:
+        self.stalls = stalls
+        self.ages_s: list[float] = []
+        self.bytes: list[tuple[float, int]] = []
+        self.first_points_s = float("nan")
+
+    async def look(self, url: str, until_s: float) -> None:
+        """Until a time; one that stalls stops reading."""
+        began_s = time.monotonic()
+        stream = url.replace("http", "ws") + "/api/live/stream"
+        async with connect(stream, origin=url, max_size=None, max_queue=2) as socket:
+            await socket.send("{}")
+            while time.monotonic() < until_s:
+                if self.stalls and time.monotonic() - began_s > STALLS_AFTER_S:
+                    await asyncio.sleep(until_s - time.monotonic())
+                    return
+                data = await socket.recv()
+                self.bytes.append((time.monotonic() - began_s, len(data)))
+                if isinstance(data, bytes):
+                    self.first_points_s = np.fmin(self.first_points_s, self.bytes[-1][0])
+                else:
+                    self._hear(json.loads(data))
+
+    def _hear(self, told: dict[str, Any]) -> None:
+        if "pose" in told:
+            self.ages_s.append(time.time() - told["pose"]["t_ns"] / 1e9)
+
+    def figures(self) -> dict[str, float]:
+        """Percentiles [ms] and rates after the first five seconds."""
+        later = [(t_s, size) for t_s, size in self.bytes if t_s > STALLS_AFTER_S]
+        span_s = later[-1][0] - later[0][0] if later else float("nan")
+        ages = np.array(self.ages_s[20:]) * 1000
+        return {
+            "first points s": round(self.first_points_s, 2),
+            "age p50 ms": round(float(np.percentile(ages, 50))),
+            "age p95 ms": round(float(np.percentile(ages, 95))),
+            "Mbit/s": round(8e-6 * sum(size for _, size in later) / span_s, 2),
+            "poses a second": round(len(self.ages_s) / self.bytes[-1][0], 1),
+        }
+
+
+async def watch(url: str, seconds: float, *, stalled: bool) -> list[Phone]:
+    """Ten phones at once."""
+    phones = [Phone(stalls=stalled and k == 0) for k in range(PHONES)]
+    until_s = time.monotonic() + seconds
+    await asyncio.gather(*(phone.look(url, until_s) for phone in phones))
+    return phones
+
+
+def main() -> None:
+    """Print a line a phase."""
+    ask = argparse.ArgumentParser(description=__doc__)
+    ask.add_argument("recording", type=Path)
+    ask.add_argument("--seconds", type=float, default=20.0, help="of each phase")
+    given = ask.parse_args()
+    with tempfile.TemporaryDirectory() as folder, server_process(Path(folder)) as (server, process):
+        measure(server.url, psutil.Process(process.pid), given)
+        httpx.post(f"{server.url}/api/live/stop", timeout=30.0)
+
+
+def measure(url: str, process: psutil.Process, given: argparse.Namespace) -> None:
+    """Both phases on one walk."""
+    capture = {"project": "walk", "rig": "4recon", "preset": "indoor"}
+    answer = httpx.post(f"{url}/api/live", json=capture, timeout=60.0)
+    answer.raise_for_status()
+    end_s = time.monotonic() + 2 * given.seconds + 4.0
+
+    def while_it_lasts(shipment: Any) -> tuple[Any]:
+        if time.monotonic() > end_s:
+            raise Ended
+        return (shipment,)
+
+    def send() -> None:
+        try:
+            replay(given.recording, progress=Silent(), alter=while_it_lasts)
+        except Ended:
+            return
+
+    sending = threading.Thread(target=send)
+    sending.start()
+    time.sleep(2.0)
+    for name, stalled in (("ten phones", False), ("one of them stalled", True)):
+        before = process.memory_info().rss
+        phones = asyncio.run(watch(url, given.seconds, stalled=stalled))
+        grown = (process.memory_info().rss - before) / 2**20
+        listening = [phone.figures() for phone in phones if not phone.stalls]
+        worst = {key: max(one[key] for one in listening) for key in listening[0]}
+        median = {key: float(np.median([one[key] for one in listening])) for key in listening[0]}
+        print(f"{name}: median {median}, worst {worst}, server grew by {grown:.1f} MiB")
+    sending.join()
+
+
+if __name__ == "__main__":
+    main()

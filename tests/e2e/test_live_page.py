@@ -1,0 +1,245 @@
+"""A walk on a phone, from its start to the map, on a replay of a simulated walk."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import re
+import secrets
+import threading
+import time
+from contextlib import contextmanager
+from urllib.parse import urlsplit
+
+import pytest
+from playwright.sync_api import expect
+
+from app.live.picture import BYTES_A_POINT
+from recon4.errors import Cancelled
+from recon4.live.replay import replay
+from recon4.model.rig import load_rig
+from recon4.pipeline import process
+from recon4.progress import Silent
+from recon4.simulation.simulate import simulate
+from tests.e2e.conftest import EXPECTED_NOISE
+from tests.service.cuttable import cuttable
+from tests.service.running import server_thread
+
+pytestmark = pytest.mark.e2e
+SECONDS = 16.0
+LONG = os.environ.get("RECON4_LONG") == "1"
+"""Whether to make the whole map twice, not only its frames: minutes."""
+NEAR_M = 1.0
+OFFLINE = ("WebSocket connection to", "ERR_")
+"""What Chromium itself says of a cut link."""
+
+GAPS = """() => new Promise((resolve) => {
+  const socket = new WebSocket(`ws://${location.host}/api/live/stream`);
+  socket.onopen = () => socket.send("{}");
+  socket.onmessage = ({ data }) => {
+    const told = typeof data === "string" ? JSON.parse(data) : {};
+    if (told.gaps?.gaps.length) (socket.close(), resolve(told.gaps.gaps));
+  };
+})"""
+"""The gaps as a phone is told."""
+
+
+@pytest.fixture(scope="module")
+def walk(tmp_path_factory):
+    out = tmp_path_factory.mktemp("walk")
+    simulate("office", out, seconds=SECONDS, seed=3, progress=Silent())
+    return out
+
+
+@pytest.fixture
+def server(tmp_path):
+    root = tmp_path / "projects"
+    root.mkdir()
+    address = ".".join(["127", *(str(secrets.randbelow(250) + 2) for _ in range(3))])
+    with server_thread(root, live_address=address) as running:
+        yield running
+
+
+@pytest.fixture
+def link(server):
+    with cuttable(urlsplit(server.url).port) as link:
+        yield link
+
+
+@pytest.fixture
+def look():
+    return "phone", "dark"
+
+
+@pytest.fixture
+def page(context):
+    page = context.new_page()
+    complaints = []
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on("console", lambda message: message.type == "error" and complaints.append(message.text))
+    yield page
+    noise = (*EXPECTED_NOISE, *OFFLINE)
+    assert [text for text in complaints if not any(one in text for one in noise)] == []
+
+
+def points(page):
+    return int(page.locator("#map").get_attribute("data-points") or 0)
+
+
+def wait_for_points(page, least):
+    deadline_s = time.monotonic() + 45.0
+    while points(page) < least:
+        assert time.monotonic() < deadline_s, f"only {points(page)} points"
+        page.wait_for_timeout(100)
+
+
+@contextmanager
+def sending(server, walk):
+    thread = threading.Thread(
+        target=replay,
+        args=(walk,),
+        kwargs={"progress": Silent(), "target": server.app.state.parts.settings.live_address},
+    )
+    thread.start()
+    try:
+        yield
+    finally:
+        thread.join()
+
+
+def begin(page, url):
+    page.goto(f"{url}/live")
+    page.get_by_role("button", name="Start…").click()
+    page.get_by_label("Place", exact=True).fill("Town hall")
+    page.get_by_label("Project name").fill("walk")
+    page.get_by_label("Rig").select_option("4recon")
+    page.get_by_role("button", name="Start recording").click()
+    expect(page.locator("#state")).to_have_text("Recording")
+    expect(page.locator("#place")).to_have_text("Town hall")
+
+
+def fits(page):
+    """Nothing sticks out, and everything to press is large enough."""
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    wrong = page.evaluate(
+        """[...document.querySelectorAll('button, .live a')].filter((one) => {
+          const box = one.getBoundingClientRect();
+          const inside = box.left >= 0 && box.right <= innerWidth && box.bottom <= innerHeight;
+          return one.checkVisibility() && (box.height < 44 || !inside);
+        }).map((one) => one.outerHTML.slice(0, 80))"""
+    )
+    assert wrong == []
+
+
+def test_a_walk_is_seen_from_its_start_to_its_map(server, link, walk, page, picture, tmp_path):
+    begin(page, link.url)
+    with sending(server, walk):
+        wait_for_points(page, 3000)
+        early, gaps = points(page), page.evaluate(GAPS)
+        expect(page.locator("#well")).to_have_text(re.compile(r"\d+ %"))
+        well = page.locator("#well").inner_text()
+        page.get_by_role("button", name="show the next").click()
+        expect(page.locator("#hint")).to_have_text(re.compile(r"Not seen: .* m wide"))
+        page.get_by_role("button", name="Follow").click()
+        fits(page)
+        mark(page, "crack in the wall")
+        cut_and_restore(page, link)
+    wait_for_points(page, early + 1000)
+    expect(page.locator("#well")).not_to_have_text(well)
+    picture(page, "live")
+    later = page.evaluate(GAPS)
+    filled = [gap for gap in gaps if all(far(gap, other) for other in later)]
+    assert filled, "no gap was filled"
+
+    page.get_by_role("button", name="Stop").click()
+    page.locator("#ending").get_by_role("button", name="Stop").click()
+    expect(page.get_by_role("button", name="Make the map")).to_be_visible()
+    expect(page.locator("#words li")).to_have_count(0)
+    expect(page.locator("#sensors li")).to_have_count(0)
+    marks = (server.root / "walk" / "recordings" / "marks.jsonl").read_text().splitlines()
+    assert "crack in the wall" in [json.loads(line).get("text") for line in marks]
+
+    page.get_by_role("button", name="Make the map").click()
+    page.wait_for_url(f"{link.url}/projects/walk/")
+    job = server.get("/api/projects/walk/jobs").json()[0]["job"]["id"]
+    if LONG:
+        server.wait(job, lambda view: view["job"]["state"] == "succeeded", most_s=600.0)
+    else:
+        server.wait_state(job, "running")
+        server.post(f"/api/jobs/{job}/cancel")
+        server.wait(job, lambda view: view["job"]["finished"])
+    same_as_from_the_file(server.root / "walk", tmp_path / "again")
+
+
+def mark(page, words):
+    page.get_by_role("button", name="Mark").click()
+    page.get_by_label("Note").fill(words)
+    page.locator("#note").get_by_role("button", name="Mark").click()
+    expect(page.locator("#note")).to_be_hidden()
+
+
+def cut_and_restore(page, link):
+    """The page says so, comes back by itself, and gets only what it lacks."""
+    wait_for_points(page, 25_000)
+    link.cut()
+    expect(page.locator("#state")).to_have_text("No link. The recording goes on")
+    before = points(page)
+    page.wait_for_timeout(2500)
+    at = link.received
+    link.restore()
+    expect(page.locator("#state")).to_have_text("Recording", timeout=5000)
+    wait_for_points(page, before + 1)
+    received, new = link.received - at, points(page) - before
+    assert received < BYTES_A_POINT * (new + before // 2), "what was there was sent again"
+
+
+def far(gap, other):
+    return sum((a - b) ** 2 for a, b in zip(gap["p"], other["p"], strict=True)) > NEAR_M**2
+
+
+class FirstStage(Silent):
+    """Lets the pipeline get as far as its first stage, if that is all there is time for."""
+
+    def start(self, what, total, unit):
+        if what == "odometry" and not LONG:
+            raise Cancelled("the frames are there")
+
+
+def same_as_from_the_file(live, again):
+    """Whoever processes the capture file anew gets the same artifacts, byte by byte."""
+    rig = load_rig(live / "recordings" / "rig.toml")
+    with contextlib.suppress(Cancelled):
+        process([live / "recordings" / "walk.pcap"], again, rig=rig, progress=FirstStage())
+    fresh = sorted(path.name for path in (again / "artifacts").iterdir())
+    assert fresh and set(fresh) <= {path.name for path in (live / "artifacts").iterdir()}
+    files = [path for path in sorted(again.glob("artifacts/*/**/*.npy")) if path.is_file()]
+    assert files
+    for file in files:
+        assert file.read_bytes() == (live / file.relative_to(again)).read_bytes(), file.name
+
+
+@pytest.mark.parametrize("size", [(360, 640), (390, 844), (844, 390), (667, 375)])
+def test_everything_fits_on_a_small_phone_both_ways(server, page, size):
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    page.goto(f"{server.url}/live")
+    expect(page.get_by_role("button", name="Start…")).to_be_visible()
+
+    fits(page)
+    page.get_by_role("button", name="Help and more").click()
+    expect(page.get_by_role("dialog")).to_be_visible()
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+
+
+def test_the_keyboard_does_it_too(server, page):
+    page.goto(f"{server.url}/live")
+    expect(page.get_by_role("button", name="Start…")).to_be_visible()
+
+    page.keyboard.press("t")
+    expect(page.get_by_role("button", name="3-D")).to_have_attribute("aria-pressed", "true")
+    page.keyboard.press("ArrowLeft")
+    expect(page.get_by_role("button", name="Follow")).to_have_attribute("aria-pressed", "false")
+    page.keyboard.press("?")
+    expect(page.get_by_role("dialog")).to_be_visible()
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("dialog")).to_be_hidden()

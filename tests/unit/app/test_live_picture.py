@@ -1,0 +1,88 @@
+"""What the phones are shown: each gets what it lacks, no more."""
+
+import base64
+
+import numpy as np
+
+from app.live.picture import Cursor, Picture
+
+SECOND_NS = 1_000_000_000
+
+
+def pose(t_s, x, lost=False):
+    return {"kind": "pose", "t_ns": int(t_s * SECOND_NS), "p": [x, 0.0, 1.0], "lost": lost}
+
+
+def points(start, count, generation=0):
+    return {
+        "kind": "points",
+        "generation": generation,
+        "start": start,
+        "voxel_m": 0.1,
+        "voxels": base64.b64encode(np.full((count, 3), start, np.int16).tobytes()).decode(),
+        "values": base64.b64encode(np.zeros(count, np.uint8).tobytes()).decode(),
+    }
+
+
+def mark(t_s, text, what="point"):
+    return {"kind": "mark", "t_ns": int(t_s * SECOND_NS), "what": what, "text": text}
+
+
+def marks_of(picture):
+    return picture.lacking(Cursor())[0].get("marks", [])
+
+
+def test_a_phone_that_comes_back_gets_only_what_it_lacks():
+    picture = Picture()
+    picture.take(points(0, 1000))
+    cursor = Cursor(generation=0, points=1000)
+
+    told, data = picture.lacking(cursor)
+    assert "points" not in told and data == b""
+    picture.take(points(1000, 10))
+    told, data = picture.lacking(cursor)
+
+    assert (told["points"]["start"], told["points"]["count"], len(data)) == (1000, 10, 70)
+
+
+def test_a_phone_with_points_of_larger_number_or_other_generation_begins_anew():
+    picture = Picture()
+    picture.take(points(0, 50, generation=1))
+
+    for cursor in (Cursor(generation=0, points=1000), Cursor(generation=1, points=51)):
+        assert picture.lacking(cursor)[0]["points"]["start"] == 0
+
+
+def test_a_mark_lies_where_one_was_although_the_mapping_is_late():
+    picture = Picture()
+    picture.take(pose(1.0, 10.0))
+    picture.take(mark(3.0, "crack"))
+    assert marks_of(picture) == []
+
+    picture.take(pose(2.0, 20.0))
+    assert marks_of(picture) == []
+    picture.take(pose(3.0, 30.0))
+
+    assert [(one["text"], one["p"][0]) for one in marks_of(picture)] == [("crack", 30.0)]
+
+
+def test_a_mark_appears_without_mapping_too_and_a_name_at_once():
+    picture = Picture()
+    picture.take(mark(3.0, "town hall", what="place"))
+    assert [one["text"] for one in marks_of(picture)] == ["town hall"]
+    picture.take(mark(3.0, "crack"))
+    picture.take({"kind": "status", "t_ns": 14 * SECOND_NS})
+
+    assert [(one["text"], one["p"]) for one in marks_of(picture)] == [
+        ("town hall", None),
+        ("crack", None),
+    ]
+
+
+def test_an_hour_of_standing_is_one_place_of_the_way():
+    picture = Picture()
+    for k in range(1000):
+        picture.take(pose(k * 0.1, 0.001 * (k % 2)))
+    picture.take(pose(101.0, 5.0))
+
+    assert picture.lacking(Cursor())[0]["path"]["points"] == [[0.0, 0.0, 1.0], [5.0, 0.0, 1.0]]
