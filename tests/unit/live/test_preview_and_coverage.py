@@ -50,6 +50,17 @@ def test_too_many_points_double_the_voxels_and_everything_is_sent_again():
     np.testing.assert_array_equal(np.unique(chunk.voxels, axis=0), expected)
 
 
+def test_larger_voxels_keep_the_value_that_was_there_first():
+    preview = Preview(voxel_m=0.1, most=2)
+
+    chunk = preview.add(
+        np.array([[0.01, 0, 0], [0.11, 0, 0], [5.01, 0, 0]]), np.array([7, 8, 9], np.uint8)
+    )
+
+    assert chunk.voxels.tolist() == [[0, 0, 0], [25, 0, 0]]
+    assert chunk.values.tolist() == [7, 9]
+
+
 def test_points_beyond_the_reach_of_the_numbers_are_left_out():
     preview = Preview(voxel_m=0.1)
 
@@ -134,3 +145,74 @@ def test_the_plan_grows_where_the_walk_goes():
     seen = coverage.seen()
     assert seen.sum() == pytest.approx(2 * before, rel=0.05)
     assert min(seen.shape) > 256
+
+
+def seen_at(coverage, x_m, y_m):
+    return coverage.seen()[tuple((np.array([x_m, y_m]) / CELL_M - coverage.first_cell).astype(int))]
+
+
+def test_a_wall_is_seen_well_after_twelve_rays():
+    coverage, wall = Coverage(), np.array([[3.1, 0.1, 0.0]])
+
+    look(coverage, (0.0, 0.0), wall, times=11)
+    before = seen_at(coverage, 3.1, 0.1)
+    look(coverage, (0.0, 0.0), wall, times=1)
+
+    assert (before, seen_at(coverage, 3.1, 0.1)) == (Seen.POOR, Seen.WELL)
+
+
+def test_somebody_who_stood_there_for_a_moment_is_no_wall():
+    coverage = Coverage()
+
+    look(coverage, (0.0, 0.1), np.array([[2.1, 0.1, 0.0]]), times=3)
+    look(coverage, (0.0, 0.1), np.array([[6.1, 0.1, 0.0]]), times=40)
+
+    assert seen_at(coverage, 2.1, 0.1) == Seen.FREE
+
+
+def test_an_open_door_far_from_the_way_is_no_gap():
+    coverage = Coverage()
+    outer = room(-3, 12, -2, 2, door=(-0.6, 0.6), step=0.02)
+    inside = np.array([[13.5, y, 0.0] for y in np.arange(-0.7, 0.7, 0.02)])
+    rays = np.concatenate([outer, inside])
+
+    look(coverage, (0.0, 0.0), rays)
+    from_afar = coverage.gaps()
+    look(coverage, (8.0, 0.0), rays)
+
+    assert from_afar == []
+    assert any(gap.p_map[0] > 11.7 for gap in coverage.gaps())
+
+
+def test_the_widest_gap_comes_first_and_a_crack_is_none():
+    coverage = Coverage()
+    walls = room(-3, 3, -4, 4, step=0.02)
+    right = np.abs(walls[:, 0] - 3) < 1e-6
+    rays = walls.copy()
+    for low, high, reach in [(-3.5, -1.7, 1.3), (0.0, 0.2, 1.1), (2.0, 3.2, 1.3)]:
+        beyond = right & (walls[:, 1] > low) & (walls[:, 1] < high)
+        rays[beyond] = rays[beyond] * [reach, reach, 0.0] + [0.0, 0.0, -1.2]  # on the floor
+
+    look(coverage, (0.0, 0.0), rays)
+
+    gaps = coverage.gaps()
+    assert len(gaps) == 2
+    assert gaps[0].width_m > gaps[1].width_m
+    assert gaps[0].p_map[1] < 0 < gaps[1].p_map[1]
+
+
+def test_only_surfaces_near_the_way_count_as_seen_well():
+    coverage = Coverage()
+    look(coverage, (0.0, 0.0), np.array([[3.1, 0.1, 0.0]]), times=5)
+    look(coverage, (0.0, 0.0), np.array([[0.1, 10.1, 0.0]]), times=20)
+
+    assert seen_at(coverage, 0.1, 10.1) == Seen.WELL
+    assert coverage.share_well() == 0.0
+
+
+def test_cells_between_two_rays_are_no_gap():
+    coverage = Coverage()
+
+    look(coverage, (0.0, 0.0), room(-6, 6, -4, 4, step=0.3))
+
+    assert coverage.gaps() == []
