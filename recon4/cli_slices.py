@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -35,8 +36,9 @@ def cut_map(  # noqa: PLR0913 - options of a command
         str, typer.Option(help="height, intensity, normalized, time or sensor.")
     ] = "height",
 ) -> None:
-    """Cut a map and write the slice, at full resolution."""
+    """Cut a map and write the slice, at full resolution. It carries the map's approval."""
     from recon4.mapping.tiles import TileSet
+    from recon4.review.approval import approval_of
     from recon4.slices.frames import frame_of
     from recon4.store.project import read_artifacts
 
@@ -44,7 +46,9 @@ def cut_map(  # noqa: PLR0913 - options of a command
     frame = frame_of(artifacts)
     tiles = TileSet.open(artifacts["map"])
     cuts = _cut(z, line, plane, thickness).repeated(count, spacing_m=spacing)
-    points = _write(tiles, cuts, file, frame, about={"color": color, "name": project.name})
+    approval = approval_of(project, {stage: folder.name for stage, folder in artifacts.items()})
+    about = {"color": color, "name": project.name, "stamp": approval.stamp if approval else None}
+    points = _write(tiles, cuts, file, frame, about=about)
     sys.stdout.write(f"{points} points in {file}\n")
 
 
@@ -100,15 +104,16 @@ def _numbers(text: str, count: int) -> list[float]:
 def _write(
     tiles: TileSet, cuts: tuple[Cut, ...], file: Path, frame: Frame, *, about: dict[str, Any]
 ) -> int:
+    from recon4.review.stamp import stamp_file
     from recon4.slices.export import write_csv, write_dxf, write_laz
 
     ending = file.suffix.lower()
-    if ending == ".laz":
-        return write_laz(tiles, cuts, file, frame=frame)
-    if ending == ".csv":
-        return write_csv(tiles, cuts, file, frame=frame)
-    if ending == ".dxf":
-        return write_dxf(tiles, cuts, file, frame=frame)
+    writers = {".laz": write_laz, ".csv": write_csv, ".dxf": write_dxf}
+    if ending in writers:
+        points = writers[ending](tiles, cuts, file, frame=frame)
+        if about["stamp"]:
+            stamp_file(file, file, about["stamp"])
+        return points
     if ending not in {".png", ".svg", ".pdf", ".tif"}:
         raise ConfigError(f"a slice is written as png svg pdf tif dxf laz csv, got {file.name}")
     if len(cuts) > 1:
@@ -127,15 +132,17 @@ def _write_picture(
 
     if about["color"] not in WORDS:
         raise ConfigError(f"colors are {', '.join(WORDS)}; got {about['color']!r}")
+    approval = approval_words(asdict(about["stamp"]) if about["stamp"] else None)
     window = extent(tiles, cut)
     if file.suffix.lower() == ".tif":
         side_m = max(window.right - window.left, window.top - window.bottom)
         made = draw(tiles, cut, Paper(window, max(0.005, side_m / 6000)), color=about["color"])
-        write_geotiff(made, file, frame=frame, span=made.span)
+        title = f"{about['name']}: {approval}"
+        write_geotiff(made, file, frame=frame, span=made.span, words=title)
         return made.points
     layout = lay_out(window)
     made = draw(tiles, cut, layout.paper, color=about["color"])
     key = tiles.tiles[0].folder.parent.name if tiles.tiles else ""
-    words = Words(about["name"], frame.words, source_words(key), approval_words(None))
+    words = Words(about["name"], frame.words, source_words(key), approval)
     write_sheet(made, layout, file, span=made.span, words=words)
     return made.points

@@ -305,6 +305,16 @@ def test_an_export_of_an_approved_map_carries_the_approval(server, root, tmp_pat
     assert sha.encode() in (tmp_path / name).read_bytes()[:4000]
 
 
+@pytest.mark.parametrize("name", ["s.svg", "s.laz", "s.csv", "s.dxf", "s.tif"])
+def test_a_slice_cut_by_command_carries_the_approval(server, root, tmp_path, name):
+    sha = approve(server).json()["approval"]["hash"]
+
+    assert main(["slice", str(root), str(tmp_path / name), "--z", "0.5"]) == 0
+
+    found = (tmp_path / name).read_bytes()
+    assert sha[:16].encode() in found and b"Not approved" not in found
+
+
 def test_an_approval_is_not_given_while_decisions_are_not_in_the_map(server):
     decide(server, "reject", RIGHT)
 
