@@ -214,8 +214,8 @@ def align_reference(
         return set_alignment(folder, T, words=words)
     against = reference_of(reference, "plane")
     assert against is not None
-    T = align_by_icp(tiles_of(map_folder), against, rng=np.random.default_rng(1))
-    return set_alignment(folder, T, words="ICP, point to plane")
+    fit = align_by_icp(tiles_of(map_folder), against, rng=np.random.default_rng(1))
+    return set_alignment(folder, fit.T_map_reference, words=fit.words)
 
 
 def export(

@@ -16,6 +16,8 @@ from recon4.geometry.se3 import SE3, Array
 _KERNEL_M = 0.05
 """Scale of the Cauchy kernel: points of moving people must not pull the map."""
 _MAX_SAMPLES = 400_000
+_STILL = 1e-4
+"""A step shorter than this [m and rad] moves nothing anybody measures."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -126,7 +128,18 @@ def align_to_mesh(
     q, normals = sample_mesh(mesh, spacing_m=0.05, rng=rng)
     return fit_planes(
         p_map, q, normals, T_model_map=T_model_map, rounds=rounds, max_distance_m=max_distance_m
-    )[0]
+    ).T_model_map
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlaneFit:
+    """Where point-to-plane ICP ended."""
+
+    T_model_map: SE3
+    distance_m: Array
+    """Of the points that matched, from the plane of their partner [m], (M,)."""
+    converged: bool
+    """Whether the last step was no step any more."""
 
 
 def fit_planes(
@@ -137,26 +150,28 @@ def fit_planes(
     T_model_map: SE3,
     rounds: int = 30,
     max_distance_m: float = 0.5,
-) -> tuple[SE3, int]:
+) -> PlaneFit:
     """As `align_to_mesh`, onto points of the model ``q`` (M, 3) with normals of either sign.
 
-    Returns:
-        ``T_model_map`` and how many points matched at last; fewer than 100 are not used.
+    Fewer than 100 points that match are not used: then nothing moves any more.
     """
     tree = cKDTree(q)
-    matched = 0
+    residual, length = np.empty(0), np.inf
     for _ in range(rounds):
         p = T_model_map @ p_map
         distance, nearest = tree.query(p, distance_upper_bound=max_distance_m)
         near = np.isfinite(distance)
-        matched = int(near.sum())
-        if matched < 100:
+        p, partner, normal = p[near], q[nearest[near]], normals[nearest[near]]
+        residual = np.abs(np.einsum("ni,ni->n", normal, p - partner))
+        if len(p) < 100:
+            length = np.inf
             break
-        step = _point_to_plane_step(p[near], q[nearest[near]], normals[nearest[near]])
+        step = _point_to_plane_step(p, partner, normal)
         T_model_map = step @ T_model_map
-        if np.linalg.norm(step.log()) < 1e-7:
+        length = float(np.linalg.norm(step.log()))
+        if length < 1e-7:
             break
-    return T_model_map, matched
+    return PlaneFit(T_model_map, residual, length < _STILL)
 
 
 def _point_to_plane_step(p: Array, q: Array, normals: Array) -> SE3:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from recon4.errors import ConfigError
@@ -12,6 +14,14 @@ from recon4.slices.reference import Reference
 
 _SAMPLES = 60_000
 _TARGETS = 400_000
+_ROUNDS = 60
+_NEAR_M = 0.5
+_ON_M = 0.10
+_LEAST_POINTS = 100
+_LEAST_NEAR = 0.02
+"""A reference may be one room of a building, so little of the map must lie near it …"""
+_LEAST_ON = 0.6
+"""… but what does must lie on it."""
 
 
 def align_by_pairs(p_map: Array, p_reference: Array) -> tuple[SE3, Array]:
@@ -31,25 +41,55 @@ def align_by_pairs(p_map: Array, p_reference: Array) -> tuple[SE3, Array]:
     return T, np.linalg.norm(p_map - T @ p_reference, axis=1)
 
 
-def align_by_icp(tiles: TileSet, reference: Reference, *, rng: np.random.Generator) -> SE3:
+@dataclass(frozen=True, slots=True)
+class IcpFit:
+    """An alignment by ICP and what speaks for it."""
+
+    T_map_reference: SE3
+    share_near: float
+    """Of the map's points, those within half a metre of the reference, 0..1."""
+    share_on: float
+    """Of these, those within 10 cm of its surface, 0..1."""
+    mean_m: float
+    """Distance of the latter from the surface [m]."""
+
+    @property
+    def words(self) -> str:
+        """For the list of references."""
+        return (
+            f"ICP, point to plane: {100.0 * self.share_near:.0f} % of the map near it, of these "
+            f"{100.0 * self.share_on:.0f} % on it, {100.0 * self.mean_m:.1f} cm from it on average"
+        )
+
+
+def align_by_icp(tiles: TileSet, reference: Reference, *, rng: np.random.Generator) -> IcpFit:
     """Point-to-plane ICP of the map onto the reference, from the present alignment on.
 
     Both must be within half a metre of each other; the figures after it say nothing about a
     common shift or turn any more (V aligns by ICP too).
 
-    Returns:
-        ``T_map_reference``.
-
     Raises:
-        ConfigError: If too little of the map lies near the reference.
+        ConfigError: If too little of the map lies near the reference or on it, or it went on
+            moving.
     """
     p_map = _sample_map(tiles, rng)
     q, normals = _targets(reference, rng)
     start = reference.T_map_reference.inverse()
-    T_reference_map, matched = fit_planes(p_map, q, normals, T_model_map=start)
-    if matched < 100:
-        raise ConfigError("the map and the reference do not lie on each other: align by pairs")
-    return T_reference_map.inverse()
+    fit = fit_planes(p_map, q, normals, T_model_map=start, rounds=_ROUNDS, max_distance_m=_NEAR_M)
+    near = len(fit.distance_m)
+    on = fit.distance_m[fit.distance_m < _ON_M]
+    share_near, share_on = near / max(1, len(p_map)), len(on) / max(1, near)
+    if near < _LEAST_POINTS or share_near < _LEAST_NEAR:
+        raise ConfigError(
+            f"the map and the reference do not lie on each other: {100.0 * share_near:.1f} % of "
+            f"the map is within {100.0 * _NEAR_M:.0f} cm of it; align by pairs"
+        )
+    if not fit.converged or share_on < _LEAST_ON:
+        why = f"only {100.0 * share_on:.0f} % of the points near it came to lie on it (10 cm)"
+        if not fit.converged:
+            why = f"it still moved after {_ROUNDS} rounds"
+        raise ConfigError(f"ICP did not lay the reference onto the map: {why}; align by pairs")
+    return IcpFit(fit.T_model_map.inverse(), share_near, share_on, float(on.mean()))
 
 
 def _sample_map(tiles: TileSet, rng: np.random.Generator) -> Array:

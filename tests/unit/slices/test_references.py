@@ -268,19 +268,50 @@ def test_pairs_that_leave_the_turn_open_are_refused(q):
         align_by_pairs(q + 1.0, q)
 
 
-def test_icp_finds_a_small_offset(tmp_path):
-    rng = np.random.default_rng(3)
-    sides = [rng.uniform(size=(8000, 3)) * [4, 3, 2] for _ in range(3)]
-    for axis, side in enumerate(sides):
-        side[:, axis] = 0.0
-    T = SE3.from_rpy(0.0, 0.0, 0.02, [0.05, -0.03, 0.04])
-    tiles = write_map(tmp_path / "map", T @ np.concatenate(sides))
+@pytest.fixture
+def box_reference(tmp_path):
     write_mesh(tmp_path / "box.ply")
     import_reference(tmp_path / "box.ply", tmp_path / "reference")
+    return load_reference(tmp_path / "reference")
 
-    found = align_by_icp(tiles, load_reference(tmp_path / "reference"), rng=rng)
 
-    assert np.abs(found.matrix() - T.matrix()).max() < 2e-3
+def three_sides(rng, *, noise_m=0.0):
+    sides = [rng.uniform(size=(8000, 3)) * [4, 3, 2] for _ in range(3)]
+    for axis, side in enumerate(sides):
+        side[:, axis] = noise_m * rng.standard_normal(len(side))
+    return np.concatenate(sides)
+
+
+def test_icp_finds_a_small_offset_and_says_what_remains(tmp_path, box_reference):
+    rng = np.random.default_rng(3)
+    T = SE3.from_rpy(0.0, 0.0, 0.02, [0.05, -0.03, 0.04])
+    elsewhere = np.add(rng.uniform(size=(24_000, 3)), [9.0, 0.0, 0.0])
+    p = np.concatenate([three_sides(rng, noise_m=0.01), elsewhere])
+    tiles = write_map(tmp_path / "map", T @ p)
+
+    found = align_by_icp(tiles, box_reference, rng=rng)
+
+    assert np.abs(found.T_map_reference.matrix() - T.matrix()).max() < 2e-3
+    assert found.share_near == pytest.approx(0.5, abs=0.02) and found.share_on > 0.99
+    assert found.mean_m == pytest.approx(0.01 * np.sqrt(2.0 / np.pi), abs=0.001)
+    assert "0.8 cm from it on average" in found.words
+
+
+def test_icp_onto_something_else_is_refused(tmp_path, box_reference):
+    rng = np.random.default_rng(3)
+    bush = rng.uniform(size=(20_000, 3)) * [4, 3, 2]
+    tiles = write_map(tmp_path / "map", bush)
+
+    with pytest.raises(ConfigError, match="did not lay the reference onto the map"):
+        align_by_icp(tiles, box_reference, rng=rng)
+
+
+def test_icp_over_a_distance_is_refused(tmp_path, box_reference):
+    rng = np.random.default_rng(3)
+    tiles = write_map(tmp_path / "map", np.add(three_sides(rng), [20.0, 0.0, 0.0]))
+
+    with pytest.raises(ConfigError, match=r"0\.0 % of the map is within 50 cm"):
+        align_by_icp(tiles, box_reference, rng=rng)
 
 
 def test_a_free_cut_of_a_mesh_is_in_its_plane():
