@@ -60,17 +60,22 @@ export function showEffect(panel, effect, { working, choose }) {
   );
 }
 
+/** Who approved what; a decision after the approval makes a draft again. */
+function approvalWords({ approval, in_map }) {
+  if (!approval) return "Not approved, a draft";
+  const version = `version ${approval.version} by ${approval.who}, ${when(approval.time)}`;
+  if (!approval.current) return `A draft. An earlier map was approved: ${version}`;
+  return in_map ? `✓ Approved: ${version}` : `A draft again: decisions came after the approval of ${version}`;
+}
+
 /** Whether the map knows the decisions, and who approved it. */
 export function showSigning(panel, state, { remake, approve }) {
   const { approval } = state;
   const hurdle = state.busy ? "A job waits or runs" : !state.finished ? "There is no finished map yet" : !state.in_map ? "The map does not know the last decisions" : "";
-  const told = approval
-    ? `${approval.current ? "✓ Approved" : "An earlier map was approved"}: version ${approval.version} by ${approval.who}, ${when(approval.time)}`
-    : "Not approved, a draft";
   fill(panel,
     make("h2", {}, "Map"),
     make("p", {}, state.busy ? "▶ A job waits or runs" : state.in_map ? "✓ The map was made with these decisions" : "◌ The map does not know the last decisions yet"),
-    make("p", { className: approval?.current ? "good" : "" }, told),
+    make("p", { className: approval?.current && state.in_map ? "good" : "" }, approvalWords(state)),
     approval ? make("p", { className: "quiet hash" }, approval.hash) : null,
     make("div", { className: "buttons" },
       make("button", { type: "button", id: "remake", disabled: state.busy || state.in_map || !state.may_process }, "Make a new map"),

@@ -6,6 +6,7 @@ import { VERDICTS, length, seconds } from "./review_words.js";
 const SHOW = {
   loops: ["Loops", (row) => row.measured && row.kind !== "neighbor"],
   doubt: ["Turned down", (row) => row.measured && row.state !== "accepted"],
+  kept: ["Kept", (row) => row.measured && row.state === "accepted" && row.kind !== "neighbor"],
   open: ["Not decided by anybody", (row) => row.measured && !row.who],
   decided: ["Decided by people", (row) => Boolean(row.who)],
   all: ["All registered pairs", (row) => row.measured],

@@ -80,7 +80,7 @@ def look_at(path: Path) -> Found:
             for sensor in info.sensors
         ),
         samples=info.samples,
-        derived=info.derived,
+        derived=tuple(text for text in info.derived if not _guessed(text, beside)),
         missing=tuple(text for text in info.missing if not _there(text, beside)),
         warnings=(*info.warnings, *_gap_words(len(info.gaps))),
         project=_project_name(path),
@@ -122,6 +122,11 @@ def _there(text: str, beside: dict[str, str]) -> bool:
     return any(text.startswith(kind) for kind in beside) or (
         text.startswith("rig") and "rig" in beside
     )
+
+
+def _guessed(text: str, beside: dict[str, str]) -> bool:
+    """Whether it tells of a guess that a file beside the recording makes needless."""
+    return "rig" in beside and text.startswith("no rig given")
 
 
 def _gap_words(gaps: int) -> tuple[str, ...]:
