@@ -1,0 +1,112 @@
+"""Pairing in two browsers, over TLS: the laptop's page and the phone's."""
+
+from urllib.parse import urlsplit
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.e2e.conftest import SCREENS
+from tests.service.running import server_thread
+from tests.service.secure import PASSWORD, secure_server
+
+pytestmark = pytest.mark.e2e
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    with secure_server(tmp_path_factory.mktemp("projects")) as running:
+        yield running
+
+
+@pytest.fixture
+def look():
+    return "desktop", "light"
+
+
+@pytest.fixture
+def phone(browser):
+    yield from opened(browser, "phone")
+
+
+@pytest.fixture
+def laptop(browser):
+    yield from opened(browser, "desktop")
+
+
+def opened(browser, screen):
+    width, height = SCREENS[screen]
+    context = browser.new_context(
+        viewport={"width": width, "height": height},
+        ignore_https_errors=True,
+        is_mobile=screen == "phone",
+        has_touch=screen == "phone",
+        color_scheme="light",
+    )
+    yield context.new_page()
+    context.close()
+
+
+def sign_in(page, server, path):
+    page.goto(server.url + path)
+    page.get_by_label("Name").fill("otto")
+    page.get_by_label("Password", exact=True).fill(PASSWORD)
+    page.keyboard.press("Enter")
+    page.wait_for_url(server.url + path)
+
+
+def test_a_phone_scans_the_code_and_is_in_and_the_token_is_nowhere(server, laptop, phone, picture):
+    sign_in(laptop, server, "/")
+    laptop.get_by_role("link", name="Phone").click()
+    with laptop.expect_response("**/api/pairing/invitations") as answered:
+        laptop.get_by_role("button", name="Show QR code").click()
+    expect(laptop.get_by_role("img", name="QR code for one phone")).to_be_visible()
+    token = urlsplit(answered.value.json()["links"][0]["url"]).fragment
+    picture(laptop, "pairing")
+
+    phone.goto(f"{server.url}/pair#{token}")
+    phone.wait_for_url(f"{server.url}/live")
+    expect(phone.get_by_role("button", name="Start…")).to_be_visible()
+
+    assert phone.evaluate("document.cookie") == ""  # no script reads the session
+    phone.go_back()
+    assert phone.url == "about:blank"  # the link is in no history
+
+
+def test_a_viewers_phone_sees_no_buttons_and_a_used_code_says_so(server, laptop, phone, browser):
+    sign_in(laptop, server, "/phone")
+    laptop.get_by_label("viewer: look only").check()
+    with laptop.expect_response("**/api/pairing/invitations") as answered:
+        laptop.get_by_role("button", name="Show QR code").click()
+    token = urlsplit(answered.value.json()["links"][0]["url"]).fragment
+
+    phone.goto(f"{server.url}/pair#{token}")
+    phone.wait_for_url(f"{server.url}/live")
+    expect(phone.locator("#hint")).to_contain_text("looking on")
+    expect(phone.locator("#actions button")).to_have_count(0)
+
+    for another in opened(browser, "phone"):
+        another.goto(f"{server.url}/pair#{token}")
+        expect(another.get_by_role("alert")).to_contain_text("used already or is too old")
+        assert another.url == f"{server.url}/pair"
+        expect(another.get_by_role("button", name="Show a code")).to_be_visible()
+
+
+def test_six_digits_typed_on_the_laptop_let_the_phone_in(server, laptop, phone):
+    phone.goto(f"{server.url}/pair")
+    phone.get_by_label("Name of this phone").fill("Otto's phone")
+    phone.get_by_role("button", name="Show a code").click()
+    expect(phone.locator("#left")).to_contain_text("Waiting")
+    sign_in(laptop, server, "/phone")
+
+    laptop.get_by_label("Six digits").fill(phone.locator("#digits").inner_text())
+    laptop.get_by_role("button", name="Let it in").click()
+
+    expect(laptop.get_by_text("✓ Otto's phone")).to_be_visible()
+    phone.wait_for_url(f"{server.url}/live")
+
+
+def test_without_the_network_the_page_says_how_to_get_it(laptop, tmp_path):
+    with server_thread(tmp_path) as running:
+        laptop.goto(f"{running.url}/phone")
+        expect(laptop.get_by_text("recon4 serve ROOT --lan")).to_be_visible()
+        expect(laptop.get_by_role("button", name="Show QR code")).to_be_hidden()
