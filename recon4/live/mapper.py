@@ -86,11 +86,13 @@ class Mapper:
 
     async def _follow(self) -> None:
         """Hear from the recorder how far the file is; when it is gone the file is complete."""
-        with suppress(ConnectionError, FileNotFoundError):
-            while not await self._hear_recorder():
-                pass  # it let us go as we were slow: connect again
-        self._growth.reached(self._session.capture.stat().st_size)
-        self._growth.complete()
+        try:
+            with suppress(ConnectionError, FileNotFoundError):
+                while not await self._hear_recorder():
+                    pass  # it let us go as we were slow: connect again
+            self._growth.reached(self._session.capture.stat().st_size)
+        finally:
+            self._growth.complete()  # also if the whole folder is gone
 
     async def _hear_recorder(self) -> bool:
         """Whether it said that it has stopped; else the connection is gone.

@@ -1,0 +1,53 @@
+"""The commands ``record`` and ``replay`` as a person runs them."""
+
+import secrets
+import signal
+import subprocess
+import sys
+
+from recon4.recording.velodyne_encode import PcapWriter
+from recon4.store.project import read_artifacts
+from tests.unit.recording.packet_builders import spin
+
+
+def recon4(*arguments, **options):
+    command = [sys.executable, "-m", "recon4", *map(str, arguments)]
+    return subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options
+    )
+
+
+def test_a_recording_without_a_server_is_stopped_by_ctrl_c_and_is_a_project(tmp_path):
+    address = ".".join(["127", *(str(secrets.randbelow(250) + 2) for _ in range(3))])
+    rig = tmp_path / "rig.toml"
+    rig.write_text('name = "one"\n[[sensor]]\nname = "lidar"\n')
+    t_ns, payloads = spin(2300)
+    with PcapWriter(tmp_path / "source.pcap") as file:
+        file.write(t_ns, payloads, source="192.168.1.201", port=2368)
+    out = tmp_path / "walk"
+
+    with recon4("record", out, "--rig", rig, "--address", address) as recorder:
+        said = [recorder.stdout.readline(), recorder.stdout.readline()]
+        with recon4("replay", tmp_path / "source.pcap", "--to", address) as sender:
+            sent = sender.communicate(timeout=60)[0]
+        recorder.send_signal(signal.SIGINT)
+        rest, complaint = recorder.communicate(timeout=60)
+
+    assert "2300 datagrams sent" in sent
+    assert (sender.returncode, recorder.returncode) == (0, 0), complaint
+    assert "Ctrl-C stops" in said[0]
+    assert "2300 datagrams recorded, 0 lost; " in rest
+    assert f"next: recon4 process {out}/recordings/walk.pcap" in rest
+    assert list(read_artifacts(out)) == ["frames"]
+
+
+def test_wrong_rigs_and_recordings_are_named(tmp_path):
+    with recon4("record", tmp_path / "walk", "--rig", "none") as record:
+        said = record.communicate(timeout=60)[1]
+    with recon4("replay", tmp_path / "nothing.pcap") as replay:
+        told = replay.communicate(timeout=60)[1]
+
+    assert (record.returncode, replay.returncode) == (1, 1)
+    assert "no rig named 'none'" in said
+    assert "nothing.pcap" in told
+    assert not (tmp_path / "walk").exists()
