@@ -170,4 +170,6 @@ def _problem(
     problems: Mapping[str, str] | None = None,
 ) -> JSONResponse:
     problem = Problem(error=error, detail=detail, problems=dict(problems or {}))
-    return JSONResponse(problem.model_dump(exclude_defaults=True), status_code=status, headers=headers)
+    return JSONResponse(
+        problem.model_dump(exclude_defaults=True), status_code=status, headers=headers
+    )

@@ -3,6 +3,11 @@
 import { readDoubleWalls } from "./api.js";
 import { attempt, make } from "./dom.js";
 import { count } from "./format.js";
+import { distanceFrom } from "./slices_state.js";
+
+/** A place reaches about so far around its middle [m]. */
+const REACH_M = 0.75;
+const MOST_ROWS = 200;
 
 const cm = (m) => `${(m * 100).toFixed(1)} cm`;
 const span = ([from, to]) => `${from.toFixed(0)}–${to.toFixed(0)} s`;
@@ -15,11 +20,15 @@ function cutAt(wall) {
   return { ...close, kind: "vertical", a: [x - 2, y], b: [x + 2, y], u: 2, v: z };
 }
 
-export function doublesPanel({ id, change, point }) {
+export function doublesPanel({ id, change, point, state }) {
   const message = make("p", { className: "error", role: "alert" });
   const list = make("div", {});
   const button = make("button", { type: "button", onclick: () => attempt(message, look) }, "Look for double walls");
   const hint = make("p", { className: "quiet" }, "One surface that two visits put at two places. The whole map is checked.");
+
+  const where = make("select", { ariaLabel: "Which double walls", hidden: true, onchange: () => listed() }, make("option", { value: "all" }, "Whole map"), make("option", { value: "slice" }, "In this slice"));
+  const table = make("div", { className: "wide" });
+  let walls = [];
 
   async function look() {
     button.disabled = true;
@@ -39,10 +48,25 @@ export function doublesPanel({ id, change, point }) {
     const verdict = found.walls.length
       ? make("p", { className: "verdict bad" }, `✕ ${found.walls.length} places are double`)
       : make("p", { className: "verdict good" }, found.patches ? "✓ No double wall found" : "– Not checked");
-    const rows = found.walls.slice(0, 200).map((wall, k) => row(wall, k));
+    walls = found.walls;
+    where.hidden = walls.length === 0;
+    list.replaceChildren(verdict, make("p", { className: "quiet" }, seen));
+    listed();
+  }
+
+  const inSlice = (wall) => distanceFrom(state(), wall.middle_m) <= state().t / 2 + REACH_M;
+
+  /** The rows that are asked for; with "in this slice" they follow the cut. */
+  function listed() {
+    const focused = table.contains(document.activeElement) ? document.activeElement.ariaLabel : null;
+    const meant = walls.map((wall, k) => [wall, k]).filter(([wall]) => where.value === "all" || inSlice(wall));
+    if (!walls.length) return table.replaceChildren();
+    const told = [`${meant.length} of ${walls.length} places`, meant.length > MOST_ROWS ? `the ${MOST_ROWS} widest are listed` : ""];
     const head = ["Place", "Apart", "Limit", "σ", "D", "Weaker layer", "Visits"].map((words) => make("th", { scope: "col" }, words));
-    const table = rows.length ? make("div", { className: "wide" }, make("table", {}, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...rows))) : null;
-    list.replaceChildren(...[verdict, make("p", { className: "quiet" }, seen), table].filter(Boolean));
+    const rows = meant.slice(0, MOST_ROWS).map(([wall, k]) => row(wall, k));
+    const caption = make("p", { className: "quiet", role: "status" }, told.filter(Boolean).join(", "));
+    table.replaceChildren(caption, ...(rows.length ? [make("table", {}, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...rows))] : []));
+    if (focused) table.querySelector(`[aria-label="${focused}"]`)?.focus();
   }
 
   function row(wall, k) {
@@ -63,5 +87,5 @@ export function doublesPanel({ id, change, point }) {
     );
   }
 
-  return { element: make("div", {}, hint, button, message, list) };
+  return { element: make("div", {}, hint, make("div", { className: "row" }, button, where), message, list, table), show: () => where.value === "slice" && listed() };
 }

@@ -3,8 +3,11 @@
 import { addReference, alignReference, browse, compareCsvUrl, compareSlices, removeReference } from "./api.js";
 import { attempt, make } from "./dom.js";
 import { bytes, count } from "./format.js";
+import { Sending, sorted } from "./sending.js";
+import { ofInput } from "./picking.js";
 import { cutOf, moved } from "./slices_state.js";
 
+const KINDS = ".ply,.pcd,.las,.laz,.e57,.xyz,.txt,.csv,.obj,.stl";
 const METHODS = { plane: "to the reference's surface", point: "to its nearest point (V)" };
 
 export function referencePanel({ id, change, state, reload }) {
@@ -26,6 +29,37 @@ export function referencePanel({ id, change, state, reload }) {
     button.addEventListener("click", busy(button, action));
     return button;
   };
+
+  const file = make("input", { type: "file", hidden: true, accept: KINDS, ariaLabel: "Reference file", onchange: () => attempt(message, upload) });
+  const words = make("span", { role: "status" });
+  const bar = make("progress", { max: 1, ariaLabel: "Upload of the reference" });
+  const stop = make("button", { type: "button" }, "Stop");
+  const sendingNow = make("div", { className: "row", hidden: true }, words, bar, stop);
+  const choose = make("button", { type: "button", onclick: () => file.click() }, "Upload file…");
+
+  /** Sends the file like a recording (it goes on after a break), then uses it. */
+  async function upload() {
+    const sending = new Sending(sorted(ofInput(file)));
+    file.value = ""; // the same file may be chosen again
+    stop.onclick = () => attempt(message, () => sending.remove());
+    sending.addEventListener("change", () => {
+      words.textContent = sending.words || `${sending.name}: ${bytes(sending.sent)} of ${bytes(sending.total)}`;
+      bar.value = sending.total ? sending.sent / sending.total : 1;
+    });
+    choose.disabled = true;
+    sendingNow.hidden = false;
+    try {
+      await sending.start();
+      if (sending.state === "failed") throw new Error(`${sending.words}; choose the same file again to go on`);
+      if (sending.state !== "done") return;
+      words.textContent = `${sending.name} is being read`;
+      path.value = sending.recording;
+      await add();
+    } finally {
+      choose.disabled = false;
+      sendingNow.hidden = true;
+    }
+  }
 
   async function add() {
     const added = await addReference(id, { path: path.value, frame: frame.value });
@@ -105,8 +139,8 @@ export function referencePanel({ id, change, state, reload }) {
 
   const element = make("div", {},
     list,
-    make("div", { className: "row" }, path, make_("Browse…", () => openFolder("")), frame, make_("Add reference", add)),
-    folder,
+    make("div", { className: "row" }, choose, file, path, make_("Browse…", () => openFolder("")), frame, make_("Add reference", add)),
+    sendingNow, folder,
     make("p", { className: "quiet" }, "PLY, LAZ, LAS, E57, PCD, XYZ, CSV, OBJ or STL. Nothing is aligned unless you ask for it."),
     make("div", { className: "row" }, which, method, make_("Compare", compare)),
     message, table,

@@ -244,12 +244,14 @@ function tools() {
     layOut();
   }, { id: `mode-${value}` });
   byId("tools").replaceChildren(
-    button("◂ Back", () => step(-1), { title: "One step back  [" }),
-    button("On ▸", () => step(1), { title: "One step on  ]" }),
-    button("−", () => first.zoom(1.5), { title: "Farther away", ariaLabel: "Zoom out" }),
-    button("+", () => first.zoom(1 / 1.5), { title: "Closer", ariaLabel: "Zoom in" }),
-    button("All", () => change(unframed(state), { keep: true }), { title: "All of the slice  0" }),
-    button("Measure", () => measure(), { id: "measure", ariaPressed: "false", title: "Distance of two points  M" }),
+    make("span", { className: "moves" },
+      button("◂ Step", () => step(-1), { title: "One step back  [", ariaLabel: "Step back" }),
+      button("Step ▸", () => step(1), { title: "One step on  ]", ariaLabel: "Step on" }),
+      button("−", () => first.zoom(1.5), { title: "Farther away", ariaLabel: "Zoom out" }),
+      button("+", () => first.zoom(1 / 1.5), { title: "Closer", ariaLabel: "Zoom in" }),
+      button("All", () => change(unframed(state), { keep: true }), { title: "All of the slice  0" }),
+      button("Measure", () => measure(), { id: "measure", ariaPressed: "false", title: "Distance of two points  M" }),
+    ),
     make("span", { className: "beside" }, ...panel.beside, mode("Split", "split"), mode("Swipe", "swipe")),
     button("?", () => byId("help").showModal(), { ariaLabel: "Help", title: "Keys  ?" }),
   );

@@ -66,6 +66,13 @@ export function normalOf(state) {
   return state.n.map((x) => x / length);
 }
 
+/** How far a point lies from the plane of the cut [m]. */
+export function distanceFrom(state, p) {
+  const n = normalOf(state);
+  const on = { horizontal: () => [0, 0, state.z], vertical: () => [...state.a, 0], free: () => state.o }[state.kind]();
+  return Math.abs(p.reduce((sum, x, k) => sum + (x - on[k]) * n[k], 0));
+}
+
 /** The same cut farther along its normal. */
 export function moved(state, distance) {
   const n = normalOf(state);

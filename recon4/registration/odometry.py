@@ -91,7 +91,8 @@ class Odometry:
 
     def extend_imu(self, imu: ImuSamples) -> None:
         """Take IMU samples that follow those given at first; a capture that goes on has them
-        only now. Nothing happens if there was no IMU at first."""
+        only now. Nothing happens if there was no IMU at first.
+        """
         if isinstance(self._motion, ImuMotion):
             self._motion.extend(imu)
 

@@ -144,10 +144,10 @@ def test_a_walk_is_seen_from_its_start_to_its_map(server, link, walk, page, pict
         page.get_by_role("button", name="Follow").click()
         fits(page)
         mark(page, "crack in the wall")
+        picture(page, "live")
         cut_and_restore(page, link)
     wait_for_points(page, early + 1000)
     expect(page.locator("#well")).not_to_have_text(well)
-    picture(page, "live")
     later = page.evaluate(GAPS)
     filled = [gap for gap in gaps if all(far(gap, other) for other in later)]
     assert filled, "no gap was filled"

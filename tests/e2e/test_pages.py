@@ -48,7 +48,8 @@ def fits(page):
     """Nothing sticks out to the side, and everything to press is large enough."""
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
     small = page.evaluate(
-        """[...document.querySelectorAll('button, input:not([type=checkbox]), label.check, select, summary, .bar a, .files a')]
+        """[...document.querySelectorAll(
+            'button, input:not([type=checkbox]), label.check, select, summary, .bar a, .files a')]
         .filter((one) => one.checkVisibility() && one.getBoundingClientRect().height < 44)
         .map((one) => one.outerHTML.slice(0, 80))"""
     )

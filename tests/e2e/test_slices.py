@@ -157,6 +157,58 @@ def test_a_reference_is_compared_and_shown(server, page, picture):
     expect(page.get_by_role("button", name="Remove")).to_have_count(0)
 
 
+def test_a_reference_is_uploaded_and_shown(server, page):
+    rows = "\n".join(f"0.03 {y / 20:.2f} {z / 10:.1f}" for y in range(200) for z in range(30))
+    opened(page, server, "?kind=horizontal&z=1.5")
+
+    page.get_by_text("Compare with a reference").click()
+    with page.expect_file_chooser() as chooser:
+        page.get_by_role("button", name="Upload file…").click()
+    chooser.value.set_files({"name": "sent.xyz", "mimeType": "text/plain", "buffer": rows.encode()})
+
+    expect(page.locator("#legend")).to_contain_text("Distance to reference [cm]")
+    expect(page.locator(".reference-row")).to_contain_text("6,000 points")
+    expect(page.get_by_label("Upload of the reference")).to_be_hidden()
+    page.get_by_role("button", name="Remove").click()
+    expect(page.get_by_role("button", name="Remove")).to_have_count(0)
+
+
+def test_an_uploaded_reference_that_is_none_is_refused_in_words(server, page):
+    opened(page, server)
+
+    page.get_by_text("Compare with a reference").click()
+    note = {"name": "note.ply", "mimeType": "text/plain", "buffer": b"Dear Sir or Madam"}
+    page.get_by_label("Reference file").set_input_files(note)
+
+    expect(page.get_by_role("alert").filter(has_text="note.ply")).to_be_visible()
+    expect(page.get_by_role("button", name="Upload file…")).to_be_enabled()
+
+
+def test_tools_take_two_rows_at_most_and_fit_a_finger(server, page):
+    opened(page, server, "?kind=horizontal&z=1.5&besideColor=time")
+
+    tools = page.locator("#tools button, #tools select")
+    boxes = [box for box in (one.bounding_box() for one in tools.all()) if box]
+
+    assert len(boxes) == 11
+    assert len({round(box["y"] / 20) for box in boxes}) <= 2
+    assert min(box["height"] for box in boxes) >= 44
+    assert min(box["width"] for box in boxes) >= 44
+    fits(page)
+
+
+def test_a_double_wall_belongs_to_the_slices_near_it(server, page):
+    opened(page, server)
+
+    found = page.evaluate("""async () => {
+      const { distanceFrom, parse } = await import("/web/slices_state.js");
+      return ["kind=horizontal&z=1.5", "kind=vertical&a=0,1&b=4,1", "kind=free&o=1,2,3&n=2,0,0"]
+        .map((query) => distanceFrom(parse(query), [3, 5, 2]));
+    }""")
+
+    assert found == pytest.approx([0.5, 4.0, 2.0])
+
+
 def test_a_survey_is_imported_and_judged(server, page):
     opened(page, server)
 

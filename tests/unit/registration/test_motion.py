@@ -156,3 +156,44 @@ def test_standing_still_stays():
     end = imu_motion(standing).predict(state, T0_NS + S_NS).end
 
     np.testing.assert_allclose(end.vector[:6], 0.0, atol=1e-9)
+
+
+def test_a_steady_motion_through_two_poses_reaches_the_second():
+    motion = FreeMotion(SETTINGS)
+    first = SE3.from_rpy(0.1, -0.2, 0.5, [1.0, 2.0, 0.5])
+    second = SE3(first.R @ so3_exp([0.02, -0.01, 0.15]), first.t + np.array([0.1, 0.05, -0.02]))
+    ends_ns = (T0_NS, T0_NS + S_NS // 10)
+    start_ns = T0_NS + S_NS // 20
+
+    state = motion.between(SE3.stack([first, second]), ends_ns, start_ns)
+    end = motion.predict(state, ends_ns[1]).end
+
+    np.testing.assert_allclose(state.vector[:3], (first.t + second.t) / 2, atol=1e-12)
+    np.testing.assert_allclose(end.T_odom_body.t, second.t, atol=1e-6)
+    np.testing.assert_allclose(end.R, second.R, atol=1e-6)
+
+
+def test_an_imu_at_the_end_of_an_arm_feels_the_body_spin_up():
+    arm_m, spin_up = 0.4, 2.0
+    rig = replace(RIG, T_body_imu=SE3(np.eye(3), np.array([arm_m, 0.0, 0.0])))
+    t_s = np.arange(0.0, 1.0, 0.005)
+    rate, zero = spin_up * t_s, np.zeros_like(t_s)
+    # The body turns faster and faster where it is; its IMU is dragged along and pulled inwards.
+    accel = np.stack([-arm_m * rate**2, arm_m * spin_up + zero, 9.80665 + zero], axis=1)
+    gyro = np.stack([zero, zero, rate], axis=1)
+    imu = ImuSamples(T0_NS + np.rint(t_s * 1e9).astype(np.int64), gyro, accel)
+    state = start_of(standing, T0_NS, [0.0, 0.0, 0.0])
+
+    end = ImuMotion(imu, rig, SETTINGS).predict(state, T0_NS + S_NS // 2).end
+
+    np.testing.assert_allclose(end.vector[:6], 0.0, atol=1e-6)
+
+
+def test_only_samples_near_the_start_say_what_is_level():
+    upright, tilted = np.array([0.0, 0.0, 9.80665]), np.array([3.0, 0.0, 9.3])
+    t_ns = T0_NS + np.arange(400) * (S_NS // 200)
+    accel = np.where(np.arange(400)[:, None] < 150, upright, tilted)
+
+    state = ImuMotion(ImuSamples(t_ns, np.zeros((400, 3)), accel), RIG, SETTINGS).initial(T0_NS)
+
+    np.testing.assert_allclose(state.R, np.eye(3), atol=1e-9)

@@ -1,0 +1,277 @@
+"""The whole way of a customer: from a recording on one's own computer to a map with a signature."""
+
+import json
+import re
+import shutil
+from pathlib import Path
+
+import laspy
+import pytest
+from playwright.sync_api import expect
+
+from recon4.progress import Silent
+from recon4.review.journal import broken, read_rows
+from recon4.simulation.simulate import simulate
+from recon4.store.hashing import hash_file
+from tests.e2e.test_pages import drawn
+from tests.service.running import server_thread
+
+pytestmark = pytest.mark.e2e
+SECONDS = 20.0
+VOXEL_M = 0.05
+"""Coarser than the preset: a computer without a graphics card draws this map."""
+WORK_MS = 240_000
+"""A map may take so long beside other work."""
+PHONE = {"width": 390, "height": 844}
+
+
+@pytest.fixture(scope="module")
+def walk(tmp_path_factory):
+    """What a backpack left on the operator's computer: capture, IMU, rig."""
+    made = tmp_path_factory.mktemp("simulated") / "made"
+    simulate("office", made, seconds=SECONDS, seed=3, progress=Silent(), bag=False)
+    folder = tmp_path_factory.mktemp("backpack") / "Office walk"
+    folder.mkdir()
+    for name in ("recording.pcap", "imu.csv", "rig.toml"):
+        shutil.move(made / name, folder / name)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    with server_thread(tmp_path_factory.mktemp("served"), viewer_points=100_000) as running:
+        yield running
+
+
+@pytest.fixture
+def look():
+    return "desktop", "light"
+
+
+def test_a_recording_becomes_a_map_somebody_signed(server, walk, page, picture, browser):
+    page.goto(server.url)
+    upload(page, walk)
+    picture(page, "way-upload")
+    start(page)
+    root = server.root / "office-walk"
+    watch(page, picture)
+    toggle_in_the_viewer(page)
+    picture(page, "way-map")
+    page.get_by_role("link", name="Review", exact=True).click()
+    decide(page, root, picture)
+    make_a_new_map(page)
+    cut(page)
+    picture(page, "way-slice")
+    page.get_by_role("link", name="Review", exact=True).click()
+    approve(page)
+    picture(page, "way-approved")
+    take_away(page, root)
+    signed = hashes(root / "versions" / "1")
+    page.get_by_role("link", name="Review", exact=True).click()
+    decide_again(page)
+
+    assert hashes(root / "versions" / "1") == signed
+    on_a_phone(browser, server)
+
+
+def upload(page, walk):
+    """The form knows what is in the folder and suggests the rest."""
+    page.locator("upload-box input[type=file]").nth(1).set_input_files(walk)
+    expect(page.locator("upload-box")).to_contain_text("On the server")
+    expect(page.locator("recording-look")).to_contain_text("VLP-16")
+    expect(page.locator("recording-look")).to_contain_text("imu.csv, beside it")
+    expect(page.locator("recording-look")).not_to_contain_text("no rig given")
+    expect(page.get_by_label("Project name")).to_have_value("office-walk")
+    expect(page.get_by_label("Preset")).to_have_value("indoor")
+    expect(page.get_by_label("Rig").locator("option:checked")).to_have_text("rig.toml")
+
+
+def start(page):
+    page.get_by_text("All settings").click()
+    page.get_by_label("Find a setting").fill("voxel")
+    group = page.locator("setting-editor .group").filter(has_text="The point map")
+    group.get_by_label("voxel_m").fill(str(VOXEL_M))
+    page.get_by_role("button", name="Start").click()
+    expect(page.get_by_role("heading", name="office-walk")).to_be_visible()
+
+
+def watch(page, picture):
+    """Stages come one after the other, and the trajectory while the job still runs."""
+    row = page.get_by_role("row")
+    expect(row.filter(has_text="frames")).to_contain_text("Done", timeout=WORK_MS)
+    expect(page.frame_locator("iframe").get_by_text("map frame")).to_be_visible()
+    expect(row.filter(has_text="odometry")).to_contain_text("Done", timeout=WORK_MS)
+    expect(page.locator("job-status")).to_contain_text("% of the run")
+    drawn(page)
+    expect(page.frame_locator("iframe").get_by_text("Trajectory", exact=True)).to_be_attached()
+    picture(page, "way-running")
+    expect(page.locator("#state")).to_contain_text("Finished", timeout=WORK_MS)
+    expect(row.filter(has_text="map")).to_contain_text("Done")
+
+
+def toggle_in_the_viewer(page):
+    viewer = page.frame_locator("iframe")
+    expect(viewer.get_by_text("Points by normalized intensity")).to_be_visible()
+    viewer.locator("body").press("n")
+    expect(viewer.get_by_text("Points by raw intensity")).to_be_visible()
+    viewer.locator("body").press("n")
+    expect(viewer.get_by_text("Points by normalized intensity")).to_be_visible()
+
+
+def in_hand(page):
+    """The next pair, with its points."""
+    page.keyboard.press("j")
+    expect(page.locator(".view-empty")).to_be_empty()
+    expect(page.locator("#pair dl")).to_be_visible()
+
+
+def decide(page, root, picture):
+    """By keys alone: a mistake is named and taken back, a kept loop taken out."""
+    expect(page.locator("review-queue li").first).to_be_visible()
+    page.get_by_label("Go on to the next after a decision").uncheck()
+    page.get_by_label("Which pairs").select_option("doubt")
+    page.evaluate("document.activeElement.blur()")
+    in_hand(page)
+    decided(page, "r", 1)
+    in_hand(page)
+    decided(page, "a", 2)
+    expect(page.locator("#effect")).to_contain_text("Accepted, but does not fit")
+    picture(page, "way-review")
+    decided(page, "Control+z", 1)
+    expect(page.locator("#effect")).not_to_contain_text("does not fit")
+    page.get_by_label("Which pairs").select_option("kept")
+    page.evaluate("document.activeElement.blur()")
+    in_hand(page)
+    decided(page, "r", 1)
+
+    chi2 = page.locator("#effect div").filter(has_text="chi², all decisions").locator("dd")
+    expect(chi2).to_contain_text("→")
+    before, after = (float(x) for x in chi2.inner_text().split("→"))
+    assert after < before
+    expect(page.locator("#signing")).to_contain_text("does not know the last decisions")
+    expect(page.get_by_role("button", name="Approve verification…")).to_be_disabled()
+    rows = read_rows(root)
+    assert [row.kind for row in rows] == ["reject", "accept", "undo", "reject"]
+    assert broken(rows) == []
+
+
+def decided(page, key, count):
+    page.keyboard.press(key)
+    expect(page.locator("review-queue")).to_contain_text(f"{count} decided by people")
+    expect(page.locator("#effect")).not_to_contain_text("solving", ignore_case=True)
+
+
+def make_a_new_map(page):
+    """The decisions are a stage of the next run; what does not depend on them is kept."""
+    page.get_by_role("button", name="Make a new map").click()
+    expect(page.locator("#signing")).to_contain_text("A job waits or runs")
+    page.get_by_role("link", name="Map", exact=True).click()
+    row = page.get_by_role("row")
+    expect(row.filter(has_text="graph")).to_contain_text("Kept from before")
+    expect(row.filter(has_text="review")).to_contain_text("Done", timeout=WORK_MS)
+    expect(page.locator("#state")).to_contain_text("Finished", timeout=WORK_MS)
+
+
+def cut(page):
+    """Slices: a step, raw and normalized intensity, no wall twice."""
+    page.get_by_role("link", name="Slices", exact=True).click()
+    facing = page.locator(".facing")
+    expect(facing).to_contain_text("points")
+    at = facing.locator("strong").inner_text()
+    page.keyboard.press("]")
+    expect(facing.locator("strong")).not_to_have_text(at)
+    colors = page.get_by_label("Color by")
+    colors.select_option("intensity")
+    expect(page.locator("#legend")).to_contain_text("Intensity")
+    colors.select_option("normalized")
+    expect(page.locator("#legend")).to_contain_text("ormalized")
+    expect(page.locator("body.drawing")).to_have_count(0)
+    expect(facing).to_contain_text("Not approved")
+    page.get_by_text("Double walls", exact=True).click()
+    page.get_by_role("button", name="Look for double walls").click()
+    expect(page.locator(".verdict")).to_contain_text("No double wall found")
+
+
+def approve(page):
+    expect(page.locator("#signing")).to_contain_text("was made with these decisions")
+    page.get_by_role("button", name="Approve verification…").click()
+    page.get_by_label("Remark").fill("walked through it, all walls single")
+    page.get_by_role("button", name="Sign").click()
+    expect(page.locator("#signing")).to_contain_text("✓ Approved: version 1 by local")
+    page.get_by_text("Journal", exact=True).click()
+    expect(page.locator("#journal")).to_contain_text("approved the map")
+
+
+def take_away(page, root):
+    """The map as LAZ and the report say who approved them."""
+    page.get_by_role("link", name="Map", exact=True).click()
+    with page.expect_download() as download:
+        page.locator("#files").get_by_role("link", name=re.compile("LAZ")).click()
+    with page.expect_popup() as report:
+        page.get_by_role("link", name="Quality report").click()
+    hash = json.loads((root / "versions" / "1" / "approval.json").read_text())["hash"]
+    expect(report.value.get_by_text("Version 1, approved by local")).to_be_visible()
+    expect(report.value.get_by_text(hash)).to_be_visible()
+    report.value.close()
+    assert hash in approval_in(download.value.path())
+
+
+def approval_in(laz: Path) -> str:
+    """The record of the approval in a LAZ file."""
+    with laspy.open(laz) as file:
+        assert file.header.point_count > 100_000
+        found = [*file.header.vlrs, *(file.evlrs or [])]
+        records = [one.record_data_bytes() for one in found if one.user_id == "recon4"]
+    assert len(records) == 1
+    return records[0].decode()
+
+
+def decide_again(page):
+    """What was signed was another state: this one is a draft."""
+    expect(page.locator("#signing")).to_contain_text("✓ Approved")
+    in_hand(page)
+    page.keyboard.press("r")
+    expect(page.locator("#signing")).to_contain_text("A draft again")
+    expect(page.get_by_role("button", name="Approve verification…")).to_be_disabled()
+
+
+def hashes(folder):
+    return {path.name: hash_file(path) for path in folder.iterdir()}
+
+
+PAGES = {
+    "": ".card img",
+    "projects/office-walk/": "#figures dl",
+    "projects/office-walk/review/": "review-queue li",
+    "projects/office-walk/slices/": ".facing strong",
+    "live": "#state",
+    "phone": "h1",
+    "api": "h1, h2",
+}
+"""What every page shows when it is there."""
+
+
+def on_a_phone(browser, server):
+    """Every page fits, can be touched, and complains of nothing."""
+    context = browser.new_context(
+        viewport=PHONE, color_scheme="dark", has_touch=True, is_mobile=True
+    )
+    page = context.new_page()
+    complaints: list[str] = []
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    for path, shows in PAGES.items():
+        page.goto(f"{server.url}/{path}")
+        expect(page.locator(shows).first).to_be_visible()
+        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), path
+        assert low(page) == [], path
+    context.close()
+    assert complaints == []
+
+
+def low(page):
+    """Whatever is too low for a finger."""
+    return page.evaluate(
+        """[...document.querySelectorAll('button:not(.link), select, summary, .bar a')]
+        .filter((one) => one.checkVisibility() && one.getBoundingClientRect().height < 40)
+        .map((one) => one.outerHTML.slice(0, 80))"""
+    )
