@@ -14,7 +14,10 @@ AddressOption = Annotated[
     str, typer.Option(help="Listen on the network card with this address; default: all.")
 ]
 SpeedOption = Annotated[
-    float, typer.Option(min=0.1, max=100.0, help="So many times as fast; trials only.")
+    float,
+    typer.Option(
+        min=0.1, max=100.0, help="So many times as fast, for trials; record and replay alike."
+    ),
 ]
 
 
@@ -24,13 +27,17 @@ def replay(
     *,
     to: Annotated[str, typer.Option(help="Address the recorder listens on.")] = "127.0.0.1",
     speed: SpeedOption = 1.0,
+    times: Annotated[
+        int,
+        typer.Option(min=1, help="So often, for walks that end where they began; time goes on."),
+    ] = 1,
 ) -> None:
     """Send a recording to the ports of a recorder as its sensors did."""
     from recon4.live.replay import replay as run
     from recon4.terminal import watcher
 
     with watcher() as progress:
-        sent = run(recording, progress=progress, target=to, speed=speed)
+        sent = run(recording, progress=progress, target=to, speed=speed, times=times)
     _write(f"{sent} datagrams sent")
 
 

@@ -14,6 +14,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -31,6 +32,8 @@ _STAMP_AT = {DATA_SIZE: 1200, POSITION_SIZE: 198}
 """Where a packet of this size has its microseconds past the hour."""
 _SAMPLE_DELAY_NS = {"imu.csv": 2_000_000, "gnss.csv": 50_000_000}
 """How long after its time a sample is sent [ns]."""
+_BETWEEN_NS = 1_000_000
+"""From the last datagram of a round to the first of the next."""
 _AHEAD_NS = 500_000
 """Datagrams that are due so soon are sent at once."""
 
@@ -58,6 +61,7 @@ def replay(
     progress: Progress,
     target: str = "127.0.0.1",
     speed: float = 1.0,
+    times: int = 1,
     alter: Alter = lambda shipment: (shipment,),
 ) -> int:
     """Send a capture file, and the CSV files beside it, at the speed it was recorded.
@@ -68,6 +72,8 @@ def replay(
         progress: Counts seconds of the recording.
         target: Address to send to.
         speed: How many times as fast; the recorder must be started with the same.
+        times: How often, one after the other while time goes on; for walks that end where they
+            began.
         alter: May drop, change or multiply datagrams.
 
     Returns:
@@ -76,23 +82,24 @@ def replay(
     Raises:
         RecordingError: If there is nothing to send.
     """
-    shipments = shipments_of(recording)
-    first = next(shipments, None)
+    rounds = _rounds(recording, times)
+    first = next(rounds, None)
     if first is None:
         raise EmptyRecording(f"{recording.name}: no UDP datagram in it")
+    first_ns = second_ns = first[0].t_ns
     began_ns = time.time_ns()
-    shift_ns = (stretched(began_ns, speed) - first.t_ns) // 1000 * 1000
+    shift_ns = (stretched(began_ns, speed) - first_ns) // 1000 * 1000
     sent = 0
     progress.start("replay", 0, "s")
-    second = first.t_ns
     with _Senders(target) as senders:
-        for shipment in heapq.merge((first,), shipments, key=lambda s: s.t_ns):
-            _wait_until(began_ns + round((shipment.t_ns - first.t_ns) / speed))
+        for shipment, later_ns in chain((first,), rounds):
+            t_ns = shipment.t_ns + later_ns
+            _wait_until(began_ns + round((t_ns - first_ns) / speed))
             for altered in alter(shipment):
-                senders.send(moved(altered, shift_ns))
+                senders.send(moved(altered, shift_ns + later_ns))
                 sent += 1
-            if shipment.t_ns - second >= 1_000_000_000:
-                second = shipment.t_ns
+            if t_ns - second_ns >= 1_000_000_000:
+                second_ns = t_ns
                 progress.advance()
     return sent
 
@@ -106,6 +113,20 @@ def shipments_of(recording: Path) -> Iterator[Shipment]:
         if (folder / name).exists():
             parts.append(_samples(folder / name, port))
     return heapq.merge(*parts, key=lambda shipment: shipment.t_ns)
+
+
+def _rounds(recording: Path, times: int) -> Iterator[tuple[Shipment, int]]:
+    """Every datagram of every round, with how much later its round is [ns]."""
+    later_ns = 0
+    for _ in range(times):
+        first_ns = last_ns = None
+        for shipment in shipments_of(recording):
+            first_ns = shipment.t_ns if first_ns is None else first_ns
+            last_ns = shipment.t_ns
+            yield shipment, later_ns
+        if first_ns is None or last_ns is None:
+            return
+        later_ns += (last_ns - first_ns) // 1000 * 1000 + _BETWEEN_NS
 
 
 def moved(shipment: Shipment, shift_ns: int) -> Shipment:
