@@ -34,8 +34,6 @@ JOBS = sa.Table(
 )
 """The table as the newest migration leaves it; ``number`` is the order of the queue."""
 
-ACTIVE = (JobState.QUEUED, JobState.RUNNING)
-
 
 class JobStore:
     """All jobs there ever were."""

@@ -14,6 +14,7 @@ from app.errors import Conflict
 from app.live.link import Link, linked
 from app.live.picture import Picture
 from app.settings import worker_environment
+from recon4.live.project_files import discard
 from recon4.live.session import Session
 
 log = logging.getLogger(__name__)
@@ -45,9 +46,9 @@ class Capture:
         """Why the map does not grow, in words; empty = it does."""
         self._recorder: Link | None = None
         self._tasks: list[asyncio.Task[None]] = []
-        self._over = asyncio.Event()
         self._mapper_starts = 0
-        self._recorder_died = False
+        self._ended_because = ""
+        """Why the recording ended, if nobody stopped it."""
 
     @property
     def project(self) -> str:
@@ -63,10 +64,11 @@ class Capture:
         """Start both processes.
 
         Raises:
-            Conflict: If the recorder cannot start, in its own words.
+            Conflict: If the recorder cannot start, in its own words; nothing is left of it.
         """
         process, problem = await self._spawn("recorder")
         if process is None:
+            await asyncio.to_thread(discard, self.session)
             raise Conflict(problem)
         await self.follow()
 
@@ -91,12 +93,6 @@ class Capture:
             self.state = State.PAUSED if told["do"] == "pause" else State.RECORDING
         await self._recorder.say(told)
 
-    async def wait_over(self, timeout_s: float) -> bool:
-        """Whether it has ended within a time."""
-        with suppress(TimeoutError):
-            await asyncio.wait_for(self._over.wait(), timeout_s)
-        return self._over.is_set()
-
     async def leave(self) -> None:
         """Stop following; the processes go on."""
         for task in self._tasks:
@@ -111,6 +107,8 @@ class Capture:
                 async for told in link.lines():
                     if told["kind"] == "status":
                         self.state = State.PAUSED if told["paused"] else State.RECORDING
+                    elif told["kind"] == "stopped" and told["why"] != "stopped":
+                        self._ended_because = f"The recording ended by itself: {told['why']}"
                     self.picture.take(told)
         except OSError as error:
             log.warning("recorder of %s: %s", self.project, error)
@@ -118,37 +116,38 @@ class Capture:
             hearing.set()
             self._recorder = None
         self.state = State.FINISHING
-        if not self.session.outcome.exists():
-            self._recorder_died = True
-            self.problem = "the recorder died; what it recorded until then is safe"
+        if not self._ended_because and not self.session.outcome.exists():
+            self._ended_because = "the recorder died; what it recorded until then is safe"
+        self.problem = self._ended_because or self.problem
 
     async def _follow_mapper(self) -> None:
         """Follow the mapper; start it when there is none."""
-        done = False
-        while not done and self._mapper_starts < _MAPPER_STARTS:
+        done = None
+        while done is None and self._mapper_starts < _MAPPER_STARTS:
             try:
                 async with linked(self.session.socket("mapper")) as link:
-                    async for told in link.lines():
-                        if told["kind"] == "done":
-                            done, self.problem = True, told["problem"] or self._at_the_end()
-                        self.picture.take(told)
-            except OSError:
-                pass  # none listens yet
-            if not done:
+                    done = await self._hear_mapper(link)
+            except OSError:  # none listens: the last one died, or there was none yet
                 self._mapper_starts += 1
                 process, problem = await self._spawn("mapper")
                 if process is None:
                     self.problem = problem
-        if not done:
+        if done is None:
             self.problem = "the map stopped growing (its process died); the recording goes on"
+        else:  # its troubles are over
+            self.problem = done["problem"] or self._ended_because
         while self._recorder is not None:
             await self.picture.news(self.picture.version, timeout_s=1.0)
         self.state = State.READY
-        self._over.set()
 
-    def _at_the_end(self) -> str:
-        """What is still wrong when the frames are ready; the mapper's troubles are over."""
-        return self.problem if self._recorder_died else ""
+    async def _hear_mapper(self, link: Link) -> dict[str, Any] | None:
+        """What the mapper says at the end; None if it went before, or let us go as too slow."""
+        done = None
+        async for told in link.lines():
+            if told["kind"] == "done":
+                done = told
+            self.picture.take(told)
+        return done
 
     async def _spawn(self, name: str) -> tuple[asyncio.subprocess.Process | None, str]:
         """Start a process of the capture; None and what it said if it does not get ready."""

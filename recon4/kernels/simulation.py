@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-_TWO_PI = 2.0 * math.pi
-
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def evaluate_polynomials(

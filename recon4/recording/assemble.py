@@ -117,11 +117,6 @@ class Assembler:
         held, self._held = self._held, None
         return frames if held is None or self._too_small(held) else [*frames, held]
 
-    @property
-    def points_of(self) -> dict[str, int]:
-        """Points taken of each sensor."""
-        return {stream.name: stream.points for stream in self._streams}
-
     # -- taking in
 
     def _take(self, shots: Shots) -> None:

@@ -20,13 +20,14 @@ from recon4.recording.cloud_files import is_cloud_file, read_cloud
 from recon4.recording.cloud_points import model_of_points
 from recon4.recording.csv_samples import GNSS_HEADER, IMU_HEADER, csv_header
 from recon4.recording.folders import CLOUD_SUFFIXES, folder_gaps, list_frames, natural, read_frames
+from recon4.recording.packet_streams import PacketStream
 from recon4.recording.pcap import OpenFile, is_pcap, open_plain
 from recon4.recording.poses import pose_format
 from recon4.recording.positions import PositionSamples
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream, choose_rig
 from recon4.recording.shots import Shots
-from recon4.recording.velodyne_pcap import WAIT_S, PacketStream, VelodynePcap
+from recon4.recording.velodyne_pcap import WAIT_S, VelodynePcap
 from recon4.settings import IngestSettings
 
 Item = Shots | Multiframe | ImuSamples | GnssSamples | Trajectory

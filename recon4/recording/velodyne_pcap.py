@@ -30,8 +30,6 @@ from recon4.recording.velodyne import PacketDecoder
 from recon4.recording.velodyne_models import DATA_SIZE, POSITION_SIZE, velodyne_model
 from recon4.settings import IngestSettings
 
-__all__ = ["PacketStream", "VelodynePcap", "scan_pcap"]
-
 WAIT_S = 1.0
 """A sensor silent for so long holds the others' frames up no longer: datagrams are read in the
 order in which they came, a slot at a time (`in_slots`)."""

@@ -60,11 +60,6 @@ def edge_paths(graph: PoseGraph) -> tuple[Path, ...]:
     )
 
 
-def drawn_share(graph: PoseGraph) -> bool:
-    """Whether every edge is drawn; else an even sample of each class is."""
-    return len(graph.edges) <= _MOST_DRAWN
-
-
 def spanning(graph: PoseGraph) -> NDArray[np.int64]:
     """How many edges in the graph span each step between consecutive nodes, (N - 1,).
 
