@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import fcntl
 import os
 import socket
@@ -30,6 +31,13 @@ class AnnouncingServer(uvicorn.Server):
         """Start, then say so."""
         await super().startup(sockets)
         self._ready()
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """End; who still takes nothing when the patience is over is hung up on."""
+        await super().shutdown(sockets)
+        for connection in list(self.server_state.connections):
+            connection.transport.abort()
+        await asyncio.sleep(0)  # the sockets close on the loop's next round
 
 
 def uvicorn_config(app: FastAPI, certificate: Certificate | None = None) -> uvicorn.Config:

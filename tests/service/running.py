@@ -119,6 +119,15 @@ def server_process(
             process.wait()
 
 
+def wait_for(met: Callable[[], Any], what: str, *, most_s: float = 60.0) -> Any:
+    """The first truth of something nobody tells of; looked at again and again."""
+    deadline_s = time.monotonic() + most_s
+    while not (found := met()):
+        assert time.monotonic() < deadline_s, what
+        time.sleep(0.05)
+    return found
+
+
 def end_workers(root: Path) -> None:
     """A worker outlives its server, but not a test that failed."""
     for path in (root / ".recon4" / "jobs").glob("*"):

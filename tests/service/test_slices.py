@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 
 from tests.project_builder import ROOM_M, build_project
-from tests.service.running import server_thread
+from tests.service.running import server_thread, wait_for
 
 Z1 = {"kind": "horizontal", "z_m": 1.5, "thickness_m": 0.2}
 BASE = "/api/projects/office/slices"
@@ -194,7 +194,8 @@ def test_exports_open_in_other_programs(server):
     assert png.size == (3507, 2480)
     assert svg.startswith("<?xml") and "office" in svg and "Not approved" in svg
     assert csv[0].startswith("# recon4 slice") and len({line[:2] for line in csv[2:]}) == 2
-    assert list((server.root / ".recon4" / "slices" / "exports").iterdir()) == []
+    folder = server.root / ".recon4" / "slices" / "exports"
+    wait_for(lambda: not list(folder.iterdir()), "what was sent stays on the server", most_s=10.0)
 
 
 def test_an_export_of_an_approved_map_says_so(server):
@@ -250,9 +251,38 @@ def test_control_points_are_looked_at_kept_and_judged(server):
     assert preview["question"].startswith("Point A: is 0.020 the easting")
     assert kept.status_code == 200
     assert report["rows"][0]["east_m"] == pytest.approx(-0.02)
-    assert all(report["figures"][0]["passed"].values())
+    assert report["passed"] and report["outdated"] == []
     assert report["figures"][0]["role"] == "check"
     assert near["surface"][0] == pytest.approx(0.0, abs=0.01)
+
+
+def test_the_table_of_control_points_is_taken_away(server):
+    state = {"points": [{"id": "A", "xyz_m": [0.02, 5, 1.5]}], "picks": {"A": [0, 5, 1.5]}}
+    httpx.put(f"{server.url}{BASE}/control", json=state, timeout=30)
+
+    table = server.get(f"{BASE}/control/report.csv")
+    sheet = server.get(f"{BASE}/control/report.html")
+
+    assert "attachment" in table.headers["Content-Disposition"]
+    assert "A,check,-0.0200,0.0000,0.0000" in table.text and "Not approved" in table.text
+    assert "The map keeps the limits at 1 check point" in sheet.text
+    assert "sandbox" in sheet.headers["Content-Security-Policy"]
+
+
+def test_a_point_found_in_an_earlier_map_does_not_count_in_this_one(server):
+    path = server.root / "office" / "slices" / "control.json"
+    state = {"points": [{"id": "A", "xyz_m": [0.02, 5, 1.5]}], "picks": {"A": [0, 5, 1.5]}}
+    url = f"{server.url}{BASE}/control"
+    kept = httpx.put(url, json=state | {"found_in": {"A": "of another map"}}, timeout=30).json()
+    path.write_text(path.read_text().replace(kept["found_in"]["A"], "ab" * 32))
+
+    earlier = server.get(f"{BASE}/control/report").json()
+    moved = httpx.put(url, json=state | {"picks": {"A": [0.01, 5, 1.5]}}, timeout=30).json()
+    again = server.get(f"{BASE}/control/report").json()
+
+    assert kept["found_in"]["A"] == server.get(BASE).json()["key"] == moved["found_in"]["A"]
+    assert (earlier["outdated"], earlier["rows"], earlier["passed"]) == (["A"], [], None)
+    assert again["outdated"] == [] and again["rows"][0]["east_m"] == pytest.approx(-0.01)
 
 
 def test_another_project_can_be_set_beside(server):

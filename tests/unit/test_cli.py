@@ -126,8 +126,10 @@ def test_the_doctor_says_what_to_do_about_what_is_missing(tmp_path, monkeypatch)
     assert check.advice == "needed for flying: pip install no-such-package"
 
 
+# A background job of a shell ignores Ctrl-C, and so would this one if the tests are such a job.
 STUCK = """
-import sys, recon4.cli, recon4.store.audit
+import signal, sys, recon4.cli, recon4.store.audit
+signal.signal(signal.SIGINT, signal.default_int_handler)
 def wait(*a, **k):
     print("running", flush=True)
     sys.stdin.readline()
