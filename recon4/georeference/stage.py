@@ -19,6 +19,7 @@ from recon4.model.corrections import apply_corrections
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph, save_graph
 from recon4.pose_graph.relations import with_residuals
+from recon4.pose_graph.verification import confirmed_anew
 from recon4.progress import Progress
 from recon4.settings import Settings
 from recon4.store.arrays import load_trajectory, save_trajectory
@@ -46,8 +47,9 @@ def run_level(
         refined: Folder with ``trajectory.npz``, dense.
         graph: Folder of the verified graph.
         out: Receives ``trajectory.npz``, the graph's files and ``georeference.json``. The
-            residuals of the edges are those of the final poses.
-        settings: Uses level and gnss.
+            residuals of the edges are those of the final poses; what only edges turned down by
+            the positions had confirmed is unverified.
+        settings: Uses level, gnss and verification.
         progress: Counts the steps.
     """
     progress.start("level", 2, "steps")
@@ -63,7 +65,10 @@ def run_level(
     )
     crs = _describe_crs(placed.origin, settings.gnss.crs) if placed.origin else {}
     save_trajectory(out / "trajectory.npz", dense)
-    save_graph(out, with_residuals(placed.graph))
+    judged = placed.graph
+    if placed.rejected:
+        judged = confirmed_anew(judged, settings=settings.verification)
+    save_graph(out, with_residuals(judged))
     told = {"levelling": levelling.to_json(), "georeference": placed.to_json(), "crs": crs}
     write_json(out / "georeference.json", null_for_nan(told))
     progress.advance()

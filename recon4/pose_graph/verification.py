@@ -104,6 +104,26 @@ def verify(
     )
 
 
+def confirmed_anew(graph: PoseGraph, *, settings: VerificationSettings) -> PoseGraph:
+    """A verified graph some edges of which were turned down since: who is still confirmed?
+
+    Paths through these edges are gone. An edge whose last path went with them stays in the graph
+    and is unverified from now on; odometry and what a person decided are treated as in `verify`.
+    """
+    paths = _index(relations(graph.edges), nodes=len(graph), settings=settings)
+    edges = list(graph.edges)
+    for row, edge in enumerate(edges):
+        if not edge.in_graph or edge.paths == 0:  # it was not confirmed before either
+            continue
+        alone = edge.decided_by == "auto" and paths.count[row] == 0
+        edges[row] = edge.evolve(
+            verdict=Verdict.UNVERIFIED if alone else edge.verdict,
+            verification_m=float(paths.median_m[row]),
+            paths=int(paths.count[row]),
+        )
+    return graph.with_edges(tuple(edges))
+
+
 def _as_before(edge: Edge) -> Edge:
     """The edge as it was before any verification."""
     if edge.decided_by != "auto":

@@ -52,7 +52,8 @@ def headline(findings: list[Finding]) -> tuple[Level, str]:
 def find(facts: ReportFacts, results: Results, drift: DriftClosed | None) -> list[Finding]:
     """Everything worth saying, worst first."""
     found = [*_tracking(results), *_loops(results.graph), *_closed(drift)]
-    found += [*_levelled(results), *_imported(results), *_accuracy(facts)]
+    found += [*_levelled(results), *_contradicted(results)]
+    found += [*_imported(results), *_accuracy(facts)]
     found += [Finding(Level.WARNING, text) for text in facts.warnings]
     return sorted(found, key=lambda finding: -finding.level)
 
@@ -118,6 +119,14 @@ def _levelled(results: Results) -> list[Finding]:
         return []
     text = "The map is not levelled: heights and slopes in it are those of the sensor's first pose."
     return [Finding(Level.WARNING, text)]
+
+
+def _contradicted(results: Results) -> list[Finding]:
+    count = len(results.georeference.get("georeference", {}).get("edges_rejected", []))
+    if not count:
+        return []
+    text = f"Positions turned down {count} of the pairs that verification had passed."
+    return [Finding(Level.NOTE, text)]
 
 
 def _imported(results: Results) -> list[Finding]:

@@ -31,6 +31,8 @@ def placed_rows(georeference: Mapping[str, Any]) -> Rows:
     inner = dict(georeference.get("georeference", {}))
     if "georeferenced" in inner:
         out.append(("georeferenced", "yes" if inner.pop("georeferenced") else "no"))
+    if "edges_rejected" in inner:
+        out.append(("pairs turned down by the positions", str(len(inner.pop("edges_rejected")))))
     out += _rows(inner, "") + _rows(georeference.get("crs") or {}, "CRS: ")
     rest = {k: v for k, v in georeference.items() if k not in {"levelling", "georeference", "crs"}}
     return out + _rows(rest, "")

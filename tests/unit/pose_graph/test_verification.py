@@ -8,7 +8,7 @@ from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
 from recon4.pose_graph.paths import PathIndex
 from recon4.pose_graph.relations import relations
 from recon4.pose_graph.solve import optimize
-from recon4.pose_graph.verification import verify
+from recon4.pose_graph.verification import confirmed_anew, verify
 from recon4.settings import VerificationSettings
 from tests.benchmarks.false_loops import inject_random, inject_shifted, office_graph
 
@@ -243,6 +243,26 @@ def test_a_false_loop_no_path_reaches_falls_to_the_robust_solve(robust: str) -> 
     assert len(result.outliers) > 0
     assert result.chi2_after < result.chi2_before
     assert np.linalg.norm(result.graph.T_map_body.t - truth.t, axis=1).max() < 0.05
+
+
+def test_who_lost_the_last_path_that_confirmed_it_is_unverified() -> None:
+    graph = verify(line((0, 4, 0.0), (0, 2, 0.0), (2, 4, 0.0)), settings=PATHS_ONLY).graph
+    edges = list(graph.edges)
+    edges[6] = edges[6].evolve(verdict=Verdict.REJECTED, reason=Reason.ROBUST)
+
+    one_gone = confirmed_anew(graph.with_edges(tuple(edges)), settings=PATHS_ONLY).edges
+    edges[7] = edges[7].evolve(verdict=Verdict.REJECTED, reason=Reason.ROBUST)
+    both_gone = confirmed_anew(graph.with_edges(tuple(edges)), settings=PATHS_ONLY).edges
+    edges[5] = edges[5].evolve(decided_by="Ada")
+    decided = confirmed_anew(graph.with_edges(tuple(edges)), settings=PATHS_ONLY).edges
+
+    # (0, 4) is confirmed by (0, 2, 4), (0, 1, 2, 4) and (0, 2, 3, 4).
+    assert (graph.edges[5].paths, one_gone[5].paths, both_gone[5].paths) == (3, 1, 0)
+    assert one_gone[5].verdict is Verdict.ACCEPTED
+    assert both_gone[5].verdict is Verdict.UNVERIFIED
+    assert np.isnan(both_gone[5].verification_m)
+    assert decided[5].verdict is Verdict.ACCEPTED
+    assert both_gone[6].reason is Reason.ROBUST
 
 
 def test_the_cycle_variant_counts_the_edge_itself_as_a_path_without_error() -> None:

@@ -47,6 +47,20 @@ def test_a_map_that_nothing_levelled_says_so_and_lists_no_angles():
     assert not [name for name in rows if "roll" in name]
 
 
+def test_pairs_that_the_positions_turned_down_are_counted_and_not_listed(facts):  # noqa: F811
+    told = {"georeferenced": True, "edges_rejected": [12, 40]}
+    nothing = told | {"edges_rejected": []}
+
+    rows = dict(placed_rows({"georeference": told}))
+    found = find(facts, Results(georeference={"georeference": told}), None)
+    none = find(facts, Results(georeference={"georeference": nothing}), None)
+
+    assert rows["pairs turned down by the positions"] == "2"
+    assert "edges rejected" not in rows
+    assert [f.level for f in found if "Positions turned down 2 " in f.text] == [Level.NOTE]
+    assert not [f for f in none if "turned down" in f.text]
+
+
 def test_import_names_each_sensor_and_what_is_missing():
     report = {
         "sensors": [{"name": "lidar", "model": "VLP-16", "port": 2368, "points": 699_704}],
