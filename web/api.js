@@ -2,7 +2,7 @@
 
 export class ApiError extends Error {
   constructor(status, { error, detail, problems = {} }) {
-    super(typeof detail === "string" ? detail : detail.map((one) => `${one.loc.at(-1)}: ${one.msg}`).join("; "));
+    super(detail);
     this.name = error ?? "Invalid";
     this.status = status;
     this.problems = problems;
@@ -21,7 +21,7 @@ async function request(method, path, body) {
   } catch {
     throw new ApiError(0, { error: "Offline", detail: "The server does not answer. Is it still running?" });
   }
-  const json = response.headers.get("Content-Type")?.startsWith("application/json");
+  const json = response.status !== 204 && response.headers.get("Content-Type")?.startsWith("application/json");
   const answer = json ? await response.json() : await response.text();
   if (response.ok) return answer;
   const error = new ApiError(response.status, json ? answer : { detail: answer });
@@ -50,7 +50,9 @@ export async function changeHeaders(method = "POST") {
 }
 
 function leaveForLogin() {
-  if (!BEFORE_LOGIN.includes(location.pathname)) location.assign(`/login#next=${encodeURIComponent(location.pathname)}`);
+  if (BEFORE_LOGIN.includes(location.pathname)) return;
+  const paired = location.pathname === liveUrl; // a phone may have no password: the page of pairing has both
+  location.assign(paired ? "/pair#again" : `/login#next=${encodeURIComponent(location.pathname)}`);
 }
 
 /** Keeps who is signed in from an answer that tells: the token has changed. */
@@ -85,6 +87,7 @@ export const cancelJob = (id) => request("POST", `/api/jobs/${name(id)}/cancel`)
 export const retryJob = (id) => request("POST", `/api/jobs/${name(id)}/retry`);
 export const readLog = (id, offset) => request("GET", `/api/jobs/${name(id)}/log/since?offset=${offset}`);
 export const logUrl = (id) => `/api/jobs/${name(id)}/log/file`;
+export const readJob = (id) => request("GET", `/api/jobs/${name(id)}`);
 export const listJobsOf = (id) => request("GET", `/api/projects/${name(id)}/jobs`);
 export const lookAt = (path) => request("GET", `/api/look?path=${name(path)}`);
 export const readSettings = (preset) => request("GET", `/api/settings?of=${name(preset)}`);
@@ -161,11 +164,29 @@ export const reportUrl = (id) => `/api/projects/${name(id)}/report`;
 export const pictureUrl = (id, version) => `/api/projects/${name(id)}/picture?v=${name(version)}`;
 export const fileUrl = (id, file) => `/api/projects/${name(id)}/files/${name(file)}`;
 
-/** Calls `onJob` with every job now and at each change, `onLink` with whether the server answers. */
+/**
+ * Calls `onJob` with every job now and at each change, `onLink` with whether the server answers.
+ * The stream tells nothing of jobs that succeeded while it was cut: those are asked for.
+ */
 export function watchJobs(onJob, onLink) {
+  const newest = new Map(); // project -> its newest job, as far as it was told
+  const tell = (view) => {
+    const { job } = view;
+    const known = newest.get(job.project);
+    if (known && known.id !== job.id && known.created > job.created) return;
+    newest.set(job.project, job);
+    onJob(view);
+  };
+  const askAgain = async ({ id }) => {
+    const view = await readJob(id);
+    if (view.job.finished) tell(view);
+  };
   const source = new EventSource("/api/events");
-  source.addEventListener("job", (event) => onJob(JSON.parse(event.data)));
-  source.addEventListener("open", () => onLink(true));
+  source.addEventListener("job", (event) => tell(JSON.parse(event.data)));
+  source.addEventListener("open", () => {
+    onLink(true);
+    for (const job of newest.values()) if (!job.finished) askAgain(job).catch(() => onLink(false));
+  });
   source.addEventListener("error", () => {
     onLink(false);
     if (source.readyState === EventSource.CLOSED) request("GET", "/api/me").catch(() => {}); // signed out?
@@ -177,7 +198,6 @@ export function watchJobs(onJob, onLink) {
 const review = (id, path = "") => `/api/projects/${name(id)}/review${path}`;
 const ofPair = ([i, j]) => `frame_i=${i}&frame_j=${j}`;
 
-export const reviewUrl = (id) => `/projects/${name(id)}/review/`;
 export const readReview = (id) => request("GET", review(id));
 export const readQueue = (id) => request("GET", review(id, "/queue"));
 export const readWalk = (id) => request("GET", review(id, "/walk"));
@@ -189,6 +209,7 @@ export const stepBack = (id, seq) => request("POST", review(id, "/undo"), { afte
 export const stepForth = (id, seq) => request("POST", review(id, "/redo"), { after_seq: seq });
 export const alignPair = (id, [i, j], guess) => request("POST", review(id, "/align"), { frame_i: i, frame_j: j, T_i_j: guess });
 export const fitPoints = (id, p_i, p_j) => request("POST", review(id, "/fit"), { p_i, p_j });
+export const remakeMap = (id) => request("POST", `/api/projects/${name(id)}/remake`);
 export const approveMap = (id, why, confirmed) => request("POST", review(id, "/approve"), { why, confirmed });
 
 /** Points of both places of a pair, {i, j}: Float32Array of x y z in the body frame of each [m]. */
@@ -217,6 +238,7 @@ export const claimPairing = (token) => request("POST", "/api/pairing/claim", { t
 export const liveUrl = "/live";
 /** The capture that runs or the last one; null if there was none. */
 export const readCapture = () => request("GET", "/api/live");
+export const readCaptureChoices = () => request("GET", "/api/live/choices");
 export const startCapture = (capture) => request("POST", "/api/live", capture);
 export const steerCapture = (what) => request("POST", `/api/live/${name(what)}`);
 export const markHere = (mark) => request("POST", "/api/live/marks", mark);
@@ -254,4 +276,5 @@ export const lookAtControl = (id, file) => request("POST", `${slices(id)}/contro
 export const readControl = (id) => request("GET", `${slices(id)}/control`);
 export const keepControl = (id, state) => request("PUT", `${slices(id)}/control`, state);
 export const readControlReport = (id) => request("GET", `${slices(id)}/control/report`);
+export const controlFileUrl = (id, ending) => `${slices(id)}/control/report.${ending}`;
 export const readSurface = (id, point) => request("GET", `${slices(id)}/control/surface?point=${name(point)}`);

@@ -103,7 +103,9 @@ def watch(page, picture):
     expect(row.filter(has_text="odometry")).to_contain_text("Done", timeout=WORK_MS)
     expect(page.locator("job-status")).to_contain_text("% of the run")
     drawn(page)
-    expect(page.frame_locator("iframe").get_by_text("Trajectory", exact=True)).to_be_attached()
+    expect(
+        page.frame_locator("iframe").get_by_text("Trajectory", exact=True).first
+    ).to_be_attached()
     picture(page, "way-running")
     expect(page.locator("#state")).to_contain_text("Finished", timeout=WORK_MS)
     expect(row.filter(has_text="map")).to_contain_text("Done")
