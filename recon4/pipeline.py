@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from recon4 import stages
-from recon4.errors import RecordingError
+from recon4.errors import RecordingError, StoreError
 from recon4.model.rig import Rig, format_rig
 from recon4.progress import Progress, Silent
 from recon4.results import About, Summary, publish
@@ -16,8 +16,12 @@ from recon4.settings import Settings
 from recon4.settings import preset as settings_of
 from recon4.store.hashing import hash_json, size_of
 from recon4.store.inputs import input_file, input_files
-from recon4.store.project import Project, read_description
-from recon4.store.stage import Input, StageRunner
+from recon4.store.project import Project, read_artifacts, read_description
+from recon4.store.recipes import settings_in
+from recon4.store.stage import Artifact, Input, StageRunner
+
+BEFORE_REVIEW = (stages.FRAMES, stages.ODOMETRY, stages.GRAPH, stages.VERIFICATION)
+"""What decisions of people do not change."""
 
 
 def process(
@@ -77,6 +81,38 @@ def process(
         return publish(out, runner.runs, about, progress=progress)
 
 
+def remake(out: Path, *, progress: Progress | None = None) -> Summary:
+    """Make the map of a project anew with the decisions of people that stand now.
+
+    The stages before them are kept as they are, so no recording is needed; the others run with the
+    settings the map was made with.
+
+    Args:
+        out: A project that was processed to its end.
+        progress: Who watches.
+
+    Raises:
+        StoreError: If a stage is missing or damaged, the project is in use or cannot be written.
+        Recon4Error: Whatever else stops a stage.
+        Cancelled: If the watcher asked to stop; the next call goes on from there.
+    """
+    progress = progress or Silent()
+    made = read_artifacts(out)
+    if "map" not in made:
+        raise StoreError(f"{out.name} has no map yet: process its recording to the end first")
+    before = [stage.name for stage in BEFORE_REVIEW]
+    # Of a setting that a cut-off run changed, what the kept stages were made with counts.
+    settings = settings_in(made[name] for name in sorted(made, key=before.__contains__))
+    with Project.open(out) as project:
+        runner = StageRunner(project, settings, progress)
+        frames, odometry, _, graph = (runner.keep(stage.name) for stage in BEFORE_REVIEW)
+        run_from_review(
+            runner, frames=frames, odometry=odometry, graph=graph, decided=read_decided(out)
+        )
+        about = About(read_description(out), settings)
+        return publish(out, runner.runs, about, progress=progress)
+
+
 def run_stages(
     runner: StageRunner,
     *,
@@ -86,16 +122,24 @@ def run_stages(
     gnss: Input | None,
     decided: Decided = NOTHING_DECIDED,
 ) -> None:
-    """Every stage in order; each is skipped when its artifact is there.
-
-    Without decisions of people there is no stage ``review``, so that undoing all of them finds the
-    artifacts of before again.
-    """
+    """Every stage in order; each is skipped when its artifact is there."""
     run = runner.run
     frames = run(stages.FRAMES, recordings=recordings, rig=rig, imu=imu, gnss=gnss)
     odometry = run(stages.ODOMETRY, frames=frames)
     searched = run(stages.GRAPH, frames=frames, odometry=odometry)
     graph = run(stages.VERIFICATION, graph=searched)
+    run_from_review(runner, frames=frames, odometry=odometry, graph=graph, decided=decided)
+
+
+def run_from_review(
+    runner: StageRunner, *, frames: Artifact, odometry: Artifact, graph: Artifact, decided: Decided
+) -> None:
+    """The stages that depend on decisions of people.
+
+    Without decisions there is no stage ``review``, so that undoing all of them finds the artifacts
+    of before again.
+    """
+    run = runner.run
     if decided:
         decisions = Input(decided.key, decided.standing)
         graph = run(stages.REVIEW, graph=graph, decisions=decisions)

@@ -18,6 +18,7 @@ from recon4 import stages
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
 from recon4.model.trajectory import Trajectory
+from recon4.pipeline import remake
 from recon4.pose_graph.files import save_graph
 from recon4.progress import Progress, Silent
 from recon4.results import About, publish
@@ -145,9 +146,9 @@ def _apart(T, i, j) -> Edge:
 
 
 def work(folder: JobFolder, progress: Progress) -> None:
-    """A job's work, for servers in tests: makes the project again."""
-    root, _ = folder.request()
-    make(root, progress=progress)
+    """A job's work, for servers in tests: makes the project again, as asked."""
+    root, inputs = folder.request()
+    (remake if inputs.remake else make)(root, progress=progress)
 
 
 if __name__ == "__main__":

@@ -1,10 +1,10 @@
 // The review: loops by influence, each looked at, decided, measured anew; the map approved.
 
-import { alignPair, approveMap, decide, fitPoints, listJobsOf, readEffect, readJournal, readPair, readPoints, readQueue, readReview, readWalk, retryJob, stepBack, stepForth, watchJobs } from "./api.js";
+import { alignPair, approveMap, decide, fitPoints, readEffect, readJournal, readPair, readPoints, readQueue, readReview, readWalk, remakeMap, stepBack, stepForth, watchJobs } from "./api.js";
 import { attempt, make } from "./dom.js";
 import { apart } from "./review_math.js";
 import { askForMoments, askToSign, showKeys } from "./review_dialogs.js";
-import { showEffect, showJournal, showPair, showSigning } from "./review_panels.js";
+import { journalWords, showEffect, showJournal, showPair, showSigning } from "./review_panels.js";
 import { keyOf, length } from "./review_words.js";
 import { withPassword } from "./sign_again.js";
 import "./page_head.js";
@@ -24,6 +24,9 @@ let effectShown = 0;
 let hand = null; // the pair in hand: {pair, row, facts, found, moved, busy}
 let last = Promise.resolve();
 let limit_m = 0.1;
+let graph = ""; // the queue is made of this one
+
+const EVERY_MS = 4000; // others decide too, in other browsers or by another server
 
 document.title = `Review of ${id} · recon4`;
 
@@ -73,7 +76,7 @@ function poseOf({ pair, facts }) {
 /** A pair the program never tried. */
 function newRow(pair) {
   const nothing = { influence_m: null, overlap: null, error_m: null, limit_m: null, degeneracy: null, verification_m: null, chi2: null };
-  return decorated({ frame_i: pair[0], frame_j: pair[1], t_i_s: 0, t_j_s: 0, kind: "manual", verdict: "rejected", reason: "", measured: false, paths: 0, ...nothing });
+  return decorated({ frame_i: pair[0], frame_j: pair[1], t_i_s: 0, t_j_s: 0, kind: "manual", verdict: "rejected", reason: "", measured: Boolean(standingOf(pair)?.measured), paths: 0, ...nothing });
 }
 
 function decorated(row) {
@@ -93,17 +96,29 @@ function decidedAbout(row) {
 
 function drawHand() {
   showPair(byId("pair"), hand?.row, hand?.facts, hand?.found, limit_m);
-  const can = Boolean(state?.may_review && hand);
-  for (const [name, button] of Object.entries(buttons)) button.disabled = !can && !["add", "keys"].includes(name);
-  if (!hand || !state) return;
-  const stands = standingOf(hand.pair);
-  buttons.restore.disabled = !can || !stands;
-  buttons.accept.disabled = !can || (!hand.row.measured && !stands?.measured);
-  buttons.undo.disabled = !state.may_review || !state.undoable;
-  buttons.redo.disabled = !state.may_review || !state.redoable;
-  buttons.refine.disabled = !can || hand.busy || !hand.facts;
-  buttons.refine.firstChild.textContent = hand.busy ? "Refining…" : hand.found?.measurement && !hand.moved ? "Create edge" : "Refine";
-  byId("said").textContent = handWords();
+  for (const [name, able] of Object.entries(ableTo())) buttons[name].disabled = !able;
+  buttons.refine.firstChild.textContent = hand?.busy ? "Refining…" : hand?.found?.measurement && !hand.moved ? "Create edge" : "Refine";
+  byId("said").textContent = hand && state ? handWords() : "";
+}
+
+/** What can be done with the pair in hand, or without one, by who looks. */
+function ableTo() {
+  const may = Boolean(state?.may_review);
+  const can = may && Boolean(hand);
+  const stands = hand && standingOf(hand.pair);
+  return {
+    previous: queue.length > 0,
+    next: queue.length > 0,
+    accept: can && Boolean(hand.row.measured || stands?.measured),
+    reject: can,
+    restore: can && Boolean(stands),
+    refine: can && !hand.busy && Boolean(hand.facts),
+    pick: can && Boolean(hand.facts),
+    undo: may && state.undoable > 0,
+    redo: may && state.redoable > 0,
+    add: Boolean(graph),
+    keys: true,
+  };
 }
 
 function handWords() {
@@ -116,13 +131,14 @@ function handWords() {
     return found.reason ? `Refined, ${moved}. The program would turn it down: ${found.reason}` : `Refined, ${moved}. Enter creates the edge`;
   }
   if (hand.moved) return "Moved by hand. Enter refines from here";
-  return !hand.row.measured && !standingOf(hand.pair)?.measured ? "Never registered: refine it before it can be accepted" : "";
+  return !hand.row.measured && !standingOf(hand.pair)?.measured ? "Never registered: refine it (move it first where it is far off), then it can become an edge" : "";
 }
 
 // -- decisions, one after the other in the order of the keys
 
 function inTurn(action) {
   last = last.then(async () => {
+    byId("news").textContent = "";
     await attempt(message, action);
     if (message.textContent) become(await readReview(id).catch(() => null)); // somebody else may have decided
   });
@@ -134,7 +150,11 @@ function become(fresh) {
   const seqBefore = state?.seq;
   state = fresh;
   const added = state.standing.filter((one) => !queue.get(keyOf([one.frame_i, one.frame_j])));
-  for (const one of added) queue.add(decorated({ ...newRow([one.frame_i, one.frame_j]), measured: true }));
+  for (const one of added) {
+    const row = newRow([one.frame_i, one.frame_j]);
+    allRows = [row, ...allRows];
+    queue.add(row);
+  }
   refreshRows();
   showSigning(byId("signing"), state, { remake, approve });
   drawHand();
@@ -142,9 +162,27 @@ function become(fresh) {
   if (byId("journal").open) drawJournal();
 }
 
+/** Looks whether others decided something, or a job made another map or another graph. */
+function lookAround() {
+  last = last.then(async () => {
+    const before = state;
+    const fresh = await readReview(id).catch(() => null); // the head of the page says when nobody answers
+    if (!fresh || state !== before || JSON.stringify(fresh) === JSON.stringify(state)) return;
+    if (!state || fresh.graph !== graph) {
+      await attempt(message, begin);
+      return;
+    }
+    become(fresh);
+    const more = fresh.seq - before.seq;
+    const [row] = more > 0 ? await readJournal(id).catch(() => []) : [];
+    if (row) byId("news").textContent = journalWords(row, more);
+  });
+}
+
 function refreshRows() {
   const changed = [];
   for (const row of allRows) {
+    if (row.kind === "manual") row.measured = Boolean(standingOf([row.frame_i, row.frame_j])?.measured);
     const now = decidedAbout(row);
     if (now.state !== row.state || now.who !== row.who || now.why !== row.why) {
       Object.assign(row, now);
@@ -160,7 +198,7 @@ function decideNow(kind, more = {}) {
   const stands = standingOf(pair);
   if (kind === "restore" && !stands) return undefined;
   if (kind === "accept" && !row.measured && !stands?.measured) {
-    message.textContent = "This pair was never registered: refine it first";
+    message.textContent = "This pair was never registered: lay it right and refine it first";
     return undefined;
   }
   const why = reason.value.trim();
@@ -221,7 +259,7 @@ function pick() {
 async function look() {
   const mine = ++effectAsked;
   drawEffect();
-  if (!state.standing.length && !state.undoable && !state.redoable) {
+  if (!graph || (!state.standing.length && !state.undoable && !state.redoable)) {
     effect = null;
   } else {
     const told = await attempt(message, () => readEffect(id));
@@ -246,9 +284,7 @@ async function drawJournal() {
 
 async function remake(error) {
   await attempt(error, async () => {
-    const [newest] = await listJobsOf(id);
-    if (!newest) throw new Error("This project was made on the command line: run the same recon4 process again, it takes the decisions in");
-    await retryJob(newest.job.id);
+    await remakeMap(id);
     become(await readReview(id));
   });
 }
@@ -370,20 +406,26 @@ byId("journal").addEventListener("toggle", drawJournal);
 document.addEventListener("keydown", onKey);
 
 async function begin() {
-  view.clear("Ordering the loops by influence…");
-  const [fresh, told] = await Promise.all([readReview(id), readQueue(id)]);
+  view.clear("Ordering the loops…");
+  const fresh = await readReview(id);
+  graph = fresh.graph;
+  state = { ...fresh, seq: -1 };
+  loaded.clear();
+  hand = effect = null;
+  const told = graph ? await readQueue(id) : { rows: [], columns: [], began_ns: 0, limit_m };
   ({ began_ns, limit_m } = told);
-  state = fresh;
   allRows = told.rows.map((row) => decorated(Object.fromEntries(told.columns.map((name, k) => [name, row[k]]))));
   queue.rows = allRows;
-  view.clear(allRows.length ? "J takes the first pair" : "This walk has no pair to decide about");
-  state = { ...fresh, seq: -1 };
+  view.clear(allRows.length ? "J takes the first pair" : graph ? "This walk has no pair to decide about" : "Nothing to review until loops have been searched and verified");
   become(fresh);
 }
 
+const states = new Map();
 watchJobs(
-  async ({ job }) => {
-    if (job.project === id && state) become(await attempt(message, () => readReview(id)));
+  ({ job }) => {
+    if (job.project !== id || states.get(job.id) === job.state) return;
+    states.set(job.id, job.state);
+    lookAround();
   },
   (linked) => {
     document.querySelector("page-head").linked = linked;
@@ -392,3 +434,4 @@ watchJobs(
 drawHand();
 await attempt(message, begin);
 if (message.textContent) view.clear("Nothing to review");
+setInterval(() => document.hidden || lookAround(), EVERY_MS);

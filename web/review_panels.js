@@ -71,7 +71,7 @@ function approvalWords({ approval, in_map }) {
 /** Whether the map knows the decisions, and who approved it. */
 export function showSigning(panel, state, { remake, approve }) {
   const { approval } = state;
-  const hurdle = state.busy ? "A job waits or runs" : !state.finished ? "There is no finished map yet" : !state.in_map ? "The map does not know the last decisions" : "";
+  const hurdle = state.busy ? "A job waits or runs" : !state.finished ? "There is no finished map yet" : !state.in_map ? "The map does not know the last decisions" : approval?.current ? "This map is approved" : "";
   fill(panel,
     make("h2", {}, "Map"),
     make("p", {}, state.busy ? "▶ A job waits or runs" : state.in_map ? "✓ The map was made with these decisions" : "◌ The map does not know the last decisions yet"),
@@ -81,15 +81,22 @@ export function showSigning(panel, state, { remake, approve }) {
       make("button", { type: "button", id: "remake", disabled: state.busy || state.in_map || !state.may_process }, "Make a new map"),
       make("button", { type: "button", id: "approve", disabled: Boolean(hurdle) || !state.may_review, title: hurdle }, "Approve verification…"),
     ),
-    hurdle && !state.busy ? make("p", { className: "quiet" }, `Approving: ${hurdle.toLowerCase()}`) : null,
+    hurdle && !state.busy && !(approval?.current && state.in_map) ? make("p", { className: "quiet" }, `Approving: ${hurdle.toLowerCase()}`) : null,
     make("p", { className: "error", role: "alert" }),
   );
   panel.querySelector("#remake").onclick = () => remake(panel.querySelector(".error"));
   panel.querySelector("#approve").onclick = () => approve();
 }
 
+const about = (row) => (row.frame_i === null ? "" : ` multiframes ${row.frame_i} and ${row.frame_j}`);
+
+/** What somebody else did meanwhile: the last of some rows of the journal. */
+export function journalWords(row, count) {
+  const more = count > 1 ? `, after ${count - 1} other ${count > 2 ? "decisions" : "decision"}` : "";
+  return `Meanwhile ${row.who} ${KINDS[row.kind] ?? row.kind}${about(row)}${more}`;
+}
+
 export function showJournal(list, rows) {
-  const about = (row) => (row.frame_i === null ? "" : ` multiframes ${row.frame_i} and ${row.frame_j}`);
   fill(list, ...rows.map((row) =>
     make("li", { value: row.seq }, make("b", {}, row.who), ` ${KINDS[row.kind] ?? row.kind}${about(row)}`, make("small", {}, ` ${when(row.time)}`), row.why ? make("q", {}, row.why) : null)));
 }

@@ -1,4 +1,4 @@
-// <review-queue>: the pairs to decide about, those that would move the map most first.
+// <review-queue>: the pairs to decide about, in the order of the server: what matters and may be wrong first.
 
 import { make } from "./dom.js";
 import { VERDICTS, length, seconds } from "./review_words.js";
@@ -10,7 +10,7 @@ const SHOW = {
   open: ["Not decided by anybody", (row) => row.measured && !row.who],
   decided: ["Decided by people", (row) => Boolean(row.who)],
   all: ["All registered pairs", (row) => row.measured],
-  apart: ["Too little overlap", (row) => !row.measured],
+  apart: ["Never registered", (row) => !row.measured],
 };
 const PAGE = 300; // rows in the list at a time
 
@@ -40,6 +40,7 @@ class ReviewQueue extends HTMLElement {
   /** Rows as objects with the columns as fields. */
   set rows(rows) {
     this.#rows = rows;
+    this.#chosen = null;
     this.#byKey = new Map(rows.map((row) => [row.key, row]));
     const reasons = [...new Set(rows.map((row) => row.reason).filter(Boolean))].sort();
     this.#reason.replaceChildren(make("option", { value: "" }, "Any reason"), ...reasons.map((words) => make("option", { value: words }, words)));

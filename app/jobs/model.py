@@ -48,6 +48,8 @@ class Inputs:
     """CSV file; empty = what the recording has."""
     settings: tuple[str, ...] = ()
     """``group.field=value`` texts over the preset."""
+    remake: bool = False
+    """Only make the map anew with the decisions that stand; the rest is how it was made first."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import secrets
 from collections.abc import AsyncIterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -60,6 +60,8 @@ class NewJob(BaseModel):
     """``group.field=value`` texts over the preset."""
     clone_of: str = Field(default="", max_length=64)
     """A project whose finished stages the new one begins with, as far as they fit."""
+    only_new: bool = False
+    """Refuse if there is a project of that name, which would be run again otherwise."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -99,6 +101,8 @@ def add_job(new: NewJob, server: Server, request: Request) -> JobView:
     """
     inputs = _checked(new, server)
     _refuse_too_many(server)
+    if new.only_new:
+        server.projects.refuse_taken(new.project)
     if new.clone_of and new.clone_of != new.project:
         server.projects.clone(new.clone_of, new.project)
     added = _add(server, new.project, inputs)
@@ -140,6 +144,28 @@ def retry_job(job_id: str, server: Server, request: Request) -> JobView:
     _refuse_if_full(server, job.project, job.inputs)
     added = _add(server, job.project, job.inputs)
     audit(request, "resume job", job.project)
+    return added
+
+
+@router.post(
+    "/projects/{project_id}/remake",
+    status_code=201,
+    responses=REFUSALS,
+    dependencies=START,
+    summary="Make a new map",
+)
+def remake(project_id: str, server: Server, request: Request) -> JobView:
+    """Put the decisions about loops into the map: only what depends on them is run.
+
+    Neither the recording nor an earlier job of this server is needed.
+    """
+    server.projects.map_artifact(project_id)  # says what is missing
+    _refuse_too_many(server)
+    earlier = server.jobs.of_project(project_id)
+    inputs = replace(earlier[0].inputs if earlier else Inputs(recordings=()), remake=True)
+    _refuse_if_full(server, project_id, inputs)
+    added = _add(server, project_id, inputs)
+    audit(request, "make a new map", project_id)
     return added
 
 
@@ -214,7 +240,8 @@ def _refuse_too_many(server: Parts) -> None:
 
 
 def _refuse_if_full(server: Parts, project: str, inputs: Inputs) -> None:
-    given = [Path(path) for path in (*inputs.recordings, inputs.imu, inputs.gnss) if path]
+    files = () if inputs.remake else (*inputs.recordings, inputs.imu, inputs.gnss)
+    given = [Path(path) for path in files if path]
     try:
         refuse_if_full(
             server.settings.root / project, given, reserve_bytes=server.settings.reserve_bytes

@@ -71,12 +71,17 @@ def run(folder: JobFolder, work: Work) -> Outcome:
 
 
 def process(folder: JobFolder, progress: Progress) -> None:
-    """Call the pipeline as ``recon4 process`` does."""
+    """Call the pipeline as ``recon4 process`` does, or only what depends on decisions."""
     from recon4.model.rig import load_rig
     from recon4.pipeline import process as run_pipeline
+    from recon4.pipeline import remake
     from recon4.settings import override, preset
 
     project, inputs = folder.request()
+    if inputs.remake:
+        refuse_if_full(project, [], reserve_bytes=folder.limits().reserve_bytes)
+        remake(project, progress=progress)
+        return
     given = [Path(path) for path in (*inputs.recordings, inputs.imu, inputs.gnss) if path]
     refuse_if_full(project, given, reserve_bytes=folder.limits().reserve_bytes)
     run_pipeline(

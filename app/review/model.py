@@ -97,6 +97,8 @@ class ReviewView:
     """Rows in the journal."""
     key: str
     """Of the decisions that stand."""
+    graph: str
+    """Key of the verified graph the queue is made of; empty = there is none yet."""
     undoable: int
     redoable: int
     standing: list[StandingView]

@@ -34,7 +34,7 @@ from recon4.review.approval import approve as sign
 from recon4.review.decisions import Decided, Decision, Kind, fold
 from recon4.review.journal import JournalMoved, NothingToTakeBack, Row, append, read_rows
 from recon4.review.pairs import align, fit_points, pair_facts, pair_points, walk_facts
-from recon4.review.source import Source
+from recon4.review.source import Source, graph_key
 from recon4.review.state import decisions_in_map
 
 LOOK = [Depends(needs(May.LOOK))]
@@ -68,7 +68,7 @@ def read_review(project_id: str, server: Server, who: Who) -> ReviewView:
 
 @router.get("/queue", dependencies=LOOK, summary="Pairs to decide about")
 async def read_queue(project_id: str, server: Server) -> Response:
-    """All pairs but odometry, those that would move the map most first.
+    """All pairs but odometry: those whose registration holds, then the others, by influence.
 
     ``columns`` names what each of the ``rows`` holds. Figures are those before any decision.
     """
@@ -225,6 +225,7 @@ def _view(project_id: str, server: Parts, who: Person) -> ReviewView:
     return ReviewView(
         seq=len(rows),
         key=decided.key,
+        graph=graph_key(root),
         undoable=decided.undoable,
         redoable=decided.redoable,
         standing=[

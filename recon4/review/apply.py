@@ -61,8 +61,8 @@ def rows_by_pair(graph: PoseGraph) -> dict[Pair, int]:
 
 
 def is_measured(edge: Edge) -> bool:
-    """Whether its pose was registered; a pair without enough overlap has only a guess."""
-    return edge.reason is not Reason.OVERLAP
+    """Whether its pose was registered; else it is only a guess, and nothing to accept."""
+    return edge.converged and edge.reason is not Reason.OVERLAP
 
 
 def _decided(edge: Edge, one: Standing) -> Edge:

@@ -10,7 +10,7 @@ import json
 import os
 import secrets
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -44,6 +44,8 @@ class Approval:
     folder: Path
     """Holds the files issued with it."""
     stamp: Stamp
+    artifacts: Mapping[str, str]
+    """Stage -> key of what was approved."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,11 +74,12 @@ def approve(root: Path, key_file: Path, signer: Mapping[str, str], confirmed: bo
 
     Raises:
         NotApprovable: If there is no finished run, decisions are not in it, it is damaged, or
-            there are conflicts and nobody confirmed them with a reason.
+            there are conflicts and nobody confirmed them with a reason, or it is approved already.
         StoreError: If the project is in use or cannot be written (`NoSpace`: disk full).
     """
     with Project.open(root):
         asked = _asked(root, signer)
+        _refuse_again(root, asked)
         _refuse(root, asked, confirmed=confirmed)
         (root / VERSIONS).mkdir(exist_ok=True)
         sweep(root / VERSIONS)
@@ -85,8 +88,7 @@ def approve(root: Path, key_file: Path, signer: Mapping[str, str], confirmed: bo
         facts = {"version": version, "approval": approval.hash, "artifacts": hash_json(asked.keys)}
         decision = Decision(kind=Kind.APPROVE, who=signer["who"], why=signer["why"], facts=facts)
         append(root, decision, after_seq=len(asked.rows))
-        put_back(root, approval)
-        _link(approval.folder / "summary.json", root / "summary.json")
+        _hand_out(root, approval)
     return approval
 
 
@@ -105,8 +107,24 @@ def approval_of(root: Path, keys: Mapping[str, str]) -> Approval | None:
     return None
 
 
+def approval_of_map(root: Path, map_key: str) -> dict[str, Any] | None:
+    """The newest approval of an earlier map, by the key of its artifact, as a stamp has it.
+
+    Raises:
+        StoreError: If an approval counts but is not there or damaged.
+    """
+    for row in reversed(read_rows(root)):
+        if row.kind == Kind.APPROVE:
+            facts = row.decision().facts or {}
+            folder = root / VERSIONS / str(facts["version"])
+            approval = _read(folder, facts["version"], facts["approval"])
+            if approval.artifacts.get("map") == map_key:
+                return asdict(approval.stamp)
+    return None
+
+
 def latest_approval(root: Path, rows: Sequence[Row]) -> dict[str, Any] | None:
-    """The newest approval for people; ``current`` = the results in the folder are those.
+    """The newest approval for people; ``current`` = the results in the folder are those and say so.
 
     Raises:
         StoreError: If a file is damaged.
@@ -116,9 +134,11 @@ def latest_approval(root: Path, rows: Sequence[Row]) -> dict[str, Any] | None:
             facts = row.decision().facts or {}
             summary = read_summary(root)
             now = hash_json(artifact_keys(summary)) if summary else ""
+            said = ((summary or {}).get("approval") or {}).get("hash")
+            current = now == facts["artifacts"] and said == facts["approval"]
             told = {"version": facts["version"], "hash": facts["approval"], "who": row.who}
             return told | {
-                "time": row.time, "why": row.why, "current": now == facts["artifacts"],
+                "time": row.time, "why": row.why, "current": current,
             }  # fmt: skip
     return None
 
@@ -128,6 +148,24 @@ def put_back(root: Path, approval: Approval) -> None:
     for path in sorted(approval.folder.iterdir()):
         if path.name not in ("approval.json", "summary.json"):
             _link(path, root / path.name)
+
+
+def _hand_out(root: Path, approval: Approval) -> None:
+    """The results and the summary of the project are from now on those that were issued."""
+    put_back(root, approval)
+    _link(approval.folder / "summary.json", root / "summary.json")
+
+
+def _refuse_again(root: Path, asked: _Asked) -> None:
+    """Results are signed once; what was cut off after it counted is handed out first."""
+    before = approval_of(root, asked.keys)
+    if before is None:
+        return
+    if (asked.summary.get("approval") or {}).get("hash") != before.hash:
+        _hand_out(root, before)
+    raise NotApprovable(
+        f"version {before.version} by {before.stamp.who} approves these results already"
+    )
 
 
 def _asked(root: Path, signer: Mapping[str, str]) -> _Asked:
@@ -190,7 +228,7 @@ def _issue(root: Path, asked: _Asked, *, version: int, key_file: Path) -> Approv
         write_json(made / "approval.json", told | {"signature": signature})
         for path in made.iterdir():
             path.chmod(0o444)
-    return Approval(version, stamp.hash, folder, stamp)
+    return Approval(version, stamp.hash, folder, stamp, asked.keys)
 
 
 def _statement(root: Path, asked: _Asked, *, version: int, time: str) -> dict[str, Any]:
@@ -231,9 +269,10 @@ def _read(folder: Path, version: int, sha256: str) -> Approval:
         stamp = Stamp(
             version=version, who=said["who"], role=said["role"], time=said["time"], hash=sha256
         )
+        artifacts = dict(said["artifacts"])
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise StoreError(f"{folder}/approval.json cannot be read: {error!r}") from error
-    return Approval(version, sha256, folder, stamp)
+    return Approval(version, sha256, folder, stamp, artifacts)
 
 
 def _link(source: Path, target: Path) -> None:

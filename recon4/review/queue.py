@@ -1,4 +1,4 @@
-"""The pairs a person may decide about, those that move the map most first."""
+"""The pairs a person may decide about: those worth a look first, by how much the map would move."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.paths import path_medians
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason
 from recon4.pose_graph.paths import PathIndex
 from recon4.pose_graph.relations import relations
 from recon4.review.apply import is_measured
@@ -29,10 +29,13 @@ COLUMNS = (
 """What is told of each pair, in this order."""
 MOST_PATHS = 60
 """So many alternative paths of a pair are told one by one, the worst first."""
+_HOLDS, _WEAK, _GUESSED, _APART = range(4)
+_DOUBTS_ITSELF = (Reason.ERROR, Reason.FEW_MATCHES, Reason.DEGENERATE)
+"""Turned down for what the registration itself says, whatever the rest of the graph does."""
 
 
 def queue_json(root: Path) -> bytes:
-    """All pairs but odometry as JSON: ``key``, ``columns`` and ``rows``, largest influence first.
+    """All pairs but odometry as JSON: ``key``, ``columns`` and ``rows``, as `queue_rows` has them.
 
     Figures are those of the verified graph, before any decision, so that the order does not change
     under the hands of who decides. The same graph gives the same bytes.
@@ -54,13 +57,21 @@ def queue_json(root: Path) -> bytes:
 
 
 def queue_rows(graph: PoseGraph, *, settings: Settings) -> list[list[Any]]:
-    """One row a pair, as `COLUMNS`."""
+    """One row a pair, as `COLUMNS`: what may be wrong and matters comes first.
+
+    First pairs whose own registration holds, kept or turned down by the rest of the graph; then
+    those whose registration is weak; both by influence. Then those that were never registered:
+    their pose means nothing, but the more two places see of each other, the more likely a person
+    can lay them right.
+    """
     asked = np.array([edge.kind is not EdgeKind.ODOMETRY for edge in graph.edges], np.bool_)
-    measured = np.array([is_measured(edge) for edge in graph.edges], np.bool_)
-    influence = np.nan_to_num(influence_m(graph, asked & measured))
+    rank = np.array([_rank(edge) for edge in graph.edges])
+    influence = influence_m(graph, asked & (rank < _GUESSED))
     medians, counts = medians_of_all(graph, settings=settings)
+    overlaps = np.nan_to_num([edge.overlap for edge in graph.edges])
+    worth = np.where(rank < _GUESSED, np.nan_to_num(influence), overlaps)
     rows = np.flatnonzero(asked)
-    order = rows[np.lexsort((rows, -influence[rows]))]
+    order = rows[np.lexsort((rows, -worth[rows], rank[rows]))]
     return [
         _row(
             graph,
@@ -71,6 +82,15 @@ def queue_rows(graph: PoseGraph, *, settings: Settings) -> list[list[Any]]:
         )
         for k in order.tolist()
     ]
+
+
+def _rank(edge: Edge) -> int:
+    """How much the registration of a pair is worth, the best first."""
+    if edge.reason is Reason.OVERLAP:
+        return _APART
+    if not is_measured(edge):
+        return _GUESSED
+    return _WEAK if edge.reason in _DOUBTS_ITSELF else _HOLDS
 
 
 def medians_of_all(graph: PoseGraph, *, settings: Settings) -> tuple[Array, NDArray[np.int64]]:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 from recon4.errors import StoreError
 from recon4.model.pose_graph import PoseGraph
@@ -15,7 +14,7 @@ from recon4.settings import Settings
 from recon4.store.arrays import load_trajectory
 from recon4.store.frames import FrameStore
 from recon4.store.project import read_artifacts
-from recon4.store.stage import read_manifest
+from recon4.store.recipes import settings_in
 
 
 @dataclass(frozen=True)
@@ -49,11 +48,8 @@ class Source:
     @cached_property
     def settings(self) -> Settings:
         """Those the graph was searched and verified with; others are the defaults."""
-        told: dict[str, dict[str, Any]] = {}
-        for stage in ("graph", "verification"):
-            if stage in self.artifacts:
-                told |= read_manifest(self.artifacts[stage])["recipe"]["settings"]
-        return _settings(told)
+        made = [self.artifacts[n] for n in ("graph", "verification") if n in self.artifacts]
+        return settings_in(made)
 
     @cached_property
     def odometry(self) -> Trajectory:
@@ -71,12 +67,11 @@ class Source:
         return self.artifacts[stage]
 
 
-def _settings(told: dict[str, dict[str, Any]]) -> Settings:
-    """From the recipe of an artifact; names that an older or newer recon4 wrote are left out."""
-    settings = Settings()
-    groups = {}
-    for name, values in told.items():
-        group = getattr(settings, name)
-        known = {f.name for f in fields(group)}
-        groups[name] = replace(group, **{n: v for n, v in values.items() if n in known})
-    return replace(settings, **groups)
+def graph_key(root: Path) -> str:
+    """Key of the verified graph of the latest run; empty if there is none yet.
+
+    Raises:
+        StoreError: If the project is damaged.
+    """
+    found = read_artifacts(root).get("verification")
+    return found.name if found else ""

@@ -112,11 +112,31 @@ class StageRunner:
         reused = done is not None
         if done is None:
             done = self._make(stage, artifact, inputs)
-        self._project.ledger.set_current(stage.name, key)
-        self.runs[stage.name] = StageRun(artifact, done, reused, artifact.manifest()["figures"])
+        return self._took(artifact, done, reused=reused)
+
+    def keep(self, name: str) -> Artifact:
+        """The artifact of a stage in the latest run as it is, whatever it was made of.
+
+        Raises:
+            StoreError: If there is none, or it is damaged.
+        """
+        key = self._project.ledger.current().get(name, "")
+        artifact = Artifact(name, key, self._project.artifacts / key)
+        done = self._finished(artifact) if key else None
+        if done is None:
+            raise StoreError(
+                f"{self._project.root.name} has no finished stage {name} to go on from: "
+                "process its recording again"
+            )
+        return self._took(artifact, done, reused=True)
+
+    def _took(self, artifact: Artifact, done: FinishedStage, *, reused: bool) -> Artifact:
+        name, key = artifact.stage, artifact.key
+        self._project.ledger.set_current(name, key)
+        self.runs[name] = StageRun(artifact, done, reused, artifact.manifest()["figures"])
         state = "reused" if reused else "done"
         self._progress.event(
-            "stage", stage=stage.name, key=key, state=state, seconds=round(done.seconds, 3)
+            "stage", stage=name, key=key, state=state, seconds=round(done.seconds, 3)
         )
         return artifact
 

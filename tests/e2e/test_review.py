@@ -6,7 +6,8 @@ import shutil
 import pytest
 from playwright.sync_api import expect
 
-from recon4.review.journal import broken, read_rows
+from recon4.review.decisions import Decision, Kind
+from recon4.review.journal import append, broken, read_rows
 from tests.review_project import make
 from tests.service.running import server_thread
 
@@ -271,12 +272,22 @@ def test_the_help_sheet_lists_the_keys(opened, look, picture):
     expect(opened.get_by_role("dialog")).to_have_count(0)
 
 
-def test_decide_make_a_new_map_approve_export(running, opened, root, look, picture):
+def test_what_others_decide_is_seen_without_a_click(opened, root, look):
+    only(look, "phone dark")
+    page = opened
+
+    append(root, Decision(kind=Kind.REJECT, who="Eva", why="glass", pair=(17, 77)))
+
+    expect(page.locator("#news")).to_have_text("Meanwhile Eva rejected multiframes 17 and 77")
+    expect(page.locator("review-queue")).to_contain_text("1 decided by people")
+    page.get_by_role("button", name="Undo").click()
+    expect(page.locator("review-queue")).to_contain_text("0 decided by people")
+    expect(page.locator("#news")).to_be_empty()
+
+
+def test_decide_make_a_new_map_approve_export(opened, root, look, picture):
     only(look, "desktop dark")
     page = opened
-    job = {"project": root.name, "recordings": [str(root / "project.json")]}
-    first = running.post("/api/jobs", json=job).json()["job"]["id"]
-    running.wait_state(first, "succeeded")
     page.keyboard.press("j")
     settled(page)
     page.keyboard.press("r")

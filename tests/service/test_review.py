@@ -13,6 +13,7 @@ import pytest
 
 from app.review.store import Reviews
 from recon4.cli import main
+from recon4.pipeline import remake
 from recon4.pose_graph.g2o import read_g2o
 from recon4.recording.poses import read_tum
 from recon4.results import RESULTS
@@ -256,6 +257,28 @@ def test_the_latest_look_wins():
     assert keys[1] not in asked
 
 
+def keys_of(root):
+    summary = json.loads((root / "summary.json").read_text())
+    return {stage["stage"]: stage["key"] for stage in summary["stages"]}
+
+
+def make_a_new_map(server, root):
+    """As the button does: neither the recording nor an earlier job is needed."""
+    answer = server.running.post(f"/api/projects/{root.name}/remake")
+    assert answer.status_code == 201
+    server.running.wait_state(answer.json()["job"]["id"], "succeeded")
+
+
+def test_a_project_without_a_map_is_not_made_anew(server, root):
+    shutil.rmtree(root)
+    make(root, graph_only=True)
+
+    answer = server.running.post(f"/api/projects/{root.name}/remake")
+
+    assert answer.status_code == 404
+    assert "no map yet" in answer.json()["detail"]
+
+
 # -- approval
 
 
@@ -350,14 +373,29 @@ def test_conflicts_are_confirmed_with_a_reason_or_not_at_all(root, server):
     assert statement["why"] == "checked against the plan"
 
 
+def slice_of(server, root, **changes):
+    asked = json.dumps({"cut": {"kind": "horizontal", "z_m": 0.5}} | changes)
+    return server.running.get(
+        f"/api/projects/{root.name}/slices/export.csv", params={"ask": asked}
+    ).text
+
+
 def test_a_later_map_does_not_change_an_approved_version(server, root, capsys):
-    approve(server)
+    sha = approve(server).json()["approval"]["hash"]
+    approved = f"map:{keys_of(root)['map']}"
     files = sorted((root / "versions" / "1").iterdir())
     before = {path.name: hash_file(path) for path in files}
     decide(server, "reject", RIGHT)
 
-    make(root)
+    make_a_new_map(server, root)
     told = server.get().json()
+    stages = json.loads((root / "summary.json").read_text())["stages"]
+    assert [one["stage"] for one in stages if one["reused"]] == [
+        *("frames", "odometry", "graph", "verification"),
+    ]
+    assert told["in_map"]
+    assert sha in slice_of(server, root, source=approved)
+    assert sha not in slice_of(server, root)
     second = approve(server).json()["approval"]
 
     assert {path.name: hash_file(path) for path in files} == before
@@ -374,7 +412,7 @@ def test_undoing_everything_finds_the_approved_results_again(server, root):
     assert sha not in (root / "report.html").read_text()
 
     server.post("/undo", json={})
-    make(root)
+    remake(root)  # which finds what `make` left, as it makes the same
 
     assert sha in (root / "report.html").read_text()
     assert json.loads((root / "summary.json").read_text())["approval"]["hash"] == sha

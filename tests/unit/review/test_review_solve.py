@@ -82,6 +82,19 @@ def test_an_accepted_loop_stays_in_although_it_does_not_fit_and_is_named():
     assert any(str(frames(10, 40)[0]) in words for words in found.warnings())
 
 
+def test_a_pair_that_never_converged_has_nothing_to_accept(verified):
+    edges = list(verified.edges)
+    row = next(k for k, e in enumerate(edges) if (e.i, e.j) == (3, 32))
+    edges[row] = edges[row].evolve(
+        verdict=Verdict.REJECTED, reason=Reason.NOT_CONVERGED, converged=False
+    )
+
+    found = review(verified.with_edges(tuple(edges)), standing(accept(3, 32)), settings=Settings())
+
+    assert not at(found.graph, 3, 32).in_graph
+    assert [one.pair for one in found.missing] == [frames(3, 32)]
+
+
 def test_rejecting_the_one_wrong_loop_brings_the_walk_back():
     """Where the program does not judge, a lone loop bends the walk."""
     plain = Settings(verification=VerificationSettings(robust="none"))

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from recon4 import stages
-from recon4.model.pose_graph import Verdict
+from recon4.geometry.se3 import SE3
+from recon4.model.pose_graph import Reason, Verdict
 from recon4.pose_graph.files import load_graph, save_graph
 from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
@@ -124,13 +125,42 @@ def test_the_queue_is_ordered_by_influence_and_always_the_same(run):
     told = json.loads(queue_json(run.root))
 
     rows = [dict(zip(COLUMNS, row, strict=True)) for row in told["rows"]]
-    influence = [row["influence_m"] for row in rows]
+    influence = [row["influence_m"] for row in rows if row["measured"]]
     assert influence == sorted(influence, reverse=True)
     assert (rows[0]["frame_i"], rows[0]["frame_j"]) == (52, 202)
     assert rows[0]["verdict"] == "rejected"
     assert rows[0]["verification_m"] > 1.0  # of rejected pairs too
     assert all(row["kind"] != "odometry" for row in rows)
     assert queue_json(run.root) == queue_json(run.root)
+
+
+def test_pairs_without_a_registration_that_holds_come_last():
+    """However far their meaningless pose would throw the map."""
+    graph = two_rounds(wrong=[(10, 40, (1.5, 0.0, 0.0))])
+    far, weak = (0.0, 90.0, 0.0), (0.0, 5.0, 0.0)
+    loop = graph.edges[-1]
+
+    def turned_down(i, j, reason, overlap, off_m):
+        T = SE3(loop.T_i_j.R, loop.T_i_j.t + off_m)
+        return loop.evolve(
+            i=i, j=j, T_i_j=T, verdict=Verdict.REJECTED, reason=reason, overlap=overlap,
+            converged=reason is not Reason.NOT_CONVERGED,
+        )  # fmt: skip
+
+    more = (
+        turned_down(1, 50, Reason.NOT_CONVERGED, 0.6, far),
+        turned_down(2, 50, Reason.OVERLAP, 0.4, far),
+        turned_down(3, 50, Reason.NOT_CONVERGED, 0.7, far),
+        turned_down(4, 50, Reason.ERROR, 0.8, weak),
+    )
+
+    rows = queue_rows(graph.with_edges(graph.edges + more), settings=Settings())
+
+    assert rows[0][:2] == [52, 202]
+    assert [row[:2] for row in rows[-4:]] == [[22, 252], [17, 252], [7, 252], [12, 252]]
+    told = {name: [row[COLUMNS.index(name)] for row in rows[-4:]] for name in COLUMNS}
+    assert told["measured"] == [True, False, False, False]
+    assert told["influence_m"][0] > 1.0 and told["influence_m"][1:] == [None] * 3
 
 
 def test_alternative_paths_one_by_one_have_the_median_of_the_verification():

@@ -1,0 +1,240 @@
+"""Signing results: when it is refused, what stays after a crash, what a check finds."""
+
+import json
+import sqlite3
+import stat
+from dataclasses import replace
+
+import pytest
+
+from recon4.progress import Silent
+from recon4.report.approval import draft_block
+from recon4.review import approval
+from recon4.review.approval import NotApprovable, approval_of_map, approve, latest_approval
+from recon4.review.audit import audit_review
+from recon4.review.decisions import Decision, Kind
+from recon4.review.journal import NAME, JournalMoved, append, read_rows
+from recon4.review.signature import is_signed, sign
+from recon4.store.atomic import write_json
+from recon4.store.hashing import hash_file
+from recon4.store.project import Project
+
+SIGNER = {"who": "Eva", "role": "reviewer", "why": "compared with the plan"}
+FILES = {
+    "edges.json": '{"edges": []}',
+    "trajectory.tum": "1 0 0 0 0 0 0 1\n",
+    "graph.g2o": "# made by recon4\nVERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\n",
+    "report.html": f"<p>{draft_block()}",
+}
+
+
+def publish(root, key="ab"):
+    """What a run leaves, small."""
+    for name, text in FILES.items():
+        (root / name).unlink(missing_ok=True)
+        (root / name).write_text(text)
+    told = {
+        "name": "office",
+        "points": 7,
+        "approval": None,
+        "stages": [{"stage": "map", "key": key, "figures": {}}],
+        "hashes": {"inputs": {}, "results": {name: hash_file(root / name) for name in FILES}},
+    }
+    (root / "summary.json").unlink(missing_ok=True)
+    write_json(root / "summary.json", told)
+
+
+@pytest.fixture
+def root(tmp_path):
+    root = tmp_path / "office"
+    Project.open(root).close()
+    publish(root)
+    return root
+
+
+@pytest.fixture
+def key(tmp_path):
+    return tmp_path / "signing.key"
+
+
+def reject(j=7, who="Eva"):
+    return Decision(kind=Kind.REJECT, who=who, pair=(2, j))
+
+
+def undo():
+    return Decision(kind=Kind.UNDO, who="Eva")
+
+
+def damage(root):
+    return audit_review(root, Silent()).damaged
+
+
+def test_what_was_approved_is_whole_read_only_and_says_so(root, key):
+    found = approve(root, key, SIGNER, False)
+
+    assert damage(root) == ()
+    assert {path.name for path in found.folder.iterdir()} == {
+        *(*FILES, "summary.json", "approval.json"),
+    }
+    for path in found.folder.iterdir():
+        assert stat.S_IMODE(path.stat().st_mode) == 0o444
+    for name in FILES:
+        assert found.hash in (root / name).read_text()
+    summary = json.loads((root / "summary.json").read_text())
+    assert summary["approval"]["hash"] == found.hash
+    assert summary["hashes"]["results"] == {name: hash_file(root / name) for name in FILES}
+    assert stat.S_IMODE(key.stat().st_mode) == 0o600
+
+
+def forge_journal(root):
+    db = sqlite3.connect(root / NAME)
+    db.execute("DROP TRIGGER no_change")
+    db.execute("UPDATE journal SET who = 'Jan' WHERE seq = 1")
+    db.commit()
+    db.close()
+
+
+@pytest.mark.parametrize(
+    ("spoil", "words"),
+    [
+        (lambda root: (root / "summary.json").unlink(), "no finished map yet"),
+        (forge_journal, "the journal is not what was written"),
+        (lambda root: (root / "edges.json").write_text("{}"), "edges.json is not what the run"),
+        (lambda root: (root / "graph.g2o").unlink(), "graph.g2o is not what the run wrote"),
+        (lambda root: append(root, reject(9)), "does not know the last decisions"),
+    ],
+)
+def test_what_is_not_as_it_was_made_is_not_signed(root, key, spoil, words):
+    append(root, reject())
+    append(root, undo())
+    spoil(root)
+
+    with pytest.raises(NotApprovable, match=words):
+        approve(root, key, SIGNER, True)
+
+    assert not (root / "versions").exists()
+    assert "approve" not in {row.kind for row in read_rows(root)}
+
+
+def test_the_same_results_are_signed_once(root, key):
+    approve(root, key, SIGNER, False)
+    append(root, reject())
+    append(root, undo())
+
+    with pytest.raises(NotApprovable, match="version 1 by Eva approves these results already"):
+        approve(root, key, SIGNER | {"who": "Jan"}, False)
+
+    assert [path.name for path in (root / "versions").iterdir()] == ["1"]
+
+
+def test_a_decision_made_while_it_was_signed_is_not_signed_over(root, key, monkeypatch):
+    def decide_meanwhile(value, key_file):
+        append(root, reject())
+        return sign(value, key_file)
+
+    monkeypatch.setattr(approval, "sign", decide_meanwhile)
+    with pytest.raises(JournalMoved):
+        approve(root, key, SIGNER, False)
+    monkeypatch.undo()
+    append(root, undo())
+
+    found = approve(root, key, SIGNER, False)
+
+    assert found.version == 1 and damage(root) == ()
+    assert sorted(path.name[:11] for path in (root / "versions").iterdir()) == ["1", "unfinished-"]
+
+
+def test_an_approval_that_counted_before_a_crash_is_handed_out_later(root, key, monkeypatch):
+    def die(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(approval, "put_back", die)
+    with pytest.raises(KeyboardInterrupt):
+        approve(root, key, SIGNER, False)
+    monkeypatch.undo()
+    before = latest_approval(root, read_rows(root))
+
+    with pytest.raises(NotApprovable, match="already"):
+        approve(root, key, SIGNER, False)
+
+    told = latest_approval(root, read_rows(root))
+    assert (before["current"], told["current"], told["version"]) == (False, True, 1)
+    assert told["hash"] in (root / "report.html").read_text()
+
+
+def test_an_earlier_map_keeps_its_approval(root, key):
+    first = approve(root, key, SIGNER, False)
+    publish(root, key="cd")
+    second = approve(root, key, SIGNER | {"who": "Jan"}, False)
+
+    assert (first.version, second.version) == (1, 2)
+    assert approval_of_map(root, "ab")["who"] == "Eva"
+    assert approval_of_map(root, "cd")["hash"] == second.hash
+    assert approval_of_map(root, "ef") is None
+    assert damage(root) == ()
+
+
+def change_statement(told):
+    told["statement"]["figures"]["points"] += 1
+
+
+def other_hash(told):
+    told["hash"] = "0" * 64
+
+
+def other_algorithm(told):
+    told["signature"]["algorithm"] = "none"
+
+
+def other_signature(told):
+    told["signature"]["value"] = "00" * 64
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (change_statement, "the statement is not the one in the journal"),
+        (other_hash, "the statement is not the one in the journal"),
+        (other_algorithm, "the signature does not hold"),
+        (other_signature, "the signature does not hold"),
+        (lambda told: told.pop("signature"), "approval.json cannot be read"),
+        (lambda told: told["issued"].update({"more.txt": "ab"}), "more.txt is missing"),
+        (lambda told: told["issued"].pop("edges.json"), "edges.json does not belong here"),
+    ],
+)
+def test_a_changed_approval_is_found(root, key, change, words):
+    path = approve(root, key, SIGNER, False).folder / "approval.json"
+    told = json.loads(path.read_text())
+    change(told)
+    path.chmod(0o644)
+    path.write_text(json.dumps(told))
+
+    assert any(words in what for what in damage(root))
+
+
+def test_a_journal_written_anew_from_its_first_row_does_not_fit_what_was_signed(root, key):
+    append(root, reject())
+    append(root, undo())
+    approve(root, key, SIGNER, False)
+    rows = read_rows(root)
+    (root / NAME).unlink()
+    append(root, reject(who="Jan"))
+    append(root, undo())
+    forged = replace(rows[2], prev_hash=read_rows(root)[1].hash)
+    sealed = replace(forged, hash=forged.sealed())
+    db = sqlite3.connect(root / NAME)
+    values = [getattr(sealed, name) for name in sealed.__slots__]
+    db.execute(f"INSERT INTO journal VALUES ({','.join('?' * len(values))})", values)
+    db.commit()
+    db.close()
+
+    assert damage(root) == ("version 1: it was signed over another journal",)
+
+
+def test_a_signature_is_of_this_value_by_this_key(tmp_path, key):
+    signature = sign({"a": 1}, key)
+    other = sign({"a": 1}, tmp_path / "other.key")
+
+    assert is_signed({"a": 1}, signature) and not is_signed({"a": 2}, signature)
+    assert sign({"a": 1}, key) == signature and other["key"] != signature["key"]
+    assert not is_signed({"a": 1}, signature | {"public_key": other["public_key"]})

@@ -1,0 +1,72 @@
+"""Files that say who approved them stay the files they were."""
+
+import json
+
+import laspy
+import numpy as np
+import pytest
+
+from recon4.errors import StoreError
+from recon4.review.stamp import Stamp, stamp_file
+
+STAMP = Stamp(version=2, who="Žofie", role="reviewer", time="2026-11-21T08:00:00+00:00", hash="ab")
+
+
+@pytest.mark.parametrize("evlr", [False, True])
+def test_a_laz_file_keeps_its_points_and_all_its_records(tmp_path, evlr):
+    header = laspy.LasHeader(version="1.4", point_format=6)
+    header.offsets, header.scales = np.zeros(3), np.full(3, 1e-4)
+    header.vlrs.append(laspy.VLR("someone", 7, "before", b"abc"))
+    las = laspy.LasData(header)
+    las.x, las.y, las.z = np.random.default_rng(1).uniform(0.0, 9.0, (3, 120_000))
+    if evlr:
+        las.evlrs = laspy.vlrs.vlrlist.VLRList([laspy.VLR("someone", 9, "behind", b"xyz" * 99)])
+    las.write(tmp_path / "map.laz")
+
+    stamp_file(tmp_path / "map.laz", tmp_path / "out.laz", STAMP)
+
+    found = laspy.read(tmp_path / "out.laz")
+    assert np.array_equal(found.points.array, las.points.array)
+    records = {(one.user_id, one.record_id): one.record_data_bytes() for one in found.vlrs}
+    assert records["someone", 7] == b"abc"
+    assert json.loads(records["recon4", 1])["who"] == "Žofie"
+    if evlr:
+        assert [one.record_data_bytes() for one in found.evlrs] == [b"xyz" * 99]
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "line"),
+    [
+        ("a.ply", "ply\nformat ascii 1.0\nend_header\n1 2 3\n", 1),
+        ("a.g2o", "# recon4\nVERTEX\n", 1),
+        ("a.csv", "# recon4 slice\nx,y\n", 1),
+        ("a.tum", "1 0 0 0 0 0 0 1\n", 0),
+    ],
+)
+def test_a_text_file_gets_one_line_more(tmp_path, name, text, line):
+    (tmp_path / name).write_text(text)
+
+    stamp_file(tmp_path / name, tmp_path / name, STAMP)
+
+    lines = (tmp_path / name).read_text().splitlines()
+    said = lines.pop(line)
+    assert lines == text.splitlines()
+    prefix, _, words = said.partition(" recon4 approval ")
+    assert prefix in ("#", "comment") and json.loads(words)["hash"] == "ab"
+
+
+@pytest.mark.parametrize(("name", "data"), [("a.laz", b"LASF\x01\x02"), ("a.json", b"[1]")])
+def test_a_file_that_is_something_else_is_refused(tmp_path, name, data):
+    (tmp_path / name).write_bytes(data)
+
+    with pytest.raises(StoreError, match="expected"):
+        stamp_file(tmp_path / name, tmp_path / name, STAMP)
+
+    assert (tmp_path / name).read_bytes() == data
+
+
+def test_a_kind_that_cannot_carry_an_approval_is_refused(tmp_path):
+    (tmp_path / "a.obj").write_text("v 0 0 0")
+
+    with pytest.raises(StoreError, match="cannot carry an approval"):
+        stamp_file(tmp_path / "a.obj", tmp_path / "b.obj", STAMP)
