@@ -1,8 +1,9 @@
 // Control and check points: import, pick in the slice, residuals with pass or fail.
 
-import { keepControl, lookAtControl, readControl, readControlReport, readSurface } from "./api.js";
+import { controlFileUrl, keepControl, lookAtControl, readControl, readControlReport, readSurface } from "./api.js";
 import { attempt, make } from "./dom.js";
 
+const MOST_ROWS = 300;
 const cm = (m) => (m * 100).toFixed(1);
 
 export function controlPanel({ id, change, point: pointAt, measured }) {
@@ -50,14 +51,43 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
     }
     const found = await readControlReport(id);
     const residuals = new Map(found.rows.map((one) => [one.id, one]));
+    const earlier = new Set(found.outdated);
     const head = ["Point", "Role", "dE", "dN", "dU", "2D", "3D [cm]", ""].map((words, k) => make("th", { scope: "col", className: k > 1 ? "number" : "" }, words));
+    const all = make("button", { type: "button", onclick: () => attempt(message, () => everySurface(all)) }, "All on the nearest surface");
+    const file = (ending, words, more) => make("a", { className: "button", href: controlFileUrl(id, ending), ...more }, words);
     table.replaceChildren(
-      make("div", { className: "wide" }, make("table", {}, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...kept.points.slice(0, 300).map((one) => row(one, residuals.get(one.id)))))),
+      verdict(found),
       ...found.figures.map(figures),
+      make("div", { className: "wide" }, make("table", {}, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...kept.points.slice(0, MOST_ROWS).map((one) => row(one, residuals.get(one.id), earlier.has(one.id)))))),
+      kept.points.length > MOST_ROWS ? make("p", { className: "quiet" }, `The first ${MOST_ROWS} of ${kept.points.length} points; the files have all.`) : "",
+      make("div", { className: "buttons" }, all, file("csv", "Residuals as CSV", { download: "" }), file("html", "Sheet to print and sign", { target: "_blank", rel: "noopener" })),
     );
   }
 
-  function row(one, residual) {
+  function verdict({ passed, judged_by, missing, outdated }) {
+    const left = [
+      missing.length ? `${missing.length} not found yet` : "",
+      outdated.length ? `${outdated.length} found in an earlier map only, they do not count: find them again` : "",
+    ].filter(Boolean);
+    const words = passed === null ? "– Nothing checked yet" : passed ? `✓ The map keeps the limits at the ${judged_by} points` : `✕ The map does not keep the limits at the ${judged_by} points`;
+    return make("p", { className: `verdict ${passed === null ? "" : passed ? "good" : "bad"}` }, [words, ...left].join(" · "));
+  }
+
+  async function everySurface(button) {
+    button.disabled = true;
+    const picks = { ...kept.picks };
+    const without = [];
+    for (const one of kept.points) {
+      button.textContent = `${one.id}…`;
+      const { surface } = await readSurface(id, one.id);
+      if (surface) picks[one.id] = surface;
+      else without.push(one.id);
+    }
+    await keep({ ...kept, picks });
+    if (without.length) message.textContent = `No surface within 30 cm of ${without.slice(0, 10).join(", ")}${without.length > 10 ? ` and ${without.length - 10} more` : ""}`;
+  }
+
+  function row(one, residual, earlier) {
     const values = residual ? [residual.east_m, residual.north_m, residual.up_m, residual.d2_m, residual.d3_m].map(cm) : ["", "", "", "", ""];
     const role = make("select", { ariaLabel: `Role of ${one.id}` }, make("option", { value: "check" }, "check"), make("option", { value: "control" }, "control"));
     role.value = one.role;
@@ -65,7 +95,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
     const button = (words, action, label) => make("button", { type: "button", className: "go", ariaLabel: label, onclick: () => attempt(message, action) }, words);
     return make("tr", {},
       make("th", { scope: "row" }, one.id), make("td", {}, role),
-      ...values.map((words) => make("td", { className: "number" }, words)),
+      ...(earlier ? [make("td", { colSpan: values.length, className: "quiet" }, "found in an earlier map")] : values.map((words) => make("td", { className: "number" }, words))),
       make("td", { className: "buttons" }, button("Go", () => go(one), `Go to ${one.id}`), button("Here", () => pick(one), `${one.id} is the picked point`), button("Surface", () => surface(one), `${one.id} on the nearest surface`)),
     );
   }
@@ -88,12 +118,16 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
     await keep({ ...kept, picks: { ...kept.picks, [one.id]: found.surface } });
   }
 
+  /** The limits of one role, with what was measured. */
   function figures(one) {
-    const verdicts = Object.entries(one.passed).map(([words, good]) => make("li", { className: good ? "good" : "bad" }, `${good ? "✓" : "✕"} ${words}`));
+    const cell = (words) => make("td", { className: "number" }, words);
+    const line = (limit) => make("tr", {},
+      make("th", { scope: "row" }, limit.words), cell(cm(limit.value_m)), cell(`≤ ${Math.round(limit.limit_m * 100)}`),
+      make("td", { className: limit.holds ? "good" : "bad" }, limit.holds ? "✓ holds" : "✕ exceeded"));
+    const head = [`${one.points} ${one.role} point${one.points === 1 ? "" : "s"}`, "Measured [cm]", "Limit [cm]", ""].map((words, k) => make("th", { scope: "col", className: k === 1 || k === 2 ? "number" : "" }, words));
     return make("div", { className: "figures" },
-      make("h3", {}, `${one.points} ${one.role} points`),
-      make("p", {}, `RMSE E ${cm(one.rmse_m[0])}  N ${cm(one.rmse_m[1])}  U ${cm(one.rmse_m[2])}  3D ${cm(one.rmse_3d_m)} cm · mean 2D ${cm(one.mean_2d_m)}, height ${cm(one.mean_up_m)} · largest 2D ${cm(one.max_2d_m)}, height ${cm(one.max_up_m)} cm`),
-      make("ul", { className: "verdicts" }, ...verdicts),
+      make("div", { className: "wide" }, make("table", {}, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...one.requirements.map(line)))),
+      make("p", { className: "quiet" }, `RMSE E ${cm(one.rmse_m[0])}  N ${cm(one.rmse_m[1])}  U ${cm(one.rmse_m[2])}  3D ${cm(one.rmse_3d_m)} cm`),
     );
   }
 

@@ -1,4 +1,4 @@
-// Places where two visits put one wall at two places; a click goes there.
+// Surfaces that were visited twice: those two visits put at two places, and the others; a click goes there.
 
 import { readDoubleWalls } from "./api.js";
 import { attempt, make } from "./dom.js";
@@ -7,7 +7,7 @@ import { distanceFrom } from "./slices_state.js";
 
 /** A place reaches about so far around its middle [m]. */
 const REACH_M = 0.75;
-const MOST_ROWS = 200;
+const MOST_ROWS = 50;
 
 const cm = (m) => `${(m * 100).toFixed(1)} cm`;
 const span = ([from, to]) => `${from.toFixed(0)}–${to.toFixed(0)} s`;
@@ -24,11 +24,14 @@ export function doublesPanel({ id, change, point, state }) {
   const message = make("p", { className: "error", role: "alert" });
   const list = make("div", {});
   const button = make("button", { type: "button", onclick: () => attempt(message, look) }, "Look for double walls");
-  const hint = make("p", { className: "quiet" }, "One surface that two visits put at two places. The whole map is checked.");
+  const hint = make("p", { className: "quiet" }, "A wall is double where two visits put one surface at two places. The whole map is checked.");
 
-  const where = make("select", { ariaLabel: "Which double walls", hidden: true, onchange: () => listed() }, make("option", { value: "all" }, "Whole map"), make("option", { value: "slice" }, "In this slice"));
+  const choose = (words, choices) => make("select", { ariaLabel: words, hidden: true, onchange: () => listed() }, ...Object.entries(choices).map(([value, name]) => make("option", { value }, name)));
+  const which = choose("Which surfaces", { double: "Double walls", all: "All seen twice, worst first" });
+  const where = choose("Where", { all: "Whole map", slice: "In this slice" });
   const table = make("div", { className: "wide" });
   let walls = [];
+  let surfaces = [];
 
   async function look() {
     button.disabled = true;
@@ -48,8 +51,9 @@ export function doublesPanel({ id, change, point, state }) {
     const verdict = found.walls.length
       ? make("p", { className: "verdict bad" }, `✕ ${found.walls.length} places are double`)
       : make("p", { className: "verdict good" }, found.patches ? "✓ No double wall found" : "– Not checked");
-    walls = found.walls;
-    where.hidden = walls.length === 0;
+    [walls, surfaces] = [found.walls, found.surfaces];
+    which.hidden = where.hidden = walls.length + surfaces.length === 0;
+    which.value = walls.length ? "double" : "all";
     list.replaceChildren(verdict, make("p", { className: "quiet" }, seen));
     listed();
   }
@@ -59,17 +63,19 @@ export function doublesPanel({ id, change, point, state }) {
   /** The rows that are asked for; with "in this slice" they follow the cut. */
   function listed() {
     const focused = table.contains(document.activeElement) ? document.activeElement.ariaLabel : null;
-    const meant = walls.map((wall, k) => [wall, k]).filter(([wall]) => where.value === "all" || inSlice(wall));
-    if (!walls.length) return table.replaceChildren();
-    const told = [`${meant.length} of ${walls.length} places`, meant.length > MOST_ROWS ? `the ${MOST_ROWS} widest are listed` : ""];
-    const head = ["Place", "Apart", "Limit", "σ", "D", "Weaker layer", "Visits"].map((words) => make("th", { scope: "col" }, words));
-    const rows = meant.slice(0, MOST_ROWS).map(([wall, k]) => row(wall, k));
+    const asked = which.value === "all" ? [...walls, ...surfaces] : walls;
+    const meant = where.value === "slice" ? asked.filter(inSlice) : asked;
+    if (!asked.length) return table.replaceChildren();
+    const told = [`${meant.length} of ${asked.length} places`, meant.length > MOST_ROWS ? `the ${MOST_ROWS} worst are listed` : ""];
+    const head = ["Place", "", "Apart", "Limit", "Thickness σ", "D = apart / σ", "Weaker layer", "Visits"].map((words) => make("th", { scope: "col" }, words));
+    const rows = meant.slice(0, MOST_ROWS).map(row);
     const caption = make("p", { className: "quiet", role: "status" }, told.filter(Boolean).join(", "));
     table.replaceChildren(caption, ...(rows.length ? [make("table", {}, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...rows))] : []));
     if (focused) table.querySelector(`[aria-label="${focused}"]`)?.focus();
   }
 
-  function row(wall, k) {
+  function row(wall) {
+    const double = walls.includes(wall);
     const go = () => {
       point(wall.middle_m.slice(0, 2));
       change(cutAt(wall));
@@ -77,7 +83,8 @@ export function doublesPanel({ id, change, point, state }) {
     };
     const words = wall.middle_m.map((x) => x.toFixed(1)).join(" ");
     return make("tr", {},
-      make("td", {}, make("button", { type: "button", className: "go", onclick: go, ariaLabel: `Go to double wall ${k + 1}` }, words)),
+      make("td", {}, make("button", { type: "button", className: "go", onclick: go, ariaLabel: `Go to ${words}` }, words)),
+      make("td", { className: double ? "bad" : "good" }, double ? "✕ double" : "✓ single"),
       make("td", { className: "number" }, cm(wall.separation_m)),
       make("td", { className: "number" }, cm(wall.limit_m)),
       make("td", { className: "number" }, cm(wall.sigma_m)),
@@ -87,5 +94,5 @@ export function doublesPanel({ id, change, point, state }) {
     );
   }
 
-  return { element: make("div", {}, hint, make("div", { className: "row" }, button, where), message, list, table), show: () => where.value === "slice" && listed() };
+  return { element: make("div", {}, hint, make("div", { className: "row" }, button, which, where), message, list, table), show: () => where.value === "slice" && listed() };
 }

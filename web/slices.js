@@ -266,7 +266,7 @@ function tools() {
 }
 
 async function reload() {
-  facts = await readSliceFacts(id);
+  facts = await readSliceFacts(id, state.source);
   panel.facts(facts);
   found.facts(facts);
 }

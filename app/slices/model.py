@@ -191,6 +191,12 @@ class ControlState(Strict):
     frame: Literal["map", "crs"] = "map"
     picks: dict[str, Xyz] = {}
     """Id -> place in the map's frame [m]."""
+    found_in: dict[str, str] = {}
+    """Id -> key of the map it was found in; the server knows it and takes nobody's word."""
+
+    def of_map(self, key: str) -> dict[str, Xyz]:
+        """The places that were found in a map; those of an earlier one say nothing of it."""
+        return {name: at for name, at in self.picks.items() if self.found_in.get(name) == key}
 
 
 class SliceFacts(BaseModel):

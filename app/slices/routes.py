@@ -9,13 +9,14 @@ from pathlib import Path
 from typing import Any, Literal
 
 from fastapi import APIRouter, Depends, Response
-from fastapi.responses import FileResponse, PlainTextResponse
+from fastapi.responses import FileResponse, HTMLResponse, PlainTextResponse
 from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 
 from app.access.people import May, needs
 from app.deps import Server
 from app.errors import BadRequest, Problem
+from app.projects.routes import REPORT_POLICY
 from app.slices import work
 from app.slices.model import (
     AddReference,
@@ -60,7 +61,7 @@ async def read_facts(project_id: str, server: Server, source: str = "") -> Slice
     told = {
         "references": await run_in_threadpool(slices.references, project_id),
         "sources": await run_in_threadpool(slices.sources, project_id),
-        "approval": await run_in_threadpool(slices.approval_words, project_id),
+        "approval": await run_in_threadpool(slices.approval_words, project_id, source),
     }
     return await slices.newest("", work.facts, artifacts, told)
 
@@ -102,11 +103,11 @@ async def pick(project_id: str, ask: AskPick, server: Server) -> PickView:
 
 @router.get("/doubles", summary="Double walls")
 async def doubles(project_id: str, server: Server, source: str = "") -> dict[str, Any]:
-    """Places where two visits put one surface at two places, the widest apart first."""
+    """Surfaces that were visited twice: double ones, and the others by how near they are to it."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, source)
     folder = artifacts["map"]
     path = await server.slices.kept(
-        f"{Path(folder).name}-doubles.json",
+        f"{Path(folder).name}-surfaces.json",
         lambda out: server.slices.long(work.double_walls, folder, str(out)),
     )
     return work.read_kept(path)
@@ -165,8 +166,7 @@ async def export(
     told = {
         "project": server.projects.get(project_id).name,
         "key": Path(artifacts["map"]).name,
-        # the approval is that of the latest map alone
-        "approval": None if asked.source else await run_in_threadpool(slices.approval, project_id),
+        "approval": await run_in_threadpool(slices.approval, project_id, asked.source),
     }
     out = await run_in_threadpool(slices.place_for, f".{ending}")
     reference = slices.reference(project_id, asked.reference)
@@ -204,19 +204,32 @@ def read_control(project_id: str, server: Server) -> ControlState:
 @router.put("/control", dependencies=PROCESS, summary="Keep control and check points")
 def keep_control(project_id: str, state: ControlState, server: Server) -> ControlState:
     """Safely on disk when this answers."""
-    server.slices.keep_control(project_id, state)
-    return state
+    return server.slices.keep_control(project_id, state)
 
 
 @router.get("/control/report", summary="Residuals")
 async def control_report(project_id: str, server: Server) -> dict[str, Any]:
-    """Map minus survey, control and check points apart, with pass or fail."""
+    """Map minus survey, control and check points apart, with every limit and whether it holds."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     state = await run_in_threadpool(server.slices.control, project_id)
-    points = [point.model_dump() for point in state.points]
-    return await server.slices.newest(
-        "", work.control_report, artifacts, points, state.frame, state.picks
-    )
+    return await server.slices.newest("", work.control_report, artifacts, state)
+
+
+@router.get("/control/report.{ending}", summary="Residuals as a file")
+async def control_file(project_id: str, ending: Literal["csv", "html"], server: Server) -> Response:
+    """CSV, or a sheet to print and sign; both say which map it was and who approved it."""
+    slices = server.slices
+    artifacts = await run_in_threadpool(slices.artifacts, project_id)
+    state = await run_in_threadpool(slices.control, project_id)
+    told = {
+        "project": server.projects.get(project_id).name,
+        "approval": await run_in_threadpool(slices.approval_words, project_id),
+    }
+    text = await slices.newest("", work.control_file, artifacts, state, ending, told)
+    if ending == "csv":
+        head = {"Content-Disposition": f'attachment; filename="{project_id}-control.csv"'}
+        return PlainTextResponse(text, media_type="text/csv; charset=utf-8", headers=head)
+    return HTMLResponse(text, headers={"Content-Security-Policy": REPORT_POLICY})
 
 
 @router.get("/control/surface", summary="The map's surface at a surveyed point")

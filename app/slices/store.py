@@ -18,6 +18,7 @@ from app.projects.store import PROJECT_ID, ProjectStore
 from app.slices import work
 from app.slices.model import ControlState
 from recon4.errors import StoreError
+from recon4.review.approval import approval_of_map
 from recon4.store.atomic import write_json
 from recon4.store.project import read_artifacts, read_stages
 
@@ -83,20 +84,28 @@ class Slices:
         ]
         return earlier[:20] + others[:200]
 
-    def approval(self, project_id: str) -> dict[str, Any] | None:
-        """Who approved the latest results, as ``summary.json`` has it; None = nobody."""
+    def approval(self, project_id: str, source: str = "") -> dict[str, Any] | None:
+        """Who approved the map that a request means, as in ``summary.json``; None = nobody.
+
+        Raises:
+            StoreError: If the approval of an earlier map is damaged.
+        """
+        kind, _, name = source.partition(":")
+        if kind == "map":
+            return approval_of_map(self._projects.folder(project_id), name)
+        root = self._projects.folder(name if kind == "project" else project_id)
         try:
-            told = json.loads((self._projects.folder(project_id) / "summary.json").read_text())
+            told = json.loads((root / "summary.json").read_text())
         except (OSError, ValueError):
             return None
         found = told.get("approval") if isinstance(told, dict) else None
         return found if isinstance(found, dict) else None
 
-    def approval_words(self, project_id: str) -> str:
+    def approval_words(self, project_id: str, source: str = "") -> str:
         """The same in words."""
         from recon4.slices.sheet import approval_words
 
-        return approval_words(self.approval(project_id))
+        return approval_words(self.approval(project_id, source))
 
     def references(self, project_id: str) -> list[dict[str, Any]]:
         """References of a project."""
@@ -148,11 +157,18 @@ class Slices:
         except (OSError, ValueError) as error:
             raise StoreError(f"{path.name} cannot be read: {error}") from error
 
-    def keep_control(self, project_id: str, state: ControlState) -> None:
-        """Keep them, safely on disk."""
+    def keep_control(self, project_id: str, state: ControlState) -> ControlState:
+        """Keep them, safely on disk; a place that is new was found in the latest map."""
+        before, key = self.control(project_id), Path(self._latest(project_id)["map"]).name
+        found_in = {
+            name: before.found_in.get(name, "") if before.picks.get(name) == at else key
+            for name, at in state.picks.items()
+        }
+        kept = state.model_copy(update={"found_in": found_in})
         folder = self._folder(project_id)
         folder.mkdir(exist_ok=True)
-        write_json(folder / "control.json", state.model_dump(mode="json"))
+        write_json(folder / "control.json", kept.model_dump(mode="json"))
+        return kept
 
     # -- work
 

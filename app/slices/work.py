@@ -16,6 +16,7 @@ from app.slices.model import (
     AskCompare,
     AskExport,
     AskPicture,
+    ControlState,
     Look,
     PickView,
     PictureView,
@@ -27,10 +28,11 @@ from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3
 from recon4.mapping.tiles import TileSet
 from recon4.review.stamp import Stamp, stamp_file
+from recon4.slices.acceptance import SheetWords, render_acceptance
 from recon4.slices.align import align_by_icp, align_by_pairs
 from recon4.slices.colors import SENSOR_COLORS, ColorBy, Ground, Span, table
 from recon4.slices.compare import compare, to_csv, to_json, usual_cuts
-from recon4.slices.control import ControlPoint, read_control, residuals
+from recon4.slices.control import ControlPoint, read_control
 from recon4.slices.cut import Cut, horizontal
 from recon4.slices.doubles import find_double_walls
 from recon4.slices.export import write_csv, write_dxf, write_geotiff, write_laz
@@ -40,6 +42,7 @@ from recon4.slices.pick import nearest_surface, pick
 from recon4.slices.picture import Paper, Picture, draw, png
 from recon4.slices.points import Window, extent
 from recon4.slices.reference import Method, Reference, load_reference, read_facts
+from recon4.slices.residuals import ControlReport, residual_csv, residuals
 from recon4.slices.sheet import (
     Words,
     approval_words,
@@ -278,19 +281,34 @@ def preview_control(data: bytes, name: str, order: str | None) -> dict[str, Any]
     return asdict(read_control(data, name=name, order=order))  # type: ignore[arg-type]
 
 
-def control_report(
-    artifacts: Artifacts, points: list[dict[str, Any]], frame: str, picks: dict[str, Xyz]
-) -> dict[str, Any]:
+def control_report(artifacts: Artifacts, state: ControlState) -> dict[str, Any]:
     """Residuals of the points that were found in the map."""
+    told: dict[str, Any] = null_for_nan(asdict(found := _residuals(artifacts, state)))
+    return told | {"passed": found.passed}
+
+
+def control_file(
+    artifacts: Artifacts, state: ControlState, ending: str, told: dict[str, str]
+) -> str:
+    """The same as CSV or as a sheet in HTML."""
+    found, sources = _residuals(artifacts, state), source_words(Path(artifacts["map"]).name)
+    words = SheetWords(frame=_frame(artifacts).words, sources=sources, **told)
+    if ending == "html":
+        return render_acceptance(found, words)
+    line = f"of {words.project}, {words.sources}, {words.frame}. {words.approval}"
+    return residual_csv(found, words=line)
+
+
+def _residuals(artifacts: Artifacts, state: ControlState) -> ControlReport:
     own = _frame(artifacts)
-    surveyed = [ControlPoint(**point) for point in points]
-    measured = {name: np.array(p_map) for name, p_map in picks.items()}
-    if frame == "crs":
+    here = state.of_map(Path(artifacts["map"]).name)
+    measured = {name: np.array(p_map) for name, p_map in here.items()}
+    if state.frame == "crs":
         if own.to_crs is None:
             raise ConfigError("the map is local: points of a CRS have no place in it")
         measured = {name: own.to_crs(p[None])[0] for name, p in measured.items()}
-    told: dict[str, Any] = null_for_nan(asdict(residuals(surveyed, measured)))
-    return told
+    surveyed = [ControlPoint(**point.model_dump()) for point in state.points]
+    return residuals(surveyed, measured, outdated=state.picks.keys() - here.keys())
 
 
 def surface_at(artifacts: Artifacts, xyz_m: Xyz, frame: str) -> dict[str, Any]:

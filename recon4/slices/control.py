@@ -1,29 +1,18 @@
-"""Control and check points: a survey's CSV, residuals, and whether they are within the limits."""
+"""Control and check points: reading a survey's CSV."""
 
 from __future__ import annotations
 
 import csv
 import io
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-
 from recon4.errors import CorruptFile
-from recon4.evaluation.markers import (
-    MAX_HORIZONTAL_LIMIT_M,
-    MAX_VERTICAL_LIMIT_M,
-    MEAN_HORIZONTAL_LIMIT_M,
-    MEAN_VERTICAL_LIMIT_M,
-)
-from recon4.geometry.se3 import Array
 
 Role = Literal["control", "check"]
 Order = Literal["EN", "NE"]
-RELATIVE_LIMIT_M = 0.05
-"""Distances between points of the map are off by no more than this (requirements, relative)."""
 MOST_POINTS = 5000
 _E = ("x", "e", "east", "easting", "x_m")
 _N = ("y", "n", "north", "northing", "y_m")
@@ -57,52 +46,6 @@ class Preview:
     """What has to be decided by a person; empty = nothing."""
     skipped: tuple[str, ...]
     """Lines left out, with the reason."""
-
-
-@dataclass(frozen=True, slots=True)
-class Residual:
-    """Map minus survey at one point."""
-
-    id: str
-    role: Role
-    east_m: float
-    north_m: float
-    up_m: float
-    d2_m: float
-    d3_m: float
-
-
-@dataclass(frozen=True, slots=True)
-class Figures:
-    """Residuals of one role taken together."""
-
-    role: Role
-    points: int
-    rmse_m: tuple[float, float, float]
-    """East, north, up."""
-    mean_2d_m: float
-    mean_up_m: float
-    """Of ``|dU|``."""
-    max_2d_m: float
-    max_up_m: float
-    rmse_3d_m: float
-    relative_m: float
-    """Largest error of the distance between two of the points; NaN with one point."""
-    passed: dict[str, bool]
-    """Limit in words -> whether it holds."""
-
-
-@dataclass(frozen=True, slots=True)
-class ControlReport:
-    """The residual table."""
-
-    rows: tuple[Residual, ...]
-    missing: tuple[str, ...]
-    """Points without a place in the map yet."""
-    figures: tuple[Figures, ...]
-    """Of check points, then of control points; a role without points is left out."""
-    judged_by: Role | None
-    """Whose limits decide; None = no point was measured."""
 
 
 def read_control(data: bytes, *, name: str = "file", order: Order | None = None) -> Preview:
@@ -143,48 +86,6 @@ def read_control(data: bytes, *, name: str = "file", order: Order | None = None)
         question=question,
         skipped=tuple(skipped),
     )
-
-
-def residuals(points: Sequence[ControlPoint], measured: Mapping[str, Array]) -> ControlReport:
-    """The residual table, control and check points apart.
-
-    Args:
-        points: As surveyed.
-        measured: Id -> place in the map, in the coordinates of the survey [m], (3,).
-    """
-    rows = tuple(_residual(p, measured[p.id]) for p in points if p.id in measured)
-    figures = []
-    for role in ("check", "control"):
-        mine = [row for row in rows if row.role == role]
-        if mine:
-            figures.append(
-                _figures(mine, [p for p in points if p.id in measured and p.role == role])
-            )
-    return ControlReport(
-        rows=rows,
-        missing=tuple(p.id for p in points if p.id not in measured),
-        figures=tuple(figures),
-        judged_by=figures[0].role if figures else None,
-    )
-
-
-def residual_csv(report: ControlReport) -> str:
-    """The table in metres, with a line of RMSE and of the largest a role."""
-    out = io.StringIO()
-    rows = csv.writer(out, lineterminator="\n")
-    rows.writerow(["id", "role", "dE_m", "dN_m", "dU_m", "d2D_m", "d3D_m"])
-    for row in report.rows:
-        values = (row.east_m, row.north_m, row.up_m, row.d2_m, row.d3_m)
-        rows.writerow([safe_cell(row.id), row.role, *(f"{value:.4f}" for value in values)])
-    for f in report.figures:
-        rows.writerow(["RMSE", f.role, *(f"{v:.4f}" for v in f.rmse_m), "", f"{f.rmse_3d_m:.4f}"])
-        rows.writerow(["max", f.role, "", "", f"{f.max_up_m:.4f}", f"{f.max_2d_m:.4f}", ""])
-    return out.getvalue()
-
-
-def safe_cell(text: str) -> str:
-    """A cell no spreadsheet takes for a formula."""
-    return f"'{text}" if text[:1] in ("=", "+", "-", "@", "\t", "\r") else text
 
 
 def _decoded(data: bytes, name: str) -> str:
@@ -280,47 +181,3 @@ def _question(points: list[ControlPoint]) -> str:
     first = points[0]
     a, b, _ = first.xyz_m
     return f"Point {first.id}: is {a:.3f} the easting (x) and {b:.3f} the northing (y)?"
-
-
-def _residual(point: ControlPoint, found_m: Array) -> Residual:
-    east, north, up = (float(d) for d in np.asarray(found_m, dtype=np.float64) - point.xyz_m)
-    d2 = math.hypot(east, north)
-    return Residual(point.id, point.role, east, north, up, d2, math.hypot(d2, up))
-
-
-def _figures(rows: list[Residual], points: list[ControlPoint]) -> Figures:
-    d = np.array([(row.east_m, row.north_m, row.up_m) for row in rows])
-    flat, up = np.hypot(d[:, 0], d[:, 1]), np.abs(d[:, 2])
-    relative = _relative(np.array([p.xyz_m for p in points]), d)
-    rmse = np.sqrt((d**2).mean(axis=0))
-    passed = {
-        "mean horizontal ≤ 14 cm": bool(flat.mean() <= MEAN_HORIZONTAL_LIMIT_M),
-        "mean height ≤ 12 cm": bool(up.mean() <= MEAN_VERTICAL_LIMIT_M),
-        "largest horizontal ≤ 28 cm": bool(flat.max() <= MAX_HORIZONTAL_LIMIT_M),
-        "largest height ≤ 24 cm": bool(up.max() <= MAX_VERTICAL_LIMIT_M),
-    }
-    if math.isfinite(relative):
-        passed["distances between points ≤ 5 cm"] = relative <= RELATIVE_LIMIT_M
-    return Figures(
-        role=rows[0].role,
-        points=len(rows),
-        rmse_m=(float(rmse[0]), float(rmse[1]), float(rmse[2])),
-        mean_2d_m=float(flat.mean()),
-        mean_up_m=float(up.mean()),
-        max_2d_m=float(flat.max()),
-        max_up_m=float(up.max()),
-        rmse_3d_m=float(np.sqrt((d**2).sum(axis=1).mean())),
-        relative_m=relative,
-        passed=passed,
-    )
-
-
-def _relative(true_m: Array, d: Array) -> float:
-    """Largest ``| |p_i - p_j| measured - surveyed |`` [m]; of at most 500 points."""
-    true_m, d = true_m[:500], d[:500]
-    if len(true_m) < 2:
-        return float("nan")
-    i, j = np.triu_indices(len(true_m), k=1)
-    surveyed = np.linalg.norm(true_m[i] - true_m[j], axis=1)
-    measured = np.linalg.norm((true_m + d)[i] - (true_m + d)[j], axis=1)
-    return float(np.abs(measured - surveyed).max())

@@ -7,7 +7,6 @@ than noise and poses explain, the wall is double. See ``docs/slices.md`` for the
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,6 +18,7 @@ from recon4.geometry.se3 import Array
 from recon4.kernels.doubles import COLUMNS, best_split, gather
 from recon4.mapping.tiles import Tile, TileSet
 from recon4.progress import Progress, Silent
+from recon4.slices.double_places import DoubleReport, Patches, report
 
 _BLOCK = 2_000_000
 _FIRST_TABLE = 1 << 15
@@ -52,71 +52,6 @@ class DoubleRule:
     """So many neighboring points count as one independent measurement (same beam and angle)."""
 
 
-@dataclass(frozen=True, slots=True)
-class DoubleWall:
-    """A place where a surface is double; the figures are medians of its patches."""
-
-    middle_m: tuple[float, float, float]
-    """Of its patches, in the map [m]."""
-    normal: tuple[float, float, float]
-    """Of the surface, towards the sensor's side or away."""
-    separation_m: float
-    """Distance of the two layers [m]."""
-    limit_m: float
-    """What noise and poses explain at this place [m]."""
-    sigma_m: float
-    """Thickness of one layer (standard deviation within a visit) [m]."""
-    bimodality: float
-    """Ashman's D, ``separation / sigma``: above 2 two layers are seen apart."""
-    share: float
-    """Of the points in the weaker layer, 0..0.5."""
-    patches: int
-    """Patches like this one here."""
-    points: int
-    spans_s: tuple[tuple[float, float], tuple[float, float]]
-    """First and last second since the start of the visits of both layers."""
-    frames: tuple[tuple[int, int], tuple[int, int]]
-    """First and last multiframe of both layers."""
-
-
-@dataclass(frozen=True, slots=True)
-class DoubleReport:
-    """What the check found."""
-
-    walls: tuple[DoubleWall, ...]
-    """The widest apart first."""
-    patches: int
-    """Flat patches that were visited at least twice: where the check can see."""
-    double_patches: int
-    median_separation_m: float
-    """Of all patches visited twice: how well visits agree [m]; NaN = none."""
-    p95_separation_m: float
-    median_sigma_m: float
-    """Thickness of a surface within a visit [m]."""
-    points: int
-
-    @property
-    def share(self) -> float:
-        """Of the patches visited twice, those that are double, 0..1."""
-        return self.double_patches / self.patches if self.patches else 0.0
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Patches:
-    """Flat patches with at least two visits, as columns (P,) or (P, 3)."""
-
-    middle_m: Array
-    normal: Array
-    sigma_m: Array
-    separation_m: Array
-    limit_m: Array
-    share: Array
-    points: Array
-    spans_s: Array
-    frames: Array
-    double: NDArray[np.bool_]
-
-
 def find_double_walls(
     tiles: TileSet, *, rule: DoubleRule | None = None, progress: Progress | None = None
 ) -> DoubleReport:
@@ -144,7 +79,7 @@ def find_double_walls(
         split.append(visits.take(~inner))
         progress.advance(len(tile))
     found.append(_judge(_merged(split), rule))
-    return _report([patches for patches in found if len(patches.points)], rule, len(tiles))
+    return report([patches for patches in found if len(patches.points)], len(tiles))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -250,7 +185,7 @@ def _merged(parts: list[_Visits]) -> _Visits:
     return _Visits(first.cell, first.face, first.window, sums)
 
 
-def _judge(visits: _Visits, rule: DoubleRule) -> _Patches:
+def _judge(visits: _Visits, rule: DoubleRule) -> Patches:
     """Patches that are flat and were visited twice, and which of them are double."""
     visits = visits.take(visits.sums[:, 0] >= 8.0)  # a few points have no place of their own
     visits = visits.take(np.lexsort([visits.window, visits.patches()]))
@@ -339,7 +274,7 @@ def _group(
 
 def _patches(
     patch: _Visits, rule: DoubleRule, *, shape: tuple[Array, Array, Array], groups: list[_Group]
-) -> _Patches:
+) -> Patches:
     normal, sigma, spread = shape
     a, b = groups
     total = np.maximum(a.n + b.n, 1.0)
@@ -355,7 +290,7 @@ def _patches(
     flat &= np.abs(np.take_along_axis(normal, patch.face[:, None] // 2, axis=1)[:, 0]) >= 0.5
     mean = (a.n[:, None] * a.mean_m + b.n[:, None] * b.mean_m) / total[:, None]
     middle = (patch.cell + 0.5) * rule.cell_m + mean
-    return _Patches(
+    return Patches(
         middle_m=middle[flat],
         normal=normal[flat],
         sigma_m=sigma[flat],
@@ -378,68 +313,3 @@ def limit_m(sigma_m: Array, n_a: Array, n_b: Array, rule: DoubleRule) -> Array:
     noise = sigma_m**2 * rule.correlated * (1.0 / np.maximum(n_a, 1.0) + 1.0 / np.maximum(n_b, 1.0))
     out: Array = rule.z * np.sqrt(noise + 2.0 * rule.pose_sigma_m**2)
     return out
-
-
-def _report(found: list[_Patches], rule: DoubleRule, points: int) -> DoubleReport:
-    separation = np.concatenate([p.separation_m for p in found] or [np.empty(0)])
-    sigma = np.concatenate([p.sigma_m for p in found] or [np.empty(0)])
-    double = sum(int(p.double.sum()) for p in found)
-    median, p95 = np.percentile(separation, [50, 95]) if len(separation) else (np.nan, np.nan)
-    walls = sorted(_walls(found), key=lambda wall: (-wall.separation_m, wall.middle_m))
-    return DoubleReport(
-        walls=tuple(walls),
-        patches=len(separation),
-        double_patches=double,
-        median_separation_m=float(median),
-        p95_separation_m=float(p95),
-        median_sigma_m=float(np.median(sigma)) if len(sigma) else float("nan"),
-        points=points,
-    )
-
-
-_PLACE_M = 1.5
-"""Double patches this near to each other, facing alike, are one place [m]."""
-_LEAST_PATCHES = 10
-"""A place has at least so many: an edge or a moved chair makes one or two."""
-
-
-def _walls(found: list[_Patches]) -> Iterator[DoubleWall]:
-    """Places, each with the figures of its worst patch."""
-    every = [(p, int(k)) for p in found for k in np.flatnonzero(p.double)]
-    if not every:
-        return
-    middle = np.array([p.middle_m[k] for p, k in every])
-    normal = np.array([p.normal[k] for p, k in every])
-    facing = np.argmax(np.abs(normal), axis=1)
-    keys = np.column_stack([np.floor(middle / _PLACE_M).astype(np.int64), facing])
-    _, owner = np.unique(keys, axis=0, return_inverse=True)
-    for place in range(int(owner.max()) + 1):
-        rows = np.flatnonzero(owner == place)
-        if len(rows) < _LEAST_PATCHES:
-            continue
-        yield _wall([every[row] for row in rows], middle[rows].mean(axis=0))
-
-
-def _wall(patches: list[tuple[_Patches, int]], middle: Array) -> DoubleWall:
-    def median(name: str) -> float:
-        return float(np.median([getattr(p, name)[k] for p, k in patches]))
-
-    p, k = sorted(patches, key=lambda one: float(one[0].separation_m[one[1]]))[len(patches) // 2]
-    separation, sigma = median("separation_m"), median("sigma_m")
-    x, y, z = (float(c) for c in middle)
-    nx, ny, nz = (float(c) for c in p.normal[k])
-    (a0, a1), (b0, b1) = p.spans_s[k].tolist()
-    (fa0, fa1), (fb0, fb1) = p.frames[k].astype(int).tolist()
-    return DoubleWall(
-        middle_m=(x, y, z),
-        normal=(nx, ny, nz),
-        separation_m=separation,
-        limit_m=median("limit_m"),
-        sigma_m=sigma,
-        bimodality=separation / max(sigma, 1e-6),
-        share=median("share"),
-        patches=len(patches),
-        points=int(sum(p.points[k] for p, k in patches)),
-        spans_s=((a0, a1), (b0, b1)),
-        frames=((fa0, fa1), (fb0, fb1)),
-    )

@@ -30,8 +30,11 @@ class Frame:
 
     @property
     def words(self) -> str:
-        """For the edge of a picture: frame, axes, unit."""
-        place = f"in {self.crs}" if self.crs else "local"
+        """For the edge of a picture: frame, axes, unit, and where its origin lies."""
+        if self.to_crs is None:
+            return "map frame (local), x y z, z up, metres"
+        east, north, up = self.to_crs(np.zeros((1, 3)))[0].tolist()
+        place = f"origin at E {east:.3f} N {north:.3f} H {up:.3f} in {self.crs}"
         return f"map frame ({place}), x y z, z up, metres"
 
     def from_crs(self, p_crs: Array) -> Array:

@@ -167,7 +167,7 @@ def test_a_reference_is_uploaded_and_shown(server, page):
     chooser.value.set_files({"name": "sent.xyz", "mimeType": "text/plain", "buffer": rows.encode()})
 
     expect(page.locator("#legend")).to_contain_text("Distance to reference [cm]")
-    expect(page.locator(".reference-row")).to_contain_text("6,000 points")
+    expect(page.locator(".reference-row")).to_contain_text(re.compile(r"6\s000 points"))
     expect(page.get_by_label("Upload of the reference")).to_be_hidden()
     page.get_by_role("button", name="Remove").click()
     expect(page.get_by_role("button", name="Remove")).to_have_count(0)
@@ -209,18 +209,32 @@ def test_a_double_wall_belongs_to_the_slices_near_it(server, page):
     assert found == pytest.approx([0.5, 4.0, 2.0])
 
 
-def test_a_survey_is_imported_and_judged(server, page):
+def test_a_survey_is_imported_judged_and_taken_away(server, page, picture):
     opened(page, server)
 
     page.get_by_text("Control and check points").click()
-    survey = {"name": "p.csv", "mimeType": "text/csv", "buffer": b"ID;X;Y;Z\nA;0,02;5;1,5\n"}
+    data = b"ID;X;Y;Z\nA;0,02;5;1,5\nB;16,01;4;1,2\nC;8;0,15;1,4\nD;8;5;20\n"
+    survey = {"name": "p.csv", "mimeType": "text/csv", "buffer": data}
     page.get_by_label("Survey file").set_input_files(survey)
     expect(page.get_by_text("is 0.020 the easting")).to_be_visible()
     page.get_by_role("button", name="Use, in the map's frame").click()
+    expect(page.locator(".verdict")).to_contain_text("Nothing checked yet · 4 not found yet")
     page.get_by_role("button", name="A on the nearest surface").click()
-
     expect(page.get_by_role("row", name=re.compile("^A "))).to_contain_text("-2.0")
-    expect(page.get_by_text("✓ mean horizontal ≤ 14 cm")).to_be_visible()
+    page.get_by_role("button", name="All on the nearest surface").click()
+
+    expect(
+        page.get_by_role("alert").filter(has_text="No surface within 30 cm of D")
+    ).to_be_visible()
+    expect(page.locator(".verdict")).to_contain_text("✕ The map does not keep the limits")
+    expect(page.get_by_role("row", name="mean horizontal")).to_contain_text("✓ holds")
+    expect(page.get_by_role("row", name="distances")).to_contain_text("✕ exceeded")
+    fits(page)
+    page.locator(".verdict").scroll_into_view_if_needed()
+    picture(page, "slices-control")
+    with page.expect_popup() as sheet:
+        page.get_by_role("link", name="Sheet to print and sign").click()
+    expect(sheet.value.get_by_text("does not keep the limits at 3 check points")).to_be_visible()
 
 
 def test_a_sheet_is_downloaded(server, page):

@@ -48,6 +48,22 @@ def test_a_wall_seen_again_at_its_place_is_not_double(tmp_path):
 
     assert found.patches > 300
     assert found.walls == () and found.double_patches < 0.01 * found.patches
+    worst = [one.separation_m / one.limit_m for one in found.surfaces]
+    assert len(worst) > 3 and worst == sorted(worst, reverse=True) and worst[0] < 1.0
+    assert found.surfaces[0].sigma_m == pytest.approx(0.01, abs=0.003)
+
+
+def test_a_place_is_told_once_as_double_or_as_single(tmp_path):
+    rng = np.random.default_rng(5)
+    columns = visits(rng, [0.0, 0.05])
+    far = columns["p_map"][:, 1] > 2.5
+    columns["p_map"][far & (columns["t_ns"] > T0_NS + 10 * SECOND), 0] -= 0.05
+
+    found = checked(tmp_path, **columns)
+
+    assert found.walls and found.surfaces
+    assert max(one.middle_m[1] for one in found.walls) < 3.0
+    assert min(one.middle_m[1] for one in found.surfaces) > 2.4
 
 
 def test_a_thick_surface_is_no_double_wall(tmp_path):

@@ -10,13 +10,15 @@ import rasterio.transform
 
 from recon4.errors import ConfigError, CorruptFile, GeoreferenceError
 from recon4.georeference.crs import CrsTransform, Origin
-from recon4.slices.control import ControlPoint, read_control, residual_csv, residuals
+from recon4.slices.acceptance import SheetWords, render_acceptance
+from recon4.slices.control import ControlPoint, read_control
 from recon4.slices.cut import horizontal, vertical
 from recon4.slices.export import write_csv, write_dxf, write_geotiff, write_laz
 from recon4.slices.frames import Frame, frame_of
 from recon4.slices.pick import nearest_surface, pick
 from recon4.slices.picture import Paper, draw
 from recon4.slices.points import Window, points_in
+from recon4.slices.residuals import residual_csv, residuals
 from recon4.slices.sheet import Words, approval_words, grid_step_m, lay_out, write_sheet
 from tests.unit.slices.room_map import wall, write_map
 
@@ -175,6 +177,8 @@ def test_coordinates_of_the_crs_lead_back_to_the_map():
     p = np.random.default_rng(1).uniform(-300, 300, (50, 3))
 
     assert np.abs(PLACED.from_crs(BRNO.to_crs(p)) - p).max() < 1e-5
+    east, north, up = BRNO.to_crs(np.zeros((1, 3)))[0]
+    assert f"origin at E {east:.3f} N {north:.3f} H {up:.3f} in EPSG:" in PLACED.words
 
 
 def test_coordinates_of_another_place_are_refused():
@@ -264,13 +268,49 @@ def test_control_and_check_points_are_judged_apart():
     assert (check.role, check.points, control.points) == ("check", 2, 1)
     assert check.mean_2d_m == pytest.approx(0.05) and check.max_up_m == pytest.approx(0.25)
     assert check.rmse_m == pytest.approx((0.03, 0.04, 0.25 / math.sqrt(2)))
-    assert check.passed["mean horizontal ≤ 14 cm"] and not check.passed["mean height ≤ 12 cm"]
-    assert not check.passed["largest height ≤ 24 cm"]
-    assert check.relative_m < 0.01 and check.passed["distances between points ≤ 5 cm"]
-    assert not control.passed["largest horizontal ≤ 28 cm"]
+    assert [(one.words, one.limit_m, one.holds) for one in check.requirements] == [
+        ("mean horizontal", 0.14, True),
+        ("mean height", 0.12, False),
+        ("largest horizontal", 0.28, True),
+        ("largest height", 0.24, False),
+        ("distances between points", 0.05, True),
+    ]
+    assert check.relative_m < 0.01 and found.passed is False
+    assert [one.holds for one in control.requirements] == [False, True, False, True]
+
+
+def test_only_places_in_this_map_count():
+    points = [ControlPoint("A", (0.0, 0.0, 0.0)), ControlPoint("B", (1.0, 0.0, 0.0))]
+
+    found = residuals(points, {}, outdated=["B"])
+
+    assert (found.missing, found.outdated, found.passed) == (("A",), ("B",), None)
 
 
 def test_a_name_that_looks_like_a_formula_is_defused():
-    table = residual_csv(residuals([ControlPoint("=1+1", (0.0, 0.0, 0.0))], {"=1+1": np.zeros(3)}))
+    found = residuals([ControlPoint("=1+1", (0.0, 0.0, 0.0))], {"=1+1": np.zeros(3)})
 
-    assert table.splitlines()[1].startswith("'=1+1,check,0.0000")
+    table = residual_csv(found, words="of a\nhouse")
+
+    assert table.splitlines()[0] == "# recon4 control and check points of a house"
+    assert table.splitlines()[2].startswith("'=1+1,check,0.0000")
+    assert "largest height,check,0.0000,0.24,yes" in table
+
+
+@pytest.mark.parametrize(
+    ("up_m", "role", "words"),
+    [
+        (0.05, "check", "✓ The map keeps the limits at 1 check point."),
+        (0.25, "check", "✕ The map does not keep the limits"),
+        (0.05, "control", "no independent point was checked"),
+    ],
+)
+def test_the_sheet_says_what_was_measured_against_which_limit(up_m, role, words):
+    points = [ControlPoint("<A>", (0.0, 0.0, 0.0), role), ControlPoint("B", (1.0, 0.0, 0.0))]
+    about = SheetWords(project="Dům & dvůr", frame="local", sources="map 12", approval="By Eva")
+
+    sheet = render_acceptance(residuals(points, {"<A>": np.array([0.0, 0.0, up_m])}), about)
+
+    assert words in sheet and "&lt;A&gt;" in sheet and "Dům &amp; dvůr" in sheet
+    assert f"<td>mean height</td><td>{100 * up_m:.1f}</td><td>12</td>" in sheet
+    assert "not found in the map" in sheet and "By Eva" in sheet

@@ -1,0 +1,198 @@
+"""Residuals at control and check points, and whether the map keeps the limits."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from recon4.evaluation.markers import (
+    MAX_HORIZONTAL_LIMIT_M,
+    MAX_VERTICAL_LIMIT_M,
+    MEAN_HORIZONTAL_LIMIT_M,
+    MEAN_VERTICAL_LIMIT_M,
+)
+from recon4.geometry.se3 import Array
+from recon4.slices.control import ControlPoint, Role
+
+RELATIVE_LIMIT_M = 0.05
+"""Distances between points of the map are off by no more than this (requirements, relative)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Residual:
+    """Map minus survey at one point."""
+
+    id: str
+    role: Role
+    east_m: float
+    north_m: float
+    up_m: float
+    d2_m: float
+    d3_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class Requirement:
+    """One line of the acceptance table."""
+
+    words: str
+    value_m: float
+    limit_m: float
+    holds: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Figures:
+    """Residuals of one role taken together."""
+
+    role: Role
+    points: int
+    rmse_m: tuple[float, float, float]
+    """East, north, up."""
+    mean_2d_m: float
+    mean_up_m: float
+    """Of ``|dU|``."""
+    max_2d_m: float
+    max_up_m: float
+    rmse_3d_m: float
+    relative_m: float
+    """Largest error of the distance between two of the points; NaN with one point."""
+    requirements: tuple[Requirement, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ControlReport:
+    """The residual table."""
+
+    rows: tuple[Residual, ...]
+    missing: tuple[str, ...]
+    """Points without a place in the map yet."""
+    outdated: tuple[str, ...]
+    """Points that were found in an earlier map only: their places say nothing of this one."""
+    figures: tuple[Figures, ...]
+    """Of check points, then of control points; a role without points is left out."""
+    judged_by: Role | None
+    """Whose limits decide; None = no point was measured."""
+
+    @property
+    def passed(self) -> bool | None:
+        """Whether the map keeps all limits at the points that decide; None = nothing was found."""
+        return all(one.holds for one in self.figures[0].requirements) if self.figures else None
+
+
+def residuals(
+    points: Sequence[ControlPoint],
+    measured: Mapping[str, Array],
+    *,
+    outdated: Collection[str] = (),
+) -> ControlReport:
+    """The residual table, control and check points apart.
+
+    Args:
+        points: As surveyed.
+        measured: Id -> place in the map, in the coordinates of the survey [m], (3,).
+        outdated: Ids of points that were found in an earlier map.
+    """
+    rows = tuple(_residual(p, measured[p.id]) for p in points if p.id in measured)
+    figures = []
+    for role in ("check", "control"):
+        mine = [row for row in rows if row.role == role]
+        if mine:
+            figures.append(
+                _figures(mine, [p for p in points if p.id in measured and p.role == role])
+            )
+    return ControlReport(
+        rows=rows,
+        missing=tuple(p.id for p in points if p.id not in measured and p.id not in outdated),
+        outdated=tuple(p.id for p in points if p.id not in measured and p.id in outdated),
+        figures=tuple(figures),
+        judged_by=figures[0].role if figures else None,
+    )
+
+
+def residual_csv(report: ControlReport, *, words: str = "") -> str:
+    """The residuals in metres, and behind an empty line each limit with what was measured.
+
+    Args:
+        report: The table.
+        words: What it is about, for the first line, a comment.
+    """
+    out = io.StringIO()
+    out.write(f"# recon4 control and check points {' '.join(words.split())}".rstrip() + "\n")
+    rows = csv.writer(out, lineterminator="\n")
+    rows.writerow(["id", "role", "dE_m", "dN_m", "dU_m", "d2D_m", "d3D_m"])
+    for row in report.rows:
+        values = (row.east_m, row.north_m, row.up_m, row.d2_m, row.d3_m)
+        rows.writerow([safe_cell(row.id), row.role, *(f"{value:.4f}" for value in values)])
+    for name in report.missing:
+        rows.writerow([safe_cell(name), "not found in the map"])
+    for name in report.outdated:
+        rows.writerow([safe_cell(name), "found in an earlier map only"])
+    for f in report.figures:
+        rows.writerow(["RMSE", f.role, *(f"{v:.4f}" for v in f.rmse_m), "", f"{f.rmse_3d_m:.4f}"])
+    rows.writerow([])
+    rows.writerow(["limit", "role", "measured_m", "limit_m", "holds"])
+    for f in report.figures:
+        for one in f.requirements:
+            holds = "yes" if one.holds else "NO"
+            rows.writerow([one.words, f.role, f"{one.value_m:.4f}", f"{one.limit_m:.2f}", holds])
+    return out.getvalue()
+
+
+def safe_cell(text: str) -> str:
+    """A cell no spreadsheet takes for a formula."""
+    return f"'{text}" if text[:1] in ("=", "+", "-", "@", "\t", "\r") else text
+
+
+def _residual(point: ControlPoint, found_m: Array) -> Residual:
+    east, north, up = (float(d) for d in np.asarray(found_m, dtype=np.float64) - point.xyz_m)
+    d2 = math.hypot(east, north)
+    return Residual(point.id, point.role, east, north, up, d2, math.hypot(d2, up))
+
+
+def _figures(rows: list[Residual], points: list[ControlPoint]) -> Figures:
+    d = np.array([(row.east_m, row.north_m, row.up_m) for row in rows])
+    flat, up = np.hypot(d[:, 0], d[:, 1]), np.abs(d[:, 2])
+    relative = _relative(np.array([p.xyz_m for p in points]), d)
+    rmse = np.sqrt((d**2).mean(axis=0))
+    return Figures(
+        role=rows[0].role,
+        points=len(rows),
+        rmse_m=(float(rmse[0]), float(rmse[1]), float(rmse[2])),
+        mean_2d_m=float(flat.mean()),
+        mean_up_m=float(up.mean()),
+        max_2d_m=float(flat.max()),
+        max_up_m=float(up.max()),
+        rmse_3d_m=float(np.sqrt((d**2).sum(axis=1).mean())),
+        relative_m=relative,
+        requirements=_requirements(flat, up, relative),
+    )
+
+
+def _requirements(flat_m: Array, up_m: Array, relative_m: float) -> tuple[Requirement, ...]:
+    """The limits of V §3.3, and that of distances where there are two points."""
+    lines = [
+        ("mean horizontal", float(flat_m.mean()), MEAN_HORIZONTAL_LIMIT_M),
+        ("mean height", float(up_m.mean()), MEAN_VERTICAL_LIMIT_M),
+        ("largest horizontal", float(flat_m.max()), MAX_HORIZONTAL_LIMIT_M),
+        ("largest height", float(up_m.max()), MAX_VERTICAL_LIMIT_M),
+    ]
+    if math.isfinite(relative_m):
+        lines.append(("distances between points", relative_m, RELATIVE_LIMIT_M))
+    return tuple(Requirement(words, value, limit, value <= limit) for words, value, limit in lines)
+
+
+def _relative(true_m: Array, d: Array) -> float:
+    """Largest ``| |p_i - p_j| measured - surveyed |`` [m]; of at most 500 points."""
+    true_m, d = true_m[:500], d[:500]
+    if len(true_m) < 2:
+        return float("nan")
+    i, j = np.triu_indices(len(true_m), k=1)
+    surveyed = np.linalg.norm(true_m[i] - true_m[j], axis=1)
+    measured = np.linalg.norm((true_m + d)[i] - (true_m + d)[j], axis=1)
+    return float(np.abs(measured - surveyed).max())
