@@ -10,12 +10,19 @@ import numpy as np
 
 from app.viewer.nodes import LinesNode, Node
 from app.viewer.panels import Panel, Update
-from app.viewer.pick import PickedPoint, Ray, pick_edge, pick_point
-from app.viewer.scene import MEASURED_COLOR, crosses
+from app.viewer.pick import PickedPoint, Ray, pick_edge, pick_gnss, pick_point
+from app.viewer.scene import MEASURED_COLOR, as_position, crosses
 from app.viewer.show import Screen
 from app.viewer.source import ProjectSource
 from app.viewer.view import MOST_MEASUREMENTS, Position, View
-from app.viewer.words import Facts, edge_facts, measurement_facts, measurements_csv, point_facts
+from app.viewer.words import (
+    Facts,
+    edge_facts,
+    gnss_facts,
+    measurement_facts,
+    measurements_csv,
+    point_facts,
+)
 from recon4.geometry.se3 import Array
 
 PICKED_COLOR = (255, 255, 255)
@@ -69,7 +76,7 @@ class Hand:
             ray = replace(ray, point_m=view.point_size_m)
             if self._measuring:
                 self._measure(ray)
-            elif not self._picked_edge(ray, view):
+            elif not (self._picked_edge(ray, view) or self._picked_gnss(ray, view)):
                 self._pick_point(ray)
             self._news = True
         self._change(lambda view: view)
@@ -112,6 +119,16 @@ class Hand:
             return False
         self._edge, self._last = table.graph.T_map_body.t[table.ends[row]], None
         self._tell(edge_facts(table, row, self._project))
+        return True
+
+    def _picked_gnss(self, ray: Ray, view: View) -> bool:
+        content = self._source.content
+        row = None if content.gnss is None else pick_gnss(content.gnss, view, ray)
+        if content.gnss is None or row is None:
+            return False
+        self._last = as_position(content.gnss.p_map[row])
+        began_ns = 0 if content.trajectory is None else int(content.trajectory.t_ns[0])
+        self._tell(gnss_facts(content.gnss, row, began_ns=began_ns))
         return True
 
     def _pick_point(self, ray: Ray) -> PickedPoint | None:

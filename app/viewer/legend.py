@@ -30,6 +30,8 @@ class Legend:
     edge_span: Range = ERROR_RANGE
     multiframes: str = ""
     """Which of them are on screen; empty = none."""
+    preview: bool = False
+    """Whether the points on screen are those of the walk so far, by height."""
 
 
 def legend(content: Content, view: View, *, points: int = 0) -> Legend:
@@ -54,7 +56,14 @@ def legend(content: Content, view: View, *, points: int = 0) -> Legend:
         edge_color=view.edge_color,
         edge_span=CHI2_RANGE if view.edge_color == "chi²" else ERROR_RANGE,
         multiframes=multiframe_words(content, view),
+        preview=shows_preview(content, view),
     )
+
+
+def shows_preview(content: Content, view: View) -> bool:
+    """Whether the points of the walk so far stand in for the map that is not there yet."""
+    there = content.preview is not None and content.trajectory is not None
+    return there and view.points != "multiframe"
 
 
 def multiframe_words(content: Content, view: View) -> str:

@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from app.viewer.layers import Layer
 from app.viewer.legend import Legend
 from app.viewer.palette import Palette, Range, Rgb, table
+from app.viewer.preview import HEIGHTS
 from app.viewer.view import CATEGORIES
 from app.viewer.words import Facts
 
@@ -20,6 +21,9 @@ def legend_html(legend: Legend) -> str:
     if legend.color_by is not None:
         points = f"<b>Points by {html.escape(legend.color_by)}</b>{_scale(legend)}"
         points += f"<div>{count(legend.points)} of {count(legend.points_in_map)} points</div>"
+    if legend.preview:
+        points += f"<b>Preview by height</b>{_bar(legend.palette, HEIGHTS, 'm above the start')}"
+        points += "<div>A multiframe a second, until there is a map</div>"
     if legend.multiframes:
         points += f"<div>{html.escape(legend.multiframes)}</div>"
     if legend.edge_color == "verdict":

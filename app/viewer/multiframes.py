@@ -20,6 +20,8 @@ from recon4.store.frames import FrameStore
 
 MOST_POINTS = 150_000
 """A window of more points is thinned out."""
+SLACK_NS = 500_000_000
+"""A point may lie so far outside the trajectory in time [ns]."""
 HIGHLIGHT: Rgb = (255, 145, 0)
 """A multiframe over the map."""
 
@@ -50,6 +52,15 @@ class Multiframes:
         until_ns = self.t_mid_ns[first] + round(window_s * 1e9)
         return range(first, max(int(np.searchsorted(self.t_mid_ns, until_ns, "right")), first + 1))
 
+    def thinned(self, row: int, line: Trajectory, *, most: int) -> Array:
+        """Some of the points of one multiframe in the map [m], (N, 3); none off the trajectory."""
+        frame = self._frames[row]
+        frame = frame.take(slice(None, None, max(1, -(-len(frame) // most))))
+        try:
+            return place(frame, line, self._frames.rig, slack_ns=SLACK_NS)
+        except OutOfRange:
+            return np.empty((0, 3))
+
     def read(self, moment: int, window_s: float, line: Trajectory) -> Window | None:
         """The points of a window; None where the trajectory does not reach."""
         rows = self.window(moment, window_s)
@@ -59,7 +70,7 @@ class Multiframes:
         for k in rows:
             frame = self._frames[k].take(slice(None, None, step))
             try:
-                p_map = place(frame, line, self._frames.rig, slack_ns=500_000_000)
+                p_map = place(frame, line, self._frames.rig, slack_ns=SLACK_NS)
             except OutOfRange:
                 continue
             t_ns = frame.t_ns + frame.dt_ns.astype(np.int64)

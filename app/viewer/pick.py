@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from app.viewer.cloud import Cloud
 from app.viewer.layers import EdgeTable
-from app.viewer.scene import as_position
+from app.viewer.scene import GnssMarks, as_position
 from app.viewer.view import Position, View
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import Tile
@@ -62,6 +62,17 @@ def pick_edge(table: EdgeTable, view: View, ray: Ray) -> int | None:
         return None
     ends = table.graph.T_map_body.t[table.ends[rows]]
     angle = _angles(ends[:, 0], ends[:, 1], ray)
+    best = int(np.argmin(angle))
+    return int(rows[best]) if angle[best] <= EDGE_PX * ray.pixel_rad else None
+
+
+def pick_gnss(marks: GnssMarks, view: View, ray: Ray) -> int | None:
+    """Row of the visible GNSS position, or its edge, nearest to a ray; None if none is close."""
+    used, rejected = (view.shows(layer) for layer in marks.layers)
+    rows = np.flatnonzero(np.where(marks.used, used, rejected))
+    if len(rows) == 0:
+        return None
+    angle = _angles(marks.p_antenna[rows], marks.p_map[rows], ray)
     best = int(np.argmin(angle))
     return int(rows[best]) if angle[best] <= EDGE_PX * ray.pixel_rad else None
 

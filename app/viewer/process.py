@@ -30,16 +30,26 @@ class Seats:
     def __init__(self, source: ProjectSource, project: str, points: int) -> None:
         self._source, self._project, self._points = source, project, points
         self._taken: dict[int, Seat] = {}
+        self._gone: set[int] = set()
+        self._lock = threading.Lock()
 
     def take(self, client: Any) -> None:
         """Seat a new client."""
-        self._taken[client.client_id] = Seat(
-            client, self._source, self._project, points=self._points
-        )
+        seat = Seat(client, self._source, self._project, points=self._points)
+        with self._lock:
+            left = client.client_id in self._gone
+            self._gone.discard(client.client_id)
+            if not left:
+                self._taken[client.client_id] = seat
+        if left:
+            seat.leave()
 
     def leave(self, client: Any) -> None:
-        """Forget a client."""
-        seat = self._taken.pop(client.client_id, None)
+        """Forget a client, also one that leaves while it is being seated in another thread."""
+        with self._lock:
+            seat = self._taken.pop(client.client_id, None)
+            if seat is None:
+                self._gone.add(client.client_id)
         if seat is not None:
             seat.leave()
 

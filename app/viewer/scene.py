@@ -9,7 +9,7 @@ Long lines are cut into pieces, so that a walk that grows resends its last piece
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -32,9 +32,10 @@ from app.viewer.layers import (
 from app.viewer.multiframes import Multiframes
 from app.viewer.nodes import AxesNode, GridNode, LabelNode, LinesNode, Node
 from app.viewer.palette import Range, Rgb, paint
+from app.viewer.preview import Preview
 from app.viewer.view import ColorBy, Position, View
 from recon4.geometry.se3 import SE3, Array
-from recon4.model.trajectory import Trajectory
+from recon4.model.trajectory import Times, Trajectory
 
 CLOSED_M = 2.0
 """Start and end nearer than this share a label [m]."""
@@ -53,12 +54,23 @@ CHI2_RANGE = Range(0.0, 20.0)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GnssMarks:
-    """Where a receiver said the antenna was."""
+    """Where a receiver said the antenna was: edges from the walk to a position on earth."""
 
+    t_ns: Times
+    """(M,)"""
     p_map: Array
-    """[m], (M, 3)"""
+    """As the receiver said [m], (M, 3)."""
+    p_antenna: Array
+    """As the walk has it at that time [m], (M, 3)."""
     used: NDArray[np.bool_]
     """False = rejected as an outlier, (M,)."""
+
+    @property
+    def layers(self) -> tuple[Layer, Layer]:
+        """Used and rejected ones with their counts."""
+        used = int(self.used.sum())
+        rejected = len(self.used) - used
+        return replace(GNSS_USED, count=used), replace(GNSS_REJECTED, count=rejected)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -72,6 +84,8 @@ class Content:
     """``T_odom_body``, before the graph."""
     edges: EdgeTable | None = None
     multiframes: Multiframes | None = None
+    preview: Preview | None = None
+    """The points of the walk until there is a map."""
     sensors: tuple[str, ...] = ()
     """Names of the LiDARs."""
     gnss: GnssMarks | None = None
@@ -91,12 +105,11 @@ class Content:
             (ODOMETRY, self.odometry is not None),
             (FRAMES, self.edges is not None),
             (LIDARS, self.multiframes is not None),
-            (GNSS_USED, self.gnss is not None),
-            (GNSS_REJECTED, self.gnss is not None),
         ]
         edges = self.edges.layers if self.edges else ()
+        gnss = self.gnss.layers if self.gnss else ()
         rest = (NORTH, GRAVITY, GRID) if self.crs else (GRAVITY, GRID)
-        return (*(layer for layer, there in own if there), *edges, *rest)
+        return (*(layer for layer, there in own if there), *edges, *gnss, *rest)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -273,10 +286,9 @@ def _axes(path: str, T: SE3, *, length_m: float, visible: bool) -> AxesNode:
 def _gnss(marks: GnssMarks, view: View) -> Iterator[LinesNode]:
     for layer, rows in ((GNSS_USED, marks.used), (GNSS_REJECTED, ~marks.used)):
         step = max(1, int(rows.sum()) // MOST_POSES)
-        p = marks.p_map[rows][::step]
-        yield _lines(
-            f"/{layer.key}", crosses(p), layer.rgb, width_px=1.5, visible=view.shows(layer)
-        )
+        p, p_antenna = marks.p_map[rows][::step], marks.p_antenna[rows][::step]
+        lines = np.concatenate([crosses(p), np.stack([p_antenna, p], axis=1)])
+        yield _lines(f"/{layer.key}", lines, layer.rgb, width_px=1.5, visible=view.shows(layer))
 
 
 def crosses(p: Array) -> Array:

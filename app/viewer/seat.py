@@ -16,8 +16,8 @@ import numpy as np
 
 from app.viewer.detail import Detail
 from app.viewer.hand import Hand
-from app.viewer.legend import legend, span_of
-from app.viewer.nodes import Node
+from app.viewer.legend import legend, shows_preview, span_of
+from app.viewer.nodes import Node, PointsNode
 from app.viewer.pace import PATIENCE_S, PHONE_POINTS, Pace
 from app.viewer.panels import Doings, Panel
 from app.viewer.scene import Content, bounds, describe
@@ -80,6 +80,8 @@ class Seat:
                 self._pass()
             except Recon4Error as error:
                 log.warning("%s", error)
+            except Exception:  # a screen that shows nothing new any more would tell nobody why
+                log.exception("a pass failed; the next one tries again")
 
     def _pass(self) -> None:
         view, content = self._view, self._source.content
@@ -110,7 +112,8 @@ class Seat:
             if content.cloud is not None or content.trajectory is not None:
                 self._screen.follow(bounds(content))
         self._shown, self._content = view, content
-        self._screen.show([*describe(content, view), *self._hand.nodes(), *_window(content, view)])
+        points = [*_preview(content, view), *_window(content, view)]
+        self._screen.show([*describe(content, view), *self._hand.nodes(), *points])
         self._panel.show(view, span_of(content, view))
         self._hand.report(view)
 
@@ -156,6 +159,14 @@ DIRECTIONS = {
 def _other_intensity(view: View) -> Any:
     raw = view.color_by == "normalized intensity"
     return "raw intensity" if raw else "normalized intensity"
+
+
+def _preview(content: Content, view: View) -> list[PointsNode]:
+    """The walk so far, while there is no map."""
+    line = content.trajectory
+    if content.preview is None or line is None or not shows_preview(content, view):
+        return []
+    return content.preview.nodes(line, palette=view.palette, size_m=view.point_size_m)
 
 
 def _window(content: Content, view: View) -> list[Node]:

@@ -14,6 +14,7 @@ from app.viewer.cloud import Cloud
 from app.viewer.layers import EdgeTable
 from app.viewer.live import JobWatch
 from app.viewer.multiframes import Multiframes
+from app.viewer.preview import Preview
 from app.viewer.scene import Content, GnssMarks
 from recon4.errors import Recon4Error
 from recon4.geometry.se3 import Array
@@ -78,12 +79,15 @@ class ProjectSource:
             odometry = live.trajectory
         trajectory = self._trajectory(TRAJECTORY_STAGES) or odometry
         georeference = self._georeference()
+        cloud = self._cloud(trajectory)
+        frames = self._of_stage("frames", lambda path: Multiframes(FrameStore.open(path)))
         return Content(
-            cloud=self._cloud(trajectory),
+            cloud=cloud,
             trajectory=trajectory,
             odometry=odometry,
             edges=self._edges(),
-            multiframes=self._of_stage("frames", lambda path: Multiframes(FrameStore.open(path))),
+            multiframes=frames,
+            preview=self._preview(frames) if cloud is None else None,
             sensors=self._sensors(),
             gnss=self._gnss(georeference, trajectory),
             crs=str((georeference.get("crs") or {}).get("name", "")),
@@ -111,6 +115,12 @@ class ProjectSource:
         began_ns = int(line.t_ns[0]) if line is not None and len(line) else 0
         cloud: Cloud | None = self._of_stage("map", lambda path: Cloud(path, began_ns=began_ns))
         return cloud
+
+    def _preview(self, frames: Multiframes | None) -> Preview | None:
+        if frames is None:
+            return None
+        made: Preview | None = self._of_stage("frames", lambda _: Preview(frames), name="preview")
+        return made
 
     def _trajectory(self, stages: tuple[str, ...]) -> Trajectory | None:
         for stage in stages:
@@ -160,6 +170,10 @@ class ProjectSource:
         t_ns = np.array(fixes["t_ns"], dtype=np.int64)
         inside = (t_ns >= line.t_ns[0]) & (t_ns <= line.t_ns[-1])
         T = line.at(t_ns[inside])
-        antenna = load_rig(frames / "rig.toml").p_body_antenna
-        p_map = (T.R @ antenna) + T.t + np.array(fixes["residual_enu_m"])[inside]
-        return GnssMarks(p_map, np.array(fixes["used"], dtype=np.bool_)[inside])
+        p_antenna = (T.R @ load_rig(frames / "rig.toml").p_body_antenna) + T.t
+        return GnssMarks(
+            t_ns=t_ns[inside],
+            p_map=p_antenna + np.array(fixes["residual_enu_m"])[inside],
+            p_antenna=p_antenna,
+            used=np.array(fixes["used"], dtype=np.bool_)[inside],
+        )

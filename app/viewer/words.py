@@ -12,6 +12,7 @@ import numpy as np
 
 from app.viewer.layers import KIND_WORDS, EdgeTable
 from app.viewer.pick import PickedPoint
+from app.viewer.scene import GnssMarks
 from app.viewer.view import Position
 from recon4.geometry.se3 import Array
 
@@ -49,6 +50,19 @@ def edge_facts(table: EdgeTable, row: int, project: str) -> Facts:
     link = f"/projects/{quote(project)}/review/?edge={edge.i}-{edge.j}"
     kept = tuple((words, value) for words, value in rows if value)
     return Facts(f"Edge {edge.i}\u2013{edge.j}", kept, ("Open in review", link))
+
+
+def gnss_facts(marks: GnssMarks, row: int, *, began_ns: int) -> Facts:
+    """What is known of a position a receiver gave."""
+    off = marks.p_map[row] - marks.p_antenna[row]
+    rows = (
+        ("Time", f"{(marks.t_ns[row] - began_ns) * 1e-9:.1f} s"),
+        ("Verdict", "used" if marks.used[row] else "rejected, does not agree with the walk"),
+        ("Off the walk, east north up", " ".join(f"{value:+.3f}" for value in off) + " m"),
+        ("Horizontal", f"{np.linalg.norm(off[:2]):.3f} m"),
+        ("x y z, m", " ".join(f"{value:.4f}" for value in marks.p_map[row])),
+    )
+    return Facts("GNSS position", rows)
 
 
 def point_facts(

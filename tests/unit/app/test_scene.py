@@ -19,7 +19,7 @@ from app.viewer.scene import (
 )
 from app.viewer.source import ProjectSource
 from app.viewer.view import View
-from app.viewer.words import Facts, edge_facts, measurement_facts, measurements_csv
+from app.viewer.words import Facts, edge_facts, gnss_facts, measurement_facts, measurements_csv
 from recon4.mapping.tile import FIELDS
 from recon4.mapping.tiles import TileWriter
 from recon4.model.pose_graph import Verdict
@@ -127,17 +127,36 @@ def test_a_layer_that_is_off_is_invisible_but_there(content):
     assert not any(shown.values())
 
 
-def test_positions_of_a_receiver_are_sorted_into_used_and_rejected():
+def three_positions():
     p = np.arange(9.0).reshape(3, 3)
-    marks = GnssMarks(p, np.array([True, False, True]))
+    t_ns = np.array([1, 2, 3], dtype=np.int64) * 1_000_000_000
+    return GnssMarks(t_ns, p, p + np.array([0.0, 0.0, 0.5]), np.array([True, False, True]))
 
-    nodes = {node.path: node for node in describe(Content(gnss=marks, crs="EPSG:5514"), View())}
+
+def test_positions_of_a_receiver_are_edges_sorted_into_used_and_rejected():
+    marks = three_positions()
+
+    content = Content(gnss=marks, crs="EPSG:5514")
+    nodes = {node.path: node for node in describe(content, View())}
 
     used, rejected = nodes["/gnss/used"], nodes["/gnss/rejected"]
-    assert len(used.segments) == 6 and len(rejected.segments) == 3
-    middles = rejected.position_m + rejected.segments.mean(axis=1)
-    np.testing.assert_allclose(middles, [p[1]] * 3, atol=1e-6)
+    assert len(used.segments) == 2 * (3 + 1) and len(rejected.segments) == 3 + 1
+    lines = rejected.position_m + rejected.segments
+    np.testing.assert_allclose(lines[:3].mean(axis=1), [marks.p_map[1]] * 3, atol=1e-6)
+    np.testing.assert_allclose(lines[3], [marks.p_antenna[1], marks.p_map[1]], atol=1e-6)
+    assert [(layer.words, layer.count) for layer in content.layers[:2]] == [
+        ("GNSS, used", 2),
+        ("GNSS, rejected", 1),
+    ]
     assert "/north" in nodes
+
+
+def test_a_position_picked_says_how_far_off_the_walk_it_is():
+    told = dict(gnss_facts(three_positions(), 1, began_ns=0).rows)
+
+    assert told["Time"] == "2.0 s"
+    assert told["Verdict"].startswith("rejected")
+    assert told["Off the walk, east north up"] == "+0.000 +0.000 -0.500 m"
 
 
 def test_without_a_place_on_earth_there_is_no_north(content):

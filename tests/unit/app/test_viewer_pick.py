@@ -5,7 +5,8 @@ import pytest
 
 from app.viewer.cloud import Cloud
 from app.viewer.layers import EdgeTable
-from app.viewer.pick import Ray, pick_edge, pick_point
+from app.viewer.pick import Ray, pick_edge, pick_gnss, pick_point
+from app.viewer.scene import GnssMarks
 from app.viewer.view import View
 from tests.project_builder import ROOM_M, build_project, loop_walk, verified_graph
 
@@ -86,3 +87,13 @@ def test_a_click_beside_all_edges_finds_none():
     table = EdgeTable.of(verified_graph(loop_walk()))
 
     assert pick_edge(table, View(), ray((0.0, 0.0, 9.0), (0.0, 0.1, 0.0))) is None
+
+
+def test_a_gnss_position_under_the_click_is_found_when_it_is_shown():
+    p = np.array([[0.0, 5.0, 1.0], [3.0, 5.0, 1.0]])
+    marks = GnssMarks(np.array([1, 2]), p, p - [0.0, 0.0, 1.0], np.array([True, False]))
+    ray = Ray(np.array([3.0, 0.0, 0.5]), np.array([0.0, 1.0, 0.0]), 0.001)
+
+    assert pick_gnss(marks, View(chosen={"gnss/rejected": True}), ray) == 1
+    assert pick_gnss(marks, View(chosen={"gnss/used": True}), ray) is None
+    assert pick_gnss(marks, View(), ray) is None
