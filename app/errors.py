@@ -16,25 +16,46 @@
     ├── ViewerFailed         503  the 3-D viewer does not start
     └── DeskFailed           503  a helper process died or took too long
 
-A `Recon4Error` of the library is the fault of the input: 422.
+A `Recon4Error` of the library is the fault of the input: 422. What the framework refuses (fields
+of the wrong kind, addresses that are none) is answered in the same form.
 """
 
 from __future__ import annotations
 
+import html
 import logging
 import math
 import secrets
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from http import HTTPStatus
+from pathlib import Path
 from types import MappingProxyType
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from fastapi import FastAPI, Request
-from fastapi.responses import JSONResponse
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import HTMLResponse, JSONResponse, Response
 from pydantic import BaseModel
+from starlette.exceptions import HTTPException
 
 from recon4.errors import Recon4Error, WrongSettings
 
 log = logging.getLogger(__name__)
+
+LOST = Path(__file__).parents[1] / "web" / "lost.html"
+"""The page for people where there is none for them; ``{title}`` and ``{detail}`` are filled in."""
+TITLES = {403: "Not for you", 404: "There is nothing here"}
+FRAMEWORK_WORDS: Mapping[int, str] = {
+    404: "there is no such address on this server",
+    405: "this address does not take that method",
+}
+OUTSIDE_OF_THE_GUARD = {
+    "Content-Security-Policy": "default-src 'self'; frame-ancestors 'self'",
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cache-Control": "no-store",
+}
+"""Headers of the answer to a failure of our own, which the framework sends past the guard."""
 
 
 class AppError(Exception):
@@ -140,10 +161,12 @@ class Problem(BaseModel):
 
 
 def install(app: FastAPI) -> None:
-    """Answer every error as a `Problem`."""
+    """Answer every error as a `Problem`, to a browser that wants a page as a page."""
 
     @app.exception_handler(AppError)
-    async def known(_: Request, error: AppError) -> JSONResponse:
+    async def known(request: Request, error: AppError) -> Response:
+        if _wants_page(request):
+            return _page(error.status, str(error), error.headers)
         return _problem(error.status, type(error).__name__, str(error), headers=error.headers)
 
     @app.exception_handler(WrongSettings)
@@ -154,11 +177,48 @@ def install(app: FastAPI) -> None:
     async def wrong_input(_: Request, error: Recon4Error) -> JSONResponse:
         return _problem(422, type(error).__name__, str(error))
 
+    @app.exception_handler(RequestValidationError)
+    async def wrong_form(_: Request, error: RequestValidationError) -> JSONResponse:
+        return _problem(422, "Invalid", "; ".join(_field_words(one) for one in error.errors()))
+
+    @app.exception_handler(HTTPException)
+    async def refused(request: Request, error: HTTPException) -> Response:
+        status = HTTPStatus(error.status_code)
+        words = FRAMEWORK_WORDS.get(status, str(error.detail))
+        if _wants_page(request):
+            return _page(status, words, error.headers)
+        return _problem(
+            status, status.phrase.title().replace(" ", ""), words, headers=error.headers
+        )
+
     @app.exception_handler(Exception)
-    async def our_own(request: Request, error: Exception) -> JSONResponse:
+    async def our_own(request: Request, error: Exception) -> Response:
         number = secrets.token_hex(4)
         log.error("error %s in %r", number, request.scope["path"], exc_info=error)
-        return _problem(500, "InternalError", f"the server failed; the log says why under {number}")
+        words = f"the server failed; the log says why under {number}"
+        if _wants_page(request):
+            return _page(500, words, OUTSIDE_OF_THE_GUARD)
+        return _problem(500, "InternalError", words, headers=OUTSIDE_OF_THE_GUARD)
+
+
+def _field_words(problem: Mapping[str, Any]) -> str:
+    """One mistake of a form: ``recordings: List should have at least 1 item``."""
+    place: Sequence[Any] = problem["loc"]
+    named = ".".join(map(str, place[1:])) or str(place[0])
+    return f"{named}: {problem['msg']}"
+
+
+def _wants_page(request: Request) -> bool:
+    """Whether a person's browser asks for a page."""
+    accepts = "text/html" in request.headers.get("accept", "")
+    return request.method == "GET" and accepts and not request.scope["path"].startswith("/api/")
+
+
+def _page(status: int, detail: str, headers: Mapping[str, str] | None) -> HTMLResponse:
+    title = TITLES.get(status, "That did not work")
+    page = LOST.read_text("utf-8").replace("{title}", title)
+    filled = page.replace("{detail}", html.escape(detail))
+    return HTMLResponse(filled, status_code=status, headers=dict(headers or {}))
 
 
 def _problem(

@@ -23,6 +23,7 @@ from app.access.people import May, anybody, needs
 from app.access.routes_check import check_declared
 from app.access.welcome import welcome
 from app.deps import Parts, Server
+from app.description import description
 from app.desk import Desk
 from app.jobs import choices
 from app.jobs import routes as job_routes
@@ -191,9 +192,9 @@ def _add_pages(app: FastAPI) -> None:
         """Whether the server answers."""
         return {"status": "ok", "version": __version__}
 
-    @app.get("/openapi.json", include_in_schema=False, dependencies=administer)
+    @app.get("/openapi.json", include_in_schema=False, dependencies=MAY_LOOK)
     def openapi() -> JSONResponse:
-        return JSONResponse(app.openapi())
+        return JSONResponse(description(app))
 
     def page(path: str, file: str, who: list[Any]) -> None:
         @app.get(path, include_in_schema=False, dependencies=who, name=file)
@@ -206,7 +207,7 @@ def _add_pages(app: FastAPI) -> None:
     page("/pair", "pair.html", anyone)
     page("/login", "login.html", anyone)
     page("/people", "people.html", administer)
-    page("/api", "api.html", administer)
+    page("/api", "api.html", MAY_LOOK)
 
     @app.get("/projects/{project_id}/", include_in_schema=False, dependencies=MAY_LOOK)
     def project(project_id: str, server: Server) -> FileResponse:

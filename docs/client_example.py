@@ -1,15 +1,21 @@
-"""Send a recording to a recon4 server, process it, fetch the map: ``python client_example.py``.
+r"""Send a recording to a recon4 server, process it, fetch the map: ``python client_example.py``.
 
     python docs/client_example.py http://127.0.0.1:8000 walk.pcap --project office
+    python docs/client_example.py https://backpack.local:8000 walk.pcap --project office \
+        --name anna --certificate certificate.pem
 
-An upload that was cut goes on where it was when this is called again.
+An upload that was cut goes on where it was when this is called again. The password is asked for,
+or taken from RECON4_PASSWORD; ``certificate.pem`` is a copy of ROOT/.recon4/tls/certificate.pem.
 """
 
 from __future__ import annotations
 
 import argparse
 import base64
+import getpass
 import json
+import os
+import ssl
 import sys
 from pathlib import Path
 from typing import Any
@@ -19,6 +25,19 @@ import httpx
 CHUNK_BYTES = 8 << 20
 TUS = {"Tus-Resumable": "1.0.0"}
 BYTES = TUS | {"Content-Type": "application/offset+octet-stream"}
+
+
+def connect(url: str, certificate: Path | None) -> httpx.Client:
+    """A connection that trusts the server's own certificate, or those every browser trusts."""
+    trust = ssl.create_default_context(cafile=certificate)
+    return httpx.Client(base_url=url, verify=trust, timeout=120.0)
+
+
+def sign_in(server: httpx.Client, name: str) -> None:
+    """Keep the cookie of a session, and send its token with whatever changes something."""
+    password = os.environ.get("RECON4_PASSWORD") or getpass.getpass(f"Password of {name}: ")
+    me = answer(server.post("/api/login", json={"name": name, "password": password}))
+    server.headers["X-Recon4-Token"] = me["token"]
 
 
 def upload(server: httpx.Client, file: Path) -> str:
@@ -61,18 +80,20 @@ def process(server: httpx.Client, recording: str, project: str) -> dict[str, Any
     found = answer(server.get("/api/look", params={"path": recording}))
     job = {name: found[name] for name in ("preset", "rig", "imu", "gnss")}
     job |= {"project": project, "recordings": [recording]}
-    view = answer(server.post("/api/jobs", json=job))
+    started = answer(server.post("/api/jobs", json=job))["job"]["id"]
     with server.stream("GET", "/api/events", timeout=None) as events:
-        for line in events.iter_lines():
-            if line.startswith("data:"):
-                told = json.loads(line[5:])
-                view = told if told["job"]["id"] == view["job"]["id"] else view
-                print(
-                    f"\r{view['status']['what']} {view['overall']:.0%}  ", end="", file=sys.stderr
-                )
-            if view["job"]["state"] not in ("queued", "running"):
-                return dict(view["job"])
-    raise ConnectionError("the server ended; the job goes on, ask /api/jobs later")
+        view = answer(server.get(f"/api/jobs/{started}"))  # what is over is not told again
+        lines = events.iter_lines()
+        while view["job"]["state"] in ("queued", "running"):
+            line = next(lines, None)
+            if line is None:
+                raise SystemExit("the server ended; the job goes on, ask /api/jobs later")
+            told = json.loads(line[5:]) if line.startswith("data:") else None
+            if told and told["job"]["id"] == started:
+                view = told
+                words = f"{view['status']['what']} {view['overall']:.0%}"
+                print(f"\r{words:40}", end="", file=sys.stderr)
+    return dict(view["job"])
 
 
 def answer(response: httpx.Response) -> Any:
@@ -89,8 +110,12 @@ def main() -> int:
     parser.add_argument("recording", type=Path)
     parser.add_argument("--project", required=True)
     parser.add_argument("--result", default="map.laz")
+    parser.add_argument("--name", help="who signs in, where the server asks")
+    parser.add_argument("--certificate", type=Path, help="the server's own certificate")
     given = parser.parse_args()
-    with httpx.Client(base_url=given.server, timeout=120.0) as server:
+    with connect(given.server, given.certificate) as server:
+        if given.name:
+            sign_in(server, given.name)
         job = process(server, upload(server, given.recording), given.project)
         print(f"\n{job['state']} {job['note']}", file=sys.stderr)
         if job["state"] != "succeeded":

@@ -25,6 +25,16 @@ function typeLink(schema) {
   return record ? make("a", { href: `#record-${record}` }, words) : words;
 }
 
+const RIGHTS = { look: "", process: "who may process", capture: "who may record", review: "who may review", administer: "admins" };
+
+/** Who may call it, where that is not everybody; and whether that is not the reader. */
+function rights(needed = []) {
+  const words = needed.map((one) => RIGHTS[one] ?? one).filter(Boolean).join(" and ");
+  if (!words) return null;
+  const mine = needed.every((one) => me.may.includes(one));
+  return make("span", { className: "needs" }, mine ? words : `✕ ${words}, not you`);
+}
+
 const code = (text) => make("pre", { tabIndex: 0 }, text);
 
 function copyable(text) {
@@ -95,7 +105,7 @@ function parts(path, method, operation) {
 
 function route(path, method, operation) {
   const inside = make("div");
-  const summary = make("summary", {}, make("span", { className: `method ${method}` }, method.toUpperCase()), make("code", {}, path), make("span", { className: "quiet" }, operation.summary ?? ""));
+  const summary = make("summary", {}, make("span", { className: `method ${method}` }, method.toUpperCase()), make("code", {}, path), make("span", { className: "quiet" }, operation.summary ?? ""), rights(operation["x-needs"]));
   const details = make("details", { className: "route", id: anchor(`${method} ${path}`) }, summary, inside);
   details.addEventListener("toggle", () => {
     if (!inside.childElementCount) inside.append(...parts(path, method, operation));

@@ -36,10 +36,11 @@ class PageHead extends HTMLElement {
 
   /** Who is signed in, and what only some may open. */
   #show({ name, role, may, login }, live) {
-    const admin = may.includes("administer");
+    const link = (href, words) => make("a", { href }, words);
     this.#account.replaceChildren(
-      ...(live ? [make("a", { href: liveUrl }, "Live")] : []),
-      ...(admin ? [make("a", { href: "/api" }, "API"), make("a", { href: "/people" }, "People")] : []),
+      ...(live ? [link(liveUrl, "Live")] : []),
+      ...(may.includes("process") ? [link("/api", "API")] : []),
+      ...(may.includes("administer") ? [link("/people", "People")] : []),
       ...(login ? [
         make("a", { className: "who", href: "/account", ariaLabel: `Account of ${name}, ${role}` }, make("b", {}, name), make("span", { className: "role" }, role)),
         make("button", { type: "button", onclick: () => this.#leave() }, "Sign out"),

@@ -113,6 +113,8 @@ def test_a_failure_tells_neither_path_nor_code(server, monkeypatch):
     assert str(server.root) not in answer.text
     assert "Traceback" not in answer.text
     assert re.search(r"under [0-9a-f]{8}", answer.text)
+    assert answer.headers["x-content-type-options"] == "nosniff"
+    assert answer.headers["content-security-policy"].startswith("default-src 'self'")
 
 
 def test_the_tests_own_way_of_asking_is_strict():

@@ -1,31 +1,65 @@
-"""The client of the documentation against a real server."""
+"""The client of the documentation against real servers."""
 
+import os
 import shutil
 import subprocess
 import sys
 
+import pytest
+
 from tests.service.running import ROOT, SLOW, server_thread
+from tests.service.secure import PASSWORD, secure_server
+
+FINISHING = "tests.service.finishing_worker"
 
 
-def test_the_client_of_the_documentation_does_what_it_says(tmp_path, data):
-    root, here = tmp_path / "server", tmp_path / "here"
-    root.mkdir()
-    here.mkdir()
+@pytest.fixture
+def here(tmp_path, data):
+    """Where the client is called: a recording lies there."""
+    folder = tmp_path / "here"
+    folder.mkdir()
     capture = data("packets/mrpt") / "sample_velodyne_vlp16_gps.pcap"
-    shutil.copy(capture, here / "walk.pcap")
-    with server_thread(root, worker=SLOW) as server:
-        client = [sys.executable, str(ROOT / "docs" / "client_example.py"), server.url]
-        ended = subprocess.run(
-            [*client, "walk.pcap", "--project", "office"],
-            cwd=here,
-            capture_output=True,
-            text=True,
-            timeout=120.0,
-        )
-        views = server.get("/api/jobs").json()
+    shutil.copy(capture, folder / "walk.pcap")
+    return folder
 
-    assert "sent 100%" in ended.stderr
-    assert views[0]["job"]["inputs"]["preset"] in ("indoor", "outdoor")
-    # the worker of the tests takes no capture: its words reach the client
+
+@pytest.fixture
+def root(tmp_path):
+    (tmp_path / "server").mkdir()
+    return tmp_path / "server"
+
+
+def call(here, url, *more):
+    return subprocess.run(
+        [sys.executable, str(ROOT / "docs" / "client_example.py"), url, "walk.pcap", *more],
+        cwd=here,
+        capture_output=True,
+        text=True,
+        timeout=120.0,
+        env={**os.environ, "RECON4_PASSWORD": PASSWORD},
+    )
+
+
+def test_the_client_signs_in_sends_follows_and_fetches_a_result(here, root):
+    with secure_server(root, worker=FINISHING) as server:
+        certificate = root / ".recon4" / "tls" / "certificate.pem"
+        who = ["--name", "otto", "--certificate", str(certificate)]
+
+        ended = call(here, server.url, "--project", "office", "--result", "trajectory.tum", *who)
+
+        with server.signed_in("vera") as client:
+            (view,) = client.get("/api/jobs").json()
+
+    assert ended.returncode == 0, ended.stderr
+    assert "sent 100%" in ended.stderr and "succeeded" in ended.stderr
+    fetched = (here / "trajectory.tum").read_bytes()
+    assert fetched == (root / "office" / "trajectory.tum").read_bytes()
+    assert view["job"]["inputs"]["preset"] in ("indoor", "outdoor")
+
+
+def test_a_job_that_fails_is_told_in_the_words_of_the_server(here, root):
+    with server_thread(root, worker=SLOW) as server:  # its worker takes no capture
+        ended = call(here, server.url, "--project", "office")
+
     assert ended.returncode == 1
     assert "holds no points; record again" in ended.stderr

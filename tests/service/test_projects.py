@@ -72,6 +72,24 @@ def test_errors_are_told_in_words(server):
     assert answer.json() == {"error": "NotFound", "detail": "no project 'nowhere'"}
 
 
+@pytest.mark.parametrize(
+    ("path", "words"),
+    [
+        ("/projects/nowhere/", "no project &#x27;nowhere&#x27;"),
+        ("/projects/%3Cb%3E/", "no project &#x27;&lt;b&gt;&#x27;"),
+        ("/no/such/page", "no such address"),
+    ],
+)
+def test_a_browser_is_told_on_a_page(server, path, words):
+    page = server.get(path, headers={"Accept": "text/html,*/*"})
+    program = server.get(path)
+
+    assert page.status_code == program.status_code == 404
+    assert page.headers["content-type"].startswith("text/html")
+    assert words in page.text and "All projects" in page.text
+    assert set(program.json()) == {"error", "detail"}
+
+
 def test_folders_come_before_files_and_hidden_ones_not_at_all(server):
     entries = server.get("/api/recordings", params={"folder": str(server.root / "office")}).json()
 
@@ -86,6 +104,18 @@ def test_every_route_is_in_the_api_description(server):
     for methods in paths.values():
         for operation in methods.values():
             assert operation.get("description"), operation["operationId"]
+
+
+def test_the_api_description_says_who_may_call_what_and_how_refusals_look(server):
+    described = server.get("/openapi.json").json()
+
+    paths = described["paths"]
+    assert paths["/api/projects"]["get"]["x-needs"] == ["look"]
+    assert paths["/api/jobs"]["post"]["x-needs"] == ["look", "process"]
+    assert paths["/api/people"]["get"]["x-needs"] == ["administer"]
+    assert paths["/api/login"]["post"]["x-needs"] == []
+    assert "HTTPValidationError" not in str(described)
+    assert server.get("/openapi.json").json() == described
 
 
 def test_two_servers_do_not_share_a_folder(tmp_path):

@@ -1,0 +1,46 @@
+"""``openapi.json``: what the framework knows of the routes, who may call each, how to sign in."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastapi import FastAPI
+
+from app.access.doorkeeper import COOKIE, FORM_HEADER
+from app.access.routes_check import declared
+
+WORDS = """Everything the pages do. Errors answer `{"error", "detail"}`; `detail` is for people.
+`x-needs` of an operation names the right it takes (empty = none); which role has which right is in
+`docs/access.md`, one's own rights are in `/api/me`."""
+SCHEMES = {
+    "session": {"type": "apiKey", "in": "cookie", "name": COOKIE},
+    "token": {
+        "type": "apiKey",
+        "in": "header",
+        "name": FORM_HEADER,
+        "description": "`token` of `/api/me` or of the login, for whatever is not GET",
+    },
+}
+"""Only where people sign in; without `--lan` neither is asked for."""
+OUR_PROBLEM = {"application/json": {"schema": {"$ref": "#/components/schemas/Problem"}}}
+
+
+def description(app: FastAPI) -> dict[str, Any]:
+    """The OpenAPI description of an application whose routes say who may use them."""
+    described = app.openapi()  # kept by the framework: what follows changes nothing the second time
+    described["info"]["description"] = WORDS
+    parts = described["components"]
+    parts["securitySchemes"] = SCHEMES
+    for name in ("HTTPValidationError", "ValidationError"):  # ours are problems like all others
+        parts["schemas"].pop(name, None)
+    needed = {
+        (route.path, method.lower()): sorted(route.needs)
+        for route in declared(app)
+        for method in route.methods
+    }
+    for path, methods in described["paths"].items():
+        for method, operation in methods.items():
+            operation["x-needs"] = needed[path, method]
+            if "422" in operation["responses"]:
+                operation["responses"]["422"]["content"] = OUR_PROBLEM
+    return described

@@ -1,0 +1,22 @@
+"""A worker that makes a small finished project of whatever it is given, at once."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from app.jobs.folder import JobFolder
+from app.jobs.worker import main
+from recon4.progress import Progress
+from tests.project_builder import build_project
+
+
+def work(folder: JobFolder, progress: Progress) -> None:
+    project, _ = folder.request()
+    progress.start("Everything", 1, "project")
+    build_project(project, points=1000)
+    progress.advance()
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), work)
