@@ -1,7 +1,8 @@
-"""Many kills of server and workers in real runs: ``… kills.py [--runs 10] [--kills 8]``.
+"""Many kills of server, workers and viewers in real runs: ``… kills.py [--runs 10] [--kills 8]``.
 
-Each run is killed evenly over all stages and must end in the bytes of an unbroken one, with no
-stage run twice to its end.
+Each run is killed at random moments, evenly over all of it, and must end in the bytes of an
+unbroken one, with no stage run twice to its end. ``--matrix``: instead three runs in which server,
+worker and viewer are each killed in the middle of every stage once.
 """
 
 from __future__ import annotations
@@ -23,7 +24,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--runs", type=int, default=10)
     parser.add_argument("--kills", type=int, default=8)
+    parser.add_argument("--matrix", action="store_true")
     given = parser.parse_args()
+    runs = len(killing.IN_A_STAGE) if given.matrix else given.runs
     top = Path(tempfile.mkdtemp(prefix="recon4-kills-"))
     try:
         simulate("office", top / "walk", seconds=5.0, seed=3, bag=False, progress=Silent())
@@ -32,9 +35,14 @@ def main() -> None:
         expected = killing.results(whole / "office"), killing.artifacts(whole / "office")
         hits: Counter[tuple[str, str]] = Counter()
         began = time.perf_counter()
-        for seed in range(given.runs):
+        for seed in range(runs):
             root = prepared(top, f"run{seed}")
-            survived = killing.run(root, killing.request_for(root), kills=given.kills, seed=seed)
+            request = killing.request_for(root)
+            survived = (
+                killing.run_gated(root, request, killing.row_of_the_matrix(seed))
+                if given.matrix
+                else killing.run(root, request, kills=given.kills, seed=seed)
+            )
             found = killing.results(root / "office"), killing.artifacts(root / "office")
             assert found == expected, f"run {seed} ended in other bytes: {survived}"
             twice = {k: n for k, n in killing.completed(root, survived).items() if n > 1}

@@ -1,20 +1,32 @@
-"""Kills servers and workers at random moments of a real run, until the run ends all the same."""
+"""Kills servers, workers and viewers in a real run, until the run ends all the same.
+
+`run_gated` kills one of them in the middle of each stage, `run` at random moments.
+"""
 
 from __future__ import annotations
 
 import contextlib
+import fcntl
 import json
 import os
 import signal
 import subprocess
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 import numpy as np
+import psutil
+from websockets.exceptions import ConnectionClosed
 
+from app.jobs.overall import AFTER, BEFORE, SHARES
+from tests.service.gated_worker import AT_GATE
 from tests.service.running import Running, end_workers, server_process
+from tests.service.viser_client import camera, viewing
 
+STAGES = tuple(stage for stage in SHARES if stage not in (BEFORE, AFTER))
+IN_A_STAGE = ("worker", "server", "viewer")
 RESULTS = ("trajectory.tum", "odometry.tum", "edges.json", "map.laz", "graph.g2o")
 VICTIMS = ("worker", "server", "both")
 QUICK = ["map.voxel_m=0.1", "graph.node_stride=4", "segments.preserved=2"]
@@ -43,6 +55,104 @@ def request_for(root: Path) -> dict[str, Any]:
     }
 
 
+def row_of_the_matrix(row: int) -> dict[str, str]:
+    """Stage -> who is killed in it; rows 0 to 2 together are everybody in every stage."""
+    return {stage: IN_A_STAGE[(k + row) % len(IN_A_STAGE)] for k, stage in enumerate(STAGES)}
+
+
+def run_gated(root: Path, request: dict[str, Any], victims: Mapping[str, str]) -> Survived:
+    """Run a job to its end; in the middle of each stage somebody is killed."""
+    survived = Survived()
+    try:
+        with gates(root) as closed:
+            while True:
+                with server_process(root, worker="tests.service.gated_worker") as (server, process):
+                    if not survived.jobs:
+                        survived.jobs.append(_started(server, request))
+                    if _live_gated(server, process, survived, victims, closed):
+                        return survived
+    finally:
+        end_workers(root)
+
+
+@contextlib.contextmanager
+def gates(root: Path) -> Iterator[dict[str, TextIO]]:
+    """A locked file a stage; closing it opens the gate."""
+    folder = root / "gates"
+    folder.mkdir()
+    with contextlib.ExitStack() as stack:
+        closed = {stage: stack.enter_context((folder / stage).open("w")) for stage in STAGES}
+        for gate in closed.values():
+            fcntl.flock(gate, fcntl.LOCK_EX)
+        yield closed
+
+
+def _live_gated(
+    server: Running,
+    process: subprocess.Popen[str],
+    survived: Survived,
+    victims: Mapping[str, str],
+    closed: dict[str, TextIO],
+) -> bool:
+    """One server's life; whether the run came to its end in it."""
+    while True:
+        job = survived.jobs[-1]
+        view = server.wait(job, lambda view: _is_over(view) or _at_gate(view, closed), most_s=300.0)
+        if view["job"]["state"] == "succeeded":
+            return True
+        if _is_over(view):
+            survived.jobs.append(_resumed(server, view))
+            continue
+        stage = view["status"]["stages"][-1]["stage"]
+        survived.hits.append((victims[stage], stage))
+        if victims[stage] == "worker":
+            _signal(server, job, signal.SIGKILL)
+        elif victims[stage] == "viewer":
+            _kill_viewer(server, process)
+        else:
+            process.kill()
+            process.wait()
+        closed.pop(stage).close()
+        if victims[stage] == "server":
+            return False
+
+
+def _at_gate(view: dict[str, Any], closed: Mapping[str, TextIO]) -> bool:
+    stages = view["status"]["stages"]
+    return view["status"]["what"] == AT_GATE and stages[-1]["stage"] in closed
+
+
+def _is_over(view: dict[str, Any]) -> bool:
+    return view["job"]["state"] not in ("queued", "running")
+
+
+def _kill_viewer(server: Running, process: subprocess.Popen[str]) -> None:
+    """Kill the viewer under somebody who looks, and see that the next who looks gets another."""
+    with viewing(server.url) as client:
+        client.send(camera())
+        client.until(lambda c: "/grid" in c.nodes)
+        children = psutil.Process(process.pid).children()
+        (viewer,) = [one for one in children if "app.viewer.process" in one.cmdline()]
+        viewer.kill()
+        with contextlib.suppress(ConnectionClosed):
+            client.until(lambda c: False)
+    with viewing(server.url) as client:
+        client.send(camera())
+        client.until(lambda c: "/grid" in c.nodes)
+
+
+def _started(server: Running, request: dict[str, Any]) -> str:
+    answer = server.post("/api/jobs", json=request)
+    assert answer.status_code == 201, answer.text
+    return answer.json()["job"]["id"]
+
+
+def _resumed(server: Running, view: dict[str, Any]) -> str:
+    """Another job after one whose worker died three times."""
+    assert "died 3 times" in view["job"]["note"], view["job"]["note"]
+    return server.post(f"/api/jobs/{view['job']['id']}/retry").json()["job"]["id"]
+
+
 def run(root: Path, request: dict[str, Any], *, kills: int, seed: int) -> Survived:
     """Run a job to its end; kills fall evenly into the whole run, at random within their share.
 
@@ -56,9 +166,7 @@ def run(root: Path, request: dict[str, Any], *, kills: int, seed: int) -> Surviv
         while True:
             with server_process(root, worker="app.jobs.worker") as (server, process):
                 if not survived.jobs:
-                    answer = server.post("/api/jobs", json=request)
-                    assert answer.status_code == 201, answer.text
-                    survived.jobs.append(answer.json()["job"]["id"])
+                    survived.jobs.append(_started(server, request))
                 if _live(server, process, survived, plan):
                     return survived
     finally:
@@ -81,9 +189,7 @@ def _live(
         if state == "succeeded":
             return True
         if state != "running":  # its worker died three times
-            assert "died 3 times" in view["job"]["note"], view["job"]["note"]
-            again = server.post(f"/api/jobs/{job}/retry")
-            survived.jobs.append(again.json()["job"]["id"])
+            survived.jobs.append(_resumed(server, view))
             continue
         _, victim = plan.pop(0)
         _signal(server, job, signal.SIGSTOP if victim == "server" else signal.SIGKILL)

@@ -1,4 +1,4 @@
-"""Server and worker killed at random moments of a real run: nothing lost, nothing done twice."""
+"""Server, worker and viewer killed in the stages of a real run: nothing lost, none done twice."""
 
 import shutil
 
@@ -8,7 +8,14 @@ from app.jobs.overall import PIECES, SHARES
 from recon4.progress import Silent
 from recon4.simulation.simulate import simulate
 from tests.service import killing
-from tests.service.killing import artifacts, completed, request_for, results
+from tests.service.killing import (
+    STAGES,
+    artifacts,
+    completed,
+    request_for,
+    results,
+    row_of_the_matrix,
+)
 
 pytestmark = pytest.mark.slow
 
@@ -29,19 +36,28 @@ def roots(tmp_path, walk):
     return tmp_path / "unbroken", tmp_path / "killed"
 
 
-def test_a_run_whose_server_and_workers_are_killed_ends_in_the_same_bytes(roots):
+def test_server_worker_and_viewer_are_killed_in_the_middle_of_stages_and_the_bytes_are_the_same(
+    roots,
+):
+    """A row of the matrix; ``tests/benchmarks/kills.py --matrix`` runs all of them."""
     unbroken, killed = roots
     whole = killing.run(unbroken, request_for(unbroken), kills=0, seed=1)
 
-    survived = killing.run(killed, request_for(killed), kills=4, seed=11)
+    survived = killing.run_gated(killed, request_for(killed), row_of_the_matrix(0))
 
-    assert len(survived.hits) >= 3
-    assert {victim for victim, _ in survived.hits} >= {"worker", "server"}
+    assert [stage for _, stage in survived.hits] == list(STAGES)
+    assert {victim for victim, _ in survived.hits} == {"worker", "server", "viewer"}
+    assert len(survived.jobs) == 2  # the third death of a worker ends a job; it is resumed
     assert results(killed / "office") == results(unbroken / "office")
     assert artifacts(killed / "office") == artifacts(unbroken / "office")
     assert set(completed(killed, survived).values()) <= {1}
-    assert set(completed(unbroken, whole)) == {
-        stage for stage in SHARES if stage not in ("hash", "results")
-    }
+    assert set(completed(unbroken, whole)) == set(STAGES)
     assert {stage for stage, _ in PIECES} <= set(SHARES)
     assert not list((killed / "office").rglob(".tmp-*"))
+
+
+def test_the_matrix_kills_everybody_in_every_stage():
+    rows = [row_of_the_matrix(row) for row in range(3)]
+
+    for stage in STAGES:
+        assert {row[stage] for row in rows} == {"worker", "server", "viewer"}

@@ -1,0 +1,52 @@
+"""The real worker, which waits in the middle of each stage until the test lets it go on.
+
+A gate is a file the test holds locked: the kernel lets the worker through, no clock.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import sys
+from pathlib import Path
+
+from app.jobs.folder import JobFolder
+from app.jobs.worker import main, process
+from recon4.progress import Progress
+
+AT_GATE = "waiting at the gate"
+
+
+class Gated:
+    """Passes on what is told; after the first unit of work of a stage it waits at its gate."""
+
+    def __init__(self, progress: Progress, gates: Path) -> None:
+        self._progress, self._gates = progress, gates
+        self._stage = ""
+        self._piece = ("", 0, "")
+
+    def start(self, what: str, total: int, unit: str) -> None:
+        self._piece = (what, total, unit)
+        self._progress.start(what, total, unit)
+
+    def advance(self, done: int = 1) -> None:
+        self._progress.advance(done)
+        stage, self._stage = self._stage, ""
+        if stage:
+            self._progress.start(AT_GATE, 0, "")
+            with (self._gates / stage).open() as gate:
+                fcntl.flock(gate, fcntl.LOCK_SH)
+            self._progress.start(*self._piece)
+
+    def event(self, kind: str, **facts: object) -> None:
+        if kind == "stage":
+            self._stage = str(facts["stage"]) if facts["state"] == "running" else ""
+        self._progress.event(kind, **facts)
+
+
+def work(folder: JobFolder, progress: Progress) -> None:
+    project, _ = folder.request()
+    process(folder, Gated(progress, project.parent / "gates"))
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), work)
