@@ -92,7 +92,7 @@ async function showTrash() {
 async function begin() {
   const { may } = await readMe();
   const processes = may.includes("process");
-  byId("new").hidden = !processes;
+  byId("new").hidden = byId("to-new").hidden = !processes;
   document.querySelector("main").classList.toggle("alone", !processes);
   const server = await attempt(byId("message"), readServer);
   byId("notices").replaceChildren(...(server?.notices ?? []).map((words) => make("p", { className: "notice" }, `▲ ${words}`)));

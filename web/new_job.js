@@ -1,7 +1,7 @@
 // <new-job>: the form that starts a job: a recording, a name, a preset, settings.
 // With `again` it starts one like another: in the same project, or as a new one that keeps finished stages.
 
-import { addJob, projectUrl, readChoices } from "./api.js";
+import { addJob, listProjects, projectUrl, readChoices } from "./api.js";
 import { attempt, make } from "./dom.js";
 import "./folder_browser.js";
 import "./recording_look.js";
@@ -32,6 +32,7 @@ class NewJob extends HTMLElement {
   #settings = make("details", {}, make("summary", {}, "All settings"), this.#editor);
   #message = make("p", { className: "error", role: "alert" });
   #touched = new Set(); // fields a person filled in: no suggestion overwrites them
+  #taken = new Set(); // names of the projects there are: a new one gets another
   #others = []; // recordings of the job that is done again, beside the first
   #again = null;
 
@@ -58,7 +59,8 @@ class NewJob extends HTMLElement {
       ),
     );
     this.#settings.addEventListener("toggle", () => this.#settings.open && this.#editor.show(this.#preset.value));
-    const choices = await attempt(this.#message, readChoices);
+    const [choices, projects] = (await attempt(this.#message, () => Promise.all([readChoices(), this.#again ? [] : listProjects()]))) ?? [];
+    this.#taken = new Set(projects?.map((one) => one.id));
     const option = (name) => make("option", { value: name }, name);
     this.#preset.append(...(choices?.presets ?? []).map(option));
     this.#rig.append(...(choices?.rigs ?? []).map(option));
@@ -102,12 +104,19 @@ class NewJob extends HTMLElement {
       }
       input.value = value;
     };
-    put("project", this.#project, project);
+    put("project", this.#project, this.#again ? project : project && this.#free(project));
     put("preset", this.#preset, preset);
     put("rig", this.#rig, rig);
     put("imu", this.#imu, imu);
     put("gnss", this.#gnss, gnss);
     if (preset !== undefined && this.#settings.open) this.#editor.show(this.#preset.value);
+  }
+
+  /** The name, with a number if there is a project of that name. */
+  #free(project) {
+    let found = project;
+    for (let n = 2; this.#taken.has(found); n += 1) found = `${project.slice(0, 60)}-${n}`;
+    return found;
   }
 
   async #submit(event) {
@@ -120,6 +129,7 @@ class NewJob extends HTMLElement {
       imu: this.#imu.value,
       gnss: this.#gnss.value,
       settings: this.#editor.texts(),
+      only_new: !this.#again,
       clone_of: this.#again && this.#again.project !== this.#project.value ? this.#again.project : "",
     };
     const added = await attempt(this.#message, () => this.#add(job));
@@ -130,7 +140,7 @@ class NewJob extends HTMLElement {
     try {
       return await addJob(job);
     } catch (error) {
-      if (error.problems) {
+      if (Object.keys(error.problems).length) {
         this.#settings.open = true;
         await this.#editor.show(this.#preset.value);
         if (this.#editor.complain(error.problems)) throw new Error("Some settings are wrong, see above");

@@ -1,6 +1,6 @@
 // One project: the map, the figures, the results, the job.
 
-import { ApiError, fileUrl, readProject, reportUrl, viewerUrl, watchJobs } from "./api.js";
+import { ApiError, fileUrl, listJobsOf, readProject, reportUrl, viewerUrl, watchJobs } from "./api.js";
 import { fill, make } from "./dom.js";
 import { figures } from "./figures.js";
 import { bytes, seconds, stateOf, when } from "./format.js";
@@ -108,7 +108,14 @@ document.querySelector("project-tools").addEventListener("renamed", (event) => {
   project = event.detail;
   draw();
 });
+/** The newest job, with its log, also when it succeeded: the stream tells of the others only. */
+async function findJob() {
+  const [newest] = await listJobsOf(id);
+  if (newest && !view) onJob(newest);
+}
+
 watchJobs(onJob, (linked) => {
   document.querySelector("page-head").linked = linked;
 });
 reload();
+findJob().catch((error) => (byId("message").textContent = error.message));

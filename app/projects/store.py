@@ -63,6 +63,18 @@ class ProjectStore:
             raise NotFound(f"no project {project_id[:64]!r}")
         return folder
 
+    def refuse_taken(self, name: str) -> None:
+        """See that a name is free for a new project.
+
+        Raises:
+            Conflict: If there is a project or another folder of that name.
+        """
+        if (self._root / name).exists():
+            raise Conflict(
+                f"there is a project or folder {name} already: choose another name, or run the "
+                "project again from its own page"
+            )
+
     def result(self, project_id: str, name: str) -> Path:
         """A result file.
 

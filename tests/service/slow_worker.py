@@ -43,7 +43,15 @@ def tell_limits() -> None:
     logging.getLogger("recon4.job").info("%s %s", told, status[status.index("NoNewPrivs") :][:20])
 
 
+def keep_busy() -> None:
+    """All processors, for some seconds."""
+    spin = "import time; end = time.monotonic() + 3.0\nwhile time.monotonic() < end: pass"
+    for one in [subprocess.Popen([sys.executable, "-c", spin]) for _ in range(os.cpu_count() or 1)]:
+        one.wait()
+
+
 DEEDS = {
+    "busy": keep_busy,
     "crash": lambda: os.kill(os.getpid(), signal.SIGSEGV),
     "memory": take_memory,
     "full": fill_disk,

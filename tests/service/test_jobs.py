@@ -2,7 +2,9 @@
 
 import os
 import signal
+import time
 
+import httpx
 import pytest
 
 from tests.service.running import (
@@ -172,6 +174,39 @@ def test_what_happened_while_no_server_ran_is_found_out(tmp_path, recording):
     assert ran(recording) == ["frames", "odometry", "odometry", "finished"]
 
 
+def test_health_is_answered_within_a_tenth_of_a_second_while_a_job_takes_all_processors(
+    tmp_path, recording
+):
+    with server_process(tmp_path) as (server, _), httpx.Client(base_url=server.url) as client:
+        job = server.start("office", recording)
+        server.wait_at_gate(job)
+        gate = open_gate(recording, "busy")
+        taken_s = sorted(_asked(client) for _ in range(200))
+        still = client.get(f"/api/jobs/{job}").json()["job"]["state"]
+        server.wait_state(job, "succeeded")
+        os.close(gate)
+
+    assert still == "running"
+    assert taken_s[197] <= 0.1, taken_s[-5:]  # the 99th percentile; usually 5 ms
+
+
+def _asked(client):
+    began_s = time.perf_counter()
+    assert client.get("/healthz").status_code == 200
+    return time.perf_counter() - began_s
+
+
+def test_a_new_project_does_not_take_the_name_of_another(server, recording):
+    (server.root / "office").mkdir()
+    request = {"project": "office", "recordings": [str(recording)], "only_new": True}
+
+    answer = server.post("/api/jobs", json=request)
+
+    assert answer.status_code == 409
+    assert "choose another name" in answer.json()["detail"]
+    assert server.get("/api/jobs").json() == []
+
+
 @pytest.mark.parametrize(
     ("change", "status", "words"),
     [
@@ -192,5 +227,6 @@ def test_a_wrong_request_is_refused_with_the_reason(server, recording, change, s
     answer = server.post("/api/jobs", json=request)
 
     assert answer.status_code == status
-    assert words in answer.text
+    assert words in answer.json()["detail"]
+    assert answer.json()["error"]
     assert server.get("/api/jobs").json() == []
