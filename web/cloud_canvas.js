@@ -2,7 +2,7 @@
 
 const VERTEX = `#version 300 es
 in vec3 voxel; in float value;
-uniform mat3 turn; uniform vec3 target; uniform vec2 scale; uniform float size; uniform float voxelM; uniform vec2 heights; uniform float top; uniform bool byHeight; uniform bool ink;
+uniform mat3 turn; uniform vec3 target; uniform vec2 scale; uniform vec2 shift; uniform float size; uniform float voxelM; uniform vec2 heights; uniform float top; uniform bool byHeight; uniform bool ink;
 out vec3 color;
 vec3 ramp(float t) {
   vec3 a = vec3(0.27, 0.0, 0.33), b = vec3(0.13, 0.57, 0.55), c = vec3(0.99, 0.91, 0.14);
@@ -11,7 +11,7 @@ vec3 ramp(float t) {
 void main() {
   vec3 p = (voxel + 0.5) * voxelM;
   vec3 q = turn * (p - target);
-  gl_Position = p.z > top ? vec4(2.0, 2.0, 2.0, 1.0) : vec4(q.xy * scale, -q.z * 0.002, 1.0);
+  gl_Position = p.z > top ? vec4(2.0, 2.0, 2.0, 1.0) : vec4(q.xy * scale + shift, -q.z * 0.002, 1.0);
   gl_PointSize = size;
   float t = clamp((p.z - heights.x) / (heights.y - heights.x), 0.0, 1.0);
   float v = value / 255.0;
@@ -60,8 +60,8 @@ export class CloudCanvas {
     this.count += count;
   }
 
-  /** Draws; `turn` is a rotation by columns, `scale` clip units a meter; nothing above `top`. */
-  draw({ turn, target, scale, size, top, byHeight, ink }) {
+  /** Draws; `turn` is a rotation by columns, `scale` clip units a meter, `shift` where the target is in them; nothing above `top`. */
+  draw({ turn, target, scale, shift, size, top, byHeight, ink }) {
     const gl = this.#gl;
     if (!gl || gl.isContextLost()) return;
     gl.viewport(0, 0, this.#canvas.width, this.#canvas.height);
@@ -71,6 +71,7 @@ export class CloudCanvas {
     gl.uniformMatrix3fv(at.turn, false, turn);
     gl.uniform3fv(at.target, target);
     gl.uniform2fv(at.scale, scale);
+    gl.uniform2fv(at.shift, shift);
     gl.uniform1f(at.size, size);
     gl.uniform1f(at.top, top);
     gl.uniform1f(at.voxelM, this.voxelM);
@@ -93,7 +94,7 @@ export class CloudCanvas {
     gl.linkProgram(program);
     gl.useProgram(program);
     gl.enable(gl.DEPTH_TEST);
-    for (const name of ["turn", "target", "scale", "size", "voxelM", "heights", "top", "byHeight", "ink"])
+    for (const name of ["turn", "target", "scale", "shift", "size", "voxelM", "heights", "top", "byHeight", "ink"])
       this.#places[name] = gl.getUniformLocation(program, name);
     this.#room = 0;
     this.#makeRoom(Math.max(this.count, 1 << 14));

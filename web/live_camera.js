@@ -2,6 +2,8 @@
 
 const ABOVE = Math.PI / 2;
 const TILTED = 0.62;
+const MEANT_TURN = 0.2; // fingers that pinch turn a little without meaning it [rad]
+const FIT = 0.9;
 
 export class Camera {
   target = [0, 0, 0];
@@ -15,7 +17,6 @@ export class Camera {
 
   tilt() {
     this.pitch = this.above ? TILTED : ABOVE;
-    if (this.above) this.yaw = 0;
   }
 
   /** Rotation into the picture (right, up, toward the eye), by columns. */
@@ -24,7 +25,7 @@ export class Camera {
     return [c, -s * u, s * f, s, c * u, -c * f, 0, f, u];
   }
 
-  /** Pixels of a place, from the middle of the picture, y down. */
+  /** Pixels of a place, from where the target is in the picture, y down. */
   project([x, y, z]) {
     const t = this.turn;
     const [a, b, c] = [x - this.target[0], y - this.target[1], z - this.target[2]];
@@ -44,40 +45,80 @@ export class Camera {
     this.pitch = Math.min(Math.max(this.pitch + dy * 0.006, 0.12), ABOVE - 0.01);
   }
 
-  zoom(factor) {
-    this.pxPerM = Math.min(Math.max(this.pxPerM * factor, 1), 400);
+  /** Zooms; what is at `x`, `y` from the target stays there. */
+  zoom(factor, [x, y] = [0, 0]) {
+    const before = this.pxPerM;
+    this.pxPerM = Math.min(Math.max(before * factor, 1), 400);
+    const grown = this.pxPerM / before;
+    this.pan(x - x * grown, y - y * grown);
+  }
+
+  /** Turns the picture clockwise; what is at `x`, `y` from the target stays there. */
+  rotate(angle, [x, y] = [0, 0]) {
+    this.yaw += angle;
+    const [c, s] = [Math.cos(angle), Math.sin(angle)];
+    this.pan(x - (c * x - s * y), y - (s * x + c * y));
+  }
+
+  /** Shows all of a box of the plan, [[x, y], [x, y]], in a window of so many pixels. */
+  fit([[x0, y0], [x1, y1]], { width, height }) {
+    this.target = [(x0 + x1) / 2, (y0 + y1) / 2, this.target[2]];
+    this.pxPerM = 1;
+    const corners = [[x0, y0], [x0, y1], [x1, y0], [x1, y1]].map(([x, y]) => this.project([x, y, this.target[2]]));
+    const [wide, high] = [0, 1].map((axis) => 2 * Math.max(1, ...corners.map((corner) => Math.abs(corner[axis]))));
+    this.zoom(FIT * Math.min(width / wide, height / high));
   }
 }
 
-/** One finger pans (or orbits in 3-D), two zoom and pan, a wheel zooms. */
-export function moveByPointer(element, camera, { onMove, onHand }) {
+/**
+ * One finger pans (or orbits in 3-D), two zoom, turn and pan, a wheel zooms. `middle()` is where the
+ * target is on the screen; while `following()` fingers zoom and turn about it and do not pan.
+ */
+export function moveByPointer(element, camera, { onMove, onPan, middle, following }) {
   const held = new Map();
-  const spread = () => {
-    const [a, b] = [...held.values()];
-    return Math.hypot(a.x - b.x, a.y - b.y);
+  let turned = 0; // by the fingers that are down now
+  const about = ({ x, y }) => {
+    const [left, top] = middle();
+    return following() ? [0, 0] : [x - left, y - top];
   };
+  const pair = () => {
+    const [a, b] = [...held.values()];
+    const [dx, dy] = [b.x - a.x, b.y - a.y];
+    return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, wide: Math.hypot(dx, dy), angle: Math.atan2(dy, dx) };
+  };
+
+  function movePair(before, after) {
+    camera.zoom(after.wide / Math.max(before.wide, 1), about(after));
+    const turn = Math.atan2(Math.sin(after.angle - before.angle), Math.cos(after.angle - before.angle));
+    turned += turn;
+    if (Math.abs(turned) > MEANT_TURN) camera.rotate(turn, about(after));
+    if (!following()) camera.pan(after.x - before.x, after.y - before.y);
+  }
+
+  function moveOne(dx, dy, shift) {
+    if (!camera.above && !shift) return camera.orbit(dx, dy);
+    camera.pan(dx, dy);
+    if (dx || dy) onPan();
+  }
+
   element.addEventListener("pointerdown", (event) => {
     element.setPointerCapture(event.pointerId);
     held.set(event.pointerId, { x: event.clientX, y: event.clientY });
+    turned = 0;
   });
   element.addEventListener("pointermove", (event) => {
     const before = held.get(event.pointerId);
     if (!before) return;
-    const wide = held.size === 2 ? spread() : 0;
-    const [dx, dy] = [event.clientX - before.x, event.clientY - before.y];
+    const both = held.size === 2 ? pair() : null;
     held.set(event.pointerId, { x: event.clientX, y: event.clientY });
-    if (held.size === 2) {
-      camera.zoom(spread() / Math.max(wide, 1));
-      camera.pan(dx / 2, dy / 2);
-    } else if (camera.above || event.shiftKey) camera.pan(dx, dy);
-    else camera.orbit(dx, dy);
-    if (Math.abs(dx) + Math.abs(dy) > 0) onHand(camera.above || held.size === 2);
+    if (both) movePair(both, pair());
+    else if (held.size === 1) moveOne(event.clientX - before.x, event.clientY - before.y, event.shiftKey);
     onMove();
   });
   for (const end of ["pointerup", "pointercancel"]) element.addEventListener(end, (event) => held.delete(event.pointerId));
   element.addEventListener("wheel", (event) => {
     event.preventDefault();
-    camera.zoom(Math.exp(-event.deltaY * 0.0015));
+    camera.zoom(Math.exp(-event.deltaY * 0.0015), about({ x: event.clientX, y: event.clientY }));
     onMove();
   }, { passive: false });
 }

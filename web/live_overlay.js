@@ -3,63 +3,112 @@
 const SEEN = { FREE: 1, POOR: 2, WELL: 3 };
 
 const PX = 4;
-const INKS = { [SEEN.FREE]: () => 0.12, [SEEN.POOR]: (i, j) => ((i + j) % PX < 2 ? 0.95 : 0.3), [SEEN.WELL]: () => 0.4 };
+const INKS = { [SEEN.FREE]: () => 0.12, [SEEN.POOR]: (x, y) => ((x + y) % PX < 2 ? 0.95 : 0.3), [SEEN.WELL]: () => 0.4 };
+const LONGEST_NOTE = 24;
 
-/** The plan as a picture of 4 x 4 pixels a cell, x to the right and y up; what was seen poorly is hatched. */
+/**
+ * The plan as a picture of 4 x 4 pixels a cell, x to the right and y up; what was seen poorly is hatched.
+ * `box` is what was seen well, [[x, y], [x, y]] in meters; null if nothing was.
+ */
 export async function planPicture(plan, [poor, well]) {
   const bytes = Uint8Array.from(atob(plan.seen), (letter) => letter.charCodeAt(0));
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
   const seen = new Uint8Array(await new Response(stream).arrayBuffer());
   const [along, across] = plan.shape;
   const picture = new ImageData(PX * along, PX * across);
-  const colors = { [SEEN.FREE]: rgb(well), [SEEN.POOR]: rgb(poor), [SEEN.WELL]: rgb(well) };
+  const pixels = new Uint32Array(picture.data.buffer);
+  const stamps = { [SEEN.FREE]: stamp(well, INKS[SEEN.FREE]), [SEEN.POOR]: stamp(poor, INKS[SEEN.POOR]), [SEEN.WELL]: stamp(well, INKS[SEEN.WELL]) };
+  const cells = { from: [Infinity, Infinity], to: [-Infinity, -Infinity] };
   for (let i = 0; i < along; i++)
     for (let j = 0; j < across; j++) {
       const kind = seen[i * across + j];
-      if (kind in colors) paintCell(picture, PX * i, PX * (across - 1 - j), colors[kind], INKS[kind]);
+      if (!kind) continue;
+      const first = PX * ((across - 1 - j) * PX * along + i);
+      for (let y = 0; y < PX; y++) pixels.set(stamps[kind].subarray(PX * y, PX * (y + 1)), first + y * PX * along);
+      if (kind === SEEN.WELL) widen(cells, i, j);
     }
-  return { bitmap: await createImageBitmap(picture), ...plan };
+  return { ...plan, bitmap: await createImageBitmap(picture), box: boxOf(plan, cells) };
 }
 
-function paintCell(picture, left, top, color, ink) {
-  for (let y = top; y < top + PX; y++)
-    for (let x = left; x < left + PX; x++) picture.data.set([...color, 255 * ink(x, y)], 4 * (y * picture.width + x));
+/** The pixels of one cell. */
+function stamp(color, ink) {
+  const bytes = new Uint8ClampedArray(4 * PX * PX);
+  for (let y = 0; y < PX; y++) for (let x = 0; x < PX; x++) bytes.set([...rgb(color), 255 * ink(x, y)], 4 * (PX * y + x));
+  return new Uint32Array(bytes.buffer);
+}
+
+function widen({ from, to }, i, j) {
+  if (i < from[0]) from[0] = i;
+  if (j < from[1]) from[1] = j;
+  if (i > to[0]) to[0] = i;
+  if (j > to[1]) to[1] = j;
+}
+
+function boxOf({ first_cell: first, cell_m: size }, { from, to }) {
+  if (to[0] < from[0]) return null;
+  return [from.map((k, axis) => (k + first[axis]) * size), to.map((k, axis) => (k + 1 + first[axis]) * size)];
 }
 
 const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
 
-export function drawOverlay(context, { width, height, ratio, foot }, camera, scene, styles) {
+/** Draws; `middle` is where the target is, `free` what no bar covers: {left, top, right, bottom}, in pixels. */
+export function drawOverlay(context, { width, height, ratio, middle, free }, camera, scene, styles) {
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.clearRect(0, 0, width, height);
-  context.translate(width / 2, height / 2);
+  context.translate(...middle);
   const floor = scene.me?.p[2] ?? 0;
+  const inside = { left: free.left - middle[0], right: free.right - middle[0], top: free.top - middle[1], bottom: free.bottom - middle[1] };
   if (scene.showPlan && scene.plan && camera.above) drawPlan(context, camera, scene.plan);
   drawPath(context, camera, scene.path, styles);
   if (scene.showPlan) scene.gaps.forEach((gap, k) => drawGap(context, camera, [...gap.p, floor], gap, styles, k === scene.chosen));
+  if (scene.path.length) drawStart(context, camera, scene.path[0], inside, styles);
   for (const mark of scene.marks) drawMark(context, camera, mark, styles);
   if (scene.me) drawMe(context, camera, scene.me, styles);
-  drawScale(context, camera, { x: 14 - width / 2, y: foot - 12 - height / 2 }, styles);
+  drawScale(context, camera, { x: inside.left + 14, y: inside.bottom - 12 }, styles);
 }
 
 function drawPlan(context, camera, plan) {
   const [i, j] = plan.first_cell;
   const [along, across] = plan.shape;
-  const [x, y] = camera.project([i * plan.cell_m, (j + across) * plan.cell_m, camera.target[2]]);
-  const cell = plan.cell_m * camera.pxPerM;
+  const z = camera.target[2];
+  const corner = camera.project([i * plan.cell_m, (j + across) * plan.cell_m, z]);
+  const right = camera.project([(i + along) * plan.cell_m, (j + across) * plan.cell_m, z]);
+  const below = camera.project([i * plan.cell_m, j * plan.cell_m, z]);
+  const [w, h] = [plan.bitmap.width, plan.bitmap.height];
+  context.save();
+  context.transform((right[0] - corner[0]) / w, (right[1] - corner[1]) / w, (below[0] - corner[0]) / h, (below[1] - corner[1]) / h, ...corner);
   context.imageSmoothingEnabled = false;
-  context.drawImage(plan.bitmap, x, y, along * cell, across * cell);
+  context.drawImage(plan.bitmap, 0, 0);
+  context.restore();
 }
 
 function drawPath(context, camera, path, styles) {
   if (path.length < 2) return;
   context.beginPath();
   for (const place of path) context.lineTo(...camera.project(place));
-  context.lineWidth = 3;
   context.lineJoin = "round";
-  context.strokeStyle = styles.path;
-  context.stroke();
-  const [x, y] = camera.project(path[0]);
-  label(context, "start", x, y, styles.path, styles.sky);
+  for (const [width, color] of [[6, styles.sky], [3, styles.path]]) {
+    context.lineWidth = width;
+    context.strokeStyle = color;
+    context.stroke();
+  }
+}
+
+/** A ring where the walk began; when that is out of sight an arrow at the edge shows the way there. */
+function drawStart(context, camera, place, inside, styles) {
+  const [x, y] = camera.project(place);
+  const at = [Math.min(Math.max(x, inside.left + 40), inside.right - 40), Math.min(Math.max(y, inside.top + 40), inside.bottom - 50)];
+  if (Math.hypot(at[0] - x, at[1] - y) < 20) {
+    circle(context, x, y, 6, styles.sky, styles.path);
+    label(context, "start", x, y + 18, styles.path, styles.sky);
+    return;
+  }
+  context.save();
+  context.translate(...at);
+  context.rotate(Math.atan2(y - at[1], x - at[0]));
+  polygon(context, [[36, 0], [24, 8], [24, -8]], styles.path, styles.sky);
+  context.restore();
+  label(context, "start", ...at, styles.path, styles.sky);
 }
 
 function drawGap(context, camera, place, gap, styles, chosen) {
@@ -77,45 +126,53 @@ function drawGap(context, camera, place, gap, styles, chosen) {
 
 function drawMark(context, camera, mark, styles) {
   const [x, y] = camera.project(mark.p);
-  context.fillStyle = styles.accent;
-  context.beginPath();
-  context.arc(x, y, 6, 0, 2 * Math.PI);
-  context.fill();
-  if (mark.text) label(context, mark.text, x + 10, y, styles.ink, styles.sky, "left");
+  circle(context, x, y, 6, styles.accent, styles.sky);
+  const text = mark.text.length > LONGEST_NOTE ? `${mark.text.slice(0, LONGEST_NOTE - 1)}…` : mark.text;
+  if (text) label(context, text, x + 11, y, styles.ink, styles.sky, "left");
 }
 
 function drawMe(context, camera, me, styles) {
   const [x, y] = camera.project(me.p);
   const [fx, fy] = camera.project([me.p[0] + Math.cos(me.yaw), me.p[1] + Math.sin(me.yaw), me.p[2]]);
-  const turn = Math.atan2(fy - y, fx - x);
   context.save();
   context.translate(x, y);
-  context.rotate(turn);
-  context.beginPath();
-  context.moveTo(16, 0);
-  context.lineTo(-10, 10);
-  context.lineTo(-5, 0);
-  context.lineTo(-10, -10);
-  context.closePath();
-  context.fillStyle = me.lost ? styles.gap : styles.me;
-  context.strokeStyle = styles.sky;
-  context.lineWidth = 2;
-  context.fill();
-  context.stroke();
+  context.rotate(Math.atan2(fy - y, fx - x));
+  polygon(context, [[18, 0], [-11, 11], [-5, 0], [-11, -11]], me.lost ? styles.gap : styles.me, styles.sky);
   context.restore();
 }
 
 function drawScale(context, camera, { x, y }, styles) {
   const meters = [0.5, 1, 2, 5, 10, 20, 50, 100].find((m) => m * camera.pxPerM >= 60) ?? 200;
-  context.strokeStyle = styles.ink;
-  context.lineWidth = 2;
   context.beginPath();
   context.moveTo(x, y - 5);
   context.lineTo(x, y);
   context.lineTo(x + meters * camera.pxPerM, y);
   context.lineTo(x + meters * camera.pxPerM, y - 5);
-  context.stroke();
+  for (const [width, color] of [[5, styles.sky], [2, styles.ink]]) {
+    context.lineWidth = width;
+    context.strokeStyle = color;
+    context.stroke();
+  }
   label(context, `${meters} m`, x + 4, y - 12, styles.ink, styles.sky, "left");
+}
+
+function circle(context, x, y, r, inside, around) {
+  context.beginPath();
+  context.arc(x, y, r, 0, 2 * Math.PI);
+  context.lineWidth = 3;
+  [context.fillStyle, context.strokeStyle] = [inside, around];
+  context.fill();
+  context.stroke();
+}
+
+function polygon(context, corners, inside, around) {
+  context.beginPath();
+  for (const corner of corners) context.lineTo(...corner);
+  context.closePath();
+  context.lineWidth = 2;
+  [context.fillStyle, context.strokeStyle] = [inside, around];
+  context.fill();
+  context.stroke();
 }
 
 function label(context, text, x, y, color, around, align = "center") {

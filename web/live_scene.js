@@ -18,7 +18,9 @@ export class LiveScene {
   showPlan = true;
   newest = {};
   total = 0;
-  #cloud; #on; #socket; #heard = 0; #coming = null; #generation = -1; #open = false;
+  server = "";
+  renewed = false; // the server is another version than this page was made for
+  #cloud; #on; #socket; #heard = 0; #heardLast = performance.now(); #coming = null; #generation = -1; #open = false;
 
   constructor(cloud, handlers) {
     this.#cloud = cloud;
@@ -28,6 +30,11 @@ export class LiveScene {
     setInterval(() => this.#sayHere(), HERE_EVERY_MS);
     addEventListener("online", () => this.#connectAgain());
     document.addEventListener("visibilitychange", () => document.hidden || this.#checkLink());
+  }
+
+  /** Since when nothing was heard [s]. */
+  get silentS() {
+    return Math.round((performance.now() - this.#heardLast) / 1000);
   }
 
   get have() {
@@ -73,11 +80,13 @@ export class LiveScene {
   }
 
   #take(told) {
-    this.#heard = performance.now();
+    this.#heard = this.#heardLast = performance.now();
     this.#open = true;
     this.#on.link(true);
     if (told.project && told.project !== this.project) this.#forget(told.project);
     this.state = told.state ?? this.state;
+    this.renewed ||= Boolean(told.server && this.server && told.server !== this.server);
+    this.server = told.server ?? this.server;
     Object.assign(this.newest, told);
     if (told.points) {
       this.#coming = told.points;
@@ -85,7 +94,7 @@ export class LiveScene {
     }
     if (told.path) this.path.splice(told.path.start, Infinity, ...told.path.points);
     if (told.pose) this.me = told.pose;
-    this.marks.push(...(told.marks ?? []));
+    if (told.marks) this.marks.splice(told.marks.start, Infinity, ...told.marks.marks);
     if (told.gaps) this.gaps = told.gaps.gaps;
     if (told.plan) this.#on.plan(told.plan);
     this.#on.news();

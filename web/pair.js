@@ -5,6 +5,7 @@ import { attempt } from "./dom.js";
 
 const CLAIM_EVERY_MS = 2000;
 const byId = (id) => document.getElementById(id);
+const AGAIN = "again"; // the session has ended
 const token = location.hash.slice(1);
 history.replaceState(null, "", location.pathname); // the one-time link stays in no history
 
@@ -45,7 +46,11 @@ function over(words) {
   byId("ask").hidden = byId("else").hidden = false;
 }
 
+/** Whether this browser is in already; without a link it is not known, and the page can be used. */
+const isIn = () => isSignedIn().catch(() => false);
+
 byId("ask").addEventListener("submit", ask);
-if (await isSignedIn()) location.replace(liveUrl);
-else if (token) await useInvitation();
-else byId("words").textContent = "Scan the QR code on the laptop (page Phone), or ask to be let in with a code";
+const ended = token === AGAIN ? "The session of this phone has ended; what runs goes on. " : "";
+if (await isIn()) location.replace(liveUrl);
+else if (token && !ended) await useInvitation();
+else byId("words").textContent = `${ended}Scan the QR code on the laptop (page Phone), or ask to be let in with a code`;

@@ -166,5 +166,6 @@ def sign_in_first(scope: Scope) -> Refusal:
     page = scope["type"] == "http" and scope["method"] == "GET" and "text/html" in accept
     if not page:
         return Refusal(401, "Unknown", "sign in first: POST /api/login")
-    where = {"Location": f"/login#next={quote(scope['path'])}"}
-    return Refusal(303, "Unknown", "sign in first", where)
+    # A paired phone knows no password: the page of pairing has both ways in.
+    there = "/pair" if scope["path"] == "/live" else f"/login#next={quote(scope['path'])}"
+    return Refusal(303, "Unknown", "sign in first", {"Location": there})

@@ -11,11 +11,14 @@ from typing import Any
 from fastapi import WebSocket
 
 from app.live.capture import Capture, State
+from app.live.health import lidars
 from app.live.picture import BYTES_A_POINT, Cursor
+from app.live.power import battery_words
 from app.live.store import Captures
 from app.live.words import rates, words
+from recon4 import __version__
 
-SHOWN_EVERY_S = 0.1
+SHOWN_EVERY_S = 0.05
 """A phone is told at most this often …"""
 STILL_HERE_S = 2.0
 """… and at least this often."""
@@ -25,6 +28,7 @@ BYTES_A_SECOND = 220_000
 """1.8 Mbit/s for all a phone is told: points get what is left beside what is newest …"""
 BYTES_AT_FIRST = 420_000
 """… after a first look at 60 000 points."""
+URGENCY = ("bad", "care", "info")
 
 
 class Phone:
@@ -54,7 +58,8 @@ class Phone:
             capture = self._captures.newest
             while not self._leaving.done():
                 if capture is None:
-                    await self._send({"state": "none", "t": time.time()})
+                    none = {"state": "none", "t": time.time(), "server": __version__}
+                    await self._send(none)
                     await self._rest(STILL_HERE_S)
                 else:
                     await self._tell(capture, cursor_of(have, capture))
@@ -119,10 +124,15 @@ def state_of(captures: Captures, capture: Capture) -> dict[str, Any]:
     """How the capture stands; what its sensors do only while it listens to them."""
     listens = capture.state in (State.RECORDING, State.PAUSED)
     newest = capture.picture.newest if listens else {}
+    battery = captures.power.battery
     said = words(captures.rig, newest, capture.problem)
+    said = sorted([*said, *battery_words(battery)], key=lambda word: URGENCY.index(word.level))
     return {
         "project": capture.project,
         "state": capture.state,
         "words": [asdict(word) for word in said],
         "rates": rates(captures.rig, newest["status"]) if "status" in newest else {},
+        "lidars": [asdict(one) for one in lidars(captures.rig, newest)],
+        "battery": None if battery is None else asdict(battery),
+        "server": __version__,
     }

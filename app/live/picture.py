@@ -6,6 +6,8 @@ import asyncio
 import base64
 import math
 import time
+from bisect import bisect_left
+from collections import deque
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -20,6 +22,8 @@ _PLACED_WITHIN_NS = 10_000_000_000
 """A mark appears without a place if the mapping does not come to its moment."""
 _PATH_STEP_M = 0.25
 """The way is kept a point every so far: an hour's walk is a few thousand."""
+_TRACK = 6000
+"""Poses kept to place marks: ten minutes, more than anybody types a note."""
 
 
 @dataclass(slots=True)
@@ -52,6 +56,8 @@ class Picture:
         self._marks: list[Message] = []
         self._unplaced: list[Message] = []
         """Marks of moments the mapping has not come to."""
+        self._track: deque[tuple[int, list[float]]] = deque(maxlen=_TRACK)
+        """The newest moments [ns] and where the walk was."""
 
     @property
     def points(self) -> int:
@@ -70,6 +76,7 @@ class Picture:
             case "pose":
                 self.newest["pose"] = told
                 self._bump("pose")
+                self._track.append((told["t_ns"], told["p"]))
                 if not told["lost"]:
                     self._go_to(told["p"])
                 self._place_marks(told["t_ns"])
@@ -84,6 +91,10 @@ class Picture:
         self.version += 1
         self._changed.set()
         self._changed = asyncio.Event()
+
+    def recall(self, marks: list[Message]) -> None:
+        """Know marks an earlier server was told of; where they lie it knew alone."""
+        self._marks = [mark | {"p": None} for mark in marks]
 
     async def news(self, version: int, *, timeout_s: float) -> None:
         """Return when something is newer than a version, or after a while."""
@@ -111,8 +122,10 @@ class Picture:
         if cursor.path < len(self._path):
             told["path"] = {"start": cursor.path, "points": self._path[cursor.path :]}
             cursor.path = len(self._path)
+        if cursor.marks > len(self._marks):
+            cursor.marks = 0
         if cursor.marks < len(self._marks):
-            told["marks"] = self._marks[cursor.marks :]
+            told["marks"] = {"start": cursor.marks, "marks": self._marks[cursor.marks :]}
             cursor.marks = len(self._marks)
         return told, self._lacking_points(cursor, told, min(most, POINTS_AT_ONCE))
 
@@ -149,11 +162,17 @@ class Picture:
             self._place_marks(told["t_ns"])
 
     def _place_marks(self, until_ns: int | None) -> None:
-        """Put marks to where the walk is now, those until a moment or all of them."""
-        place = self.newest.get("pose", {}).get("p")
+        """Put marks to where the walk was at their moment, those until a moment or all of them."""
         due = [m for m in self._unplaced if until_ns is None or m["t_ns"] <= until_ns]
         self._unplaced = [mark for mark in self._unplaced if mark not in due]
-        self._marks += [mark | {"p": place} for mark in due]
+        self._marks += [mark | {"p": self._place_at(mark["t_ns"])} for mark in due]
+
+    def _place_at(self, t_ns: int) -> list[float] | None:
+        """Where the walk was; where it is, if the mapping has not come to that moment."""
+        if not self._track:
+            return None
+        row = bisect_left(self._track, t_ns, key=lambda one: one[0])
+        return self._track[min(row, len(self._track) - 1)][1]
 
     def _take_points(self, told: Message) -> None:
         if told["generation"] != self._generation or told["start"] == 0:

@@ -16,7 +16,9 @@ from app.deps import Server, parts
 from app.errors import Conflict, Problem
 from app.jobs.routes import JobView, NewJob, add_job
 from app.live.phone import Phone, state_of
+from app.live.rigs import RigChoice, rigs_at_hand
 from app.live.store import Captures
+from recon4.settings import PRESETS
 
 LOOK = [Depends(needs(May.LOOK))]
 CAPTURE = [Depends(needs(May.CAPTURE))]
@@ -53,6 +55,15 @@ class NewMark(BaseModel):
 
     what: Literal["point", "place"] = "point"
     text: str = Field(default="", max_length=500)
+    ago_s: float = Field(default=0.0, ge=0.0, le=600.0)
+    """How long ago that was: a note takes a while to type, and one walks on."""
+
+
+class CaptureChoices(BaseModel):
+    """What a capture may be started with."""
+
+    presets: list[str]
+    rigs: list[RigChoice]
 
 
 class CaptureView(BaseModel):
@@ -81,6 +92,13 @@ def read_capture(server: Server, who: Who) -> CaptureView | None:
     if server.captures.newest is None:
         return None
     return _view(server.captures, who.may(May.CAPTURE))
+
+
+@router.get("/choices", dependencies=LOOK, summary="Rigs and presets")
+def read_choices(server: Server) -> CaptureChoices:
+    """Rig files in the folder of the projects, or where recordings may lie; shipped rigs."""
+    folders = server.settings.import_roots
+    return CaptureChoices(presets=list(PRESETS), rigs=rigs_at_hand(folders))
 
 
 @router.post("", status_code=201, dependencies=CAPTURE, summary="Start a capture")
@@ -141,7 +159,7 @@ def process_capture(request: Request, server: Server) -> JobView:
 @router.post("/marks", status_code=201, dependencies=CAPTURE, summary="Mark a point of interest")
 async def add_mark(mark: NewMark, server: Server, who: Who) -> dict[str, str]:
     """Note something here and now; on the disk before it appears in the stream."""
-    told = {"do": "mark", "what": mark.what, "text": mark.text, "who": who.name}
+    told = {"do": "mark", "who": who.name, **mark.model_dump()}
     await server.captures.capture().steer(told)
     return {"status": "noted"}
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import logging
 from pathlib import Path
 from typing import Any
@@ -10,14 +11,13 @@ from typing import Any
 from app.errors import Conflict, NotFound
 from app.live.capture import Capture, unfinished
 from app.live.link import listens
+from app.live.power import Power, read_battery
 from recon4.errors import ConfigError, StoreError
 from recon4.live.project_files import begin
 from recon4.live.session import Session, load_session
 from recon4.model.rig import Rig, load_rig
 
 log = logging.getLogger(__name__)
-
-STOPS_WITHIN_S = 20.0
 
 
 class Captures:
@@ -30,6 +30,8 @@ class Captures:
         self._starting = asyncio.Lock()
         self.listeners = 0
         """Phones that look."""
+        self.power = Power(read_battery)
+        """Of this computer."""
 
     @property
     def newest(self) -> Capture | None:
@@ -91,6 +93,7 @@ class Captures:
             return
         alive, _, session, rig = max(found, key=lambda one: one[:2])
         capture = Capture(session)
+        capture.picture.recall(await asyncio.to_thread(marks_of, session))
         await capture.follow()
         self._capture, self._rig = capture, rig
         what = "still runs and is followed again" if alive else "died: its map is completed"
@@ -110,3 +113,18 @@ class Captures:
         """Stop following; recorder and mapper go on."""
         if self._capture is not None:
             await self._capture.leave()
+
+
+def marks_of(session: Session) -> list[dict[str, Any]]:
+    """What was noted so far; a line that was being written when the power went is not there."""
+    try:
+        lines = session.marks.read_text("utf-8").splitlines()
+    except FileNotFoundError:
+        return []
+    marks = []
+    for line in lines:
+        try:
+            marks.append(json.loads(line))
+        except ValueError:
+            log.warning("%s: a line is damaged", session.marks)
+    return marks

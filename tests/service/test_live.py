@@ -103,7 +103,7 @@ def test_a_walk_is_seen_on_the_phone_and_is_a_project_when_it_ends(server, walk)
                            have={"project": "walk", "generation": 0, "points": len(phone.voxels),
                                  "path": phone.path, "marks": 0}))  # fmt: skip
 
-    assert phone.newest["marks"][0]["text"] == "crack"
+    assert phone.newest["marks"]["marks"][0]["text"] == "crack"
     assert phone.newest["pose"]["imu"] is True
     assert phone.newest["words"] is not None
     extent_m = np.ptp(phone.voxels, axis=0) * phone.newest["points"]["voxel_m"]

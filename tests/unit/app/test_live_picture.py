@@ -29,7 +29,7 @@ def mark(t_s, text, what="point"):
 
 
 def marks_of(picture):
-    return picture.lacking(Cursor())[0].get("marks", [])
+    return picture.lacking(Cursor())[0].get("marks", {"marks": []})["marks"]
 
 
 def test_a_phone_that_comes_back_gets_only_what_it_lacks():
@@ -86,3 +86,37 @@ def test_an_hour_of_standing_is_one_place_of_the_way():
     picture.take(pose(101.0, 5.0))
 
     assert picture.lacking(Cursor())[0]["path"]["points"] == [[0.0, 0.0, 1.0], [5.0, 0.0, 1.0]]
+
+
+def test_a_mark_lies_where_one_was_when_it_was_touched_not_where_its_note_was_finished():
+    picture = Picture()
+    for second in range(1, 9):
+        picture.take(pose(second, 10.0 * second))
+
+    picture.take(mark(3.0, "crack"))
+    picture.take(pose(9.0, 90.0))
+
+    assert [one["p"][0] for one in marks_of(picture)] == [30.0]
+
+
+def test_marks_of_an_earlier_server_are_not_told_twice_and_later_ones_come():
+    picture = Picture()
+    picture.recall([mark(1.0, "town hall", what="place"), mark(2.0, "crack")])
+    there, new = Cursor(marks=2), Cursor()
+    picture.take(pose(3.0, 1.0))
+
+    assert "marks" not in picture.lacking(there)[0]
+    assert [one["text"] for one in picture.lacking(new)[0]["marks"]["marks"]] == [
+        "town hall",
+        "crack",
+    ]
+    picture.take(mark(3.0, "door"))
+    picture.take(pose(4.0, 2.0))
+    assert picture.lacking(there)[0]["marks"]["start"] == 2
+
+
+def test_a_phone_that_knows_of_more_marks_than_there_are_gets_all():
+    picture = Picture()
+    picture.recall([mark(1.0, "crack")])
+
+    assert picture.lacking(Cursor(marks=3))[0]["marks"]["start"] == 0

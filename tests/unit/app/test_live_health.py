@@ -1,0 +1,138 @@
+"""What the phone is told of LiDARs, batteries and rigs."""
+
+import numpy as np
+import pytest
+
+from app.live.health import lidars
+from app.live.power import Battery, Power, battery_words, read_battery
+from app.live.rigs import rigs_at_hand
+from app.live.store import marks_of
+from recon4.live.notes import Notes
+from recon4.live.session import Session
+from recon4.model.rig import format_rig, load_rig
+from recon4.recording.report import ImportReport
+from recon4.recording.sensor_clock import SensorClock
+
+RIG = load_rig("4recon")
+SECOND_NS = 1_000_000_000
+
+
+def status(rate=754.0):
+    sender = {"source": "10.0.0.1", "per_s": rate, "data_per_s": rate, "silent_s": 0.0}
+    return {"senders": [sender | {"port": 2368}, sender | {"port": 2369, "source": "10.0.0.2"}]}
+
+
+def clock_of(name, offset_s):
+    """A report after some packets of a sensor whose clock is so far off."""
+    report = ImportReport()
+    clock = SensorClock(name, packet_s=0.00133, report=report)
+    t_ns = np.arange(200, dtype=np.int64) * 1_330_000 + 1_790_000_100 * SECOND_NS
+    stamps = (t_ns // 1000 + round(offset_s * 1e6)) % 3_600_000_000
+    clock.push(t_ns, stamps)
+    return report
+
+
+def health(report, rate=754.0):
+    found = lidars(RIG, {"status": status(rate), "notes": Notes(report).message(0.0)})
+    return {one.name: one for one in found}
+
+
+def test_a_lidar_without_pps_is_told_from_one_in_step():
+    found = health(clock_of("vertical", 700.0))
+
+    assert found["vertical"].clock == "own, shifted"
+    assert found["horizontal"].clock == "in step"
+
+
+def test_lost_packets_are_those_of_the_lidar_that_lost_them():
+    report = ImportReport()
+    notes = Notes(report)
+    notes.message(0.0)
+    report.count("packets_missing", 838)
+    report.count("packets_missing_vertical", 838)
+
+    found = lidars(RIG, {"status": status(), "notes": notes.message(9.0)})
+
+    assert [(one.name, one.lost) for one in found] == [("horizontal", 0.0), ("vertical", 0.1)]
+
+
+def test_before_anything_was_read_and_of_a_silent_lidar_nothing_is_claimed():
+    assert lidars(RIG, {}) == []
+    (first, _) = lidars(RIG, {"status": status()})
+    assert (first.lost, first.clock) == (None, "")
+    assert health(ImportReport(), rate=0.0)["vertical"].lost is None
+
+
+@pytest.fixture
+def supplies(tmp_path):
+    def put(name, **told):
+        (tmp_path / name).mkdir()
+        lines = [f"POWER_SUPPLY_{key.upper()}={value}" for key, value in told.items()]
+        (tmp_path / name / "uevent").write_text("\n".join(lines))
+
+    put("AC", type="Mains", online=0)
+    put("mouse", type="Battery", scope="Device", capacity=1, status="Discharging")
+    return tmp_path, put
+
+
+def test_two_batteries_are_one_and_a_mouse_is_none(supplies):
+    folder, put = supplies
+    assert read_battery(folder) is None
+    put("BAT0", type="Battery", status="Discharging", energy_now=10, energy_full=40, power_now=20)
+    put("BAT1", type="Battery", status="Not charging", energy_now=20, energy_full=20, power_now=0)
+
+    battery = read_battery(folder)
+
+    assert battery == Battery(share=0.5, left_s=3600.0 * 30 / 20, mains=False)
+
+
+def test_a_battery_that_tells_its_share_only_and_one_on_mains(supplies):
+    folder, put = supplies
+    put("BAT0", type="Battery", status="Charging", capacity=83)
+
+    assert read_battery(folder) == Battery(share=0.83, left_s=None, mains=True)
+    assert battery_words(read_battery(folder)) == []
+    assert read_battery(folder / "nothing") is None
+
+
+@pytest.mark.parametrize(
+    ("share", "left_s", "level"),
+    [(0.5, 3000.0, None), (0.12, None, "care"), (0.5, 600.0, "care"), (0.05, 2000.0, "bad")],
+)
+def test_a_battery_that_ends_is_said_in_words(share, left_s, level):
+    said = battery_words(Battery(share, left_s, mains=False))
+
+    assert [word.level for word in said] == ([level] if level else [])
+
+
+def test_the_battery_is_asked_now_and_then_only():
+    asked, now = [], [0.0]
+    power = Power(lambda: asked.append(1), clock=lambda: now[0])
+
+    for now[0] in (0.0, 1.0, 14.0, 15.5, 16.0):
+        assert power.battery is None
+
+    assert len(asked) == 2
+
+
+def test_own_rig_files_come_first_and_a_broken_one_says_why(tmp_path):
+    (tmp_path / "rigs").mkdir()
+    (tmp_path / "rigs" / "ours.toml").write_text(format_rig(RIG))
+    (tmp_path / "broken.toml").write_text('[[sensor]]\nname = "a"\nmodel = "VLP-99"')
+    (tmp_path / "pyproject.toml").write_text("[project]")
+
+    broken, ours, *shipped = rigs_at_hand([tmp_path])
+
+    assert "VLP-99" in broken.problem
+    assert (ours.rig, ours.problem) == (str(tmp_path / "rigs" / "ours.toml"), "")
+    assert ours.sensors == ["horizontal", "vertical"]
+    assert [one.rig for one in shipped] == ["4recon", "single-hdl32e", "single-vlp16"]
+
+
+def test_marks_are_read_up_to_the_line_that_was_being_written(tmp_path):
+    session = Session(project=tmp_path)
+    assert marks_of(session) == []
+    session.marks.parent.mkdir()
+    session.marks.write_text('{"t_ns": 1, "what": "point"}\n{"t_ns": 2, "wh')
+
+    assert [one["t_ns"] for one in marks_of(session)] == [1]
