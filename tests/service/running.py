@@ -5,14 +5,14 @@ from __future__ import annotations
 import asyncio
 import json
 import os
-import socket
+import ssl
 import subprocess
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,12 +20,14 @@ import httpx
 from fastapi import FastAPI
 
 from app.jobs.folder import JobFolder
-from app.listen import AnnouncingServer, certificate_of, make_state, uvicorn_config
+from app.listen import AnnouncingServer, certificate_of, listening, make_state, uvicorn_config
 from app.main import create_app, serve
 from app.settings import ServerSettings, recordings_from_environment
 
 ROOT = Path(__file__).parents[2]
 SLOW = "tests.service.slow_worker"
+WITHOUT_TLS = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+"""For requests to a server that speaks none; httpx else reads all authorities for each of them."""
 
 
 @dataclass(frozen=True)
@@ -35,10 +37,13 @@ class Running:
     app: FastAPI | None = None
 
     def get(self, path: str, **options: Any) -> httpx.Response:
-        return httpx.get(self.url + path, timeout=30.0, **options)
+        return self._ask("GET", path, **options)
 
     def post(self, path: str, **options: Any) -> httpx.Response:
-        return httpx.post(self.url + path, timeout=30.0, **options)
+        return self._ask("POST", path, **options)
+
+    def _ask(self, method: str, path: str, **options: Any) -> httpx.Response:
+        return httpx.request(method, self.url + path, timeout=30.0, verify=WITHOUT_TLS, **options)
 
     def start(self, project: str, recording: Path) -> str:
         answer = self.post("/api/jobs", json={"project": project, "recordings": [str(recording)]})
@@ -50,7 +55,9 @@ class Running:
     ) -> dict[str, Any]:
         """The first view of the job, from the event stream, that meets a condition."""
         deadline_s = time.monotonic() + most_s
-        with httpx.stream("GET", f"{self.url}/api/events", timeout=30.0) as stream:
+        with httpx.stream(
+            "GET", f"{self.url}/api/events", timeout=30.0, verify=WITHOUT_TLS
+        ) as stream:
             view = self.get(f"/api/jobs/{job_id}").json()  # what is over is not told again
             if met(view):
                 return view
@@ -82,7 +89,7 @@ def server_thread(root: Path, **settings: Any) -> Iterator[Running]:
     make_state(chosen)
     certificate = certificate_of(chosen)
     app = create_app(chosen)
-    with socket.create_server(("127.0.0.1", 0)) as listener:
+    with listening(replace(chosen, host="127.0.0.1", port=0)) as listener:
         ready = threading.Event()
         server = AnnouncingServer(uvicorn_config(app, certificate), ready.set)
         thread = threading.Thread(target=lambda: asyncio.run(server.serve([listener])))
