@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import pairwise
 
@@ -67,6 +68,7 @@ class Assembler:
         settings: IngestSettings,
         report: ImportReport,
         wait_s: float = LONGEST_WAIT_S,
+        on_cut: Callable[[Multiframe], None] = lambda frame: None,
     ) -> None:
         """Start empty.
 
@@ -76,7 +78,10 @@ class Assembler:
             report: Told of everything that is dropped.
             wait_s: A sensor that is silent for so long while another delivers no longer holds the
                 frames up [s].
+            on_cut: Told of each multiframe at once: it is given out only when the next one is done,
+                as the very last may be a scrap.
         """
+        self._on_cut, self._begun = on_cut, False
         self._settings, self._report = settings, report
         self._wait_ns = int(wait_s * 1e9)
         self._streams = [_Stream(sensor.name) for sensor in rig.sensors]
@@ -246,6 +251,8 @@ class Assembler:
             if not np.any(frame.sensor == row):
                 self._report.count(f"frames_without_{stream.name}")
         before, self._held = self._held, frame
+        if self._begun:
+            self._on_cut(frame)
         return self._release(before, frame) if before else []
 
     def _release(self, before: Multiframe, frame: Multiframe) -> list[Multiframe]:
@@ -255,6 +262,10 @@ class Assembler:
             self._report.count("points_of_incomplete_frames", len(before))
             self._held = _renumbered(frame, 0)
             return []
+        if not self._begun:
+            self._begun = True
+            self._on_cut(before)
+            self._on_cut(frame)
         self._usual += 0.1 * (len(before) - self._usual) if self._usual else len(before)
         return [before]
 

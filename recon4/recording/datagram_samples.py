@@ -5,7 +5,8 @@
     {"t_ns": …, "lat_deg": 49.2, "lon_deg": 16.6, "height_m": 250.1, "sd_e_m": 0.02, "quality": 4}
 
 One object a line, one or more lines a datagram. ``t_ns`` is absolute; without it the time of
-arrival counts. What is missing is not measured.
+arrival counts: in UTC, whatever the recorder's clock says, where GPS drives a LiDAR. What is
+missing is not measured.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from recon4.recording.report import ImportReport
 from recon4.recording.sensor_clock import SECOND_NS
 
 _UTC_WITHIN_NS = 5 * SECOND_NS // 2
-"""An NMEA time is believed if the recorder's clock agrees with it as well as that."""
+"""An NMEA time is believed if its arrival agrees with it as well as that."""
 _GST_LASTS_NS = 3 * SECOND_NS
 
 
@@ -51,8 +52,9 @@ class SampleDecoder:
         """
         rows: dict[str, list[list[float]]] = {"imu": [], "gnss": []}
         times: dict[str, list[int]] = {"imu": [], "gnss": []}
+        ahead_ns = self.report.utc_ahead_ns
         for arrival_ns, text in zip(t_arrival_ns, texts, strict=True):
-            for kind, t_ns, values in self._lines(arrival_ns, text):
+            for kind, t_ns, values in self._lines(arrival_ns + ahead_ns, text):
                 if t_ns <= self._last_ns.get(kind, -1):
                     self.report.count("samples_out_of_order")
                     continue
@@ -98,7 +100,7 @@ class SampleDecoder:
         t_ns = fix.utc_ns
         if abs(t_ns - arrival_ns) > _UTC_WITHIN_NS:
             t_ns = arrival_ns
-            self.report.derive("NMEA: timed by arrival, its UTC is not the recorder's clock")
+            self.report.derive("NMEA: timed by arrival, its UTC is not the points' clock")
         fresh = arrival_ns - self._sd[0] < _GST_LASTS_NS
         sd = self._sd[1] if fresh else [math.nan] * 3
         place = [fix.lat_deg, fix.lon_deg, fix.height_m]

@@ -83,7 +83,8 @@ class Live:
     open_file: OpenFile = open_plain
     """Opens the capture file; reading waits for what is not written yet."""
     watch: Callable[[Multiframe | ImuSamples | GnssSamples], None] = lambda item: None
-    """Shown each multiframe once it is written, and samples as they are read, not yet cleaned."""
+    """Shown each multiframe as soon as it is cut, before it is written, and samples as they are
+    read, not yet cleaned."""
     report: ImportReport = field(default_factory=ImportReport)
     """Where repairs and warnings are noted as they happen."""
 
@@ -125,13 +126,21 @@ def ingest(
     recording = open_recording(
         paths, rig, settings=settings, report=report, open_file=live.open_file
     )
-    assembler = Assembler(recording.rig, settings=settings, report=report, wait_s=recording.wait_s)
+    assembler = Assembler(
+        recording.rig,
+        settings=settings,
+        report=report,
+        wait_s=recording.wait_s,
+        on_cut=live.watch,
+    )
     found = _Samples()
     with FrameWriter(out, recording.rig) as writer:
         written = _Written()
         for item in _items(recording, assembler):
             if not isinstance(item, Multiframe):
                 found.keep(item)
+                if not isinstance(item, Trajectory):
+                    live.watch(item)
             else:
                 if not written.duration_ns:
                     count = round(recording.seconds * 1e9 / item.duration_ns)
@@ -139,8 +148,6 @@ def ingest(
                 writer.append(item)
                 written.add(item)
                 progress.advance()
-            if not isinstance(item, Trajectory):
-                live.watch(item)
         if not written.duration_ns:
             counted = ", ".join(f"{name} {n}" for name, n in sorted(report.counts.items()))
             raise EmptyRecording(f"{paths[0].name}: no usable points ({counted or 'nothing read'})")

@@ -61,7 +61,10 @@ def sound_packets(payloads: Payloads, report: ImportReport) -> NDArray[np.bool_]
 
 @dataclass(slots=True, eq=False)
 class PacketOrder:
-    """Puts packets in order of time, each once."""
+    """Puts packets in order of time, each once.
+
+    Packets that follow each other without a hole are given at once: none can still come between.
+    """
 
     window_ns: int
     """Packets that are late by at most this are put in their place [ns]."""
@@ -70,9 +73,11 @@ class PacketOrder:
     _payloads: Payloads = field(default_factory=lambda: np.zeros((0, DATA_SIZE), dtype=np.uint8))
     _given: Times = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     _behind: int = 0
+    step_ns: int = 0
+    """Usual time from one packet to the next [ns]; 0 = not known, then all wait."""
 
     def push(self, t_ns: Times, payloads: Payloads) -> tuple[Times, Payloads]:
-        """Take packets, give those that are older than the window.
+        """Take packets, give those that are older than the window or whose place is sure.
 
         Counts ``packets_out_of_order`` (repaired), ``packets_duplicate`` (a packet with the same
         time was there) and ``packets_late`` (its place has been passed).
@@ -91,7 +96,15 @@ class PacketOrder:
         if not tidy:
             t_ns, payloads = self._sorted(t_ns, payloads)
         ready = int(np.searchsorted(t_ns, t_ns[-1:] - self.window_ns)[0]) if len(t_ns) else 0
-        return self._give(t_ns, payloads, ready)
+        return self._give(t_ns, payloads, max(ready, self._joined(t_ns)))
+
+    def _joined(self, t_ns: Times) -> int:
+        """How many sorted packets follow the last one given without a hole."""
+        if not self.step_ns or not len(self._given):
+            return 0
+        steps = np.diff(t_ns, prepend=self._given[-1])
+        holes = np.flatnonzero(steps > 1.5 * self.step_ns)
+        return int(holes[0]) if len(holes) else len(t_ns)
 
     def _jump(self, t_ns: Times, newest: int) -> int | None:
         """The row from which most packets are far behind, if these are no stragglers."""

@@ -17,6 +17,11 @@ class ImportReport:
     """What was not in the recording and was worked out, in words."""
     warnings: list[str] = field(default_factory=list)
     """What a person should know: repairs, gaps, missing sensors, forced models."""
+    ahead_ns: dict[str, int] = field(default_factory=dict)
+    """Sensor -> its times minus those of the recorder's clock [ns], as last seen: GPS may drive
+    the sensors, and the recorder's clock be wrong."""
+    utc_ahead_ns: int = 0
+    """UTC minus the recorder's clock [ns] if GPS drives a sensor, else 0."""
     outcome: str = "complete"
     """``complete``, ``lossy`` (salvaged) or ``nothing``."""
 

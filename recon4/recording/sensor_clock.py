@@ -43,7 +43,8 @@ class SensorClock:
       the recorder's clock within half a second keeps its own time;
     - any other sensor runs freely, its stamps count from when it was switched on: they are
       shifted to the recorder's clock, by the packet that traveled fastest, and the shift follows
-      the drift of the two clocks from one 10 s to the next. The report says so.
+      the drift of the two clocks from one 10 s to the next. The report says so. Where GPS drives
+      another sensor, the recorder's clock counts as corrected by it.
 
     A jump of either clock (GPS lock won, recorder's clock set) leaves the output continuous, is
     counted (``clock_jumps``) and warned of. Single packets off by more than a second are dropped.
@@ -71,6 +72,8 @@ class SensorClock:
         self._packet_ns = round(packet_s * SECOND_NS)
         self._offset_ns: int | None = None
         self._shift_ns = 0
+        self._base_ns = 0
+        """UTC minus the recorder's clock, if GPS drives another sensor and not this one."""
         self._rate = 0.0
         self._since_ns = 0
         self._window: list[int] = []
@@ -81,6 +84,8 @@ class SensorClock:
         self._free_running = False
         self._last = (0, 0)
         self._run, self._run_ns = 0, 0
+        if utc_offset_ns is not None:
+            report.utc_ahead_ns = utc_offset_ns
 
     @property
     def is_utc(self) -> bool:
@@ -139,16 +144,17 @@ class SensorClock:
         # One that was measured: between two clocks, before and after a jump, lies none.
         usual = int(np.sort(around)[len(around) // 2])
         offset = int(ahead[0]) + usual
+        known = self._report.utc_ahead_ns if self.utc_offset_ns is None else self.utc_offset_ns
+        offset += round((known - offset) / HOUR_NS) * HOUR_NS
         if self.utc_offset_ns is not None:
-            offset += round((self.utc_offset_ns - offset) / HOUR_NS) * HOUR_NS
             self._report.derive(
                 f"{self._name}: the hour is from its GPS; the recorder's clock is "
                 f"{-offset / SECOND_NS:+.3f} s off UTC"
             )
-        elif abs(offset) > _SAME_CLOCK_NS:
-            self._free_running = True
-            good = np.abs(around - usual) < _JUMP_NS
-            self._shift_ns = int(np.min(-ahead[good])) - self._packet_ns
+        elif abs(offset - known) > _SAME_CLOCK_NS:
+            self._free_running, self._base_ns = True, known
+            behind = usual - offset - around[np.abs(around - usual) < _JUMP_NS]
+            self._shift_ns = int(np.min(behind)) - self._packet_ns + known
             self._report.warn(
                 f"{self._name}: its clock is {offset / SECOND_NS:+.3f} s off the recorder's and no "
                 "GPS drives it: its times are shifted to the recorder's clock"
@@ -156,6 +162,7 @@ class SensorClock:
         self._offset_ns = offset
         first = int(nearest_hour(t_us[:1], t_arrival_ns[:1] + offset)[0])
         self._since_ns, self._last = first, (int(t_arrival_ns[0]), first)
+        self._tell_ahead()
         return offset
 
     def _odd(
@@ -177,13 +184,15 @@ class SensorClock:
         self._block, self._filled = [], 0
         assert self._offset_ns is not None
         self._offset_ns += int(0.1 * np.median(block[0]))
+        self._tell_ahead()
         if not self._free_running:
             return
         self._window.append(int(np.min(block[1])))
         now = int(t_sensor[-1])
         if now - self._since_ns >= _TRACK_NS:
             self._shift_ns = int(self._shift(now))
-            error = min(self._window) - self._host_jump_ns - self._packet_ns - self._shift_ns
+            usual = min(self._window) - self._host_jump_ns - self._packet_ns + self._base_ns
+            error = usual - self._shift_ns
             self._rate = float(np.clip(error / _TRACK_NS, -_MAX_RATE, _MAX_RATE))
             self._since_ns, self._window = now, []
 
@@ -238,6 +247,11 @@ class SensorClock:
             self._tell_jump("its clock", off_ns)
         self._since_ns, self._window, self._run = going_on, [], 0
         self._block, self._filled = [], 0
+        self._tell_ahead()
+
+    def _tell_ahead(self) -> None:
+        assert self._offset_ns is not None
+        self._report.ahead_ns[self._name] = self._offset_ns + self._shift_ns
 
     def _tell_jump(self, whose: str, jump_ns: int) -> None:
         self._report.count("clock_jumps")

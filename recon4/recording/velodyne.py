@@ -177,14 +177,16 @@ class PacketDecoder:
         """Take packets in, give out the shots that are certain to be in order.
 
         Counts, besides those of `recon4.recording.packets` and `decode_packets`:
-        ``packets_other_product`` (not the product byte of the rest) and ``packets_missing``.
+        ``packets_other_product`` (not the product byte of the rest) and ``packets_missing``, also
+        as ``packets_missing_NAME``.
 
         Args:
             t_arrival_ns: When the host received each packet [ns], (N,).
             payloads: UDP payloads, (N, 1206) or any other width (then all are dropped, counted).
 
         Returns:
-            Shots in firing order; those of the last ``settings.reorder_window_s`` are held back.
+            Shots in firing order; after a hole, those of the last ``settings.reorder_window_s`` are
+            held back.
         """
         t_arrival_ns = np.asarray(t_arrival_ns, dtype=np.int64)
         for choose in (self._sound, self._same_product):
@@ -193,6 +195,7 @@ class PacketDecoder:
                 t_arrival_ns, payloads = t_arrival_ns[kept], payloads[kept]
         if not len(payloads):
             return self._shots(*self._order.push(t_arrival_ns, payloads))
+        self._order.step_ns = round(self.model.packet_s(int(payloads[0, -2])) * SECOND_NS)
         t_ns, trusted = self.clock.push(t_arrival_ns, as_packets(payloads)["time_us"])
         if not trusted.all():
             t_ns, payloads = t_ns[trusted], payloads[trusted]
@@ -250,7 +253,9 @@ class PacketDecoder:
             return
         return_mode = int(payloads[0, -2])
         packet_s = self.model.packet_s(return_mode)
-        self._report.count("packets_missing", self._interval.missing(t_ns, packet_s))
+        missing = self._interval.missing(t_ns, packet_s)
+        self._report.count("packets_missing", missing)
+        self._report.count(f"packets_missing_{self._sensor.name}", missing)
         self.rotation.push(t_ns, payloads, packet_s)
         usual_s = self._interval.usual_s()
         fits = models_of_interval(usual_s, return_mode) if usual_s else ()

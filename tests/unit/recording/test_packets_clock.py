@@ -216,3 +216,22 @@ def test_a_jump_among_the_very_first_packets_is_a_jump(half):
     assert np.count_nonzero(~trusted) <= 60
     assert np.all(np.abs(np.diff(t_ns[trusted])) < SECOND_NS // 10)
     assert report.counts["clock_jumps"] >= 1
+
+
+@pytest.mark.parametrize("wrong_s", [-7.3, 7.3, 5 * 3600.0, -1900.0])
+def test_beside_a_sensor_on_gps_one_that_runs_freely_is_put_on_utc_too(wrong_s):
+    t_ns, arrival, stamps = packets(20_000)
+    _, _, free_stamps = packets(20_000, off_ns=417 * SECOND_NS, drift=5e-5)
+    arrival = arrival + round(wrong_s * SECOND_NS)
+    report = ImportReport()
+    on_gps = a_clock(report, utc_offset_ns=-round(wrong_s * SECOND_NS))
+    free = SensorClock("free", packet_s=PACKET_NS / 1e9, report=report)
+
+    first, _ = push_all(on_gps, arrival, stamps)
+    second, _ = push_all(free, arrival, free_stamps)
+
+    np.testing.assert_array_equal(first, t_ns // 1000 * 1000)
+    assert np.abs(second - t_ns).max() < 3_000_000
+    ahead_s = np.array([report.ahead_ns["lidar"], report.ahead_ns["free"]]) / SECOND_NS
+    np.testing.assert_allclose(ahead_s, -wrong_s, atol=0.003)
+    assert "free: its clock is" in report.warnings[0]

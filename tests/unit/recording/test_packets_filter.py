@@ -116,6 +116,7 @@ def test_lost_packets_are_counted(clean):
     _, report = decode_all(t_ns[rows], payloads[rows])
 
     assert report.counts["packets_missing"] == 4
+    assert sum(n for name, n in report.counts.items() if name.startswith("packets_missing_")) == 4
 
 
 def test_packets_of_another_length_are_dropped_and_counted():
@@ -195,3 +196,29 @@ def test_clocks_set_back_together_lose_no_packet(clean, batch):
     assert lost == (7 if batch == 1 else 0)
     assert len(found) == len(t_ns) - lost
     assert np.count_nonzero(np.diff(found) < 0) == 1
+
+
+def test_packets_that_follow_each_other_wait_for_nobody_and_a_hole_is_waited_for():
+    step_ns, report = 1_327_104, ImportReport()
+    order = PacketOrder(200_000_000, report, step_ns=step_ns)
+
+    def given(*numbers):
+        t_ns = step_ns * np.array(numbers, dtype=np.int64)
+        payloads = np.zeros((len(t_ns), 1206), np.uint8)
+        return (order.push(t_ns, payloads)[0] // step_ns).tolist()
+
+    given(*range(100))
+    flowing = given(*range(100, 175)) + given(*range(175, 250))
+    holed = given(*range(250, 300), *range(301, 325))
+    filled = given(300, *range(325, 330))
+    never = given(*range(331, 350))
+    much_later = given(*range(350, 510))
+
+    assert flowing[-1] == 249
+    assert holed == list(range(250, 300))
+    assert filled == list(range(300, 330))
+    assert never == []
+    assert much_later[0] == 331
+    assert given(510)[-1] == 510
+    assert report.counts["packets_out_of_order"] == 1
+    assert report.counts["packets_late"] == 0

@@ -1,0 +1,57 @@
+"""Samples that came as datagrams, on the clock of the points."""
+
+from functools import reduce
+from operator import xor
+
+import numpy as np
+import pytest
+
+from recon4.recording.datagram_samples import SampleDecoder
+from recon4.recording.report import ImportReport
+
+NOON_NS = 1_790_000_000_000_000_000 // 86_400_000_000_000 * 86_400_000_000_000 + 43_200 * 10**9
+_GGA = b"GPGGA,120000.00,4912.0,N,01636.0,E,4,12,0.8,250.0,M,44.0,M,1.0,0001"
+GGA = b"$%s*%02X\r\n" % (_GGA, reduce(xor, _GGA))
+IMU = b'{"gx_rad_s": 0.1, "gy_rad_s": 0, "gz_rad_s": 0.5}\n'
+
+
+def pushed(arrival_ns, *texts, utc_ahead_ns=0):
+    report = ImportReport(utc_ahead_ns=utc_ahead_ns)
+    return SampleDecoder(report).push([arrival_ns] * len(texts), list(texts)), report
+
+
+def test_without_gps_the_time_of_arrival_counts():
+    (imu, _), _ = pushed(NOON_NS, IMU)
+
+    assert imu.t_ns.tolist() == [NOON_NS]
+
+
+@pytest.mark.parametrize("wrong_s", [60, -3600])
+def test_where_gps_drives_a_lidar_samples_are_on_utc_whatever_the_laptop_says(wrong_s):
+    arrival_ns = NOON_NS + 50_000_000 + wrong_s * 10**9
+
+    (imu, gnss), report = pushed(arrival_ns, IMU, GGA, utc_ahead_ns=-wrong_s * 10**9)
+
+    assert imu.t_ns.tolist() == [NOON_NS + 50_000_000]
+    assert gnss.t_ns.tolist() == [NOON_NS]
+    assert gnss.quality.tolist() == [4]
+    assert not report.derived
+
+
+def test_an_absolute_time_is_left_alone():
+    line = b'{"t_ns": 1790000000000000000, "lat_deg": 49.2, "lon_deg": 16.6}'
+
+    (_, gnss), _ = pushed(NOON_NS, line, utc_ahead_ns=10**9)
+
+    assert gnss.t_ns.tolist() == [1_790_000_000_000_000_000]
+    np.testing.assert_allclose(np.rad2deg(gnss.lat_rad), 49.2)
+
+
+def test_what_is_no_sample_is_counted():
+    lines = b'{"lat_deg": 49.2}\n[1]\n{"gx_rad_s": 1, "gy_rad_s": 2, "gz_rad_s": NaN}\nhello\n'
+
+    (imu, gnss), report = pushed(NOON_NS, lines, b"\xff\xfe", b"$GPGGA,broken*00\r\n")
+
+    assert imu is gnss is None
+    assert report.counts["samples_damaged"] == 5
+    assert report.counts["nmea_damaged"] == 1
