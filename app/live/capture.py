@@ -135,7 +135,7 @@ class Capture:
         if done is None:
             self.problem = "the map stopped growing (its process died); the recording goes on"
         else:  # its troubles are over
-            self.problem = done["problem"] or self._ended_because
+            self.problem = "; ".join(filter(None, (self._ended_because, done["problem"])))
         while self._recorder is not None:
             await self.picture.news(self.picture.version, timeout_s=1.0)
         self.state = State.READY
@@ -174,5 +174,6 @@ class Capture:
 
 def unfinished(root: Path) -> list[Path]:
     """Projects of an earlier server whose capture was not brought to an end."""
-    sessions = root.glob("*/live/session.json")
-    return [path.parents[1] for path in sessions if not (path.parent / "outcome.json").exists()]
+    sessions = [Session(project=path.parents[1]) for path in root.glob("*/live/session.json")]
+    begun = [session for session in sessions if session.capture.exists()]
+    return [session.project for session in begun if not session.outcome.exists()]

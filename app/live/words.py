@@ -18,6 +18,8 @@ _GRACE_S = 3.0
 """After the start nothing has to come yet."""
 _MOST_LOST = 0.01
 _UNSURE_SHARE, _UNSURE_ERROR_M, _UNSURE_GAP_M = 0.4, 0.08, 0.25
+_UNSURE_HELD = 0.002
+"""Degeneracy: 1/3 = held alike in all directions, 0 = one of them is free (a long corridor)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +81,8 @@ def _disk(status: Told) -> list[Word]:
         found.append(Word("bad", f"Nothing is recorded: {file['problem']}"))
     if left_s is not None and left_s < _LOW_DISK_S:
         found.append(Word("bad", f"Disk full in {max(left_s, 0) // 60} min"))
+    if status.get("notes"):
+        found.append(Word("bad", f"A mark could not be noted: {status['notes']}"))
     if status["paused"]:
         found.append(Word("info", "Paused: nothing is recorded"))
     return found
@@ -159,17 +163,30 @@ def _tracking(pose: Told) -> list[Word]:
         found.append(Word("care", "Tracking is unsure: walk slower, look at more walls"))
     if pose.get("remark"):
         found.append(Word("care", f"{pose['remark'][0].upper()}{pose['remark'][1:]}"))
-    if (pose.get("age_s") or 0.0) > _LATE_S:
-        thinned = ", it leaves frames out" if pose.get("thinned") else ""
-        late = f"The preview is {pose['age_s']:.0f} s behind{thinned}; the recording is whole"
-        found.append(Word("care", late))
-    return found
+    return found + _late(pose)
+
+
+def _late(pose: Told) -> list[Word]:
+    """The preview lags; frames are left out of it, never of the recording."""
+    age_s, lately = pose.get("age_s") or 0.0, pose.get("lately") or {"frames": 0, "thinned": 0}
+    behind = f"The preview is {age_s:.0f} s behind" if age_s > _LATE_S else ""
+    left_out = (
+        f"{lately['thinned']} of the last {lately['frames']} frames are left out of the preview "
+        f"({pose['thinned']} in all)"
+        if lately["thinned"]
+        else ""
+    )
+    said = ": ".join(text for text in (behind, left_out) if text)
+    level: Level = "care" if behind else "info"
+    return [Word(level, f"{said}; the recording is whole")] if said else []
 
 
 def _unsure(pose: Told) -> bool:
     share, error_m, gap_m = (pose.get(name) for name in ("share", "error_m", "gap_m"))
+    held = pose.get("degeneracy")
     return bool(
         (share is not None and share < _UNSURE_SHARE and pose.get("frame_id", 0) > 0)
+        or (held is not None and held < _UNSURE_HELD and pose.get("frame_id", 0) > 0)
         or (error_m is not None and error_m > _UNSURE_ERROR_M)
         or (gap_m is not None and gap_m > _UNSURE_GAP_M)
     )

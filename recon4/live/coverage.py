@@ -2,25 +2,38 @@
 
 Every cell near the way is one of: not seen; free (rays passed); solid and seen well (often, from
 near); solid but seen poorly. A **gap** is a row of free cells that border on cells nobody has seen,
-near the way: a door not entered, a corner not looked into.
+near the way: a door not entered, a corner not looked into. Each floor has a plan of its own.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from recon4.geometry.se3 import Array
 from recon4.kernels.live import trace
+from recon4.live.floors import Floors
+from recon4.live.tiles import MARGIN, TILE, Key, Tiles
 
 CELL_M = 0.25
-_GROW = 128
-"""Cells a grid grows by."""
-_FAR = np.float32(1e9)
+RAY_M = CELL_M * (MARGIN - 8)
+"""Rays are followed so far: 30 m; what lies beyond is a matter of the preview."""
+_FAR = 1e9
+_LAYERS = {
+    "free": ("u2", 0),
+    "hits": ("u2", 0),
+    "nearest_m": ("f4", _FAR),
+    "away_m": ("f4", _FAR),
+    "seen": ("u1", 0),
+    "edge": ("?", 0),
+}
 
 
 class Seen(IntEnum):
@@ -61,93 +74,159 @@ class Gap:
     """From the nearest point of the way."""
 
 
+@dataclass(slots=True)
+class _Floor:
+    """The plan of one floor, and what was counted in each of its tiles."""
+
+    tiles: Tiles = field(default_factory=lambda: Tiles(_LAYERS))
+    last_cell: Key | None = None
+    edges: dict[Key, NDArray[np.int64]] = field(default_factory=dict)
+    """Cells (N, 2) of gaps, with their distance from the way in `away_m`."""
+    away_m: dict[Key, NDArray[np.float32]] = field(default_factory=dict)
+    solid: dict[Key, tuple[int, int]] = field(default_factory=dict)
+    """Solid cells near the way, and how many of them are seen well."""
+
+
 class Coverage:
-    """A plan that grows with the walk."""
+    """Plans that grow with the walk; `refresh` before asking."""
 
     def __init__(self, rules: CoverageRules | None = None) -> None:
         self._rules = rules or CoverageRules()
-        self.first_cell = np.array([-_GROW, -_GROW])
-        """Cell of the grid's corner, counted from the map's origin."""
-        shape = (2 * _GROW, 2 * _GROW)
-        self._free = np.zeros(shape, dtype=np.uint16)
-        self._hits = np.zeros(shape, dtype=np.uint16)
-        self._nearest = np.full(shape, _FAR)
-        self._way = np.zeros(shape, dtype=np.bool_)
+        self._heights = Floors()
+        self._floors: dict[int, _Floor] = {}
+        reach = int(self._rules.gap_reach_m / CELL_M)
+        steps = np.arange(-reach, reach + 1)
+        self._disk_m = (np.hypot(*np.meshgrid(steps, steps)) * CELL_M).astype(np.float32)
 
-    def add(self, sensor_m: Array, p_map: Array) -> None:
+    @property
+    def floor(self) -> int:
+        """Number of the floor the body is on, in the order in which they were come to."""
+        return self._heights.now
+
+    def add(self, body_m: Array, p_map: Array) -> None:
         """Add the rays of a multiframe.
 
         Args:
-            sensor_m: Where the body was [m], (3,).
+            body_m: Where the body was [m], (3,).
             p_map: Where sampled rays ended [m], (N, 3).
         """
-        up_m = p_map[:, 2] - sensor_m[2]
-        p_map, up_m = p_map[up_m < self._rules.ceiling_m], up_m[up_m < self._rules.ceiling_m]
-        ranges = np.linalg.norm(p_map - sensor_m, axis=1)
-        cells = p_map[:, :2] / CELL_M
-        start = sensor_m[:2] / CELL_M
-        self._make_room(np.floor(np.concatenate([cells, start[None]])).astype(np.int64))
-        solid = up_m > -self._rules.floor_m
-        inside = start - self.first_cell
-        trace(inside, cells - self.first_cell, ranges, solid, self._free, self._hits, self._nearest)
-        self._way[tuple(np.floor(inside).astype(np.int64))] = True
+        plan = self._floors.setdefault(self._heights.at(float(body_m[2])), _Floor())
+        here = np.floor(body_m[:2] / CELL_M).astype(np.int64)
+        if not plan.tiles.holds(here):
+            self._count(plan)
+            plan.tiles.move_to(here)
+        self._trace(plan.tiles, body_m, p_map)
+        key = (int(here[0]), int(here[1]))
+        if key != plan.last_cell:
+            plan.last_cell = key
+            self._walk(plan.tiles, here)
 
-    def seen(self) -> NDArray[np.uint8]:
-        """`Seen` of every cell, (H, W); first axis along x."""
+    def refresh(self) -> None:
+        """Judge what the rays have seen since the last time."""
+        if self.floor in self._floors:
+            self._count(self._floors[self.floor])
+
+    def seen(self) -> tuple[NDArray[np.int64], NDArray[np.uint8]]:
+        """`Seen` of every cell of this floor: first cell (2,) and cells (H, W); x goes down."""
+        if self.floor not in self._floors:
+            return np.zeros(2, np.int64), np.zeros((0, 0), np.uint8)
+        first, cells = self._floors[self.floor].tiles.whole("seen")
+        return first, cells.astype(np.uint8, copy=False)
+
+    def gaps(self, floor: int | None = None) -> list[Gap]:
+        """Places to look at on a floor (None = this one), the widest first."""
+        plan = self._floors.get(self.floor if floor is None else floor)
+        if plan is None or not plan.edges:
+            return []
+        cells = np.concatenate(list(plan.edges.values()))
+        away_m = np.concatenate(list(plan.away_m.values()))
+        found = []
+        for rows in _connected(cells):
+            mine = cells[rows]
+            width_m = float(np.ptp(mine, axis=0).max() + 1) * CELL_M
+            if width_m < self._rules.gap_width_m:
+                continue
+            middle = int(np.argmin(np.linalg.norm(mine - mine.mean(axis=0), axis=1)))
+            x, y = ((mine[middle] + 0.5) * CELL_M).tolist()
+            found.append(Gap((x, y), width_m, float(away_m[rows[middle]])))
+        return sorted(found, key=lambda gap: (-gap.width_m, gap.p_map))
+
+    def gaps_elsewhere(self) -> int:
+        """How many there are on all other floors."""
+        return sum(len(self.gaps(other)) for other in self._floors if other != self.floor)
+
+    def share_well(self) -> float:
+        """Share of the solid cells near the way, on all floors, that are seen well; NaN before
+        there are any.
+        """
+        counts = [pair for plan in self._floors.values() for pair in plan.solid.values()]
+        solid, well = sum(pair[0] for pair in counts), sum(pair[1] for pair in counts)
+        return well / solid if solid else float("nan")
+
+    def _trace(self, tiles: Tiles, body_m: Array, p_map: Array) -> None:
+        up_m = p_map[:, 2] - body_m[2]
+        below = up_m < self._rules.ceiling_m
+        ray_m, up_m = p_map[below] - body_m, up_m[below]
+        plan_m = np.hypot(ray_m[:, 0], ray_m[:, 1])
+        cut = np.minimum(1.0, RAY_M / np.maximum(plan_m, 1e-9))
+        start = body_m[:2] / CELL_M - tiles.first_cell
+        ends = start + ray_m[:, :2] * (cut / CELL_M)[:, None]
+        solid = (up_m > -self._rules.floor_m) & (plan_m <= RAY_M)
+        layers = (tiles.window[name] for name in ("free", "hits", "nearest_m"))
+        trace(start, ends, np.linalg.norm(ray_m, axis=1), solid, *layers)
+
+    def _walk(self, tiles: Tiles, here: NDArray[np.int64]) -> None:
+        """The way came to a cell: those around it are that near to it now."""
+        i, j = (here - tiles.first_cell).tolist()
+        reach = len(self._disk_m) // 2
+        around = tiles.window["away_m"][i - reach : i + reach + 1, j - reach : j + reach + 1]
+        np.minimum(around, self._disk_m, out=around)
+
+    def _count(self, plan: _Floor) -> None:
+        w = plan.tiles.window
+        w["seen"][:] = seen = self._judged(w)
+        unseen = seen == Seen.NOTHING
+        # A cell between cells that were seen lies between two rays: that is no gap.
+        unseen &= ndimage.uniform_filter(unseen.astype(np.float32), 3) > 0.5
+        near = w["away_m"] <= self._rules.gap_reach_m
+        edge = (seen == Seen.FREE) & ndimage.binary_dilation(unseen) & near
+        # What lies beyond the border is not known here, and no ray came so far.
+        w["edge"][1:-1, 1:-1] = edge[1:-1, 1:-1]
+        solid, well = near & (seen >= Seen.POOR), near & (seen == Seen.WELL)
+        for key, rows in plan.tiles.parts():
+            cells = np.argwhere(w["edge"][rows])
+            plan.edges[key] = cells + np.array(key) * TILE
+            plan.away_m[key] = w["away_m"][rows][tuple(cells.T)]
+            plan.solid[key] = int(np.count_nonzero(solid[rows])), int(np.count_nonzero(well[rows]))
+
+    def _judged(self, w: dict[str, NDArray[Any]]) -> NDArray[np.uint8]:
         r = self._rules
-        solid = self._hits > 1 + self._free // 8
-        well = solid & (self._hits >= r.well_hits) & (self._nearest <= r.well_range_m)
-        seen = np.zeros(self._free.shape, dtype=np.uint8)
-        seen[(self._free > 0) | (self._hits > 0)] = Seen.FREE
+        free, hits = w["free"], w["hits"]
+        solid = hits > 1 + free // 8
+        well = solid & (hits >= r.well_hits) & (w["nearest_m"] <= r.well_range_m)
+        seen = np.zeros(free.shape, dtype=np.uint8)
+        seen[(free > 0) | (hits > 0)] = Seen.FREE
         seen[solid] = Seen.POOR
         seen[well] = Seen.WELL
         return seen
 
-    def gaps(self) -> list[Gap]:
-        """Places to look at, the widest first."""
-        r = self._rules
-        seen = self.seen()
-        unseen = seen == Seen.NOTHING
-        # A cell between cells that were seen lies between two rays: that is no gap.
-        unseen &= ndimage.uniform_filter(unseen.astype(np.float32), 3) > 0.5
-        edge = (seen == Seen.FREE) & ndimage.binary_dilation(unseen)
-        away_m = self._away_m()
-        edge &= away_m <= r.gap_reach_m
-        labels, count = ndimage.label(edge, structure=np.ones((3, 3)))
-        found = []
-        for label in range(1, count + 1):
-            cells = np.argwhere(labels == label)
-            width_m = float(np.ptp(cells, axis=0).max() + 1) * CELL_M
-            if width_m < r.gap_width_m:
-                continue
-            middle = cells[np.argmin(np.linalg.norm(cells - cells.mean(axis=0), axis=1))]
-            x, y = ((middle + self.first_cell + 0.5) * CELL_M).tolist()
-            found.append(Gap((x, y), width_m, float(away_m[tuple(middle)])))
-        return sorted(found, key=lambda gap: -gap.width_m)
 
-    def share_well(self) -> float:
-        """Share of the solid cells near the way that are seen well; NaN before there are any."""
-        seen = self.seen()
-        near = self._away_m() <= self._rules.gap_reach_m
-        solid = np.count_nonzero(near & (seen >= Seen.POOR))
-        return np.count_nonzero(near & (seen == Seen.WELL)) / solid if solid else float("nan")
-
-    def _away_m(self) -> Array:
-        if not self._way.any():
-            return np.full(self._way.shape, np.inf)
-        distance: Array = ndimage.distance_transform_edt(~self._way)
-        return distance * CELL_M
-
-    def _make_room(self, cells: NDArray[np.int64]) -> None:
-        low = np.minimum(cells.min(axis=0) - self.first_cell, 0)
-        high = np.maximum(cells.max(axis=0) + 1 - self.first_cell - self._free.shape, 0)
-        if not low.any() and not high.any():
-            return
-        before = -(low // _GROW) * _GROW
-        after = -(-high // _GROW) * _GROW
-        pad = list(zip(before.tolist(), after.tolist(), strict=True))
-        self.first_cell = self.first_cell - before
-        self._free = np.pad(self._free, pad)
-        self._hits = np.pad(self._hits, pad)
-        self._nearest = np.pad(self._nearest, pad, constant_values=_FAR)
-        self._way = np.pad(self._way, pad)
+def _connected(cells: NDArray[np.int64]) -> list[NDArray[np.intp]]:
+    """Rows of cells (N, 2), each once, that touch each other, also at a corner."""
+    if not len(cells):
+        return []
+    low = cells.min(axis=0)
+    width = int(np.ptp(cells[:, 1])) + 3
+    keys = (cells[:, 0] - low[0]) * width + cells[:, 1] - low[1] + 1
+    order = np.argsort(keys)
+    ordered = keys[order]
+    pairs = []
+    for step in (1, width - 1, width, width + 1):  # right, and the three below
+        place = np.minimum(np.searchsorted(ordered, ordered + step), len(keys) - 1)
+        there = ordered[place] == ordered + step
+        pairs.append(np.stack([order[there], order[place[there]]]))
+    a, b = np.concatenate(pairs, axis=1)
+    joined = coo_array((np.ones(len(a), np.bool_), (a, b)), shape=(len(keys), len(keys)))
+    _, labels = connected_components(joined, directed=False)
+    by_label = np.argsort(labels, kind="stable")
+    return np.split(by_label, np.flatnonzero(np.diff(labels[by_label])) + 1)

@@ -12,6 +12,7 @@ from contextlib import suppress
 from typing import Any
 
 from recon4.errors import ConfigError
+from recon4.live.project_files import discard
 from recon4.live.session import Session
 
 SAY_EVERY_S = 2.0
@@ -47,7 +48,11 @@ class Headless:
         Raises:
             ConfigError: If a process cannot start, in its own words.
         """
-        recorder = await self._spawn("recorder")
+        try:
+            recorder = await self._spawn("recorder")
+        except ConfigError:
+            discard(self._session)
+            raise
         loop = asyncio.get_running_loop()
         for sign in (signal.SIGTERM, signal.SIGINT):
             loop.add_signal_handler(sign, self._stopping.set)

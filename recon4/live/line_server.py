@@ -14,7 +14,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-MOST_UNHEARD_BYTES = 4 << 20
+MOST_UNHEARD_BYTES = 16 << 20
+"""A whole preview and the way of an hour are 5 MB."""
 _LONGEST_LINE = 1 << 16
 
 

@@ -5,21 +5,27 @@ What comes out are messages, plain JSON values (``docs/live.md`` lists them); ar
 
 from __future__ import annotations
 
-import base64
-import zlib
 from collections import deque
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.imu import place_points
-from recon4.live.coverage import CELL_M, Coverage
+from recon4.live.coverage import Coverage
 from recon4.live.live_intensity import LiveIntensity
 from recon4.live.loops import LoopGate
+from recon4.live.messages import (
+    Message,
+    Snapshot,
+    figure,
+    gaps_message,
+    plan_message,
+    points_message,
+)
 from recon4.live.places import Places
-from recon4.live.preview import Chunk, Preview
+from recon4.live.preview import Preview
 from recon4.live.recovery import Recovery
 from recon4.live.tracker import Tracker
 from recon4.model.multiframe import Multiframe
@@ -28,8 +34,6 @@ from recon4.model.samples import ImuSamples
 from recon4.registration.odometry import OdometryStep
 from recon4.registration.segments import sample_segments
 from recon4.settings import Settings
-
-Message = dict[str, Any]
 
 PREVIEW_POINTS = 6000
 """Taken of a multiframe for the preview …"""
@@ -40,35 +44,59 @@ _SEARCH_AFTER = 5
 """After so many lost multiframes in a row the place is searched, now and then after as many."""
 _LOOP_WITHIN_M = 4.0
 _LOOP_WALKED_M = 20.0
-_MOST_PATH = 20_000
+_PATH_STEP_M = 0.25
+"""The way is kept a point every so far: an hour's walk is a few thousand."""
+_LATELY_NS = 10_000_000_000
+"""What was left out is said for so long."""
+_PLAN_BYTES_PER_S = 20_000
+"""Of a large plan: it is told less often then."""
 
 
 class LiveMap:
-    """One walk as it goes on."""
+    """One walk as it goes on; memory follows the area that was seen, and that slowly."""
 
-    def __init__(self, rig: Rig, settings: Settings) -> None:
+    def __init__(self, rig: Rig, settings: Settings, *, scratch: Path | None = None) -> None:
+        """Begin.
+
+        Args:
+            rig: What is on the backpack.
+            settings: Of the odometry and of what is registered.
+            scratch: Folder for what need not be in memory; None = the system's.
+        """
         self._rig, self._settings = rig, settings
+        self._scratch = scratch
         self.tracker = Tracker(rig, settings)
-        self._preview, self._coverage = Preview(), Coverage()
-        self._places = Places(settings)
+        self._preview = Preview()
         self._intensity = LiveIntensity(len(rig.sensors))
-        self._path: deque[list[float]] = deque(maxlen=_MOST_PATH)
-        self._lost, self._thinned, self._relocated = 0, 0, 0
-        self._lost_steps = 0
-        self._recovery: Recovery | None = None
+        self._thinned, self._relocated = 0, 0
+        self._lately: deque[tuple[int, bool]] = deque()
+        """Newest multiframes: time and whether it was left out."""
         self._summary_ns = 0
+        self._begin()
+
+    def _begin(self) -> None:
+        """An empty map; the preview is another matter, its generation counts on."""
+        self._coverage = Coverage()
+        self._places = Places(self._settings, scratch=self._scratch)
+        self._path: list[list[float]] = []
+        self._here_m = np.zeros(3)
+        """Where the body was when it was last not lost."""
+        self._lost = self._lost_steps = 0
+        self._recovery: Recovery | None = None
+        self._plan_due_ns = self._plan_floor = 0
         self._gate = LoopGate()
         self._loop: Message = {"kind": "loop", "near": False, "closed": False}
         self._plan: dict[str, Any] = {}
-        self._gaps: Message = {"kind": "gaps", "gaps": [], "well": None}
+        self._gaps: Message = {"kind": "gaps", "gaps": [], "well": None, "elsewhere": 0}
 
     def extend_imu(self, imu: ImuSamples) -> None:
         """Take samples as they were read."""
         self.tracker.extend_imu(imu)
 
-    def thin(self) -> None:
-        """A multiframe was left out, as the mapping fell behind; it is in the recording."""
+    def thin(self, frame: Multiframe) -> None:
+        """Leave a multiframe out, as the mapping has fallen behind; it is in the recording."""
         self._thinned += 1
+        self._lately.append((frame.t_ns, True))
 
     def push(self, frame: Multiframe) -> list[Message]:
         """Map a multiframe.
@@ -77,25 +105,36 @@ class LiveMap:
             What to tell: always a ``pose``; ``points`` when there are new ones; about once a
             second ``plan``, ``gaps`` and ``loop``.
         """
+        self._lately.append((frame.t_ns, False))
         step = self.tracker.push(frame)
+        anew: list[Message] = []
+        if self.tracker.anew:
+            self._begin()
+            self._preview.forget()
+            anew = [{"kind": "path", "points": []}]
         step, lost = self._follow(frame, step)
         T_map_body = self.tracker.T_map_odom @ step.T_odom_body
-        told = [self._pose(frame, step, T_map_body, lost=lost)]
+        told = [self._pose(frame, step, T_map_body, lost=lost), *anew]
         if lost:
             return told
-        self._path.append([round(float(v), 2) for v in T_map_body.t])
+        self._go_to(T_map_body.t)
         told += self._add_points(frame, step)
         if frame.t_ns - self._summary_ns >= SUMMARY_EVERY_NS:
             self._summary_ns = frame.t_ns
             told += self._summary(frame, T_map_body, step)
         return told
 
-    def everything(self) -> list[Message]:
-        """All that was told and still holds, for a listener that comes late."""
-        told: list[Message] = [{"kind": "path", "points": list(self._path)}]
-        if len(self._preview):
-            told.append(_points(self._preview.since(0)))
-        return [*told, *([self._plan] if self._plan else []), self._gaps, self._loop]
+    def snapshot(self) -> Snapshot:
+        """All that was told and still holds."""
+        chunk = self._preview.since(0) if len(self._preview) else None
+        others = [*([self._plan] if self._plan else []), self._gaps, self._loop]
+        return Snapshot(list(self._path), chunk, others)
+
+    def _go_to(self, p_map: Array) -> None:
+        self._here_m = p_map
+        place = [round(float(v), 2) for v in p_map]
+        if not self._path or np.linalg.norm(p_map - self._path[-1]) >= _PATH_STEP_M:
+            self._path.append(place)
 
     def _follow(self, frame: Multiframe, step: OdometryStep) -> tuple[OdometryStep, bool]:
         """The step to go on with, and whether the body is lost.
@@ -110,7 +149,7 @@ class LiveMap:
             step = self.tracker.start_over(frame)
             self._lost_steps = 0
             if self._recovery is None and len(self._places):
-                self._recovery = Recovery(self._places, np.array(self._path[-1]))
+                self._recovery = Recovery(self._places, self._here_m)
             return step, True
         if self._recovery is None or step.lost:
             return step, step.lost
@@ -140,16 +179,23 @@ class LiveMap:
             "lost": lost,
             "lost_frames": self._lost,
             "relocated": self._relocated,
-            "error_m": _figure(step.error_m),
-            "share": _figure(step.share),
-            "degeneracy": _figure(step.degeneracy),
-            "gap_m": _figure(step.gap_m),
-            "turn_rad_s": _figure(_turn_rate(step)),
+            "error_m": figure(step.error_m),
+            "share": figure(step.share),
+            "degeneracy": figure(step.degeneracy),
+            "gap_m": figure(step.gap_m),
+            "turn_rad_s": figure(_turn_rate(step)),
             "points": np.bincount(frame.sensor, minlength=len(self._rig.sensors)).tolist(),
             "thinned": self._thinned,
+            "lately": self._counts_lately(frame.t_ns),
             "imu": self.tracker.with_imu,
             "remark": self.tracker.remark,
         }
+
+    def _counts_lately(self, now_ns: int) -> dict[str, int]:
+        """Multiframes of the last 10 s, and how many of them were left out."""
+        while now_ns - self._lately[0][0] > _LATELY_NS:
+            self._lately.popleft()
+        return {"frames": len(self._lately), "thinned": sum(out for _, out in self._lately)}
 
     def _add_points(self, frame: Multiframe, step: OdometryStep) -> list[Message]:
         rows = np.arange(0, len(frame), max(1, len(frame) // PREVIEW_POINTS))
@@ -164,25 +210,29 @@ class LiveMap:
         every = max(1, len(p_map) // COVERAGE_RAYS)
         self._coverage.add(T_map_dense.t[-1], p_map[::every])
         chunk = self._preview.add(p_map, values)
-        return [] if chunk is None else [_points(chunk)]
+        return [] if chunk is None else [points_message(chunk)]
 
     def _summary(self, frame: Multiframe, T_map_body: SE3, step: OdometryStep) -> list[Message]:
         segments = sample_segments(frame, self._rig, self._settings.segments)
         ends = np.concatenate([segments.a_body, segments.b_body])
         self._close_loop(self._midpoints(frame), T_map_body, step)
         self._places.keep(self.tracker.T_map_odom @ step.T_odom_body, ends)
-        self._plan = _plan(self._coverage)
-        well = self._coverage.share_well()
-        gaps = [
-            {"p": list(gap.p_map), "width_m": gap.width_m, "away_m": round(gap.away_m, 2)}
-            for gap in self._coverage.gaps()[:50]
-        ]
-        self._gaps = {"kind": "gaps", "gaps": gaps, "well": _figure(well)}
-        return [self._plan, self._gaps, self._loop]
+        self._coverage.refresh()
+        self._gaps = gaps_message(self._coverage)
+        return [*self._new_plan(frame.t_ns), self._gaps, self._loop]
+
+    def _new_plan(self, now_ns: int) -> list[Message]:
+        """The plan, unless the last one was so large that it is not due."""
+        if now_ns < self._plan_due_ns and self._coverage.floor == self._plan_floor:
+            return []
+        self._plan, self._plan_floor = plan_message(self._coverage), self._coverage.floor
+        lasts_s = len(self._plan["seen"]) / _PLAN_BYTES_PER_S
+        self._plan_due_ns = now_ns + round(1e9 * lasts_s)
+        return [self._plan]
 
     def _close_loop(self, source: Array, T_map_body: SE3, step: OdometryStep) -> None:
         """Recognize a place left long ago; the map goes on from where it was."""
-        start_m = np.array(self._path[0]) if self._path else T_map_body.t
+        start_m = np.array(self._path[0])
         place = self._places.revisited(
             T_map_body.t, within_m=_LOOP_WITHIN_M, walked_before_m=_LOOP_WALKED_M
         )
@@ -213,34 +263,3 @@ def _turn_rate(step: OdometryStep) -> float:
     between = step.T_dense[:-1].inverse() @ step.T_dense[1:]
     seconds = np.maximum(np.diff(step.t_ns) * 1e-9, 1e-3)
     return float(np.max(between.angle() / seconds))
-
-
-def _points(chunk: Chunk) -> Message:
-    return {
-        "kind": "points",
-        "generation": chunk.generation,
-        "start": chunk.start,
-        "count": len(chunk.values),
-        "voxel_m": chunk.voxel_m,
-        "voxels": _base64(chunk.voxels),
-        "values": _base64(chunk.values),
-    }
-
-
-def _plan(coverage: Coverage) -> Message:
-    seen = coverage.seen()
-    return {
-        "kind": "plan",
-        "cell_m": CELL_M,
-        "first_cell": coverage.first_cell.tolist(),
-        "shape": list(seen.shape),
-        "seen": _base64(np.frombuffer(zlib.compress(seen.tobytes(), 1), np.uint8)),
-    }
-
-
-def _base64(values: NDArray[Any]) -> str:
-    return base64.b64encode(np.ascontiguousarray(values).tobytes()).decode("ascii")
-
-
-def _figure(value: float) -> float | None:
-    return float(f"{value:.4g}") if np.isfinite(value) else None

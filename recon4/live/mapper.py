@@ -26,8 +26,11 @@ import numpy as np
 from recon4.errors import Recon4Error
 from recon4.live.gnss_watch import GnssWatch
 from recon4.live.growing import GrowingFile, Growth
+from recon4.live.in_step import InStep
+from recon4.live.lateness import Lateness
 from recon4.live.line_server import LineServer
-from recon4.live.live_map import LiveMap, Message
+from recon4.live.live_map import LiveMap
+from recon4.live.messages import Message
 from recon4.live.notes import Notes
 from recon4.live.project_files import finish
 from recon4.live.session import Session, load_session, stretched
@@ -41,8 +44,6 @@ from recon4.store.atomic import write_json
 
 log = logging.getLogger(__name__)
 
-LATE_NS = 700_000_000
-"""A multiframe older than that when its turn comes is thinned out, every other one [ns]."""
 _LONGEST_LINE = 32 << 20
 
 
@@ -53,7 +54,7 @@ class Mapper:
         self._session = session
         self._rig: Rig = load_rig(session.rig)
         self._settings: Settings = preset(session.preset)
-        self._map = LiveMap(self._rig, self._settings)
+        self._map = LiveMap(self._rig, self._settings, scratch=session.folder)
         self._mapping = threading.Lock()
         self._growth = Growth()
         self._live = Live(self._open, self._watch)
@@ -61,8 +62,10 @@ class Mapper:
         self._lines = LineServer(greet=self._greeting, hear=lambda told: None)
         self._gnss, self._notes = GnssWatch(), Notes(self._live.report)
         self._newest_notes = self._notes.message(time.monotonic())
+        self._newest_pose: list[Message] = []
         self._told_s = 0.0
-        self._skip_next = False
+        self._in_step = InStep()
+        self._lateness = Lateness(self._live.report, self._now_ns)
         self._given_up = False
 
     async def run(self, on_ready: Callable[[], None]) -> int:
@@ -75,7 +78,7 @@ class Mapper:
         on_ready()
         try:
             outcome = await asyncio.to_thread(self._read)
-        except Recon4Error as error:
+        except (Recon4Error, OSError) as error:
             log.exception("mapping ended")
             outcome = {"kind": "done", "frames": 0, "problem": str(error)}
         following.cancel()
@@ -133,6 +136,8 @@ class Mapper:
             progress=Silent(),
             live=self._live,
         )
+        for frame in self._in_step.rest():
+            self._map_frame(frame)
         if self._given_up:
             return {"kind": "done", "frames": 0, "problem": "the mapper was told to stop"}
         began_s = time.monotonic()
@@ -146,25 +151,30 @@ class Mapper:
         return GrowingFile(path, self._growth)
 
     def _watch(self, item: Multiframe | ImuSamples | GnssSamples) -> None:
+        if isinstance(item, GnssSamples):
+            self._say(self._gnss.push(item))
+            return
         if isinstance(item, ImuSamples):
             self._map.extend_imu(item)
-        elif isinstance(item, GnssSamples):
-            self._say(self._gnss.push(item))
-        elif self._is_late(item):
-            self._map.thin()
+            offset_ns = round(self._rig.imu_time_offset_s * 1e9)
+            ready = self._in_step.heard(int(item.t_ns[-1]) + offset_ns)
         else:
-            with self._mapping:
-                told = self._map.push(item)
-            told[0]["age_s"] = round((self._now_ns() - told[0]["t_ns"]) / 1e9, 3)
-            for message in told:
-                self._say(message)
-            self._tell_notes()
+            ready = self._in_step.came(item)
+        for frame in ready:
+            self._map_frame(frame)
 
-    def _is_late(self, frame: Multiframe) -> bool:
-        """Whether to leave a frame out of the mapping: every other one, while behind."""
-        late = self._now_ns() - frame.t_ns - frame.duration_ns > LATE_NS
-        self._skip_next = late and not self._skip_next
-        return self._skip_next
+    def _map_frame(self, frame: Multiframe) -> None:
+        if self._lateness.leave_out(frame.t_ns + frame.duration_ns):
+            self._map.thin(frame)
+            return
+        with self._mapping:
+            told = self._map.push(frame)
+        told[0]["t_ns"] = self._lateness.on_our_clock(told[0]["t_ns"])
+        told[0]["age_s"] = self._lateness.age_s(told[0]["t_ns"])
+        self._newest_pose = told[:1]
+        for message in told:
+            self._say(message)
+        self._tell_notes()
 
     def _now_ns(self) -> int:
         return stretched(time.time_ns(), self._session.speed)
@@ -181,7 +191,8 @@ class Mapper:
 
     def _greeting(self) -> list[Message]:
         with self._mapping:
-            return [*self._map.everything(), self._newest_notes]
+            snapshot = self._map.snapshot()
+        return [*snapshot.messages(), *self._newest_pose, self._newest_notes]
 
 
 def warm_up(rig: Rig, settings: Settings) -> None:
@@ -194,7 +205,7 @@ def warm_up(rig: Rig, settings: Settings) -> None:
     reach_m = 3.0 / np.abs(ray).max(axis=1, keepdims=True) + rng.normal(0, 0.01, (len(ray), 1))
     count = len(ray)
     for k in range(3):
-        t_ns = k * 100_000_000
+        t_ns = (20 + k) * 100_000_000  # late enough for the summary of a second
         imu_ns = t_ns + 10_000_000 * np.arange(11, dtype=np.int64)
         accel = np.tile([0.0, 0.0, STANDARD_GRAVITY_M_S2], (11, 1))
         live_map.extend_imu(ImuSamples(imu_ns, np.zeros((11, 3)), accel))

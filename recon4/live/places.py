@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array, so3_exp
 from recon4.live.plan_match import plan_guesses
+from recon4.live.shelf import Shelf
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.planes import register_to_planes
 from recon4.registration.result import Registration
@@ -16,7 +17,8 @@ from recon4.settings import Settings
 
 KEEP_EVERY_M = 1.0
 _SEGMENTS = 3000
-"""Kept of a place; 72 kB. An hour of walking is 4000 places."""
+"""Kept of a place, up to twice as many; 72 to 144 kB. An hour of walking is 4000 places: they
+wait in a file."""
 _AROUND = 3
 """Places before and after one that make up its local map."""
 _SURE_SHARE, _SURE_DEGENERACY = 0.5, 0.02
@@ -31,18 +33,26 @@ _FLOOR_M, _CEILING_M = 0.9, 0.8
 @dataclass(frozen=True, slots=True, eq=False)
 class _Place:
     T_map_body: SE3
-    ends_body: NDArray[np.float32]
-    """Ends of segments [m], (2 M, 3)."""
-    walked_m: float
+    ends_body: slice
+    """Its ends of segments in the body [m], on the shelf."""
 
 
 class Places:
     """Submaps along the way, and the registration of a new view to one of them."""
 
-    def __init__(self, settings: Settings) -> None:
+    def __init__(self, settings: Settings, *, scratch: Path | None = None) -> None:
+        """Begin without any.
+
+        Args:
+            settings: How views are registered.
+            scratch: Folder of the file; None = the system's.
+        """
         self._settings = settings
         self._planes = replace(settings.planes, levels=_LEVELS)
+        self._shelf = Shelf(scratch)
         self._places: list[_Place] = []
+        self._at = np.zeros((64, 4))
+        """Position [m] and length of the way until there [m] of each place, and room for more."""
         self._walked_m = 0.0
         self._last_m: Array | None = None
 
@@ -69,15 +79,21 @@ class Places:
             self._walked_m += step_m
         self._last_m = here
         step = max(1, len(ends_body) // (2 * _SEGMENTS))
-        kept = ends_body[::step].astype(np.float32)
-        self._places.append(_Place(T_map_body, kept, self._walked_m))
+        kept = self._shelf.put(ends_body[::step].astype(np.float32))
+        if len(self) == len(self._at):
+            self._at = np.concatenate([self._at, np.zeros_like(self._at)])
+        self._at[len(self)] = [*here, self._walked_m]
+        self._places.append(_Place(T_map_body, kept))
 
     def revisited(self, p_map: Array, *, within_m: float, walked_before_m: float) -> int | None:
         """The nearest place that was left at least so much of the way ago; None = none near."""
-        old = [
-            k for k, p in enumerate(self._places) if self._walked_m - p.walked_m >= walked_before_m
-        ]
-        return self._nearest(old, p_map, within_m)
+        # The way only grows: the old ones come first.
+        old = int(np.count_nonzero(self._way_m <= self._walked_m - walked_before_m))
+        if not old:
+            return None
+        away_m = self._away_m(p_map)[:old]
+        best = int(np.argmin(away_m))
+        return best if away_m[best] <= within_m else None
 
     def locate(self, source: Array, guess: SE3, place: int) -> Registration | None:
         """Register a view to a place; None if it does not fit.
@@ -109,13 +125,14 @@ class Places:
 
     def near(self, p_map: Array, *, most: int, apart_m: float = 0.0) -> list[int]:
         """The nearest places, so far apart from each other."""
-        away = [float(np.linalg.norm(p.T_map_body.t - p_map)) for p in self._places]
+        at_m = self._at[: len(self), :3]
         chosen: list[int] = []
-        for k in np.argsort(away).tolist():
-            here = self._places[k].T_map_body.t
-            others = [np.linalg.norm(self._places[c].T_map_body.t - here) for c in chosen]
-            if len(chosen) < most and min(others, default=np.inf) >= apart_m:
-                chosen.append(int(k))
+        for k in np.argsort(self._away_m(p_map), kind="stable").tolist():
+            others = np.linalg.norm(at_m[chosen] - at_m[k], axis=1)
+            if others.min(initial=np.inf) >= apart_m:
+                chosen.append(k)
+            if len(chosen) == most:
+                break
         return chosen
 
     def relocate(self, source: Array, R: Array, place: int) -> list[tuple[SE3, float]]:
@@ -137,12 +154,13 @@ class Places:
                 found.append(one)
         return [(one.T_target_source, one.share) for one in found]
 
-    def _nearest(self, rows: list[int], p_map: Array, within_m: float) -> int | None:
-        if not rows:
-            return None
-        away = [float(np.linalg.norm(self._places[k].T_map_body.t - p_map)) for k in rows]
-        best = int(np.argmin(away))
-        return rows[best] if away[best] <= within_m else None
+    @property
+    def _way_m(self) -> Array:
+        return self._at[: len(self), 3]
+
+    def _away_m(self, p_map: Array) -> Array:
+        away_m: Array = np.linalg.norm(self._at[: len(self), :3] - p_map, axis=1)
+        return away_m
 
     def _local_map(self, place: int) -> PlaneMap:
         planes = PlaneMap(self._planes)
@@ -155,7 +173,8 @@ class Places:
 
     def _in_map(self, place: int) -> Array:
         one = self._places[place]
-        return np.ascontiguousarray(one.T_map_body @ one.ends_body.astype(np.float64))
+        ends_body = self._shelf.get(one.ends_body).astype(np.float64)
+        return np.ascontiguousarray(one.T_map_body @ ends_body)
 
 
 def _walls(p_m: Array) -> Array:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import errno
 import socket
 import struct
 from dataclasses import dataclass
+from ipaddress import IPv4Address
 
 from recon4.errors import ConfigError
 from recon4.live.capture_file import Datagram
-from recon4.model.rig import Rig
+from recon4.live.serial_line import parse_device
+from recon4.model.rig import Rig, Sensor
 
 POSITION_PORT = 8308
 """Velodyne's position packets."""
@@ -17,6 +20,11 @@ _BUFFER_BYTES = 16 << 20
 _SO_TIMESTAMPNS = getattr(socket, "SO_TIMESTAMPNS", 35)
 _SO_RXQ_OVFL = 40
 _LONGEST = 9000
+_HINTS = {
+    errno.EADDRINUSE: "; does another recorder run, or VeloView?",
+    errno.EACCES: "; ports below 1024 are the administrator's: let the sensors send to others",
+    errno.EADDRNOTAVAIL: "; no network card of this computer has that address at the moment",
+}
 _TIMESPEC = struct.Struct("@qq")
 
 
@@ -59,6 +67,41 @@ def wanted_ports(rig: Rig) -> dict[int, str]:
     return {number: ", ".join(words) for number, words in ports.items()}
 
 
+def check_sources(rig: Rig) -> None:
+    """Refuse a rig that cannot be listened to.
+
+    Raises:
+        ConfigError: If two LiDARs share a port and have no addresses of their own, an address is
+            none, or the serial line of the receiver is none or has no port.
+    """
+    if rig.gnss_serial:
+        parse_device(rig.gnss_serial)
+        if not rig.gnss_port:
+            raise ConfigError("gnss: serial needs a port: its sentences are kept as if sent to it")
+    ports: dict[int, list[Sensor]] = {}
+    for sensor in rig.sensors:
+        ports.setdefault(sensor.port, []).append(sensor)
+        if sensor.address:
+            _check_address(sensor)
+    for port, sensors in ports.items():
+        addresses = {sensor.address for sensor in sensors}
+        if len(sensors) > 1 and (len(addresses) < len(sensors) or "" in addresses):
+            names = ", ".join(sensor.name for sensor in sensors)
+            raise ConfigError(
+                f"rig {rig.name}: {names} all send to port {port}: give each its address = "
+                '"…" in the rig file, or a port of its own'
+            )
+
+
+def _check_address(sensor: Sensor) -> None:
+    try:
+        IPv4Address(sensor.address)
+    except ValueError as error:
+        raise ConfigError(
+            f"{sensor.name}: address must be like 192.168.1.201, got {sensor.address!r}"
+        ) from error
+
+
 def open_ports(rig: Rig, *, address: str = "0.0.0.0") -> list[Port]:
     """Open all ports of a rig; the kernel stamps and counts what it drops.
 
@@ -76,9 +119,9 @@ def open_ports(rig: Rig, *, address: str = "0.0.0.0") -> list[Port]:
     except OSError as error:
         for port in opened:
             port.socket.close()
+        hint = _HINTS.get(error.errno or 0, "")
         raise ConfigError(
-            f"UDP port {number} ({words}) cannot be opened: {error.strerror}; does another "
-            "recorder run, or VeloView?"
+            f"UDP port {number} ({words}) cannot be opened on {address}: {error.strerror}{hint}"
         ) from error
     return opened
 

@@ -61,6 +61,11 @@ class Preview:
             return self.since(0)
         return self.since(start) if self._count > start else None
 
+    def forget(self) -> None:
+        """Begin anew: what was sent before is void."""
+        self.generation += 1
+        self._clear()
+
     def since(self, start: int) -> Chunk:
         """Points from a place on."""
         rows = slice(start, self._count)

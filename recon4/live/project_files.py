@@ -9,6 +9,7 @@ from typing import Any
 
 from recon4 import stages
 from recon4.errors import StoreError
+from recon4.live.ports import check_sources
 from recon4.live.session import Session
 from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.progress import Silent
@@ -16,7 +17,7 @@ from recon4.settings import Settings
 from recon4.store.atomic import write_text
 from recon4.store.hashing import hash_json, size_of
 from recon4.store.inputs import input_file, input_files
-from recon4.store.project import Project
+from recon4.store.project import Project, is_project
 from recon4.store.stage import Input, StageRunner
 
 
@@ -29,17 +30,35 @@ def begin(project: Path, rig: Rig, **how: Any) -> Session:
         how: Fields of `Session`.
 
     Raises:
-        StoreError: If the folder is something else or cannot be written.
+        ConfigError: If the packets of two LiDARs of the rig could not be told apart.
+        StoreError: If the folder is a project or something else, or cannot be written.
     """
+    check_sources(rig)
+    session = Session(project=project, **how)
+    try:
+        taken = is_project(project) and not _never_ran(session)
+    except OSError as error:
+        raise StoreError(f"cannot use {project} as a project: {error.strerror}") from error
+    if taken:
+        raise StoreError(f"there is a project {project.name} already; give a new name")
     with Project.open(project) as opened:
-        session = Session(project=project, **how)
-        if session.capture.exists():
-            raise StoreError(f"{project} has a capture already; give a new folder")
         opened.describe(preset=session.preset, rig=rig.name)
         session.capture.parent.mkdir(exist_ok=True)
         write_text(session.rig, format_rig(rig))
         session.save()
     return session
+
+
+def discard(session: Session) -> None:
+    """Remove a project again whose recorder could not start: nothing was recorded."""
+    if _never_ran(session):
+        shutil.rmtree(session.project, ignore_errors=True)
+
+
+def _never_ran(session: Session) -> bool:
+    """Whether this is what `begin` left, and nothing more."""
+    left = (session.capture, session.outcome, *(session.project / "artifacts").glob("*"))
+    return (session.folder / "session.json").exists() and not any(path.exists() for path in left)
 
 
 def finish(session: Session, frames: Path, settings: Settings) -> int:

@@ -14,20 +14,22 @@
 from __future__ import annotations
 
 import asyncio
+import errno
 import json
 import os
-import shutil
 import signal
 import sys
 import time
 from collections import Counter
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
-from recon4.errors import ConfigError, Recon4Error
+from recon4.errors import Recon4Error, StoreError
 from recon4.live.capture_file import CaptureFile, Datagram
+from recon4.live.disk import DiskWatch
 from recon4.live.line_server import LineServer
 from recon4.live.ports import Port, open_ports
 from recon4.live.serial_line import SerialLine
@@ -70,6 +72,10 @@ class Recorder:
         self._began_ns = time.time_ns()
         self._paused = False
         self._skipped = 0
+        self._disk = DiskWatch(session.project, least_free_bytes=session.least_free_bytes)
+        self._disk.look(self._began_s)
+        self._notes_problem = ""
+        """Why a mark is not on the disk; empty = all are."""
         self._rates: list[dict[str, Any]] = []
         self._over = asyncio.Event()
         self._why = "stopped"
@@ -77,8 +83,6 @@ class Recorder:
     def _open_serial(self, rig: Rig) -> SerialLine | None:
         if not rig.gnss_serial:
             return None
-        if not rig.gnss_port:
-            raise ConfigError("gnss: serial needs a port: its sentences are kept as if sent to it")
 
         def take(datagram: Datagram) -> None:
             self._loop.call_soon_threadsafe(self._take, datagram)
@@ -110,7 +114,8 @@ class Recorder:
             await asyncio.sleep(0)  # its last sentences are taken
         await asyncio.to_thread(self._file.close)
         outcome = {"why": self._why, **self.status()}
-        write_json(self._session.outcome, outcome)
+        with suppress(StoreError):  # on a full disk; whoever listens hears it all the same
+            write_json(self._session.outcome, outcome)
         self._lines.say({"kind": "stopped", **outcome})
         await self._lines.close()
 
@@ -154,8 +159,9 @@ class Recorder:
         ]
         self._counted, self._counted_s = Counter(self._counts), now_s
         self._data_counted = Counter(self._data)
+        self._disk.look(now_s)
         self._lines.say({"kind": "status", **self.status()})
-        if not self._disk()["enough"]:
+        if not self._disk.told()["enough"]:
             self._why = "the disk is nearly full"
             self._over.set()
 
@@ -172,18 +178,8 @@ class Recorder:
             "kernel_drops": sum(port.kernel_drops for port in self._ports),
             "serial": None if self._serial is None else self._serial.problem,
             "file": asdict(self._file.state()),
-            "disk": self._disk(),
-        }
-
-    def _disk(self) -> dict[str, Any]:
-        free = shutil.disk_usage(self._session.project).free
-        written = self._file.state().written_bytes
-        per_s = written / max(time.monotonic() - self._began_s, 1.0)
-        left_s = (free - self._session.least_free_bytes) / per_s if per_s > 1000 else None
-        return {
-            "free_bytes": free,
-            "left_s": None if left_s is None else round(left_s),
-            "enough": free > self._session.least_free_bytes,
+            "disk": self._disk.told(),
+            "notes": self._notes_problem,
         }
 
     def _greeting(self) -> list[dict[str, Any]]:
@@ -201,18 +197,40 @@ class Recorder:
                 self._paused = False
                 self._mark({"what": "resume"})
             case "mark":
-                self._mark({name: told.get(name) for name in ("what", "text", "who")})
+                facts = {name: told.get(name) for name in ("what", "text", "who")}
+                self._mark(facts, ago_s=told.get("ago_s", 0.0))
             case _:
                 pass  # a newer server may know more
 
-    def _mark(self, facts: dict[str, Any]) -> None:
-        mark = {"t_ns": stretched(time.time_ns(), self._session.speed), **facts}
-        with self._session.marks.open("a", encoding="utf-8") as file:
-            file.write(json.dumps(mark, ensure_ascii=False) + "\n")
-            file.flush()
-            os.fsync(file.fileno())
-        self._lines.say({"kind": "mark", **mark})
+    def _mark(self, facts: dict[str, Any], *, ago_s: float = 0.0) -> None:
+        t_ns = time.time_ns() - round(1e9 * ago_s)
+        mark = {"t_ns": stretched(t_ns, self._session.speed), **facts}
+        try:
+            _append(self._session.marks, json.dumps(mark, ensure_ascii=False) + "\n")
+        except OSError as error:
+            self._notes_problem = error.strerror or str(error)
+        else:
+            self._notes_problem = ""
+            self._lines.say({"kind": "mark", **mark})
         self._tell_status()
+
+
+def _append(path: Path, line: str) -> None:
+    """Add a line to a file, on the disk when this returns; all of it or nothing.
+
+    Raises:
+        OSError: If it cannot be written.
+    """
+    file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC, 0o644)
+    try:
+        before = os.fstat(file).st_size
+        data = line.encode()
+        if os.write(file, data) < len(data):
+            os.ftruncate(file, before)
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        os.fsync(file)
+    finally:
+        os.close(file)
 
 
 def main(project: Path) -> int:

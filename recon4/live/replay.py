@@ -19,7 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.errors import EmptyRecording
+from recon4.errors import ConfigError, EmptyRecording
 from recon4.live.session import stretched
 from recon4.model.rig import GNSS_PORT, IMU_PORT
 from recon4.progress import Progress
@@ -81,6 +81,7 @@ def replay(
 
     Raises:
         RecordingError: If there is nothing to send.
+        ConfigError: If the address is none, or cannot be reached.
     """
     rounds = _rounds(recording, times)
     first = next(rounds, None)
@@ -195,7 +196,11 @@ class _Senders:
         """Send a datagram."""
         if shipment.source not in self._sockets:
             self._sockets[shipment.source] = self._open(shipment.source)
-        self._sockets[shipment.source].sendto(shipment.payload, (self._target, shipment.port))
+        try:
+            self._sockets[shipment.source].sendto(shipment.payload, (self._target, shipment.port))
+        except OSError as error:
+            what = error.strerror or str(error)
+            raise ConfigError(f"cannot send to {self._target}: {what}") from error
 
     def _open(self, source: str) -> socket.socket:
         udp = self._closing.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))

@@ -20,6 +20,11 @@ _BAD_FRAMES = 8
 """Of those, lost or far off: so many raise the doubt."""
 _FAR_M = 0.08
 _BETTER = 0.75
+_EARLY_FRAMES = 100
+"""An IMU found wrong so soon never was right: the map made with it is none."""
+_LEAST_UPRIGHT = 0.5
+"""Cosine: nobody carries the sensors more than 60 degrees tilted when the walk begins."""
+_IMU_WRONG = "is it mounted as the rig file says (upside down?)"
 
 
 class Tracker:
@@ -32,7 +37,9 @@ class Tracker:
         self._odometry: Odometry | None = None
         self._recent: deque[tuple[Multiframe, bool]] = deque(maxlen=_TRIED_FRAMES)
         self._imu: deque[ImuSamples] = deque(maxlen=1000)
-        self._since_doubt = 0
+        self._since_doubt = self._frames = 0
+        self.anew = False
+        """Whether the map before the last multiframe is worth nothing: poses are in a new frame."""
         self._believed = SE3.identity()
         """Where the body was when it was last not lost, in the map."""
         self.T_map_odom = SE3.identity()
@@ -53,11 +60,9 @@ class Tracker:
 
     def push(self, frame: Multiframe) -> OdometryStep:
         """Register the next multiframe; poses are in the frame `T_map_odom` places."""
+        self._frames, self.anew = self._frames + 1, False
         if self._odometry is None:
-            imu = join(self._waiting)
-            self.with_imu = imu is not None and len(imu) > 1
-            self._odometry = Odometry(self._rig, self._settings, imu)
-            self._waiting.clear()
+            self._odometry = self._begin()
         step = self._odometry.push(frame)
         if not step.lost:
             self._believed = self.T_map_odom @ step.T_odom_body
@@ -68,6 +73,15 @@ class Tracker:
             self._since_doubt = 0
             return self._doubt(step)
         return step
+
+    def _begin(self) -> Odometry:
+        imu = join(self._waiting)
+        self._waiting.clear()
+        self.with_imu = imu is not None and len(imu) > 1
+        if self.with_imu and imu is not None and not _upright(imu, self._rig):
+            self.with_imu, imu = False, None
+            self.remark = f"the IMU does not know which way is up and is not used: {_IMU_WRONG}"
+        return Odometry(self._rig, self._settings, imu)
 
     def start_over(self, frame: Multiframe) -> OdometryStep:
         """Begin a new odometry with a multiframe; the body is believed to be where it was."""
@@ -92,10 +106,14 @@ class Tracker:
         T_map_body = self.T_map_odom @ step.T_odom_body
         self._odometry, self.with_imu = odometry, False
         self.remark = (
-            "the IMU contradicts the LiDARs and is not used: is it mounted as the rig file says "
-            "(upside down?), its clock the same?"
+            f"the IMU contradicts the LiDARs and is not used: {_IMU_WRONG}, its clock the same?"
         )
-        self.move(T_map_body, last)
+        self.anew = self._frames < _EARLY_FRAMES
+        if self.anew:
+            self.T_map_odom = SE3.identity()
+            self._believed = last.T_odom_body
+        else:
+            self.move(T_map_body, last)
         return last
 
     def _tried(
@@ -105,3 +123,12 @@ class Tracker:
         steps = [odometry.push(frame) for frame in frames]
         errors = [1.0 if step.lost else np.nan_to_num(step.error_m, nan=1.0) for step in steps[1:]]
         return float(np.mean(errors)), odometry, steps[-1]
+
+
+def _upright(imu: ImuSamples, rig: Rig) -> bool:
+    """Whether the body's z axis points up, as far as the IMU can tell."""
+    force = imu.accel_m_s2 @ rig.T_body_imu.R.T
+    if not np.isfinite(force).all():  # a gyroscope alone
+        return True
+    up = force.mean(axis=0)
+    return bool(up[2] > _LEAST_UPRIGHT * np.linalg.norm(up))

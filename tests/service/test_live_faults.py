@@ -1,9 +1,14 @@
-"""Processes of a capture that die: what was recorded is whole, and becomes a project."""
+"""A capture in trouble: processes that die, datagrams that do not come as they should.
+
+What was recorded is whole and becomes a project, and the operator is told in words.
+"""
 
 from __future__ import annotations
 
+import asyncio
 import json
 import os
+import re
 import secrets
 import signal
 import socket
@@ -11,18 +16,26 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import httpx
 import numpy as np
 import pytest
 
-from recon4.live.replay import replay
+from app.errors import Conflict
+from app.live.store import Captures
+from recon4.errors import StoreError
+from recon4.live.replay import Shipment, replay
 from recon4.live.session import load_session
 from recon4.model.rig import load_rig
 from recon4.progress import Silent
 from recon4.recording.ingest import ingest
+from recon4.recording.pcap import read_pcap
+from recon4.recording.report import ImportReport
+from recon4.recording.velodyne_models import DATA_SIZE, HOUR_US
 from recon4.settings import preset
 from recon4.simulation.simulate import simulate
 from recon4.store.frames import FrameStore
@@ -105,16 +118,24 @@ def serving(root, address):
             process.kill()
 
 
+def an_address():
+    return ".".join(["127", *(str(secrets.randbelow(250) + 2) for _ in range(3))])
+
+
+def start(server):
+    new = {"project": "walk", "rig": "4recon", "preset": "indoor"}
+    answer = server.post("/api/live", json=new)
+    assert answer.status_code == 201, answer.text
+
+
 def test_mapper_server_and_recorder_die_and_nothing_recorded_is_lost(tmp_path, walk, project):
     root = project.parent
-    address = ".".join(["127", *(str(secrets.randbelow(250) + 2) for _ in range(3))])
+    address = an_address()
     sending = threading.Thread(
         target=replay, args=(walk,), kwargs={"progress": Silent(), "target": address}
     )
     with serving(root, address) as server:
-        new = {"project": "walk", "rig": "4recon", "preset": "indoor"}
-        answer = server.post("/api/live", json=new)
-        assert answer.status_code == 201, answer.text
+        start(server)
         sending.start()
         hear_frame(project, 3)
         mapper = process_of("recon4.live.mapper", project)
@@ -148,3 +169,114 @@ def test_mapper_server_and_recorder_die_and_nothing_recorded_is_lost(tmp_path, w
     assert len(live) == len(later) > 30
     for a, b in zip(live, later, strict=True):
         np.testing.assert_array_equal(a.xyz, b.xyz)
+
+
+@dataclass
+class BadWay:
+    """From the sensors to the recorder: one trouble after the other, in seconds of the walk."""
+
+    rng: np.random.Generator = field(default_factory=lambda: np.random.default_rng(7))
+    first_ns: int = 0
+    held: list[Shipment] = field(default_factory=list)
+    fixes: int = 0
+
+    def __call__(self, one: Shipment) -> Iterator[Shipment]:
+        self.first_ns = self.first_ns or one.t_ns
+        at_s = (one.t_ns - self.first_ns) / 1e9
+        yield from self.packets(one, at_s) if one.port in (2368, 2369) else (one,)
+        if at_s > 0.2 * self.fixes:
+            self.fixes += 1
+            yield from self.others(one, at_s)
+
+    def packets(self, one: Shipment, at_s: float) -> Iterator[Shipment]:
+        silent = 5.5 <= at_s < 8.0 or (one.port == 2369 and at_s < 5.0)
+        lost = 8.0 <= at_s < 9.5 and self.rng.random() < 0.3
+        if silent or lost:
+            return
+        if one.port == 2369:
+            one = self.without_pps(one)
+        if 11.0 <= at_s < 12.5:
+            self.held.append(one)
+            if len(self.held) == 8:
+                yield from (self.held[k] for k in self.rng.permutation(8))
+                self.held.clear()
+            return
+        yield one
+        if 9.5 <= at_s < 11.0:
+            yield one
+
+    def without_pps(self, one: Shipment) -> Shipment:
+        """The stamp of a sensor that counts from when it was switched on."""
+        stamp_us = int.from_bytes(one.payload[1200:1204], "little") + 1_234_500_000
+        stamp = (stamp_us % HOUR_US).to_bytes(4, "little")
+        return replace(one, payload=one.payload[:1200] + stamp + one.payload[1204:])
+
+    def others(self, one: Shipment, at_s: float) -> Iterator[Shipment]:
+        """A receiver whose position jumps by 50 m, and somebody else's devices."""
+        lat_deg = 49.2 + (50.0 / 111_195.0 if at_s > 6.0 else 0.0)
+        fix = json.dumps({"lat_deg": lat_deg, "lon_deg": 16.6, "quality": 4}).encode()
+        yield Shipment(one.t_ns, "127.0.0.1", 8310, fix)
+        if at_s > 12.0:
+            for size in (DATA_SIZE, 300):
+                yield Shipment(one.t_ns, "127.9.9.9", 2368, self.rng.bytes(size))
+
+
+def test_every_trouble_on_the_way_is_said_in_words_and_all_is_recorded(walk, project):
+    address, sent, said = an_address(), [], set()
+
+    def send():
+        sent.append(replay(walk, progress=Silent(), target=address, alter=BadWay()))
+
+    sending = threading.Thread(target=send)
+    with serving(project.parent, address) as server:
+        start(server)
+        sending.start()
+        while sending.is_alive():
+            said |= {word["text"] for word in server.get("/api/live").json()["words"]}
+            sending.join(0.25)
+        server.post("/api/live/stop").raise_for_status()
+        wait_for(lambda: server.get("/api/live").json()["state"] == "ready", "not ready")
+
+    for pattern in (
+        r"vertical LiDAR silent for \d+ s",
+        r"No LiDAR sends anything for \d+ s: check power and cables",
+        r"vertical: its clock is .* s off the recorder's and no GPS drives it.*",
+        r"\d+ % of the packets never arrived: check the cable",
+        r"\d+ % of packets came twice: the copies are left out",
+        r"\d+ % of packets came out of order: put right",
+        r"Foreign traffic on port 2368 from 127\.9\.9\.9",
+        r"GNSS jumped by 50 m: the map is made without it",
+    ):
+        assert any(re.fullmatch(pattern, text) for text in said), (pattern, sorted(said))
+    batches = read_pcap(project / "recordings" / "walk.pcap", ImportReport())
+    assert sum(len(batch) for batch in batches) == sent[0]
+    frames = FrameStore.open(read_artifacts(project)["frames"])
+    assert len(frames) > 80
+    assert frames.report["counts"]["packets_duplicate"] > 1000
+
+
+def test_a_capture_that_cannot_start_leaves_nothing_and_one_that_ends_by_itself_says_why(project):
+    address = an_address()
+
+    async def run():
+        captures = Captures(project.parent)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
+            taken.bind((address, 2369))
+            with pytest.raises(Conflict, match=r"vertical.*does another recorder run"):
+                await captures.start("walk", "4recon", address=address)
+        left = project.exists()
+        capture = await captures.start("walk", "4recon", address=address, least_free_bytes=1 << 62)
+        while not capture.over:
+            await capture.picture.news(capture.picture.version, timeout_s=0.5)
+        with pytest.raises(StoreError, match="there is a project walk already"):
+            await captures.start("walk", "4recon", address=address)
+        await capture.leave()
+        for module in ("recon4.live.recorder", "recon4.live.mapper"):
+            await asyncio.to_thread(wait_for, lambda m=module: not process_of(m, project), module)
+        await asyncio.sleep(0.1)  # the loop hears of it
+        return left, capture.problem
+
+    left, problem = asyncio.run(run())
+
+    assert not left
+    assert problem.startswith("The recording ended by itself: the disk is nearly full")

@@ -50,7 +50,8 @@ def said(told=None, *, rig=RIG, problem="", **newest):
 
 
 POSE = {"frame_id": 9, "lost": False, "turn_rad_s": 0.5, "age_s": 0.2, "share": 0.9,
-        "error_m": 0.02, "gap_m": 0.01, "remark": "", "thinned": 0}  # fmt: skip
+        "error_m": 0.02, "gap_m": 0.01, "degeneracy": 0.1, "remark": "", "thinned": 0,
+        "lately": {"frames": 100, "thinned": 0}}  # fmt: skip
 
 
 def test_nothing_is_said_when_all_is_well():
@@ -130,6 +131,11 @@ def test_the_rate_of_a_lidar_counts_its_data_packets():
             "bad",
             "Nothing is recorded: the disk is full",
         ),
+        (
+            status(notes="No space left on device"),
+            "bad",
+            "A mark could not be noted: No space left on device",
+        ),
         (status(disk={"left_s": 185}), "bad", "Disk full in 3 min"),
         (status(paused=True), "info", "Paused: nothing is recorded"),
     ],
@@ -145,13 +151,21 @@ def test_the_recorder_is_heard(told, level, text):
         ({"turn_rad_s": 3.5}, "care", "Turn slower"),
         ({"share": 0.3}, "care", "Tracking is unsure: walk slower, look at more walls"),
         ({"gap_m": 0.4}, "care", "Tracking is unsure: walk slower, look at more walls"),
+        ({"degeneracy": 1e-4}, "care", "Tracking is unsure: walk slower, look at more walls"),
         ({"error_m": 0.2}, "care", "Tracking is unsure: walk slower, look at more walls"),
         ({"remark": "the IMU lies"}, "care", "The IMU lies"),
         ({"age_s": 3.0}, "care", "The preview is 3 s behind; the recording is whole"),
         (
-            {"age_s": 3.0, "thinned": 8},
+            {"age_s": 3.0, "thinned": 80, "lately": {"frames": 99, "thinned": 40}},
             "care",
-            "The preview is 3 s behind, it leaves frames out; the recording is whole",
+            "The preview is 3 s behind: 40 of the last 99 frames are left out of the preview "
+            "(80 in all); the recording is whole",
+        ),
+        (
+            {"age_s": 0.8, "thinned": 3, "lately": {"frames": 99, "thinned": 3}},
+            "info",
+            "3 of the last 99 frames are left out of the preview (3 in all); the recording is "
+            "whole",
         ),
     ],
 )

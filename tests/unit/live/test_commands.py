@@ -47,7 +47,14 @@ def test_wrong_rigs_and_recordings_are_named(tmp_path):
     with recon4("replay", tmp_path / "nothing.pcap") as replay:
         told = replay.communicate(timeout=60)[1]
 
-    assert (record.returncode, replay.returncode) == (1, 1)
+    t_ns, payloads = spin(10)
+    with PcapWriter(tmp_path / "source.pcap") as file:
+        file.write(t_ns, payloads, source="192.168.1.201", port=2368)
+    with recon4("replay", tmp_path / "source.pcap", "--to", "nobody.invalid") as astray:
+        lost = astray.communicate(timeout=60)[1]
+
+    assert (record.returncode, replay.returncode, astray.returncode) == (1, 1, 1)
+    assert "cannot send to nobody.invalid" in lost
     assert "no rig named 'none'" in said
     assert "nothing.pcap" in told
     assert not (tmp_path / "walk").exists()

@@ -64,15 +64,17 @@ def walk(tmp_path_factory):
 class Follower:
     """A live map, and how far its poses are from the truth."""
 
-    def __init__(self, walk):
-        self.walk = walk
+    def __init__(self, walk, imu_axes=(1.0, 1.0, 1.0), gyro_axes=None):
+        self.walk, self.axes = walk, np.array([gyro_axes or imu_axes, imu_axes])
         self.map = LiveMap(walk.store.rig, preset("indoor"))
         self.start = None
 
     def push(self, row, shift_ns=0, *, noise=False):
         """The pose told, and its error in plan [m]."""
         before_ns = 0 if self.start else 2_000_000_000
-        self.map.extend_imu(self.walk.imu(row, shift_ns, before_ns=before_ns))
+        imu = self.walk.imu(row, shift_ns, before_ns=before_ns)
+        gyro, accel = imu.gyro_rad_s * self.axes[0], imu.accel_m_s2 * self.axes[1]
+        self.map.extend_imu(ImuSamples(imu.t_ns, gyro, accel))
         pose = self.map.push(self.walk.frame(row, shift_ns, noise=noise))[0]
         told_m, truth = np.array(pose["p"]), self.walk.at(row)
         if self.start is None:
@@ -86,10 +88,10 @@ class Follower:
 def test_who_is_lost_and_carried_elsewhere_is_found_again(walk):
     follower = Follower(walk)
     errors = [follower.push(row)[1] for row in range(130)]
-    points_before = follower.map.everything()[1]["count"]
+    points_before = follower.map.snapshot().messages()[1]["count"]
     for row in range(130, 142):
         pose, _ = follower.push(row, noise=True)
-    points_lost = follower.map.everything()[1]["count"]
+    points_lost = follower.map.snapshot().messages()[1]["count"]
     back = walk.store[142].t_ns - walk.store[60].t_ns
     told = [follower.push(row, back) for row in range(60, 142)]
 
@@ -100,6 +102,56 @@ def test_who_is_lost_and_carried_elsewhere_is_found_again(walk):
     assert told[-1][0]["relocated"] == 1
     assert len(found) > 10
     assert max(found) < 0.10
+
+
+def test_an_imu_upside_down_is_said_and_mapping_goes_on_without_it(walk):
+    follower = Follower(walk, imu_axes=[1.0, -1.0, -1.0])
+
+    told = [follower.push(row) for row in range(90)]
+
+    assert not any(pose["imu"] or pose["lost"] for pose, _ in told)
+    assert "upside down" in told[0][0]["remark"]
+    assert max(error for _, error in told) < 0.15
+
+
+def test_an_imu_that_turns_the_wrong_way_is_found_out_and_the_map_begins_anew(walk):
+    follower = Follower(walk, gyro_axes=[1.0, 1.0, -1.0])
+
+    told = [follower.push(row)[0] for row in range(90)]
+
+    begun = next(k for k, pose in enumerate(told) if pose["remark"])
+    assert (told[0]["imu"], told[-1]["imu"]) == (True, False)
+    assert not any(pose["lost"] for pose in told[begun:])
+    path, points = follower.map.snapshot().messages()[:2]
+    assert points["generation"] == 1
+    walked_m = np.linalg.norm(np.diff(path["points"], axis=0), axis=1).sum()
+    truth_m = np.array([walk.at(row).t for row in range(begun, 90)])
+    assert walked_m == pytest.approx(
+        np.linalg.norm(np.diff(truth_m, axis=0), axis=1).sum(), abs=0.4
+    )
+
+
+def test_the_way_remembers_its_start_however_long_it_is(walk):
+    live_map = LiveMap(walk.store.rig, preset("indoor"))
+
+    for metre in range(30_000):
+        live_map._go_to(np.array([0.1 * metre, 0.0, 0.0]))
+
+    path = live_map.snapshot().messages()[0]["points"]
+    assert path[0] == [0.0, 0.0, 0.0]
+    assert 9_000 < len(path) < 12_001
+
+
+def test_what_is_left_out_is_counted_for_ten_seconds(walk):
+    follower = Follower(walk)
+    for row in range(0, 10, 2):
+        follower.push(row)
+        follower.map.thin(walk.frame(row + 1))
+    pose, _ = follower.push(10)
+    later = [follower.push(row)[0] for row in range(11, 125)][-1]
+
+    assert (pose["thinned"], pose["lately"]) == (5, {"frames": 11, "thinned": 5})
+    assert (later["thinned"], later["lately"]["thinned"]) == (5, 0)
 
 
 def test_a_few_bad_multiframes_are_no_reason_to_search(walk):

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from recon4.live.coverage import CELL_M, Coverage, Seen
+from recon4.live.floors import Floors
 from recon4.live.preview import Preview
+from recon4.live.tiles import TILE, WINDOW, Tiles
 
 
 def values(count):
@@ -84,9 +86,15 @@ def room(x0, x1, y0, y1, *, door=None, step=0.05):
     return np.column_stack([p, np.zeros(len(p))])
 
 
-def look(coverage, at, p, times=20):
+def look(coverage, at, p, times=20, z_m=0.0):
     for _ in range(times):
-        coverage.add(np.array([*at, 0.0]), p)
+        coverage.add(np.array([*at, z_m]), np.add(p, [0.0, 0.0, z_m]))
+    coverage.refresh()
+
+
+def seen_at(coverage, x_m, y_m):
+    first, seen = coverage.seen()
+    return seen[tuple((np.array([x_m, y_m]) / CELL_M - first).astype(int))]
 
 
 def test_a_closed_room_has_no_gap_and_its_walls_are_seen_well():
@@ -119,8 +127,7 @@ def test_a_wall_far_away_is_seen_poorly():
 
     look(coverage, (0.0, 0.0), wall)
 
-    row, column = (np.array([20.1, 0.1]) / CELL_M - coverage.first_cell).astype(int)
-    assert coverage.seen()[row, column] == Seen.POOR
+    assert seen_at(coverage, 20.1, 0.1) == Seen.POOR
 
 
 def test_the_floor_and_the_ceiling_stand_in_nobodys_way():
@@ -129,26 +136,20 @@ def test_the_floor_and_the_ceiling_stand_in_nobodys_way():
 
     look(coverage, (0.0, 0.0), floor)
 
-    seen = coverage.seen()
-    row, column = (np.array([2.1, 0.1]) / CELL_M - coverage.first_cell).astype(int)
-    assert seen[row, column] == Seen.FREE
-    assert not (seen >= Seen.POOR).any()
+    assert seen_at(coverage, 2.1, 0.1) == Seen.FREE
+    assert not (coverage.seen()[1] >= Seen.POOR).any()
 
 
 def test_the_plan_grows_where_the_walk_goes():
     coverage = Coverage()
     look(coverage, (0.0, 0.0), room(-3, 3, -2, 2), times=2)
-    before = coverage.seen().sum()
+    before = coverage.seen()[1].sum()
 
     look(coverage, (-60.0, 45.0), room(-63, -57, 43, 47), times=2)
 
-    seen = coverage.seen()
+    _, seen = coverage.seen()
     assert seen.sum() == pytest.approx(2 * before, rel=0.05)
-    assert min(seen.shape) > 256
-
-
-def seen_at(coverage, x_m, y_m):
-    return coverage.seen()[tuple((np.array([x_m, y_m]) / CELL_M - coverage.first_cell).astype(int))]
+    assert seen_at(coverage, 2.9, 0.1) == seen_at(coverage, -57.1, 45.1) == Seen.FREE
 
 
 def test_a_wall_is_seen_well_after_twelve_rays():
@@ -216,3 +217,105 @@ def test_cells_between_two_rays_are_no_gap():
     look(coverage, (0.0, 0.0), room(-6, 6, -4, 4, step=0.3))
 
     assert coverage.gaps() == []
+
+
+def test_gaps_far_behind_are_kept_and_filled_when_somebody_goes_back():
+    coverage = Coverage()
+    outer = room(-3, 3, -2, 2, door=(-0.6, 0.6))
+    inside = np.array([[4.5, y, 0.0] for y in np.arange(-0.7, 0.7, 0.05)])
+    look(coverage, (0.0, 0.0), np.concatenate([outer, inside]))
+    before = coverage.gaps()
+
+    look(coverage, (200.0, -150.0), room(197, 203, -152, -148))
+    far_away = coverage.gaps()
+    look(coverage, (4.0, 0.0), room(3.02, 6, -2, 2))
+
+    assert len(before) >= 1
+    assert far_away == before
+    assert coverage.gaps() == []
+
+
+def test_a_gap_across_the_border_of_two_tiles_is_one():
+    coverage = Coverage()
+    edge_m = TILE * CELL_M
+    outer = room(edge_m - 3, edge_m + 3, -2, 2)
+    top = np.abs(outer[:, 1] - 2) > 0.2
+    hole = (outer[:, 0] > edge_m - 1) & (outer[:, 0] < edge_m + 1) & ~top
+    rays = outer.copy()
+    rays[hole] += [0.0, 1.0, -1.2]  # seen through, to the floor behind
+
+    look(coverage, (edge_m + 0.1, 0.0), rays)
+
+    (gap,) = coverage.gaps()
+    assert gap.width_m >= 1.5
+    assert abs(gap.p_map[0] - edge_m) < 1.0
+
+
+def test_what_was_seen_downstairs_says_nothing_of_the_floor_above():
+    coverage = Coverage()
+    outer = room(-3, 3, -2, 2, door=(-0.6, 0.6))
+    inside = np.array([[4.5, y, 0.0] for y in np.arange(-0.7, 0.7, 0.05)])
+    look(coverage, (0.0, 0.0), room(-3, 3, -2, 2))
+
+    look(coverage, (0.0, 0.0), np.concatenate([outer, inside]), z_m=3.0)
+    upstairs = coverage.floor, len(coverage.gaps()), coverage.gaps_elsewhere()
+    look(coverage, (0.0, 0.0), room(-3, 3, -2, 2), times=1)
+    downstairs = coverage.floor, len(coverage.gaps()), coverage.gaps_elsewhere()
+
+    assert upstairs[0] == 1
+    assert upstairs[1] >= 1
+    assert upstairs[2] == 0
+    assert downstairs == (0, 0, upstairs[1])
+
+
+def test_rays_are_followed_for_thirty_meters():
+    coverage = Coverage()
+
+    look(coverage, (0.0, 0.0), np.array([[80.0, 0.1, 0.0]]))
+
+    assert seen_at(coverage, 29.0, 0.1) == Seen.FREE
+    assert not (coverage.seen()[1] >= Seen.POOR).any()
+
+
+def climbed(floors, *heights_m, seconds=30):
+    """Stairs at 0.3 m/s from one height to the next, and a while on each."""
+    found, z_m = [], heights_m[0]
+    for height_m in heights_m:
+        while abs(height_m - z_m) > 1e-6:
+            z_m += np.clip(height_m - z_m, -0.03, 0.03)
+            floors.at(z_m)
+        found += [floors.at(z_m) for _ in range(10 * seconds)][-1:]
+    return found
+
+
+@pytest.mark.parametrize("storey_m", [2.7, 3.3, 4.5])
+def test_floors_are_found_again_by_their_height(storey_m):
+    found = climbed(Floors(), *(storey_m * np.array([0, 1, 2, 1, 0, 2])))
+
+    assert len(set(found)) == 3
+    assert found[3] == found[1]
+    assert found[4] == found[0]
+    assert found[5] == found[2]
+
+
+def test_a_street_that_rises_gently_is_one_floor():
+    floors = Floors()
+
+    for step in range(6000):  # 10 minutes at 1 m/s, 5 %
+        floors.at(0.005 * step)
+
+    assert len(floors) == 1
+
+
+def test_the_work_of_a_second_and_the_memory_of_a_plan_follow_what_was_seen():
+    tiles = Tiles({"seen": ("u1", 0)})
+
+    for x in range(0, 100_000, 64):
+        tiles.move_to(np.array([x, x]))
+        if x < 640:
+            tiles.window["seen"][WINDOW // 2, WINDOW // 2] = 1
+
+    assert tiles.window["seen"].shape == (WINDOW, WINDOW)
+    _, cells = tiles.whole("seen")
+    assert cells.sum() == 10
+    assert max(cells.shape) <= 12 * TILE

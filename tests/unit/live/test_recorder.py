@@ -2,6 +2,7 @@
 
 import json
 import os
+import resource
 import secrets
 import signal
 import socket
@@ -14,11 +15,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from app.live.words import words
 from recon4.errors import ConfigError
 from recon4.live.capture_file import CaptureFile, Datagram
+from recon4.live.ports import check_sources, open_ports
 from recon4.live.replay import Shipment, moved, replay
 from recon4.live.serial_line import parse_device
 from recon4.live.session import Session
+from recon4.model.rig import load_rig, parse_rig
 from recon4.progress import Silent
 from recon4.recording.pcap import read_pcap
 from recon4.recording.report import ImportReport
@@ -324,6 +328,36 @@ print(file.state().dropped, problems[5], "/", problems[15], "/", problems[-1])
     assert numbers(path)[0] == [*range(100), *range(200, 300)]
 
 
+def test_on_a_full_disk_neither_marks_nor_pauses_end_the_recording(session):
+    with recording(session) as (process, talk):
+        send(session, 50)
+        talk.hear("status", lambda told: told["file"]["datagrams"] == 50)
+        resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (10, resource.RLIM_INFINITY))
+        send(session, 50, start=50)
+        full = talk.hear("status", lambda told: told["file"]["problem"])
+        talk.say(do="pause")
+        told = talk.hear("status", lambda told: told["notes"])
+        talk.say(do="resume")
+        talk.hear("status", lambda told: not told["paused"])
+        unlimited = (resource.RLIM_INFINITY, resource.RLIM_INFINITY)
+        resource.prlimit(process.pid, resource.RLIMIT_FSIZE, unlimited)
+        send(session, 5, start=100)
+        talk.hear("status", lambda told: told["file"]["datagrams"] == 55)
+        talk.say(do="mark", what="point", text="door")
+        talk.hear("mark", lambda told: told["text"] == "door")
+        talk.say(do="stop")
+        stopped = talk.hear("stopped")
+
+    rig = load_rig(session.rig)
+    said = {word.text for one in (full, told) for word in words(rig, {"status": one}, "")}
+    assert "Nothing is recorded: the disk is full" in said
+    assert any(text.startswith("A mark could not be noted: ") for text in said)
+    assert (stopped["file"]["dropped"], stopped["notes"]) == (50, "")
+    assert numbers(session.capture)[0] == [*range(50), *range(100, 105)]
+    (mark,) = map(json.loads, session.marks.read_text().splitlines())
+    assert mark["text"] == "door"
+
+
 def test_a_nearly_full_disk_stops_the_recording_in_good_order(session):
     session = replace(session, least_free_bytes=1 << 62)
     session.save()
@@ -357,6 +391,35 @@ def test_sentences_of_a_serial_receiver_are_in_the_capture(session):
     (batch,) = read_pcap(session.capture, ImportReport())
     assert batch.port.tolist() == [8310, 8310]
     assert batch.payloads(np.array([1]), len(sentence)).tobytes() == sentence
+
+
+@pytest.mark.parametrize(
+    ("sensors", "gnss", "said"),
+    [
+        (("", ""), "", "first, second all send to port 2368: give each its address"),
+        (("10.0.0.1", ""), "", "all send to port 2368"),
+        (("10.0.0.1", "10.0.0.1"), "", "all send to port 2368"),
+        (("10.0.0.1", "10.0.0"), "", "second: address must be like 192.168.1.201"),
+        (("10.0.0.1", "10.0.0.2"), 'serial = "/dev/x:fast"', "DEVICE:BAUD"),
+        (("10.0.0.1", "10.0.0.2"), 'serial = "/dev/x"\nport = 0', "serial needs a port"),
+    ],
+)
+def test_a_rig_that_cannot_be_listened_to_is_refused_with_what_to_do(sensors, gnss, said):
+    text = "".join(
+        f'[[sensor]]\nname = "{name}"\naddress = "{address}"\n'
+        for name, address in zip(("first", "second"), sensors, strict=True)
+    )
+    rig = parse_rig(f"{text}[gnss]\n{gnss}\n", where="test")
+
+    with pytest.raises(ConfigError, match=said):
+        check_sources(rig)
+
+
+def test_why_a_port_cannot_be_opened_is_said():
+    rig = parse_rig('[[sensor]]\nname = "a"\n', where="test")
+
+    with pytest.raises(ConfigError, match="no network card of this computer has that address"):
+        open_ports(rig, address="192.0.2.1")
 
 
 @pytest.mark.parametrize("text", ["/dev/x:fast", ":9600", "/dev/x:0"])

@@ -1,0 +1,41 @@
+"""How far the mapping is behind, told on the recorder's clock."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from recon4.recording.report import ImportReport
+
+LATE_NS = 700_000_000
+"""A multiframe older than that when its turn comes is thinned out, every other one [ns]."""
+
+
+class Lateness:
+    """Compares the times of the points, which GPS may drive, with a clock that may be wrong."""
+
+    def __init__(self, report: ImportReport, now_ns: Callable[[], int]) -> None:
+        """Prepare.
+
+        Args:
+            report: Of the reader; it knows how far the sensors are ahead of the recorder.
+            now_ns: The recorder's clock [ns].
+        """
+        self._report, self._now_ns = report, now_ns
+        self._skip_next = False
+
+    def on_our_clock(self, t_ns: int) -> int:
+        """A time of points, by the clock of the recorder [ns]."""
+        ahead_ns = sorted(self._report.ahead_ns.values())
+        return t_ns - ahead_ns[len(ahead_ns) // 2] if ahead_ns else t_ns
+
+    def age_s(self, t_ns: int) -> float:
+        """How long ago that was [s]; the time is of the recorder's clock."""
+        return round((self._now_ns() - t_ns) / 1e9, 3)
+
+    def leave_out(self, end_ns: int) -> bool:
+        """Whether to leave out of the mapping a multiframe that ended then by its own clock:
+        every other one, while behind.
+        """
+        late = self._now_ns() - self.on_our_clock(end_ns) > LATE_NS
+        self._skip_next = late and not self._skip_next
+        return self._skip_next
