@@ -12,10 +12,17 @@ const role = () => document.querySelector("input[name=role]:checked").value;
 
 function showRoles(roles) {
   const one = (value, k) => {
-    const radio = make("input", { type: "radio", name: "role", value, checked: k === 0, onchange: hideCode });
+    const radio = make("input", { type: "radio", name: "role", value, checked: k === 0, onchange: chose });
     return make("label", { className: "check" }, radio, make("span", {}, make("b", {}, value), `: ${MAY[value]}`));
   };
   byId("roles").append(...roles.map(one));
+  chose();
+}
+
+/** A code that is shown is for the role that was chosen then. */
+function chose() {
+  hideCode();
+  byId("let-in").textContent = `Let it in as ${role()}`;
 }
 
 async function invite() {

@@ -91,8 +91,11 @@ def test_a_viewers_phone_sees_no_buttons_and_a_used_code_says_so(server, laptop,
         expect(another.get_by_role("button", name="Show a code")).to_be_visible()
 
 
-def test_six_digits_typed_on_the_laptop_let_the_phone_in(server, laptop, phone):
-    phone.goto(f"{server.url}/pair")
+def test_six_digits_let_the_phone_in_and_when_its_session_ends_it_can_ask_again(
+    server, laptop, phone
+):
+    phone.goto(f"{server.url}/live")
+    phone.wait_for_url(f"{server.url}/pair")
     phone.get_by_label("Name of this phone").fill("Otto's phone")
     phone.get_by_role("button", name="Show a code").click()
     expect(phone.locator("#left")).to_contain_text("Waiting")
@@ -103,6 +106,13 @@ def test_six_digits_typed_on_the_laptop_let_the_phone_in(server, laptop, phone):
 
     expect(laptop.get_by_text("✓ Otto's phone")).to_be_visible()
     phone.wait_for_url(f"{server.url}/live")
+
+    with server.signed_in("otto") as otto:
+        phones = [one["session"] for one in otto.get("/api/me/sessions").json()]
+        newest = max((one for one in phones if one["phone"]), key=lambda one: one["began_s"])
+        otto.delete(f"/api/me/sessions/{newest['id']}")
+    expect(phone.get_by_text("The session of this phone has ended")).to_be_visible()
+    expect(phone.get_by_role("button", name="Show a code")).to_be_visible()
 
 
 def test_without_the_network_the_page_says_how_to_get_it(laptop, tmp_path):
