@@ -9,9 +9,7 @@ import json
 import os
 import signal
 import sys
-import webbrowser
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -19,12 +17,13 @@ import typer
 
 import recon4
 from recon4.cli_live import live
+from recon4.cli_serve import server
 from recon4.cli_slices import slices
 from recon4.cli_users import users
-from recon4.errors import Cancelled, ConfigError, Recon4Error
+from recon4.errors import Cancelled, Recon4Error
+from recon4.terminal import write
 
 if TYPE_CHECKING:
-    from app.settings import ServerSettings
     from recon4.geometry.se3 import Array
     from recon4.settings import Settings
 
@@ -37,6 +36,7 @@ app = typer.Typer(
 )
 
 app.add_typer(users, name="users")
+app.add_typer(server)
 app.add_typer(live)
 app.add_typer(slices)
 
@@ -67,7 +67,7 @@ def info(
     if as_json:
         _write_json(asdict(found))
     else:
-        _write("\n".join(found.lines()))
+        write("\n".join(found.lines()))
 
 
 @app.command()
@@ -103,7 +103,7 @@ def process(
     if as_json:
         _write_json(summary.to_json())
     else:
-        _write(describe_summary(summary.to_json(), out))
+        write(describe_summary(summary.to_json(), out))
 
 
 @app.command()
@@ -123,7 +123,7 @@ def simulate(
 
     with watcher() as progress:
         run(world, out, seconds=seconds, seed=seed, rig=load_rig(rig), bag=bag, progress=progress)
-    _write(f"{out}")
+    write(f"{out}")
 
 
 @app.command()
@@ -145,7 +145,9 @@ def evaluate(
     artifacts = read_artifacts(result) if is_project(result) else {}
     if "map" in artifacts:
         given["chunks"] = _map_chunks(artifacts["map"])
-    if floor and "frames" in artifacts:
+    if floor:
+        if "frames" not in artifacts:
+            raise typer.BadParameter(f"--floor needs a project with its frames, got {result}")
         from recon4.store.frames import FrameStore
 
         frames = FrameStore.open(artifacts["frames"])
@@ -154,7 +156,7 @@ def evaluate(
     if as_json:
         _write_json(found.to_json())
     else:
-        _write(found.table())
+        write(found.table())
 
 
 @app.command()
@@ -169,82 +171,7 @@ def export(
 
     with watcher() as progress:
         points = export_map(project, file, crs=crs, progress=progress)
-    _write(f"{points} points in {file}")
-
-
-@app.command()
-def serve(  # noqa: PLR0913 - what a server can be started with
-    root: Annotated[Path, typer.Argument(help="Folder that holds project folders.")] = Path(),
-    *,
-    lan: Annotated[bool, typer.Option("--lan", help="For others: TLS and login together.")] = False,
-    host: Annotated[str, typer.Option(help="Address to listen on; default by --lan.")] = "",
-    port: Annotated[int, typer.Option(help="Port; 0 = any free one.")] = 8000,
-    tls_cert: Annotated[Path | None, typer.Option(help="Your certificate chain, PEM.")] = None,
-    tls_key: Annotated[Path | None, typer.Option(help="Its key, PEM.")] = None,
-    points: Annotated[
-        int, typer.Option(min=50_000, help="At most so many points of a map to one browser.")
-    ] = 3_000_000,
-    live_address: Annotated[
-        str, typer.Option(help="Network card the sensors of a live capture send to; all.")
-    ] = "0.0.0.0",
-    show: Annotated[bool, typer.Option("--open", help="Open it in this browser.")] = False,
-) -> None:
-    """Show projects in the browser: results, jobs, 3D viewer. Ctrl-C ends it."""
-    from app.settings import ServerSettings, names_from_environment, recordings_from_environment
-
-    try:
-        chosen = ServerSettings(
-            root=root,
-            lan=lan,
-            host=host or ("0.0.0.0" if lan else "127.0.0.1"),
-            port=port,
-            tls_certificate=tls_cert,
-            tls_key=tls_key,
-            names=names_from_environment(),
-            recordings=recordings_from_environment(),
-            viewer_points=points,
-            live_address=live_address,
-        )
-    except ConfigError as error:
-        raise typer.BadParameter(str(error)) from error
-    _serve(chosen, show=show)
-
-
-@app.command()
-def demo(
-    *,
-    out: Annotated[Path, typer.Option(help="Folder for the recording and the project.")] = Path(
-        "demo"
-    ),
-    seconds: Annotated[float, typer.Option(help="Length of the simulated walk [s].")] = 60.0,
-    port: Annotated[int, typer.Option(help="Port of the server; 0 = any free one.")] = 8000,
-    headless: Annotated[bool, typer.Option("--headless", help="End after the report.")] = False,
-) -> None:
-    """Simulate a walk through an office, map it and show it in the browser."""
-    from recon4.model.rig import load_rig
-    from recon4.pipeline import process as make_map
-    from recon4.simulation.simulate import simulate as walk
-    from recon4.terminal import describe_summary, watcher
-
-    recording, project = out / "recording", out / "office"
-    out.mkdir(parents=True, exist_ok=True)
-    with watcher() as progress:
-        if not recording.exists():
-            walk("office", recording, seconds=seconds, seed=1, bag=False, progress=progress)
-        summary = make_map(
-            [recording / "recording.pcap"],
-            project,
-            rig=load_rig(recording / "rig.toml"),
-            imu=recording / "imu.csv",
-            progress=progress,
-        )
-    _write(describe_summary(summary.to_json(), project))
-    if not headless:
-        from app.settings import ServerSettings, recordings_from_environment
-
-        recordings = recordings_from_environment()
-        chosen = ServerSettings(root=out, port=port, recordings=recordings)
-        _serve(chosen, open_project=project.name)
+    write(f"{points} points in {file}")
 
 
 @app.command()
@@ -260,7 +187,7 @@ def settings(
 
     chosen = _settings(preset, assignments)
     if markdown:
-        _write(settings_page(), end="")
+        write(settings_page(), end="")
     elif as_json:
         _write_json(to_json(chosen))
     else:
@@ -287,12 +214,12 @@ def verify(
         _write_json(asdict(found) | told)
     else:
         for name in found.unknown:
-            _write(f"not of recon4, left alone: artifacts/{name}")
+            write(f"not of recon4, left alone: artifacts/{name}")
         for what in damaged:
-            _write(f"damaged: {what}")
+            write(f"damaged: {what}")
         for what in reviewed.approvals:
-            _write(what)
-        _write(f"{found.checked + reviewed.rows} checked, {len(damaged)} damaged")
+            write(what)
+        write(f"{found.checked + reviewed.rows} checked, {len(damaged)} damaged")
     if damaged:
         raise typer.Exit(1)
 
@@ -313,14 +240,14 @@ def doctor(
     else:
         for check in checks:
             mark = "ok " if check.ok else "NO "
-            _write(f"{mark} {check.what:<20} {check.found:<18} {check.advice}".rstrip())
+            write(f"{mark} {check.what:<20} {check.found:<18} {check.advice}".rstrip())
     if not all(check.ok for check in checks):
         raise typer.Exit(1)
 
 
 def _version(wanted: bool) -> None:
     if wanted:
-        _write(f"recon4 {recon4.__version__}")
+        write(f"recon4 {recon4.__version__}")
         raise typer.Exit
 
 
@@ -333,7 +260,7 @@ def _every_command(
     ] = False,
 ) -> None:
     if context.invoked_subcommand is None:
-        _write(context.get_help())
+        write(context.get_help())
         raise typer.Exit(2)
 
 
@@ -388,39 +315,22 @@ def _map_chunks(folder: Path) -> Callable[[], Iterator[Array]]:
     return lambda: (tile.xyz_m() for tile in TileSet.open(folder))
 
 
-def _serve(chosen: ServerSettings, *, open_project: str | None = None, show: bool = False) -> None:
-    from app.main import serve as run
-
-    def ready(url: str, notes: list[str]) -> None:
-        _write("\n".join([f"Serving at {url} (Ctrl-C ends it)", *notes]))
-        sys.stdout.flush()
-        if show:
-            webbrowser.open(url)
-
-    with suppress(KeyboardInterrupt):
-        run(chosen, open_project=open_project, on_ready=ready)
-
-
 def _show_settings(chosen: Settings) -> None:
     from recon4.settings_help import describe_settings, differences
 
     changed = differences(chosen)
     for group in describe_settings():
-        _write(f"\n{group.name}: {group.text}")
+        write(f"\n{group.name}: {group.text}")
         for setting in group.settings:
             value = getattr(getattr(chosen, group.name), setting.name)
             mark = "*" if setting.path in changed else " "
-            _write(f" {mark} {setting.path:<36} {value!s:<14} {setting.text}".rstrip())
-
-
-def _write(text: str, end: str = "\n") -> None:
-    sys.stdout.write(text + end)
+            write(f" {mark} {setting.path:<36} {value!s:<14} {setting.text}".rstrip())
 
 
 def _write_json(value: Any) -> None:
     from recon4.store.atomic import null_for_nan
 
-    _write(json.dumps(null_for_nan(value), indent=1, ensure_ascii=False))
+    write(json.dumps(null_for_nan(value), indent=1, ensure_ascii=False))
 
 
 def _complain(text: str) -> None:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from recon4.errors import StoreError
+from recon4.terminal import write
 
 if TYPE_CHECKING:
     from app.access.door import Access
@@ -33,7 +34,7 @@ def add(name: NameArgument, role: RoleOption, root: RootOption = Path()) -> None
     with _access(root) as access:
         account = access.accounts.add(name, _role(role), _password())
         _note(access, "add person", f"{account.name}, {account.role}")
-    _write(f"{account.name} may sign in as {account.role}")
+    write(f"{account.name} may sign in as {account.role}")
 
 
 @users.command("list")
@@ -42,7 +43,7 @@ def list_all(root: RootOption = Path()) -> None:
     with _access(root) as access:
         for one in access.accounts.all():
             state = "disabled" if one.disabled else ""
-            _write(f"{one.name:<32} {one.role:<10} {one.created[:10]} {state}".rstrip())
+            write(f"{one.name:<32} {one.role:<10} {one.created[:10]} {state}".rstrip())
 
 
 @users.command()
@@ -55,7 +56,7 @@ def role(
     with _access(root) as access:
         account = access.accounts.set_role(name, _role(role))
         _note(access, "set role", f"{account.name}, {account.role}")
-    _write(f"{account.name} is {account.role} now")
+    write(f"{account.name} is {account.role} now")
 
 
 @users.command()
@@ -68,7 +69,7 @@ def disable(
     with _access(root) as access:
         account = access.accounts.set_disabled(name, not again)
         _note(access, "enable" if again else "disable", account.name)
-    _write(f"{account.name} {'may' if again else 'may not'} sign in")
+    write(f"{account.name} {'may' if again else 'may not'} sign in")
 
 
 @users.command()
@@ -77,7 +78,7 @@ def password(name: NameArgument, root: RootOption = Path()) -> None:
     with _access(root) as access:
         account = access.accounts.set_password(name, _password())
         _note(access, "set password", account.name)
-    _write(f"the password of {account.name} is set")
+    write(f"the password of {account.name} is set")
 
 
 @users.command()
@@ -89,12 +90,12 @@ def audit(
     with _access(root) as access:
         for one in reversed(access.log.newest(last)):
             what = f"{one.person} ({one.address}) {one.action}: {one.object}"
-            _write(f"{one.number:>6} {one.time} {one.outcome:<8} {what}")
+            write(f"{one.number:>6} {one.time} {one.outcome:<8} {what}")
         chain = access.log.check()
     if chain.broken_at is not None:
-        _write(f"entry {chain.broken_at} does not follow from the one before: tampered with")
+        write(f"entry {chain.broken_at} does not follow from the one before: tampered with")
         raise typer.Exit(1)
-    _write(f"{chain.entries} entries, chain whole; newest hash {chain.newest}")
+    write(f"{chain.entries} entries, chain whole; newest hash {chain.newest}")
 
 
 @contextmanager
@@ -137,7 +138,3 @@ def _password() -> str:
 
 def _note(access: Access, action: str, what: str) -> None:
     access.log.add(getpass.getuser(), "this computer", action=action, what=what)
-
-
-def _write(text: str) -> None:
-    sys.stdout.write(text + "\n")

@@ -21,6 +21,11 @@ _TOLD = {
 """Events a person should see while a run goes on; the others end up in the results."""
 
 
+def write(text: str, end: str = "\n") -> None:
+    """Say something on standard output."""
+    sys.stdout.write(text + end)
+
+
 class PlainLines:
     """A line when a piece of work begins, every five seconds and when it ends."""
 

@@ -4,12 +4,16 @@ The table in ``docs/architecture.md`` says the same in words.
 """
 
 import ast
+import re
 import subprocess
 import sys
+import tomllib
 from functools import cache
+from importlib import metadata
 from pathlib import Path
 
 import pytest
+from packaging.requirements import Requirement
 
 ROOT = Path(__file__).parents[2]
 BASE = {"recon4.errors", "recon4.progress", "recon4.settings"}
@@ -36,23 +40,26 @@ MAY_IMPORT = {
     | {"recon4.report.approval"},
     "recon4/intensity": STAGE | {"recon4.mapping", "recon4.intensity"},
     "recon4/mapping": STAGE | {"recon4.intensity", "recon4.mapping"},
-    "recon4/export": STAGE | {"recon4.mapping", "recon4.pose_graph", "recon4.export"},
-    "recon4/evaluation": STAGE
-    | {"recon4.mapping", "recon4.export", "recon4.evaluation", "recon4.simulation"},
+    "recon4/export": STAGE | {"recon4.mapping", "recon4.export"},
+    "recon4/evaluation": STAGE | {"recon4.mapping", "recon4.evaluation", "recon4.simulation"},
     "recon4/slices": STAGE
     | {f"recon4.{room}" for room in ("recording", "mapping", "georeference", "export")}
     | {"recon4.evaluation", "recon4.slices"},
-    "recon4/report": {"recon4"},
-    "recon4/simulation": STAGE | {"recon4.recording", "recon4.export", "recon4.simulation"},
+    "recon4/report": STAGE
+    | {"recon4.mapping", "recon4.pose_graph", "recon4.evaluation", "recon4.report"},
+    "recon4/simulation": STAGE | {"recon4.recording", "recon4.simulation"},
     "recon4": {"recon4"},
-    "recon4/cli.py": {"recon4", "app"},
-    "recon4/cli_users.py": {"recon4.errors", "app"},
+    "recon4/cli_serve.py": {"recon4", "app"},
+    "recon4/cli_users.py": {"recon4.errors", "recon4.terminal", "app"},
     "recon4/cli_live.py": {"recon4", "app.live.words"},
     "app": {"app", "recon4"},
 }
 """Place -> prefixes of our own modules it may import; the longest place that fits counts."""
 
-NOBODY_IMPORTS = {"recon4.cli": {"recon4/__main__.py"}, "recon4.pipeline": {"recon4/cli.py", "app"}}
+NOBODY_IMPORTS = {
+    "recon4.cli": {"recon4/__main__.py"},
+    "recon4.pipeline": {"recon4/cli.py", "recon4/cli_serve.py", "app"},
+}
 """The two ends of the program, and who may call them."""
 
 ONLY_HERE = {
@@ -70,7 +77,7 @@ ONLY_HERE = {
     "ezdxf": {"recon4/slices/export.py"},
     "fastapi": {"app"},
     "uvicorn": {"app"},
-    "typer": {"recon4/cli.py", "recon4/cli_users.py", "recon4/cli_live.py", "recon4/cli_slices.py"},
+    "typer": {f"recon4/cli{part}.py" for part in ("", "_live", "_serve", "_slices", "_users")},
     "cryptography": {"app/access/certificate.py", "recon4/review/signature.py"},
     "argon2": {"app/access/passwords.py"},
     "rich": {"recon4/terminal.py"},
@@ -141,6 +148,32 @@ def test_the_ends_of_the_program_are_called_from_outside_only(path):
 @pytest.mark.parametrize("path", SOURCES, ids=str)
 def test_nothing_that_runs_code_from_files_is_imported(path):
     assert {name for name in imported(path) if name.split(".")[0] in NEVER} == set()
+
+
+def test_the_page_names_every_room():
+    page = (ROOT / "docs" / "architecture.md").read_text("utf-8")
+    rooms = {
+        path.parent.name for top in ("recon4", "app") for path in (ROOT / top).glob("*/__init__.py")
+    }
+
+    assert {room for room in rooms if not re.search(rf"\b{room}/", page)} == set()
+
+
+def test_every_package_imported_is_named_in_pyproject():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    named = {_distribution(Requirement(text).name) for text in project["dependencies"]}
+    homes = metadata.packages_distributions()
+
+    used = {name.split(".")[0] for path in SOURCES for name in imported(path)}
+    foreign = used - sys.stdlib_module_names - {"recon4", "app"}
+
+    found = {name: {_distribution(home) for home in homes.get(name, [])} for name in foreign}
+    assert {name for name, distributions in found.items() if not distributions & named} == set()
+
+
+def _distribution(name: str) -> str:
+    """As names of distributions are compared."""
+    return re.sub(r"[-_.]+", "-", name).lower()
 
 
 def test_the_command_line_starts_without_the_heavy_packages():

@@ -1,0 +1,107 @@
+"""The commands ``recon4 serve`` and ``recon4 demo``: a server in this process."""
+
+from __future__ import annotations
+
+import sys
+import webbrowser
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from recon4.errors import ConfigError
+from recon4.terminal import write
+
+if TYPE_CHECKING:
+    from app.settings import ServerSettings
+
+server = typer.Typer()
+
+
+@server.command()
+def serve(  # noqa: PLR0913 - what a server can be started with
+    root: Annotated[Path, typer.Argument(help="Folder that holds project folders.")] = Path(),
+    *,
+    lan: Annotated[bool, typer.Option("--lan", help="For others: TLS and login together.")] = False,
+    host: Annotated[str, typer.Option(help="Address to listen on; default by --lan.")] = "",
+    port: Annotated[int, typer.Option(help="Port; 0 = any free one.")] = 8000,
+    tls_cert: Annotated[Path | None, typer.Option(help="Your certificate chain, PEM.")] = None,
+    tls_key: Annotated[Path | None, typer.Option(help="Its key, PEM.")] = None,
+    points: Annotated[
+        int, typer.Option(min=50_000, help="At most so many points of a map to one browser.")
+    ] = 3_000_000,
+    live_address: Annotated[
+        str, typer.Option(help="Network card the sensors of a live capture send to; all.")
+    ] = "0.0.0.0",
+    show: Annotated[bool, typer.Option("--open", help="Open it in this browser.")] = False,
+) -> None:
+    """Show projects in the browser: results, jobs, 3D viewer. Ctrl-C ends it."""
+    from app.settings import ServerSettings, names_from_environment, recordings_from_environment
+
+    try:
+        chosen = ServerSettings(
+            root=root,
+            lan=lan,
+            host=host or ("0.0.0.0" if lan else "127.0.0.1"),
+            port=port,
+            tls_certificate=tls_cert,
+            tls_key=tls_key,
+            names=names_from_environment(),
+            recordings=recordings_from_environment(),
+            viewer_points=points,
+            live_address=live_address,
+        )
+    except ConfigError as error:
+        raise typer.BadParameter(str(error)) from error
+    _serve(chosen, show=show)
+
+
+@server.command()
+def demo(
+    *,
+    out: Annotated[Path, typer.Option(help="Folder for the recording and the project.")] = Path(
+        "demo"
+    ),
+    seconds: Annotated[float, typer.Option(help="Length of the simulated walk [s].")] = 60.0,
+    port: Annotated[int, typer.Option(help="Port of the server; 0 = any free one.")] = 8000,
+    headless: Annotated[bool, typer.Option("--headless", help="End after the report.")] = False,
+) -> None:
+    """Simulate a walk through an office, map it and show it in the browser."""
+    from recon4.model.rig import load_rig
+    from recon4.pipeline import process as make_map
+    from recon4.simulation.simulate import simulate as walk
+    from recon4.terminal import describe_summary, watcher
+
+    recording, project = out / "recording", out / "office"
+    out.mkdir(parents=True, exist_ok=True)
+    with watcher() as progress:
+        if not recording.exists():
+            walk("office", recording, seconds=seconds, seed=1, bag=False, progress=progress)
+        summary = make_map(
+            [recording / "recording.pcap"],
+            project,
+            rig=load_rig(recording / "rig.toml"),
+            imu=recording / "imu.csv",
+            progress=progress,
+        )
+    write(describe_summary(summary.to_json(), project))
+    if not headless:
+        from app.settings import ServerSettings, recordings_from_environment
+
+        recordings = recordings_from_environment()
+        chosen = ServerSettings(root=out, port=port, recordings=recordings)
+        _serve(chosen, open_project=project.name)
+
+
+def _serve(chosen: ServerSettings, *, open_project: str | None = None, show: bool = False) -> None:
+    from app.main import serve as run
+
+    def ready(url: str, notes: list[str]) -> None:
+        write("\n".join([f"Serving at {url} (Ctrl-C ends it)", *notes]))
+        sys.stdout.flush()
+        if show:
+            webbrowser.open(url)
+
+    with suppress(KeyboardInterrupt):
+        run(chosen, open_project=open_project, on_ready=ready)
