@@ -1,18 +1,21 @@
 """What recon4 needs to run must not force its licence on those who use it."""
 
 import re
+import tomllib
 from importlib import metadata
+from pathlib import Path
 
 from packaging.requirements import Requirement
 
+ROOT = Path(__file__).parents[2]
 STRONG_COPYLEFT = re.compile(r"\b(A?GPL|Affero|GNU General Public)", re.IGNORECASE)
 LESSER = re.compile(r"\bL(esser )?GPL|Lesser General Public", re.IGNORECASE)
 
 
-def needed_to_run(package: str) -> set[str]:
-    """Names of all distributions the package needs, directly or not, extras included."""
+def needed_to_run(direct: list[str]) -> set[str]:
+    """Names of all distributions these requirements need, directly or not, extras included."""
     found: set[str] = set()
-    open_ends = [(package, frozenset[str]())]
+    open_ends = asked(direct, frozenset())
     while open_ends:
         name, extras = open_ends.pop()
         try:
@@ -20,14 +23,18 @@ def needed_to_run(package: str) -> set[str]:
         except metadata.PackageNotFoundError:
             continue  # another system's requirement
         found.add(name)
-        for text in requirements:
-            requirement = Requirement(text)
-            asked = requirement.marker is None or any(
-                requirement.marker.evaluate({"extra": extra}) for extra in extras | {""}
-            )
-            if asked and requirement.name.lower() not in found:
-                open_ends.append((requirement.name.lower(), frozenset(requirement.extras)))
+        open_ends += [one for one in asked(requirements, extras) if one[0] not in found]
     return found
+
+
+def asked(requirements: list[str], extras: frozenset[str]) -> list[tuple[str, frozenset[str]]]:
+    """Those that count on this system with these extras: name and extras of each."""
+    parsed = [Requirement(text) for text in requirements]
+    return [
+        (one.name.lower(), frozenset(one.extras))
+        for one in parsed
+        if one.marker is None or any(one.marker.evaluate({"extra": e}) for e in extras | {""})
+    ]
 
 
 def licence_of(name: str) -> str:
@@ -41,9 +48,11 @@ def is_strong_copyleft(licence: str) -> bool:
 
 
 def test_nothing_needed_to_run_is_under_the_gpl():
-    names = needed_to_run("recon4")
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
 
-    assert {"numpy", "gtsam", "lazrs", "fastapi"} <= names
+    names = needed_to_run(project["dependencies"])
+
+    assert {"numpy", "gtsam", "lazrs", "fastapi", "ezdxf", "mako"} <= names
     assert {name: licence_of(name) for name in names if is_strong_copyleft(licence_of(name))} == {}
 
 
