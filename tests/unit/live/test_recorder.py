@@ -153,13 +153,15 @@ def test_a_pause_leaves_out_what_comes_and_says_how_much(session):
 
 def test_a_mark_is_on_the_disk_before_it_is_confirmed(session):
     with recording(session) as (process, talk):
-        talk.say(do="mark", what="point", text="crack in the wall, 2. Stock", who="Eva")
+        said = {"what": "point", "text": "crack in the wall, 2. Stock", "who": "Eva"}
+        talk.say(do="mark", **said, ago_s=20.0)  # touched then, its note took so long
         talk.hear("mark")
         process.kill()
         process.wait(20)
 
     (mark,) = map(json.loads, session.marks.read_text().splitlines())
     assert (mark["text"], mark["who"]) == ("crack in the wall, 2. Stock", "Eva")
+    assert 20.0 <= (time.time_ns() - mark["t_ns"]) / 1e9 < 60.0
 
 
 def test_nonsense_on_the_socket_does_no_harm(session):
