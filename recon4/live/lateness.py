@@ -7,7 +7,9 @@ from collections.abc import Callable
 from recon4.recording.report import ImportReport
 
 LATE_NS = 700_000_000
-"""A multiframe older than that when its turn comes is thinned out, every other one [ns]."""
+"""A multiframe older than that when its turn comes may be left out of the mapping [ns]."""
+_KEPT = ((LATE_NS, 2), (2_000_000_000, 3), (5_000_000_000, 5))
+"""Older than so much: one of so many is mapped."""
 
 
 class Lateness:
@@ -21,7 +23,8 @@ class Lateness:
             now_ns: The recorder's clock [ns].
         """
         self._report, self._now_ns = report, now_ns
-        self._skip_next = False
+        self._left_out = 0
+        """Since the last one that was mapped."""
 
     def on_our_clock(self, t_ns: int) -> int:
         """A time of points, by the clock of the recorder [ns]."""
@@ -34,8 +37,10 @@ class Lateness:
 
     def leave_out(self, end_ns: int) -> bool:
         """Whether to leave out of the mapping a multiframe that ended then by its own clock:
-        every other one, while behind.
+        every other one while behind, more of them when far behind.
         """
-        late = self._now_ns() - self.on_our_clock(end_ns) > LATE_NS
-        self._skip_next = late and not self._skip_next
-        return self._skip_next
+        late_ns = self._now_ns() - self.on_our_clock(end_ns)
+        one_of = max((many for limit_ns, many in _KEPT if late_ns > limit_ns), default=1)
+        leave_out = self._left_out + 1 < one_of
+        self._left_out = self._left_out + 1 if leave_out else 0
+        return leave_out

@@ -18,6 +18,7 @@ from __future__ import annotations
 import argparse
 import asyncio
 import json
+import re
 import secrets
 import subprocess
 import sys
@@ -57,6 +58,7 @@ class Heard:
     first_points_s: list[float] = field(default_factory=list)
     newest: dict[str, Any] = field(default_factory=dict)
     words: set[str] = field(default_factory=set)
+    """Warnings, N for every number."""
 
     def hear(self, data: str | bytes) -> None:
         """Take one message."""
@@ -65,7 +67,7 @@ class Heard:
             return
         told = json.loads(data)
         self.newest |= told
-        self.words |= {word["text"] for word in told.get("words", [])}
+        self.words |= {re.sub(r"\d+(\.\d+)?", "N", w["text"]) for w in told.get("words", [])}
         if "pose" in told:
             now_ns = stretched(time.time_ns(), self.speed)
             self.ages_s.append((now_ns - told["pose"]["t_ns"]) / 1e9 / self.speed)

@@ -32,6 +32,10 @@ def test_gps_drives_the_sensors_and_the_laptop_is_wrong(wrong_s):
     clock.now_ns += LATE_NS
     behind = [lateness.leave_out(end_ns) for _ in range(4)]
 
+    clock.now_ns += 5_000_000_000
+    far_behind = [lateness.leave_out(end_ns) for _ in range(10)]
+
     assert age_s == pytest.approx(0.3, abs=0.005)
     assert soon == [False] * 4
     assert behind == [True, False, True, False]
+    assert far_behind == [True, True, True, True, False] * 2
