@@ -10,11 +10,10 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import sqlalchemy as sa
-from alembic import command
-from alembic.config import Config
+
+from app.databases import migrate, open_engine
 
 METADATA = sa.MetaData()
 PEOPLE = sa.Table(
@@ -73,10 +72,9 @@ def open_database(path: Path) -> sa.Engine:
     """The database, made or brought up to date."""
     os.close(os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600))
     path.chmod(0o600)
-    engine = sa.create_engine(f"sqlite:///{path}")
-    sa.event.listen(engine, "connect", _durable)
+    engine = open_engine(path)
     with writing(engine) as connection:
-        _migrate(connection)
+        migrate(connection, Path(__file__).parent)
     return engine
 
 
@@ -86,16 +84,3 @@ def writing(engine: sa.Engine) -> Iterator[sa.Connection]:
     with engine.begin() as connection:
         connection.exec_driver_sql("BEGIN IMMEDIATE")
         yield connection
-
-
-def _durable(connection: Any, _: object) -> None:
-    """What was acknowledged survives a power cut."""
-    for pragma in ("journal_mode=WAL", "synchronous=FULL", "busy_timeout=5000"):
-        connection.execute(f"PRAGMA {pragma}").close()
-
-
-def _migrate(connection: sa.Connection) -> None:
-    config = Config()
-    config.set_main_option("script_location", str(Path(__file__).parent / "migrations"))
-    config.attributes["connection"] = connection
-    command.upgrade(config, "head")

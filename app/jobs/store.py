@@ -9,10 +9,9 @@ from pathlib import Path
 from typing import Any
 
 import sqlalchemy as sa
-from alembic import command
-from alembic.config import Config
 from sqlalchemy.exc import IntegrityError
 
+from app.databases import migrate, open_engine
 from app.errors import Conflict, NotFound
 from app.jobs.backups import Backups
 from app.jobs.model import Inputs, Job, JobState
@@ -42,10 +41,9 @@ class JobStore:
         self._backups = Backups(path)
         self.notice = self._backups.repair()
         """What people should know: set when the file was damaged; else empty."""
-        self._engine = sa.create_engine(f"sqlite:///{path}")
-        sa.event.listen(self._engine, "connect", _durable)
+        self._engine = open_engine(path)
         with self._engine.begin() as connection:
-            _migrate(connection)
+            migrate(connection, Path(__file__).parent)
 
     def close(self) -> None:
         """Let go of the file."""
@@ -111,19 +109,6 @@ class JobStore:
     def _select(self, query: sa.Select[Any]) -> list[Job]:
         with self._engine.connect() as connection:
             return [_job(row) for row in connection.execute(query).mappings()]
-
-
-def _durable(connection: Any, _: object) -> None:
-    """What was acknowledged survives a power cut."""
-    for pragma in ("journal_mode=WAL", "synchronous=FULL", "busy_timeout=5000"):
-        connection.execute(f"PRAGMA {pragma}").close()
-
-
-def _migrate(connection: sa.Connection) -> None:
-    config = Config()
-    config.set_main_option("script_location", str(Path(__file__).parent / "migrations"))
-    config.attributes["connection"] = connection
-    command.upgrade(config, "head")
 
 
 def _row(job: Job) -> dict[str, Any]:

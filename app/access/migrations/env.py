@@ -1,4 +1,4 @@
-"""Runs the migrations on the connection `app.access.database` hands over."""
+"""Runs the migrations on the connection `app.databases` hands over."""
 
 from alembic import context
 

@@ -1,0 +1,30 @@
+"""SQLite files of the server: what is committed lasts; the schema is the newest migration's."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import sqlalchemy as sa
+from alembic import command
+from alembic.config import Config
+
+
+def open_engine(path: Path) -> sa.Engine:
+    """An engine for a file; what is committed survives a power cut."""
+    engine = sa.create_engine(f"sqlite:///{path}")
+    sa.event.listen(engine, "connect", _make_durable)
+    return engine
+
+
+def migrate(connection: sa.Connection, package: Path) -> None:
+    """Make the schema that of the newest migration in ``package/migrations``."""
+    config = Config()
+    config.set_main_option("script_location", str(package / "migrations"))
+    config.attributes["connection"] = connection
+    command.upgrade(config, "head")
+
+
+def _make_durable(connection: Any, _: object) -> None:
+    for pragma in ("journal_mode=WAL", "synchronous=FULL", "busy_timeout=5000"):
+        connection.execute(f"PRAGMA {pragma}").close()
