@@ -105,7 +105,8 @@ class RegistrationSettings:
     kernel_m: float = 0.05
     """Scale of the Cauchy kernel on the line distance [m] (``common_normal``)."""
     portion: float = 0.5
-    """Share of nearest matches kept when no overlap is given (``svd``)."""
+    """Share of nearest matches that odometry keeps at least, however small the overlap seems
+    (``svd``, ``common_normal``)."""
     error_window: int = 20
     """Rounds over which the error must not change (``svd``)."""
     error_deviation: float = 1e-4

@@ -173,9 +173,9 @@ def _map(
 
 FRAMES = Stage("frames", 4, ("ingest",), _frames)
 ODOMETRY = Stage(
-    "odometry", 8, ("segments", "registration", "planes", "scans", "odometry"), _odometry
+    "odometry", 9, ("segments", "registration", "planes", "scans", "odometry"), _odometry
 )
-GRAPH = Stage("graph", 5, _MATCHING, _graph)
+GRAPH = Stage("graph", 6, _MATCHING, _graph)
 VERIFICATION = Stage("verification", 2, ("verification", "graph"), _verification)
 REVIEW = Stage("review", 2, ("verification", "graph"), _review)
 REFINE = Stage("refine", 3, ("segments", "planes", "odometry", "graph", "refine"), _refine)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,7 +16,9 @@ from recon4.model.samples import ImuSamples
 from recon4.registration.collar_lines import LineTarget, register_lines
 from recon4.registration.motion import ImuMotion
 from recon4.registration.odometry import OdometryStep
+from recon4.registration.overlap import View, make_view, overlap
 from recon4.registration.result import Registration
+from recon4.registration.scan_chain import body_points
 from recon4.registration.segments import Segments, sample_segments
 from recon4.settings import Settings
 
@@ -26,111 +28,145 @@ _PASSES = 2
 """Correct the rolling shutter, register, correct again (V §2.6)."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Seen:
+    """A multiframe that later ones are registered to."""
+
+    T_odom_body: SE3
+    """Pose at its middle."""
+    target: LineTarget
+    """Its lines in odom."""
+    view: View
+    """Its points as measured, in the body: for the overlap."""
+
+
 class LineOdometry:
     """Registers each multiframe against the lines of the last ones.
 
-    The motion is predicted by the linear predictor, its rotation by the gyroscope if there is one
-    and the settings allow it. Within the frame the motion is interpolated (V Eq. 2.8).
+    The motion from the middle of one multiframe to the middle of the next is predicted by the
+    linear predictor, its rotation by the gyroscope if there is one and the settings allow it. The
+    same motion undistorts the frame (V Eq. 2.8); the registration moves the whole frame, which
+    tells the motion better, and so once more. The share of matches kept is the overlap (V §2.5).
     """
 
     def __init__(self, rig: Rig, settings: Settings, imu: ImuSamples | None = None) -> None:
         self._rig, self._settings = rig, settings
         with_imu = imu is not None and len(imu) > 1 and settings.odometry.use_imu
         self._imu = ImuMotion(imu, rig, settings.odometry) if with_imu and imu else None
-        self._history: deque[Lines] = deque(maxlen=settings.odometry.history)
+        self._history: deque[_Seen] = deque(maxlen=settings.odometry.history)
         self._motions: deque[SE3] = deque(maxlen=_PREDICTOR)
-        self._T_odom_start = SE3.identity()
+        self._T_odom_body, self._t_mid_ns = SE3.identity(), 0
 
     def push(self, frame: Multiframe) -> OdometryStep:
         """Register the next multiframe; frames come in the order of their time."""
         segments = sample_segments(frame, self._rig, self._settings.segments)
-        duration_s = frame.duration_ns * 1e-9
-        predicted = self._predicted_motion(frame)
-        motion, found = predicted, None
+        view = make_view(body_points(frame, self._rig), self._settings.overlap)
+        steps = (frame.t_mid_ns - self._t_mid_ns) / frame.duration_ns if self._history else 1.0
+        predicted = motion = self._predicted_motion(frame)
+        T_predicted = T_odom_body = self._T_odom_body @ _times(motion, steps)
+        found = None
         for _ in range(_PASSES if self._history else 1):
-            lines = self._lines(segments, self._T_odom_start, motion, duration_s)
+            lines = self._lines(segments, frame, T_odom_body, motion)
             if self._history:
-                found = self._register(lines)
-                # The step moves the whole frame; what it adds to the motion is its end.
-                moved_end = found.T_target_source @ self._T_odom_start @ motion
-                motion = self._T_odom_start.inverse() @ moved_end
-        return self._finish(frame, segments, predicted, motion=motion, found=found)
+                found = self._register(lines, view, T_odom_body)
+                T_odom_body = found.T_target_source @ T_odom_body
+                motion = _times(self._T_odom_body.inverse() @ T_odom_body, 1.0 / steps)
+        gap_m = float(np.linalg.norm(T_odom_body.t - T_predicted.t))
+        lost = found is not None and self._is_lost(found)
+        if lost:
+            motion, T_odom_body = predicted, T_predicted
+        lines = self._lines(segments, frame, T_odom_body, motion)
+        # An empty first frame would leave nothing for any later one to match.
+        if not lost and len(lines):
+            self._history.append(_Seen(T_odom_body, LineTarget(lines), view))
+        if found is not None:
+            self._motions.append(motion)
+        self._T_odom_body, self._t_mid_ns = T_odom_body, frame.t_mid_ns
+        return self._step(frame, motion, found, gap_m=gap_m, lost=lost)
 
     def _predicted_motion(self, frame: Multiframe) -> SE3:
-        """``T_start_end`` of the frame: newest motion heaviest, weights N…1 over their sum."""
-        if not self._motions:
-            motion = SE3.identity()
-        else:
+        """Over one multiframe: newest motion heaviest, weights N…1 over their sum."""
+        motion = SE3.identity()
+        if self._motions:
             w = np.arange(1, len(self._motions) + 1, dtype=np.float64)
             T = SE3.stack(self._motions)
             motion = SE3(so3_exp(w @ so3_log(T.R) / w.sum()), w @ T.t / w.sum())
-        if self._imu and self._imu.covers(frame.t_ns, frame.t_ns + frame.duration_ns):
-            return SE3(self._imu.turn(frame.t_ns, frame.t_ns + frame.duration_ns), motion.t)
+        start_ns, end_ns = frame.t_mid_ns - frame.duration_ns, frame.t_mid_ns
+        if self._imu and self._imu.covers(start_ns, end_ns):
+            return SE3(self._imu.turn(start_ns, end_ns), motion.t)
         return motion
 
-    def _lines(
-        self, segments: Segments, T_odom_start: SE3, motion: SE3, duration_s: float
-    ) -> Lines:
-        t_s = np.array([0.0, duration_s])
-        T = SE3.stack([T_odom_start, T_odom_start @ motion])
+    def _lines(self, segments: Segments, frame: Multiframe, T_odom_body: SE3, motion: SE3) -> Lines:
+        """Lines in odom; inside the frame the body moves on as it did up to its middle."""
+        t_s = np.array([0.0, frame.duration_ns * 1e-9])
+        T = T_odom_body @ SE3.stack([_times(motion, -0.5), _times(motion, 0.5)])
         a = place_points(t_s, T.R, T.t, segments.a_s, segments.a_body)
         b = place_points(t_s, T.R, T.t, segments.b_s, segments.b_body)
         apart = np.linalg.norm(b - a, axis=1) > 1e-6
         return Lines.through(a[apart], b[apart])
 
-    def _register(self, lines: Lines) -> Registration:
+    def _register(self, lines: Lines, view: View, T_odom_body: SE3) -> Registration:
+        """The whole frame against the history: all of it joined, or the mean over its frames."""
+        shares = [
+            overlap(
+                seen.view, view, seen.T_odom_body.inverse() @ T_odom_body, self._settings.overlap
+            )
+            for seen in self._history
+        ]
         if self._settings.odometry.history_mode == "averaged":
-            return averaged([self._register_to(old, lines) for old in self._history])
+            targets = [seen.target for seen in self._history]
+            return averaged(
+                [
+                    self._register_to(target, lines, share)
+                    for target, share in zip(targets, shares, strict=True)
+                ]
+            )
         joined = Lines(
-            np.concatenate([old.mid for old in self._history]),
-            np.concatenate([old.dir for old in self._history]),
+            np.concatenate([seen.target.lines.mid for seen in self._history]),
+            np.concatenate([seen.target.lines.dir for seen in self._history]),
         )
-        return self._register_to(joined, lines)
+        return self._register_to(LineTarget(joined), lines, max(shares))
 
-    def _register_to(self, target: Lines, lines: Lines) -> Registration:
+    def _register_to(self, target: LineTarget, lines: Lines, share: float) -> Registration:
         settings = self._settings.registration
-        return register_lines(
-            LineTarget(target), lines, guess=SE3.identity(), portion=settings.portion,
-            settings=settings,
-        )  # fmt: skip
+        # A scan too sparse to fill the bins of a view volume seems to overlap with nothing.
+        share = max(share, settings.portion)
+        return register_lines(target, lines, guess=SE3.identity(), portion=share, settings=settings)
 
-    def _finish(
+    def _is_lost(self, found: Registration) -> bool:
+        return not (found.converged and found.error_m < self._settings.odometry.lost_error_m)
+
+    def _step(
         self,
         frame: Multiframe,
-        segments: Segments,
-        predicted: SE3,
-        *,
         motion: SE3,
         found: Registration | None,
+        *,
+        gap_m: float,
+        lost: bool,
     ) -> OdometryStep:
         o = self._settings.odometry
-        lost = found is not None and not (found.converged and found.error_m < o.lost_error_m)
-        used = predicted if lost else motion
-        duration_s = frame.duration_ns * 1e-9
-        lines = self._lines(segments, self._T_odom_start, used, duration_s)
-        # An empty first frame would leave nothing for any later one to match.
-        if not lost and len(lines):
-            self._history.append(lines)
-        self._motions.append(used)
-        T_start, T_end = self._T_odom_start, self._T_odom_start @ used
-        self._T_odom_start = T_end
-        ends_ns = np.array([frame.t_ns, frame.t_ns + frame.duration_ns], np.int64)
-        nan = float("nan")
+        dense_ns = [frame.t_ns, frame.t_mid_ns, frame.t_ns + frame.duration_ns]
         return OdometryStep(
             frame.frame_id,
             frame.t_mid_ns,
-            interpolate(T_start, T_end, 0.5),
-            ends_ns,
-            SE3.stack([T_start, T_end]),
-            found.error_m if found else nan,
+            self._T_odom_body,
+            np.array(dense_ns, np.int64),
+            self._T_odom_body @ SE3.stack(_times(motion, s) for s in (-0.5, 0.0, 0.5)),
+            found.error_m if found else float("nan"),
             found.share if found else 0.0,
             found.iterations if found else 0,
             found.converged if found else True,
             found.degeneracy if found else 0.0,
-            float(np.linalg.norm(motion.t - predicted.t)),
+            gap_m,
             lost,
             np.diag(np.repeat([o.line_sd_rad, o.line_sd_m], 3) ** 2),
         )
+
+
+def _times(motion: SE3, factor: float) -> SE3:
+    """A part of a motion, or more of it (V Eq. 2.8)."""
+    return interpolate(SE3.identity(), motion, np.array([factor]))[0]
 
 
 def averaged(found: list[Registration]) -> Registration:

@@ -56,6 +56,21 @@ class Submaps:
         # Flat, because numpy multiplies a stack of 2 x 3 matrices one by one.
         return (T_odom_body.inverse() @ ends.reshape(-1, 3)).reshape(-1, 2, 3)
 
+    def points_of(self, node: int) -> Array:
+        """All points of the node's own multiframe, each from its own time [m], (N, 3)."""
+        frame, rig = self._frames[int(self._rows[node])], self._frames.rig
+        part = _covering(self._odometry, frame.t_ns, frame.duration_ns)
+        t_s, dt_s = (part.t_ns - frame.t_ns) * 1e-9, frame.dt_ns * 1e-9
+        placed = [np.empty((0, 3))]
+        for row, sensor in enumerate(rig.sensors):
+            of_sensor = frame.sensor == row
+            if sensor.enabled:
+                p_body = sensor.T_body_sensor @ frame.xyz[of_sensor].astype(np.float64)
+                T = part.T_a_b
+                placed.append(place_points(t_s, T.R, T.t, dt_s[of_sensor], p_body))
+        T_odom_body = self._odometry.at(self._t_ns[node : node + 1])[0]
+        return T_odom_body.inverse() @ np.concatenate(placed)
+
     def _ends_odom(self, row: int) -> Ends:
         if row in self._cache:
             self._cache.move_to_end(row)
@@ -110,11 +125,16 @@ class NodeViews:
         """Make the views of some nodes."""
         g = self._settings.graph
         for node in nodes:
-            wide = submaps.around(node, g.target_reach)
+            # The bins of a view volume want more points than the segments of one multiframe have.
+            wide = (
+                submaps.around(node, g.target_reach).reshape(-1, 3)
+                if g.target_reach
+                else submaps.points_of(node)
+            )
             near = _thin(submaps.around(node, g.source_reach), g.source_segments)
             self._size[node] = len(near)
             self._ends[node, : len(near)] = near
-            view = make_view(wide.reshape(-1, 3), self._settings.overlap)
+            view = make_view(wide, self._settings.overlap)
             self._nearest[node] = view.nearest_m
 
     def ends(self, node: int) -> Ends:

@@ -1,6 +1,6 @@
 """What each step adds: V Table 3.2 (modes) and V §3.4 (one LiDAR against two).
 
-    python -m tests.benchmarks.ablation RECORDING [--sensors]
+    python -m tests.benchmarks.ablation RECORDING [--sensors | --preset thesis]
 
 RECORDING is a folder written by ``recon4 simulate``. The same points (every tenth multiframe) are
 placed by the trajectory of each mode and by the true one, and compared with the true model in the
@@ -85,7 +85,9 @@ def row(name: str, floor: ErrorFloor, ate_m: float, *, lost: int, seconds: float
     )
 
 
-def modes(recording: Path, rig: Rig, names: tuple[str, ...], label: str = "") -> None:
+def modes(
+    recording: Path, rig: Rig, names: tuple[str, ...], label: str = "", *, base: str = "indoor"
+) -> None:
     truth = read_tum(recording / "truth.tum")
     with tempfile.TemporaryDirectory() as folder:
         work = Path(folder)
@@ -93,14 +95,14 @@ def modes(recording: Path, rig: Rig, names: tuple[str, ...], label: str = "") ->
         odometry = work / "odometry"
         odometry.mkdir()
         start = time.perf_counter()
-        run_odometry(frames, odometry, settings=preset("indoor"), progress=Silent())
+        run_odometry(frames, odometry, settings=preset(base), progress=Silent())
         seconds = time.perf_counter() - start
         lost = int(np.sum(load_arrays(odometry / "steps.npz", ["lost"])["lost"]))
         found = load_trajectory(odometry / "trajectory.npz")
         judged = judge(frames, found, truth, recording / "model.ply")
         print(row(f"{label}odometry", *judged, lost=lost, seconds=seconds), flush=True)
         for mode in names:
-            settings = override(preset("indoor"), [f"graph.mode={mode}"])
+            settings = override(preset(base), [f"graph.mode={mode}"])
             found, seconds = solve(frames, odometry, work / mode, settings)
             judged = judge(frames, found, truth, recording / "model.ply")
             print(row(f"{label}{mode}", *judged, lost=lost, seconds=seconds), flush=True)
@@ -111,11 +113,11 @@ def only(rig: Rig, name: str) -> Rig:
     return replace(rig, sensors=tuple(replace(s, enabled=s.name == name) for s in rig.sensors))
 
 
-def main(recording: Path, *, sensors: bool) -> None:
+def main(recording: Path, *, sensors: bool, base: str) -> None:
     rig = load_rig(recording / "rig.toml")
     print(f"{recording.name}: e_r in 8 slices [cm] | mean, plain mean, < 2 cm, < 5 cm | …")
     if not sensors:
-        modes(recording, rig, MODES)
+        modes(recording, rig, MODES[:3] if base == "thesis" else MODES, base=base)
         return
     for sensor in rig.sensors:
         modes(recording, only(rig, sensor.name), ("beyond",), f"{sensor.name} ")
@@ -123,4 +125,8 @@ def main(recording: Path, *, sensors: bool) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), sensors="--sensors" in sys.argv)
+    main(
+        Path(sys.argv[1]),
+        sensors="--sensors" in sys.argv,
+        base=sys.argv[sys.argv.index("--preset") + 1] if "--preset" in sys.argv else "indoor",
+    )

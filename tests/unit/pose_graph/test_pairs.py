@@ -153,6 +153,19 @@ def test_the_solvers_of_lines_try_pairs_too(stroll, solver):
     )
 
 
+def test_single_multiframes_overlap_by_all_their_points(stroll):
+    dense = walk(strolling, 8, columns=1800)
+    made = registrar(dense, "graph.target_reach=0", "graph.source_reach=0", lost=np.zeros(8, bool))
+    T = dense.truth.at(dense.t_mid_ns[[2, 7]])
+    asked = Pair(0, 1, EdgeKind.NEIGHBOR, T[0].inverse() @ T[1])
+
+    edge = made.register([asked], Silent())[0]
+
+    # By the ends of their segments alone it would be a tenth of this.
+    assert edge.overlap > 0.5
+    assert edge.verdict is Verdict.ACCEPTED
+
+
 # -- how certain an edge is
 
 

@@ -150,19 +150,23 @@ def test_odometry_that_disagrees_is_flagged_but_never_rejected() -> None:
     assert result.graph.edges[1].verification_m == pytest.approx(1.0)
 
 
-def test_what_a_person_decided_stays_and_persists() -> None:
+@pytest.mark.parametrize("robust", ["gnc", "cauchy", "none"])
+def test_what_a_person_decided_stays_and_persists(robust: str) -> None:
+    stated = np.diag([1e6] * 3 + [1e4] * 3)
     graph = line((0, 2, 3.0), (2, 4, 0.0))
-    approved = graph.edges[5].evolve(decided_by="Ada")
-    refused = graph.edges[6].evolve(
-        decided_by="Ada", verdict=Verdict.REJECTED, reason=Reason.OPERATOR
-    )
-    graph = graph.with_edges((*graph.edges[:5], approved, refused))
+    edges = [edge.evolve(information=stated) for edge in graph.edges]
+    edges[5] = edges[5].evolve(decided_by="Ada")
+    edges[6] = edges[6].evolve(decided_by="Ada", verdict=Verdict.REJECTED, reason=Reason.OPERATOR)
+    settings = VerificationSettings(robust=robust)  # type: ignore[arg-type]
 
-    edges = verify(graph, settings=VerificationSettings()).graph.edges
+    found = verify(graph.with_edges(tuple(edges)), settings=settings)
 
-    assert edges[5].verdict is Verdict.ACCEPTED
-    assert edges[6].verdict is Verdict.REJECTED
-    assert edges[6].reason is Reason.OPERATOR
+    # The loop is wrong by meters and says it knows to a centimeter.
+    assert found.graph.edges[5].chi2 > 1000.0
+    assert found.graph.edges[5].verdict is Verdict.ACCEPTED
+    assert found.outliers == ()
+    assert found.graph.edges[6].verdict is Verdict.REJECTED
+    assert found.graph.edges[6].reason is Reason.OPERATOR
 
 
 def test_verifying_twice_is_verifying_once() -> None:
@@ -204,10 +208,13 @@ def test_without_a_robust_solve_only_paths_turn_a_loop_down() -> None:
     graph = line((0, 4, 1.5))
     graph = graph.with_edges(tuple(edge.evolve(information=stated) for edge in graph.edges))
 
-    plain = verify(graph, settings=PATHS_ONLY).graph.edges[5]
+    found = verify(graph, settings=PATHS_ONLY)
+    plain = found.graph.edges[5]
     robust = verify(graph, settings=VerificationSettings()).graph.edges[5]
 
     assert plain.verdict is Verdict.UNVERIFIED
+    assert found.chi2_after == pytest.approx(optimize(graph, kernel="none").chi2)
+    assert found.chi2_after < 0.99 * optimize(graph, kernel="cauchy").chi2
     assert (robust.verdict, robust.reason) == (Verdict.REJECTED, Reason.ROBUST)
 
 

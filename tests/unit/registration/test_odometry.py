@@ -240,9 +240,10 @@ def test_lines_follow_a_slow_motion(mode):
     steps = push_all(LineOdometry(recording.rig, settings), recording)
 
     T, truth = poses(steps), recording.true_poses()
-    assert worst_from_start(T, truth) < 0.06
+    # The way is 11 cm long: near surfaces alone would hold the lines back by most of it.
+    assert worst_from_start(T, truth) < 0.01
     assert all(step.converged for step in steps)
-    np.testing.assert_array_equal(steps[3].t_ns, [T0_NS + 3 * FRAME_NS, T0_NS + 4 * FRAME_NS])
+    np.testing.assert_array_equal(steps[3].t_ns, T0_NS + np.array([30, 35, 40]) * FRAME_NS // 10)
 
 
 def test_the_poses_against_a_history_are_averaged_over_those_that_converged():
