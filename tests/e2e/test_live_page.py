@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import os
 import re
 import secrets
@@ -271,3 +272,34 @@ def test_the_keyboard_does_it_too(server, page):
     expect(page.get_by_role("dialog")).to_be_visible()
     page.keyboard.press("Escape")
     expect(page.get_by_role("dialog")).to_be_hidden()
+
+
+HELD = """async () => {
+  const { Camera } = await import("/web/live_camera.js");
+  const camera = new Camera();
+  const place = [3, -2, 0];
+  const before = camera.project(place);
+  camera.zoom(1.7, before);
+  camera.rotate(0.8, before);
+  const after = camera.project(place);
+  return { off: Math.hypot(after[0] - before[0], after[1] - before[1]), px: camera.pxPerM };
+}"""
+
+
+def test_two_fingers_zoom_and_turn_about_what_they_touch_and_one_touch_turns_it_back(server, page):
+    page.goto(f"{server.url}/live")
+    expect(page.get_by_role("button", name="Start…")).to_be_visible()
+    touch = page.context.new_cdp_session(page)
+
+    held = page.evaluate(HELD)
+    for kind, turn in (("Start", 0.0), ("Move", 0.3), ("Move", 0.8), ("End", None)):
+        ends = [] if turn is None else [0.0, math.pi]
+        fingers = [
+            {"id": k, "x": 150 + 80 * math.cos(a + turn), "y": 350 + 80 * math.sin(a + turn)}
+            for k, a in enumerate(ends)
+        ]
+        touch.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": fingers})
+
+    assert held["off"] < 1e-6 and held["px"] > 40
+    page.get_by_role("button", name="Turn the map back").tap()
+    expect(page.get_by_role("button", name="Turn the map back")).to_be_hidden()
