@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import ast
+import inspect
+import sys
+from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any
 
 from fastapi import FastAPI
@@ -33,6 +38,7 @@ def description(app: FastAPI) -> dict[str, Any]:
     parts["securitySchemes"] = SCHEMES
     for name in ("HTTPValidationError", "ValidationError"):  # ours are problems like all others
         parts["schemas"].pop(name, None)
+    _tell_fields(parts["schemas"])
     needed = {
         (route.path, method.lower()): sorted(route.needs)
         for route in declared(app)
@@ -44,3 +50,36 @@ def description(app: FastAPI) -> dict[str, Any]:
             if "422" in operation["responses"]:
                 operation["responses"]["422"]["content"] = OUR_PROBLEM
     return described
+
+
+def _tell_fields(schemas: dict[str, Any]) -> None:
+    """Put the text below each field of a record's class into the record's description."""
+    for name, told in _documented(set(schemas)):
+        fields = schemas[name].get("properties", {})
+        if not told.keys() <= fields.keys():
+            continue  # another class of the same name
+        for field, words in told.items():
+            fields[field].setdefault("description", words)
+
+
+def _documented(names: set[str]) -> Iterator[tuple[str, dict[str, str]]]:
+    """Our classes of some names, each with the texts below its fields."""
+    ours = [module for name, module in sys.modules.items() if name.startswith(("app.", "recon4."))]
+    for module in ours:
+        try:
+            tree = ast.parse(inspect.getsource(module))
+        except (OSError, TypeError):
+            continue  # not from a file
+        for one in tree.body:
+            if isinstance(one, ast.ClassDef) and one.name in names:
+                yield one.name, dict(_texts(one))
+
+
+def _texts(record: ast.ClassDef) -> Iterator[tuple[str, str]]:
+    for field, below in pairwise(record.body):
+        match field, below:
+            case (
+                ast.AnnAssign(target=ast.Name(id=name)),
+                ast.Expr(value=ast.Constant(value=str(text))),
+            ):
+                yield name, " ".join(text.split())

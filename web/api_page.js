@@ -25,6 +25,9 @@ function typeLink(schema) {
   return record ? make("a", { href: `#record-${record}` }, words) : words;
 }
 
+/** Words of the description; what it marks as code is plain text here. */
+const plain = (words = "") => words.replaceAll("`", "");
+
 const RIGHTS = { look: "", process: "who may process", capture: "who may record", review: "who may review", administer: "admins" };
 
 /** Who may call it, where that is not everybody; and whether that is not the reader. */
@@ -48,7 +51,7 @@ function copyable(text) {
 function fields(record) {
   const needed = new Set(record.required ?? []);
   return Object.entries(record.properties ?? {}).map(([name, one]) =>
-    row(name, typeLink(one), [needed.has(name) ? "needed" : "", limits(one)].filter(Boolean).join(", "), one.description ?? ""),
+    row(name, typeLink(one), [needed.has(name) ? "needed" : "", limits(one)].filter(Boolean).join(", "), plain(one.description)),
   );
 }
 
@@ -88,11 +91,11 @@ function answers({ responses = {} }) {
 function parts(path, method, operation) {
   const body = bodyOf(operation);
   const given = operation.parameters ?? [];
-  const inputs = given.map((one) => row(one.name, one.in, typeWords(one.schema), [one.required ? "needed" : "", limits(one.schema ?? {})].filter(Boolean).join(", "), one.description ?? ""));
+  const inputs = given.map((one) => row(one.name, one.in, typeWords(one.schema), [one.required ? "needed" : "", limits(one.schema ?? {})].filter(Boolean).join(", "), plain(one.description)));
   const record = body?.schema?.$ref && schemas[typeWords(body.schema)];
   const ok = Object.entries(operation.responses ?? {}).find(([status]) => status.startsWith("2"))?.[1]?.content?.["application/json"]?.schema;
   return [
-    make("p", {}, operation.description ?? ""),
+    make("p", {}, plain(operation.description)),
     ...(inputs.length ? [make("h3", {}, "Parameters"), table(["Name", "Where", "Type", "Limits", ""], inputs)] : []),
     ...(record ? [make("h3", {}, "Body, JSON"), table(["Field", "Type", "Limits", ""], fields(record)), code(JSON.stringify(body.json, null, 1))] : []),
     ...(body?.binary ? [make("h3", {}, "Body"), make("p", {}, make("code", {}, body.binary))] : []),
@@ -122,7 +125,7 @@ for (const [path, methods] of Object.entries(api?.paths ?? {})) {
 }
 const title = (words) => words[0].toUpperCase() + words.slice(1);
 const records = Object.entries(schemas).map(([name, one]) =>
-  make("details", { className: "route", id: `record-${name}` }, make("summary", {}, make("code", {}, name)), make("div", {}, make("p", {}, one.description ?? ""), table(["Field", "Type", "Limits", ""], fields(one)))),
+  make("details", { className: "route", id: `record-${name}` }, make("summary", {}, make("code", {}, name)), make("div", {}, make("p", {}, plain(one.description)), table(["Field", "Type", "Limits", ""], fields(one)))),
 );
 byId("groups").append(...[...tags.keys(), "records"].map((tag) => make("a", { href: `#tag-${tag}` }, title(tag))));
 byId("paths").append(

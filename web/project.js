@@ -15,6 +15,7 @@ const log = document.querySelector("job-log");
 const STAGE_WORDS = { done: "✓ Done", reused: "✓ Kept from before", running: "▶ Running" };
 let project = null;
 let view = null;
+let lacking = null;
 
 function draw() {
   const name = project?.name ?? id;
@@ -28,6 +29,7 @@ function draw() {
   status.hidden = !view || view.job.state === "succeeded";
   fill(byId("state"), status.hidden ? badge(stateOf(project, view)) : null, make("p", { className: "quiet" }, facts.filter(Boolean).join(" · ")));
   if (view) status.view = view;
+  drawMessage();
   drawFigures();
   drawFiles();
   drawStages();
@@ -85,13 +87,17 @@ function drawLog() {
 async function reload() {
   try {
     project = await readProject(id);
-    byId("message").textContent = "";
+    lacking = null;
   } catch (error) {
-    // A waiting job's project has no folder yet.
-    const expected = error instanceof ApiError && error.status === 404 && view;
-    if (!expected) byId("message").textContent = error.message;
+    lacking = error;
   }
   draw();
+}
+
+/** Why there is no project; that of a job which waits, or ended before it made one, has no folder. */
+function drawMessage() {
+  const expected = lacking instanceof ApiError && lacking.status === 404 && view;
+  byId("message").textContent = lacking && !expected ? lacking.message : "";
 }
 
 function onJob(fresh) {
@@ -118,4 +124,7 @@ watchJobs(onJob, (linked) => {
   document.querySelector("page-head").linked = linked;
 });
 reload();
-findJob().catch((error) => (byId("message").textContent = error.message));
+findJob().catch((error) => {
+  lacking ??= error;
+  draw();
+});

@@ -52,10 +52,13 @@ class NewJob(BaseModel):
     recordings: list[str] = Field(min_length=1, max_length=16)
     """Files or folders of this computer."""
     preset: str = "indoor"
+    """Which settings to begin with: see `/api/choices`."""
     rig: str = ""
     """Name of a shipped rig or path of a rig file; empty = guessed."""
     imu: str = ""
+    """CSV file of this computer; empty = what the recording has."""
     gnss: str = ""
+    """CSV file of this computer; empty = what the recording has."""
     settings: list[str] = Field(default=[], max_length=300)
     """``group.field=value`` texts over the preset."""
     clone_of: str = Field(default="", max_length=64)

@@ -22,7 +22,7 @@ def legend_html(legend: Legend) -> str:
         points = f"<b>Points by {html.escape(legend.color_by)}</b>{_scale(legend)}"
         points += f"<div>{count(legend.points)} of {count(legend.points_in_map)} points</div>"
     if legend.preview:
-        points += f"<b>Preview by height</b>{_bar(legend.palette, HEIGHTS, 'm above the start')}"
+        points += f"<b>Preview by height</b>{_bar(legend.palette, HEIGHTS, 'm above the backpack')}"
         points += "<div>A multiframe a second, until there is a map</div>"
     if legend.multiframes:
         points += f"<div>{html.escape(legend.multiframes)}</div>"

@@ -26,15 +26,21 @@ addEventListener('pointerdown', (event) => {
 Document.prototype.hasFocus = function () { return !document.hidden; };
 document.addEventListener('visibilitychange', () =>
   dispatchEvent(new Event(document.hidden ? 'blur' : 'focus')));
-// On a phone the controls would cover half of the map: fold them up once they are all there.
-addEventListener('DOMContentLoaded', () => innerWidth < 576 && new MutationObserver((_, watch) => {
+// Until our controls are there viser shows its own, on white: a cover. On a phone they would then
+// cover half of the map: fold them up.
+addEventListener('DOMContentLoaded', () => new MutationObserver((_, watch) => {
   const said = (words) => [...document.querySelectorAll('#root *')].find((one) =>
     !one.firstElementChild && one.textContent === words);
   const title = said('Connected');
-  if (title && said('Edges by')) { watch.disconnect(); title.click(); }
+  if (!title || !said('Edges by')) return;
+  watch.disconnect();
+  document.getElementById('cover').remove();
+  if (innerWidth < 576) title.click();
 }).observe(document, { childList: true, subtree: true, characterData: true }));
 </script>
 <style>
+#cover { position: fixed; inset: 0; z-index: 10000; display: grid; place-items: center;
+  font: 15px/1.5 system-ui, sans-serif; color: #9aa8b5; background: #101418; }
 #frame-words { position: fixed; left: 0; top: 0; z-index: 5; padding: 4px 10px;
   font: 12px/1.5 system-ui, sans-serif; color: #e8edf2; background: rgb(16 20 24 / 72%);
   pointer-events: none; border-bottom-right-radius: 6px; }
@@ -76,7 +82,9 @@ def with_shims(page: str, words: str) -> str:
     head, body = page.find("<head>"), page.rfind("</body>")
     assert 0 <= head < body
     head += len("<head>")
-    badge = f'<div id="frame-words">{html.escape(words)}</div>'
+    badge = (
+        f'<div id="cover">Opening the map…</div><div id="frame-words">{html.escape(words)}</div>'
+    )
     return page[:head] + SHIMS + page[head:body] + badge + page[body:]
 
 

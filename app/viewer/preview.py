@@ -29,8 +29,9 @@ MOST_OF_ONE = 2000
 """One of them has at most so many."""
 SAME_M = 0.02
 """Poses that moved by less are still the same [m]."""
-HEIGHTS = Range(-2.0, 6.0)
-"""Heights the ends of the palette stand for, above where the walk began [m]."""
+HEIGHTS = Range(-2.0, 1.0)
+"""Heights the ends of the palette stand for, above the body [m]. What is higher is left out:
+ceilings would hide the walk."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,6 +42,9 @@ class _Piece:
     """Where the body was at each, with its heading: what tells whether they moved, (K, 6)."""
     origin_m: Array
     p_piece: NDArray[np.float32]
+    """(N, 3)"""
+    height_m: NDArray[np.float32]
+    """Above the body at the time of the multiframe, (N,)."""
 
 
 class Preview:
@@ -55,7 +59,7 @@ class Preview:
         self._lock = threading.Lock()
 
     def nodes(self, line: Trajectory, *, palette: Palette, size_m: float) -> list[PointsNode]:
-        """The points of the walk as far as a trajectory reaches, colored by height."""
+        """The points of the walk as far as a trajectory reaches, by height above the body."""
         t_ns = self._frames.t_mid_ns[self._rows]
         # the last moments of a line that grows are still bent by what follows
         reached = self._rows[(t_ns >= line.t_ns[0]) & (t_ns + 100_000_000 <= line.t_ns[-1])]
@@ -73,7 +77,7 @@ class Preview:
                     position_m=piece.origin_m,
                     p_node=piece.p_piece,
                     rgb=self._colors(number, piece, palette),
-                    size_m=2.0 * size_m,
+                    size_m=1.5 * size_m,
                 )
 
     def _piece(self, number: int, rows: NDArray[np.intp], line: Trajectory) -> _Piece | None:
@@ -87,19 +91,19 @@ class Preview:
         ):
             return kept
         placed = [self._frames.thinned(int(row), line, most=self._of_one) for row in rows]
-        there = [p_map for p_map in placed if len(p_map)]
-        if not there:
+        height_m = [p_map[:, 2] - t[2] for p_map, t in zip(placed, T.t, strict=True)]
+        p_map, height = np.concatenate(placed), np.concatenate(height_m).astype(np.float32)
+        p_map, height = p_map[height <= HEIGHTS.high], height[height <= HEIGHTS.high]
+        if len(p_map) == 0:
             return None
-        p_map = np.concatenate(there)
-        piece = _Piece(rows, at, p_map[0], (p_map - p_map[0]).astype(np.float32))
+        piece = _Piece(rows, at, p_map[0], (p_map - p_map[0]).astype(np.float32), height)
         self._pieces[number] = piece
         return piece
 
     def _colors(self, number: int, piece: _Piece, palette: Palette) -> NDArray[np.uint8]:
         made = self._painted.get((number, palette))
         if made is None or made[0] is not piece:
-            heights = piece.p_piece[:, 2] + np.float32(piece.origin_m[2])
-            made = (piece, paint(heights, HEIGHTS, palette))
+            made = (piece, paint(piece.height_m, HEIGHTS, palette))
             self._painted[number, palette] = made
         return made[1]
 

@@ -115,6 +115,11 @@ def test_the_api_description_says_who_may_call_what_and_how_refusals_look(server
     assert paths["/api/people"]["get"]["x-needs"] == ["administer"]
     assert paths["/api/login"]["post"]["x-needs"] == []
     assert "HTTPValidationError" not in str(described)
+    records = described["components"]["schemas"]
+    assert records["NewJob"]["properties"]["imu"]["description"].startswith("CSV file")
+    assert records["Project"]["properties"]["finished"]["description"] == (
+        "Whether a run came to its end."
+    )
     assert server.get("/openapi.json").json() == described
 
 

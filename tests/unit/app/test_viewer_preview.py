@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from app.viewer.multiframes import Multiframes
-from app.viewer.preview import MOST_OF_ONE, PIECE, Preview
+from app.viewer.palette import paint
+from app.viewer.preview import HEIGHTS, PIECE, Preview
 from app.viewer.source import ProjectSource
 from recon4.geometry.se3 import SE3
 from recon4.model.trajectory import Trajectory
@@ -38,10 +39,14 @@ def test_a_multiframe_a_second_lies_where_it_was_seen(preview):
     drawn = nodes(preview, until(25))
 
     p_map = np.concatenate([node.position_m + node.p_node for node in drawn])
-    assert len(p_map) == 26 * min(400, MOST_OF_ONE)
-    assert (p_map > -0.01).all() and (p_map < np.array(ROOM_M) + 0.01).all()
+    assert 0.75 < len(p_map) / (26 * 400) < 0.9  # walls higher than that hide the walk
+    assert (p_map > -0.01).all() and (
+        p_map < np.array([*ROOM_M[:2], 1.2 + HEIGHTS.high]) + 0.01
+    ).all()
     on_floor = np.abs(p_map[:, 2]) < 0.01
-    assert 0.2 < on_floor.mean() < 0.6
+    assert 0.3 < on_floor.mean() < 0.6
+    floor = np.concatenate([node.rgb for node in drawn])[on_floor]
+    assert (floor == paint(np.array([-1.2]), HEIGHTS, "viridis")).all(axis=1).mean() > 0.9
 
 
 def test_a_walk_that_grows_places_its_last_seconds_only(preview):
@@ -51,7 +56,9 @@ def test_a_walk_that_grows_places_its_last_seconds_only(preview):
     assert [node.path for node in before] == [node.path for node in after]
     kept = [a.p_node is b.p_node and a.rgb is b.rgb for a, b in zip(before, after, strict=True)]
     assert kept == [True, True, False]
-    assert len(after[-1].p_node) == (29 - 2 * PIECE) * 400
+    added = len(after[-1].p_node) - len(before[-1].p_node)
+    assert 0.7 < added / (3 * 400) < 0.95
+    assert len(before[-1].p_node) > (26 - 2 * PIECE) * 250
 
 
 def test_where_the_poses_move_the_points_move_too(preview):
@@ -77,7 +84,7 @@ def test_of_a_long_walk_each_multiframe_shows_less(preview):
 
     (node,) = nodes(preview, until(5))
 
-    assert len(node.p_node) == 6 * 20
+    assert 60 < len(node.p_node) <= 6 * 20
 
 
 def test_a_project_has_a_preview_until_it_has_a_map(project, tmp_path):
