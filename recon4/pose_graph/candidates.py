@@ -26,7 +26,7 @@ Selection = Callable[[PoseGraph], list[Pair]]
 
 def rounds(nodes: int, settings: GraphSettings) -> list[Selection]:
     """What each round tries, given the graph so far."""
-    if settings.exhaustive:
+    if settings.exhaustive and settings.mode != "10":
         farthest = nodes // 2 if settings.closed_trajectory else nodes - 1
         schedule = distance_schedule(farthest)
         return [partial(pairs_at_distances, distances=d, settings=settings) for d in schedule]

@@ -149,6 +149,14 @@ def test_mode_10_tries_ten_multiframes_and_the_others_their_neighbors(mode, stri
     assert len(rounds(30, settings)) == (1 if mode == "10" else 3)
 
 
+def test_mode_10_stays_within_ten_multiframes_in_an_exhaustive_search_too():
+    settings = GraphSettings(mode="10", exhaustive=True)
+
+    tried = [p for batch in rounds(30, settings) for p in ends(batch(line(30)))]
+
+    assert max(j - i for i, j in tried) == 2
+
+
 def test_a_pair_starts_from_the_poses_of_the_graph():
     graph = line(4)
     pair = neighbor_pairs(graph, GraphSettings())[0]
