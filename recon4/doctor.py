@@ -10,6 +10,7 @@ from importlib import metadata
 from pathlib import Path
 
 import recon4
+from recon4.errors import ConfigError
 
 _PACKAGES = (
     ("numpy", "numbers"),
@@ -43,7 +44,12 @@ def examine(folder: Path) -> list[Check]:
 
     Args:
         folder: Where projects would be kept; its disk is looked at.
+
+    Raises:
+        ConfigError: If there is no such folder.
     """
+    if not folder.is_dir():
+        raise ConfigError(f"no folder {folder}: give the one that holds the projects")
     checks = [
         Check("recon4", recon4.__version__, ok=True),
         Check("Python", platform.python_version(), ok=True),

@@ -60,8 +60,11 @@ def process(
         raise RecordingError("no recording given")
     progress = progress or Silent()
     settings = settings or settings_of(preset)
+    files = [*recordings, *(path for path in (imu, gnss) if path)]
+    for path in files:
+        if not path.exists():  # before a project is made for nothing
+            raise RecordingError(f"cannot read {path}: there is no such file or folder")
     with Project.open(out) as project:
-        files = [*recordings, *(path for path in (imu, gnss) if path)]
         keys = {path: input_file(path, project.ledger, progress).key for path in files}
         project.describe(
             preset=preset,

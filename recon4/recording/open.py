@@ -149,9 +149,15 @@ def bag_paths(path: Path) -> list[Path]:
 
 
 def pcap_files(path: Path) -> list[Path]:
-    """The file itself, or the capture files of a folder."""
+    """The file itself, or the capture files of a folder.
+
+    Raises:
+        RecordingError: If there is no such path.
+    """
     if path.is_file():
         return [path]
+    if not path.is_dir():
+        raise RecordingError(f"{path} does not exist")
     return sorted((f for f in path.iterdir() if f.is_file() and is_pcap(f)), key=natural)
 
 

@@ -109,6 +109,34 @@ def test_a_known_error_is_one_line_on_stderr_and_ends_with_1(tmp_path, capsys):
     assert said.err == f"recon4: {tmp_path} is not a recon4 project: it has no project.json\n"
 
 
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["info", "gone"],
+        ["process", "gone", "--out", "project"],
+        ["evaluate", "gone", "--truth", "gone"],
+        ["export", "gone", "map.laz"],
+        ["slice", "gone", "cut.png", "--z", "1"],
+        ["doubles", "gone"],
+        ["replay", "gone"],
+        ["record", "project", "--rig", "gone"],
+        ["users", "list", "--root", "gone"],
+        ["doctor", "gone"],
+    ],
+    ids=lambda arguments: arguments[0],
+)
+def test_what_is_not_there_is_said_in_one_line_and_leaves_nothing(
+    tmp_path, monkeypatch, capsys, arguments
+):
+    monkeypatch.chdir(tmp_path)
+
+    assert main(arguments) == 1
+
+    said = capsys.readouterr().err
+    assert said.startswith("recon4: ") and said.count("\n") == 1 and "gone" in said
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_the_doctor_looks_at_the_machine(tmp_path, capsys):
     code = main(["doctor", str(tmp_path), "--json"])
 
