@@ -106,13 +106,14 @@ class LiveMap:
             second ``plan``, ``gaps`` and ``loop``.
         """
         self._lately.append((frame.t_ns, False))
-        step = self.tracker.push(frame)
+        broken_off = self.tracker.broken_off(frame)
+        step = self.tracker.start_over(frame) if broken_off else self.tracker.push(frame)
         anew: list[Message] = []
         if self.tracker.anew:
             self._begin()
             self._preview.forget()
             anew = [{"kind": "path", "points": []}]
-        step, lost = self._follow(frame, step)
+        step, lost = self._go_on(step) if broken_off else self._follow(frame, step)
         T_map_body = self.tracker.T_map_odom @ step.T_odom_body
         told = [self._pose(frame, step, T_map_body, lost=lost), *anew]
         if lost:
@@ -135,6 +136,14 @@ class LiveMap:
         place = [round(float(v), 2) for v in p_map]
         if not self._path or np.linalg.norm(p_map - self._path[-1]) >= _PATH_STEP_M:
             self._path.append(place)
+
+    def _go_on(self, step: OdometryStep) -> tuple[OdometryStep, bool]:
+        """After a pause: probably where it began, but that has to be seen."""
+        if not len(self._places):
+            return step, False
+        self._recovery = Recovery(self._places, self._here_m, expected=self.tracker.T_map_odom)
+        self._lost, self._lost_steps = 1, 0
+        return step, True
 
     def _follow(self, frame: Multiframe, step: OdometryStep) -> tuple[OdometryStep, bool]:
         """The step to go on with, and whether the body is lost.

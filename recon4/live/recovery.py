@@ -27,17 +27,20 @@ class _Guess:
 class Recovery:
     """Searches now and then; guesses gather or lose credit with every view that follows."""
 
-    def __init__(self, places: Places, lost_m: Array) -> None:
+    def __init__(self, places: Places, lost_m: Array, *, expected: SE3 | None = None) -> None:
         """Begin.
 
         Args:
             places: The map so far.
             lost_m: Where tracking was lost, in the map [m], (3,).
+            expected: ``T_map_odom`` if the body has stayed there; it need not wait for other
+                places to be tried.
         """
         self._places = places
         self._to_try = places.near(lost_m, most=_PLACES_TRIED, apart_m=_PLACES_APART_M)
         self._tried = 0
-        self._guesses: list[_Guess] = []
+        self._expected = None if expected is None else _Guess(expected, 1.0)
+        self._guesses = [] if self._expected is None else [self._expected]
 
     def search(self, source: Array, T_odom_body: SE3) -> SE3 | None:
         """Where the frame of the odometry lies in the map, ``T_map_odom``; None = not known yet.
@@ -69,7 +72,9 @@ class Recovery:
 
     def _decide(self) -> SE3 | None:
         ranked = sorted(self._guesses, key=lambda guess: -guess.score)
-        if self._tried < len(self._to_try) or not ranked or ranked[0].score < _SURE_SCORE:
+        if not ranked or ranked[0].score < _SURE_SCORE:
+            return None
+        if self._tried < len(self._to_try) and ranked[0] is not self._expected:
             return None
         rival = ranked[1].score if len(ranked) > 1 else 0.0
         return ranked[0].T_map_odom if ranked[0].score - rival >= _LEAD else None

@@ -24,6 +24,8 @@ _EARLY_FRAMES = 100
 """An IMU found wrong so soon never was right: the map made with it is none."""
 _LEAST_UPRIGHT = 0.5
 """Cosine: nobody carries the sensors more than 60 degrees tilted when the walk begins."""
+_BROKEN_OFF_NS = 2_000_000_000
+"""Nobody knows where a body is after such a pause, unless the IMU went on."""
 _IMU_WRONG = "is it mounted as the rig file says (upside down?)"
 
 
@@ -38,6 +40,11 @@ class Tracker:
         self._recent: deque[tuple[Multiframe, bool]] = deque(maxlen=_TRIED_FRAMES)
         self._imu: deque[ImuSamples] = deque(maxlen=1000)
         self._since_doubt = self._frames = 0
+        self._end_ns: int | None = None
+        """End of the last multiframe."""
+        self._imu_ns: int | None = None
+        self._imu_hole_ns = 0
+        """Longest time without a sample since the last multiframe."""
         self.anew = False
         """Whether the map before the last multiframe is worth nothing: poses are in a new frame."""
         self._believed = SE3.identity()
@@ -53,13 +60,22 @@ class Tracker:
         """Take samples as they were read."""
         imu = ImuSamples(imu.t_ns + self._offset_ns, imu.gyro_rad_s, imu.accel_m_s2)
         self._imu.append(imu)
+        if self._imu_ns is not None:
+            self._imu_hole_ns = max(self._imu_hole_ns, int(imu.t_ns[0]) - self._imu_ns)
+        self._imu_ns = int(imu.t_ns[-1])
         if self._odometry is None:
             self._waiting.append(imu)
         else:
             self._odometry.extend_imu(imu)
 
+    def broken_off(self, frame: Multiframe) -> bool:
+        """Whether nothing is known of the motion between the last multiframe and this one."""
+        blind = not self.with_imu or self._imu_hole_ns > _BROKEN_OFF_NS
+        return blind and self._end_ns is not None and frame.t_ns - self._end_ns > _BROKEN_OFF_NS
+
     def push(self, frame: Multiframe) -> OdometryStep:
         """Register the next multiframe; poses are in the frame `T_map_odom` places."""
+        self._note(frame)
         self._frames, self.anew = self._frames + 1, False
         if self._odometry is None:
             self._odometry = self._begin()
@@ -85,12 +101,16 @@ class Tracker:
 
     def start_over(self, frame: Multiframe) -> OdometryStep:
         """Begin a new odometry with a multiframe; the body is believed to be where it was."""
+        self._note(frame)
         last = self._believed
         imu = join(list(self._imu)) if self.with_imu else None
         self._odometry = Odometry(self._rig, self._settings, imu)
         step = self._odometry.push(frame)
         self.move(last, step)
         return step
+
+    def _note(self, frame: Multiframe) -> None:
+        self._end_ns, self._imu_hole_ns = frame.t_ns + frame.duration_ns, 0
 
     def move(self, T_map_body: SE3, step: OdometryStep) -> None:
         """From now on the map has this pose at the step's time."""

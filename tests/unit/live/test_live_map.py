@@ -107,7 +107,7 @@ def test_who_is_lost_and_carried_elsewhere_is_found_again(walk):
 def test_an_imu_upside_down_is_said_and_mapping_goes_on_without_it(walk):
     follower = Follower(walk, imu_axes=[1.0, -1.0, -1.0])
 
-    told = [follower.push(row) for row in range(90)]
+    told = [follower.push(row) for row in range(60)]
 
     assert not any(pose["imu"] or pose["lost"] for pose, _ in told)
     assert "upside down" in told[0][0]["remark"]
@@ -117,7 +117,7 @@ def test_an_imu_upside_down_is_said_and_mapping_goes_on_without_it(walk):
 def test_an_imu_that_turns_the_wrong_way_is_found_out_and_the_map_begins_anew(walk):
     follower = Follower(walk, gyro_axes=[1.0, 1.0, -1.0])
 
-    told = [follower.push(row)[0] for row in range(90)]
+    told = [follower.push(row)[0] for row in range(65)]
 
     begun = next(k for k, pose in enumerate(told) if pose["remark"])
     assert (told[0]["imu"], told[-1]["imu"]) == (True, False)
@@ -125,7 +125,7 @@ def test_an_imu_that_turns_the_wrong_way_is_found_out_and_the_map_begins_anew(wa
     path, points = follower.map.snapshot().messages()[:2]
     assert points["generation"] == 1
     walked_m = np.linalg.norm(np.diff(path["points"], axis=0), axis=1).sum()
-    truth_m = np.array([walk.at(row).t for row in range(begun, 90)])
+    truth_m = np.array([walk.at(row).t for row in range(begun, 65)])
     assert walked_m == pytest.approx(
         np.linalg.norm(np.diff(truth_m, axis=0), axis=1).sum(), abs=0.4
     )
@@ -148,10 +148,46 @@ def test_what_is_left_out_is_counted_for_ten_seconds(walk):
         follower.push(row)
         follower.map.thin(walk.frame(row + 1))
     pose, _ = follower.push(10)
-    later = [follower.push(row)[0] for row in range(11, 125)][-1]
+    later, _ = follower.push(11, 10_000_000_000)
 
     assert (pose["thinned"], pose["lately"]) == (5, {"frames": 11, "thinned": 5})
     assert (later["thinned"], later["lately"]["thinned"]) == (5, 0)
+
+
+def test_after_a_pause_the_walk_goes_on_where_it_stopped(walk):
+    follower = Follower(walk)
+    for row in range(100):
+        follower.push(row)
+    later = [follower.push(row, 60_000_000_000) for row in range(100, 125)]
+
+    assert later[0][0]["lost"]
+    assert not any(pose["lost"] for pose, _ in later[15:])
+    assert max(error for pose, error in later if not pose["lost"]) < 0.1
+
+
+def test_who_was_carried_elsewhere_in_a_pause_is_found_before_anything_is_drawn(walk):
+    follower = Follower(walk)
+    for row in range(130):
+        follower.push(row)
+    back = walk.store[130].t_ns - walk.store[60].t_ns + 60_000_000_000
+    later = [follower.push(row, back) for row in range(60, 142)]
+
+    found = [error for pose, error in later if not pose["lost"]]
+    assert len(found) > 10
+    assert max(found) < 0.1
+
+
+def test_lidars_that_are_silent_for_three_seconds_lose_nobody_who_has_an_imu(walk):
+    follower = Follower(walk)
+    for row in range(60):
+        follower.push(row)
+    for row in range(60, 90):
+        follower.map.extend_imu(walk.imu(row))
+    later = [follower.push(row) for row in range(90, 100)]
+
+    assert not later[-1][0]["lost"]
+    assert later[-1][0]["relocated"] == 0
+    assert later[-1][1] < 0.1
 
 
 def test_a_few_bad_multiframes_are_no_reason_to_search(walk):
