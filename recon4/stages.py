@@ -171,7 +171,7 @@ def _map(
     return {"points": len(tiles), "bounds_m": [corner.tolist() for corner in tiles.bounds_m]}
 
 
-FRAMES = Stage("frames", 4, ("ingest",), _frames)
+FRAMES = Stage("frames", 5, ("ingest",), _frames)
 ODOMETRY = Stage(
     "odometry", 9, ("segments", "registration", "planes", "scans", "odometry"), _odometry
 )
