@@ -88,9 +88,9 @@ def test_two_batteries_are_one_and_a_mouse_is_none(supplies):
 
 def test_a_battery_that_tells_its_share_only_and_one_on_mains(supplies):
     folder, put = supplies
-    put("BAT0", type="Battery", status="Charging", capacity=83)
+    put("BAT0", type="Battery", status="Charging", capacity=4)
 
-    assert read_battery(folder) == Battery(share=0.83, left_s=None, mains=True)
+    assert read_battery(folder) == Battery(share=0.04, left_s=None, mains=True)
     assert battery_words(read_battery(folder)) == []
     assert read_battery(folder / "nothing") is None
 
