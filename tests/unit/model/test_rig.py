@@ -1,7 +1,5 @@
 """Rig files: what is right is read exactly, what is wrong is named."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -17,15 +15,6 @@ def test_the_shipped_rigs_can_be_read():
 
     for name in rig_presets():
         assert load_rig(name).sensors
-
-
-def test_the_rig_of_the_documentation_is_one():
-    page = (Path(__file__).parents[3] / "docs" / "rig.md").read_text("utf-8")
-
-    rig = parse_rig(page.split("```toml\n")[1].split("```")[0], where="docs/rig.md")
-
-    assert [sensor.address for sensor in rig.sensors] == ["192.168.1.201", "192.168.1.202"]
-    assert rig.gnss_serial == "/dev/ttyUSB0:115200"
 
 
 def test_the_vertical_lidar_of_the_4recon_looks_across_the_walking_direction():
