@@ -34,6 +34,12 @@ EXPECTED_NOISE = (
 )
 
 
+@pytest.fixture(autouse=True)
+def room_on_the_disk(monkeypatch):
+    """The disk of whoever runs the tests is no part of the pages."""
+    monkeypatch.setattr("app.server_routes.LITTLE_ROOM", 0.0)
+
+
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Browser]:
     if not CHROMIUM.exists():

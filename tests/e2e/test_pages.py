@@ -7,6 +7,7 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.project_builder import build_project
+from tests.service.cuttable import cuttable
 from tests.service.running import SLOW, open_gate, recording_with_gate, server_thread
 
 pytestmark = pytest.mark.e2e
@@ -156,6 +157,30 @@ def test_a_job_is_started_watched_cancelled_and_resumed(server, page, tmp_path, 
     gate = open_gate(recording)
     expect(page.locator("#state")).to_contain_text("Finished")
     os.close(gate)
+    page.reload()
+    page.get_by_text("Log", exact=True).click()
+    expect(page.locator("job-log pre")).to_contain_text("succeeded")
+
+
+def test_a_page_that_was_cut_off_learns_how_its_job_ended(server, context, tmp_path, look):
+    if look != ("desktop", "light"):
+        pytest.skip("once is enough")
+    page = context.new_page()  # its browser complains of the cut
+    recording = recording_with_gate(tmp_path / "walk")
+    job = server.start("office", recording)
+    server.wait_at_gate(job)
+    with cuttable(int(server.url.rsplit(":", 1)[1])) as link:
+        page.goto(f"{link.url}/projects/office/")
+        expect(page.locator("job-status")).to_contain_text("Odometry")
+        link.cut()
+        expect(page.get_by_text("Connection lost")).to_be_visible()
+        gate = open_gate(recording)
+        server.wait_state(job, "succeeded")
+        os.close(gate)
+        link.restore()
+
+        expect(page.locator("#state")).to_contain_text("Finished")
+        page.close()  # before the link goes
 
 
 def test_a_refusal_is_shown_in_words(server, page, look):
@@ -172,12 +197,14 @@ def test_the_keyboard_is_enough_to_start_a_job(server, page, tmp_path, look):
     if look != ("desktop", "light"):
         pytest.skip("once is enough")
     (tmp_path / "empty.pcap").write_bytes(b"")
+    build_project(server.root / "empty", with_map=False)
     page.goto(server.url)
 
+    expect(page.get_by_role("listitem").filter(has_text="empty")).to_be_visible()
     page.get_by_label("Or a recording on the server").focus()
     page.keyboard.type(str(tmp_path / "empty.pcap"))
     page.keyboard.press("Tab")
-    expect(page.get_by_label("Project name")).to_have_value("empty")
+    expect(page.get_by_label("Project name")).to_have_value("empty-2")  # the other one stays
     page.keyboard.press("Tab")  # over the button Browse
     expect(page.get_by_label("Project name")).to_be_focused()
     page.keyboard.press("Enter")
