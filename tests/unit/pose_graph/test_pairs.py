@@ -9,6 +9,8 @@ from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import EdgeKind, Reason, Verdict
 from recon4.pose_graph.pairs import Pair, PairRegistrar
 from recon4.progress import Silent
+from recon4.registration.collar_lines import register_lines
+from recon4.registration.overlap import View, overlap
 from recon4.registration.submap import NodeViews, Submaps, median_range_m, node_rows
 from recon4.settings import Settings, override
 from tests.scanned_room import strolling, walk
@@ -72,7 +74,7 @@ def test_the_limit_is_a_hundredth_of_the_median_range_and_five_centimeters(strol
     submaps = Submaps(stroll, stroll.truth, np.array([2]), settings, skip=NOTHING_LOST)
     range_m = median_range_m(submaps.around(0, settings.graph.source_reach))
     assert 2.0 < range_m < 5.0
-    assert edge.limit_m == pytest.approx(0.01 * range_m + 0.05, abs=0.002)
+    assert edge.limit_m == pytest.approx(0.01 * range_m + 0.05, abs=2e-4)
 
 
 @pytest.mark.parametrize(("assignments", "wrong", "reason"), [
@@ -109,6 +111,12 @@ def test_the_mode_of_overlap_counts(stroll):
         for mode in ("target", "source", "min", "harmonic")
     }
 
+    submaps = Submaps(stroll, stroll.truth, np.array([2, 17]), Settings(), skip=NOTHING_LOST)
+    views = NodeViews(2, Settings(), Path(gettempdir()))
+    views.fill(submaps, [0, 1])
+    first, second = (View(views.ends(k).reshape(-1, 3), views.nearest_m(k)) for k in (0, 1))
+    asked = true_motion(stroll, 0, 3) @ wrong
+    assert found["target"] == overlap(first, second, asked, Settings().overlap)
     assert found["target"] != found["source"]
     assert found["min"] == min(found["target"], found["source"])
     a, b = found["target"], found["source"]
@@ -164,6 +172,21 @@ def test_single_multiframes_overlap_by_all_their_points(stroll):
     # By the ends of their segments alone it would be a tenth of this.
     assert edge.overlap > 0.5
     assert edge.verdict is Verdict.ACCEPTED
+
+
+def test_lines_keep_the_share_of_matches_that_overlaps(stroll, monkeypatch):
+    portions = []
+
+    def register(*args, portion, **more):
+        portions.append(portion)
+        return register_lines(*args, portion=portion, **more)
+
+    monkeypatch.setattr("recon4.pose_graph.pairs.register_lines", register)
+
+    edge = try_one(stroll, "registration.solver=svd", "registration.max_iterations=20")
+
+    assert portions == [edge.overlap]
+    assert 0.5 < edge.overlap < 1.0
 
 
 # -- how certain an edge is

@@ -189,6 +189,15 @@ def test_each_visit_is_represented_before_any_comes_twice():
     assert [i for i, j in ends(pairs) if j == 130] == [10, 50, 90]
 
 
+def test_a_single_visit_is_represented_more_than_once_but_not_by_neighbors():
+    pairs = revisit_pairs(laps(2, nodes=120), settings=GraphSettings(), limit=6)
+
+    earlier = [i for i, j in ends(pairs) if j == 180]
+    assert 60 in earlier
+    assert 1 < len(earlier) <= 6
+    assert min(np.diff(earlier)) > 2
+
+
 def test_no_node_has_more_revisits_than_the_limit_and_two_limits_never_repeat():
     graph = laps(6)
 
@@ -280,6 +289,28 @@ def test_deviations_of_the_motion_between_two_nodes_add_up_in_the_axes_of_the_se
     assert sd[4] == pytest.approx(np.hypot(5 * 0.02, g.odometry_sd_m))
     assert sd[3] == pytest.approx(g.odometry_sd_m)
     assert sd[5] == pytest.approx(g.odometry_sd_m)
+
+
+def test_an_odometry_edge_is_open_along_what_odometry_left_open():
+    askew = SE3.from_rpy(0, 0, 0.5, [0.0, 0.0, 0.0])
+
+    edge = consecutive(SE3.stack([askew] * 3), motion_cov=np.diag([0, 0, 0, 0.02**2, 0, 0]))[0]
+
+    _, axes = np.linalg.eigh(np.linalg.inv(edge.information)[3:, 3:])
+    assert abs(axes[:, 2] @ askew.R.T @ [1.0, 0.0, 0.0]) > 0.999
+
+
+def test_an_odometry_edge_counts_the_motion_after_its_first_node_up_to_its_second():
+    T, sd_m = line(3).T_map_body, []
+    for frame in (ROWS[0], ROWS[0] + 1, ROWS[1], ROWS[1] + 1):
+        cov = np.zeros((15, 6, 6))
+        cov[frame] = 0.01**2 * np.eye(6)
+        edge = odometry_edges(
+            T, ROWS, np.zeros(15, bool), motion_cov=cov, settings=GraphSettings()
+        )[0]
+        sd_m.append(np.sqrt(np.linalg.inv(edge.information)[5, 5]))
+
+    assert [sd > 0.01 for sd in sd_m] == [False, True, True, False]
 
 
 def test_an_odometry_edge_across_a_lost_multiframe_is_weak():
