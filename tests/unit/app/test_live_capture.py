@@ -1,0 +1,47 @@
+"""The server's end of a capture, with a mapper that is a few lines on a socket."""
+
+import asyncio
+import json
+
+from app.live.capture import Capture, unfinished
+from recon4.live.session import Session
+
+POSE = {"kind": "pose", "t_ns": 1, "p": [0.0, 0.0, 0.0], "lost": False}
+DONE = {"kind": "done", "frames": 3, "problem": ""}
+
+
+def test_a_server_the_mapper_let_go_comes_back_to_it_and_starts_no_second_one(tmp_path):
+    session = Session(project=tmp_path / "walk")
+    said = iter([[POSE], [POSE], [POSE, DONE]])
+    session.folder.mkdir(parents=True)
+    session.outcome.write_text('{"why": "stopped"}')
+
+    async def say(reader, writer):
+        for told in next(said):
+            writer.write(json.dumps(told).encode() + b"\n")
+        writer.close()
+
+    async def run():
+        capture = Capture(session)
+        async with await asyncio.start_unix_server(say, session.socket("mapper")):
+            await capture.follow()
+            while not capture.over:
+                await capture.picture.news(capture.picture.version, timeout_s=0.1)
+            await capture.leave()
+        return capture
+
+    capture = asyncio.run(run())
+
+    assert next(said, None) is None
+    assert capture.problem == ""
+    assert not (session.folder / "mapper.txt").exists()
+
+
+def test_a_capture_whose_recorder_never_ran_is_not_taken_up(tmp_path):
+    begun, never = Session(project=tmp_path / "begun"), Session(project=tmp_path / "never")
+    for session in (begun, never):
+        session.save()
+    begun.capture.parent.mkdir()
+    begun.capture.touch()
+
+    assert unfinished(tmp_path) == [begun.project]
