@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -31,6 +32,7 @@ EXPECTED_NOISE = (
     "GPU stall",
     "THREE.Clock",
     "ViewerCameraMessage but websocket",
+    "Tried to update non-existent component",  # viser: renamed and taken away in one batch
 )
 
 
@@ -95,14 +97,26 @@ def page(context) -> Iterator[Page]:
     assert [text for text in complaints if not any(n in text for n in EXPECTED_NOISE)] == []
 
 
+@cache
+def pages() -> str:
+    """The documentation as one text."""
+    return "".join(
+        path.read_text("utf-8") for path in (ROOT / "README.md", *(ROOT / "docs").glob("*.md"))
+    )
+
+
 @pytest.fixture
 def picture(look):
-    """Keeps a screenshot for the documentation, when ``RECON4_PICTURES=1``."""
+    """Keeps a screenshot when ``RECON4_PICTURES=1``.
+
+    Those that a page of the documentation shows lie beside it, the others in ``out/pictures``.
+    """
 
     def keep(page: Page, name: str) -> None:
         if os.environ.get("RECON4_PICTURES") == "1":
             screen, scheme = look
-            path = ROOT / "docs" / "pictures" / f"{name}-{screen}-{scheme}.png"
-            page.screenshot(path=path, full_page=screen == "phone")
+            file = f"{name}-{screen}-{scheme}.png"
+            folder = ROOT / ("docs" if file in pages() else "out") / "pictures"
+            page.screenshot(path=folder / file, full_page=screen == "phone")
 
     return keep
