@@ -68,13 +68,20 @@ function approvalWords({ approval, in_map }) {
   return in_map ? `✓ Approved: ${version}` : `A draft again: decisions came after the approval of ${version}`;
 }
 
+function mapWords({ busy, finished, in_map, standing }) {
+  if (busy) return "▶ A job waits or runs";
+  if (!finished) return "◌ There is no finished map yet";
+  if (!in_map) return "◌ The map does not know the last decisions yet";
+  return standing.length ? "✓ The map was made with these decisions" : "✓ The map is as the program made it";
+}
+
 /** Whether the map knows the decisions, and who approved it. */
 export function showSigning(panel, state, { remake, approve }) {
   const { approval } = state;
   const hurdle = state.busy ? "A job waits or runs" : !state.finished ? "There is no finished map yet" : !state.in_map ? "The map does not know the last decisions" : approval?.current ? "This map is approved" : "";
   fill(panel,
     make("h2", {}, "Map"),
-    make("p", {}, state.busy ? "▶ A job waits or runs" : state.in_map ? "✓ The map was made with these decisions" : "◌ The map does not know the last decisions yet"),
+    make("p", {}, mapWords(state)),
     make("p", { className: approval?.current && state.in_map ? "good" : "" }, approvalWords(state)),
     approval ? make("p", { className: "quiet hash" }, approval.hash) : null,
     make("div", { className: "buttons" },

@@ -132,10 +132,8 @@ def latest_approval(root: Path, rows: Sequence[Row]) -> dict[str, Any] | None:
     for row in reversed(rows):
         if row.kind == Kind.APPROVE:
             facts = row.decision().facts or {}
-            summary = read_summary(root)
-            now = hash_json(artifact_keys(summary)) if summary else ""
-            said = ((summary or {}).get("approval") or {}).get("hash")
-            current = now == facts["artifacts"] and said == facts["approval"]
+            said = ((read_summary(root) or {}).get("approval") or {}).get("hash")
+            current = said == facts["approval"]
             told = {"version": facts["version"], "hash": facts["approval"], "who": row.who}
             return told | {
                 "time": row.time, "why": row.why, "current": current,

@@ -294,7 +294,8 @@ def test_decide_make_a_new_map_approve_export(opened, root, look, picture):
     expect(page.locator("#signing")).to_contain_text("does not know the last decisions")
 
     page.get_by_role("button", name="Make a new map").click()
-    expect(page.locator("#signing")).to_contain_text("was made with these decisions")
+    signing = page.locator("#signing")
+    expect(signing).to_contain_text("was made with these decisions", timeout=120_000)
     page.get_by_role("button", name="Approve verification…").click()
     page.get_by_label("Remark").fill("compared with the plan")
     page.get_by_role("button", name="Sign").click()

@@ -165,13 +165,15 @@ def test_an_approval_that_counted_before_a_crash_is_handed_out_later(root, key, 
 def test_an_earlier_map_keeps_its_approval(root, key):
     first = approve(root, key, SIGNER, False)
     publish(root, key="cd")
+    killed = root / "versions" / ".tmp-0123456789ab-2"
+    killed.mkdir()
     second = approve(root, key, SIGNER | {"who": "Jan"}, False)
 
     assert (first.version, second.version) == (1, 2)
     assert approval_of_map(root, "ab")["who"] == "Eva"
     assert approval_of_map(root, "cd")["hash"] == second.hash
     assert approval_of_map(root, "ef") is None
-    assert damage(root) == ()
+    assert damage(root) == () and not killed.exists()
 
 
 def change_statement(told):

@@ -55,7 +55,14 @@ def test_a_text_file_gets_one_line_more(tmp_path, name, text, line):
     assert prefix in ("#", "comment") and json.loads(words)["hash"] == "ab"
 
 
-@pytest.mark.parametrize(("name", "data"), [("a.laz", b"LASF\x01\x02"), ("a.json", b"[1]")])
+@pytest.mark.parametrize(
+    ("name", "data"),
+    [
+        ("a.laz", b"LASF\x01\x02"),
+        ("a.laz", b"LASF" + bytes(20) + b"\x01\x02" + bytes(400)),  # LAS 1.2
+        ("a.json", b"[1]"),
+    ],
+)
 def test_a_file_that_is_something_else_is_refused(tmp_path, name, data):
     (tmp_path / name).write_bytes(data)
 
