@@ -96,7 +96,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
     return make("tr", {},
       make("th", { scope: "row" }, one.id), make("td", {}, role),
       ...(earlier ? [make("td", { colSpan: values.length, className: "quiet" }, "found in an earlier map")] : values.map((words) => make("td", { className: "number" }, words))),
-      make("td", { className: "buttons" }, button("Go", () => go(one), `Go to ${one.id}`), button("Here", () => pick(one), `${one.id} is the picked point`), button("Surface", () => surface(one), `${one.id} on the nearest surface`)),
+      make("td", {}, make("span", { className: "buttons" }, button("Go", () => go(one), `Go to ${one.id}`), button("Here", () => pick(one), `${one.id} is the picked point`), button("Surface", () => surface(one), `${one.id} on the nearest surface`))),
     );
   }
 
@@ -122,9 +122,10 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
   function figures(one) {
     const cell = (words) => make("td", { className: "number" }, words);
     const line = (limit) => make("tr", {},
-      make("th", { scope: "row" }, limit.words), cell(cm(limit.value_m)), cell(`≤ ${Math.round(limit.limit_m * 100)}`),
-      make("td", { className: limit.holds ? "good" : "bad" }, limit.holds ? "✓ holds" : "✕ exceeded"));
-    const head = [`${one.points} ${one.role} point${one.points === 1 ? "" : "s"}`, "Measured [cm]", "Limit [cm]", ""].map((words, k) => make("th", { scope: "col", className: k === 1 || k === 2 ? "number" : "" }, words));
+      make("th", { scope: "row" }, limit.words),
+      make("td", { className: limit.holds ? "good" : "bad" }, limit.holds ? "✓ holds" : "✕ exceeded"),
+      cell(cm(limit.value_m)), cell(`≤ ${Math.round(limit.limit_m * 100)}`));
+    const head = [`${one.points} ${one.role} point${one.points === 1 ? "" : "s"}`, "", "Is [cm]", "Limit"].map((words, k) => make("th", { scope: "col", className: k > 1 ? "number" : "" }, words));
     return make("div", { className: "figures" },
       make("div", { className: "wide" }, make("table", {}, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...one.requirements.map(line)))),
       make("p", { className: "quiet" }, `RMSE E ${cm(one.rmse_m[0])}  N ${cm(one.rmse_m[1])}  U ${cm(one.rmse_m[2])}  3D ${cm(one.rmse_3d_m)} cm`),

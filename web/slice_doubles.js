@@ -27,7 +27,7 @@ export function doublesPanel({ id, change, point, state }) {
   const hint = make("p", { className: "quiet" }, "A wall is double where two visits put one surface at two places. The whole map is checked.");
 
   const choose = (words, choices) => make("select", { ariaLabel: words, hidden: true, onchange: () => listed() }, ...Object.entries(choices).map(([value, name]) => make("option", { value }, name)));
-  const which = choose("Which surfaces", { double: "Double walls", all: "All seen twice, worst first" });
+  const which = choose("Which surfaces", { double: "Only double ones", all: "All seen twice, worst first" });
   const where = choose("Where", { all: "Whole map", slice: "In this slice" });
   const table = make("div", { className: "wide" });
   let walls = [];

@@ -63,6 +63,7 @@ export function referencePanel({ id, change, state, reload }) {
 
   async function add() {
     const added = await addReference(id, { path: path.value, frame: frame.value });
+    path.value = "";
     await reload();
     change({ ref: added.id, color: "distance", lo: null, hi: null }, { keep: true });
   }

@@ -152,6 +152,7 @@ def test_a_reference_is_compared_and_shown(server, page, picture):
     expect(page.get_by_role("row", name=re.compile("Average by points"))).to_be_visible()
     expect(page.get_by_role("link", name="Download CSV")).to_be_visible()
     fits(page)
+    page.get_by_role("link", name="Download CSV").scroll_into_view_if_needed()
     picture(page, "slices-reference")
     page.get_by_role("button", name="Remove").click()
     expect(page.get_by_role("button", name="Remove")).to_have_count(0)
