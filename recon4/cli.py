@@ -111,7 +111,7 @@ def simulate(
     world: Annotated[str, typer.Argument(help="office, staircase, street or field.")],
     out: Annotated[Path, typer.Argument(help="New folder for the recording and its truth.")],
     *,
-    seconds: Annotated[float, typer.Option(help="Length of the walk [s].")] = 60.0,
+    seconds: Annotated[float, typer.Option(help="Length of the walk in seconds.")] = 60.0,
     seed: Annotated[int, typer.Option(help="Draws the walk and the noise.")] = 1,
     rig: Annotated[str, typer.Option(help="Rig preset or .toml file.")] = "4recon",
     bag: Annotated[bool, typer.Option(help="Also write a rosbag2.")] = True,

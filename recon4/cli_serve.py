@@ -63,7 +63,7 @@ def demo(
     out: Annotated[Path, typer.Option(help="Folder for the recording and the project.")] = Path(
         "demo"
     ),
-    seconds: Annotated[float, typer.Option(help="Length of the simulated walk [s].")] = 60.0,
+    seconds: Annotated[float, typer.Option(help="Length of the simulated walk in seconds.")] = 60.0,
     port: Annotated[int, typer.Option(help="Port of the server; 0 = any free one.")] = 8000,
     headless: Annotated[bool, typer.Option("--headless", help="End after the report.")] = False,
 ) -> None:

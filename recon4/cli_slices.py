@@ -26,12 +26,12 @@ def cut_map(  # noqa: PLR0913 - options of a command
     project: ProjectArgument,
     file: Annotated[Path, typer.Argument(help="File to write: .png .svg .pdf .tif .dxf .laz .csv")],
     *,
-    z: Annotated[float | None, typer.Option(help="Horizontal, at this height [m].")] = None,
-    line: Annotated[str, typer.Option(help="Vertical, through two points: X1,Y1,X2,Y2 [m].")] = "",
+    z: Annotated[float | None, typer.Option(help="Horizontal, at this height in m.")] = None,
+    line: Annotated[str, typer.Option(help="Vertical, through two points: X1,Y1,X2,Y2 in m.")] = "",
     plane: Annotated[str, typer.Option(help="Free: X,Y,Z,NX,NY,NZ (point and normal).")] = "",
-    thickness: Annotated[float, typer.Option(help="Thickness [m].")] = 0.10,
+    thickness: Annotated[float, typer.Option(help="Thickness in m.")] = 0.10,
     count: Annotated[int, typer.Option(help="So many slices behind each other.")] = 1,
-    spacing: Annotated[float, typer.Option(help="Between repeated slices [m].")] = 0.5,
+    spacing: Annotated[float, typer.Option(help="Between repeated slices, in m.")] = 0.5,
     color: Annotated[
         str, typer.Option(help="height, intensity, normalized, time or sensor.")
     ] = "height",

@@ -5,6 +5,7 @@ import shlex
 from pathlib import Path
 
 import pytest
+from rich.text import Text
 from typer.main import get_command
 
 from recon4.cli import app
@@ -95,6 +96,18 @@ def test_every_page_can_be_reached_from_the_readme():
     readme = PAGES[0].read_text("utf-8")
 
     assert [one.name for one in PAGES[1:] if f"(docs/{one.name}" not in readme] == []
+
+
+def test_no_word_of_a_help_text_is_taken_for_markup():
+    def helps(command):
+        below = getattr(command, "commands", {}).values()
+        own = [command.help, *(getattr(one, "help", None) for one in command.params)]
+        return [*filter(None, own), *(text for one in below for text in helps(one))]
+
+    texts = helps(COMMANDS)
+
+    assert len(texts) > 50
+    assert [text for text in texts if Text.from_markup(text).plain != text] == []
 
 
 def test_the_tests_own_eye_is_sharp():
