@@ -203,6 +203,17 @@ def test_the_information_is_positive_definite_and_no_surer_than_its_floor(stroll
     assert (sd < 8 * np.repeat([g.loop_sd_rad, g.loop_sd_m], 3)).all()
 
 
+def test_matches_count_as_independent_by_the_share_that_is_set(stroll):
+    g = Settings().graph
+    floor = np.repeat([g.loop_sd_rad, g.loop_sd_m], 3) ** 2
+    usual, naive = (
+        np.diag(np.linalg.inv(edge.information)) - floor
+        for edge in (try_one(stroll), try_one(stroll, "odometry.information_scale=1.0"))
+    )
+
+    np.testing.assert_allclose(usual, naive / Settings().odometry.information_scale, rtol=0.05)
+
+
 def test_the_information_is_in_the_axes_of_the_second_node(stroll):
     """Without walls across x the room is a tunnel along x, wherever the second node looks."""
     tunnel = []

@@ -164,6 +164,7 @@ def test_what_a_person_decided_stays_and_persists(robust: str) -> None:
     # The loop is wrong by meters and says it knows to a centimeter: it pulls as much as the steps.
     assert found.graph.edges[5].chi2 > 1000.0
     assert found.graph.T_map_body.t[2, 1] > 0.5
+    assert found.chi2_after > 1000.0
     assert found.graph.edges[5].verdict is Verdict.ACCEPTED
     assert found.outliers == ()
     assert found.graph.edges[6].verdict is Verdict.REJECTED
