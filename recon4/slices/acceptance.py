@@ -42,11 +42,11 @@ def _verdict(report: ControlReport) -> tuple[str, str]:
         return "note", "Nothing was checked: no point has a place in this map."
     count = report.figures[0].points
     points = f"{count} {report.judged_by} point{'s' if count != 1 else ''}"
+    level, words = "good", f"The map keeps the limits at {points}."
     if not report.passed:
-        return "bad", f"The map does not keep the limits at {points}."
-    if report.judged_by == "control":
-        return (
-            "note",
-            f"The map keeps the limits at {points}, but no independent point was checked.",
-        )
-    return "good", f"The map keeps the limits at {points}."
+        level, words = "bad", f"The map does not keep the limits at {points}."
+    elif report.judged_by == "control":
+        level = "note"
+        words = f"The map keeps the limits at {points}, but no independent point was checked."
+    left = len(report.missing) + len(report.outdated)
+    return level, f"{words} {left} more not checked." if left else words

@@ -300,7 +300,7 @@ def test_a_name_that_looks_like_a_formula_is_defused():
 @pytest.mark.parametrize(
     ("up_m", "role", "words"),
     [
-        (0.05, "check", "✓ The map keeps the limits at 1 check point."),
+        (0.05, "check", "✓ The map keeps the limits at 1 check point. 1 more not checked."),
         (0.25, "check", "✕ The map does not keep the limits"),
         (0.05, "control", "no independent point was checked"),
     ],
