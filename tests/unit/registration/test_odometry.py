@@ -246,6 +246,30 @@ def test_lines_follow_a_slow_motion(mode):
     np.testing.assert_array_equal(steps[3].t_ns, T0_NS + np.array([30, 35, 40]) * FRAME_NS // 10)
 
 
+def test_lines_bridge_a_gap_at_the_speed_they_had():
+    def steady(t_s):
+        return SE3.exp(np.asarray(t_s)[:, None] * [0, 0, 0.05, 0.15, 0.05, 0.0])
+
+    recording = walk(steady, 11, with_imu=False)
+    settings = override(THESIS, ["registration.max_iterations=60"])
+
+    steps = push_all(LineOdometry(recording.rig, settings), [*recording[:5], *recording[7:]])
+
+    # Three times as far as in a frame before, and no farther than that in the next one.
+    assert max(step.gap_m for step in steps[4:]) < 0.01
+    assert not any(step.lost for step in steps)
+
+
+def test_lines_keep_the_matches_that_overlap_and_not_a_fixed_half():
+    frames = [scan(standing, T0_NS + k * FRAME_NS, frame_id=k, columns=1800) for k in range(2)]
+    settings = override(THESIS, ["registration.max_iterations=20"])
+
+    steps = push_all(LineOdometry(RIG, settings), frames)
+
+    # What is left out of the view volume lies in bins with fewer than five points.
+    assert 0.6 < steps[1].share < 1.0
+
+
 def test_the_poses_against_a_history_are_averaged_over_those_that_converged():
     def found(x_m, stop):
         T = SE3.from_rpy(0.0, 0.0, x_m, [x_m, 0.0, 0.0])
