@@ -46,6 +46,7 @@ _LOOP_WITHIN_M = 4.0
 _LOOP_WALKED_M = 20.0
 _PATH_STEP_M = 0.25
 """The way is kept a point every so far: an hour's walk is a few thousand."""
+_GAP_SHOWN_NS = 3_000_000_000
 _LATELY_NS = 10_000_000_000
 """What was left out is said for so long."""
 _PLAN_BYTES_PER_S = 20_000
@@ -71,6 +72,8 @@ class LiveMap:
         self._thinned, self._relocated = 0, 0
         self._lately: deque[tuple[int, bool]] = deque()
         """Newest multiframes: time and whether it was left out."""
+        self._gaps_m: deque[tuple[int, float]] = deque()
+        """Newest multiframes: time and how far the prediction was off."""
         self._summary_ns = 0
         self._begin()
 
@@ -191,7 +194,7 @@ class LiveMap:
             "error_m": figure(step.error_m),
             "share": figure(step.share),
             "degeneracy": figure(step.degeneracy),
-            "gap_m": figure(step.gap_m),
+            "gap_m": figure(self._worst_gap_m(frame.t_ns, step.gap_m)),
             "turn_rad_s": figure(_turn_rate(step)),
             "points": np.bincount(frame.sensor, minlength=len(self._rig.sensors)).tolist(),
             "thinned": self._thinned,
@@ -199,6 +202,13 @@ class LiveMap:
             "imu": self.tracker.with_imu,
             "remark": self.tracker.remark,
         }
+
+    def _worst_gap_m(self, t_ns: int, gap_m: float) -> float:
+        """Of the last seconds: one multiframe is too short for anybody to read of it."""
+        self._gaps_m.append((t_ns, gap_m))
+        while t_ns - self._gaps_m[0][0] > _GAP_SHOWN_NS:
+            self._gaps_m.popleft()
+        return max(gap_m for _, gap_m in self._gaps_m)
 
     def _counts_lately(self, now_ns: int) -> dict[str, int]:
         """Multiframes of the last 10 s, and how many of them were left out."""

@@ -142,6 +142,14 @@ def test_the_way_remembers_its_start_however_long_it_is(walk):
     assert 9_000 < len(path) < 12_001
 
 
+def test_how_far_a_prediction_was_off_can_be_read_for_three_seconds(walk):
+    live_map = LiveMap(walk.store.rig, preset("indoor"))
+
+    shown = [live_map._worst_gap_m(k * 100_000_000, 0.4 if k == 5 else 0.0) for k in range(50)]
+
+    assert shown == [0.0] * 5 + [0.4] * 31 + [0.0] * 14
+
+
 def test_what_is_left_out_is_counted_for_ten_seconds(walk):
     follower = Follower(walk)
     for row in range(0, 10, 2):
