@@ -2,6 +2,7 @@
 
 const STATES = { none: "Nothing is recorded", recording: "Recording", paused: "Paused", finishing: "Finishing", ready: "Ready" };
 const FIXES = { 1: "single", 2: "DGNSS", 4: "RTK fixed", 5: "RTK float" };
+const CLOCKS = { "own, shifted": "own clock", jumped: "clock jumped" };
 const NEAR_START_M = 4;
 const LITTLE_LEFT_S = 600;
 const LITTLE_CHARGE = 0.15;
@@ -45,7 +46,7 @@ export function chips({ lidars = [], rates = {}, fix, status, battery }, state, 
 
 function lidarChip({ name, per_s: rate, lost, clock: keeps }) {
   if (lost > MUCH_LOST) return { words: `${name} ${percent(lost)} lost`, bad: true };
-  if (rate >= 1 && keeps && keeps !== "in step") return { words: `${name} ${Math.round(rate)}/s, clock ${keeps}` };
+  if (rate >= 1 && keeps && keeps !== "in step") return { words: `${name} ${Math.round(rate)}/s, ${CLOCKS[keeps] ?? keeps}` };
   return rateChip(name, rate);
 }
 
@@ -61,8 +62,8 @@ export function supplies({ rates = {}, fix, status, battery, notes }, phone) {
     ["GNSS", fix ? fixWords(fix).replace("GNSS ", "") : rates.GNSS > 0 ? `${Math.round(rates.GNSS)}/s, no position yet` : "none"],
     ["Disk", `${(free / 1e9).toFixed(0)} GB free${left === null ? "" : `, for ${duration(left)} at this rate`}`],
     ["Recorded", `${(status.file.written_bytes / 1e6).toFixed(0)} MB, ${lost ? `${lost} packets lost` : "nothing lost"}`],
-    ["This computer", battery ? `${charge(battery)}${battery.mains ? ", on mains" : ""}` : "has no battery, or does not tell"],
-    ["This phone", phone ? `${percent(phone.level)}${phone.charging ? ", charging" : ""}` : "does not tell its battery"],
+    ["Computer", battery ? `${charge(battery)}${battery.mains ? ", on mains" : ""}` : "has no battery, or does not tell"],
+    ["Phone", phone ? `${percent(phone.level)}${phone.charging ? ", charging" : ""}` : "does not tell its battery"],
     ...(notes?.counts.clock_jumps ? [["Clocks", `jumped ${notes.counts.clock_jumps} times, put right`]] : []),
   ];
 }

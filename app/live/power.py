@@ -66,7 +66,7 @@ def battery_words(battery: Battery | None) -> list[Word]:
         return []
     urgent = left_s < VERY_LITTLE_S or battery.share < VERY_LITTLE_SHARE
     left = f", {left_s / 60:.0f} min" if battery.left_s is not None else ""
-    text = f"This computer's battery has {100 * battery.share:.0f} %{left} left"
+    text = f"The computer's battery has {100 * battery.share:.0f} %{left} left"
     return [Word("bad" if urgent else "care", text)]
 
 
