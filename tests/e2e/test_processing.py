@@ -111,6 +111,7 @@ def test_an_upload_is_paused_continued_and_removed(server, page, tmp_path, once)
 
     expect(page.get_by_text("Drop a file or folder here")).to_be_visible()
     assert server.get("/api/uploads").json() == []
+    page.unroute_all(behavior="ignoreErrors")  # a piece may still be held up
 
 
 def test_a_folder_is_uploaded_with_its_names(server, page, tmp_path, once):

@@ -197,7 +197,7 @@ def test_of_all_messages_viser_knows_a_viewers_browser_may_only_send_those_of_lo
 def test_asked_too_often_a_session_is_told_when_to_come_back(server):
     async def many(cookies):
         options = {"base_url": server.url, "verify": server.trust(), "cookies": cookies}
-        async with httpx.AsyncClient(**options) as client:
+        async with httpx.AsyncClient(**options, timeout=60.0) as client:  # on a busy computer, too
             return await asyncio.gather(*(client.get("/api/me") for _ in range(300)))
 
     with server.signed_in("vera") as client, server.signed_in("otto") as other:
