@@ -250,6 +250,18 @@ def test_parallel_lines_only_give_no_motion():
     assert gap_m(found.T_target_source, SE3.identity()) == 0.0
 
 
+def test_things_that_moved_hardly_count_along_common_normals(target_ends, source_ends):
+    moved = source_ends.copy()
+    moved[::3] += [0.3, 0.18, 0.09]
+
+    found = register("common_normal", target_ends, moved, T_TRUE)
+    plain = register("common_normal", target_ends, moved, T_TRUE, kernel_m=100.0)
+
+    assert found.converged
+    assert gap_m(found.T_target_source, T_TRUE) < 0.04
+    assert gap_m(plain.T_target_source, T_TRUE) > 0.08
+
+
 def test_portion_is_the_share_of_lines_kept(target_ends, source_ends):
     lines = Lines.through(source_ends[:, 0], source_ends[:, 1])
     target = LineTarget(Lines.through(target_ends[:, 0], target_ends[:, 1]))
