@@ -233,6 +233,7 @@ def test_gaps_far_behind_are_kept_and_filled_when_somebody_goes_back():
     assert len(before) >= 1
     assert far_away == before
     assert coverage.gaps() == []
+    assert seen_at(coverage, 1.1, 1.1) == Seen.FREE
 
 
 def test_a_gap_across_the_border_of_two_tiles_is_one():
