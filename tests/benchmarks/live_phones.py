@@ -1,7 +1,8 @@
 """Ten phones look at a walk, one of them stalls: ages, bytes and memory at the server's edge.
 
-``python tests/benchmarks/live_phones.py RECORDING [--seconds 60]`` starts a server, its recorder
-and mapper on this computer, replays a recording at true speed and looks on with Python clients.
+``python -m tests.benchmarks.live_phones RECORDING [--seconds 60]`` starts a server, its recorder
+and mapper on this computer, replays a recording at true speed and, some seconds after the walk
+began, looks on with Python clients.
 An age is from the end of a multiframe on the sensors' clock to its pose at the client.
 """
 
@@ -10,6 +11,10 @@ from __future__ import annotations
 import argparse
 import asyncio
 import json
+import secrets
+import socket
+import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -23,7 +28,6 @@ from websockets.asyncio.client import connect
 
 from recon4.live.replay import replay
 from recon4.progress import Silent
-from tests.service.running import server_process
 
 PHONES = 10
 STALLS_AFTER_S = 5.0
@@ -90,10 +94,33 @@ def main() -> None:
     ask = argparse.ArgumentParser(description=__doc__)
     ask.add_argument("recording", type=Path)
     ask.add_argument("--seconds", type=float, default=20.0, help="of each phase")
+    ask.add_argument("--after", type=float, default=16.0, help="seconds of the walk")
     given = ask.parse_args()
-    with tempfile.TemporaryDirectory() as folder, server_process(Path(folder)) as (server, process):
-        measure(server.url, psutil.Process(process.pid), given)
-        httpx.post(f"{server.url}/api/live/stop", timeout=30.0)
+    given.address = ".".join(["127", *(str(secrets.randbelow(250) + 2) for _ in range(3))])
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    serve = [sys.executable, "-m", "recon4", "serve", "--port", str(port)]
+    url = f"http://127.0.0.1:{port}"
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        subprocess.Popen([*serve, "--live-address", given.address, folder]) as process,
+    ):
+        wait_for(url)
+        measure(url, psutil.Process(process.pid), given)
+        httpx.post(f"{url}/api/live/stop", timeout=30.0)
+        while httpx.get(f"{url}/api/live").json()["state"] != "ready":
+            time.sleep(0.2)
+        process.terminate()
+
+
+def wait_for(url: str) -> None:
+    """Until the server answers."""
+    while True:
+        try:
+            httpx.get(f"{url}/healthz")
+            return
+        except httpx.TransportError:
+            time.sleep(0.1)
 
 
 def measure(url: str, process: psutil.Process, given: argparse.Namespace) -> None:
@@ -101,7 +128,7 @@ def measure(url: str, process: psutil.Process, given: argparse.Namespace) -> Non
     capture = {"project": "walk", "rig": "4recon", "preset": "indoor"}
     answer = httpx.post(f"{url}/api/live", json=capture, timeout=60.0)
     answer.raise_for_status()
-    end_s = time.monotonic() + 2 * given.seconds + 4.0
+    end_s = time.monotonic() + given.after + 2 * given.seconds + 2.0
 
     def while_it_lasts(shipment: Any) -> tuple[Any]:
         if time.monotonic() > end_s:
@@ -110,13 +137,14 @@ def measure(url: str, process: psutil.Process, given: argparse.Namespace) -> Non
 
     def send() -> None:
         try:
-            replay(given.recording, progress=Silent(), alter=while_it_lasts)
+            quiet, target = Silent(), given.address
+            replay(given.recording, progress=quiet, target=target, alter=while_it_lasts)
         except Ended:
             return
 
     sending = threading.Thread(target=send)
     sending.start()
-    time.sleep(2.0)
+    time.sleep(given.after)
     for name, stalled in (("ten phones", False), ("one of them stalled", True)):
         before = process.memory_info().rss
         phones = asyncio.run(watch(url, given.seconds, stalled=stalled))
