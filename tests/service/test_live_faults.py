@@ -40,6 +40,7 @@ from recon4.settings import preset
 from recon4.simulation.simulate import simulate
 from recon4.store.frames import FrameStore
 from recon4.store.project import read_artifacts
+from tests.service.running import wait_for
 
 
 @pytest.fixture(scope="module")
@@ -60,14 +61,6 @@ def process_of(module, project):
             if module.encode() in words and str(project).encode() in words:
                 return int(folder.name)
     return None
-
-
-def wait_for(met, what, seconds=60.0):
-    end_s = time.monotonic() + seconds
-    while not (found := met()):
-        assert time.monotonic() < end_s, what
-        time.sleep(0.1)
-    return found
 
 
 def hear_frame(project, frame_id):
