@@ -133,7 +133,7 @@ def test_the_map_is_exported_but_not_into_a_crs_it_has_no_place_in(project, tmp_
     [
         ("empty.pcap", b"", "empty.pcap"),
         ("letter.pcap", b"Dear Sir or Madam, " * 40, "letter.pcap"),
-        ("missing.pcap", None, "No such file"),
+        ("missing.pcap", None, "no such file"),
     ],
 )
 def test_a_bad_recording_is_one_line_and_leaves_no_artifact(
