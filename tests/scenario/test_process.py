@@ -147,4 +147,5 @@ def test_a_bad_recording_is_one_line_and_leaves_no_artifact(
     said = capsys.readouterr().err.splitlines()[-1]
     assert said.startswith("recon4: ")
     assert message in said
-    assert list((tmp_path / "p" / "artifacts").iterdir()) == []
+    assert list(tmp_path.glob("p/artifacts/*")) == []
+    assert (tmp_path / "p").exists() == (content is not None)
