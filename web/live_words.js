@@ -4,6 +4,7 @@ const STATES = { none: "Nothing is recorded", recording: "Recording", paused: "P
 const FIXES = { 1: "single", 2: "DGNSS", 4: "RTK fixed", 5: "RTK float" };
 const CLOCKS = { "own, shifted": "own clock", jumped: "clock jumped" };
 const NEAR_START_M = 4;
+const SOME_WAY_M = 20; // before that no loop can close
 const LITTLE_LEFT_S = 600;
 const LITTLE_CHARGE = 0.15;
 const MUCH_LOST = 0.01;
@@ -94,7 +95,7 @@ export function hint(state, { loop }, { mayCapture, mapped }) {
   if (state === "ready") return mayCapture ? "Everything is stored. Now make the map" : "The walk is over; everything is stored";
   if (state === "paused") return "Stay here: go on where the pause began";
   if (!mapped) return "Stand still: the map begins in a few seconds";
-  if (!loop || !(loop.walked_m > 5)) return "Walk slowly, doors open, through every room";
+  if (!loop || !(loop.walked_m > SOME_WAY_M)) return "Walk slowly, doors open, through every room";
   if (loop.closed) return `✓ Loop closed${loop.drift_m == null ? "" : `, drift ${Math.round(100 * loop.drift_m)} cm`}`;
   if (loop.start_m < NEAR_START_M) return "At the start, loop not closed yet";
   return `Loop open: return to the start, ${Math.round(loop.start_m)} m`;

@@ -148,6 +148,8 @@ def test_a_walk_is_seen_from_its_start_to_its_map(server, link, walk, page, pict
         page.get_by_role("button", name="Follow").click()
         fits_both_ways(page)
         sensors_are_told(page)
+        if PICTURES:
+            wait_for_points(page, 40_000)
         picture(page, "live")
         mark(page, "crack in the wall")
         cut_and_restore(page, link)
