@@ -136,10 +136,16 @@ def wait_for(met: Callable[[], Any], what: str, *, most_s: float = 60.0) -> Any:
 
 
 def end_workers(root: Path) -> None:
-    """A worker outlives its server, but not a test that failed."""
+    """A worker outlives its server, but not a test; one that just begins has no number yet."""
     for path in (root / ".recon4" / "jobs").glob("*"):
-        if JobFolder(path).alive():
-            JobFolder(path).kill()
+        wait_for(partial(_ended, JobFolder(path)), f"worker {path.name} ends")
+
+
+def _ended(folder: JobFolder) -> bool:
+    if not folder.alive():
+        return True
+    folder.kill()
+    return False
 
 
 def recording_with_gate(folder: Path) -> Path:
