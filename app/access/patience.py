@@ -39,6 +39,11 @@ class PatientProtocol(HttpToolsProtocol):
         self._disarm()
         super().connection_lost(exc)
 
+    def shutdown(self) -> None:
+        """The server ends. With TLS a second goodbye would leave nothing to hang up on."""
+        if not self.transport.is_closing():
+            super().shutdown()
+
     def data_received(self, data: bytes) -> None:
         """Take in bytes; a head too long ends the connection."""
         if self._in_head:
