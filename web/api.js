@@ -164,6 +164,8 @@ export const reportUrl = (id) => `/api/projects/${name(id)}/report`;
 export const pictureUrl = (id, version) => `/api/projects/${name(id)}/picture?v=${name(version)}`;
 export const fileUrl = (id, file) => `/api/projects/${name(id)}/files/${name(file)}`;
 
+const ANEW_MS = 3000;
+
 /**
  * Calls `onJob` with every job now and at each change, `onLink` with whether the server answers.
  * The stream tells nothing of jobs that succeeded while it was cut: those are asked for.
@@ -181,16 +183,26 @@ export function watchJobs(onJob, onLink) {
     const view = await readJob(id);
     if (view.job.finished) tell(view);
   };
-  const source = new EventSource("/api/events");
-  source.addEventListener("job", (event) => tell(JSON.parse(event.data)));
-  source.addEventListener("open", () => {
-    onLink(true);
-    for (const job of newest.values()) if (!job.finished) askAgain(job).catch(() => onLink(false));
-  });
-  source.addEventListener("error", () => {
-    onLink(false);
-    if (source.readyState === EventSource.CLOSED) request("GET", "/api/me").catch(() => {}); // signed out?
-  });
+  const connect = () => {
+    const source = new EventSource("/api/events");
+    const anew = () => {
+      source.close();
+      onLink(false);
+      setTimeout(connect, ANEW_MS);
+    };
+    source.addEventListener("job", (event) => tell(JSON.parse(event.data)));
+    source.addEventListener("open", () => {
+      const asked = [...newest.values()].filter((job) => !job.finished).map(askAgain);
+      Promise.all(asked).then(() => onLink(true), anew);
+    });
+    source.addEventListener("error", () => {
+      onLink(false);
+      if (source.readyState !== EventSource.CLOSED) return; // it tries again by itself
+      request("GET", "/api/me").catch(() => {}); // signed out?
+      anew();
+    });
+  };
+  connect();
 }
 
 // -- review
