@@ -17,6 +17,7 @@ class SliceAbove extends HTMLElement {
 
   connectedCallback() {
     this.replaceChildren(this.#canvas);
+    this.setAttribute("aria-busy", "true"); // nothing to drag before there is a picture
     this.#canvas.setAttribute("role", "img");
     this.#canvas.setAttribute("aria-label", "The map from above, with the cut");
     this.#canvas.addEventListener("pointerdown", (event) => this.#down(event));
@@ -31,6 +32,7 @@ class SliceAbove extends HTMLElement {
   show(url, window) {
     const image = make("img", { src: url, alt: "" });
     image.addEventListener("load", () => {
+      this.removeAttribute("aria-busy");
       [this.#image, this.#window] = [image, window];
       this.draw();
     });
