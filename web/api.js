@@ -185,7 +185,10 @@ export function watchJobs(onJob, onLink) {
   };
   const connect = () => {
     const source = new EventSource("/api/events");
+    let givenUp = false;
     const anew = () => {
+      if (givenUp) return;
+      givenUp = true;
       source.close();
       onLink(false);
       setTimeout(connect, ANEW_MS);
@@ -193,7 +196,7 @@ export function watchJobs(onJob, onLink) {
     source.addEventListener("job", (event) => tell(JSON.parse(event.data)));
     source.addEventListener("open", () => {
       const asked = [...newest.values()].filter((job) => !job.finished).map(askAgain);
-      Promise.all(asked).then(() => onLink(true), anew);
+      Promise.all(asked).then(() => onLink(source.readyState === EventSource.OPEN), anew);
     });
     source.addEventListener("error", () => {
       onLink(false);

@@ -4,22 +4,20 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import sys
-from contextlib import suppress
 from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
 from app.errors import Conflict
-from app.live.link import Link, linked
 from app.live.picture import Picture
 from app.settings import worker_environment
+from recon4.errors import ConfigError
+from recon4.live.link import STARTS_WITHIN_S, Link, linked, started
 from recon4.live.project_files import discard
 from recon4.live.session import Session
 
 log = logging.getLogger(__name__)
 
-STARTS_WITHIN_S = 60.0
 _MAPPER_STARTS = 5
 """A mapper that died so often is given up; the recording goes on."""
 
@@ -66,10 +64,11 @@ class Capture:
         Raises:
             Conflict: If the recorder cannot start, in its own words; nothing is left of it.
         """
-        process, problem = await self._spawn("recorder")
-        if process is None:
+        try:
+            await started(self.session, "recorder", env=worker_environment())
+        except ConfigError as error:
             await asyncio.to_thread(discard, self.session)
-            raise Conflict(problem)
+            raise Conflict(str(error)) from None
         await self.follow()
 
     async def follow(self) -> None:
@@ -129,9 +128,10 @@ class Capture:
                     done = await self._hear_mapper(link)
             except OSError:  # none listens: the last one died, or there was none yet
                 self._mapper_starts += 1
-                process, problem = await self._spawn("mapper")
-                if process is None:
-                    self.problem = problem
+                try:
+                    await started(self.session, "mapper", env=worker_environment())
+                except ConfigError as error:
+                    self.problem = str(error)
         if done is None:
             self.problem = "the map stopped growing (its process died); the recording goes on"
         else:  # its troubles are over
@@ -148,28 +148,6 @@ class Capture:
                 done = told
             self.picture.take(told)
         return done
-
-    async def _spawn(self, name: str) -> tuple[asyncio.subprocess.Process | None, str]:
-        """Start a process of the capture; None and what it said if it does not get ready."""
-        log_path = self.session.folder / f"{name}.txt"
-        with log_path.open("ab") as log_file:
-            process = await asyncio.create_subprocess_exec(
-                *(sys.executable, "-m", f"recon4.live.{name}", str(self.session.project)),
-                stdin=asyncio.subprocess.DEVNULL,
-                stdout=asyncio.subprocess.PIPE,
-                stderr=log_file,
-                start_new_session=True,
-                env=worker_environment(),
-            )
-        assert process.stdout is not None
-        with suppress(TimeoutError):
-            if await asyncio.wait_for(process.stdout.readline(), STARTS_WITHIN_S) == b"ready\n":
-                return process, ""
-        with suppress(ProcessLookupError):
-            process.kill()
-        await process.wait()
-        lines = log_path.read_text("utf-8", "replace").splitlines()
-        return None, lines[-1] if lines else f"the {name} did not start"
 
 
 def unfinished(root: Path) -> list[Path]:

@@ -10,9 +10,9 @@ from typing import Any
 
 from app.errors import Conflict, NotFound
 from app.live.capture import Capture, unfinished
-from app.live.link import listens
 from app.live.power import Power, read_battery
 from recon4.errors import ConfigError, StoreError
+from recon4.live.link import listens
 from recon4.live.project_files import begin
 from recon4.live.session import Session, load_session
 from recon4.model.rig import Rig, load_rig

@@ -85,6 +85,7 @@ class _Floor:
     away_m: dict[Key, NDArray[np.float32]] = field(default_factory=dict)
     solid: dict[Key, tuple[int, int]] = field(default_factory=dict)
     """Solid cells near the way, and how many of them are seen well."""
+    gaps: list[Gap] = field(default_factory=list)
 
 
 class Coverage:
@@ -110,7 +111,10 @@ class Coverage:
             body_m: Where the body was [m], (3,).
             p_map: Where sampled rays ended [m], (N, 3).
         """
-        plan = self._floors.setdefault(self._heights.at(float(body_m[2])), _Floor())
+        floor = self._heights.at(float(body_m[2]))
+        if floor not in self._floors:
+            self._floors[floor] = _Floor()
+        plan = self._floors[floor]
         here = np.floor(body_m[:2] / CELL_M).astype(np.int64)
         if not plan.tiles.holds(here):
             self._count(plan)
@@ -124,7 +128,9 @@ class Coverage:
     def refresh(self) -> None:
         """Judge what the rays have seen since the last time."""
         if self.floor in self._floors:
-            self._count(self._floors[self.floor])
+            plan = self._floors[self.floor]
+            self._count(plan)
+            plan.gaps = self._gaps_of(plan)
 
     def seen(self) -> tuple[NDArray[np.int64], NDArray[np.uint8]]:
         """`Seen` of every cell of this floor: first cell (2,) and cells (H, W); x goes down."""
@@ -133,10 +139,24 @@ class Coverage:
         first, cells = self._floors[self.floor].tiles.whole("seen")
         return first, cells.astype(np.uint8, copy=False)
 
-    def gaps(self, floor: int | None = None) -> list[Gap]:
-        """Places to look at on a floor (None = this one), the widest first."""
-        plan = self._floors.get(self.floor if floor is None else floor)
-        if plan is None or not plan.edges:
+    def gaps(self) -> list[Gap]:
+        """Places to look at on this floor, the widest first."""
+        return self._floors[self.floor].gaps if self.floor in self._floors else []
+
+    def gaps_elsewhere(self) -> int:
+        """How many there are on all other floors."""
+        return sum(len(p.gaps) for floor, p in self._floors.items() if floor != self.floor)
+
+    def share_well(self) -> float:
+        """Share of the solid cells near the way, on all floors, that are seen well; NaN before
+        there are any.
+        """
+        counts = [pair for plan in self._floors.values() for pair in plan.solid.values()]
+        solid, well = sum(pair[0] for pair in counts), sum(pair[1] for pair in counts)
+        return well / solid if solid else float("nan")
+
+    def _gaps_of(self, plan: _Floor) -> list[Gap]:
+        if not plan.edges:
             return []
         cells = np.concatenate(list(plan.edges.values()))
         away_m = np.concatenate(list(plan.away_m.values()))
@@ -150,18 +170,6 @@ class Coverage:
             x, y = ((mine[middle] + 0.5) * CELL_M).tolist()
             found.append(Gap((x, y), width_m, float(away_m[rows[middle]])))
         return sorted(found, key=lambda gap: (-gap.width_m, gap.p_map))
-
-    def gaps_elsewhere(self) -> int:
-        """How many there are on all other floors."""
-        return sum(len(self.gaps(other)) for other in self._floors if other != self.floor)
-
-    def share_well(self) -> float:
-        """Share of the solid cells near the way, on all floors, that are seen well; NaN before
-        there are any.
-        """
-        counts = [pair for plan in self._floors.values() for pair in plan.solid.values()]
-        solid, well = sum(pair[0] for pair in counts), sum(pair[1] for pair in counts)
-        return well / solid if solid else float("nan")
 
     def _trace(self, tiles: Tiles, body_m: Array, p_map: Array) -> None:
         up_m = p_map[:, 2] - body_m[2]

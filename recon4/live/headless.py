@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import signal
-import sys
 import time
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
 from recon4.errors import ConfigError
+from recon4.live.link import linked, started
 from recon4.live.project_files import discard
 from recon4.live.session import Session
 
 SAY_EVERY_S = 2.0
-_STARTS_WITHIN_S = 60.0
 _MAPPER_STARTS = 3
-_LONGEST_LINE = 32 << 20
 
 Newest = dict[str, dict[str, Any]]
 
@@ -49,7 +46,7 @@ class Headless:
             ConfigError: If a process cannot start, in its own words.
         """
         try:
-            recorder = await self._spawn("recorder")
+            recorder = await started(self._session, "recorder")
         except ConfigError:
             discard(self._session)
             raise
@@ -73,7 +70,7 @@ class Headless:
     async def _map(self) -> None:
         """Keep a mapper running until it is done."""
         for _ in range(_MAPPER_STARTS):
-            mapper = await self._spawn("mapper")
+            mapper = await started(self._session, "mapper")
             await self._hear("mapper")
             await mapper.wait()
             if "done" in self._newest:
@@ -92,38 +89,14 @@ class Headless:
 
     async def _hear(self, name: str) -> None:
         with suppress(OSError):
-            reader, writer = await asyncio.open_unix_connection(
-                self._session.socket(name), limit=_LONGEST_LINE
-            )
-            while line := await reader.readline():
-                told = json.loads(line)
-                self._newest[told["kind"]] = told
-            writer.close()
+            async with linked(self._session.socket(name)) as link:
+                async for told in link.lines():
+                    self._newest[told["kind"]] = told
 
     async def _say_now_and_then(self) -> None:
         while True:
             await asyncio.sleep(SAY_EVERY_S)
             self._say(self._newest, self._problem)
-
-    async def _spawn(self, name: str) -> asyncio.subprocess.Process:
-        log_path = self._session.folder / f"{name}.txt"
-        with log_path.open("ab") as log_file:
-            process = await asyncio.create_subprocess_exec(
-                *(sys.executable, "-m", f"recon4.live.{name}", str(self._session.project)),
-                stdin=asyncio.subprocess.DEVNULL,
-                stdout=asyncio.subprocess.PIPE,
-                stderr=log_file,
-                start_new_session=True,  # Ctrl-C is for us alone
-            )
-        assert process.stdout is not None
-        with suppress(TimeoutError):
-            if await asyncio.wait_for(process.stdout.readline(), _STARTS_WITHIN_S) == b"ready\n":
-                return process
-        with suppress(ProcessLookupError):
-            process.kill()
-        await process.wait()
-        lines = log_path.read_text("utf-8", "replace").splitlines()
-        raise ConfigError(lines[-1] if lines else f"the {name} did not start")
 
 
 def progress_line(newest: Newest, began_s: float) -> str:

@@ -9,7 +9,6 @@ catches up. It talks JSON lines on a Unix socket (``docs/live.md``): the message
 from __future__ import annotations
 
 import asyncio
-import json
 import logging
 import shutil
 import signal
@@ -29,6 +28,7 @@ from recon4.live.growing import GrowingFile, Growth
 from recon4.live.in_step import InStep
 from recon4.live.lateness import Lateness
 from recon4.live.line_server import LineServer
+from recon4.live.link import linked
 from recon4.live.live_map import LiveMap
 from recon4.live.messages import Message
 from recon4.live.notes import Notes
@@ -43,8 +43,6 @@ from recon4.settings import Settings, preset
 from recon4.store.atomic import write_json
 
 log = logging.getLogger(__name__)
-
-_LONGEST_LINE = 32 << 20
 
 
 class Mapper:
@@ -103,18 +101,12 @@ class Mapper:
         Raises:
             ConnectionError, FileNotFoundError: If there is no recorder.
         """
-        reader, writer = await asyncio.open_unix_connection(
-            self._session.socket("recorder"), limit=_LONGEST_LINE
-        )
-        try:
-            while line := await reader.readline():
-                told = json.loads(line)
+        async with linked(self._session.socket("recorder")) as link:
+            async for told in link.lines():
                 if told["kind"] == "written":
                     self._growth.reached(told["bytes"])
                 elif told["kind"] == "stopped":
                     return True
-        finally:
-            writer.close()
         return False
 
     def _give_up(self) -> None:

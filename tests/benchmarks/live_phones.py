@@ -11,7 +11,6 @@ from __future__ import annotations
 import argparse
 import asyncio
 import json
-import secrets
 import socket
 import subprocess
 import sys
@@ -28,6 +27,7 @@ from websockets.asyncio.client import connect
 
 from recon4.live.replay import replay
 from recon4.progress import Silent
+from tests.loopback import an_address
 
 PHONES = 10
 STALLS_AFTER_S = 5.0
@@ -96,7 +96,7 @@ def main() -> None:
     ask.add_argument("--seconds", type=float, default=20.0, help="of each phase")
     ask.add_argument("--after", type=float, default=16.0, help="seconds of the walk")
     given = ask.parse_args()
-    given.address = ".".join(["127", *(str(secrets.randbelow(250) + 2) for _ in range(3))])
+    given.address = an_address()
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
     serve = [sys.executable, "-m", "recon4", "serve", "--port", str(port)]

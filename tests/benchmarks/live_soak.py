@@ -19,7 +19,6 @@ import argparse
 import asyncio
 import json
 import re
-import secrets
 import subprocess
 import sys
 import tempfile
@@ -39,6 +38,7 @@ from websockets.exceptions import ConnectionClosed
 from recon4.live.project_files import begin
 from recon4.live.session import Session, stretched
 from recon4.model.rig import load_rig
+from tests.loopback import an_address
 from tests.service.running import server_process
 
 READY_WITHIN_S = 1800.0
@@ -128,7 +128,7 @@ def punch(folder: Path) -> None:
 @contextmanager
 def recording(root: Path, given: argparse.Namespace) -> Iterator[Session]:
     """A recorder that runs, as an operator without a server would have started it."""
-    address = ".".join(["127", *(str(secrets.randbelow(250) + 2) for _ in range(3))])
+    address = an_address()
     session = begin(
         root / "walk", load_rig(given.rig), address=address, speed=given.speed,
         least_free_bytes=1 << 30,

@@ -7,7 +7,6 @@ import json
 import math
 import os
 import re
-import secrets
 import threading
 import time
 from contextlib import contextmanager
@@ -24,6 +23,7 @@ from recon4.pipeline import process
 from recon4.progress import Silent
 from recon4.simulation.simulate import simulate
 from tests.e2e.conftest import EXPECTED_NOISE
+from tests.loopback import an_address
 from tests.service.cuttable import cuttable
 from tests.service.running import server_thread
 
@@ -59,7 +59,7 @@ def server(tmp_path):
     root = tmp_path / "projects"
     (root / "rigs").mkdir(parents=True)
     (root / "rigs" / "ours.toml").write_text(format_rig(load_rig("4recon")))
-    address = ".".join(["127", *(str(secrets.randbelow(250) + 2) for _ in range(3))])
+    address = an_address()
     with server_thread(root, live_address=address) as running:
         yield running
 

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import asyncio
 import ssl
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
 import httpx
-from websockets.sync.client import ClientConnection, connect
+from anyio.from_thread import BlockingPortal, start_blocking_portal
+from websockets.asyncio.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
 from app.access.door import open_access
@@ -21,6 +23,24 @@ from tests.service.running import Running, server_thread
 PASSWORD = "three green owls dance"
 ROLES = {"vera": Role.VIEWER, "otto": Role.OPERATOR, "rita": Role.REVIEWER, "anna": Role.ADMIN}
 """Name -> role of everybody on the servers of tests."""
+
+
+@dataclass(frozen=True)
+class Socket:
+    """A WebSocket over TLS, for a test that waits for it.
+
+    The blocking client of websockets reads and writes one TLS connection in two threads, which
+    OpenSSL does not allow: one handshake in a thousand hangs. Here one thread does both.
+    """
+
+    portal: BlockingPortal
+    connection: ClientConnection
+
+    def send(self, data: bytes | str) -> None:
+        self.portal.call(self.connection.send, data)
+
+    def recv(self, timeout: float) -> bytes | str:
+        return self.portal.call(asyncio.wait_for, self.connection.recv(), timeout)
 
 
 @dataclass(frozen=True)
@@ -58,11 +78,12 @@ class Secure:
             client.headers["X-Recon4-Token"] = answer.json()["token"]
             yield client
 
-    def websocket(self, path: str, client: httpx.Client, **options: Any) -> ClientConnection:
+    @contextmanager
+    def websocket(self, path: str, client: httpx.Client, **options: Any) -> Iterator[Socket]:
         """A WebSocket with the cookies of a client."""
         cookies = "; ".join(f"{name}={value}" for name, value in client.cookies.items())
         given = {"origin": self.url, "additional_headers": {"Cookie": cookies} if cookies else {}}
-        return connect(
+        opening = connect(
             f"wss://{self.host}{path}",
             ssl=self.trust(),
             compression=None,
@@ -70,8 +91,13 @@ class Secure:
             proxy=None,
             **{**given, **options},
         )
+        with (
+            start_blocking_portal() as portal,
+            portal.wrap_async_context_manager(opening) as connection,
+        ):
+            yield Socket(portal, connection)
 
-    def viewer(self, client: httpx.Client, **options: Any) -> ClientConnection:
+    def viewer(self, client: httpx.Client, **options: Any) -> AbstractContextManager[Socket]:
         """The viewer's WebSocket of the project ``office``."""
         import viser
 

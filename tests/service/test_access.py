@@ -267,8 +267,12 @@ def test_an_open_stream_ends_when_an_admin_ends_the_session(server):
 
 
 def test_a_viewer_without_a_session_is_refused_before_it_opens(server):
-    with server.client() as client, pytest.raises(InvalidStatus) as refused:
-        server.viewer(client)
+    with (
+        server.client() as client,
+        pytest.raises(InvalidStatus) as refused,
+        server.viewer(client),
+    ):
+        pass
 
     assert refused.value.response.status_code == 403
 
@@ -292,8 +296,12 @@ def test_a_viewer_without_a_session_is_refused_before_it_opens(server):
 )
 def test_a_viewer_opened_by_another_site_is_refused_although_the_cookie_is_there(server, origin):
     given = origin and origin.format(host=server.host, port=urlsplit(server.url).port)
-    with server.signed_in("vera") as client, pytest.raises(InvalidStatus) as refused:
-        server.viewer(client, origin=given)
+    with (
+        server.signed_in("vera") as client,
+        pytest.raises(InvalidStatus) as refused,
+        server.viewer(client, origin=given),
+    ):
+        pass
 
     assert refused.value.response.status_code == 403
 

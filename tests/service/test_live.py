@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import json
-import secrets
 import threading
 from contextlib import contextmanager
 
@@ -15,6 +14,7 @@ from websockets.asyncio.client import connect
 from recon4.live.replay import replay
 from recon4.progress import Silent
 from recon4.simulation.simulate import simulate
+from tests.loopback import an_address
 from tests.service.running import server_thread
 
 SECONDS = 8.0
@@ -31,7 +31,7 @@ def walk(tmp_path_factory):
 def server(tmp_path):
     root = tmp_path / "projects"
     root.mkdir()
-    address = ".".join(["127", *(str(secrets.randbelow(250) + 2) for _ in range(3))])
+    address = an_address()
     with server_thread(root, live_address=address) as running:
         yield running
 

@@ -9,7 +9,6 @@ import asyncio
 import json
 import os
 import re
-import secrets
 import signal
 import socket
 import subprocess
@@ -40,6 +39,7 @@ from recon4.settings import preset
 from recon4.simulation.simulate import simulate
 from recon4.store.frames import FrameStore
 from recon4.store.project import read_artifacts
+from tests.loopback import an_address
 from tests.service.running import wait_for
 
 
@@ -109,10 +109,6 @@ def serving(root, address):
                 yield client
         finally:
             process.kill()
-
-
-def an_address():
-    return ".".join(["127", *(str(secrets.randbelow(250) + 2) for _ in range(3))])
 
 
 def start(server):

@@ -363,25 +363,28 @@ def million(tmp_path_factory):
 def test_the_last_of_twenty_people_has_a_map_of_a_million_points_within_8_s(million):
     busy = max(1.0, os.getloadavg()[0] / (os.cpu_count() or 1))  # others may use this computer
 
+    def ask_for_all(client):
+        client.send(camera((8.0, 3.0, 1.5)))
+        client.until(lambda c: "Fewer when" in str(c.widgets), limit_s=60.0)
+        client.set("Fewer when this browser is slow", False)
+
     def look(url):
         with viewing(url) as client:
-            client.send(camera((8.0, 3.0, 1.5)))
-            client.until(lambda c: "Fewer when" in str(c.widgets), limit_s=60.0)
-            client.set("Fewer when this browser is slow", False)
+            ask_for_all(client)
             client.until(
-                lambda c: c.shown > 400_000 and f"{count(c.shown)} of" in c.html(), limit_s=60.0
+                lambda c: c.shown == whole and f"{count(whole)} of" in c.html(), limit_s=60.0
             )
-            return client.shown
 
     with own_server(million) as (server, _), ThreadPoolExecutor(PEOPLE) as people:
         with viewing(server.url) as first:  # the viewer process is there
-            first.send(camera())
-            first.until(lambda c: c.shown)
+            ask_for_all(first)
+            first.rest(quiet_s=2.0)
+            whole = first.shown
         began_s = time.monotonic()
-        shown = list(people.map(look, [server.url] * PEOPLE))
+        list(people.map(look, [server.url] * PEOPLE))
         took_s = time.monotonic() - began_s
 
-    assert set(shown) == {max(shown)}
+    assert whole > 800_000
     assert took_s < 8.0 * busy
 
 

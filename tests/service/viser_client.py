@@ -17,6 +17,7 @@ from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
 from recon4.geometry.se3 import quat_from_matrix
+from tests.service.secure import Socket
 
 PROTOCOL = Subprotocol(f"viser-v{viser.__version__}")
 
@@ -46,7 +47,9 @@ def camera(
 class ViserClient:
     """Keeps what a browser would show: nodes, widgets, storage."""
 
-    def __init__(self, socket: ClientConnection, storage: dict[str, str] | None = None) -> None:
+    def __init__(
+        self, socket: ClientConnection | Socket, storage: dict[str, str] | None = None
+    ) -> None:
         self.socket = socket
         self.storage = {} if storage is None else storage
         self.answers = True

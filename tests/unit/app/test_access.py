@@ -21,21 +21,6 @@ PASSWORD = "three green owls dance"
 HERE = Caller(address="192.0.2.1", agent="Firefox", browser="")
 
 
-class Clock:
-    """Time as the test sets it."""
-
-    def __init__(self):
-        self.now_s = 1_000_000.0
-
-    def __call__(self):
-        return self.now_s
-
-
-@pytest.fixture
-def clock():
-    return Clock()
-
-
 @pytest.fixture
 def access(tmp_path, clock, monkeypatch):
     # One round of little memory: what is tested here is not how dear a hash is.

@@ -22,18 +22,6 @@ VERA = Person("vera", Role.VIEWER)
 RITA = Person("rita", Role.REVIEWER)
 
 
-class Clock:
-    now_s = 1000.0
-
-    def __call__(self):
-        return self.now_s
-
-
-@pytest.fixture
-def clock():
-    return Clock()
-
-
 @pytest.fixture
 def pairings(clock):
     return Pairings(clock)

@@ -1,12 +1,12 @@
 """The commands ``record`` and ``replay`` as a person runs them."""
 
-import secrets
 import signal
 import subprocess
 import sys
 
 from recon4.recording.velodyne_encode import PcapWriter
 from recon4.store.project import read_artifacts
+from tests.loopback import an_address
 from tests.unit.recording.packet_builders import spin
 
 
@@ -18,7 +18,7 @@ def recon4(*arguments, **options):
 
 
 def test_a_recording_without_a_server_is_stopped_by_ctrl_c_and_is_a_project(tmp_path):
-    address = ".".join(["127", *(str(secrets.randbelow(250) + 2) for _ in range(3))])
+    address = an_address()
     rig = tmp_path / "rig.toml"
     rig.write_text('name = "one"\n[[sensor]]\nname = "lidar"\n')
     t_ns, payloads = spin(2300)

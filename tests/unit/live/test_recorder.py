@@ -3,7 +3,6 @@
 import json
 import os
 import resource
-import secrets
 import signal
 import socket
 import subprocess
@@ -27,12 +26,13 @@ from recon4.progress import Silent
 from recon4.recording.pcap import read_pcap
 from recon4.recording.report import ImportReport
 from recon4.recording.velodyne_encode import PcapWriter
+from tests.loopback import an_address
 from tests.unit.recording.packet_builders import spin
 
 
 @pytest.fixture
 def session(tmp_path):
-    address = ".".join(["127", *(str(secrets.randbelow(250) + 2) for _ in range(3))])
+    address = an_address()
     session = Session(project=tmp_path / "walk", address=address, least_free_bytes=0)
     session.capture.parent.mkdir(parents=True)
     session.save()
