@@ -51,7 +51,7 @@ class NewRequest(Wire):
 class Approval(Wire):
     """The digits a phone shows, and what it may."""
 
-    code: Annotated[str, Field(pattern=r"^\d{6}$")]
+    code: Annotated[str, Field(pattern=r"^[0-9]{6}$")]
     role: Role
 
 

@@ -140,7 +140,7 @@ class ProjectStore:
             raise Refused(
                 f"recordings may only lie in {roots}; name more folders in RECON4_RECORDINGS"
             )
-        if not real.exists():
+        if not os.path.exists(real):  # nor if it has a name no file can have
             raise NotFound(f"no such file or folder: {path[:200]!r}")
         return real
 

@@ -83,17 +83,19 @@ def load_rig(name_or_path: str | Path) -> Rig:
     """
     path = Path(name_or_path)
     if not path.suffix:
-        preset = resources.files("recon4") / "rigs" / f"{name_or_path}.toml"
-        if not preset.is_file():
+        if str(name_or_path) not in rig_presets():  # a path would lead out of their folder
             raise ConfigError(
-                f"no rig named {str(name_or_path)!r}; shipped: {', '.join(rig_presets())}; "
+                f"no rig named {str(name_or_path)[:200]!r}; shipped: {', '.join(rig_presets())}; "
                 "or give the path of a .toml file"
             )
+        preset = resources.files("recon4") / "rigs" / f"{name_or_path}.toml"
         return parse_rig(preset.read_text("utf-8"), where=str(name_or_path))
     try:
         return parse_rig(path.read_text("utf-8"), where=path.name)
-    except (OSError, UnicodeDecodeError) as error:
-        raise ConfigError(f"cannot read rig file {path.name}: {error}") from error
+    except OSError as error:
+        raise ConfigError(f"cannot read rig file {path.name[:200]}: {error.strerror}") from error
+    except ValueError as error:  # no UTF-8, or no name a file can have
+        raise ConfigError(f"cannot read rig file {path.name[:200]}: {error}") from error
 
 
 def parse_rig(text: str, *, where: str) -> Rig:

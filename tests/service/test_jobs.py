@@ -214,6 +214,8 @@ def test_a_new_project_does_not_take_the_name_of_another(server, recording):
         ({"recordings": ["/etc/passwd"]}, 403, "may only lie in"),
         ({"recordings": ["walk/../../.."]}, 403, "may only lie in"),
         ({"recordings": []}, 422, "at least 1"),
+        ({"recordings": ["{folder}/" + "x" * 300]}, 404, "no such file or folder"),
+        ({"recordings": ["{folder}/a\0b"]}, 404, "no such file or folder"),
         ({"preset": "underwater"}, 422, "no preset named 'underwater'"),
         ({"rig": "/etc/passwd"}, 403, "may only lie in"),
         ({"settings": ["map.voxel_m=tiny"]}, 422, "voxel_m"),
@@ -223,8 +225,9 @@ def test_a_new_project_does_not_take_the_name_of_another(server, recording):
 )
 def test_a_wrong_request_is_refused_with_the_reason(server, recording, change, status, words):
     request = {"project": "office", "recordings": [str(recording)]} | change
+    named = [path.format(folder=recording.parent) for path in request["recordings"]]
 
-    answer = server.post("/api/jobs", json=request)
+    answer = server.post("/api/jobs", json=request | {"recordings": named})
 
     assert answer.status_code == status
     assert words in answer.json()["detail"]

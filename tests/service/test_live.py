@@ -5,11 +5,12 @@ from __future__ import annotations
 import asyncio
 import json
 import threading
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 import numpy as np
 import pytest
 from websockets.asyncio.client import connect
+from websockets.exceptions import ConnectionClosed
 
 from recon4.live.replay import replay
 from recon4.progress import Silent
@@ -111,3 +112,27 @@ def test_a_walk_is_seen_on_the_phone_and_is_a_project_when_it_ends(server, walk)
     assert len(np.unique(phone.voxels, axis=0)) == len(phone.voxels)
     project = server.get("/api/projects/walk").json()
     assert [stage["stage"] for stage in project["stages"]] == ["frames"]
+
+
+@pytest.mark.parametrize("said", [b"\x00\xff", "", "[", "3", '{"have": [1]}', "[" * 100_000])
+def test_what_is_no_phone_of_ours_gets_nothing_and_is_no_error(server, said, caplog):
+    async def say():
+        url = server.url.replace("http", "ws") + "/api/live/stream"
+        async with connect(url, origin=server.url) as socket:
+            await socket.send(said)
+            with suppress(TimeoutError, ConnectionClosed):
+                return json.loads(await asyncio.wait_for(socket.recv(), 1.0))["state"]
+
+    heard = asyncio.run(say())
+
+    assert heard in (None, "none")
+    assert not [record for record in caplog.records if record.levelname == "ERROR"]
+    assert server.get("/healthz").status_code == 200
+
+
+@pytest.mark.parametrize("rig", ["../../pyproject", "/etc/hostname", "underwater"])
+def test_a_rig_is_no_way_to_files_elsewhere(server, rig):
+    answer = server.post("/api/live", json={"project": "walk", "rig": rig})
+
+    assert answer.status_code == 422 and "no rig named" in answer.json()["detail"]
+    assert not (server.root / "walk").exists()

@@ -112,6 +112,15 @@ def test_digits_on_the_phone_and_typed_on_the_laptop(server):
         assert again.status_code == 403
 
 
+def test_digits_of_another_script_are_no_server_error(server):
+    with server.signed_in("otto") as laptop, server.client() as phone:
+        asked = phone.post("/api/pairing/requests", json={}).json()
+        code = asked["code"].translate(dict(zip(b"0123456789", "٠١٢٣٤٥٦٧٨٩", strict=True)))
+        answer = laptop.post("/api/pairing/approve", json={"code": code, "role": "operator"})
+
+    assert answer.status_code == 422
+
+
 def test_a_long_name_and_a_flood_are_refused(server):
     with server.client() as stranger:
         long = stranger.post("/api/pairing/requests", json={"name": "x" * 65})

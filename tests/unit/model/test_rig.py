@@ -92,6 +92,18 @@ def test_a_rig_nobody_knows_is_refused_with_those_that_are_known():
         load_rig("5recon")
 
 
+@pytest.mark.parametrize("name", ["../../pyproject", "../rigs/4recon", "", "\0", "x" * 5000])
+def test_a_name_is_no_way_to_a_file_elsewhere(name):
+    with pytest.raises(ConfigError, match="no rig named"):
+        load_rig(name)
+
+
+@pytest.mark.parametrize("name", ["\0.toml", "x" * 5000 + ".toml"])
+def test_a_name_no_file_can_have_is_refused(name):
+    with pytest.raises(ConfigError, match="cannot read rig file"):
+        load_rig(name)
+
+
 def test_a_rig_file_that_is_missing_or_not_text_is_refused(tmp_path):
     (tmp_path / "bad.toml").write_bytes(b"\xff\xfe\x00")
 
