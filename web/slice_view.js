@@ -21,6 +21,7 @@ class SliceView extends HTMLElement {
   #pinch = null;
   #moved = 0;
   #rest = 0;
+  #shown = 0;
   #hover = make("output", { className: "cursor", ariaLive: "off" });
 
   connectedCallback() {
@@ -68,7 +69,9 @@ class SliceView extends HTMLElement {
   /** A picture of the server, with what it shows. */
   async show({ png, window, axes }) {
     const bytes = Uint8Array.from(atob(png), (one) => one.charCodeAt(0));
+    const mine = (this.#shown += 1);
     const image = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+    if (mine !== this.#shown) return image.close(); // a newer one is there already
     this.#image?.close();
     [this.#image, this.#window, this.#axes] = [image, window, axes];
     if (!this.#center) this.#fit(window);

@@ -82,7 +82,7 @@ async function load() {
   const page = `${tab}1`;
   document.body.classList.add("drawing");
   try {
-    const told = await readSlice(id, ask(first, { page }));
+    const told = await readSlice(id, ask(first, { page, turn: mine }));
     if (mine !== turn) return;
     await first.show(told);
     shown = told;
@@ -102,7 +102,7 @@ async function loadSecond(mine) {
   second.frame = first.frame;
   const color = state.besideColor || state.color;
   const range = color === state.color ? {} : { low: null, high: null };
-  const told = await readSlice(id, ask(second, { page: `${tab}2`, color, source: state.beside, ...range }));
+  const told = await readSlice(id, ask(second, { page: `${tab}2`, turn: mine, color, source: state.beside, ...range }));
   if (mine !== turn) return;
   await second.show(told);
   captions[1].textContent = `${sourceWords(state.beside)} · ${COLORS[color]} · ${count(told.points)} points`;

@@ -99,7 +99,7 @@ def end_session(session_id: str, request: Request, server: Server) -> None:
 def read_audit(
     server: Server,
     most: Annotated[int, Query(ge=1, le=1000)] = 100,
-    before: Annotated[int | None, Query(ge=1)] = None,
+    before: Annotated[int | None, Query(ge=1, le=1 << 62)] = None,
 ) -> Log:
     """The audit log, and whether it is as it was written."""
     log = server.access.log

@@ -180,7 +180,7 @@ def read_log(job_id: str, server: Server, lines: Annotated[int, Query(ge=1, le=5
 
 @router.get("/jobs/{job_id}/log/since", summary="Log as it grows")
 def follow_log(
-    job_id: str, server: Server, offset: Annotated[int, Query(ge=0, le=1 << 50)] = 0
+    job_id: str, server: Server, offset: Annotated[int, Query(ge=0, le=1 << 40)] = 0
 ) -> LogPiece:
     """Whole lines of a job's log from a byte offset on; ask again with ``next``."""
     text, following = server.supervisor.folder(server.jobs.get(job_id).id).log_since(offset)

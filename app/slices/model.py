@@ -12,6 +12,8 @@ from recon4.slices.cut import MOST_SLICES, MOST_THICKNESS_M, Cut, free, horizont
 Coordinate = Annotated[float, Field(ge=-1e8, le=1e8, allow_inf_nan=False)]
 Xy = tuple[Coordinate, Coordinate]
 Xyz = tuple[Coordinate, Coordinate, Coordinate]
+Reach = Annotated[float, Field(ge=-1e9, le=1e9, allow_inf_nan=False)]
+"""A coordinate in a cut that begins anywhere."""
 MOST_SIDE_PX = 4096
 
 
@@ -53,10 +55,10 @@ class CutSpec(Strict):
 class WindowSpec(Strict):
     """Part of a cut, in its own coordinates [m]."""
 
-    left: Coordinate
-    bottom: Coordinate
-    right: Coordinate
-    top: Coordinate
+    left: Reach
+    bottom: Reach
+    right: Reach
+    top: Reach
 
 
 class Look(Strict):
@@ -84,6 +86,8 @@ class AskPicture(Look):
     ground: Ground = "light"
     page: str = Field(default="", max_length=40)
     """Who asks: of several requests of one page only the latest is answered."""
+    turn: int = Field(default=0, ge=0, le=1 << 53)
+    """The page's own count of its requests: they may come in another order than they were sent."""
 
 
 class PictureView(BaseModel):

@@ -63,7 +63,7 @@ async def read_facts(project_id: str, server: Server, source: str = "") -> Slice
         "sources": await run_in_threadpool(slices.sources, project_id),
         "approval": await run_in_threadpool(slices.approval_words, project_id, source),
     }
-    return await slices.newest("", work.facts, artifacts, told)
+    return await slices.draw(work.facts, artifacts, told)
 
 
 @router.post("/picture", summary="A picture of a slice")
@@ -76,7 +76,7 @@ async def picture(project_id: str, ask: AskPicture, server: Server) -> PictureVi
     artifacts = await run_in_threadpool(slices.artifacts, project_id, ask.source)
     reference = slices.reference(project_id, ask.reference)
     ask.cut.cut()  # a plane without meaning is refused before it waits
-    return await slices.newest(ask.page, work.picture, artifacts["map"], reference, ask)
+    return await slices.newest(ask.page, ask.turn, work.picture, artifacts["map"], reference, ask)
 
 
 @router.get("/overview", response_class=FileResponse, summary="The map from above")
@@ -96,9 +96,7 @@ async def overview_window(project_id: str, server: Server, source: str = "") -> 
 async def pick(project_id: str, ask: AskPick, server: Server) -> PickView:
     """Coordinates of the full-resolution point nearest to the place, in the map and its CRS."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, ask.source)
-    return await server.slices.newest(
-        "", work.pick_point, artifacts, ask.cut.cut(), ask.uv, ask.radius_m
-    )
+    return await server.slices.draw(work.pick_point, artifacts, ask.cut.cut(), ask.uv, ask.radius_m)
 
 
 @router.get("/doubles", summary="Double walls")
@@ -212,7 +210,7 @@ async def control_report(project_id: str, server: Server) -> dict[str, Any]:
     """Map minus survey, control and check points apart, with every limit and whether it holds."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     state = await run_in_threadpool(server.slices.control, project_id)
-    return await server.slices.newest("", work.control_report, artifacts, state)
+    return await server.slices.draw(work.control_report, artifacts, state)
 
 
 @router.get("/control/report.{ending}", summary="Residuals as a file")
@@ -225,7 +223,7 @@ async def control_file(project_id: str, ending: Literal["csv", "html"], server: 
         "project": server.projects.get(project_id).name,
         "approval": await run_in_threadpool(slices.approval_words, project_id),
     }
-    text = await slices.newest("", work.control_file, artifacts, state, ending, told)
+    text = await slices.draw(work.control_file, artifacts, state, ending, told)
     if ending == "csv":
         head = {"Content-Disposition": f'attachment; filename="{project_id}-control.csv"'}
         return PlainTextResponse(text, media_type="text/csv; charset=utf-8", headers=head)
@@ -240,7 +238,7 @@ async def surface(project_id: str, point: str, server: Server) -> dict[str, Any]
     found: list[Xyz] = [one.xyz_m for one in state.points if one.id == point]
     if not found:
         raise ConfigError(f"no point {point[:64]!r}")
-    return await server.slices.newest("", work.surface_at, artifacts, found[0], state.frame)
+    return await server.slices.draw(work.surface_at, artifacts, found[0], state.frame)
 
 
 @router.get("/compare.csv", response_class=PlainTextResponse, summary="The table as CSV")
@@ -259,8 +257,8 @@ async def _overview(project_id: str, server: Server, source: str) -> Path:
     folder = artifacts["map"]
     return await server.slices.kept(
         f"{Path(folder).name}-above.png",
-        lambda out: server.slices.newest(
-            "", work.overview, folder, str(out), str(out.with_suffix(".json"))
+        lambda out: server.slices.draw(
+            work.overview, folder, str(out), str(out.with_suffix(".json"))
         ),
     )
 

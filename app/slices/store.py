@@ -42,7 +42,7 @@ class Slices:
         self._desk = desk
         self._projects = projects
         self._kept = kept
-        self._newest: OrderedDict[str, int] = OrderedDict()
+        self._newest: OrderedDict[str, tuple[int, int]] = OrderedDict()
         self._turn = asyncio.Lock()
         self._making: dict[Path, asyncio.Lock] = {}
 
@@ -172,19 +172,33 @@ class Slices:
 
     # -- work
 
-    async def newest(self, page: str, function: Callable[..., T], *args: object) -> T:
-        """Run in the child for pictures; of several requests of a page only the latest.
+    async def draw(self, function: Callable[..., T], *args: object) -> T:
+        """Run in the child for pictures."""
+        async with self._turn:
+            return await self._desk.run("slices", function, *args)
+
+    async def newest(self, page: str, turn: int, function: Callable[..., T], *args: object) -> T:
+        """The same; of several requests of a page only the latest.
+
+        Args:
+            page: Who asks; empty = nobody who will ask again.
+            turn: The greatest one known is the latest; of equal ones the one that came last.
+            function: What draws.
+            args: What it is given.
 
         Raises:
-            Superseded: If the page asked for something newer while this one waited.
+            Superseded: If the page asked for something newer.
         """
-        number = self._newest.get(page, 0) + 1
-        self._newest[page] = number
+        if not page:
+            return await self.draw(function, *args)
+        known = self._newest.get(page, (0, 0))
+        mine = (turn, known[1] + 1)  # the second number tells equal turns apart
+        self._newest[page] = max(known, mine)
         self._newest.move_to_end(page)
         while len(self._newest) > MOST_PAGES:
             self._newest.popitem(last=False)
         async with self._turn:
-            if page and self._newest.get(page, number) != number:
+            if self._newest.get(page, mine) != mine:
                 raise Superseded("a newer picture was asked for")
             return await self._desk.run("slices", function, *args)
 

@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.errors import ConfigError
+from recon4.errors import ConfigError, UnknownFormat
 from recon4.geometry.se3 import SE3, Array
 from recon4.mapping.normals import local_normals
 from recon4.mapping.tile import progressive
@@ -44,6 +44,8 @@ def import_reference(
     Raises:
         CorruptFile, UnknownFormat, RecordingError: If the file cannot be used, in words.
     """
+    if not path.is_file():
+        raise UnknownFormat(f"{path.name}: expected one file, got a folder or nothing")
     with atomic_folder(out) as folder:
         facts: dict[str, object] = {
             "name": name or path.name,

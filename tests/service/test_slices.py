@@ -97,6 +97,25 @@ def test_of_several_pictures_a_page_asks_for_the_latest_is_answered(server):
     assert all(a.json()["error"] == "Superseded" for a in answers.values() if a.status_code == 409)
 
 
+def test_pictures_asked_for_in_another_order_than_they_arrive(server):
+    def one(turn):
+        return httpx.post(f"{server.url}{BASE}/picture", json=ask(page="p2", turn=turn), timeout=60)
+
+    late, early, later = one(7), one(6), one(8)
+
+    assert (late.status_code, later.status_code) == (200, 200)
+    assert early.status_code == 409 and early.json()["error"] == "Superseded"
+
+
+def test_a_cut_that_begins_far_away_is_drawn(server):
+    far = {"kind": "vertical", "a_m": [0.0, 1e8], "b_m": [1.0, 0.0]}
+
+    told = sent(server, "/picture", ask(cut=far)).json()
+
+    assert told["points"] > 0 and max(map(abs, told["window"].values())) > 99_999_900.0
+    assert sent(server, "/picture", ask(cut=far, window=told["window"])).status_code == 200
+
+
 def test_a_picked_point_is_one_of_the_map(server):
     found = sent(server, "/pick", {"cut": Z1, "uv": [0.0, 5.0], "radius_m": 0.3}).json()
 
@@ -174,6 +193,12 @@ def test_a_damaged_reference_is_refused_in_words(server, name, content, words):
     assert answer.status_code == 422 and words in answer.json()["detail"]
     assert server.get(BASE).json()["references"] == []
     assert list((server.root / "office" / "slices" / "references").iterdir()) == []
+
+
+def test_a_folder_is_no_reference(server):
+    answer = sent(server, "/references", {"path": str(server.root)})
+
+    assert answer.status_code == 422 and "got a folder" in answer.json()["detail"]
 
 
 def test_a_reference_outside_of_the_folders_is_refused(server):
