@@ -21,7 +21,7 @@ export function exportPanel({ id, change, state, ask }) {
   const flat = make("input", { type: "checkbox", id: "flat" });
   const count = make("input", { type: "number", min: 1, max: 200, value: "1", ariaLabel: "Number of slices" });
   const spacing = make("input", { type: "number", step: "0.05", value: "0.5", ariaLabel: "Spacing of slices" });
-  const links = make("ul", { className: "files" });
+  const links = KINDS.map(([ending, name]) => [ending, make("a", { download: "" }, name)]);
 
   function wanted() {
     const { width, height, ground, window, ...look } = ask();
@@ -32,9 +32,9 @@ export function exportPanel({ id, change, state, ask }) {
     };
   }
 
+  /** The links stay: one that is replaced under the finger is not followed. */
   function draw() {
-    links.replaceChildren(...KINDS.map(([ending, name, words]) =>
-      make("li", {}, make("a", { href: sliceFileUrl(id, ending, wanted()), download: "" }, name), make("small", {}, words))));
+    for (const [ending, link] of links) link.href = sliceFileUrl(id, ending, wanted());
   }
 
   for (const control of [part, size, scale, flat]) control.addEventListener("change", draw);
@@ -45,7 +45,7 @@ export function exportPanel({ id, change, state, ask }) {
     element: make("div", {},
       make("div", { className: "row" }, field("Part", part), field("Paper", size), field("Scale", scale), field("Slices", count), field("Spacing [m]", spacing)),
       make("label", { className: "check" }, flat, make("span", {}, "DXF laid flat: u, v instead of coordinates")),
-      links,
+      make("ul", { className: "files" }, ...links.map(([, link], k) => make("li", {}, link, make("small", {}, KINDS[k][2])))),
     ),
     show: draw,
   };
