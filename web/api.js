@@ -225,7 +225,7 @@ export const stepForth = (id, seq) => request("POST", review(id, "/redo"), { aft
 export const alignPair = (id, [i, j], guess) => request("POST", review(id, "/align"), { frame_i: i, frame_j: j, T_i_j: guess });
 export const fitPoints = (id, p_i, p_j) => request("POST", review(id, "/fit"), { p_i, p_j });
 export const remakeMap = (id) => request("POST", `/api/projects/${name(id)}/remake`);
-export const approveMap = (id, why, confirmed) => request("POST", review(id, "/approve"), { why, confirmed });
+export const approveMap = (id, signed) => request("POST", review(id, "/approve"), signed);
 
 /** Points of both places of a pair, {i, j}: Float32Array of x y z in the body frame of each [m]. */
 export async function readPoints(id, pair, reach) {

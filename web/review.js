@@ -245,11 +245,12 @@ function drop() {
 
 function pick() {
   if (!hand?.facts) return;
+  const mine = hand;
   view.pick(async ({ p_i, p_j }) => {
     const pose = await attempt(message, () => fitPoints(id, p_i, p_j));
-    if (!pose) return;
+    if (!pose || hand !== mine) return; // another pair was taken meanwhile
     view.pose = pose;
-    hand.moved = true;
+    mine.moved = true;
     drawHand();
   });
 }
@@ -263,7 +264,8 @@ async function look() {
     effect = null;
   } else {
     const told = await attempt(message, () => readEffect(id));
-    if (mine !== effectAsked || !told || told.superseded) return;
+    if (mine !== effectAsked || !told) return;
+    if (told.superseded) return look(); // somebody decided, or an earlier request came late
     effect = told;
     for (const part of [effect.last, effect.all]) for (const move of part.moves) move.t_s = (move.t_ns - began_ns) / 1e9;
     const chi2 = new Map(effect.edges.map((one) => [keyOf(one.pair), one.chi2]));
@@ -290,8 +292,9 @@ async function remake(error) {
 }
 
 function approve() {
+  const seen = { after_seq: state.seq, graph: state.graph };
   askToSign(effect?.conflicts.length ?? 0, async (why, confirmed) => {
-    become(await withPassword(() => approveMap(id, why, confirmed)));
+    become(await withPassword(() => approveMap(id, { why, confirmed, ...seen })));
     return true;
   });
 }

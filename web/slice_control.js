@@ -11,7 +11,8 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
   const preview = make("div", {});
   const table = make("div", {});
   const file = make("input", { type: "file", accept: ".csv,.txt", ariaLabel: "Survey file" });
-  let kept = { points: [], frame: "map", picks: {} };
+  let kept = { points: [], frame: "map", picks: {}, version: 0 };
+  let last = Promise.resolve();
   let georeferenced = false;
 
   file.addEventListener("change", () => file.files[0] && attempt(message, () => look(file.files[0])));
@@ -24,7 +25,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
     const found = await lookAtControl(id, { name: chosen.name, base64: btoa(binary), order });
     const rows = found.points.slice(0, 5).map((one) => make("tr", {}, make("th", { scope: "row" }, one.id), ...one.xyz_m.map((x) => make("td", { className: "number" }, x.toFixed(3)))));
     const button = (words, action) => make("button", { type: "button", onclick: () => attempt(message, action) }, words);
-    const use = (frame) => () => keep({ points: found.points, frame, picks: {} });
+    const use = (frame) => () => keep(() => ({ points: found.points, frame, picks: {} }));
     preview.replaceChildren(
       make("p", {}, `${found.points.length} points, separated by "${found.delimiter}", decimal "${found.decimal}"`),
       make("table", {}, make("thead", {}, make("tr", {}, ...["Point", "East, x", "North, y", "Height"].map((words, k) => make("th", { scope: "col", className: k ? "number" : "" }, words)))), make("tbody", {}, ...rows)),
@@ -38,11 +39,26 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
     );
   }
 
-  async function keep(next) {
-    kept = await keepControl(id, next);
-    preview.replaceChildren();
-    await report();
+  /** One change after the other, each of what is kept now: another tab or person may change it, too. */
+  function keep(edit) {
+    const done = last.then(() => write(edit));
+    last = done.catch(() => {});
+    return done;
   }
+
+  async function write(edit, tries = 5) {
+    try {
+      kept = await keepControl(id, { ...edit(kept), version: kept.version });
+    } catch (error) {
+      if (error.status !== 409 || !tries) throw error;
+      kept = await readControl(id);
+      return write(edit, tries - 1);
+    }
+    preview.replaceChildren();
+    return report();
+  }
+
+  const put = (places) => keep((now) => ({ ...now, picks: { ...now.picks, ...places } }));
 
   async function report() {
     if (!kept.points.length) {
@@ -75,15 +91,15 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
 
   async function everySurface(button) {
     button.disabled = true;
-    const picks = { ...kept.picks };
+    const places = {};
     const without = [];
     for (const one of kept.points) {
       button.textContent = `${one.id}…`;
       const { surface } = await readSurface(id, one.id);
-      if (surface) picks[one.id] = surface;
+      if (surface) places[one.id] = surface;
       else without.push(one.id);
     }
-    await keep({ ...kept, picks });
+    await put(places);
     if (without.length) message.textContent = `No surface within 30 cm of ${without.slice(0, 10).join(", ")}${without.length > 10 ? ` and ${without.length - 10} more` : ""}`;
   }
 
@@ -91,7 +107,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
     const values = residual ? [residual.east_m, residual.north_m, residual.up_m, residual.d2_m, residual.d3_m].map(cm) : ["", "", "", "", ""];
     const role = make("select", { ariaLabel: `Role of ${one.id}` }, make("option", { value: "check" }, "check"), make("option", { value: "control" }, "control"));
     role.value = one.role;
-    role.addEventListener("change", () => attempt(message, () => keep({ ...kept, points: kept.points.map((p) => (p.id === one.id ? { ...p, role: role.value } : p)) })));
+    role.addEventListener("change", () => attempt(message, () => keep((now) => ({ ...now, points: now.points.map((p) => (p.id === one.id ? { ...p, role: role.value } : p)) }))));
     const button = (words, action, label) => make("button", { type: "button", className: "go", ariaLabel: label, onclick: () => attempt(message, action) }, words);
     return make("tr", {},
       make("th", { scope: "row" }, one.id), make("td", {}, role),
@@ -109,13 +125,13 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
   async function pick(one) {
     const picked = measured();
     if (!picked) throw new Error(`Pick ${one.id} in the slice first`);
-    await keep({ ...kept, picks: { ...kept.picks, [one.id]: picked.p_map } });
+    await put({ [one.id]: picked.p_map });
   }
 
   async function surface(one) {
-    const found = await readSurface(id, one.id);
-    if (!found.surface) throw new Error(`No surface within 30 cm of ${one.id}`);
-    await keep({ ...kept, picks: { ...kept.picks, [one.id]: found.surface } });
+    const { surface: at } = await readSurface(id, one.id);
+    if (!at) throw new Error(`No surface within 30 cm of ${one.id}`);
+    await put({ [one.id]: at });
   }
 
   /** The limits of one role, with what was measured. */

@@ -37,7 +37,7 @@ export function doublesPanel({ id, change, point, state }) {
     button.disabled = true;
     button.textContent = "Looking…";
     try {
-      show(await readDoubleWalls(id));
+      show(await readDoubleWalls(id, state().source));
     } finally {
       button.disabled = false;
       button.textContent = "Look for double walls";

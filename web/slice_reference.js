@@ -102,7 +102,7 @@ export function referencePanel({ id, change, state, reload }) {
   }
 
   async function compare() {
-    const ask = { reference: state().ref, method: method.value, cuts: cuts() };
+    const ask = { reference: state().ref, method: method.value, cuts: cuts(), source: state().source };
     if (!ask.reference) throw new Error("Choose a reference first");
     change({ method: method.value }, { keep: true });
     show(await compareSlices(id, ask), ask);

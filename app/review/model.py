@@ -72,6 +72,10 @@ class Approve(BaseModel):
     why: Why = ""
     confirmed: bool = False
     """Sign although accepted pairs do not fit the graph; asks for a reason."""
+    after_seq: Annotated[int | None, Field(ge=0, le=1 << 53)] = None
+    """``seq`` of the state the signer looked at …"""
+    graph: Annotated[str | None, Field(max_length=64)] = None
+    """… and its ``graph``: if either is another one by now nothing is signed. None = not said."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -199,7 +200,10 @@ async def approve(
     key = server.settings.state / "signing.key"
     try:
         approval = await server.desk.run(
-            "review", sign, root, key, signer, asked.confirmed, limit_s=SIGNING_LIMIT_S
+            "review",
+            partial(sign, seen=(asked.after_seq, asked.graph)),
+            *(root, key, signer, asked.confirmed),
+            limit_s=SIGNING_LIMIT_S,
         )
     except NotApprovable as error:
         raise Conflict(str(error)) from error

@@ -197,6 +197,9 @@ class ControlState(Strict):
     """Id -> place in the map's frame [m]."""
     found_in: dict[str, str] = {}
     """Id -> key of the map it was found in; the server knows it and takes nobody's word."""
+    version: int | None = Field(default=None, ge=0, le=1 << 53)
+    """How often they were kept when this was read: what somebody else kept since is not
+    overwritten. None = whatever is there is."""
 
     def of_map(self, key: str) -> dict[str, Xyz]:
         """The places that were found in a map; those of an earlier one say nothing of it."""

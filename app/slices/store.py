@@ -7,6 +7,7 @@ import json
 import re
 import secrets
 import shutil
+import threading
 from collections import OrderedDict
 from collections.abc import Callable
 from pathlib import Path
@@ -44,6 +45,7 @@ class Slices:
         self._kept = kept
         self._newest: OrderedDict[str, tuple[int, int]] = OrderedDict()
         self._turn = asyncio.Lock()
+        self._keeping = threading.Lock()
         self._making: dict[Path, asyncio.Lock] = {}
 
     # -- which map
@@ -151,20 +153,33 @@ class Slices:
         """
         path = self._folder(project_id) / "control.json"
         if not path.exists():
-            return ControlState()
+            return ControlState(version=0)
         try:
-            return ControlState.model_validate_json(path.read_text("utf-8"))
+            state = ControlState.model_validate_json(path.read_text("utf-8"))
         except (OSError, ValueError) as error:
             raise StoreError(f"{path.name} cannot be read: {error}") from error
+        return state.model_copy(update={"version": state.version or 0})
 
     def keep_control(self, project_id: str, state: ControlState) -> ControlState:
-        """Keep them, safely on disk; a place that is new was found in the latest map."""
+        """Keep them, safely on disk; a place that is new was found in the latest map.
+
+        Raises:
+            Conflict: If somebody else kept others since this state was read.
+        """
+        with self._keeping:
+            return self._keep_control(project_id, state)
+
+    def _keep_control(self, project_id: str, state: ControlState) -> ControlState:
         before, key = self.control(project_id), Path(self._latest(project_id)["map"]).name
+        assert before.version is not None
+        if state.version not in (None, before.version):
+            raise Conflict("somebody else changed the control points meanwhile; read them again")
         found_in = {
             name: before.found_in.get(name, "") if before.picks.get(name) == at else key
             for name, at in state.picks.items()
         }
-        kept = state.model_copy(update={"found_in": found_in})
+        version = before.version + 1
+        kept = state.model_copy(update={"found_in": found_in, "version": version})
         folder = self._folder(project_id)
         folder.mkdir(exist_ok=True)
         write_json(folder / "control.json", kept.model_dump(mode="json"))

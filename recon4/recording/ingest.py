@@ -23,7 +23,7 @@ from recon4.recording.open import Kind, Recording, open_recording, recognize
 from recon4.recording.pcap import OpenFile, open_plain
 from recon4.recording.poses import write_tum
 from recon4.recording.report import ImportReport
-from recon4.recording.samples import clean_gnss, clean_imu, join
+from recon4.recording.samples import clean_gnss, clean_imu, gather, join
 from recon4.recording.shots import Shots
 from recon4.settings import IngestSettings
 from recon4.store.frames import FrameWriter
@@ -46,9 +46,9 @@ class _Samples:
     def keep(self, item: ImuSamples | GnssSamples | Trajectory) -> None:
         """Remember it."""
         if isinstance(item, ImuSamples):
-            self.imu.append(item)
+            gather(self.imu, item)
         elif isinstance(item, GnssSamples):
-            self.gnss.append(item)
+            gather(self.gnss, item)
         else:
             self.poses.append(item)
 

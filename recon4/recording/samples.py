@@ -27,6 +27,19 @@ def join(parts: Sequence[Samples]) -> Samples | None:
     return _build(parts[0], lambda name: np.concatenate([getattr(part, name) for part in parts]))
 
 
+def gather(parts: list[Samples], item: Samples) -> None:
+    """Append a record to a list; those of like length at its end become one.
+
+    A capture brings samples one by one: as arrays of their own they would take ten times the
+    memory. So there are few arrays, however long it lasts, and each sample is copied log N times.
+    """
+    parts.append(item)
+    while len(parts) > 1 and len(parts[-1]) >= len(parts[-2]):
+        last = join(parts[-2:])
+        assert last is not None
+        parts[-2:] = [last]
+
+
 def clean_imu(
     imu: ImuSamples, *, offset_s: float, jumps_ns: Sequence[int], report: ImportReport
 ) -> ImuSamples | None:

@@ -19,6 +19,7 @@ from recon4.errors import StoreError
 from recon4.review.decisions import Decided, Decision, Kind, fold
 from recon4.review.journal import Row, append, broken, head, read_rows
 from recon4.review.signature import sign
+from recon4.review.source import graph_key
 from recon4.review.stamp import Stamp, stamp_file
 from recon4.review.state import artifact_keys, decisions_in_map, read_summary
 from recon4.store.atomic import atomic_file, atomic_folder, sweep, write_json
@@ -63,7 +64,14 @@ class _Asked:
         return artifact_keys(self.summary)
 
 
-def approve(root: Path, key_file: Path, signer: Mapping[str, str], confirmed: bool) -> Approval:
+def approve(
+    root: Path,
+    key_file: Path,
+    signer: Mapping[str, str],
+    confirmed: bool,
+    *,
+    seen: tuple[int | None, str | None] = (None, None),
+) -> Approval:
     """Sign the results of a project as they are and keep them as a new version.
 
     Args:
@@ -71,14 +79,18 @@ def approve(root: Path, key_file: Path, signer: Mapping[str, str], confirmed: bo
         key_file: Private key of the server; made when it is missing.
         signer: ``who``, ``role`` and ``why``.
         confirmed: Sign although accepted pairs do not fit; needs a reason.
+        seen: How many rows of the journal and which graph the signer looked at; None = not said.
 
     Raises:
         NotApprovable: If there is no finished run, decisions are not in it, it is damaged, or
-            there are conflicts and nobody confirmed them with a reason, or it is approved already.
+            there are conflicts and nobody confirmed them with a reason, or it is approved already,
+            or it is not what the signer looked at.
         StoreError: If the project is in use or cannot be written (`NoSpace`: disk full).
     """
     with Project.open(root):
         asked = _asked(root, signer)
+        if seen[0] not in (None, len(asked.rows)) or seen[1] not in (None, graph_key(root)):
+            raise NotApprovable("the map was changed since it was looked at: look at it again")
         _refuse_again(root, asked)
         _refuse(root, asked, confirmed=confirmed)
         (root / VERSIONS).mkdir(exist_ok=True)

@@ -131,6 +131,28 @@ def test_no_double_wall_is_found_where_there_is_none(server, page):
     expect(page.locator(".verdict")).to_contain_text(re.compile("No double wall|Not checked"))
 
 
+def test_what_is_found_is_found_in_the_map_that_is_shown(server, page):
+    (server.root / "wall.xyz").write_text("\n".join(f"0 {y / 20} 1.5" for y in range(200)))
+    opened(page, server, "?source=project:earlier&kind=horizontal&z=1.5")
+    expect(page.locator(".caption").first).to_contain_text("Project earlier")
+
+    page.get_by_text("Double walls", exact=True).click()
+    with page.expect_request(re.compile("doubles.*source=project%3Aearlier")):
+        page.get_by_role("button", name="Look for double walls").click()
+    expect(page.locator(".verdict")).to_be_visible()
+    page.get_by_text("Compare with a reference").click()
+    page.get_by_label("Path of the reference").fill(str(server.root / "wall.xyz"))
+    page.get_by_role("button", name="Add reference").click()
+    expect(page.locator("#legend")).to_contain_text("Distance to reference [cm]")
+    with page.expect_request("**/compare") as asked:
+        page.get_by_role("button", name="Compare", exact=True).click()
+    expect(page.get_by_role("row", name=re.compile("Average by points"))).to_be_visible()
+    page.get_by_role("button", name="Remove").click()
+    expect(page.get_by_role("button", name="Remove")).to_have_count(0)
+
+    assert asked.value.post_data_json["source"] == "project:earlier"
+
+
 def test_a_reference_is_compared_and_shown(server, page, picture):
     path = server.root / "walls.xyz"
     rows = [
@@ -236,6 +258,28 @@ def test_a_survey_is_imported_judged_and_taken_away(server, page, picture):
     with page.expect_popup() as sheet:
         page.get_by_role("link", name="Sheet to print and sign").click()
     expect(sheet.value.get_by_text("does not keep the limits at 3 check points")).to_be_visible()
+
+
+def test_two_tabs_judge_control_points_and_neither_undoes_the_other(server, page):
+    opened(page, server, "?kind=horizontal&z=1.5")
+    other = page.context.new_page()  # its browser complains of the 409
+    data = b"ID;X;Y;Z\nA;0,02;5;1,5\nB;16,01;4;1,2\n"
+    survey = {"name": "p.csv", "mimeType": "text/csv", "buffer": data}
+    page.get_by_text("Control and check points").click()
+    page.get_by_label("Survey file").set_input_files(survey)
+    page.get_by_role("button", name="Use, in the map's frame").click()
+    expect(page.locator(".verdict")).to_contain_text("2 not found yet")
+    opened(other, server, "?kind=horizontal&z=1.5")
+    other.get_by_text("Control and check points").click()
+    expect(other.locator(".verdict")).to_contain_text("2 not found yet")
+
+    page.get_by_role("button", name="A on the nearest surface").click()
+    expect(page.locator(".verdict")).to_contain_text("1 not found yet")
+    other.get_by_role("button", name="B on the nearest surface").click()
+
+    expect(other.locator(".verdict")).not_to_contain_text("not found yet")
+    expect(other.get_by_role("row", name=re.compile("^A "))).to_contain_text("-2.0")
+    other.close()
 
 
 def test_a_sheet_is_downloaded(server, page):

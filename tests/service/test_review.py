@@ -309,6 +309,20 @@ def test_an_approval_is_signed_and_every_export_carries_it(server, root):
     read_tum(root / "trajectory.tum")
 
 
+def test_nobody_signs_what_became_another_map_while_the_password_was_typed(server):
+    seen = server.get().json()
+    server.post("/decisions", json={"kind": "reject", **RIGHT})
+    server.post("/undo", json={"after_seq": seen["seq"] + 1})  # the map is the same, but who knows
+
+    late = approve(server, after_seq=seen["seq"], graph=seen["graph"])
+    other = approve(server, graph="0" * 64)
+    now = approve(server, after_seq=seen["seq"] + 2, graph=seen["graph"])
+
+    assert (late.status_code, other.status_code) == (409, 409)
+    assert "look at it again" in late.json()["detail"]
+    assert now.status_code == 201, now.text
+
+
 def test_points_of_an_approved_map_are_those_of_the_draft(server, root):
     before = laspy.read(root / "map.laz")
 

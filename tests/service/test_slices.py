@@ -4,6 +4,7 @@ import base64
 import io
 import json
 import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import ezdxf
 import httpx
@@ -292,6 +293,23 @@ def test_the_table_of_control_points_is_taken_away(server):
     assert "A,check,-0.0200,0.0000,0.0000" in table.text and "Not approved" in table.text
     assert "The map keeps the limits at 1 check point" in sheet.text
     assert "sandbox" in sheet.headers["Content-Security-Policy"]
+
+
+def test_of_two_who_keep_control_points_the_second_does_not_overwrite_the_first(server):
+    url = f"{server.url}{BASE}/control"
+    state = {"points": [{"id": "A", "xyz_m": [0.02, 5, 1.5]}], "picks": {}}
+    read = httpx.put(url, json=state, timeout=30).json()
+
+    def keep(k):
+        return httpx.put(url, json=read | {"picks": {"A": [k / 10, 5, 1.5]}}, timeout=30)
+
+    with ThreadPoolExecutor(8) as people:
+        answers = list(people.map(keep, range(8)))
+    now = server.get(f"{BASE}/control").json()
+
+    (first,) = [answer.json() for answer in answers if answer.status_code == 200]
+    assert sorted(answer.status_code for answer in answers) == [200] + [409] * 7
+    assert now == first and now["version"] == read["version"] + 1
 
 
 def test_a_point_found_in_an_earlier_map_does_not_count_in_this_one(server):

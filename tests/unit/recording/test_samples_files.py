@@ -10,7 +10,7 @@ from recon4.model.trajectory import Trajectory
 from recon4.recording.csv_samples import GNSS_HEADER, IMU_HEADER, read_gnss_csv, read_imu_csv
 from recon4.recording.poses import pose_format, read_kitti, read_tum, write_kitti, write_tum
 from recon4.recording.report import ImportReport
-from recon4.recording.samples import clean_gnss, clean_imu, join
+from recon4.recording.samples import clean_gnss, clean_imu, gather, join
 
 T0 = 1_700_000_000_123_456_789
 HEADER = ",".join(IMU_HEADER)
@@ -19,6 +19,25 @@ HEADER = ",".join(IMU_HEADER)
 def write(path, text):
     path.write_text(text, encoding="utf-8")
     return path
+
+
+# -- pieces
+
+
+@pytest.mark.parametrize("lengths", [[1] * 1000, [7, 0, 3, 1, 1, 1, 500, 2], [0, 0]])
+def test_gathered_pieces_are_all_there_in_order_and_few(lengths):
+    rows = np.random.default_rng(1).normal(size=(sum(lengths), 6))
+    t_ns = T0 + np.arange(len(rows))
+    parts, begin = [], 0
+    for length in lengths:
+        here = slice(begin, begin + length)
+        gather(parts, ImuSamples(t_ns[here], rows[here, :3], rows[here, 3:]))
+        begin += length
+    whole = join(parts)
+
+    assert whole.t_ns.tolist() == t_ns.tolist()
+    assert np.array_equal(np.hstack([whole.gyro_rad_s, whole.accel_m_s2]), rows)
+    assert len(parts) <= 1 + np.log2(len(rows) + 1)
 
 
 # -- CSV
