@@ -51,8 +51,10 @@ class Phone:
             TimeoutError: If it takes nothing for `STALLED_S`.
             WebSocketDisconnect: If it has gone.
         """
-        said = json.loads(await asyncio.wait_for(self._socket.receive_text(), STALLED_S))
-        have = said.get("have") if isinstance(said, dict) else None
+        greeting = await self._greeting()
+        if greeting is None:
+            return
+        have = greeting.get("have")
         self._leaving = asyncio.create_task(self._left())
         try:
             capture = self._captures.newest
@@ -67,6 +69,14 @@ class Phone:
                 capture = self._captures.newest
         finally:
             self._leaving.cancel()
+
+    async def _greeting(self) -> dict[str, Any] | None:
+        """What it begins with; None if it is no page of ours."""
+        try:
+            said = json.loads(await asyncio.wait_for(self._socket.receive_text(), STALLED_S))
+        except (KeyError, ValueError, RecursionError):  # bytes, no JSON, nested without end
+            return None
+        return said if isinstance(said, dict) else None
 
     async def _tell(self, capture: Capture, cursor: Cursor) -> None:
         """Tell of one capture until another one begins or the phone leaves."""

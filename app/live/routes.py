@@ -175,8 +175,8 @@ async def stream(socket: WebSocket) -> None:
     captures.listeners += 1
     try:
         await Phone(socket, captures).serve()
-    except (WebSocketDisconnect, TimeoutError, ValueError, KeyError, RuntimeError):
-        pass  # gone, stalled, or no phone of ours: one of ours comes back and says what it has
+    except (WebSocketDisconnect, TimeoutError, RuntimeError):
+        pass  # gone or stalled: it comes back and says what it has
     finally:
         captures.listeners -= 1
 

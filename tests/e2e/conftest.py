@@ -59,6 +59,12 @@ def look(request) -> tuple[str, str]:
     return screen, scheme
 
 
+def only(look: tuple[str, str], *wanted: str) -> None:
+    """Skip what looks the same on the other screens; ``only(look, "desktop light")``."""
+    if look not in [tuple(one.split()) for one in wanted]:
+        pytest.skip("once is enough")
+
+
 @pytest.fixture
 def context(browser, look) -> Iterator[BrowserContext]:
     screen, scheme = look

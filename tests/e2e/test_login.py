@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.e2e.conftest import EXPECTED_NOISE, SCREENS
+from tests.e2e.conftest import EXPECTED_NOISE, SCREENS, only
 from tests.project_builder import build_project
 from tests.service.running import server_thread
 from tests.service.secure import PASSWORD, Secure, secure_server
@@ -42,11 +42,6 @@ def page(browser, look) -> Iterator[Page]:
     context.close()
     noise = (*EXPECTED_NOISE, "status of 422")
     assert [text for text in complaints if not any(one in text for one in noise)] == []
-
-
-def once(look):
-    if look != ("desktop", "dark"):
-        pytest.skip("once is enough")
 
 
 def sign_in(page, server: Secure, name: str, path: str = "/"):
@@ -105,7 +100,7 @@ def test_signing_out_leads_to_the_login_and_nothing_is_left(server, page):
 
 
 def test_a_hostile_link_to_the_login_does_not_lead_away(server, page, look):
-    once(look)
+    only(look, "desktop dark")
     page.goto(f"{server.url}/login#next=//evil.example/x")
     page.get_by_label("Name").fill("vera")
     page.get_by_label("Password", exact=True).fill(PASSWORD)
@@ -115,7 +110,7 @@ def test_a_hostile_link_to_the_login_does_not_lead_away(server, page, look):
 
 
 def test_no_script_reads_the_session(server, page, look):
-    once(look)
+    only(look, "desktop dark")
     sign_in(page, server, "vera")
 
     assert page.evaluate("document.cookie") == ""
@@ -123,7 +118,7 @@ def test_no_script_reads_the_session(server, page, look):
 
 
 def test_the_viewer_works_behind_the_login(server, page, look):
-    once(look)
+    only(look, "desktop dark")
     sign_in(page, server, "vera", "/projects/office/")
 
     viewer = page.frame_locator("iframe")

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import expect
 
+from tests.e2e.conftest import only
 from tests.project_builder import build_project
 from tests.service.cuttable import cuttable
 from tests.service.running import SLOW, open_gate, recording_with_gate, server_thread
@@ -99,8 +100,7 @@ def test_real_projects_look_as_they_should(real, page, picture):
 
 
 def test_layers_and_colors_follow_the_panel(finished, page, look):
-    if look != ("desktop", "dark"):
-        pytest.skip("once is enough")
+    only(look, "desktop dark")
     page.goto(f"{finished.url}/projects/office/")
     viewer = page.frame_locator("iframe")
     legend = viewer.get_by_text("Rejected, verification median > limit (2)").first
@@ -114,8 +114,7 @@ def test_layers_and_colors_follow_the_panel(finished, page, look):
 
 
 def test_a_download_and_the_report_open(finished, page, look):
-    if look != ("desktop", "light"):
-        pytest.skip("once is enough")
+    only(look, "desktop light")
     page.goto(f"{finished.url}/projects/office/")
 
     with page.expect_download() as download:
@@ -163,8 +162,7 @@ def test_a_job_is_started_watched_cancelled_and_resumed(server, page, tmp_path, 
 
 
 def test_a_page_that_was_cut_off_learns_how_its_job_ended(server, context, tmp_path, look):
-    if look != ("desktop", "light"):
-        pytest.skip("once is enough")
+    only(look, "desktop light")
     page = context.new_page()  # its browser complains of the cut
     recording = recording_with_gate(tmp_path / "walk")
     job = server.start("office", recording)
@@ -196,8 +194,7 @@ def test_a_refusal_is_shown_in_words(server, page, look):
 
 
 def test_the_keyboard_is_enough_to_start_a_job(server, page, tmp_path, look):
-    if look != ("desktop", "light"):
-        pytest.skip("once is enough")
+    only(look, "desktop light")
     (tmp_path / "empty.pcap").write_bytes(b"")
     build_project(server.root / "empty", with_map=False)
     page.goto(server.url)
@@ -215,8 +212,7 @@ def test_the_keyboard_is_enough_to_start_a_job(server, page, tmp_path, look):
 
 
 def test_a_hostile_link_to_the_viewer_stays_with_our_server(finished, page, look):
-    if look != ("desktop", "light"):
-        pytest.skip("once is enough")
+    only(look, "desktop light")
     page.goto(f"{finished.url}/projects/office/viewer/?websocket=ws://127.0.0.1:9")
 
     expect(page.get_by_text("Connected", exact=True)).to_be_visible()

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import expect
 
+from tests.e2e.conftest import only
 from tests.e2e.test_pages import fits
 from tests.service.running import SLOW, open_gate, recording_with_gate, server_thread
 
@@ -23,8 +24,7 @@ def server(tmp_path):
 
 @pytest.fixture
 def once(look):
-    if look != ("desktop", "light"):
-        pytest.skip("once is enough")
+    only(look, "desktop light")
 
 
 @pytest.fixture

@@ -8,6 +8,7 @@ from playwright.sync_api import expect
 
 from recon4.review.decisions import Decision, Kind
 from recon4.review.journal import append, broken, read_rows
+from tests.e2e.conftest import only
 from tests.review_project import make
 from tests.service.running import server_thread
 
@@ -39,11 +40,6 @@ def opened(running, root, page):
     page.goto(f"{running.url}/projects/{root.name}/review/")
     expect(page.locator(".queue li").first).to_be_visible()
     return page
-
-
-def only(look, *screens):
-    if look not in [tuple(screen.split()) for screen in screens]:
-        pytest.skip("once is enough")
 
 
 def settled(page):

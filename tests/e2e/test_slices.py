@@ -5,8 +5,8 @@ import re
 import pytest
 from playwright.sync_api import expect
 
+from tests.e2e.conftest import only
 from tests.e2e.test_pages import fits
-from tests.e2e.test_review import only
 from tests.project_builder import build_project
 from tests.service.running import server_thread
 

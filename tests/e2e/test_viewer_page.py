@@ -13,6 +13,7 @@ from app.viewer.cloud import Cloud
 from app.viewer.scene import Content, bounds
 from app.viewer.show import start_m
 from recon4.model.pose_graph import Reason
+from tests.e2e.conftest import only
 from tests.project_builder import add_multiframes, build_project, loop_walk, verified_graph
 from tests.service.running import server_thread
 
@@ -85,8 +86,7 @@ def test_a_click_or_tap_on_a_rejected_edge_says_why_and_leads_to_its_review(
 
 
 def test_keys_toggle_the_intensity_and_measure_the_room(finished, viewer, look, picture):
-    if look != ("desktop", "dark"):
-        pytest.skip("once is enough")
+    only(look, "desktop dark")
     viewer.keyboard.press("n")
     expect(viewer.get_by_text("Points by raw intensity")).to_be_visible()
 
@@ -104,8 +104,7 @@ def test_keys_toggle_the_intensity_and_measure_the_room(finished, viewer, look, 
 
 
 def test_the_scrubber_shows_single_multiframes(viewer, look, picture):
-    if look != ("desktop", "light"):
-        pytest.skip("once is enough")
+    only(look, "desktop light")
     viewer.get_by_role("combobox", name="Show").click()
     viewer.get_by_role("option", name="map and multiframe").click()
     expect(viewer.get_by_text("Multiframe 0 of 599, at 0.0 s")).to_be_visible()
@@ -118,8 +117,7 @@ def test_the_scrubber_shows_single_multiframes(viewer, look, picture):
 
 
 def test_a_viewer_that_is_killed_comes_back_with_camera_and_colors(finished, viewer, look):
-    if look != ("desktop", "dark"):
-        pytest.skip("once is enough")
+    only(look, "desktop dark")
     viewer.keyboard.press("n")
     expect(viewer.get_by_text("Points by raw intensity")).to_be_visible()
     viewer.keyboard.press("7")

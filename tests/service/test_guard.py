@@ -158,6 +158,28 @@ def test_only_named_folders_can_be_looked_into(server):
     assert server.get("/api/recordings", params={"folder": str(server.root)}).status_code == 200
 
 
+@pytest.mark.parametrize(
+    ("path", "params"),
+    [
+        ("/api/audit", {"before": 10**30}),
+        ("/api/audit", {"most": 10**9}),
+        ("/api/jobs/0123456789abcdef/log/since", {"offset": 1 << 49}),
+    ],
+)
+def test_numbers_beyond_all_sense_are_refused_in_words(server, path, params):
+    answer = server.get(path, params=params)
+
+    assert answer.status_code == 422 and answer.json()["error"] == "Invalid"
+
+
+def test_points_beyond_all_sense_are_refused_in_words(server):
+    far = [[1e300, 0.0, 0.0], [0.0, 1e300, 0.0], [0.0, 0.0, -1e300]]
+
+    answer = server.post("/api/projects/office/review/fit", json={"p_i": far, "p_j": far})
+
+    assert answer.status_code == 422 and "p_i" in answer.json()["detail"]
+
+
 @pytest.mark.parametrize("host", ["0.0.0.0", "192.168.1.5", "::", "example.org", ""])
 def test_an_open_network_is_refused_without_login(tmp_path, host):
     with pytest.raises(ConfigError, match="only loopback"):
