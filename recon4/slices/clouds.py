@@ -15,6 +15,7 @@ import numpy as np
 from recon4.errors import CorruptFile, RecordingError, UnknownFormat
 from recon4.geometry.se3 import Array
 from recon4.recording.cloud_files import read_cloud
+from recon4.slices.e57_xml import check_e57_xml
 
 CHUNK = 1_000_000
 MOST_POINTS = 400_000_000
@@ -114,6 +115,7 @@ def _e57(path: Path) -> Iterator[Array]:
     import pye57
     from pye57.libe57 import E57Exception
 
+    check_e57_xml(path)
     try:
         file = pye57.E57(str(path))
         for index in range(file.scan_count):

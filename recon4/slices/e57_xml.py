@@ -1,0 +1,147 @@
+"""The XML section of an E57 file, checked before a library sees it.
+
+libE57 gives it to Xerces, which fetches document types, entities and schemas from any address a
+file names, and recurses over nested elements. An E57 file needs none of that (ASTM E2807).
+
+The file consists of pages of 1024 bytes: 1020 of data and their CRC-32C, big-endian. Offsets in
+the header are physical, lengths logical, that is, without the checksums.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+from pathlib import Path
+from xml.parsers import expat
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import CorruptFile
+
+_HEADER = struct.Struct("<8sIIQQQQ")
+_PAGE, _DATA = 1024, 1020
+MOST_XML_BYTES = 16 << 20
+MOST_DEPTH = 64
+MOST_ELEMENTS = 1_000_000
+MOST_ATTRIBUTES = 64
+"""Of one element."""
+_SCHEMA_NAMESPACE = "http://www.w3.org/2001/XMLSchema-instance"
+_CRC32C = 0x82F63B78
+"""The polynomial of Castagnoli, reflected."""
+
+
+def check_e57_xml(path: Path) -> None:
+    """Check that the XML section of an E57 file is small, plain XML that refers to nothing.
+
+    Raises:
+        CorruptFile: If it is damaged, too large or too deep, or refers to something outside.
+    """
+    try:
+        _check(_xml_section(path))
+    except _Refused as error:
+        raise CorruptFile(f"{path.name}: XML section: {error}") from None
+    except expat.ExpatError as error:
+        raise CorruptFile(f"{path.name}: the XML section is not sound XML: {error}") from None
+
+
+class _Refused(Exception):
+    """What is wrong with the XML section."""
+
+
+def _xml_section(path: Path) -> bytes:
+    """The section without its checksums, which are verified.
+
+    Raises:
+        _Refused: If the header or a checksum is wrong.
+    """
+    size = path.stat().st_size
+    with path.open("rb") as file:
+        head = file.read(_HEADER.size)
+        if len(head) < _HEADER.size:
+            raise _Refused(f"expected a header of {_HEADER.size} bytes, got {len(head)}")
+        _, _, _, _, offset, length, page_size = _HEADER.unpack(head)
+        if page_size != _PAGE:
+            raise _Refused(f"expected pages of {_PAGE} bytes, got {page_size}")
+        if length > MOST_XML_BYTES:
+            raise _Refused(f"{length} bytes, at most {MOST_XML_BYTES}")
+        first, within = divmod(offset, _PAGE)
+        if within > _DATA:
+            raise _Refused(f"it begins in a checksum, at byte {offset}")
+        count = -(-(within + length) // _DATA)
+        if (first + count) * _PAGE > size:
+            raise _Refused(f"it ends at byte {(first + count) * _PAGE} of {size}")
+        file.seek(first * _PAGE)
+        pages = np.frombuffer(file.read(count * _PAGE), np.uint8).reshape(-1, _PAGE)
+    data = np.ascontiguousarray(pages[:, :_DATA])
+    expected = np.ascontiguousarray(pages[:, _DATA:]).view(">u4").ravel()
+    wrong = np.flatnonzero(_checksums(data) != expected)
+    if len(wrong):
+        raise _Refused(f"wrong checksum of page {first + wrong[0]}, and {len(wrong) - 1} others")
+    return data.tobytes()[within : within + length]
+
+
+def _checksums(pages: NDArray[np.uint8]) -> NDArray[np.uint32]:
+    """CRC-32C of each row, all rows at once."""
+    table = np.arange(256, dtype=np.uint32)
+    for _ in range(8):
+        table = (table >> 1) ^ np.where(table & 1, np.uint32(_CRC32C), np.uint32(0))
+    value = np.full(len(pages), 0xFFFFFFFF, np.uint32)
+    for column in pages.T:
+        value = table[(value ^ column) & 0xFF] ^ (value >> np.uint32(8))
+    return value ^ np.uint32(0xFFFFFFFF)
+
+
+@dataclass
+class _Counts:
+    depth: int = 0
+    elements: int = 0
+
+    def begin(self, name: str, attributes: dict[str, str]) -> None:
+        self.depth += 1
+        self.elements += 1
+        if self.depth > MOST_DEPTH:
+            raise _Refused(f"elements nested deeper than {MOST_DEPTH}")
+        if self.elements > MOST_ELEMENTS:
+            raise _Refused(f"more than {MOST_ELEMENTS} elements")
+        if len(attributes) > MOST_ATTRIBUTES:
+            raise _Refused(f"<{name[:80]}> has more than {MOST_ATTRIBUTES} attributes")
+        for attribute in attributes:
+            if attribute.startswith(_SCHEMA_NAMESPACE):
+                raise _Refused("it names a schema, which a reader would fetch")
+
+    def end(self, name: str) -> None:
+        self.depth -= 1
+
+
+def _check(xml: bytes) -> None:
+    """Parse without building anything.
+
+    Raises:
+        _Refused: If it is not plain.
+        expat.ExpatError: If it is not sound.
+    """
+    try:
+        xml.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise _Refused(f"expected UTF-8: {error.reason} at byte {error.start}") from None
+    counts = _Counts()
+    parser = expat.ParserCreate(namespace_separator=" ")
+    parser.XmlDeclHandler = _only_utf8
+    parser.StartDoctypeDeclHandler = _refuse_doctype
+    parser.ProcessingInstructionHandler = _refuse_instruction
+    parser.StartElementHandler, parser.EndElementHandler = counts.begin, counts.end
+    parser.Parse(xml, True)
+
+
+def _only_utf8(version: str, encoding: str | None, standalone: int) -> None:
+    if encoding is not None and encoding.lower() not in ("utf-8", "us-ascii"):
+        raise _Refused(f"expected the encoding UTF-8, got {encoding[:40]!r}")
+
+
+def _refuse_doctype(name: str, system: str | None, public: str | None, internal: int) -> None:
+    raise _Refused("it has a document type (DOCTYPE), which a reader would fetch")
+
+
+def _refuse_instruction(target: str, data: str) -> None:
+    raise _Refused(f"it has a processing instruction ({target[:40]!r})")
