@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from recon4.errors import ConfigError
-from recon4.sandbox import allowed_environment
+from recon4.sandbox import ONE_THREAD, allowed_environment
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -108,10 +108,6 @@ def names_from_environment() -> tuple[str, ...]:
     """Host names in ``RECON4_NAMES``, with commas between."""
     named = os.environ.get("RECON4_NAMES", "")
     return tuple(part.strip() for part in named.split(",") if part.strip())
-
-
-ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-"""One thread a library, so that two processes do not fight."""
 
 
 def worker_environment() -> dict[str, str]:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import recon4
 from recon4.errors import ConfigError
+from recon4.sandbox import Barrier, available_barriers
 
 _PACKAGES = (
     ("numpy", "numbers"),
@@ -40,7 +41,7 @@ class Check:
 
 
 def examine(folder: Path) -> list[Check]:
-    """Look at versions, cores, memory, disk and threads.
+    """Look at versions, cores, memory, disk, threads and what confines processes.
 
     Args:
         folder: Where projects would be kept; its disk is looked at.
@@ -61,6 +62,7 @@ def examine(folder: Path) -> list[Check]:
         ),
         _kernel_cache(),
     ]
+    checks += [_barrier(barrier) for barrier in available_barriers()]
     return checks + [_package(name, purpose) for name, purpose in _PACKAGES]
 
 
@@ -77,6 +79,12 @@ def _package(name: str, purpose: str) -> Check:
         except metadata.PackageNotFoundError:
             continue
     return Check(name, "missing", ok=False, advice=f"needed for {purpose}: pip install {name}")
+
+
+def _barrier(barrier: Barrier) -> Check:
+    found = barrier.detail if barrier.holds else "missing"
+    advice = "" if barrier.holds else barrier.detail
+    return Check(f"sandbox: {barrier.name}", found, barrier.holds, advice)
 
 
 def _kernel_cache() -> Check:

@@ -7,9 +7,11 @@ import os
 import shutil
 from pathlib import Path
 
+from app.jobs.compiling import compile_kernels_once
 from app.jobs.folder import JobFolder
 from recon4.sandbox import Confinement, Policy, confine
-from recon4.sandbox.kernel_cache import use_private_cache
+from recon4.sandbox.limits import physical_memory_bytes
+from recon4.sandbox.private_cache import use_private_cache
 
 SHARE_OF_MEMORY = 0.7
 MOST_FILES = 4096
@@ -22,8 +24,7 @@ NICENESS = 10
 
 def allowed_memory(setting_bytes: int) -> int:
     """Memory a worker may take [bytes]: 70 % of this computer's, or less if the setting says so."""
-    physical = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    most = int(SHARE_OF_MEMORY * physical)
+    most = int(SHARE_OF_MEMORY * physical_memory_bytes())
     return min(most, setting_bytes) if setting_bytes > 0 else most
 
 
@@ -56,5 +57,6 @@ def prepare_worker(folder: JobFolder, policy: Policy) -> Confinement:
     faulthandler.enable()  # a crash in native code says where in the log
     project, _ = folder.request()
     project.mkdir(parents=True, exist_ok=True)  # the kernel allows only paths that exist
-    kernels = use_private_cache(folder.temporary / "kernels")
-    return confine(policy.adding(read=kernels))
+    compile_kernels_once(folder.temporary / "compiling", folder.path / "heartbeat")
+    cached = use_private_cache(folder.temporary / "caches")
+    return confine(policy.adding(read=cached))

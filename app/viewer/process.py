@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import logging
+import shutil
 import sys
 import threading
 from pathlib import Path
@@ -17,7 +18,11 @@ from app.viewer.palette import table
 from app.viewer.seat import Seat
 from app.viewer.show import Viewer
 from app.viewer.source import ProjectSource
+from recon4.sandbox import Network, Policy, confine
+from recon4.sandbox.limits import physical_memory_bytes
+from recon4.sandbox.private_cache import use_private_cache
 
+SHARE_OF_MEMORY = 0.7
 LOOK_EVERY_S = 0.5
 """A running job's new artifacts and findings are looked for this often [s]."""
 
@@ -70,6 +75,9 @@ def main(project: Path, idle_s: float, *, points: int, jobs: Path) -> None:
     """
     answer, sys.stdout = sys.stdout, sys.stderr  # viser greets people on it
     logging.basicConfig(level=logging.WARNING, format="%(asctime)s %(name)s %(message)s")
+    scratch = jobs.parent / "viewers" / f"{project.name}.tmp"
+    shutil.rmtree(scratch, ignore_errors=True)  # of a viewer that was killed
+    confine(viewer_policy(project, jobs, scratch))
     over = threading.Event()
     threading.Thread(target=_wait_for_end_of_input, args=(over,), daemon=True).start()
     threading.Thread(target=table, args=("viridis",), daemon=True).start()  # slow the first time
@@ -82,6 +90,17 @@ def main(project: Path, idle_s: float, *, points: int, jobs: Path) -> None:
         if source.changed():
             seats.refresh()
     viewer.stop()
+    shutil.rmtree(scratch, ignore_errors=True)
+
+
+def viewer_policy(project: Path, jobs: Path, scratch: Path) -> Policy:
+    """Read the project and how far its jobs are, listen, and connect to nowhere."""
+    return Policy(
+        read=(project, jobs, *use_private_cache(scratch)),
+        temporary=scratch,
+        network=Network.LISTEN_TCP,
+        memory_bytes=int(SHARE_OF_MEMORY * physical_memory_bytes()),
+    )
 
 
 def _wait_for_end_of_input(over: threading.Event) -> None:

@@ -45,8 +45,11 @@ class LineServer:
         with suppress(FileNotFoundError):
             path.unlink()  # of a process that was killed
         self._path = path
-        self._server = await asyncio.start_unix_server(self._serve, path, limit=_LONGEST_LINE)
-        os.chmod(path, 0o600)
+        before = os.umask(0o177)  # only this user may connect, from the first moment
+        try:
+            self._server = await asyncio.start_unix_server(self._serve, path, limit=_LONGEST_LINE)
+        finally:
+            os.umask(before)
 
     def say(self, told: dict[str, Any]) -> None:
         """Tell everybody."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
 import sys
 from collections.abc import AsyncIterator, Mapping
 from contextlib import asynccontextmanager, suppress
@@ -12,6 +13,7 @@ from typing import Any
 
 from recon4.errors import ConfigError
 from recon4.live.session import Session
+from recon4.sandbox import ONE_THREAD, allowed_environment
 
 STARTS_WITHIN_S = 60.0
 
@@ -70,7 +72,7 @@ async def started(
     Args:
         session: Of a project that was begun.
         name: Of the module.
-        env: Environment of the process; None = ours.
+        env: Environment of the process; None = what it may have of ours.
 
     Raises:
         ConfigError: If it does not get ready, in its own last words.
@@ -83,7 +85,7 @@ async def started(
             stdout=asyncio.subprocess.PIPE,
             stderr=log_file,
             start_new_session=True,  # Ctrl-C is not for it
-            env=env,
+            env={**allowed_environment(os.environ), **ONE_THREAD} if env is None else env,
         )
     assert process.stdout is not None
     with suppress(TimeoutError):

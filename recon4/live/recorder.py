@@ -29,6 +29,7 @@ from typing import Any
 
 from recon4.errors import Recon4Error, StoreError
 from recon4.live.capture_file import CaptureFile, Datagram
+from recon4.live.confinement import confine_recorder
 from recon4.live.disk import DiskWatch
 from recon4.live.line_server import LineServer
 from recon4.live.ports import Port, open_ports
@@ -36,6 +37,7 @@ from recon4.live.serial_line import SerialLine
 from recon4.live.session import Session, load_session, stretched
 from recon4.model.rig import Rig, load_rig
 from recon4.recording.velodyne_models import DATA_SIZE
+from recon4.sandbox import refuse_new_sockets
 from recon4.store.atomic import write_json
 
 STATUS_EVERY_S = 0.5
@@ -237,14 +239,17 @@ def main(project: Path) -> int:
     """Record a session that was prepared; says ``ready`` on its output once it listens."""
 
     def say_ready() -> None:
+        refuse_new_sockets()  # before a stranger's datagram is looked at
         sys.stdout.write("ready\n")
         sys.stdout.flush()
 
     async def run() -> None:
-        await Recorder(session, load_rig(session.rig)).run(say_ready)
+        await Recorder(session, rig).run(say_ready)
 
     session = load_session(project)
     try:
+        rig = load_rig(session.rig)
+        confine_recorder(session, rig)
         asyncio.run(run())
     except (Recon4Error, OSError) as error:
         sys.stderr.write(f"{error}\n")

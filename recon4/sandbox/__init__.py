@@ -8,16 +8,19 @@ The parent starts the child with ``allowed_environment``. `Confinement` says whi
 computer provides; ``recon4 doctor`` prints them.
 """
 
+from recon4.sandbox.available import available_barriers
 from recon4.sandbox.confine import confine, refuse_new_sockets
-from recon4.sandbox.environment import allowed_environment
+from recon4.sandbox.environment import ONE_THREAD, allowed_environment
 from recon4.sandbox.policy import Barrier, Confinement, Network, Policy
 
 __all__ = [
+    "ONE_THREAD",
     "Barrier",
     "Confinement",
     "Network",
     "Policy",
     "allowed_environment",
+    "available_barriers",
     "confine",
     "refuse_new_sockets",
 ]

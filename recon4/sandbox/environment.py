@@ -16,6 +16,10 @@ ALLOWED = frozenset(
 """Variables a child needs to find its programs, libraries, language and number of threads."""
 
 
+ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+"""One thread a library, so that two processes do not fight, and `confine` comes before threads."""
+
+
 def allowed_environment(variables: Mapping[str, str]) -> dict[str, str]:
     """The variables a child may have; the others may hold passwords, keys and addresses."""
     return {

@@ -30,6 +30,11 @@ def set_limits(policy: Policy) -> None:
         _limit(resource.RLIMIT_NPROC, _threads_of_this_user() + policy.threads)
 
 
+def physical_memory_bytes() -> int:
+    """Memory of this computer [bytes]."""
+    return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+
+
 def _limit(what: int, most: int) -> None:
     _, hard = resource.getrlimit(what)
     if hard != resource.RLIM_INFINITY:

@@ -85,7 +85,7 @@ def _checksums(pages: NDArray[np.uint8]) -> NDArray[np.uint32]:
     """CRC-32C of each row, all rows at once."""
     table = np.arange(256, dtype=np.uint32)
     for _ in range(8):
-        table = (table >> 1) ^ np.where(table & 1, np.uint32(_CRC32C), np.uint32(0))
+        table = (table >> np.uint32(1)) ^ (table & np.uint32(1)) * np.uint32(_CRC32C)
     value = np.full(len(pages), 0xFFFFFFFF, np.uint32)
     for column in pages.T:
         value = table[(value ^ column) & 0xFF] ^ (value >> np.uint32(8))

@@ -52,31 +52,37 @@ class FinishedStage:
 class Ledger:
     """The ledger of a project. One process writes; any number may read meanwhile (WAL)."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, *, read_only: bool = False) -> None:
         """Open, or create.
+
+        Args:
+            path: The file.
+            read_only: Write nothing, not even SQLite's own files beside it, so that a process
+                that may not write the project can read; a missing file reads as an empty one.
 
         Raises:
             StoreError: If the file is damaged, of another version, or cannot be opened.
         """
         self.path = path
         with self._errors():
-            self._db = sqlite3.connect(path, isolation_level=None, timeout=10.0)
+            self._db = _read_only(path) if read_only else _connect(str(path))
         try:
-            self._prepare()
+            self._prepare(read_only=read_only and path.exists())
         except BaseException:
             self._db.close()
             raise
 
-    def _prepare(self) -> None:
+    def _prepare(self, *, read_only: bool) -> None:
         with self._errors():
-            self._db.execute("PRAGMA journal_mode = WAL")
-            self._db.execute("PRAGMA synchronous = FULL")
+            if not read_only:
+                self._db.execute("PRAGMA journal_mode = WAL")
+                self._db.execute("PRAGMA synchronous = FULL")
             self._db.execute("PRAGMA foreign_keys = ON")
             (found,) = self._db.execute("PRAGMA quick_check").fetchone()
             if found != "ok":
                 raise sqlite3.DatabaseError(found)
             (version,) = self._db.execute("PRAGMA user_version").fetchone()
-            if version == 0:
+            if version == 0 and not read_only:
                 self._db.executescript(
                     f"BEGIN; {_SCHEMA} PRAGMA user_version = {SCHEMA_VERSION}; COMMIT;"
                 )
@@ -176,3 +182,17 @@ class Ledger:
 
 
 _SELECT = f"SELECT {', '.join(f.name for f in fields(FinishedStage))} FROM stages"
+
+
+def _connect(name: str) -> sqlite3.Connection:
+    uri = name.startswith("file:")
+    return sqlite3.connect(name, isolation_level=None, timeout=10.0, uri=uri)
+
+
+def _read_only(path: Path) -> sqlite3.Connection:
+    """A connection that makes no file; without a writer's log the file is at rest (immutable)."""
+    if not path.exists():
+        return _connect(":memory:")
+    written = path.with_name(f"{path.name}-wal").exists()
+    options = "mode=ro" if written else "mode=ro&immutable=1"
+    return _connect(f"{path.resolve().as_uri()}?{options}")

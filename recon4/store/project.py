@@ -119,7 +119,7 @@ def read_artifacts(root: Path) -> dict[str, Path]:
 
 def _reading(root: Path) -> Ledger:
     read_description(root)
-    return Ledger(root / "ledger.sqlite")
+    return Ledger(root / "ledger.sqlite", read_only=True)
 
 
 def _make_folder(root: Path) -> None:

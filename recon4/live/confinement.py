@@ -1,0 +1,52 @@
+"""What recorder and mapper may do: they take bytes from strangers on the network."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from recon4.live.session import Session
+from recon4.model.rig import Rig
+from recon4.sandbox import Confinement, Network, Policy, confine
+from recon4.sandbox.limits import physical_memory_bytes
+from recon4.sandbox.private_cache import use_private_cache
+
+_SHARE_OF_MEMORY = 0.7
+_OPEN_FILES = 1024
+
+
+def confine_recorder(session: Session, rig: Rig) -> Confinement:
+    """Let this process write the recording and receive datagrams, and nothing else.
+
+    With a serial GNSS receiver it also opens devices, because a receiver that is plugged in again
+    is another file in ``/dev``.
+    """
+    devices = (Path("/dev"),) if rig.gnss_serial else ()
+    policy = Policy(
+        write=(session.capture.parent, session.folder, _sockets(session), *devices),
+        read=(session.project,),
+        network=Network.RECEIVE,
+        memory_bytes=_memory_bytes(),
+        open_files=_OPEN_FILES,
+    )
+    return confine(policy)
+
+
+def confine_mapper(session: Session) -> Confinement:
+    """Let this process write its project and talk over Unix sockets, and nothing else."""
+    shared = use_private_cache(session.folder / "caches")
+    policy = Policy(
+        write=(session.project, _sockets(session)),
+        read=shared,
+        network=Network.UNIX,
+        memory_bytes=_memory_bytes(),
+        open_files=_OPEN_FILES,
+    )
+    return confine(policy)
+
+
+def _sockets(session: Session) -> Path:
+    return session.socket("mapper").parent
+
+
+def _memory_bytes() -> int:
+    return int(_SHARE_OF_MEMORY * physical_memory_bytes())

@@ -1,0 +1,86 @@
+"""Caches of libraries for a confined process: it reads those that are there and writes its own.
+
+Numba's cache is code that the next process loads (machine code and pickles), so a confined process
+must not write where others read. It has a private folder that begins with symbolic links to the
+compiled kernels and to matplotlib's list of fonts; what it makes itself lands beside them and goes
+with the folder.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from pathlib import Path
+
+import recon4
+
+KERNELS = Path(recon4.__file__).parent / "kernels"
+
+
+def use_private_cache(folder: Path) -> tuple[Path, ...]:
+    """Make Numba and matplotlib use private caches; call before they are imported.
+
+    Args:
+        folder: The confined process may write it; made when missing.
+
+    Returns:
+        Files and folders with what is cached already: the process must be able to read them.
+    """
+    kernels, fonts = folder / "numba", folder / "matplotlib"
+    shared = tuple(shared_caches())
+    for cache in shared:
+        _link(_files(cache, ".nbi", ".nbc"), kernels / _numba_name(KERNELS))
+    lists = tuple(_font_lists())
+    _link(lists, fonts)
+    os.environ["MPLCONFIGDIR"], os.environ["NUMBA_CACHE_DIR"] = str(fonts), str(kernels)
+    if (config := sys.modules.get("numba.core.config")) is not None:
+        config.__dict__["CACHE_DIR"] = str(kernels)
+    return (*shared, *lists)
+
+
+def _link(paths: Iterable[Path], folder: Path) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    for path in paths:
+        with suppress(FileExistsError):  # the one in front of it is the one that is used
+            (folder / path.name).symlink_to(path)
+
+
+def _files(folder: Path, *suffixes: str) -> list[Path]:
+    """Files of some suffixes in a folder; none when it is missing or another user's."""
+    with suppress(OSError):
+        return [folder / name for name in os.listdir(folder) if name.endswith(suffixes)]
+    return []
+
+
+def _font_lists() -> Iterator[Path]:
+    """Matplotlib's lists of fonts, which take seconds to make."""
+    if chosen := os.environ.get("MPLCONFIGDIR"):
+        yield from _files(Path(chosen).resolve(), ".json")
+    yield from _files(_user_caches() / "matplotlib", ".json")
+
+
+def is_cold() -> bool:
+    """Whether no kernel was ever compiled by an unconfined process."""
+    return not any(_files(cache, ".nbi") for cache in shared_caches())
+
+
+def shared_caches() -> Iterator[Path]:
+    """Folders in which unconfined processes keep compiled kernels, first the one Numba prefers."""
+    if chosen := os.environ.get("NUMBA_CACHE_DIR"):
+        yield Path(chosen).resolve() / _numba_name(KERNELS)
+    yield KERNELS / "__pycache__"
+    yield _user_caches() / "numba" / _numba_name(KERNELS)
+
+
+def _numba_name(folder: Path) -> str:
+    """How Numba names the cache of a folder of sources."""
+    return f"{folder.name}_{hashlib.sha1(str(folder).encode()).hexdigest()}"
+
+
+def _user_caches() -> Path:
+    if sys.platform == "darwin":
+        return Path("~/Library/Caches").expanduser()
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser())
