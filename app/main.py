@@ -55,7 +55,8 @@ from app.slices.store import Slices
 from app.uploads import routes as upload_routes
 from app.uploads.store import UploadStore
 from app.viewer import page, proxy
-from app.viewer.pool import Sockets, ViewerPool
+from app.viewer.pool import ViewerPool
+from app.viewer.sockets import Sockets
 from recon4 import __version__
 
 WEB = Path(__file__).parents[1] / "web"

@@ -18,8 +18,8 @@ from app.jobs.events import EventWriter
 from app.viewer import proxy
 from app.viewer.legend_html import count
 from app.viewer.page import SHIMS
-from app.viewer.pool import Sockets
 from app.viewer.proxy import Rate, allowed, passes
+from app.viewer.sockets import Sockets
 from recon4.model.pose_graph import Reason
 from tests.benchmarks.viewer_figures import PEOPLE, own_server
 from tests.project_builder import add_multiframes, build_project, loop_walk, verified_graph
