@@ -16,6 +16,7 @@ from typing import Literal, TypeVar
 
 from app.errors import DeskFailed
 from app.settings import ONE_THREAD
+from recon4.processes import die_with_parent
 
 T = TypeVar("T")
 Kind = Literal["look", "review", "pairs", "slices", "surveys"]
@@ -84,6 +85,7 @@ class Desk:
 
 def _prepare() -> None:
     """In the child, before numpy is imported."""
+    die_with_parent()
     os.environ.update(ONE_THREAD)
     os.setsid()  # Ctrl-C in the terminal is the server's to handle
     resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY_BYTES, MOST_MEMORY_BYTES))
