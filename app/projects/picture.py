@@ -11,6 +11,7 @@ from pathlib import Path
 
 from app.errors import NotFound
 from app.settings import worker_environment
+from recon4.processes import die_with_parent
 from recon4.store.atomic import atomic_file
 
 POINTS = 3_000_000
@@ -36,7 +37,7 @@ class Pictures:
                 self._kept.mkdir(parents=True, exist_ok=True)
                 process = await asyncio.create_subprocess_exec(
                     *(sys.executable, "-m", "app.projects.picture", str(artifact), str(path)),
-                    stdin=asyncio.subprocess.DEVNULL,
+                    stdin=asyncio.subprocess.PIPE,  # its lifeline
                     stdout=asyncio.subprocess.DEVNULL,
                     stderr=asyncio.subprocess.DEVNULL,
                     env=worker_environment(),
@@ -63,4 +64,5 @@ def draw(artifact: Path, out: Path) -> None:
 
 
 if __name__ == "__main__":
+    die_with_parent(sys.stdin.fileno())
     draw(Path(sys.argv[1]), Path(sys.argv[2]))
