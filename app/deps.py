@@ -9,7 +9,7 @@ from fastapi import Depends
 from starlette.requests import HTTPConnection
 
 from app.access.door import Access
-from app.desk import Desk
+from app.compute_pool import ComputePool
 from app.jobs.store import JobStore
 from app.jobs.supervisor import Supervisor
 from app.live.store import Captures
@@ -36,7 +36,7 @@ class Parts:
     jobs: JobStore
     supervisor: Supervisor
     viewers: ViewerPool
-    desk: Desk
+    compute_pool: ComputePool
     captures: Captures
     reviews: Reviews
     slices: Slices

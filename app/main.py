@@ -22,9 +22,9 @@ from app.access.guard import Guard
 from app.access.people import May, anybody, needs
 from app.access.routes_check import check_declared
 from app.access.welcome import welcome
+from app.compute_pool import ComputePool
 from app.deps import Parts, Server
 from app.description import description
-from app.desk import Desk
 from app.jobs import choices
 from app.jobs import routes as job_routes
 from app.jobs.store import JobStore
@@ -137,7 +137,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
     access = open_access(settings.state, login=settings.lan)
     jobs = JobStore(settings.state / "jobs.sqlite")
     supervisor = Supervisor(jobs, settings)
-    desk = Desk()
+    pool = ComputePool(settings.state / "compute")
     captures = Captures(settings.root)
     projects = ProjectStore(settings.root, settings.import_roots)
     viewers = ViewerPool(
@@ -150,25 +150,26 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
         ),
     )
     uploads = UploadStore(settings)
+    slices = Slices(pool, projects, settings)
     trash = Trash(settings.root, settings.state / "trash", kept_s=settings.trash_s)
     app.state.parts = Parts(
         settings=settings,
         access=access,
         projects=projects,
-        pictures=Pictures(settings.state / "pictures"),
+        pictures=Pictures(pool, settings.state / "pictures"),
         trash=trash,
         uploads=uploads,
         jobs=jobs,
         supervisor=supervisor,
         viewers=viewers,
-        desk=desk,
+        compute_pool=pool,
         captures=captures,
-        reviews=Reviews(desk),
-        slices=Slices(desk, projects, settings.state / "slices"),
+        reviews=Reviews(pool),
+        slices=slices,
     )
     watching = [
         asyncio.create_task(supervisor.run()),
-        asyncio.create_task(look_after(jobs, uploads, trash)),
+        asyncio.create_task(look_after(jobs, uploads, trash, slices)),
         asyncio.create_task(captures.adopt()),
     ]
     try:
@@ -178,7 +179,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
             task.cancel()
         await asyncio.gather(*watching, return_exceptions=True)
         await captures.leave()
-        desk.close()
+        await pool.close()
         supervisor.close()
         await viewers.close()
         jobs.close()

@@ -6,6 +6,7 @@ a result is JSON (or bytes) of the type that the function's annotation declares,
 
 from __future__ import annotations
 
+import json
 import struct
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -55,7 +56,9 @@ def encode_result(function: Callable[..., Any], result: object) -> bytes:
     """A result as the bytes of its declared type (child's side)."""
     if isinstance(result, bytes):
         return result
-    return _adapter(function).dump_json(result)
+    # `dump_json` writes null for NaN, which no float field takes back.
+    plain = _adapter(function).dump_python(result, mode="json")
+    return json.dumps(plain, separators=(",", ":")).encode()
 
 
 def decode_result(function: Callable[..., Any], data: bytes) -> Any:

@@ -15,7 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.access.audit import audit
 from app.access.people import May, needs
-from app.access.rates import at_most
+from app.access.rate_limit import at_most
 from app.deps import Parts, Server
 from app.errors import NoRoom, NotFound, Problem, TooMany
 from app.jobs.model import Inputs, Job, JobState
