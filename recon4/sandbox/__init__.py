@@ -1,0 +1,23 @@
+"""A process that reads a user's file: no network, no secrets, no files but its own.
+
+    policy = Policy(read=(recording,), write=(project,), temporary=folder / "tmp",
+                    memory_bytes=4 << 30, cpu_s=3600)
+    confinement = confine(policy)    # in the child, before other threads and the user's file
+
+The parent starts the child with ``allowed_environment``. `Confinement` says which barriers this
+computer provides; ``recon4 doctor`` prints them.
+"""
+
+from recon4.sandbox.confine import confine, refuse_new_sockets
+from recon4.sandbox.environment import allowed_environment
+from recon4.sandbox.policy import Barrier, Confinement, Network, Policy
+
+__all__ = [
+    "Barrier",
+    "Confinement",
+    "Network",
+    "Policy",
+    "allowed_environment",
+    "confine",
+    "refuse_new_sockets",
+]

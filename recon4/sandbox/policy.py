@@ -1,0 +1,82 @@
+"""What a confined process may do, and which barriers hold: the records of the sandbox."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+
+
+class Network(StrEnum):
+    """Which sockets a confined process may make."""
+
+    NONE = "none"
+    """None at all; those it was given stay usable."""
+    UNIX = "unix"
+    """Unix sockets only: to listen and to connect."""
+    LISTEN_TCP = "listen tcp"
+    """TCP sockets that listen; no connection to anywhere."""
+    RECEIVE = "receive"
+    """UDP sockets that receive, and Unix sockets."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Policy:
+    """What a confined process may do. Everything not named here is refused."""
+
+    read: tuple[Path, ...] = ()
+    """Files and folders (with all below) to read; paths that do not exist are skipped."""
+    write: tuple[Path, ...] = ()
+    """Files and folders (with all below) to read and write; no links, devices or pipes in them."""
+    network: Network = Network.NONE
+    processes: bool = False
+    """Whether it may start processes and programs; threads are always allowed."""
+    temporary: Path | None = None
+    """Private folder for temporary files, made with mode 0700; None = it has none."""
+    memory_bytes: int | None = None
+    """Private memory (``RLIMIT_DATA``); files mapped read-only do not count."""
+    address_space_bytes: int | None = None
+    """All mapped memory (``RLIMIT_AS``), files included."""
+    cpu_s: int | None = None
+    """Processor time; the process is killed when it is used up."""
+    file_bytes: int | None = None
+    """Size of one written file; more is a full disk to the process."""
+    open_files: int = 1024
+    threads: int = 256
+    """Bound on its threads, where it has its own user namespace or the user has few processes."""
+
+
+@dataclass(frozen=True, slots=True)
+class Barrier:
+    """One thing the kernel keeps a confined process from."""
+
+    name: str
+    """``files``, ``network``, …: one word."""
+    holds: bool
+    detail: str
+    """How it is kept, or what follows from its absence."""
+
+
+@dataclass(frozen=True, slots=True)
+class Confinement:
+    """Which barriers hold around this process."""
+
+    barriers: tuple[Barrier, ...]
+
+    @property
+    def missing(self) -> tuple[Barrier, ...]:
+        """The barriers this computer does not provide."""
+        return tuple(barrier for barrier in self.barriers if not barrier.holds)
+
+    def holds(self, name: str) -> bool:
+        """Whether a barrier of that name is up.
+
+        Raises:
+            KeyError: If there is no such barrier.
+        """
+        return {barrier.name: barrier.holds for barrier in self.barriers}[name]
+
+    def __str__(self) -> str:
+        held = ", ".join(barrier.name for barrier in self.barriers if barrier.holds)
+        lost = "; ".join(f"{barrier.name}: {barrier.detail}" for barrier in self.missing)
+        return f"confined: {held or 'nothing'}" + (f"; NOT confined: {lost}" if lost else "")
