@@ -5,7 +5,7 @@ write only what its `FileAccess` names and that has no network. A child hands ba
 declared type, never a pickle: one that a hostile file took over cannot reach the server by it.
 """
 
-from app.compute_pool.model import NO_FILES, FileAccess, Lane, Quota
+from app.compute_pool.model import NO_FILES, FileAccess, Lane, Quota, Terms
 from app.compute_pool.pool import ComputePool
 
-__all__ = ["NO_FILES", "ComputePool", "FileAccess", "Lane", "Quota"]
+__all__ = ["NO_FILES", "ComputePool", "FileAccess", "Lane", "Quota", "Terms"]

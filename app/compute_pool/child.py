@@ -1,7 +1,7 @@
-"""A child of the compute pool: ``python -m app.compute_pool.child [--background] [MODULE ...]``.
+"""A child of the compute pool, started by `app.compute_pool.process`.
 
-It imports the modules, confines itself as its first message says, then answers calls until its
-input ends.
+Arguments: descriptor of its lifeline, perhaps ``--background``, modules to import. It confines
+itself as its first message says, then answers calls until its input ends.
 """
 
 from __future__ import annotations
@@ -10,25 +10,39 @@ import importlib
 import os
 import pickle
 import signal
-import struct
 import sys
 import traceback
 from typing import BinaryIO
 
-LENGTH = struct.Struct("<Q")
+from app.compute_pool.confinement import confine_child
+from app.compute_pool.messages import (
+    FAILED,
+    HEAD,
+    LENGTH,
+    REFUSED,
+    RESULT,
+    Call,
+    Setup,
+    encode_error,
+    encode_result,
+)
+from recon4.errors import Recon4Error
+from recon4.processes import die_with_parent
+
 BACKGROUND_NICE = 10
 
 
 def main(arguments: list[str]) -> None:
     """Answer calls until the input ends."""
+    lifeline, *rest = arguments
+    die_with_parent(int(lifeline))
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in the terminal is the server's
-    background = "--background" in arguments
-    if background:
+    if "--background" in rest:
         os.nice(BACKGROUND_NICE)
     # What a library prints must not get between our messages.
     answers = os.fdopen(os.dup(1), "wb", buffering=0)
     os.dup2(2, 1)
-    for name in arguments:
+    for name in rest:
         if not name.startswith("--"):
             importlib.import_module(name)
     calls = sys.stdin.buffer
@@ -49,21 +63,15 @@ def _read(calls: BinaryIO) -> bytes | None:
 
 def _confine(message: bytes) -> None:
     """Take away from this process whatever its work does not need; the one place for it."""
-    from app.compute_pool.confinement import confine_child
-    from app.compute_pool.messages import Setup
-
-    setup: Setup = pickle.loads(message)  # noqa: S301  # from the server, which is trusted
+    setup: Setup = pickle.loads(message)  # from the server, which is trusted
+    importlib.import_module(setup.module)
     os.chdir(setup.scratch)
     confine_child(setup)
 
 
 def _answer(answers: BinaryIO, message: bytes) -> None:
-    from app.compute_pool.messages import FAILED, HEAD, REFUSED, RESULT, Call, encode_error
-    from app.compute_pool.messages import encode_result
-    from recon4.errors import Recon4Error
-
     try:
-        call: Call = pickle.loads(message)  # noqa: S301  # from the server, which is trusted
+        call: Call = pickle.loads(message)  # from the server, which is trusted
         data = encode_result(call.function, call.function(*call.args, **call.kwargs))
         kind = RESULT
     except Recon4Error as error:

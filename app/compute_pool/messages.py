@@ -18,8 +18,10 @@ from app.compute_pool.model import FileAccess
 from app.errors import ComputeFailed
 from recon4.errors import ConfigError, Recon4Error, WrongSettings
 
+LENGTH = struct.Struct("<Q")
+"""Before each message to a child: bytes that follow."""
 HEAD = struct.Struct("<cQ")
-"""Kind of the message, bytes that follow."""
+"""Before each answer: its kind, bytes that follow."""
 RESULT, REFUSED, FAILED = b"R", b"E", b"F"
 """A result; an error that says what is wrong with the input; a failure of the program."""
 MOST_RESULT_BYTES = 256 << 20
@@ -40,6 +42,8 @@ class Setup:
     """What a child is told before its first call."""
 
     access: FileAccess
+    module: str
+    """Imported before the child is confined: it may lie where it cannot read afterwards."""
     scratch: str
     """The folder it works in, and the only one it can write besides ``access.write``."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
 from types import MappingProxyType
@@ -75,3 +75,17 @@ class FileAccess:
 
 NO_FILES = FileAccess()
 """For work on values alone."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Terms:
+    """Who asks for a call, and under which conditions it runs."""
+
+    person: str
+    access: FileAccess = NO_FILES
+    outputs: Mapping[str, Path] = field(default_factory=dict)
+    """What the call makes: name in the child's working folder -> where the server puts it."""
+    large: bool = False
+    """Takes long; small calls of the lane go first."""
+    limit_s: float | None = None
+    """Longest time it may run; None = as usual for its kind."""

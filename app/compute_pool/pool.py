@@ -6,14 +6,12 @@ import asyncio
 import shutil
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, TypeVar
 
 from app.compute_pool.fair_queue import FairQueue, Slot
 from app.compute_pool.messages import Call, declared
-from app.compute_pool.model import NO_FILES, QUOTAS, FileAccess, Lane, Quota
+from app.compute_pool.model import QUOTAS, FileAccess, Lane, Quota, Terms
 from app.compute_pool.process import ChildProcess
 from app.errors import ComputeFailed
 
@@ -30,21 +28,6 @@ MOST_KEPT = 4
 SPARE_AFTER_S = 5.0
 """After the last start of a child the next one is prepared in advance."""
 INTERACTIVE_MODULES = ("app.slices.work", "app.review.work")
-NOTHING_MADE: Mapping[str, Path] = MappingProxyType({})
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Terms:
-    """Who asks for a call, and under which conditions it runs."""
-
-    person: str
-    access: FileAccess = NO_FILES
-    outputs: Mapping[str, Path] = NOTHING_MADE
-    """What the call makes: name in the child's working folder -> where the server puts it."""
-    large: bool = False
-    """Takes long; small calls of the lane go first."""
-    limit_s: float | None = None
-    """Longest time it may run; None = as usual for its kind."""
 
 
 class ComputePool:
@@ -151,7 +134,9 @@ class ComputePool:
                 self.queues[lane].release(slot)
 
     async def _child(self, lane: Lane, access: FileAccess, *, background: bool) -> ChildProcess:
-        """A kept child that may open these files, else a fresh one."""
+        """A kept child that may open these files, else a fresh one; background always fresh."""
+        if background:
+            return await ChildProcess.start(self._scratch, background=True)
         while kept := self._kept.get((lane, access)):
             child = kept.pop()
             if not kept:
@@ -159,8 +144,6 @@ class ComputePool:
             if child.alive:
                 return child
             await child.end()
-        if background:
-            return await ChildProcess.start(self._scratch, background=True)
         spare, self._spare = self._spare, None
         self._prepare_spare()
         if spare is not None and spare.alive:

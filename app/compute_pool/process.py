@@ -14,10 +14,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from app.compute_pool.child import LENGTH
 from app.compute_pool.messages import (
     FAILED,
     HEAD,
+    LENGTH,
     MOST_RESULT_BYTES,
     RESULT,
     Call,
@@ -37,8 +37,9 @@ class ChildFailed(RuntimeError):
 class ChildProcess:
     """A child, its scratch folder, and whether it is confined yet."""
 
-    def __init__(self, process: asyncio.subprocess.Process, scratch: Path) -> None:
+    def __init__(self, process: asyncio.subprocess.Process, scratch: Path, lifeline: int) -> None:
         self._process = process
+        self._lifeline = lifeline
         self.scratch = scratch
         self._set_up = False
 
@@ -51,16 +52,25 @@ class ChildProcess:
         scratch.mkdir(mode=0o700, parents=True)
         # -P: a module in the working folder is not imported in place of ours.
         command = [sys.executable, "-P", "-m", "app.compute_pool.child"]
-        process = await asyncio.create_subprocess_exec(
-            *command,
-            *(("--background",) if background else ()),
-            *modules,
-            stdin=asyncio.subprocess.PIPE,
-            stdout=asyncio.subprocess.PIPE,
-            env=_environment(scratch),
-            start_new_session=True,
-        )
-        return ChildProcess(process, scratch)
+        watched, held = os.pipe()
+        try:
+            process = await asyncio.create_subprocess_exec(
+                *command,
+                str(watched),
+                *(("--background",) if background else ()),
+                *modules,
+                stdin=asyncio.subprocess.PIPE,
+                stdout=asyncio.subprocess.PIPE,
+                env=_environment(scratch),
+                pass_fds=(watched,),
+                start_new_session=True,
+            )
+        except BaseException:
+            os.close(held)
+            raise
+        finally:
+            os.close(watched)
+        return ChildProcess(process, scratch, held)
 
     @property
     def alive(self) -> bool:
@@ -79,7 +89,7 @@ class ChildProcess:
         assert self._process.stdout is not None
         messages: list[object] = [call]
         if not self._set_up:
-            messages.insert(0, Setup(access, str(self.scratch)))
+            messages.insert(0, Setup(access, call.function.__module__, str(self.scratch)))
             self._set_up = True
         try:
             for message in messages:
@@ -106,6 +116,9 @@ class ChildProcess:
         if self.alive:
             self._process.kill()
         await self._process.wait()
+        if self._lifeline >= 0:
+            os.close(self._lifeline)
+            self._lifeline = -1
         # Closes the pipes, which otherwise wait for the garbage collector.
         self._process._transport.close()  # type: ignore[attr-defined]
         await asyncio.to_thread(shutil.rmtree, self.scratch, ignore_errors=True)

@@ -5,8 +5,7 @@ from __future__ import annotations
 import asyncio
 from pathlib import Path
 
-from app.compute_pool import ComputePool, FileAccess, Lane
-from app.compute_pool.pool import Terms
+from app.compute_pool import ComputePool, FileAccess, Lane, Terms
 from app.errors import ComputeFailed, NotFound
 from recon4.errors import Recon4Error
 

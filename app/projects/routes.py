@@ -10,8 +10,7 @@ from starlette.concurrency import run_in_threadpool
 from app.access.audit import audit
 from app.access.caller import CalledBy
 from app.access.people import May, needs
-from app.compute_pool import FileAccess, Lane
-from app.compute_pool.pool import Terms
+from app.compute_pool import FileAccess, Lane, Terms
 from app.deps import Parts, Server
 from app.errors import Conflict, Problem
 from app.jobs.model import JobState
@@ -145,9 +144,7 @@ async def look(path: str, server: Server, caller: CalledBy) -> Found:
     """What is in a recording on this computer, and the settings that suit it."""
     real = await run_in_threadpool(server.projects.importable, path)
     beside = await run_in_threadpool(files_beside, real)
-    terms = Terms(
-        person=caller.name, access=FileAccess(read=(real, *beside)), limit_s=LOOK_LIMIT_S
-    )
+    terms = Terms(person=caller.name, access=FileAccess(read=(real, *beside)), limit_s=LOOK_LIMIT_S)
     return await caller.wait(
         server.compute_pool.run_background(Lane.INSPECT, terms, look_at, real, beside)
     )

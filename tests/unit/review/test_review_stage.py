@@ -14,7 +14,6 @@ from recon4.progress import Silent
 from recon4.review.decisions import Decision, Kind
 from recon4.review.journal import append, read_decided
 from recon4.review.preview import preview
-from recon4.review.source import Source
 from recon4.review.queue import COLUMNS, alternative_paths, queue_json, queue_rows
 from recon4.review.source import Source
 from recon4.settings import Settings
