@@ -1,6 +1,6 @@
 """A child of the compute pool, started by `app.compute_pool.process`.
 
-Arguments: descriptor of its lifeline, perhaps ``--background``, modules to import. It confines
+Arguments: its scratch folder, descriptor of its lifeline, perhaps ``--background``, modules to import. It confines
 itself as its first message says, then answers calls until its input ends.
 """
 
@@ -12,6 +12,7 @@ import pickle
 import signal
 import sys
 import traceback
+from pathlib import Path
 from typing import BinaryIO
 
 from app.compute_pool.confinement import confine_child
@@ -28,14 +29,16 @@ from app.compute_pool.messages import (
 )
 from recon4.errors import Recon4Error
 from recon4.processes import die_with_parent
+from recon4.sandbox.kernel_cache import use_private_cache
 
 BACKGROUND_NICE = 10
 
 
 def main(arguments: list[str]) -> None:
     """Answer calls until the input ends."""
-    lifeline, *rest = arguments
+    scratch, lifeline, *rest = arguments
     die_with_parent(int(lifeline))
+    kernels = use_private_cache(Path(scratch) / "kernels")
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in the terminal is the server's
     if "--background" in rest:
         os.nice(BACKGROUND_NICE)
@@ -47,7 +50,7 @@ def main(arguments: list[str]) -> None:
             importlib.import_module(name)
     calls = sys.stdin.buffer
     if (setup := _read(calls)) is not None:
-        _confine(setup)
+        _confine(setup, Path(scratch), kernels)
         while (message := _read(calls)) is not None:
             _answer(answers, message)
 
@@ -61,12 +64,12 @@ def _read(calls: BinaryIO) -> bytes | None:
     return data if len(data) == length else None
 
 
-def _confine(message: bytes) -> None:
+def _confine(message: bytes, scratch: Path, kernels: tuple[Path, ...]) -> None:
     """Take away from this process whatever its work does not need; the one place for it."""
     setup: Setup = pickle.loads(message)  # from the server, which is trusted
     importlib.import_module(setup.module)
-    os.chdir(setup.scratch)
-    confine_child(setup)
+    os.chdir(scratch)
+    confine_child(setup.access, scratch, kernels)
 
 
 def _answer(answers: BinaryIO, message: bytes) -> None:

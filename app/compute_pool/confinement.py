@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from app.compute_pool.messages import Setup
+from app.compute_pool.model import FileAccess
 from recon4.sandbox import Confinement, Policy, confine
 
 MOST_FILE_BYTES = 64 << 30
@@ -13,13 +13,18 @@ MOST_MEMORY_BYTES = 8 << 30
 """Private memory of a child; maps are mapped from their files and do not count."""
 
 
-def confine_child(setup: Setup) -> Confinement:
-    """Confine this process: no network, no other files, no programs, bounded memory."""
-    scratch = Path(setup.scratch)
+def confine_child(access: FileAccess, scratch: Path, kernels: tuple[Path, ...]) -> Confinement:
+    """Confine this process: no network, no other files, no programs, bounded memory.
+
+    Args:
+        access: What its work may open.
+        scratch: Its working folder, the only place it can write besides ``access.write``.
+        kernels: Folders of compiled kernels that it may read.
+    """
     return confine(
         Policy(
-            read=setup.access.read,
-            write=(*setup.access.write, scratch),
+            read=(*access.read, *kernels),
+            write=(*access.write, scratch),
             temporary=scratch / "tmp",
             memory_bytes=min(MOST_MEMORY_BYTES, _half_of_the_memory()),
             file_bytes=MOST_FILE_BYTES,

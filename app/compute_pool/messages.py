@@ -44,8 +44,6 @@ class Setup:
     access: FileAccess
     module: str
     """Imported before the child is confined: it may lie where it cannot read afterwards."""
-    scratch: str
-    """The folder it works in, and the only one it can write besides ``access.write``."""
 
 
 class Refusal(BaseModel):

@@ -6,6 +6,7 @@ import asyncio
 import shutil
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -30,6 +31,21 @@ SPARE_AFTER_S = 5.0
 INTERACTIVE_MODULES = ("app.slices.work", "app.review.work")
 
 
+@dataclass(frozen=True, slots=True)
+class _Permission:
+    """What a kept child may serve."""
+
+    lane: Lane
+    access: FileAccess
+    files: tuple[tuple[int, int] | None, ...]
+    """Device and number of each path: the child was let in to these, whatever has their name."""
+
+    @staticmethod
+    def of(lane: Lane, access: FileAccess) -> _Permission:
+        paths = (*access.read, *access.write)
+        return _Permission(lane, access, tuple(_identity(path) for path in paths))
+
+
 class ComputePool:
     """Runs functions of modules in confined children.
 
@@ -48,7 +64,7 @@ class ComputePool:
         self._scratch = scratch
         shutil.rmtree(scratch, ignore_errors=True)
         self.queues = {lane: FairQueue(lane, quota) for lane, quota in quotas.items()}
-        self._kept: OrderedDict[tuple[Lane, FileAccess], list[ChildProcess]] = OrderedDict()
+        self._kept: OrderedDict[_Permission, list[ChildProcess]] = OrderedDict()
         self._spare: ChildProcess | None = None
         self._preparing: asyncio.TimerHandle | None = None
         self._tasks: set[asyncio.Task[Any]] = set()
@@ -112,10 +128,11 @@ class ComputePool:
         """Run a call in a child; the slot is given back when no child works on it any more."""
         usual_s = BACKGROUND_LIMIT_S if background else INTERACTIVE_LIMIT_S
         limit_s = terms.limit_s or usual_s
+        permission = _Permission.of(lane, terms.access)
         child: ChildProcess | None = None
         whole = False
         try:
-            child = await self._child(lane, terms.access, background=background)
+            child = await self._child(permission, background=background)
             answer = await asyncio.wait_for(child.call(call, terms.access), limit_s)
             await asyncio.to_thread(child.keep, terms.outputs)
             whole = True
@@ -129,18 +146,18 @@ class ComputePool:
             raise
         finally:
             try:
-                await self._put_away(lane, terms.access, child, keep=whole and not background)
+                await self._put_away(permission, child, keep=whole and not background)
             finally:
                 self.queues[lane].release(slot)
 
-    async def _child(self, lane: Lane, access: FileAccess, *, background: bool) -> ChildProcess:
+    async def _child(self, permission: _Permission, *, background: bool) -> ChildProcess:
         """A kept child that may open these files, else a fresh one; background always fresh."""
         if background:
             return await ChildProcess.start(self._scratch, background=True)
-        while kept := self._kept.get((lane, access)):
+        while kept := self._kept.get(permission):
             child = kept.pop()
             if not kept:
-                del self._kept[lane, access]
+                del self._kept[permission]
             if child.alive:
                 return child
             await child.end()
@@ -153,15 +170,15 @@ class ComputePool:
         return await ChildProcess.start(self._scratch, background=False)
 
     async def _put_away(
-        self, lane: Lane, access: FileAccess, child: ChildProcess | None, *, keep: bool
+        self, permission: _Permission, child: ChildProcess | None, *, keep: bool
     ) -> None:
         if child is None:
             return
         if not (keep and child.alive):
             await child.end()
             return
-        self._kept.setdefault((lane, access), []).append(child)
-        self._kept.move_to_end((lane, access))
+        self._kept.setdefault(permission, []).append(child)
+        self._kept.move_to_end(permission)
         while sum(map(len, self._kept.values())) > MOST_KEPT:
             oldest = next(iter(self._kept))
             gone = self._kept[oldest].pop(0)
@@ -187,6 +204,14 @@ class ComputePool:
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
         return task
+
+
+def _identity(path: Path) -> tuple[int, int] | None:
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_dev, found.st_ino
 
 
 def _retrieved(task: asyncio.Task[Any]) -> None:

@@ -56,6 +56,7 @@ class ChildProcess:
         try:
             process = await asyncio.create_subprocess_exec(
                 *command,
+                str(scratch),
                 str(watched),
                 *(("--background",) if background else ()),
                 *modules,
@@ -89,7 +90,7 @@ class ChildProcess:
         assert self._process.stdout is not None
         messages: list[object] = [call]
         if not self._set_up:
-            messages.insert(0, Setup(access, call.function.__module__, str(self.scratch)))
+            messages.insert(0, Setup(access, call.function.__module__))
             self._set_up = True
         try:
             for message in messages:
