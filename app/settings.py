@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from recon4.errors import ConfigError
+from recon4.sandbox import allowed_environment
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,7 +36,8 @@ class ServerSettings:
     attempts: int = 3
     """A job whose worker died this often is given up."""
     hung_after_s: float = 120.0
-    """A worker without a heartbeat for this long is killed [s]."""
+    """A worker that makes no progress for this long is killed, ten times later where a stage
+    computes on its own data [s]."""
     stop_within_s: float = 10.0
     """A worker asked to stop is killed after this long [s]."""
     viewer_idle_s: float = 600.0
@@ -113,8 +115,16 @@ ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_
 
 
 def worker_environment() -> dict[str, str]:
-    """What a worker inherits."""
-    return {**os.environ, **ONE_THREAD}
+    """What a child process inherits: no secrets, one thread a library, our modules and no others.
+
+    Python would look for modules in the folder the server was started in, where users keep files.
+    """
+    inherited = allowed_environment(os.environ)
+    ours = Path(__file__).resolve().parents[1]
+    named = [Path(part) for part in inherited.get("PYTHONPATH", "").split(os.pathsep) if part]
+    places = dict.fromkeys(str(path.resolve()) for path in (ours, *named))
+    modules = {"PYTHONPATH": os.pathsep.join(places), "PYTHONSAFEPATH": "1"}
+    return {**inherited, **ONE_THREAD, **modules}
 
 
 def _refuse_open_network(host: str) -> None:

@@ -9,6 +9,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import logging
 import time
@@ -25,13 +26,22 @@ EVERY_S = 0.25
 """Counts are written, and the wish to stop is read, at most this often [s]."""
 
 
-class EventWriter:
-    """A `recon4.progress.Progress` that writes lines, and stops the run once a file appears."""
+MOST_BYTES = 4 << 20
+"""Read at a time."""
 
-    def __init__(self, events: Path, stop: Path) -> None:
-        self._file = events.open("ab", buffering=0)
+
+class EventWriter:
+    """A `recon4.progress.Progress` that writes lines, and stops the run once a file appears.
+
+    It touches the heartbeat when work advances and at no other time: a worker whose work hangs
+    must look hung from outside.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._file = (folder / "events.jsonl").open("ab", buffering=0)
         self._file.write(b"\n")  # ends a line that a killed worker left half written
-        self._stop = stop
+        self._stop, self._heartbeat = folder / "cancel", folder / "heartbeat"
+        self._beat_due_s = 0.0
         self._what, self._unit = "", ""
         self._done, self._total = 0, 0
         self._began_s = self._due_s = 0.0
@@ -42,6 +52,7 @@ class EventWriter:
         self._what, self._unit, self._done, self._total = what, unit, 0, total
         self._began_s = time.monotonic()
         log.info("%s: %s %s", what, total or "?", unit)
+        self._beat()
         self._tell()
 
     def advance(self, done: int = 1) -> None:
@@ -51,11 +62,14 @@ class EventWriter:
             Cancelled: If the server asked to stop.
         """
         self._done += done
+        if done > 0:
+            self._beat()
         if time.monotonic() >= self._due_s or self._done == self._total:
             self._tell()
 
     def event(self, kind: str, **facts: object) -> None:
         """Say what was found."""
+        self._beat()
         if kind not in MANY:
             log.info(
                 "%s %s",
@@ -67,6 +81,13 @@ class EventWriter:
     def close(self) -> None:
         """Close the file."""
         self._file.close()
+
+    def _beat(self) -> None:
+        now_s = time.monotonic()
+        if now_s >= self._beat_due_s:
+            self._beat_due_s = now_s + EVERY_S
+            with contextlib.suppress(OSError):  # the work itself reports a full disk
+                self._heartbeat.touch()
 
     def _tell(self) -> None:
         now_s = time.monotonic()
@@ -89,10 +110,12 @@ def read_events(path: Path, offset: int) -> tuple[list[dict[str, Any]], int]:
     try:
         with path.open("rb") as file:
             file.seek(offset)
-            data = file.read()
+            data = file.read(MOST_BYTES)
     except FileNotFoundError:
         return [], offset
     whole = data[: data.rfind(b"\n") + 1]
+    if not whole and len(data) == MOST_BYTES:
+        whole = data  # a line longer than any of ours
     found = (_event(line) for line in whole.splitlines())
     return [event for event in found if event is not None], offset + len(whole)
 
@@ -100,6 +123,6 @@ def read_events(path: Path, offset: int) -> tuple[list[dict[str, Any]], int]:
 def _event(line: bytes) -> dict[str, Any] | None:
     try:
         event = json.loads(line)
-    except ValueError:
+    except (ValueError, RecursionError):
         return None
     return event if isinstance(event, dict) else None

@@ -3,11 +3,12 @@
 request.json    the job, written by the server before the worker starts
 lock            held (flock) by the worker as long as it lives; the kernel lets go of it
 pid             the worker's process and group
-heartbeat       touched by the worker every second
+heartbeat       touched by the worker when its work advances
 cancel          made by the server: please stop
 events.jsonl    how far it is (`app.jobs.events`), appended by the worker
 log.txt         what the worker said
 room            some bytes that make way for the last words when the disk is full
+tmp             the worker's temporary files; emptied when it is gone
 outcome.json    how it ended, written last and whole
 """
 
@@ -17,6 +18,7 @@ import contextlib
 import fcntl
 import json
 import os
+import shutil
 import signal
 import time
 from collections.abc import Iterator
@@ -24,11 +26,14 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Literal
 
+import msgspec
+
 from app.jobs.model import Inputs
 from recon4.store.atomic import write_json
 
 KEPT_BYTES = 64 << 10
 MOST_LOG_BYTES = 256 << 10
+MOST_REPLY_BYTES = 64 << 10
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,13 +60,25 @@ class JobFolder:
 
     path: Path
 
+    @property
+    def temporary(self) -> Path:
+        """Folder of the worker's temporary files."""
+        return self.path / "tmp"
+
     def prepare(self, inputs: Inputs, project: Path, limits: Limits) -> None:
         """Write the request; clear what an earlier attempt left."""
         self.path.mkdir(parents=True, exist_ok=True)
+        for path in self.path.iterdir():
+            if path.is_dir() and not path.is_symlink():  # none of ours but the temporary files
+                shutil.rmtree(path)
         for name in ("pid", "heartbeat", "outcome.json"):
             (self.path / name).unlink(missing_ok=True)
         request = {"project": str(project), "inputs": asdict(inputs), "limits": asdict(limits)}
         write_json(self.path / "request.json", request)
+
+    def sweep(self) -> None:
+        """Remove the temporary files of a worker that is gone."""
+        shutil.rmtree(self.temporary, ignore_errors=True)
 
     def request(self) -> tuple[Path, Inputs]:
         """Project folder and inputs."""
@@ -89,12 +106,12 @@ class JobFolder:
         with self.try_lock() as lock:
             return lock is None
 
-    def silent_s(self) -> float:
-        """Seconds since the last heartbeat (since the request when there was none)."""
-        for name in ("heartbeat", "request.json"):
-            with contextlib.suppress(FileNotFoundError):
-                return time.time() - (self.path / name).stat().st_mtime
-        return 0.0
+    def heartbeat_ns(self) -> int:
+        """Time of the last heartbeat on the clock of the file system [ns]; 0 = none yet."""
+        try:
+            return (self.path / "heartbeat").stat().st_mtime_ns
+        except FileNotFoundError:
+            return 0
 
     def ask_to_stop(self) -> None:
         """Ask the worker to stop at its next unit of work."""
@@ -107,17 +124,27 @@ class JobFolder:
         except FileNotFoundError:
             return None
 
-    def kill(self) -> None:
-        """End the worker and its children at once. Call only while `alive`."""
-        with contextlib.suppress(FileNotFoundError, ProcessLookupError, ValueError):
-            os.killpg(int((self.path / "pid").read_text()), signal.SIGKILL)
+    def kill(self, sign: signal.Signals = signal.SIGKILL) -> None:
+        """Send a signal to the worker and its children. Call only while `alive`."""
+        number = self._group()
+        if number is not None and _is_worker_of(number, self.path):
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(number, sign)
 
     def end_orphans(self) -> None:
         """End the children a dead worker left. Its number is not another's while they live."""
-        with contextlib.suppress(FileNotFoundError, ProcessLookupError, ValueError):
-            number = int((self.path / "pid").read_text())
-            if _state(number) in ("", "Z"):
+        number = self._group()
+        if number is not None and _state(number) in ("", "Z"):
+            with contextlib.suppress(ProcessLookupError):
                 os.killpg(number, signal.SIGKILL)
+
+    def _group(self) -> int | None:
+        """The worker's process group as it wrote it, None if that cannot be one."""
+        with contextlib.suppress(FileNotFoundError, ValueError):
+            number = int(_start(self.path / "pid"))
+            if number > 1 and number != os.getpgrp():
+                return number
+        return None
 
     def keep_room(self) -> None:
         """Take the room the last words need, while there is some."""
@@ -131,10 +158,10 @@ class JobFolder:
         write_json(self.path / "outcome.json", asdict(outcome))
 
     def outcome(self) -> Outcome | None:
-        """How it ended, None if it has not or was killed."""
+        """How it ended, None if it has not, was killed, or wrote something else."""
         try:
-            return Outcome(**json.loads((self.path / "outcome.json").read_text("utf-8")))
-        except FileNotFoundError:
+            return msgspec.json.decode(_start(self.path / "outcome.json"), type=Outcome)
+        except (FileNotFoundError, msgspec.DecodeError, RecursionError):
             return None
 
     def log_since(self, offset: int) -> tuple[str, int]:
@@ -162,6 +189,21 @@ class JobFolder:
             return ""
         kept = text.splitlines()[-lines:]
         return "\n".join(map(_printable, kept))
+
+
+def _start(path: Path) -> bytes:
+    """The first bytes of a file a worker wrote: all, unless something is wrong with it."""
+    with path.open("rb") as file:
+        return file.read(MOST_REPLY_BYTES)
+
+
+def _is_worker_of(number: int, folder: Path) -> bool:
+    """Whether a process was started for a job's folder: the file with its number may lie."""
+    try:
+        words = Path(f"/proc/{number}/cmdline").read_bytes().split(b"\0")
+    except OSError:
+        return not Path("/proc/self").exists()  # macOS does not say
+    return os.fsencode(folder) in words
 
 
 def _printable(line: str) -> str:

@@ -1,20 +1,23 @@
-"""What a worker may not do, set by itself before it opens anybody's file."""
+"""What a worker may read, write and take of this computer."""
 
 from __future__ import annotations
 
-import ctypes
 import faulthandler
-import logging
 import os
-import resource
+import shutil
+from pathlib import Path
 
-log = logging.getLogger("recon4.job")
+from app.jobs.folder import JobFolder
+from recon4.sandbox import Confinement, Policy, confine
+from recon4.sandbox.kernel_cache import use_private_cache
 
 SHARE_OF_MEMORY = 0.7
 MOST_FILES = 4096
+MOST_CPU_S = 96 * 3600
+"""Of all threads together; a day of recording takes less."""
+LEAST_FILE_BYTES = 1 << 30
 NICENESS = 10
 """Workers stand back, so that the pages answer while they work."""
-PR_SET_NO_NEW_PRIVS = 38
 
 
 def allowed_memory(setting_bytes: int) -> int:
@@ -24,35 +27,34 @@ def allowed_memory(setting_bytes: int) -> int:
     return min(most, setting_bytes) if setting_bytes > 0 else most
 
 
-def confine(memory_bytes: int) -> None:
-    """Limit this process and its children.
+def worker_policy(folder: JobFolder) -> Policy:
+    """Read the files of the request and the kernels, write the project and the job's folder.
 
     Memory is limited where it is written (``RLIMIT_DATA``), not where it is addressed: a recording
-    larger than the memory is mapped and harmless.
-
-    Args:
-        memory_bytes: From `allowed_memory`.
+    larger than the memory is mapped and harmless. One file may take what the disk has free.
     """
+    project, inputs = folder.request()
+    limits = folder.limits()
+    rig = inputs.rig if os.path.isabs(inputs.rig) else ""  # else a shipped one
+    given = [Path(path) for path in (*inputs.recordings, inputs.imu, inputs.gnss, rig) if path]
+    times = [path.parent / "times.txt" for path in given if path.is_dir()]
+    free = shutil.disk_usage(folder.path).free - limits.reserve_bytes
+    return Policy(
+        read=(*given, *times),
+        write=(project, folder.path),
+        temporary=folder.temporary,
+        memory_bytes=limits.memory_bytes,
+        cpu_s=MOST_CPU_S,
+        file_bytes=max(LEAST_FILE_BYTES, free),
+        open_files=MOST_FILES,
+    )
+
+
+def prepare_worker(folder: JobFolder, policy: Policy) -> Confinement:
+    """Confine this process to the policy of its job, before it opens a file of a user."""
     os.nice(NICENESS)
-    _limit(resource.RLIMIT_DATA, memory_bytes)
-    _limit(resource.RLIMIT_NOFILE, MOST_FILES)
-    _limit(resource.RLIMIT_CORE, 0)
-    _no_new_privileges()
     faulthandler.enable()  # a crash in native code says where in the log
-
-
-def _limit(what: int, most: int) -> None:
-    _, hard = resource.getrlimit(what)
-    if hard != resource.RLIM_INFINITY:
-        most = min(most, hard)
-    resource.setrlimit(what, (most, most))
-
-
-def _no_new_privileges() -> None:
-    """No program started from here gains rights its file would give it (setuid)."""
-    try:
-        prctl = ctypes.CDLL(None, use_errno=True).prctl
-    except (OSError, AttributeError):
-        return  # not Linux
-    if prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0:
-        log.warning("no_new_privs is not available: %s", os.strerror(ctypes.get_errno()))
+    project, _ = folder.request()
+    project.mkdir(parents=True, exist_ok=True)  # the kernel allows only paths that exist
+    kernels = use_private_cache(folder.temporary / "kernels")
+    return confine(policy.adding(read=kernels))

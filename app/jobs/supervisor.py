@@ -9,8 +9,11 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
+import signal
 import subprocess
 import sys
+import time
+from collections.abc import Callable
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -23,6 +26,7 @@ from app.jobs.limits import allowed_memory
 from app.jobs.model import Job, JobState
 from app.jobs.overall import Overall
 from app.jobs.overall import after as further
+from app.jobs.silence import allowed_silence_s
 from app.jobs.status import Status, after
 from app.jobs.store import JobStore
 from app.settings import ServerSettings, worker_environment
@@ -38,6 +42,8 @@ class Tail:
     def __init__(self, folder: JobFolder) -> None:
         self.status = Status()
         self.overall = Overall()
+        self.unreadable = 0
+        """Events that make no sense."""
         self._path = folder.path / "events.jsonl"
         self._offset = 0
 
@@ -46,8 +52,12 @@ class Tail:
         before = self.status
         events, self._offset = read_events(self._path, self._offset)
         for event in events:
-            self.status = after(self.status, event)
-            self.overall = further(self.overall, event)
+            try:
+                status, overall = after(self.status, event), further(self.overall, event)
+            except (TypeError, ValueError, ArithmeticError, LookupError, AttributeError):
+                self.unreadable += 1  # a worker that a file has taken over writes what it likes
+            else:
+                self.status, self.overall = status, overall
         return self.status != before
 
     def forget(self) -> None:
@@ -64,6 +74,10 @@ class Supervisor:
         self._settings = settings
         self._workers: dict[str, subprocess.Popen[bytes]] = {}
         self._tails: dict[str, Tail] = {}
+        self._beats: dict[str, tuple[int, float]] = {}
+        """Running jobs -> heartbeat seen last, and when on the monotonic clock [s]."""
+        self._hung: dict[str, float] = {}
+        """Jobs whose worker is being ended -> how long it made no progress [s]."""
         self._loop: asyncio.AbstractEventLoop | None = None
         self._wake = asyncio.Event()
         self._news = asyncio.Event()
@@ -149,12 +163,18 @@ class Supervisor:
     def step(self) -> set[str]:
         """Look at every worker and the queue once; ids of the jobs that changed."""
         running = self._store.in_state(JobState.RUNNING)
-        changed = {job.id for job in running if self._watch(job)}
+        changed = {job.id for job in running if self._alone(self._watch, job)}
         free = self._settings.running_jobs - len(self._store.in_state(JobState.RUNNING))
         waiting = self._store.in_state(JobState.QUEUED)[: max(0, free)]
-        for job in waiting:
-            self._start(job)
-        return changed | {job.id for job in waiting}
+        return changed | {job.id for job in waiting if self._alone(self._start, job)}
+
+    def _alone(self, step: Callable[[Job], bool], job: Job) -> bool:
+        """Take a step with one job; if it fails the others go on. Whether the job changed."""
+        try:
+            return step(job)
+        except Exception:
+            log.exception("job %s: trying again", job.id)
+            return False
 
     def close(self) -> None:
         """Leave the workers alone: they go on and the next server adopts them."""
@@ -170,7 +190,7 @@ class Supervisor:
             self._tails[job.id].read()
         return self._tails[job.id]
 
-    def _start(self, job: Job) -> None:
+    def _start(self, job: Job) -> bool:
         folder = self.folder(job.id)
         limits = Limits(
             memory_bytes=allowed_memory(self._settings.memory_bytes),
@@ -186,18 +206,22 @@ class Supervisor:
             self._store.change(job, job.to(JobState.RUNNING, attempt=attempt, started=started))
             if lock is not None:
                 self._workers[job.id] = _spawn(self._settings.worker, folder.path, lock)
+        return True
 
     def _watch(self, job: Job) -> bool:
         changed = self._tail(job).read()
         folder = self.folder(job.id)
         if folder.alive():
-            self._end_if_stuck(folder)
+            self._end_if_stuck(job, folder)
             return changed
         code = self._exit_code(job)
         folder.end_orphans()
+        folder.sweep()
         self._tail(job).read()
         self._store.change(job, self._ended(job, folder.outcome(), code))
         self._workers.pop(job.id, None)
+        self._hung.pop(job.id, None)
+        self._beats.pop(job.id, None)
         return True
 
     def _exit_code(self, job: Job) -> int | None:
@@ -211,19 +235,33 @@ class Supervisor:
             worker.kill()
             return worker.wait()
 
-    def _end_if_stuck(self, folder: JobFolder) -> None:
-        asked_s = folder.asked_to_stop_s()
+    def _end_if_stuck(self, job: Job, folder: JobFolder) -> None:
+        asked_s, silent_s = folder.asked_to_stop_s(), self._silent_s(job, folder)
         if asked_s is not None and asked_s > self._settings.stop_within_s:
             folder.kill()
-        elif folder.silent_s() > self._settings.hung_after_s:
-            log.warning("worker %s gives no sign of life: killed", folder.path.name)
-            folder.kill()
+        elif job.id in self._hung:
+            folder.kill()  # it had the time of one look to say where it hangs
+        elif silent_s > allowed_silence_s(self._tail(job).status, self._settings.hung_after_s):
+            self._hung[job.id] = silent_s
+            log.warning("worker %s made no progress for %.0f s: killed", job.id, silent_s)
+            folder.kill(signal.SIGABRT)  # it writes into its log where every thread is
+
+    def _silent_s(self, job: Job, folder: JobFolder) -> float:
+        """Seconds since the heartbeat was last seen to change, on a clock that never jumps."""
+        now_s, beat_ns = time.monotonic(), folder.heartbeat_ns()
+        seen_ns, since_s = self._beats.get(job.id, (None, now_s))
+        if beat_ns != seen_ns:
+            since_s = now_s
+        self._beats[job.id] = beat_ns, since_s
+        return now_s - since_s
 
     def _ended(self, job: Job, outcome: Outcome | None, code: int | None) -> Job:
         """The job after its worker is gone."""
         if outcome is not None:
             return job.to(JobState(outcome.state), finished=now(), note=outcome.note)
         where, how = self._tail(job).status.where, ending(code)
+        if job.id in self._hung:
+            how = f"made no progress for {self._hung[job.id]:.0f} s and was killed"
         if self.folder(job.id).asked_to_stop_s() is not None:
             return job.to(JobState.CANCELLED, finished=now(), note="stopped on request")
         if job.attempt < self._settings.attempts:

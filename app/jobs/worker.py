@@ -5,20 +5,19 @@ It knows no server: it may outlive the one that started it and be adopted by the
 
 from __future__ import annotations
 
-import contextlib
 import logging
 import os
 import sys
-import threading
 from collections.abc import Callable
 from pathlib import Path
 
 from app.jobs.events import EventWriter
 from app.jobs.folder import JobFolder, Outcome
-from app.jobs.limits import confine
+from app.jobs.limits import prepare_worker, worker_policy
 from app.jobs.space import refuse_if_full
 from recon4.errors import Cancelled, NoSpace, Recon4Error
 from recon4.progress import Progress
+from recon4.sandbox import Policy
 from recon4.store.atomic import raise_if_full
 
 log = logging.getLogger("recon4.job")
@@ -31,18 +30,15 @@ OUT_OF_MEMORY = (
 Work = Callable[[JobFolder, Progress], None]
 
 
-def main(path: Path, work: Work) -> None:
-    """Run the job of a folder and write its outcome."""
+def main(path: Path, work: Work, policy_of: Callable[[JobFolder], Policy] = worker_policy) -> None:
+    """Run the job of a folder, confined to a policy, and write its outcome."""
     folder = JobFolder(path)
-    confine(folder.limits().memory_bytes)
     (path / "pid").write_text(str(os.getpid()))
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(message)s", datefmt="%H:%M:%S")
-    over = threading.Event()
-    threading.Thread(target=_beat, args=(path / "heartbeat", over), daemon=True).start()
+    prepare_worker(folder, policy_of(folder))
     outcome = run(folder, work)
     folder.finish(outcome)
     log.info("%s %s", outcome.state, outcome.note)
-    over.set()
 
 
 def run(folder: JobFolder, work: Work) -> Outcome:
@@ -50,7 +46,7 @@ def run(folder: JobFolder, work: Work) -> Outcome:
     events: EventWriter | None = None
     try:
         folder.keep_room()
-        events = EventWriter(folder.path / "events.jsonl", folder.path / "cancel")
+        events = EventWriter(folder.path)
         work(folder, events)
     except Cancelled as stop:
         return Outcome(state="cancelled", note=str(stop))
@@ -103,14 +99,6 @@ def _full(error: Exception, path: Path) -> str | None:
     except NoSpace as full:
         return str(full)
     return None
-
-
-def _beat(heartbeat: Path, over: threading.Event) -> None:
-    while True:
-        with contextlib.suppress(OSError):  # a full disk is the work's to tell
-            heartbeat.touch()
-        if over.wait(1.0):
-            return
 
 
 if __name__ == "__main__":

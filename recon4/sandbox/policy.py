@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
@@ -43,7 +44,11 @@ class Policy:
     """Size of one written file; more is a full disk to the process."""
     open_files: int = 1024
     threads: int = 256
-    """Bound on its threads, where it has its own user namespace or the user has few processes."""
+    """Threads it may add to those its user has; the kernel does not count those of root."""
+
+    def adding(self, *, read: Iterable[Path] = (), write: Iterable[Path] = ()) -> Policy:
+        """The same policy with more paths."""
+        return replace(self, read=(*self.read, *read), write=(*self.write, *write))
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,6 +22,8 @@ from recon4.store.ledger import FinishedStage
 from recon4.store.project import Project
 from recon4.store.usage import Meter
 
+SAVING = "save"
+"""The piece of work in which an artifact is hashed and brought to the disk."""
 _KEY_PACKAGES = ("numpy", "scipy", "numba", "gtsam", "laspy", "pyproj")
 
 
@@ -189,7 +191,9 @@ class StageRunner:
                 cpu_seconds=meter.cpu_seconds,
                 peak_bytes=meter.peak_bytes,
             )
-            _write_manifest(folder, done, _recipe(stage, self._settings, inputs), figures or {})
+            recipe = _recipe(stage, self._settings, inputs)
+            files = _hash_files(folder, self._progress)
+            _write_manifest(folder, done, recipe, figures=figures or {}, files=files)
         self._project.ledger.add(done)
         return done
 
@@ -268,13 +272,24 @@ def _recipe(
     }
 
 
-def _write_manifest(
-    folder: Path, done: FinishedStage, recipe: dict[str, Any], figures: Mapping[str, Any]
-) -> None:
-    files = {
-        name: {"bytes": (folder / name).stat().st_size, "sha256": hash_file(folder / name)}
-        for name in files_below(folder)
+def _hash_files(folder: Path, progress: Progress) -> dict[str, Any]:
+    """Name -> size and hash of every file of an artifact."""
+    sizes = {name: (folder / name).stat().st_size for name in files_below(folder)}
+    progress.start(SAVING, sum(sizes.values()), "B")
+    return {
+        name: {"bytes": size, "sha256": hash_file(folder / name, progress.advance)}
+        for name, size in sizes.items()
     }
+
+
+def _write_manifest(
+    folder: Path,
+    done: FinishedStage,
+    recipe: dict[str, Any],
+    *,
+    figures: Mapping[str, Any],
+    files: dict[str, Any],
+) -> None:
     write_json(
         folder / "manifest.json",
         {

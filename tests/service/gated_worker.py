@@ -10,8 +10,10 @@ import sys
 from pathlib import Path
 
 from app.jobs.folder import JobFolder
+from app.jobs.limits import worker_policy
 from app.jobs.worker import main, process
 from recon4.progress import Progress
+from recon4.sandbox import Policy
 
 AT_GATE = "waiting at the gate"
 
@@ -48,5 +50,11 @@ def work(folder: JobFolder, progress: Progress) -> None:
     process(folder, Gated(progress, project.parent / "gates"))
 
 
+def policy(folder: JobFolder) -> Policy:
+    """It also reads the gates."""
+    project, _ = folder.request()
+    return worker_policy(folder).adding(read=(project.parent / "gates",))
+
+
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), work)
+    main(Path(sys.argv[1]), work, policy)

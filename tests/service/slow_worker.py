@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import errno
 import logging
 import os
@@ -10,14 +11,17 @@ import select
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from app.jobs.folder import JobFolder
+from app.jobs.limits import worker_policy
 from app.jobs.worker import main
 from recon4.errors import EmptyRecording
 from recon4.progress import Progress
+from recon4.sandbox import Policy
 from recon4.settings import Settings
 from recon4.store.project import Project
 from recon4.store.stage import Input, Stage, StageRunner
@@ -50,7 +54,19 @@ def keep_busy() -> None:
         one.wait()
 
 
+def hang_in_python() -> None:
+    while True:
+        pass
+
+
+def hang_in_c_with_the_gil() -> None:
+    """No thread of Python runs any more."""
+    ctypes.PyDLL(None).pause()
+
+
 DEEDS = {
+    "hang": hang_in_python,
+    "hang in C": hang_in_c_with_the_gil,
     "busy": keep_busy,
     "crash": lambda: os.kill(os.getpid(), signal.SIGSEGV),
     "memory": take_memory,
@@ -102,5 +118,12 @@ def _note(recording: Path, what: str) -> None:
         file.write(f"{what}\n")
 
 
+def policy(folder: JobFolder) -> Policy:
+    """It also starts processes, and notes in the recording what it did."""
+    _, inputs = folder.request()
+    recordings = [Path(path) for path in inputs.recordings]
+    return replace(worker_policy(folder), processes=True).adding(write=recordings)
+
+
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), work)
+    main(Path(sys.argv[1]), work, policy)

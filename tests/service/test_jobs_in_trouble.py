@@ -3,6 +3,7 @@
 import os
 import signal
 import subprocess
+import time
 
 import psutil
 import pytest
@@ -177,3 +178,20 @@ def test_asked_to_end_the_server_ends_soon_and_without_complaint(tmp_path, recor
     with server_process(tmp_path) as (server, _):
         server.post(f"/api/jobs/{job}/cancel")
         assert server.wait_state(job, "cancelled")["job"]["attempt"] == 1
+
+
+@pytest.mark.parametrize("word", ["hang", "hang in C"])
+def test_a_worker_whose_work_hangs_is_killed_and_its_note_says_where(tmp_path, recording, word):
+    with server_thread(tmp_path, worker=SLOW, attempts=1, hung_after_s=3.0) as server:
+        job = server.start("office", recording)
+        server.wait_at_gate(job)
+        gate = open_gate(recording, word)
+        hung_s = time.monotonic()
+        ended = server.wait_state(job, "failed")["job"]
+        took_s = time.monotonic() - hung_s
+        log = server.get(f"/api/jobs/{job}/log").text
+        os.close(gate)
+
+    assert "made no progress for 3 s and was killed, in stage odometry (Odometry)" in ended["note"]
+    assert "slow_worker.py" in log and "hang_in_" in log
+    assert took_s < 3.0 + 10.0

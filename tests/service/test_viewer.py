@@ -336,7 +336,7 @@ def test_what_a_running_job_finds_appears_while_it_runs(tmp_path):
     folder.mkdir(parents=True)
     (folder / "request.json").write_text(json.dumps({"project": str(tmp_path / "office")}))
     (folder / "heartbeat").touch()
-    job = EventWriter(folder / "events.jsonl", folder / "cancel")
+    job = EventWriter(folder)
     with server_thread(tmp_path) as server, viewing(server.url) as client:
         client.send(camera())
         job.event("stage", stage="graph", state="running")

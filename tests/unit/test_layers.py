@@ -28,6 +28,7 @@ MAY_IMPORT = {
     "recon4/geometry": {"recon4.geometry"},
     "recon4/model": MODEL,
     "recon4/kernels": {"recon4.kernels"},
+    "recon4/sandbox": {"recon4.sandbox"},
     "recon4/store": MODEL | {"recon4.store"},
     "recon4/recording": STAGE | {"recon4.recording"},
     "recon4/live": STAGE | {"recon4"},
@@ -68,6 +69,7 @@ ONLY_HERE = {
     "gtsam": {"recon4/pose_graph/solve.py"},
     "open3d": {"recon4/simulation/raycast.py"},
     "laspy": {"recon4/export/laz.py", "recon4/slices/clouds.py"},
+    "ctypes": {"recon4/sandbox"},
     "viser": {"app/viewer/show.py", "app/viewer/panels.py"},
     "matplotlib": {
         "recon4/report",

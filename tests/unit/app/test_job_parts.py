@@ -103,14 +103,14 @@ def test_unknown_events_change_nothing():
 
 def test_events_are_read_as_they_come_and_a_line_cut_by_a_kill_is_skipped(tmp_path):
     path = tmp_path / "events.jsonl"
-    first = EventWriter(path, tmp_path / "cancel")
+    first = EventWriter(tmp_path)
     first.event("edge", i=1)
     first.close()
     events, offset = read_events(path, 0)
     with path.open("ab") as file:
         file.write(b'{"kind": "progr')
     half, offset = read_events(path, offset)
-    second = EventWriter(path, tmp_path / "cancel")
+    second = EventWriter(tmp_path)
     second.close()
     rest, _ = read_events(path, offset)
 
@@ -120,7 +120,7 @@ def test_events_are_read_as_they_come_and_a_line_cut_by_a_kill_is_skipped(tmp_pa
 
 
 def test_a_run_stops_once_asked(tmp_path):
-    writer = EventWriter(tmp_path / "events.jsonl", tmp_path / "cancel")
+    writer = EventWriter(tmp_path)
     writer.start("Odometry", 3, "frames")
     (tmp_path / "cancel").touch()
 

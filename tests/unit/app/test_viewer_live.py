@@ -106,7 +106,7 @@ def job(tmp_path):
     request = {"project": str(tmp_path / "office"), "inputs": {}}
     (folder / "request.json").write_text(json.dumps(request))
     (folder / "heartbeat").touch()
-    writer = EventWriter(folder / "events.jsonl", folder / "cancel")
+    writer = EventWriter(folder)
     yield folder, writer
     writer.close()
 

@@ -1,0 +1,22 @@
+"""How long a worker may make no progress before it counts as hung.
+
+Stages that read files of users report every unit, so the server's setting holds for them as it is.
+Later stages compute on artifacts of our own; a solver with a bounded number of iterations and the
+disk that takes a large artifact may be silent for longer.
+"""
+
+from __future__ import annotations
+
+from app.jobs.overall import AFTER
+from app.jobs.status import Status
+from recon4.store.stage import SAVING
+
+COMPUTING_FACTOR = 10.0
+COMPUTING = frozenset({"graph", "verification", "review", "refine", "level", "map", AFTER, SAVING})
+"""Stages, and pieces of work in any stage."""
+
+
+def allowed_silence_s(status: Status, hung_after_s: float) -> float:
+    """Seconds without progress after which a worker at this point is killed."""
+    running = {row.stage for row in status.stages if row.state == "running"}
+    return hung_after_s * (COMPUTING_FACTOR if COMPUTING & {*running, status.what} else 1.0)
