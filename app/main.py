@@ -29,6 +29,7 @@ from app.jobs import choices
 from app.jobs import routes as job_routes
 from app.jobs.store import JobStore
 from app.jobs.supervisor import Supervisor
+from app.leftovers import child_register, sweep_leftovers
 from app.listen import (
     AnnouncingServer,
     certificate_of,
@@ -116,6 +117,7 @@ def serve(
         StoreError: If it cannot listen there, or another server runs on the same folder.
     """
     with private_files(settings.lan), only_one(settings), listening(settings) as listener:
+        sweep_leftovers(settings)
         certificate = certificate_of(settings)
         app = create_app(settings)
         best, *others = urls(settings, listener)
@@ -143,11 +145,11 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
     viewers = ViewerPool(
         idle_s=settings.viewer_idle_s,
         points=settings.viewer_points,
-        logs=settings.state / "viewers",
-        jobs=settings.state / "jobs",
+        state=settings.state,
         sockets=Sockets(
             most=settings.viewer_sockets, most_a_person=settings.viewer_sockets_a_person
         ),
+        children=child_register(settings),
     )
     uploads = UploadStore(settings)
     trash = Trash(settings.root, settings.state / "trash", kept_s=settings.trash_s)

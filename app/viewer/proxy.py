@@ -1,7 +1,8 @@
 """Relays a browser's WebSocket to the project's viewer, letting through only what is known.
 
-viser asks nobody who they are, and obeys messages such as "open a public tunnel": so it listens
-on loopback and is reached only through here, after the `Guard` has checked host and origin.
+viser asks nobody who they are, and obeys messages such as "open a public tunnel": so it listens on
+a private Unix socket and is reached only through here, after the `Guard` has checked host and
+origin.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from pathlib import Path
 
 import msgspec.msgpack
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
-from websockets.asyncio.client import ClientConnection, connect
+from websockets.asyncio.client import ClientConnection, unix_connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
 from websockets.typing import Subprotocol
 
@@ -95,20 +96,20 @@ async def _viewer(
 ) -> ClientConnection:
     """A connection with the viewer of a project; one that was killed just now is started anew."""
     for _ in range(ATTEMPTS):
-        port = await viewers.port(project)
+        socket = await viewers.socket(project)
         try:
-            return await connect(
-                f"ws://127.0.0.1:{port}",
+            return await unix_connect(
+                str(socket),
+                "ws://viewer/",
                 subprotocols=offered or None,
                 max_size=None,  # it is ours
                 compression=None,
                 ping_interval=None,
                 max_queue=2,
-                proxy=None,
             )
         except (OSError, InvalidHandshake) as error:
             log.warning("viewer of %s: %s", project.name, error)
-            await viewers.give_up(project, port)
+            await viewers.give_up(project, socket)
     raise ViewerFailed(f"the viewer of {project.name} ends as soon as it starts")
 
 
