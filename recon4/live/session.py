@@ -11,12 +11,11 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
-import tempfile
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from recon4.errors import StoreError
+from recon4.runtime_folder import runtime_folder
 from recon4.store.atomic import write_json
 
 _DAY_NS = 86_400_000_000_000
@@ -64,11 +63,7 @@ class Session:
     def socket(self, name: str) -> Path:
         """Where a process of this capture listens: short, as a socket's path must be."""
         name_of_us = hashlib.sha256(str(self.project.resolve()).encode()).hexdigest()[:16]
-        folder = Path(tempfile.gettempdir()) / f"recon4-{os.getuid()}"
-        folder.mkdir(mode=0o700, exist_ok=True)
-        if folder.stat().st_uid != os.getuid() or folder.stat().st_mode & 0o077:
-            raise StoreError(f"{folder} is not ours alone: remove it")
-        return folder / f"{name_of_us}.{name}"
+        return runtime_folder() / f"{name_of_us}.{name}"
 
     def save(self) -> None:
         """Write ``session.json``."""
