@@ -19,6 +19,7 @@ from app.projects.trash import Trash
 from app.review.store import Reviews
 from app.settings import ServerSettings
 from app.slices.store import Slices
+from app.streams import Streams
 from app.uploads.store import UploadStore
 from app.viewer.pool import ViewerPool
 
@@ -37,6 +38,7 @@ class Parts:
     supervisor: Supervisor
     viewers: ViewerPool
     compute_pool: ComputePool
+    event_streams: Streams
     captures: Captures
     reviews: Reviews
     slices: Slices

@@ -29,6 +29,7 @@ from app.jobs import choices
 from app.jobs import routes as job_routes
 from app.jobs.store import JobStore
 from app.jobs.supervisor import Supervisor
+from app.leftovers import child_register, sweep_leftovers
 from app.listen import (
     AnnouncingServer,
     certificate_of,
@@ -52,14 +53,15 @@ from app.review.store import Reviews
 from app.settings import ServerSettings
 from app.slices import routes as slice_routes
 from app.slices.store import Slices
+from app.streams import StreamLimits, Streams
 from app.uploads import routes as upload_routes
 from app.uploads.store import UploadStore
 from app.viewer import page, proxy
 from app.viewer.pool import ViewerPool
-from app.viewer.sockets import Sockets
 from recon4 import __version__
 
 WEB = Path(__file__).parents[1] / "web"
+EVENT_STREAMS = StreamLimits(most=128, per_person=16, per_address=48, reserved=8)
 MAY_LOOK = [Depends(needs(May.LOOK))]
 
 
@@ -116,6 +118,7 @@ def serve(
         StoreError: If it cannot listen there, or another server runs on the same folder.
     """
     with private_files(settings.lan), only_one(settings), listening(settings) as listener:
+        sweep_leftovers(settings)
         certificate = certificate_of(settings)
         app = create_app(settings)
         best, *others = urls(settings, listener)
@@ -143,11 +146,9 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
     viewers = ViewerPool(
         idle_s=settings.viewer_idle_s,
         points=settings.viewer_points,
-        logs=settings.state / "viewers",
-        jobs=settings.state / "jobs",
-        sockets=Sockets(
-            most=settings.viewer_sockets, most_a_person=settings.viewer_sockets_a_person
-        ),
+        state=settings.state,
+        sockets=Streams("viewers", _viewer_limits(settings)),
+        children=child_register(settings),
     )
     uploads = UploadStore(settings)
     slices = Slices(pool, projects, settings)
@@ -163,6 +164,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
         supervisor=supervisor,
         viewers=viewers,
         compute_pool=pool,
+        event_streams=Streams("event streams", EVENT_STREAMS),
         captures=captures,
         reviews=Reviews(pool),
         slices=slices,
@@ -184,6 +186,16 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
         await viewers.close()
         jobs.close()
         access.close()
+
+
+def _viewer_limits(settings: ServerSettings) -> StreamLimits:
+    most = settings.viewer_sockets
+    return StreamLimits(
+        most=most,
+        per_person=settings.viewer_sockets_a_person,
+        per_address=max(most // 2, settings.viewer_sockets_a_person),
+        reserved=most // 8,
+    )
 
 
 def _add_pages(app: FastAPI) -> None:

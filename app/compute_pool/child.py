@@ -1,7 +1,7 @@
 """A child of the compute pool, started by `app.compute_pool.process`.
 
-Arguments: its scratch folder, descriptor of its lifeline, perhaps ``--background``, modules to import. It confines
-itself as its first message says, then answers calls until its input ends.
+Arguments: its scratch folder, descriptor of its lifeline, perhaps ``--background``, modules to
+import. It confines itself as its first message says, then answers calls until its input ends.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 from tests.project_builder import ROOM_M, build_project
-from tests.service.running import server_thread, wait_for
+from tests.service.running import server_thread
 
 Z1 = {"kind": "horizontal", "z_m": 1.5, "thickness_m": 0.2}
 BASE = "/api/projects/office/slices"

@@ -70,7 +70,7 @@ ONLY_HERE = {
     "open3d": {"recon4/simulation/raycast.py"},
     "laspy": {"recon4/export/laz.py", "recon4/slices/clouds.py"},
     "ctypes": {"recon4/sandbox"},
-    "viser": {"app/viewer/show.py", "app/viewer/panels.py"},
+    "viser": {"app/viewer/show.py", "app/viewer/panels.py", "app/viewer/unix_socket.py"},
     "matplotlib": {
         "recon4/report",
         "recon4/slices/colors.py",
