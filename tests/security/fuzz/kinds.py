@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import contextlib
-import importlib
 import re
 import struct
-from collections.abc import Callable
-from functools import partial
+from collections.abc import Callable, Iterator
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -36,6 +35,7 @@ from recon4.store.ledger import Ledger
 from recon4.store.project import read_description
 from recon4.store.stage import damage_of, read_manifest
 from tests.security.fuzz import seeds_clouds as clouds
+from tests.security.fuzz import seeds_recordings as recordings
 from tests.security.fuzz import seeds_tables as tables
 from tests.security.fuzz.kind import Kind, Reading
 
@@ -296,13 +296,53 @@ _ALL = (
 )
 
 
-def _recordings() -> tuple[Kind, ...]:
-    """Captures and bags, from the module of their readers."""
-    with contextlib.suppress(ModuleNotFoundError):
-        module = importlib.import_module("tests.security.fuzz.seeds_recordings")
-        found: tuple[Kind, ...] = module.kinds()
-        return found
-    return ()
+def _recording(path: Path) -> Reading:
+    found = recordings.read_recording(path)
+    return Reading(found.items, salvaged=found.outcome != "complete" or bool(found.warnings))
+
+
+def _metadata(path: Path) -> Reading:
+    found = recordings.read_metadata(path)
+    return Reading(found.items, salvaged=found.outcome != "complete" or bool(found.warnings))
+
+
+def _recordings() -> Iterator[Kind]:
+    """Captures and bags, with every compression as a seed."""
+    seeds = {
+        "pcap": ("a.pcap", [recordings.seed_pcap]),
+        "pcapng": ("a.pcapng", [recordings.seed_pcapng]),
+        "bag1": (
+            "a.bag",
+            [recordings.seed_bag1, recordings.seed_bag1_bz2, recordings.seed_bag1_lz4],
+        ),
+        "db3": ("a.db3", [recordings.seed_db3]),
+        "mcap": (
+            "a.mcap",
+            [recordings.seed_mcap, recordings.seed_mcap_lz4, recordings.seed_mcap_zstd],
+        ),
+    }
+    for name, (file_name, makers) in seeds.items():
+        yield Kind(
+            name=name,
+            file_name=file_name,
+            seeds=partial(_made, tuple(makers)),
+            read=_recording,
+            # A capture has no end mark: it is whole up to its last whole packet.
+            knows_end=name not in ("pcap", "pcapng"),
+            header_bytes=4096,
+        )
+    yield Kind(
+        name="yaml",
+        file_name="metadata.yaml",
+        seeds=partial(_made, (recordings.seed_metadata,)),
+        read=_metadata,
+        knows_end=False,
+    )
+
+
+@cache
+def _made(makers: tuple[Callable[[], bytes], ...]) -> tuple[bytes, ...]:
+    return tuple(make() for make in makers)
 
 
 KINDS: dict[str, Kind] = {kind.name: kind for kind in (*_ALL, *_recordings())}

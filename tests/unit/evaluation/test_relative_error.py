@@ -176,8 +176,6 @@ def test_a_file_that_is_no_mesh_is_refused_by_name(tmp_path: Path, content: byte
     (tmp_path / "model.ply").write_bytes(content)
 
     with pytest.raises(CorruptFile, match=r"model\.ply: .*(a triangle mesh|a PLY header needs)"):
-        CorruptFile, match=r"model\.ply: .*(expected a triangle mesh|a PLY header needs)"
-    ):
         read_mesh(tmp_path / "model.ply")
 
 
