@@ -167,6 +167,17 @@ def text_blocks(
             yield _block(rest, number, path.name, failure)
 
 
+def parse_float(text: str) -> float:
+    """A number as tables have it; Python's own ``1_000`` is refused.
+
+    Raises:
+        ValueError: If it is no number.
+    """
+    if "_" in text or not text.isascii():
+        raise ValueError(f"expected a number, got {text[:40]!r}")
+    return float(text)
+
+
 def parse_json(text: str | bytes, name: str, *, failure: Failure = CorruptFile) -> Any:
     """Parse JSON of unknown origin.
 

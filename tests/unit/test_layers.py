@@ -43,7 +43,9 @@ MAY_IMPORT = {
     "recon4/intensity": STAGE | {"recon4.mapping", "recon4.intensity"},
     "recon4/mapping": STAGE | {"recon4.intensity", "recon4.mapping"},
     "recon4/export": STAGE | {"recon4.mapping", "recon4.export"},
-    "recon4/evaluation": STAGE | {"recon4.mapping", "recon4.evaluation", "recon4.simulation"},
+    "recon4/evaluation": STAGE
+    | {"recon4.mapping", "recon4.evaluation", "recon4.simulation"}
+    | {f"recon4.recording.{reader}" for reader in ("cloud_files", "cloud_headers", "poses")},
     "recon4/slices": STAGE
     | {f"recon4.{room}" for room in ("recording", "mapping", "georeference", "export")}
     | {"recon4.evaluation", "recon4.slices"},
