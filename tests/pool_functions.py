@@ -55,3 +55,68 @@ def make(name: str) -> None:
 def make_and_refuse(name: str) -> None:
     make(name)
     raise ConfigError("no")
+
+
+# -- what a hostile file might make a child do
+
+
+def read_file(path: str) -> str:
+    return Path(path).read_text()
+
+
+def write_file(path: str) -> None:
+    Path(path).write_text("owned")
+
+
+def connect(port: int) -> None:
+    import socket
+
+    socket.create_connection(("127.0.0.1", port), 5.0)
+
+
+def environment() -> dict[str, str]:
+    return dict(os.environ)
+
+
+def take_memory(count: int) -> int:
+    import numpy as np
+
+    return int(np.ones(count, np.uint8).sum())
+
+
+def run_program() -> None:
+    import subprocess
+
+    subprocess.run(["/bin/true"], check=True)
+
+
+def kill_parent() -> None:
+    os.kill(os.getppid(), signal.SIGKILL)
+
+
+def link_out(name: str, target: str) -> None:
+    Path(name).symlink_to(target)
+
+
+def answer_with_a_pickle() -> int:
+    """Write past the protocol, as native code that was taken over would."""
+    import pickle
+
+    from app.compute_pool.messages import HEAD, RESULT
+
+    class Owned:
+        def __reduce__(self):
+            return os.system, ("touch /tmp/recon4-owned",)
+
+    data = pickle.dumps(Owned())
+    for descriptor in range(3, 20):
+        try:
+            os.write(descriptor, HEAD.pack(RESULT, len(data)) + data)
+        except OSError:
+            continue
+    return 0
+
+
+def note_and_pause(path: str) -> None:
+    Path(path).write_text(str(os.getpid()))
+    signal.pause()

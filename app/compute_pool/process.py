@@ -184,6 +184,5 @@ def _move(made: Path, place: Path) -> None:
 
 
 def _environment(scratch: Path) -> dict[str, str]:
-    """The environment of workers, with this server's modules and a temporary folder of its own."""
-    modules = os.pathsep.join(path for path in sys.path if path)
-    return {**worker_environment(), "PYTHONPATH": modules, "TMPDIR": str(scratch)}
+    """The environment of workers, with a temporary folder of its own."""
+    return {**worker_environment(), "TMPDIR": str(scratch)}

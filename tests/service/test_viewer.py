@@ -11,7 +11,6 @@ import msgspec.msgpack
 import numpy as np
 import psutil
 import pytest
-from app.viewer.sockets import Sockets
 from viser import _messages
 from websockets.exceptions import ConnectionClosed
 
@@ -247,14 +246,6 @@ def test_a_flood_of_messages_arrives_late_but_whole(server):
         waited_s = client.until(lambda c: '"point_size_m": 0.2' in str(c.storage))
 
     assert waited_s > 1.0
-
-
-def test_sockets_are_counted_in_all_and_by_person():
-    sockets = Sockets(most=3, most_a_person=2)
-
-    assert [sockets.enter(who) for who in "aaabc"] == [True, True, False, True, False]
-    sockets.leave("a")
-    assert sockets.enter("c") and not sockets.enter("b")
 
 
 def test_one_viewer_too_many_is_told_so_and_the_others_stay(root):
