@@ -9,7 +9,7 @@ from fastapi import Depends
 from starlette.requests import HTTPConnection
 
 from app.access.door import Access
-from app.desk import Desk
+from app.compute_pool import ComputePool
 from app.jobs.store import JobStore
 from app.jobs.supervisor import Supervisor
 from app.live.store import Captures
@@ -19,6 +19,7 @@ from app.projects.trash import Trash
 from app.review.store import Reviews
 from app.settings import ServerSettings
 from app.slices.store import Slices
+from app.streams import Streams
 from app.uploads.store import UploadStore
 from app.viewer.pool import ViewerPool
 
@@ -36,7 +37,8 @@ class Parts:
     jobs: JobStore
     supervisor: Supervisor
     viewers: ViewerPool
-    desk: Desk
+    compute_pool: ComputePool
+    event_streams: Streams
     captures: Captures
     reviews: Reviews
     slices: Slices

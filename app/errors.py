@@ -14,7 +14,8 @@
     ├── TooLarge             413  more bytes than the server takes
     ├── NoRoom               507  the disk has no room for it
     ├── ViewerFailed         503  the 3-D viewer does not start
-    └── DeskFailed           503  a helper process died or took too long
+    ├── ComputeFailed        503  a helper process died or took too long
+    └── ClientLeft           499  the client disconnected; nobody reads the answer
 
 A `Recon4Error` of the library is the fault of the input: 422. What the framework refuses (fields
 of the wrong kind, addresses that are none) is answered in the same form.
@@ -143,10 +144,16 @@ class ViewerFailed(AppError):
     status = 503
 
 
-class DeskFailed(AppError):
+class ComputeFailed(AppError):
     """A helper process died or took too long."""
 
     status = 503
+
+
+class ClientLeft(AppError):
+    """The client disconnected; nobody reads the answer."""
+
+    status = 499
 
 
 class Problem(BaseModel):

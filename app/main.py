@@ -22,13 +22,14 @@ from app.access.guard import Guard
 from app.access.people import May, anybody, needs
 from app.access.routes_check import check_declared
 from app.access.welcome import welcome
+from app.compute_pool import ComputePool
 from app.deps import Parts, Server
 from app.description import description
-from app.desk import Desk
 from app.jobs import choices
 from app.jobs import routes as job_routes
 from app.jobs.store import JobStore
 from app.jobs.supervisor import Supervisor
+from app.leftovers import child_register, sweep_leftovers
 from app.listen import (
     AnnouncingServer,
     certificate_of,
@@ -52,13 +53,15 @@ from app.review.store import Reviews
 from app.settings import ServerSettings
 from app.slices import routes as slice_routes
 from app.slices.store import Slices
+from app.streams import StreamLimits, Streams
 from app.uploads import routes as upload_routes
 from app.uploads.store import UploadStore
 from app.viewer import page, proxy
-from app.viewer.pool import Sockets, ViewerPool
+from app.viewer.pool import ViewerPool
 from recon4 import __version__
 
 WEB = Path(__file__).parents[1] / "web"
+EVENT_STREAMS = StreamLimits(most=128, per_person=16, per_address=48, reserved=8)
 MAY_LOOK = [Depends(needs(May.LOOK))]
 
 
@@ -115,6 +118,7 @@ def serve(
         StoreError: If it cannot listen there, or another server runs on the same folder.
     """
     with private_files(settings.lan), only_one(settings), listening(settings) as listener:
+        sweep_leftovers(settings)
         certificate = certificate_of(settings)
         app = create_app(settings)
         best, *others = urls(settings, listener)
@@ -136,38 +140,38 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
     access = open_access(settings.state, login=settings.lan)
     jobs = JobStore(settings.state / "jobs.sqlite")
     supervisor = Supervisor(jobs, settings)
-    desk = Desk()
+    pool = ComputePool(settings.state / "compute")
     captures = Captures(settings.root)
     projects = ProjectStore(settings.root, settings.import_roots)
     viewers = ViewerPool(
         idle_s=settings.viewer_idle_s,
         points=settings.viewer_points,
-        logs=settings.state / "viewers",
-        jobs=settings.state / "jobs",
-        sockets=Sockets(
-            most=settings.viewer_sockets, most_a_person=settings.viewer_sockets_a_person
-        ),
+        state=settings.state,
+        sockets=Streams("viewers", _viewer_limits(settings)),
+        children=child_register(settings),
     )
     uploads = UploadStore(settings)
+    slices = Slices(pool, projects, settings)
     trash = Trash(settings.root, settings.state / "trash", kept_s=settings.trash_s)
     app.state.parts = Parts(
         settings=settings,
         access=access,
         projects=projects,
-        pictures=Pictures(settings.state / "pictures"),
+        pictures=Pictures(pool, settings.state / "pictures"),
         trash=trash,
         uploads=uploads,
         jobs=jobs,
         supervisor=supervisor,
         viewers=viewers,
-        desk=desk,
+        compute_pool=pool,
+        event_streams=Streams("event streams", EVENT_STREAMS),
         captures=captures,
-        reviews=Reviews(desk),
-        slices=Slices(desk, projects, settings.state / "slices"),
+        reviews=Reviews(pool),
+        slices=slices,
     )
     watching = [
         asyncio.create_task(supervisor.run()),
-        asyncio.create_task(look_after(jobs, uploads, trash)),
+        asyncio.create_task(look_after(jobs, uploads, trash, slices)),
         asyncio.create_task(captures.adopt()),
     ]
     try:
@@ -177,11 +181,21 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
             task.cancel()
         await asyncio.gather(*watching, return_exceptions=True)
         await captures.leave()
-        desk.close()
+        await pool.close()
         supervisor.close()
         await viewers.close()
         jobs.close()
         access.close()
+
+
+def _viewer_limits(settings: ServerSettings) -> StreamLimits:
+    most = settings.viewer_sockets
+    return StreamLimits(
+        most=most,
+        per_person=settings.viewer_sockets_a_person,
+        per_address=max(most // 2, settings.viewer_sockets_a_person),
+        reserved=most // 8,
+    )
 
 
 def _add_pages(app: FastAPI) -> None:

@@ -1,13 +1,13 @@
 """The command line: ``recon4 COMMAND --help``.
 
-Exit codes: 0 done, 1 a known error (said in one line), 2 wrong usage, 130 interrupted.
+Exit codes: 0 done, 1 a known error (said in one line), 2 wrong usage, 128 + n stopped by signal n
+(130 Ctrl-C, 143 SIGTERM).
 """
 
 from __future__ import annotations
 
 import json
 import os
-import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -21,6 +21,7 @@ from recon4.cli_serve import server
 from recon4.cli_slices import slices
 from recon4.cli_users import users
 from recon4.errors import Cancelled, Recon4Error
+from recon4.stopping import StopSignals
 from recon4.terminal import write
 
 if TYPE_CHECKING:
@@ -41,7 +42,9 @@ app.add_typer(live)
 app.add_typer(slices)
 
 _INTERRUPTED = 130
-"""What shells give a program that Ctrl-C ended; typer turns the interrupt into this code."""
+"""What shells report for a program that Ctrl-C ended."""
+_RESUMABLE = {"process", "demo"}
+"""Commands that keep finished stages."""
 
 PresetOption = Annotated[
     str, typer.Option("--preset", help="Start from: indoor, staircase, outdoor, thesis.")
@@ -265,39 +268,63 @@ def _every_command(
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command and say how it ended."""
-    signal.signal(signal.SIGTERM, _interrupt)
+    """Run one command and say how it ended.
+
+    Args:
+        arguments: Those behind ``recon4``; None = those of this process.
+
+    Returns:
+        The exit code.
+    """
+    with StopSignals() as stop:
+        return run(list(sys.argv[1:] if arguments is None else arguments), stop)
+
+
+def run(arguments: list[str], stop: StopSignals) -> int:
+    """Run one command while signals are caught.
+
+    Args:
+        arguments: Those behind ``recon4``.
+        stop: Open.
+
+    Returns:
+        The exit code.
+    """
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(
             name, "1"
         )  # small matrices: more threads only get in each other's way
-    given = None if arguments is None else list(arguments)
     try:
-        code = app(args=given, prog_name="recon4", standalone_mode=False) or 0
-    except (typer.Abort, KeyboardInterrupt):
-        code = _INTERRUPTED
+        code, complaint = _run(arguments)
+    except BaseException:
+        if stop.received is None:
+            raise
+    if stop.received is not None:  # whatever else was raised comes from that
+        stop.say("; the same command goes on after the last finished stage" * _resumes(arguments))
+        return stop.exit_code
+    if complaint:
+        _complain(complaint)
+    return code
+
+
+def _run(arguments: list[str]) -> tuple[int, str]:
+    """Exit code and what to complain of."""
+    try:
+        return int(app(args=arguments, prog_name="recon4", standalone_mode=False) or 0), ""
+    except typer.Abort:
+        return _INTERRUPTED, ""
     except Cancelled as stop:
-        _complain(str(stop))
-        return _INTERRUPTED
+        return _INTERRUPTED, str(stop)
     except Recon4Error as error:
-        _complain(str(error))
-        return 1
+        return 1, str(error)
     except typer.TyperException as error:
-        return _wrong_usage(error)
-    if code == _INTERRUPTED:
-        _complain("interrupted; the same command resumes where it stopped")
-    return int(code)
+        context = getattr(error, "ctx", None)
+        command = context.command_path if context else "recon4"
+        return 2, f"{error.format_message()}\n{command} --help says what it takes"
 
 
-def _wrong_usage(error: typer.TyperException) -> int:
-    context = getattr(error, "ctx", None)
-    command = context.command_path if context else "recon4"
-    _complain(f"{error.format_message()}\n{command} --help says what it takes")
-    return 2
-
-
-def _interrupt(*_: object) -> None:
-    raise KeyboardInterrupt
+def _resumes(arguments: list[str]) -> bool:
+    return bool(arguments) and arguments[0] in _RESUMABLE
 
 
 def _settings(preset_name: str, assignments: list[str] | None) -> Settings:

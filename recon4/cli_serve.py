@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 import webbrowser
 from contextlib import suppress
@@ -103,5 +104,7 @@ def _serve(chosen: ServerSettings, *, open_project: str | None = None, show: boo
         if show:
             webbrowser.open(url)
 
+    # The server has signal handlers of its own: it stops in order and ends with code 0.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     with suppress(KeyboardInterrupt):
         run(chosen, open_project=open_project, on_ready=ready)

@@ -28,7 +28,8 @@ let fitted = false; // the whole map is shown, and nobody moved it since
 
 const scene = new LiveScene(cloud, {
   news: () => (drawWords(), redraw()),
-  link: (yes) => {
+  link: (yes, reason = "") => {
+    if (reason) byId("message").textContent = reason;
     if (yes === linked) return;
     linked = yes;
     if (yes) byId("message").textContent = ""; // what could not be asked for without a link

@@ -5,6 +5,8 @@ import { openLiveStream, readMe } from "./api.js";
 const SILENT_MS = 5000;
 const CONNECT_MS = 3000;
 const AGAIN_MS = 700;
+const TOO_MANY = 4429; // close code: no place for this stream; the reason says so in words
+const AGAIN_WHEN_FULL_MS = 10_000;
 const HERE_EVERY_MS = 30_000;
 
 export class LiveScene {
@@ -50,16 +52,16 @@ export class LiveScene {
     const socket = (this.#socket = openLiveStream(this.have, {
       onMessage: (told) => socket === this.#socket && this.#take(told),
       onPoints: (data) => socket === this.#socket && this.#takePoints(data),
-      onClose: () => socket === this.#socket && this.#lost(),
+      onClose: (event) => socket === this.#socket && this.#lost(event),
     }));
   }
 
-  #lost() {
+  #lost({ code, reason }) {
     this.#socket = null;
     this.#coming = null;
-    this.#on.link(false);
+    this.#on.link(false, code === TOO_MANY ? reason : "");
     readMe(true).catch(() => {}); // signed out meanwhile? then this leads to the login
-    setTimeout(() => this.#socket ?? this.#connect(), AGAIN_MS);
+    setTimeout(() => this.#socket ?? this.#connect(), code === TOO_MANY ? AGAIN_WHEN_FULL_MS : AGAIN_MS);
   }
 
   #connectAgain() {

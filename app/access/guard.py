@@ -110,10 +110,27 @@ def judge(scope: Scope, hosts: Hosts) -> Refusal | None:
         # Browsers always send Origin or Sec-Fetch-Site with these; scripts send neither.
         allowed = headers.get("sec-fetch-site", "same-origin") == "same-origin"
     if scope["type"] == "http" and scope["method"] in SAFE_METHODS:
-        allowed = True
+        allowed = allowed or _is_visit(scope, headers)
     if allowed:
         return None
     return Refusal(403, "Refused", "requests from other sites are not accepted")
+
+
+def _is_visit(scope: Scope, headers: Headers) -> bool:
+    """Whether a request that another site caused may pass: a person who follows a link to a page.
+
+    A page of another site may not make the server compute: an image, a frame, a download or a
+    redirect to ``/api/`` would start an export, and cookies are not even needed on loopback.
+    Browsers without Sec-Fetch-Site (before 2023) send neither header; nor do scripts.
+    """
+    site = headers.get("sec-fetch-site")
+    if site is None:
+        return not headers.getlist("origin")
+    if site in ("same-origin", "none"):
+        return True
+    link = headers.get("sec-fetch-mode") == "navigate"
+    page = headers.get("sec-fetch-dest") == "document"
+    return link and page and not scope["path"].startswith("/api/")
 
 
 def hostname(host: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import secrets
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
@@ -12,18 +12,21 @@ from fastapi import APIRouter, Depends, Query, Request
 from fastapi.responses import FileResponse, PlainTextResponse
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 from pydantic import BaseModel, ConfigDict, Field
+from starlette.concurrency import run_in_threadpool
 
 from app.access.audit import audit
+from app.access.caller import CalledBy
 from app.access.people import May, needs
-from app.access.rates import at_most
+from app.access.rate_limit import at_most
 from app.deps import Parts, Server
 from app.errors import NoRoom, NotFound, Problem, TooMany
 from app.jobs.model import Inputs, Job, JobState
 from app.jobs.space import refuse_if_full
 from app.jobs.status import Status
 from app.jobs.supervisor import now
+from app.rig_files import check_rig_file
 from recon4.errors import NoSpace
-from recon4.model.rig import load_rig, rig_presets
+from recon4.model.rig import rig_presets
 from recon4.settings import override, preset
 
 router = APIRouter(
@@ -96,12 +99,20 @@ def list_jobs(server: Server) -> list[JobView]:
 
 
 @router.post("/jobs", status_code=201, responses=REFUSALS, dependencies=START, summary="Start")
-def add_job(new: NewJob, server: Server, request: Request) -> JobView:
+async def start_job(new: NewJob, server: Server, request: Request, caller: CalledBy) -> JobView:
     """Put a job in the queue.
 
     On a project that exists, stages that do not depend on what changed are kept; so they are in a
     new project with ``clone_of``.
     """
+    if new.rig and new.rig not in rig_presets():
+        rig = await run_in_threadpool(server.projects.importable, new.rig)
+        await check_rig_file(server.compute_pool, caller, rig)
+    return await run_in_threadpool(add_job, new, server, request)
+
+
+def add_job(new: NewJob, server: Parts, request: Request) -> JobView:
+    """Put a job in the queue; a rig file must have been checked."""
     inputs = _checked(new, server)
     _refuse_too_many(server)
     if new.only_new:
@@ -197,7 +208,19 @@ def download_log(job_id: str, server: Server) -> FileResponse:
     return FileResponse(path, filename=f"{job.project}-log.txt", media_type="text/plain")
 
 
-@router.get("/events", response_class=EventSourceResponse, summary="Changes as they happen")
+def _event_place(request: Request, server: Server) -> Iterator[None]:
+    """A place among the event streams (dependency); held until the stream ends."""
+    with server.event_streams.place(request):
+        yield
+
+
+@router.get(
+    "/events",
+    response_class=EventSourceResponse,
+    responses={429: {"model": Problem}},
+    dependencies=[Depends(_event_place)],
+    summary="Changes as they happen",
+)
 async def stream_jobs(server: Server) -> AsyncIterator[ServerSentEvent]:
     """Server-sent events: a ``job`` with a `JobView` for each change of a job.
 
@@ -222,8 +245,6 @@ def _checked(new: NewJob, server: Parts) -> Inputs:
         return str(server.projects.importable(path)) if path else ""
 
     rig = new.rig if new.rig in rig_presets() else resolved(new.rig)
-    if rig:
-        load_rig(rig)
     inputs = Inputs(
         recordings=tuple(resolved(path) for path in new.recordings),
         preset=new.preset,

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
+from stat import S_ISREG
 
-from recon4.errors import ConfigError
+from recon4.bounded import read_text_limited
+from recon4.errors import ConfigError, CorruptFile
 from recon4.model.rig import load_rig, rig_presets
 
 MOST_FILES = 100
@@ -27,11 +30,20 @@ class RigChoice:
     """Why it cannot be used, in words; empty = it can."""
 
 
-def rigs_at_hand(folders: Sequence[Path]) -> list[RigChoice]:
-    """Rig files that lie in some folders, not deeper, or in ``rigs`` in them; then shipped ones."""
-    files = [path for folder in folders for path in _files(folder)]
-    own = [choice for path in files[:MOST_FILES] if (choice := _choice(path)) is not None]
-    return own + [_shipped(name) for name in rig_presets()]
+def rig_files(folders: Sequence[Path]) -> tuple[Path, ...]:
+    """TOML files that lie in some folders, not deeper, or in ``rigs`` in them."""
+    files = (path for folder in folders for path in _files(folder) if _fits(path))
+    return tuple(islice(files, MOST_FILES))
+
+
+def rigs_in(files: tuple[Path, ...]) -> list[RigChoice]:
+    """The rigs among some files; parses files of users, so it runs in a child."""
+    return [choice for path in files if (choice := _choice(path)) is not None]
+
+
+def shipped_rigs() -> list[RigChoice]:
+    """The rigs that come with recon4."""
+    return [_shipped(name) for name in rig_presets()]
 
 
 def _files(folder: Path) -> Iterator[Path]:
@@ -39,15 +51,23 @@ def _files(folder: Path) -> Iterator[Path]:
     yield from sorted(folder.glob("rigs/*.toml"))
 
 
+def _fits(path: Path) -> bool:
+    try:
+        found = path.lstat()
+    except OSError:
+        return False
+    return S_ISREG(found.st_mode) and found.st_size <= LARGEST_BYTES
+
+
 def _choice(path: Path) -> RigChoice | None:
     """A file that says it has sensors; others are no rigs."""
     try:
-        if path.stat().st_size > LARGEST_BYTES or "[[sensor]]" not in path.read_text("utf-8"):
+        if "[[sensor]]" not in read_text_limited(path, LARGEST_BYTES):
             return None
         rig = load_rig(path)
     except ConfigError as error:
         return RigChoice(str(path), path.name, [], str(error))
-    except (OSError, UnicodeDecodeError):
+    except (OSError, CorruptFile):
         return None
     return RigChoice(str(path), f"{rig.name} ({path.name})", [s.name for s in rig.sensors], "")
 

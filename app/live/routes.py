@@ -8,16 +8,21 @@ from typing import Literal
 from fastapi import APIRouter, Depends, WebSocket, WebSocketDisconnect
 from fastapi.responses import FileResponse
 from pydantic import BaseModel, ConfigDict, Field
+from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 
 from app.access.audit import audit
+from app.access.caller import CalledBy
 from app.access.people import May, Who, needs
+from app.compute_pool import FileAccess, Lane, Terms
 from app.deps import Server, parts
-from app.errors import Conflict, Problem
+from app.errors import Conflict, Problem, TooMany
 from app.jobs.routes import JobView, NewJob, add_job
 from app.live.phone import Phone, state_of
-from app.live.rigs import RigChoice, rigs_at_hand
+from app.live.rigs import RigChoice, rig_files, rigs_in, shipped_rigs
 from app.live.store import Captures
+from app.rig_files import check_rig_file
+from app.streams import TOO_MANY
 from recon4.settings import PRESETS
 
 LOOK = [Depends(needs(May.LOOK))]
@@ -30,8 +35,6 @@ router = APIRouter(
     responses={404: {"model": Problem}, 409: {"model": Problem}},
 )
 page = APIRouter()
-
-MOST_PHONES = 32
 
 
 class NewCapture(BaseModel):
@@ -95,22 +98,31 @@ def read_capture(server: Server, who: Who) -> CaptureView | None:
 
 
 @router.get("/choices", dependencies=LOOK, summary="Rigs and presets")
-def read_choices(server: Server) -> CaptureChoices:
+async def read_choices(server: Server, caller: CalledBy) -> CaptureChoices:
     """Rig files in the folder of the projects, or where recordings may lie; shipped rigs."""
-    folders = server.settings.import_roots
-    return CaptureChoices(presets=list(PRESETS), rigs=rigs_at_hand(folders))
+    files = await run_in_threadpool(rig_files, server.settings.import_roots)
+    own: list[RigChoice] = []
+    if files:
+        terms = Terms(person=caller.name, access=FileAccess(read=files))
+        pool = server.compute_pool
+        own = await caller.wait(pool.run_interactive(Lane.INSPECT, terms, rigs_in, files))
+    return CaptureChoices(presets=list(PRESETS), rigs=own + shipped_rigs())
 
 
 @router.post("", status_code=201, dependencies=CAPTURE, summary="Start a capture")
-async def start_capture(new: NewCapture, request: Request, server: Server, who: Who) -> CaptureView:
+async def start_capture(new: NewCapture, server: Server, who: Who, caller: CalledBy) -> CaptureView:
     """Open the sensors' ports and record; the recording is a project from its first moment."""
-    rig = str(server.projects.importable(new.rig)) if Path(new.rig).suffix else new.rig
+    rig = new.rig
+    if Path(new.rig).suffix:
+        file = await run_in_threadpool(server.projects.importable, new.rig)
+        await check_rig_file(server.compute_pool, caller, file)
+        rig = str(file)
     capture = await server.captures.start(
         new.project, rig, preset=new.preset, address=server.settings.live_address
     )
     if new.place:
         await capture.steer({"do": "mark", "what": "place", "text": new.place, "who": who.name})
-    audit(request, "live.start", new.project)
+    audit(caller.request, "live.start", new.project)
     return _view(server.captures, may_capture=True)
 
 
@@ -168,17 +180,14 @@ async def add_mark(mark: NewMark, server: Server, who: Who) -> dict[str, str]:
 async def stream(socket: WebSocket) -> None:
     """The map so far and everything new, as far as this phone lacks it (``docs/live.md``)."""
     captures = parts(socket).captures
-    if captures.listeners >= MOST_PHONES:
-        await socket.close(4429, "too many phones")
-        return
-    await socket.accept()
-    captures.listeners += 1
+    await socket.accept()  # a page learns the code and the words of an accepted socket only
     try:
-        await Phone(socket, captures).serve()
+        with captures.streams.place(socket):
+            await Phone(socket, captures).serve()
+    except TooMany as error:
+        await socket.close(TOO_MANY, str(error)[:120])
     except (WebSocketDisconnect, TimeoutError, RuntimeError):
         pass  # gone or stalled: it comes back and says what it has
-    finally:
-        captures.listeners -= 1
 
 
 def _view(captures: Captures, may_capture: bool) -> CaptureView:
@@ -189,6 +198,6 @@ def _view(captures: Captures, may_capture: bool) -> CaptureView:
         state=capture.state,
         words=state["words"],
         rates=state["rates"],
-        phones=captures.listeners,
+        phones=captures.streams.open,
         may_capture=may_capture,
     )

@@ -11,13 +11,18 @@ from typing import Any
 from app.errors import Conflict, NotFound
 from app.live.capture import Capture, unfinished
 from app.live.power import Power, read_battery
-from recon4.errors import ConfigError, StoreError
+from app.streams import StreamLimits, Streams
+from recon4.bounded import read_text_limited
+from recon4.errors import ConfigError, CorruptFile, StoreError
 from recon4.live.link import listens
 from recon4.live.project_files import begin
 from recon4.live.session import Session, load_session
 from recon4.model.rig import Rig, load_rig
 
 log = logging.getLogger(__name__)
+
+MOST_MARKS_BYTES = 16 << 20
+LIVE_STREAMS = StreamLimits(most=32, per_person=8, per_address=16, reserved=4)
 
 
 class Captures:
@@ -28,7 +33,7 @@ class Captures:
         self._capture: Capture | None = None
         self._rig: Rig | None = None
         self._starting = asyncio.Lock()
-        self.listeners = 0
+        self.streams = Streams("live streams", LIVE_STREAMS)
         """Phones that look."""
         self.power = Power(read_battery)
         """Of this computer."""
@@ -118,8 +123,11 @@ class Captures:
 def marks_of(session: Session) -> list[dict[str, Any]]:
     """What was noted so far; a line that was being written when the power went is not there."""
     try:
-        lines = session.marks.read_text("utf-8").splitlines()
-    except FileNotFoundError:
+        if not session.marks.exists():
+            return []
+        lines = read_text_limited(session.marks, MOST_MARKS_BYTES).splitlines()
+    except CorruptFile as error:
+        log.warning("%s", error)
         return []
     marks = []
     for line in lines:

@@ -1,7 +1,8 @@
-"""What is inside a recording, and what to make of it: runs in a helper process of the desk."""
+"""What is inside a recording, and what to make of it: runs in a child of the compute pool."""
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -49,8 +50,26 @@ class Found:
     """A GNSS file that lies beside it."""
 
 
-def look_at(path: Path) -> Found:
+def files_beside(path: Path) -> tuple[Path, ...]:
+    """Regular files in the folder of a recording: what `look_at` may read besides it.
+
+    None among more than `MOST_BESIDE`, but those of the recording's own name (``x.db3-wal``).
+    """
+    folder = path if path.is_dir() else path.parent
+    with os.scandir(folder) as entries:
+        files = sorted(Path(one.path) for one in entries if one.is_file(follow_symlinks=False))
+    files = [file for file in files if file != path]
+    if len(files) > MOST_BESIDE:
+        return tuple(file for file in files if file.name.startswith(path.stem))[:MOST_BESIDE]
+    return tuple(files)
+
+
+def look_at(path: Path, beside: tuple[Path, ...]) -> Found:
     """Look at a recording.
+
+    Args:
+        path: File or folder.
+        beside: `files_beside` it.
 
     Raises:
         RecordingError: If it cannot be read or is nothing that recon4 knows.
@@ -60,9 +79,9 @@ def look_at(path: Path) -> Found:
     from recon4.recording.info import describe
 
     info = describe(path)
-    beside = _beside(path)
+    suited = _suited(beside)
     samples = " ".join(info.samples)
-    located = "GNSS" in samples or "GNSS" in beside
+    located = "GNSS" in samples or "GNSS" in suited
     return Found(
         path=str(path),
         kind=info.kind,
@@ -80,28 +99,24 @@ def look_at(path: Path) -> Found:
             for sensor in info.sensors
         ),
         samples=info.samples,
-        derived=tuple(text for text in info.derived if not _guessed(text, beside)),
-        missing=tuple(text for text in info.missing if not _there(text, beside)),
+        derived=tuple(text for text in info.derived if not _guessed(text, suited)),
+        missing=tuple(text for text in info.missing if not _there(text, suited)),
         warnings=(*info.warnings, *_gap_words(len(info.gaps))),
         project=_project_name(path),
         preset="outdoor" if located else "indoor",
-        rig=beside.get("rig", ""),
-        imu=beside.get("IMU", ""),
-        gnss=beside.get("GNSS", ""),
+        rig=suited.get("rig", ""),
+        imu=suited.get("IMU", ""),
+        gnss=suited.get("GNSS", ""),
     )
 
 
-def _beside(path: Path) -> dict[str, str]:
-    """Rig, IMU and GNSS files in the recording's folder, known by their content."""
+def _suited(files: tuple[Path, ...]) -> dict[str, str]:
+    """Rig, IMU and GNSS files, known by their content."""
     from recon4.errors import Recon4Error
     from recon4.model.rig import load_rig
     from recon4.recording.open import Kind, recognize
 
-    folder = path if path.is_dir() else path.parent
-    files = sorted(file for file in folder.iterdir() if file.is_file() and file != path)
     found: dict[str, str] = {}
-    if len(files) > MOST_BESIDE:
-        return found
     for file in files:
         try:
             if file.suffix == ".toml":

@@ -1,66 +1,55 @@
-"""The picture of a project: its map from above, made once in a process of its own.
-
-``python -m app.projects.picture MAP_ARTIFACT OUT.png`` makes it.
-"""
+"""The thumbnail of a project: its map from above, made once."""
 
 from __future__ import annotations
 
 import asyncio
-import sys
 from pathlib import Path
 
-from app.errors import NotFound
-from app.settings import worker_environment
-from recon4.store.atomic import atomic_file
+from app.compute_pool import ComputePool, FileAccess, Lane, Terms
+from app.errors import ComputeFailed, NotFound
+from recon4.errors import Recon4Error
 
-POINTS = 3_000_000
-"""So many points of a map are enough for a small picture."""
+MOST_POINTS = 3_000_000
+"""Points of a map that are enough for a thumbnail."""
+THUMBNAIL = "map.png"
 
 
 class Pictures:
-    """Makes pictures when they are asked for, one at a time, and keeps them."""
+    """Makes thumbnails when they are asked for, and keeps them."""
 
-    def __init__(self, kept: Path) -> None:
+    def __init__(self, pool: ComputePool, kept: Path) -> None:
+        self._pool = pool
         self._kept = kept
-        self._one = asyncio.Lock()
+        self._making: dict[Path, asyncio.Lock] = {}
 
-    async def of(self, artifact: Path) -> Path:
-        """The picture of the artifact of a stage ``map``.
+    async def of(self, artifact: Path, *, person: str) -> Path:
+        """The thumbnail of the artifact of a stage ``map``.
 
         Raises:
             NotFound: If it cannot be made.
+            TooMany: If too many thumbnails wait to be made.
         """
         path = self._kept / f"{artifact.name}.png"
-        async with self._one:
+        async with self._making.setdefault(path, asyncio.Lock()):
             if not path.exists():
-                self._kept.mkdir(parents=True, exist_ok=True)
-                process = await asyncio.create_subprocess_exec(
-                    *(sys.executable, "-m", "app.projects.picture", str(artifact), str(path)),
-                    stdin=asyncio.subprocess.DEVNULL,
-                    stdout=asyncio.subprocess.DEVNULL,
-                    stderr=asyncio.subprocess.DEVNULL,
-                    env=worker_environment(),
+                terms = Terms(
+                    person=person, access=FileAccess(read=(artifact,)), outputs={THUMBNAIL: path}
                 )
                 try:
-                    await process.wait()
-                finally:
-                    if process.returncode is None:
-                        process.kill()
-        if not path.exists():
-            raise NotFound("there is no picture of this map")
+                    await self._pool.run_background(
+                        Lane.THUMBNAIL, terms, draw_thumbnail, artifact, Path(THUMBNAIL)
+                    )
+                except (Recon4Error, ComputeFailed) as error:
+                    raise NotFound(f"there is no picture of this map: {error}") from error
+        self._making.pop(path, None)
         return path
 
 
-def draw(artifact: Path, out: Path) -> None:
+def draw_thumbnail(artifact: Path, out: Path) -> None:
     """Draw a map from above: walls as black lines on nothing."""
     from recon4.mapping.tiles import TileSet
     from recon4.report.maps import ABOVE, ink_png, map_chunks, rasterize
 
     tiles = TileSet.open(artifact)
-    raster = rasterize(lambda: map_chunks(tiles, points=POINTS), (ABOVE,))[0]
-    with atomic_file(out) as part:
-        part.write_bytes(ink_png(raster))
-
-
-if __name__ == "__main__":
-    draw(Path(sys.argv[1]), Path(sys.argv[2]))
+    raster = rasterize(lambda: map_chunks(tiles, points=MOST_POINTS), (ABOVE,))[0]
+    out.write_bytes(ink_png(raster))

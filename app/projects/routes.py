@@ -5,13 +5,16 @@ from __future__ import annotations
 from fastapi import APIRouter, Depends, Request
 from fastapi.responses import FileResponse
 from pydantic import BaseModel, ConfigDict, Field
+from starlette.concurrency import run_in_threadpool
 
 from app.access.audit import audit
+from app.access.caller import CalledBy
 from app.access.people import May, needs
+from app.compute_pool import FileAccess, Lane, Terms
 from app.deps import Parts, Server
 from app.errors import Conflict, Problem
 from app.jobs.model import JobState
-from app.projects.look import Found, look_at
+from app.projects.look import Found, files_beside, look_at
 from app.projects.model import FolderEntry, Project, ProjectCard
 from app.projects.trash import Deleted
 
@@ -114,9 +117,10 @@ def report(project_id: str, server: Server) -> FileResponse:
 
 
 @router.get("/projects/{project_id}/picture", response_class=FileResponse, summary="Picture")
-async def picture(project_id: str, server: Server) -> FileResponse:
+async def picture(project_id: str, server: Server, caller: CalledBy) -> FileResponse:
     """The map from above, PNG; drawn when it is asked for the first time."""
-    return FileResponse(await server.pictures.of(server.projects.map_artifact(project_id)))
+    artifact = await run_in_threadpool(server.projects.map_artifact, project_id)
+    return FileResponse(await caller.wait(server.pictures.of(artifact, person=caller.name)))
 
 
 @router.get(
@@ -136,10 +140,14 @@ def browse(server: Server, folder: str = "") -> list[FolderEntry]:
     responses={403: {"model": Problem}, 422: {"model": Problem}, 503: {"model": Problem}},
     summary="What is in a recording",
 )
-async def look(path: str, server: Server) -> Found:
+async def look(path: str, server: Server, caller: CalledBy) -> Found:
     """What is in a recording on this computer, and the settings that suit it."""
-    real = server.projects.importable(path)
-    return await server.desk.run("look", look_at, real, limit_s=LOOK_LIMIT_S)
+    real = await run_in_threadpool(server.projects.importable, path)
+    beside = await run_in_threadpool(files_beside, real)
+    terms = Terms(person=caller.name, access=FileAccess(read=(real, *beside)), limit_s=LOOK_LIMIT_S)
+    return await caller.wait(
+        server.compute_pool.run_background(Lane.INSPECT, terms, look_at, real, beside)
+    )
 
 
 def _refuse_while_busy(server: Parts, project_id: str) -> None:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import partial
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
 from fastapi import APIRouter, Depends, Query, Response
@@ -14,7 +13,9 @@ from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 
 from app.access.audit import audit
+from app.access.caller import CalledBy, Caller
 from app.access.people import May, Person, Who, fresh_login, needs
+from app.compute_pool import FileAccess, Lane, Terms
 from app.deps import Parts, Server
 from app.errors import Conflict, Problem
 from app.jobs.model import JobState
@@ -30,13 +31,17 @@ from app.review.model import (
     StandingView,
     Step,
 )
-from recon4.review.approval import NotApprovable, latest_approval
+from app.review.store import terms_of
+from recon4.review.approval import Approval, NotApprovable, latest_approval
 from recon4.review.approval import approve as sign
 from recon4.review.decisions import Decided, Decision, Kind, fold
 from recon4.review.journal import JournalMoved, NothingToTakeBack, Row, append, read_rows
 from recon4.review.pairs import align, fit_points, pair_facts, pair_points, walk_facts
+from recon4.review.signature import ensure_key
 from recon4.review.source import Source, graph_key
 from recon4.review.state import decisions_in_map
+
+T = TypeVar("T")
 
 LOOK = [Depends(needs(May.LOOK))]
 REVIEW = [Depends(needs(May.REVIEW))]
@@ -68,37 +73,36 @@ def read_review(project_id: str, server: Server, who: Who) -> ReviewView:
 
 
 @router.get("/queue", dependencies=LOOK, summary="Pairs to decide about")
-async def read_queue(project_id: str, server: Server) -> Response:
+async def read_queue(project_id: str, server: Server, caller: CalledBy) -> Response:
     """All pairs but odometry: those whose registration holds, then the others, by influence.
 
     ``columns`` names what each of the ``rows`` holds. Figures are those before any decision.
     """
     root = server.projects.folder(project_id)
     source = await run_in_threadpool(Source.of, root)
-    told = await server.reviews.queue(root, source.key)
+    told = await caller.wait(server.reviews.queue(root, source, person=caller.name))
     return Response(told, media_type="application/json")
 
 
 @router.get("/walk", dependencies=LOOK, summary="Moments of the walk")
-async def read_walk(project_id: str, server: Server) -> dict[str, Any]:
+async def read_walk(project_id: str, server: Server, caller: CalledBy) -> dict[str, Any]:
     """Nodes of the graph: multiframe, seconds since the start, position."""
-    root = server.projects.folder(project_id)
-    return await server.desk.run("pairs", walk_facts, root)
+    return await _of_pairs(project_id, server, caller, walk_facts)
 
 
 @router.get("/pair", dependencies=LOOK, summary="One pair")
 async def read_pair(
-    project_id: str, server: Server, frame_i: Frame, frame_j: Frame
+    project_id: str, server: Server, caller: CalledBy, *, frame_i: Frame, frame_j: Frame
 ) -> dict[str, Any]:
     """Poses of a pair, tried or not, and its alternative paths one by one."""
-    root = server.projects.folder(project_id)
-    return await server.desk.run("pairs", pair_facts, root, (frame_i, frame_j))
+    return await _of_pairs(project_id, server, caller, pair_facts, (frame_i, frame_j))
 
 
 @router.get("/points", dependencies=LOOK, summary="Points of a pair")
 async def read_points(
     project_id: str,
     server: Server,
+    caller: CalledBy,
     *,
     frame_i: Frame,
     frame_j: Frame,
@@ -109,16 +113,17 @@ async def read_points(
     Little-endian: ``R4PP``, uint32 version (1), uint32 numbers of points of i and of j, then
     float32 x y z of the points of i in the body frame at i, then of j at j [m].
     """
-    root = server.projects.folder(project_id)
-    told = await server.desk.run("pairs", pair_points, root, (frame_i, frame_j), reach)
+    told = await _of_pairs(project_id, server, caller, pair_points, (frame_i, frame_j), reach)
     return Response(told, media_type="application/octet-stream")
 
 
 @router.post("/align", dependencies=REVIEW, summary="Register a pair")
-async def align_pair(project_id: str, guess: Guess, server: Server) -> AlignmentView:
+async def align_pair(
+    project_id: str, guess: Guess, server: Server, caller: CalledBy
+) -> AlignmentView:
     """Register two places as the search does, from a first guess; decides nothing."""
     root, pair = server.projects.folder(project_id), (guess.frame_i, guess.frame_j)
-    found = await server.desk.run("pairs", align, root, pair, tuple(guess.T_i_j))
+    found = await _of_pairs(project_id, server, caller, align, pair, tuple(guess.T_i_j))
     told = found.to_json()["measurement"]
     figures = ("overlap", "error_m", "limit_m", "degeneracy", "iterations")
     return AlignmentView(
@@ -166,7 +171,7 @@ def redo(project_id: str, step: Step, server: Server, who: Who) -> ReviewView:
 
 
 @router.get("/effect", dependencies=LOOK, summary="What the decisions do")
-async def read_effect(project_id: str, server: Server) -> dict[str, Any]:
+async def read_effect(project_id: str, server: Server, caller: CalledBy) -> dict[str, Any]:
     """The graph solved with what stands now: chi², moves, conflicts, without making a new map.
 
     ``superseded`` is true, and nothing else there, when somebody decided something meanwhile.
@@ -174,7 +179,9 @@ async def read_effect(project_id: str, server: Server) -> dict[str, Any]:
     root = server.projects.folder(project_id)
     source = await run_in_threadpool(Source.of, root)
     decided, before = _now_and_before(await run_in_threadpool(read_rows, root))
-    told = await server.reviews.effect(root, source.key, decided, before)
+    told = await caller.wait(
+        server.reviews.effect(root, source, decided=decided, before=before, person=caller.name)
+    )
     return {"superseded": True} if told is None else told
 
 
@@ -199,17 +206,43 @@ async def approve(
     signer = {"who": who.name, "role": str(who.role), "why": asked.why}
     key = server.settings.state / "signing.key"
     try:
-        approval = await server.desk.run(
-            "review",
-            partial(sign, seen=(asked.after_seq, asked.graph)),
-            *(root, key, signer, asked.confirmed),
-            limit_s=SIGNING_LIMIT_S,
-        )
+        approval = await _sign(root, key, signer, asked, server=server)
     except NotApprovable as error:
         raise Conflict(str(error)) from error
     what = f"{project_id} version {approval.version} {approval.hash}"
     await run_in_threadpool(audit, request, "approve", what)
     return await run_in_threadpool(_view, project_id, server, who)
+
+
+async def _of_pairs(
+    project_id: str, server: Parts, caller: Caller, function: Callable[..., T], *args: object
+) -> T:
+    """What a function of the project's graph returns, while the caller waits."""
+    root = server.projects.folder(project_id)
+    source = await run_in_threadpool(Source.of, root)
+    terms = terms_of(root, caller.name)
+    return await caller.wait(
+        server.compute_pool.run_interactive(Lane.PAIR, terms, function, source, *args)
+    )
+
+
+async def _sign(
+    root: Path, key: Path, signer: dict[str, str], asked: Approve, *, server: Parts
+) -> Approval:
+    """Sign in a child of its own, the only one that can read the key.
+
+    It is not cancelled when the client leaves: an approval counts or does not.
+    """
+    await run_in_threadpool(ensure_key, key)
+    terms = Terms(
+        person=signer["who"],
+        access=FileAccess(read=(key,), write=(root,)),
+        limit_s=SIGNING_LIMIT_S,
+    )
+    seen = (asked.after_seq, asked.graph)
+    return await server.compute_pool.run_background(
+        Lane.SIGN, terms, sign, root, key, signer, asked.confirmed, seen=seen
+    )
 
 
 def _step(kind: Kind, project_id: str, step: Step, *, server: Parts, who: Person) -> ReviewView:

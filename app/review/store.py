@@ -8,22 +8,28 @@ from collections import OrderedDict
 from pathlib import Path
 from typing import Any
 
-from app.desk import Desk
+from app.compute_pool import ComputePool, FileAccess, Lane, Terms
 from app.errors import Conflict
 from recon4.review.decisions import Decided, Measurement, Pair
 from recon4.review.pairs import Alignment
 from recon4.review.preview import preview
 from recon4.review.queue import queue_json
+from recon4.review.source import Source
 
 _MOST_MEASUREMENTS = 500
 _MOST_QUEUES = 4
 
 
+def terms_of(root: Path, person: str) -> Terms:
+    """Work that may read the artifacts of a project and nothing else."""
+    return Terms(person=person, access=FileAccess(read=(root / "artifacts",)))
+
+
 class Reviews:
     """One a server."""
 
-    def __init__(self, desk: Desk) -> None:
-        self._desk = desk
+    def __init__(self, pool: ComputePool) -> None:
+        self._pool = pool
         self._measured: OrderedDict[str, tuple[Path, Pair, Measurement]] = OrderedDict()
         self._queues: OrderedDict[tuple[Path, str], bytes] = OrderedDict()
         self._wanted: dict[Path, tuple[str, str]] = {}
@@ -53,11 +59,13 @@ class Reviews:
 
     # -- the queue: the same for the same graph
 
-    async def queue(self, root: Path, key: str) -> bytes:
+    async def queue(self, root: Path, source: Source, *, person: str) -> bytes:
         """`recon4.review.queue.queue_json`, made once a graph."""
-        known = (root, key)
+        known = (root, source.key)
         if known not in self._queues:
-            self._queues[known] = await self._desk.run("review", queue_json, root)
+            self._queues[known] = await self._pool.run_interactive(
+                Lane.REVIEW, terms_of(root, person), queue_json, source
+            )
             if len(self._queues) > _MOST_QUEUES:
                 self._queues.popitem(last=False)
         return self._queues[known]
@@ -65,16 +73,18 @@ class Reviews:
     # -- the quick look: the latest wins
 
     async def effect(
-        self, root: Path, key: str, decided: Decided, before: Decided
+        self, root: Path, source: Source, *, decided: Decided, before: Decided, person: str
     ) -> dict[str, Any] | None:
         """`recon4.review.preview.preview`; None if somebody decided something meanwhile."""
-        known = (key, decided.key, before.key)
+        known = (source.key, decided.key, before.key)
         mine = (decided.key, before.key)
         self._wanted[root] = mine
         async with self._turns.setdefault(root, asyncio.Lock()):
             if self._wanted[root] != mine:
                 return None
             if root not in self._effects or self._effects[root][0] != known:
-                told = await self._desk.run("review", preview, root, decided, before)
+                told = await self._pool.run_interactive(
+                    Lane.REVIEW, terms_of(root, person), preview, source, decided, before
+                )
                 self._effects[root] = (known, told)
             return self._effects[root][1]

@@ -4,20 +4,22 @@ from __future__ import annotations
 
 import base64
 import binascii
-from functools import partial
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
 
 from fastapi import APIRouter, Depends, Response
 from fastapi.responses import FileResponse, HTMLResponse, PlainTextResponse
-from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 
+from app.access.caller import CalledBy, Caller
 from app.access.people import May, needs
+from app.compute_pool import FileAccess, Terms
 from app.deps import Server
 from app.errors import BadRequest, Problem
 from app.projects.routes import REPORT_POLICY
 from app.slices import work
+from app.slices.exports import ExportRequest
 from app.slices.model import (
     AddReference,
     AskAlign,
@@ -32,11 +34,14 @@ from app.slices.model import (
     SliceFacts,
     Xyz,
 )
+from app.slices.store import Asking
 from recon4.errors import ConfigError
 
 LOOK = [Depends(needs(May.LOOK))]
 PROCESS = [Depends(needs(May.PROCESS))]
 WEB = Path(__file__).parents[2] / "web"
+SURFACES, REFERENCE = "surfaces.json", "reference"
+"""Names of what children make, in their own working folder."""
 
 router = APIRouter(
     prefix="/api/projects/{project_id}/slices",
@@ -54,7 +59,9 @@ def slices_page(project_id: str, server: Server) -> FileResponse:
 
 
 @router.get("", summary="What can be cut")
-async def read_facts(project_id: str, server: Server, source: str = "") -> SliceFacts:
+async def read_facts(
+    project_id: str, server: Server, caller: CalledBy, source: str = ""
+) -> SliceFacts:
     """Bounds, frame, fields, references and the other maps to compare with."""
     slices = server.slices
     artifacts = await run_in_threadpool(slices.artifacts, project_id, source)
@@ -63,11 +70,14 @@ async def read_facts(project_id: str, server: Server, source: str = "") -> Slice
         "sources": await run_in_threadpool(slices.sources, project_id),
         "approval": await run_in_threadpool(slices.approval_words, project_id, source),
     }
-    return await slices.draw(work.facts, artifacts, told)
+    terms = slices.terms(project_id, caller.name, source)
+    return await caller.wait(slices.draw(terms, work.facts, artifacts, told))
 
 
 @router.post("/picture", summary="A picture of a slice")
-async def picture(project_id: str, ask: AskPicture, server: Server) -> PictureView:
+async def picture(
+    project_id: str, ask: AskPicture, server: Server, caller: CalledBy
+) -> PictureView:
     """All points of the map in the window, at full resolution.
 
     Of the requests of one ``page`` only the latest is answered; the others get 409.
@@ -76,57 +86,93 @@ async def picture(project_id: str, ask: AskPicture, server: Server) -> PictureVi
     artifacts = await run_in_threadpool(slices.artifacts, project_id, ask.source)
     reference = slices.reference(project_id, ask.reference)
     ask.cut.cut()  # a plane without meaning is refused before it waits
-    return await slices.newest(ask.page, ask.turn, work.picture, artifacts["map"], reference, ask)
+    terms = slices.terms(project_id, caller.name, ask.source)
+    asking = Asking(ask.page, ask.turn)
+    return await caller.wait(
+        slices.newest(asking, terms, work.picture, artifacts["map"], reference, ask)
+    )
 
 
 @router.get("/overview", response_class=FileResponse, summary="The map from above")
-async def overview(project_id: str, server: Server, source: str = "") -> FileResponse:
+async def overview(
+    project_id: str, server: Server, caller: CalledBy, source: str = ""
+) -> FileResponse:
     """A transparent PNG; ``/overview/window`` says what it shows."""
-    return FileResponse(await _overview(project_id, server, source), media_type="image/png")
+    image = await _overview(project_id, server, caller, source)
+    return FileResponse(image, media_type="image/png")
 
 
 @router.get("/overview/window", summary="What the picture from above shows")
-async def overview_window(project_id: str, server: Server, source: str = "") -> dict[str, Any]:
+async def overview_window(
+    project_id: str, server: Server, caller: CalledBy, source: str = ""
+) -> dict[str, Any]:
     """Left, bottom, right and top in the map [m]."""
-    image = await _overview(project_id, server, source)
-    return work.read_kept(image.with_suffix(".json"))
+    image = await _overview(project_id, server, caller, source)
+    return await run_in_threadpool(work.read_kept, image.with_suffix(".json"))
 
 
 @router.post("/pick", summary="The point of the map at a place of a slice")
-async def pick(project_id: str, ask: AskPick, server: Server) -> PickView:
+async def pick(project_id: str, ask: AskPick, server: Server, caller: CalledBy) -> PickView:
     """Coordinates of the full-resolution point nearest to the place, in the map and its CRS."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, ask.source)
-    return await server.slices.draw(work.pick_point, artifacts, ask.cut.cut(), ask.uv, ask.radius_m)
+    terms = server.slices.terms(project_id, caller.name, ask.source)
+    cut = ask.cut.cut()
+    return await caller.wait(
+        server.slices.draw(terms, work.pick_point, artifacts, cut, ask.uv, ask.radius_m)
+    )
 
 
 @router.get("/doubles", summary="Double walls")
-async def doubles(project_id: str, server: Server, source: str = "") -> dict[str, Any]:
+async def doubles(
+    project_id: str, server: Server, caller: CalledBy, source: str = ""
+) -> dict[str, Any]:
     """Surfaces that were visited twice: double ones, and the others by how near they are to it."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, source)
     folder = artifacts["map"]
-    path = await server.slices.kept(
-        f"{Path(folder).name}-surfaces.json",
-        lambda out: server.slices.long(work.double_walls, folder, str(out)),
+    terms = server.slices.terms(project_id, caller.name, source)
+    path = await caller.wait(
+        server.slices.kept(
+            f"{Path(folder).name}-surfaces.json",
+            lambda out: server.slices.survey(
+                replace(terms, outputs={SURFACES: out}), work.double_walls, folder, SURFACES
+            ),
+        )
     )
-    return work.read_kept(path)
+    return await run_in_threadpool(work.read_kept, path)
 
 
 @router.post("/compare", summary="Slices against a reference")
-async def compare(project_id: str, ask: AskCompare, server: Server) -> dict[str, Any]:
+async def compare(
+    project_id: str, ask: AskCompare, server: Server, caller: CalledBy
+) -> dict[str, Any]:
     """Mean distance and shares within 2 and 5 cm of every slice (V Table 3.2)."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, ask.source)
     reference = server.slices.reference(project_id, ask.reference)
-    return await server.slices.long(work.comparison, artifacts["map"], reference, ask)
+    terms = server.slices.terms(project_id, caller.name, ask.source)
+    return await caller.wait(
+        server.slices.survey(terms, work.comparison, artifacts["map"], reference, ask)
+    )
 
 
 @router.post("/references", status_code=201, dependencies=PROCESS, summary="Add a reference")
-async def add_reference(project_id: str, add: AddReference, server: Server) -> dict[str, Any]:
+async def add_reference(
+    project_id: str, add: AddReference, server: Server, caller: CalledBy
+) -> dict[str, Any]:
     """A cloud or mesh on this computer (PLY, PCD, LAS, LAZ, E57, XYZ, CSV, OBJ, STL)."""
     path = await run_in_threadpool(server.projects.importable, add.path)
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     out = await run_in_threadpool(server.slices.new_reference, project_id)
     in_crs = artifacts if add.frame == "crs" else None
-    facts = await server.slices.long(work.add_reference, str(path), str(out), add.name, in_crs)
+    folders = tuple(Path(folder) for folder in in_crs.values()) if in_crs else ()
+    terms = Terms(
+        person=caller.name,
+        access=FileAccess(read=(path, *folders)),
+        outputs={REFERENCE: out},
+        large=True,
+    )
+    facts = await caller.wait(
+        server.slices.survey(terms, work.add_reference, str(path), REFERENCE, add.name, in_crs)
+    )
     return {"id": out.name} | facts
 
 
@@ -141,13 +187,20 @@ def remove_reference(project_id: str, reference_id: str, server: Server) -> Resp
 
 @router.post("/references/{reference_id}/align", dependencies=PROCESS, summary="Align it")
 async def align(
-    project_id: str, reference_id: str, ask: AskAlign, server: Server
+    project_id: str, reference_id: str, ask: AskAlign, *, server: Server, caller: CalledBy
 ) -> dict[str, Any]:
     """Lay a reference onto the map: by ICP, by pairs of points, or as its file says."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     folder = server.slices.reference(project_id, reference_id)
     pairs = (ask.p_map, ask.p_reference)
-    return await server.slices.long(work.align_reference, artifacts["map"], folder, ask.how, pairs)
+    terms = Terms(
+        person=caller.name,
+        access=FileAccess(read=(Path(artifacts["map"]),), write=(Path(folder),)),
+        large=True,
+    )
+    return await caller.wait(
+        server.slices.survey(terms, work.align_reference, artifacts["map"], folder, ask.how, pairs)
+    )
 
 
 @router.get("/export.{ending}", response_class=FileResponse, summary="A file of slices")
@@ -155,42 +208,52 @@ async def export(
     project_id: str,
     ending: Literal["png", "svg", "pdf", "tif", "dxf", "laz", "csv"],
     ask: str,
+    *,
     server: Server,
+    caller: CalledBy,
 ) -> FileResponse:
-    """PNG, SVG and PDF are sheets at a true scale; ``ask`` is an AskExport as JSON."""
+    """PNG, SVG and PDF are sheets at a true scale; ``ask`` is an AskExport as JSON.
+
+    The work ends when the client disconnects. A finished file is kept for a day: the same request
+    with ``Range`` continues a download that broke off.
+    """
     asked = _parsed(ask)
     slices = server.slices
     artifacts = await run_in_threadpool(slices.artifacts, project_id, asked.source)
     told = {
-        "project": server.projects.get(project_id).name,
+        "project": (await run_in_threadpool(server.projects.get, project_id)).name,
         "key": Path(artifacts["map"]).name,
         "approval": await run_in_threadpool(slices.approval, project_id, asked.source),
     }
-    out = await run_in_threadpool(slices.place_for, f".{ending}")
-    reference = slices.reference(project_id, asked.reference)
-    try:
-        write = partial(work.export, reference=reference, told=told)
-        await slices.long(write, artifacts, asked, str(out))
-    except BaseException:
-        out.unlink(missing_ok=True)
-        raise
+    request = ExportRequest(
+        ending=ending,
+        ask=asked,
+        artifacts=artifacts,
+        reference=slices.reference(project_id, asked.reference),
+        told=told,
+    )
+    terms = slices.terms(project_id, caller.name, asked.source)
     return FileResponse(
-        out,
+        await caller.wait(slices.exports.make(request, terms)),
         filename=f"{project_id}-slice.{ending}",
         media_type="application/octet-stream",
-        background=BackgroundTask(out.unlink, missing_ok=True),
     )
 
 
 @router.post("/control/preview", dependencies=PROCESS, summary="Look at a survey's file")
-async def preview_control(project_id: str, file: ControlFile, server: Server) -> dict[str, Any]:
+async def preview_control(
+    project_id: str, file: ControlFile, server: Server, caller: CalledBy
+) -> dict[str, Any]:
     """What a CSV seems to hold, and what has to be decided before it counts."""
     server.projects.folder(project_id)
     try:
         data = base64.b64decode(file.base64, validate=True)
     except (binascii.Error, ValueError) as error:
         raise BadRequest("the file must be sent as base64") from error
-    return await server.slices.long(work.preview_control, data, file.name, file.order)
+    terms = Terms(person=caller.name)
+    return await caller.wait(
+        server.slices.survey(terms, work.preview_control, data, file.name, file.order)
+    )
 
 
 @router.get("/control", summary="Control and check points")
@@ -206,24 +269,28 @@ def keep_control(project_id: str, state: ControlState, server: Server) -> Contro
 
 
 @router.get("/control/report", summary="Residuals")
-async def control_report(project_id: str, server: Server) -> dict[str, Any]:
+async def control_report(project_id: str, server: Server, caller: CalledBy) -> dict[str, Any]:
     """Map minus survey, control and check points apart, with every limit and whether it holds."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     state = await run_in_threadpool(server.slices.control, project_id)
-    return await server.slices.draw(work.control_report, artifacts, state)
+    terms = server.slices.terms(project_id, caller.name)
+    return await caller.wait(server.slices.draw(terms, work.control_report, artifacts, state))
 
 
 @router.get("/control/report.{ending}", summary="Residuals as a file")
-async def control_file(project_id: str, ending: Literal["csv", "html"], server: Server) -> Response:
+async def control_file(
+    project_id: str, ending: Literal["csv", "html"], server: Server, caller: CalledBy
+) -> Response:
     """CSV, or a sheet to print and sign; both say which map it was and who approved it."""
     slices = server.slices
     artifacts = await run_in_threadpool(slices.artifacts, project_id)
     state = await run_in_threadpool(slices.control, project_id)
     told = {
-        "project": server.projects.get(project_id).name,
+        "project": (await run_in_threadpool(server.projects.get, project_id)).name,
         "approval": await run_in_threadpool(slices.approval_words, project_id),
     }
-    text = await slices.draw(work.control_file, artifacts, state, ending, told)
+    terms = slices.terms(project_id, caller.name)
+    text = await caller.wait(slices.draw(terms, work.control_file, artifacts, state, ending, told))
     if ending == "csv":
         head = {"Content-Disposition": f'attachment; filename="{project_id}-control.csv"'}
         return PlainTextResponse(text, media_type="text/csv; charset=utf-8", headers=head)
@@ -231,36 +298,47 @@ async def control_file(project_id: str, ending: Literal["csv", "html"], server: 
 
 
 @router.get("/control/surface", summary="The map's surface at a surveyed point")
-async def surface(project_id: str, point: str, server: Server) -> dict[str, Any]:
+async def surface(project_id: str, point: str, server: Server, caller: CalledBy) -> dict[str, Any]:
     """Where a point lies in the map, and the foot of it on the surface beside it."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     state = await run_in_threadpool(server.slices.control, project_id)
     found: list[Xyz] = [one.xyz_m for one in state.points if one.id == point]
     if not found:
         raise ConfigError(f"no point {point[:64]!r}")
-    return await server.slices.draw(work.surface_at, artifacts, found[0], state.frame)
+    terms = server.slices.terms(project_id, caller.name)
+    return await caller.wait(
+        server.slices.draw(terms, work.surface_at, artifacts, found[0], state.frame)
+    )
 
 
 @router.get("/compare.csv", response_class=PlainTextResponse, summary="The table as CSV")
-async def compare_csv(project_id: str, ask: str, server: Server) -> PlainTextResponse:
+async def compare_csv(
+    project_id: str, ask: str, server: Server, caller: CalledBy
+) -> PlainTextResponse:
     """``ask`` is an AskCompare as JSON."""
     asked = _parsed_compare(ask)
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, asked.source)
     reference = server.slices.reference(project_id, asked.reference)
-    text = await server.slices.long(work.comparison_csv, artifacts["map"], reference, asked)
+    terms = server.slices.terms(project_id, caller.name, asked.source)
+    text = await caller.wait(
+        server.slices.survey(terms, work.comparison_csv, artifacts["map"], reference, asked)
+    )
     head = {"Content-Disposition": f'attachment; filename="{project_id}-comparison.csv"'}
     return PlainTextResponse(text, media_type="text/csv; charset=utf-8", headers=head)
 
 
-async def _overview(project_id: str, server: Server, source: str) -> Path:
+async def _overview(project_id: str, server: Server, caller: Caller, source: str) -> Path:
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, source)
     folder = artifacts["map"]
-    return await server.slices.kept(
-        f"{Path(folder).name}-above.png",
-        lambda out: server.slices.draw(
-            work.overview, folder, str(out), str(out.with_suffix(".json"))
-        ),
-    )
+    terms = server.slices.terms(project_id, caller.name, source)
+    image, about = "above.png", "above.json"
+
+    async def make(out: Path) -> None:
+        # The image comes last: whoever finds it finds its window too.
+        made = replace(terms, outputs={about: out.with_suffix(".json"), image: out})
+        await server.slices.draw(made, work.overview, folder, image, about)
+
+    return await caller.wait(server.slices.kept(f"{Path(folder).name}-above.png", make))
 
 
 def _parsed(text: str) -> AskExport:

@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import re
 import secrets
 import shutil
 import threading
 from collections import OrderedDict
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
-from app.desk import Desk
+from app.compute_pool import ComputePool, FileAccess, Lane, Terms
 from app.errors import Conflict, NotFound
 from app.projects.store import PROJECT_ID, ProjectStore
+from app.settings import ServerSettings
 from app.slices import work
+from app.slices.exports import Exports
 from app.slices.model import ControlState
-from recon4.errors import StoreError
+from recon4.bounded import read_json_object, read_text_limited
+from recon4.errors import CorruptFile, StoreError
 from recon4.review.approval import approval_of_map
 from recon4.store.atomic import write_json
 from recon4.store.project import read_artifacts, read_stages
@@ -28,23 +31,41 @@ _KEY = re.compile(r"[0-9a-f]{16,64}")
 _REFERENCE = re.compile(r"[0-9a-f]{12}")
 MOST_REFERENCES = 20
 MOST_PAGES = 256
-LONG_S = 1800.0
-"""A reference of gigabytes takes minutes."""
+MOST_SUMMARY_BYTES = 16 << 20
+MOST_CONTROL_BYTES = 16 << 20
 
 
 class Superseded(Conflict):
     """The page asked for something newer meanwhile."""
 
 
+@dataclass(frozen=True, slots=True)
+class Asking:
+    """Which of the requests of a page this is."""
+
+    page: str
+    """Who asks; empty = nobody who will ask again."""
+    turn: int
+    """The greatest known is the latest; of equal ones the one that came last."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Latest:
+    """The newest request of a page, and the work on it."""
+
+    turn: int
+    work: asyncio.Future[Any]
+
+
 class Slices:
     """Of all projects. Keeps pictures from above and checks of maps beside the queue of jobs."""
 
-    def __init__(self, desk: Desk, projects: ProjectStore, kept: Path) -> None:
-        self._desk = desk
+    def __init__(self, pool: ComputePool, projects: ProjectStore, settings: ServerSettings) -> None:
+        self._pool = pool
         self._projects = projects
-        self._kept = kept
-        self._newest: OrderedDict[str, tuple[int, int]] = OrderedDict()
-        self._turn = asyncio.Lock()
+        self._kept = settings.state / "slices"
+        self.exports = Exports(pool, self._kept / "exports", reserve_bytes=settings.reserve_bytes)
+        self._newest: OrderedDict[tuple[str, str], _Latest] = OrderedDict()
         self._keeping = threading.Lock()
         self._making: dict[Path, asyncio.Lock] = {}
 
@@ -97,10 +118,10 @@ class Slices:
             return approval_of_map(self._projects.folder(project_id), name)
         root = self._projects.folder(name if kind == "project" else project_id)
         try:
-            told = json.loads((root / "summary.json").read_text())
-        except (OSError, ValueError):
+            told = read_json_object(root / "summary.json", MOST_SUMMARY_BYTES)
+        except CorruptFile:
             return None
-        found = told.get("approval") if isinstance(told, dict) else None
+        found = told.get("approval")
         return found if isinstance(found, dict) else None
 
     def approval_words(self, project_id: str, source: str = "") -> str:
@@ -155,8 +176,9 @@ class Slices:
         if not path.exists():
             return ControlState(version=0)
         try:
-            state = ControlState.model_validate_json(path.read_text("utf-8"))
-        except (OSError, ValueError) as error:
+            text = read_text_limited(path, MOST_CONTROL_BYTES, failure=StoreError)
+            state = ControlState.model_validate_json(text)
+        except (StoreError, ValueError) as error:
             raise StoreError(f"{path.name} cannot be read: {error}") from error
         return state.model_copy(update={"version": state.version or 0})
 
@@ -187,54 +209,59 @@ class Slices:
 
     # -- work
 
-    async def draw(self, function: Callable[..., T], *args: object) -> T:
-        """Run in the child for pictures."""
-        async with self._turn:
-            return await self._desk.run("slices", function, *args)
+    def terms(self, project_id: str, person: str, source: str = "") -> Terms:
+        """Work that may read the map a request means, and the references of its project."""
+        kind, _, name = source.partition(":")
+        of_map = self._projects.folder(name if kind == "project" else project_id)
+        references = self._folder(project_id) / "references"
+        return Terms(person=person, access=FileAccess(read=(of_map / "artifacts", references)))
 
-    async def newest(self, page: str, turn: int, function: Callable[..., T], *args: object) -> T:
-        """The same; of several requests of a page only the latest.
+    async def draw(self, terms: Terms, function: Callable[..., T], *args: object) -> T:
+        """Compute what a person waits for."""
+        return await self._pool.run_interactive(Lane.SLICE, terms, function, *args)
 
-        Args:
-            page: Who asks; empty = nobody who will ask again.
-            turn: The greatest one known is the latest; of equal ones the one that came last.
-            function: What draws.
-            args: What it is given.
+    async def newest(
+        self, asking: Asking, terms: Terms, function: Callable[..., T], *args: object
+    ) -> T:
+        """The same; of several requests of a page only the latest is answered.
 
         Raises:
             Superseded: If the page asked for something newer.
         """
-        if not page:
-            return await self.draw(function, *args)
-        known = self._newest.get(page, (0, 0))
-        mine = (turn, known[1] + 1)  # the second number tells equal turns apart
-        self._newest[page] = max(known, mine)
+        if not asking.page:
+            return await self.draw(terms, function, *args)
+        page = (terms.person, asking.page)
+        before = self._newest.get(page)
+        if before is not None and before.turn > asking.turn:
+            raise Superseded("a newer picture was asked for")
+        if before is not None:
+            before.work.cancel()
+        work = asyncio.ensure_future(self.draw(terms, function, *args))
+        self._newest[page] = _Latest(asking.turn, work)
         self._newest.move_to_end(page)
         while len(self._newest) > MOST_PAGES:
             self._newest.popitem(last=False)
-        async with self._turn:
-            if self._newest.get(page, mine) != mine:
-                raise Superseded("a newer picture was asked for")
-            return await self._desk.run("slices", function, *args)
+        try:
+            return await work
+        except asyncio.CancelledError:
+            if self._newest.get(page) != _Latest(asking.turn, work):
+                raise Superseded("a newer picture was asked for") from None
+            raise
 
-    async def long(self, function: Callable[..., T], *args: object) -> T:
-        """Run what may take minutes, or reads a user's file, in a child of its own."""
-        return await self._desk.run("surveys", function, *args, limit_s=LONG_S)
+    async def survey(
+        self, terms: Terms, function: Callable[..., T], *args: object, **kwargs: object
+    ) -> T:
+        """Compute what may take minutes, or reads a user's file, in a child of its own."""
+        return await self._pool.run_background(Lane.SURVEY, terms, function, *args, **kwargs)
 
     async def kept(self, name: str, make: Callable[[Path], Any]) -> Path:
         """A file made once a map."""
         path = self._kept / name
         async with self._making.setdefault(path, asyncio.Lock()):
             if not path.exists():
-                self._kept.mkdir(parents=True, exist_ok=True)
                 await make(path)
+        self._making.pop(path, None)
         return path
-
-    def place_for(self, ending: str) -> Path:
-        """A new file for an export, to be removed when it was sent."""
-        folder = self._kept / "exports"
-        folder.mkdir(parents=True, exist_ok=True)
-        return folder / f"{secrets.token_hex(8)}{ending}"
 
     def _folder(self, project_id: str) -> Path:
         return self._projects.folder(project_id) / "slices"

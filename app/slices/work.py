@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import json
 import time
 from dataclasses import asdict, replace
 from functools import lru_cache
@@ -24,7 +23,8 @@ from app.slices.model import (
     WindowSpec,
     Xyz,
 )
-from recon4.errors import ConfigError
+from recon4.bounded import read_json_object
+from recon4.errors import ConfigError, StoreError
 from recon4.geometry.se3 import SE3
 from recon4.mapping.tiles import TileSet
 from recon4.review.stamp import Stamp, stamp_file
@@ -58,6 +58,7 @@ Artifacts = dict[str, str]
 FINEST_M = 0.005
 """Pixel of a GeoTIFF, unless it would get too large [m]."""
 MOST_GEOTIFF_PX = 6000
+MOST_KEPT_BYTES = 64 << 20
 
 
 @lru_cache(maxsize=4)
@@ -388,5 +389,9 @@ def _xyz(values: Any) -> Xyz:
 
 
 def read_kept(path: Path) -> dict[str, Any]:
-    """JSON that a child kept."""
-    return dict(json.loads(path.read_text("utf-8")))
+    """JSON that a child kept.
+
+    Raises:
+        StoreError: If it is damaged or too large.
+    """
+    return read_json_object(path, MOST_KEPT_BYTES, failure=StoreError)

@@ -1,54 +1,62 @@
-"""The viewer processes: one an open project, on loopback, ended when idle or with the server."""
+"""The viewer processes: one for each open project, ended when idle or with the server.
+
+Each listens on a Unix socket in a folder that no other user may enter: no web page and no other
+user of this computer reaches it, only the relay (`app.viewer.proxy`).
+"""
 
 from __future__ import annotations
 
 import asyncio
-import json
+import contextlib
+import hashlib
+import os
+import secrets
 import sys
-from collections import Counter
 from pathlib import Path
 
 from app.errors import ViewerFailed
 from app.settings import worker_environment
+from app.streams import Streams
+from recon4.processes import ChildRegister
+from recon4.runtime_folder import private_folder, runtime_folder
 
 STARTS_WITHIN_S = 60.0
-"""A viewer that has not named its port by then will not [s]."""
+"""A viewer that does not listen by then will not [s]."""
+ENDS_WITHIN_S = 5.0
+"""A viewer asked to end is killed after this long [s]."""
+READY = b"ready\n"
+"""What a viewer writes as soon as it listens."""
 
-
-class Sockets:
-    """Counts the browsers that look, in all and by person."""
-
-    def __init__(self, *, most: int, most_a_person: int) -> None:
-        self._most, self._most_a_person = most, most_a_person
-        self._open: Counter[str] = Counter()
-
-    def enter(self, person: str) -> bool:
-        """Count one more; False, and nothing counted, if that is too many."""
-        if self._open.total() >= self._most or self._open[person] >= self._most_a_person:
-            return False
-        self._open[person] += 1
-        return True
-
-    def leave(self, person: str) -> None:
-        """Count one less."""
-        self._open[person] -= 1
+Running = tuple[asyncio.subprocess.Process, Path]
+"""A viewer and its socket."""
 
 
 class ViewerPool:
-    """Starts viewers when they are asked for and knows their ports."""
+    """Starts viewers when they are asked for and knows their sockets."""
 
     def __init__(
-        self, *, idle_s: float, points: int, logs: Path, jobs: Path, sockets: Sockets
+        self, *, idle_s: float, points: int, state: Path, sockets: Streams, children: ChildRegister
     ) -> None:
+        """Make it.
+
+        Args:
+            idle_s: A viewer without a client for this long ends [s].
+            points: At most this many are sent to one client.
+            state: Folder of the server's own files.
+            sockets: Counts the clients.
+            children: Where the processes are registered.
+        """
         self.sockets = sockets
+        self._children = children
+        self._state = state
         self._points = points
         self._idle_s = idle_s
-        self._logs, self._jobs = logs, jobs
-        self._running: dict[Path, tuple[asyncio.subprocess.Process, int]] = {}
+        self._logs, self._jobs = state / "viewers", state / "jobs"
+        self._running: dict[Path, Running] = {}
         self._starting: dict[Path, asyncio.Lock] = {}
 
-    async def port(self, project: Path) -> int:
-        """Port on 127.0.0.1 of the project's viewer, started if there is none or it died.
+    async def socket(self, project: Path) -> Path:
+        """Unix socket of the project's viewer, started if there is none or it died.
 
         Raises:
             ViewerFailed: If it does not start.
@@ -59,49 +67,60 @@ class ViewerPool:
                 self._running[project] = await self._start(project)
             return self._running[project][1]
 
-    async def give_up(self, project: Path, port: int) -> None:
-        """End the viewer that had this port and does not answer there; `port` starts another."""
+    async def give_up(self, project: Path, socket: Path) -> None:
+        """End the viewer that does not answer on this socket; `socket` starts another."""
         async with self._starting.setdefault(project, asyncio.Lock()):
             running = self._running.get(project)
-            if running is not None and running[1] == port:
-                await _end(self._running.pop(project)[0])
+            if running is not None and running[1] == socket:
+                await self._end(*self._running.pop(project))
 
     async def close(self) -> None:
         """End all viewers."""
-        for process, _ in self._running.values():
-            await _end(process)
+        for running in self._running.values():
+            await self._end(*running)
         self._running.clear()
 
-    async def _start(self, project: Path) -> tuple[asyncio.subprocess.Process, int]:
+    async def _start(self, project: Path) -> Running:
         self._logs.mkdir(parents=True, exist_ok=True)
+        socket = private_folder(socket_folder(self._state)) / secrets.token_hex(4)
         with (self._logs / f"{project.name}.txt").open("ab") as log:
             process = await asyncio.create_subprocess_exec(
                 *(sys.executable, "-m", "app.viewer.process", str(project)),
-                *(str(self._idle_s), str(self._points), str(self._jobs)),
-                stdin=asyncio.subprocess.PIPE,
+                *(str(self._idle_s), str(self._points), str(self._jobs), str(socket)),
+                stdin=asyncio.subprocess.PIPE,  # its lifeline
                 stdout=asyncio.subprocess.PIPE,
                 stderr=log,
                 env=worker_environment(),
             )
+        self._children.add(process.pid)
         assert process.stdout is not None
-        try:
-            line = await asyncio.wait_for(process.stdout.readline(), STARTS_WITHIN_S)
-            return process, int(json.loads(line)["port"])
-        except (TimeoutError, ValueError, KeyError) as error:
-            await _end(process)
-            raise ViewerFailed(
-                f"the viewer of {project.name} does not start; its log is in "
-                f"{self._logs / project.name}.txt"
-            ) from error
+        with contextlib.suppress(TimeoutError):
+            if await asyncio.wait_for(process.stdout.readline(), STARTS_WITHIN_S) == READY:
+                return process, socket
+        await self._end(process, socket)
+        raise ViewerFailed(
+            f"the viewer of {project.name} does not start; its log is in "
+            f"{self._logs / project.name}.txt"
+        )
+
+    async def _end(self, process: asyncio.subprocess.Process, socket: Path) -> None:
+        """Ask it to end; kill it when it does not."""
+        if process.returncode is None:
+            process.terminate()
+            try:
+                await asyncio.wait_for(process.wait(), ENDS_WITHIN_S)
+            except TimeoutError:
+                process.kill()
+        await process.wait()
+        socket.unlink(missing_ok=True)
+        self._children.remove(process.pid)
 
 
-async def _end(process: asyncio.subprocess.Process) -> None:
-    """Close its input, which it takes for the end; kill it when it does not."""
-    assert process.stdin is not None
-    if process.returncode is None:
-        process.stdin.close()
-        try:
-            await asyncio.wait_for(process.wait(), 5.0)
-        except TimeoutError:
-            process.kill()
-    await process.wait()
+def socket_folder(state: Path) -> Path:
+    """Where the viewers of a server listen; one folder for each folder of projects.
+
+    Raises:
+        StoreError: If there is no folder that only this user may enter.
+    """
+    name = hashlib.sha256(os.fsencode(state.resolve())).hexdigest()[:16]
+    return runtime_folder() / name

@@ -1,14 +1,15 @@
-"""The viewer process: ``python -m app.viewer.process PROJECT IDLE_SECONDS POINTS JOBS``.
+"""The viewer process: ``python -m app.viewer.process PROJECT IDLE_SECONDS POINTS JOBS SOCKET``.
 
-Writes ``{"port": n}`` as its only line of output; ends when its input is closed (the server is
-gone) or nobody has looked for a while. It only reads the project, so it may be killed any time.
+Listens on the Unix socket and writes ``ready`` as its only line of output. Ends at SIGTERM, when
+nobody has looked for a while, and with the server, which holds the other end of its standard
+input. It only reads the project, so it may be killed any time.
 """
 
 from __future__ import annotations
 
-import json
 import logging
 import shutil
+import signal
 import sys
 import threading
 from pathlib import Path
@@ -18,6 +19,7 @@ from app.viewer.palette import table
 from app.viewer.seat import Seat
 from app.viewer.show import Viewer
 from app.viewer.source import ProjectSource
+from recon4.processes import die_with_parent
 from recon4.sandbox import Network, Policy, confine
 from recon4.sandbox.limits import physical_memory_bytes
 from recon4.sandbox.private_cache import use_private_cache
@@ -64,7 +66,7 @@ class Seats:
             seat.refresh()
 
 
-def main(project: Path, idle_s: float, *, points: int, jobs: Path) -> None:
+def main(project: Path, idle_s: float, *, points: int, jobs: Path, socket: Path) -> None:
     """Serve one project until nobody needs it.
 
     Args:
@@ -72,19 +74,21 @@ def main(project: Path, idle_s: float, *, points: int, jobs: Path) -> None:
         idle_s: End after so long without a client [s].
         points: At most so many are sent to a client.
         jobs: Folder of the folders of all jobs.
+        socket: Path of the Unix socket to listen on.
     """
     answer, sys.stdout = sys.stdout, sys.stderr  # viser greets people on it
     logging.basicConfig(level=logging.WARNING, format="%(asctime)s %(name)s %(message)s")
     scratch = jobs.parent / "viewers" / f"{project.name}.tmp"
     shutil.rmtree(scratch, ignore_errors=True)  # of a viewer that was killed
-    confine(viewer_policy(project, jobs, scratch))
+    confine(viewer_policy(project, jobs, scratch, socket=socket.parent))
     over = threading.Event()
-    threading.Thread(target=_wait_for_end_of_input, args=(over,), daemon=True).start()
+    signal.signal(signal.SIGTERM, lambda *_: over.set())
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in the terminal is the server's to handle
     threading.Thread(target=table, args=("viridis",), daemon=True).start()  # slow the first time
     source = ProjectSource(project, jobs)
     seats = Seats(source, project.name, points)
-    viewer = Viewer(on_client=seats.take, on_leave=seats.leave)
-    answer.write(json.dumps({"port": viewer.port}) + "\n")
+    viewer = Viewer(socket, on_client=seats.take, on_leave=seats.leave)
+    answer.write("ready\n")
     answer.flush()
     while not over.wait(LOOK_EVERY_S) and viewer.idle_s < idle_s:
         if source.changed():
@@ -93,20 +97,23 @@ def main(project: Path, idle_s: float, *, points: int, jobs: Path) -> None:
     shutil.rmtree(scratch, ignore_errors=True)
 
 
-def viewer_policy(project: Path, jobs: Path, scratch: Path) -> Policy:
-    """Read the project and how far its jobs are, listen, and connect to nowhere."""
+def viewer_policy(project: Path, jobs: Path, scratch: Path, *, socket: Path) -> Policy:
+    """Read the project and how far its jobs are; listen on a Unix socket in one folder."""
     return Policy(
         read=(project, jobs, *use_private_cache(scratch)),
+        write=(socket,),
         temporary=scratch,
-        network=Network.LISTEN_TCP,
+        network=Network.UNIX,
         memory_bytes=int(SHARE_OF_MEMORY * physical_memory_bytes()),
     )
 
 
-def _wait_for_end_of_input(over: threading.Event) -> None:
-    sys.stdin.read()
-    over.set()
-
-
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), float(sys.argv[2]), points=int(sys.argv[3]), jobs=Path(sys.argv[4]))
+    die_with_parent(sys.stdin.fileno())
+    main(
+        Path(sys.argv[1]),
+        float(sys.argv[2]),
+        points=int(sys.argv[3]),
+        jobs=Path(sys.argv[4]),
+        socket=Path(sys.argv[5]),
+    )

@@ -1,7 +1,8 @@
 """Relays a browser's WebSocket to the project's viewer, letting through only what is known.
 
-viser asks nobody who they are, and obeys messages such as "open a public tunnel": so it listens
-on loopback and is reached only through here, after the `Guard` has checked host and origin.
+viser asks nobody who they are, and obeys messages such as "open a public tunnel": so it listens on
+a private Unix socket and is reached only through here, after the `Guard` has checked host and
+origin.
 """
 
 from __future__ import annotations
@@ -14,13 +15,14 @@ from pathlib import Path
 
 import msgspec.msgpack
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
-from websockets.asyncio.client import ClientConnection, connect
+from websockets.asyncio.client import ClientConnection, unix_connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
 from websockets.typing import Subprotocol
 
 from app.access.people import May, person
 from app.deps import parts
-from app.errors import AppError, ViewerFailed
+from app.errors import AppError, TooMany, ViewerFailed
+from app.streams import TOO_MANY
 from app.viewer.pool import ViewerPool
 
 router = APIRouter()
@@ -61,8 +63,8 @@ ATTEMPTS = 3
 """A viewer is started at most so often for one connection."""
 STALLED_S = 30.0
 """A browser that takes nothing for so long is disconnected [s]."""
-TOO_MANY, STALLED = 4429, 4408
-"""Close codes: too many viewers; the browser took nothing for too long."""
+STALLED = 4408
+"""Close code: the browser took nothing for too long."""
 
 
 @router.websocket("/projects/{project_id}/viewer")
@@ -71,23 +73,21 @@ async def relay(browser: WebSocket, project_id: str) -> None:
     server = parts(browser)
     who = person(browser)
     offered = [Subprotocol(name) for name in browser.scope["subprotocols"]]
-    if not server.viewers.sockets.enter(who.name):
-        await browser.accept(subprotocol=offered[0] if offered else None)
-        await browser.close(TOO_MANY, reason="too many viewers are open; close one and try again")
-        return
     try:
-        folder = server.projects.folder(project_id)
-        viewer = await _viewer(server.viewers, folder, offered)
-        try:
-            await browser.accept(subprotocol=viewer.subprotocol)
-            await _pump(browser, viewer, may_review=who.may(May.REVIEW))
-        finally:
-            await viewer.close()
+        with server.viewers.sockets.place(browser):
+            folder = server.projects.folder(project_id)
+            viewer = await _viewer(server.viewers, folder, offered)
+            try:
+                await browser.accept(subprotocol=viewer.subprotocol)
+                await _pump(browser, viewer, may_review=who.may(May.REVIEW))
+            finally:
+                await viewer.close()
+    except TooMany as error:
+        await browser.accept(subprotocol=offered[0] if offered else None)
+        await browser.close(TOO_MANY, reason=str(error)[:120])
     except AppError as error:
         log.warning("%s", error)
         await browser.close(1008, reason=str(error)[:120])
-    finally:
-        server.viewers.sockets.leave(who.name)
 
 
 async def _viewer(
@@ -95,20 +95,20 @@ async def _viewer(
 ) -> ClientConnection:
     """A connection with the viewer of a project; one that was killed just now is started anew."""
     for _ in range(ATTEMPTS):
-        port = await viewers.port(project)
+        socket = await viewers.socket(project)
         try:
-            return await connect(
-                f"ws://127.0.0.1:{port}",
+            return await unix_connect(
+                str(socket),
+                "ws://viewer/",
                 subprotocols=offered or None,
                 max_size=None,  # it is ours
                 compression=None,
                 ping_interval=None,
                 max_queue=2,
-                proxy=None,
             )
         except (OSError, InvalidHandshake) as error:
             log.warning("viewer of %s: %s", project.name, error)
-            await viewers.give_up(project, port)
+            await viewers.give_up(project, socket)
     raise ViewerFailed(f"the viewer of {project.name} ends as soon as it starts")
 
 

@@ -10,12 +10,13 @@ import time
 from collections import OrderedDict
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import viser
-from viser import _messages
 
+from app.viewer import unix_socket
 from app.viewer.lod import Camera
 from app.viewer.nodes import AxesNode, GridNode, LabelNode, LinesNode, Node, PointsNode, alike
 from app.viewer.pick import Ray
@@ -268,32 +269,27 @@ class Screen:
 
 
 class Viewer:
-    """A viser server without its ways to the outside."""
+    """A viser server without its ways to the outside, on a Unix socket."""
 
     def __init__(
         self,
+        socket: Path,
         *,
         on_client: Callable[[viser.ClientHandle], None],
         on_leave: Callable[[viser.ClientHandle], None],
     ) -> None:
         self._on_leave = on_leave
-        self._server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
-        self._server._websock_server.unregister_handler(_messages.ShareUrlRequest)
+        with unix_socket.listening_on(socket):
+            self._server = viser.ViserServer(verbose=False)
+        unix_socket.remove_share_tunnel(self._server)
         self._server.scene.set_up_direction("+z")
         self._server.gui.configure_theme(
             dark_mode=True, show_logo=False, show_share_button=False, control_width="small"
         )
         self._server.gui.main_panel.dock_right()  # beside the map, not over it
-        assert self._server.get_host() == "127.0.0.1"
-        assert 1023 < self.port < 65536
         self._left_s = time.monotonic()
         self._server.on_client_connect(on_client)
         self._server.on_client_disconnect(self._left)
-
-    @property
-    def port(self) -> int:
-        """The port it listens on."""
-        return self._server.get_port()
 
     @property
     def idle_s(self) -> float:

@@ -9,10 +9,12 @@ from typing import Literal
 
 import numpy as np
 
+from recon4.bounded import lines_limited, parse_float
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
 
 Role = Literal["control", "check"]
+_MOST_BYTES = 16 << 20
 
 MEAN_HORIZONTAL_LIMIT_M = 0.14
 MEAN_VERTICAL_LIMIT_M = 0.12
@@ -100,22 +102,24 @@ def read_markers(path: Path) -> tuple[Marker, ...]:
         CorruptFile: Naming the line, what was expected and what was found.
     """
     try:
-        with path.open(newline="", encoding="utf-8") as file:
-            lines = list(csv.DictReader(file))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        rows = csv.DictReader(lines_limited(path, most_bytes=_MOST_BYTES))
+        return tuple(_marker(row, f"{path.name} line {rows.line_num}") for row in rows)
+    except csv.Error as error:
         raise CorruptFile(f"{path.name}: cannot be read as CSV: {error}") from error
-    return tuple(_marker(line, f"{path.name} line {k}") for k, line in enumerate(lines, start=2))
 
 
 def _marker(line: dict[str, str | None], where: str) -> Marker:
     try:
-        xyz_m = np.array([float(line[key] or "") for key in ("x_m", "y_m", "z_m")])
-        name, role = str(line["name"]), line.get("role") or "check"
+        xyz_m = np.array([parse_float(line[key] or "") for key in ("x_m", "y_m", "z_m")])
+        name, role = line["name"] or "", line.get("role") or "check"
     except (KeyError, ValueError) as error:
-        raise CorruptFile(f"{where}: expected name, x_m, y_m, z_m, got {line}") from error
-    if role not in {"control", "check"} or not np.all(np.isfinite(xyz_m)):
         raise CorruptFile(
-            f"{where}: expected a role control or check and finite numbers, got {line}"
+            f"{where}: expected name, x_m, y_m, z_m, got {str(line)[:200]}"
+        ) from error
+    if not name or role not in {"control", "check"} or not np.all(np.isfinite(xyz_m)):
+        raise CorruptFile(
+            f"{where}: expected a name, a role control or check and finite numbers, "
+            f"got {str(line)[:200]}"
         )
     return Marker(name, xyz_m, "control" if role == "control" else "check")
 

@@ -47,20 +47,20 @@ def read_mesh(path: Path) -> Mesh:
         RecordingError: If the file cannot be opened.
         CorruptFile: If it holds no triangles or is damaged.
     """
-    import trimesh
+    from recon4.evaluation.mesh_files import read_triangles
 
     if not path.is_file():
         raise RecordingError(f"no model file {path.name}")
-    try:
-        loaded = trimesh.load(path, force="mesh", process=False)
-    except (ValueError, KeyError, IndexError, EOFError, TypeError, NotImplementedError) as error:
-        raise CorruptFile(f"{path.name}: expected a triangle mesh: {error}") from error
-    triangles = np.asarray(getattr(loaded, "faces", np.empty((0, 3))), dtype=np.int64)
-    vertices = np.asarray(getattr(loaded, "vertices", np.empty((0, 3))), dtype=np.float64)
-    if len(triangles) == 0 or not np.all(np.isfinite(vertices)):
+    vertices, triangles = read_triangles(path)
+    if not len(triangles):
+        raise CorruptFile(f"{path.name}: expected a triangle mesh, found 0 triangles")
+    if triangles.min() < 0 or triangles.max() >= len(vertices):
         raise CorruptFile(
-            f"{path.name}: expected a triangle mesh, found {len(triangles)} triangles"
+            f"{path.name}: triangles name corners that do not exist: expected 0 to "
+            f"{len(vertices) - 1}, got {triangles.min()} to {triangles.max()}"
         )
+    if not np.isfinite(vertices).all():
+        raise CorruptFile(f"{path.name}: corners have coordinates that are not numbers")
     return Mesh(vertices, triangles)
 
 

@@ -1,14 +1,18 @@
 """JSON lines over a Unix socket: how the processes of a capture talk.
 
 Everybody connected hears everything said, in order. A listener that does not listen is let go:
-it connects again and is told what is so by then.
+it connects again and is told what is so by then. Only this user (and root) is answered: the socket
+lies in a folder closed to others, has mode 0600, and the kernel is asked who connected.
 """
 
 from __future__ import annotations
 
 import asyncio
 import json
+import logging
 import os
+import socket
+import struct
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from pathlib import Path
@@ -17,6 +21,8 @@ from typing import Any
 MOST_UNHEARD_BYTES = 16 << 20
 """A whole preview and the way of an hour are 5 MB."""
 _LONGEST_LINE = 1 << 16
+
+log = logging.getLogger(__name__)
 
 
 class LineServer:
@@ -73,6 +79,11 @@ class LineServer:
             self._path.unlink()
 
     async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        user = peer_uid(writer.get_extra_info("socket"))
+        if user not in (None, 0, os.getuid()):
+            log.warning("%s: refused a connection of user %s", self._path, user)
+            writer.transport.abort()
+            return
         task = asyncio.current_task()
         assert task is not None
         self._listeners.add(task)
@@ -90,6 +101,17 @@ class LineServer:
         finally:
             self._writers.discard(writer)
             writer.close()
+
+
+def peer_uid(connection: socket.socket) -> int | None:
+    """User at the other end of a Unix socket; None where the kernel does not tell (not Linux)."""
+    if not hasattr(socket, "SO_PEERCRED"):
+        return None
+    credentials = connection.getsockopt(
+        socket.SOL_SOCKET, socket.SO_PEERCRED, struct.calcsize("3i")
+    )
+    user: int = struct.unpack("3i", credentials)[1]
+    return user
 
 
 def _object(line: bytes) -> dict[str, Any] | None:

@@ -10,16 +10,18 @@ PROJECT/live/outcome.json       written last by the recorder: how it ended
 from __future__ import annotations
 
 import hashlib
-import json
-import os
-import tempfile
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from recon4.bounded import read_json_object
 from recon4.errors import StoreError
+from recon4.runtime_folder import runtime_folder
 from recon4.store.atomic import write_json
 
 _DAY_NS = 86_400_000_000_000
+
+
+MOST_JSON_BYTES = 1 << 20
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,11 +66,7 @@ class Session:
     def socket(self, name: str) -> Path:
         """Where a process of this capture listens: short, as a socket's path must be."""
         name_of_us = hashlib.sha256(str(self.project.resolve()).encode()).hexdigest()[:16]
-        folder = Path(tempfile.gettempdir()) / f"recon4-{os.getuid()}"
-        folder.mkdir(mode=0o700, exist_ok=True)
-        if folder.stat().st_uid != os.getuid() or folder.stat().st_mode & 0o077:
-            raise StoreError(f"{folder} is not ours alone: remove it")
-        return folder / f"{name_of_us}.{name}"
+        return runtime_folder() / f"{name_of_us}.{name}"
 
     def save(self) -> None:
         """Write ``session.json``."""
@@ -94,6 +92,8 @@ def load_session(project: Path) -> Session:
     """
     path = project / "live" / "session.json"
     try:
-        return Session(project=project, **json.loads(path.read_text("utf-8")))
-    except (OSError, ValueError, TypeError) as error:
+        return Session(
+            project=project, **read_json_object(path, MOST_JSON_BYTES, failure=StoreError)
+        )
+    except (StoreError, ValueError, TypeError) as error:
         raise StoreError(f"{path} cannot be read: {error}") from error

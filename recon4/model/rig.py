@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 import tomllib
 from dataclasses import dataclass
 from importlib import resources
@@ -10,11 +12,20 @@ from typing import Any
 
 import numpy as np
 
+from recon4.bounded import read_text_limited
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array
 
 IMU_PORT, GNSS_PORT = 8309, 8310
 """Next to Velodyne's 2368 (data) and 8308 (positions)."""
+MOST_RIG_BYTES = 128 * 1024
+"""A rig file has some hundred bytes a sensor."""
+MOST_SENSORS = 64
+_MOST_TEXT = 1000
+_MOST_DOTS = 100
+_BETWEEN_KEYS = re.compile(r"[=\[\]{},\n]")
+_LARGEST = 4e9
+"""Clocks differ by seconds since 1970 at most; nanoseconds must fit into 64 bits."""
 SENSOR_MODELS = ("VLP-16", "VLP-16 Hi-Res", "VLP-32C", "HDL-32E", "HDL-64E", "generic")
 
 
@@ -91,11 +102,10 @@ def load_rig(name_or_path: str | Path) -> Rig:
         preset = resources.files("recon4") / "rigs" / f"{name_or_path}.toml"
         return parse_rig(preset.read_text("utf-8"), where=str(name_or_path))
     try:
-        return parse_rig(path.read_text("utf-8"), where=path.name)
-    except OSError as error:
-        raise ConfigError(f"cannot read rig file {path.name[:200]}: {error.strerror}") from error
-    except ValueError as error:  # no UTF-8, or no name a file can have
-        raise ConfigError(f"cannot read rig file {path.name[:200]}: {error}") from error
+        text = read_text_limited(path, MOST_RIG_BYTES, failure=ConfigError)
+    except ConfigError as error:
+        raise ConfigError(f"cannot read rig file {error}") from error
+    return parse_rig(text, where=path.name[:200])
 
 
 def parse_rig(text: str, *, where: str) -> Rig:
@@ -104,14 +114,14 @@ def parse_rig(text: str, *, where: str) -> Rig:
     Raises:
         ConfigError: Naming the place, what was expected and what was found.
     """
-    try:
-        table = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise ConfigError(f"{where}: not a TOML file: {error}") from error
+    table = _toml(text, where)
     _refuse_unknown(table, {"name", "sensor", "imu", "gnss"}, where)
     rows = table.get("sensor", [])
-    if not rows:
-        raise ConfigError(f"{where}: a rig needs at least one [[sensor]]")
+    if not isinstance(rows, list) or not 1 <= len(rows) <= MOST_SENSORS:
+        raise ConfigError(
+            f"{where}: a rig needs at least one [[sensor]] and at most {MOST_SENSORS}, "
+            f"got {len(rows) if isinstance(rows, list) else rows!r:.40}"
+        )
     sensors = tuple(_sensor(row, f"{where}: sensor {k}") for k, row in enumerate(rows))
     names = [sensor.name for sensor in sensors]
     if len(set(names)) < len(names):
@@ -122,7 +132,7 @@ def parse_rig(text: str, *, where: str) -> Rig:
     )
     _refuse_unknown(gnss, {"lever_arm_m", "time_offset_s", "port", "serial"}, f"{where}: gnss")
     return Rig(
-        name=str(table.get("name", where)),
+        name=_text(table, "name", where, where),
         sensors=sensors,
         T_body_imu=_mounting(imu, f"{where}: imu"),
         imu_time_offset_s=_number(imu, "time_offset_s", 0.0, f"{where}: imu"),
@@ -130,25 +140,52 @@ def parse_rig(text: str, *, where: str) -> Rig:
         gnss_time_offset_s=_number(gnss, "time_offset_s", 0.0, f"{where}: gnss"),
         imu_port=_port(imu, IMU_PORT, f"{where}: imu"),
         gnss_port=_port(gnss, GNSS_PORT, f"{where}: gnss"),
-        gnss_serial=str(gnss.get("serial", "")),
+        gnss_serial=_text(gnss, "serial", "", f"{where}: gnss"),
     )
+
+
+def _toml(text: str, where: str) -> dict[str, Any]:
+    """Parse TOML whose size, nesting and length of keys are bounded.
+
+    tomllib walks a dotted key once for each of its parts, and nested arrays by recursion.
+    """
+    if len(text) > MOST_RIG_BYTES:
+        raise ConfigError(f"{where}: expected at most {MOST_RIG_BYTES} characters, got {len(text)}")
+    longest = max((part.count(".") for part in _BETWEEN_KEYS.split(text)), default=0)
+    if longest > _MOST_DOTS:
+        raise ConfigError(f"{where}: expected keys of few parts, got one with {longest} dots")
+    try:
+        return tomllib.loads(text)
+    except (tomllib.TOMLDecodeError, ValueError) as error:
+        raise ConfigError(f"{where}: not a TOML file: {str(error)[:300]}") from error
+    except RecursionError as error:
+        raise ConfigError(f"{where}: not a TOML file: nested too deeply") from error
+
+
+def _quoted(text: str) -> str:
+    """A basic string of TOML: JSON's escapes are TOML's, but for the delete character."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def format_rig(rig: Rig) -> str:
     """The rig as TOML text that `parse_rig` reads back."""
-    lines = [f'name = "{rig.name}"', ""]
+    lines = [f"name = {_quoted(rig.name)}", ""]
     for sensor in rig.sensors:
-        lines += ["[[sensor]]", f'name = "{sensor.name}"', f'model = "{sensor.model}"']
+        lines += [
+            "[[sensor]]",
+            f"name = {_quoted(sensor.name)}",
+            f"model = {_quoted(sensor.model)}",
+        ]
         lines += _mounting_lines(sensor.T_body_sensor)
         lines += [f"time_offset_s = {sensor.time_offset_s!r}", f"port = {sensor.port}"]
-        lines += [f'address = "{sensor.address}"', f'topic = "{sensor.topic}"']
+        lines += [f"address = {_quoted(sensor.address)}", f"topic = {_quoted(sensor.topic)}"]
         lines += [f"enabled = {str(sensor.enabled).lower()}", ""]
     lines += ["[imu]", *_mounting_lines(rig.T_body_imu)]
     lines += [f"time_offset_s = {rig.imu_time_offset_s!r}", f"port = {rig.imu_port}"]
     lines += ["", "[gnss]"]
     lines += [f"lever_arm_m = {_floats(rig.p_body_antenna)}"]
     lines += [f"time_offset_s = {rig.gnss_time_offset_s!r}", f"port = {rig.gnss_port}"]
-    lines += [f'serial = "{rig.gnss_serial}"'] if rig.gnss_serial else []
+    lines += [f"serial = {_quoted(rig.gnss_serial)}"] if rig.gnss_serial else []
     lines += [""]
     return "\n".join(lines)
 
@@ -164,20 +201,20 @@ def _mounting_lines(T_body_x: SE3) -> list[str]:
 def _sensor(row: dict[str, Any], where: str) -> Sensor:
     known = {"name", "model", "xyz_m", "rpy_deg", "quat_xyzw", "time_offset_s"}
     _refuse_unknown(row, known | {"address", "port", "topic", "enabled"}, where)
-    model = row.get("model", "VLP-16")
+    model = _text(row, "model", "VLP-16", where)
     if model not in SENSOR_MODELS:
-        raise ConfigError(f"{where}: model must be one of {SENSOR_MODELS}, got {model!r}")
-    if not isinstance(row.get("name"), str) or not row["name"]:
-        raise ConfigError(f"{where}: name must be a text, got {row.get('name')!r}")
+        raise ConfigError(f"{where}: model must be one of {SENSOR_MODELS}, got {model[:80]!r}")
+    if not _text(row, "name", "", where):
+        raise ConfigError(f"{where}: name must be a text, got {row.get('name')!r:.80}")
     return Sensor(
         name=row["name"],
         model=model,
         T_body_sensor=_mounting(row, where),
         time_offset_s=_number(row, "time_offset_s", 0.0, where),
-        address=str(row.get("address", "")),
+        address=_text(row, "address", "", where),
         port=_port(row, 2368, where),
-        topic=str(row.get("topic", "")),
-        enabled=bool(row.get("enabled", True)),
+        topic=_text(row, "topic", "", where),
+        enabled=_flag(row, "enabled", where),
     )
 
 
@@ -196,17 +233,42 @@ def _vector(
     row: dict[str, Any], key: str, size: int, default: tuple[float, ...], *, where: str
 ) -> Array:
     value = row.get(key, default)
-    numbers = isinstance(value, list | tuple) and all(isinstance(v, int | float) for v in value)
-    if not numbers or len(value) != size or not np.all(np.isfinite(value)):
-        raise ConfigError(f"{where}: {key} must be {size} finite numbers, got {value!r}")
+    if not isinstance(value, list | tuple) or len(value) != size or not all(map(_usable, value)):
+        raise ConfigError(
+            f"{where}: {key} must be {size} finite numbers, got {value!r:.80} (at most 4e9)"
+        )
     return np.asarray(value, dtype=np.float64)
 
 
 def _number(row: dict[str, Any], key: str, default: float, where: str) -> float:
     value = row.get(key, default)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
-        raise ConfigError(f"{where}: {key} must be a finite number, got {value!r}")
+    if not _usable(value):
+        raise ConfigError(
+            f"{where}: {key} must be a finite number, got {value!r:.80} (at most 4e9)"
+        )
     return float(value)
+
+
+def _usable(value: Any) -> bool:
+    # A comparison is exact for whole numbers of any length; NaN fails it.
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    return number and -_LARGEST <= value <= _LARGEST
+
+
+def _text(row: dict[str, Any], key: str, default: str, where: str) -> str:
+    value = row.get(key, default)
+    if not isinstance(value, str) or len(value) > _MOST_TEXT:
+        raise ConfigError(
+            f"{where}: {key} must be a text of at most {_MOST_TEXT} characters, got {value!r:.80}"
+        )
+    return value
+
+
+def _flag(row: dict[str, Any], key: str, where: str) -> bool:
+    value = row.get(key, True)
+    if not isinstance(value, bool):
+        raise ConfigError(f"{where}: {key} must be true or false, got {value!r:.80}")
+    return value
 
 
 def _port(row: dict[str, Any], default: int, where: str) -> int:
@@ -216,7 +278,9 @@ def _port(row: dict[str, Any], default: int, where: str) -> int:
     return int(port)
 
 
-def _refuse_unknown(row: dict[str, Any], known: set[str], where: str) -> None:
+def _refuse_unknown(row: Any, known: set[str], where: str) -> None:
+    if not isinstance(row, dict):
+        raise ConfigError(f"{where}: expected a table, got {row!r:.80}")
     unknown = sorted(set(row) - known)
     if unknown:
-        raise ConfigError(f"{where}: unknown {unknown}; known: {sorted(known)}")
+        raise ConfigError(f"{where}: unknown {str(unknown)[:200]}; known: {sorted(known)}")

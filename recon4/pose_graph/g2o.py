@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from recon4.bounded import lines_limited, parse_float
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
@@ -17,6 +18,11 @@ from recon4.pose_graph.relations import reverse
 
 _FIELDS = {"VERTEX_SE3:QUAT": 9, "EDGE_SE3:QUAT": 31, "VERTEX_SE2": 5, "EDGE_SE2": 12, "FIX": 2}
 """How many words a line of each kind has."""
+_MOST_BYTES = 1 << 30
+_MOST_LINE_BYTES = 4096
+_MOST_ID = 1 << 53
+"""Numbers of vertices pass through a float64."""
+_LENGTH_TOLERANCE = 1e-2
 _ROTATION_FIRST = [3, 4, 5, 0, 1, 2]
 _PLANAR_SD = 1e-3
 """A 2-D relation knows height [m], roll and pitch [rad] this well once it is lifted to 3-D."""
@@ -59,6 +65,10 @@ def read_g2o(path: Path) -> PoseGraph:
     edges = []
     for line, tag, words in rows:
         if "EDGE" in tag:
+            if words[0] == words[1]:
+                raise CorruptFile(
+                    f"{path.name}, line {line}: expected two vertices, got {int(words[0])} twice"
+                )
             if int(words[0]) not in row_of or int(words[1]) not in row_of:
                 raise CorruptFile(f"{path.name}, line {line}: an edge names a missing vertex")
             edges.append(_edge(tag, words, row_of))
@@ -76,19 +86,17 @@ def _text(numbers: list[float]) -> str:
 
 def _read_rows(path: Path) -> list[tuple[int, str, Array]]:
     """Line number, tag and numbers of each line."""
-    try:
-        text = path.read_text("ascii")
-    except (OSError, UnicodeDecodeError) as error:
-        raise CorruptFile(f"{path.name}: cannot be read as text: {error}") from error
-    rows = []
-    lines = text.splitlines()
+    rows: list[tuple[int, str, Array]] = []
+    first = line = ""
+    lines = lines_limited(path, most_bytes=_MOST_BYTES, most_line_bytes=_MOST_LINE_BYTES)
     for number, line in enumerate(lines, start=1):
+        first = first if number > 1 else line
         words = line.split()
         if not words or words[0].startswith("#"):
             continue
         rows.append((number, words[0], _numbers(words, f"{path.name}, line {number}")))
-    if lines and lines[0].startswith("# recon4 vertices"):
-        _check_promise(lines[0], rows, path.name, complete=text.endswith("\n"))
+    if first.startswith("# recon4 vertices"):
+        _check_promise(first, rows, path.name, complete=line.endswith("\n"))
     return rows
 
 
@@ -99,11 +107,18 @@ def _numbers(words: list[str], where: str) -> Array:
     if len(words) != expected:
         raise CorruptFile(f"{where}: {words[0]} has {expected} words, got {len(words)}")
     try:
-        numbers = np.array([float(word) for word in words[1:]])
+        numbers = np.array([parse_float(word) for word in words[1:]])
     except ValueError as error:
         raise CorruptFile(f"{where}: {error}") from error
     if not np.isfinite(numbers).all():
         raise CorruptFile(f"{where}: a number is not finite")
+    for number in numbers[: 2 if "EDGE" in words[0] else 1]:
+        if number != int(number) or not 0 <= number < _MOST_ID:
+            raise CorruptFile(f"{where}: expected a vertex 0 to 2^53, got {number:g}")
+    if words[0].endswith("QUAT"):
+        quat = numbers[4:8] if "VERTEX" in words[0] else numbers[5:9]
+        if abs(np.linalg.norm(quat) - 1.0) > _LENGTH_TOLERANCE:
+            raise CorruptFile(f"{where}: a quaternion has length 1, got {np.linalg.norm(quat):.4g}")
     return numbers
 
 
@@ -111,13 +126,13 @@ def _check_promise(
     head: str, rows: list[tuple[int, str, Array]], name: str, *, complete: bool
 ) -> None:
     """Our own files say how much is in them, so that a cut-off one is noticed."""
-    words = head.split()
+    words = [*head.split(), *[""] * 6]
     tags = [tag for _, tag, _ in rows]
     found = (sum("VERTEX" in tag for tag in tags), sum("EDGE" in tag for tag in tags))
     if not complete or [str(count) for count in found] != [words[3], words[5]]:
         raise CorruptFile(
-            f"{name}: expected {words[3]} vertices and {words[5]} edges and an end of line, "
-            f"got {found[0]} and {found[1]}"
+            f"{name}: expected {words[3][:20]} vertices and {words[5][:20]} edges "
+            f"and an end of line, got {found[0]} and {found[1]}"
         )
 
 

@@ -1,74 +1,94 @@
 """Point cloud files, PCD, PLY and KITTI BIN, as tables of named columns.
 
-Every length is checked before anything is allocated: a cut file is refused, never padded.
+Every length is checked against the size of the file before anything is allocated: a cut file is
+refused, never padded, and a large one is read piece by piece.
 """
 
 from __future__ import annotations
 
 import io
-from dataclasses import dataclass
+import os
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.bounded import MOST_LINE_BYTES, open_regular
 from recon4.errors import CorruptFile, UnknownFormat
 from recon4.kernels.lzf import lzf_decompress
+from recon4.recording.cloud_headers import (
+    HEADER_BYTES,
+    Field,
+    Layout,
+    is_pcd,
+    is_ply,
+    pcd_layout,
+    ply_layout,
+)
 
 Table = dict[str, NDArray[Any]]
 """Column name -> values, (N,) each."""
 
-_HEADER_LIMIT = 64 * 1024
-_PCD_KINDS = {"F": "f", "I": "i", "U": "u"}
-_PLY_TYPES = {
-    **{"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4"},
-    **{"int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4"},
-    **{"float": "f4", "float32": "f4", "double": "f8", "float64": "f8"},
-}
-_PLY_ORDER = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
+MOST_FRAME_BYTES = 256 << 20
+"""The points of a file that is read as a whole (one revolution, or a compressed block)."""
+_CHUNK_BYTES = 32 << 20
 _LZF_MOST = 100
 """LZF cannot expand by more than 88: a larger claim is damage, not data."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Layout:
-    """What a header says about the rows that follow."""
-
-    columns: list[tuple[str, str, int]]
-    """Name, dtype and count of each field; an empty name is padding."""
-    rows: int
-    encoding: str
-    data_at: int
 
 
 def is_cloud_file(path: Path) -> bool:
     """Whether the content is that of a PCD or PLY file, or plausibly of a KITTI BIN file."""
     with path.open("rb") as file:
-        head = file.read(_HEADER_LIMIT)
-    if _is_ply(head) or _is_pcd(head):
+        head = file.read(HEADER_BYTES)
+    if is_ply(head) or is_pcd(head):
         return True
     return path.suffix.lower() == ".bin" and _is_bin(head, path.stat().st_size)
 
 
 def read_cloud(path: Path) -> Table:
-    """Read a PCD, PLY or BIN file.
+    """Read a PCD, PLY or BIN file of at most `MOST_FRAME_BYTES` as a whole.
 
     Raises:
-        CorruptFile: If the bytes do not match what the header promises.
+        CorruptFile: If the bytes do not match what the header promises, or there are too many.
         UnknownFormat: If it is none of the three.
     """
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise CorruptFile(f"{path.name} cannot be read: {error.strerror}") from error
-    if _is_ply(data):
-        return _rows(data, _ply_layout(data, path.name), path.name)
-    if _is_pcd(data[:_HEADER_LIMIT]):
-        return _rows(data, _pcd_layout(data, path.name), path.name)
-    if path.suffix.lower() == ".bin":
-        return _bin(data, path.name)
-    raise UnknownFormat(f"{path.name}: expected a PCD, PLY or KITTI BIN file")
+    with open_regular(path) as file:
+        layout = _layout(file, path)
+        _check_size(file, layout, path.name)
+        size = layout.rows * layout.row_bytes
+        if size > MOST_FRAME_BYTES:
+            raise CorruptFile(
+                f"{path.name}: expected at most {MOST_FRAME_BYTES} bytes of points in one frame, "
+                f"got {layout.rows} points of {layout.row_bytes} bytes"
+            )
+        parts = list(_chunks(file, layout, path.name))
+    if len(parts) == 1:
+        return parts[0]
+    return {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
+
+
+def cloud_chunks(path: Path) -> Iterator[Table]:
+    """Read a PCD, PLY or BIN file of any size, some rows at a time.
+
+    Raises:
+        CorruptFile, UnknownFormat: As `read_cloud`.
+    """
+    with open_regular(path) as file:
+        layout = _layout(file, path)
+        _check_size(file, layout, path.name)
+        yield from _chunks(file, layout, path.name)
+
+
+def cloud_rows(path: Path) -> int:
+    """How many points the header promises.
+
+    Raises:
+        CorruptFile, UnknownFormat: As `read_cloud`.
+    """
+    with open_regular(path) as file:
+        return _layout(file, path).rows
 
 
 def cloud_fields(path: Path) -> list[str]:
@@ -77,21 +97,43 @@ def cloud_fields(path: Path) -> list[str]:
     Raises:
         CorruptFile, UnknownFormat: As `read_cloud`.
     """
-    with path.open("rb") as file:
-        head = file.read(_HEADER_LIMIT)
-    if _is_ply(head):
-        return [name for name, _, _ in _ply_layout(head, path.name).columns]
-    if _is_pcd(head):
-        return [name for name, _, _ in _pcd_layout(head, path.name).columns if name]
-    return ["x", "y", "z", "intensity"]
+    with open_regular(path) as file:
+        return list(_layout(file, path).named())
 
 
-def _is_ply(head: bytes) -> bool:
-    return head[:4] in (b"ply\n", b"ply\r")
+def _layout(file: BinaryIO, path: Path) -> Layout:
+    head = file.read(HEADER_BYTES)
+    if is_ply(head):
+        return ply_layout(head, path.name)
+    if is_pcd(head):
+        return pcd_layout(head, path.name)
+    if path.suffix.lower() == ".bin":
+        return _bin_layout(_size(file), path.name)
+    raise UnknownFormat(f"{path.name}: expected a PCD, PLY or KITTI BIN file")
 
 
-def _is_pcd(head: bytes) -> bool:
-    return head[:1] in (b"#", b"V", b"F") and b"\nDATA " in head and b"FIELDS " in head
+def _check_size(file: BinaryIO, layout: Layout, name: str) -> None:
+    """Refuse more points than the bytes behind the header can be."""
+    left = _size(file) - layout.data_at
+    least = {"ascii": 2 * len(layout.fields), "binary": layout.row_bytes}
+    needed = layout.rows * least.get(layout.encoding, 0)
+    # The last line of a text may have no end.
+    if left + (layout.encoding == "ascii") < needed:
+        raise CorruptFile(
+            f"{name}: cut: {layout.rows} points of {layout.row_bytes} bytes need {needed} bytes "
+            f"behind the header, got {left}"
+        )
+
+
+def _chunks(file: BinaryIO, layout: Layout, name: str) -> Iterator[Table]:
+    if layout.encoding == "ascii":
+        return _ascii(file, layout, name)
+    if layout.encoding == "binary_compressed":
+        return _compressed(file, layout, name)
+    return _binary(file, layout, name)
+
+
+# -- KITTI BIN
 
 
 def _is_bin(head: bytes, size: int) -> bool:
@@ -101,157 +143,138 @@ def _is_bin(head: bytes, size: int) -> bool:
     return bool(np.all(np.isfinite(values)) and np.all(np.abs(values) < 1e5))
 
 
-# -- PCD
-
-
-def _pcd_layout(data: bytes, name: str) -> _Layout:
-    words: dict[str, list[str]] = {}
-    at = 0
-    while "DATA" not in words:
-        end = data.find(b"\n", at, _HEADER_LIMIT)
-        if end < 0:
-            raise CorruptFile(f"{name}: the PCD header ends before its DATA line")
-        line = data[at:end].decode("latin1").split("#")[0].split()
-        if line:
-            words[line[0]] = line[1:]
-        at = end + 1
-    try:
-        fields, sizes, kinds = words["FIELDS"], words["SIZE"], words["TYPE"]
-        counts = [int(c) for c in words.get("COUNT", ["1"] * len(fields))]
-        dtypes = [_PCD_KINDS[k] + str(int(s)) for k, s in zip(kinds, sizes, strict=True)]
-        columns = [
-            ("" if f == "_" else f.lower(), d, c)
-            for f, d, c in zip(fields, dtypes, counts, strict=True)
-        ]
-        grid = int(words["WIDTH"][0]) * int(words.get("HEIGHT", ["1"])[0])
-        rows = int(words.get("POINTS", [str(grid)])[0])
-        encoding = words["DATA"][0]
-        [np.dtype(d) for d in dtypes]
-    except (KeyError, ValueError, IndexError, TypeError) as error:
-        raise CorruptFile(f"{name}: the PCD header makes no sense: {error!r}") from error
-    if rows != grid or rows < 0 or min(counts, default=0) < 1:
-        raise CorruptFile(f"{name}: PCD header: WIDTH x HEIGHT is {grid}, POINTS is {rows}")
-    if encoding not in ("ascii", "binary", "binary_compressed"):
-        raise CorruptFile(f"{name}: PCD DATA must be ascii, binary or binary_compressed")
-    return _Layout(columns, rows, encoding, at)
-
-
-# -- PLY
-
-
-def _ply_layout(data: bytes, name: str) -> _Layout:
-    end = data.find(b"end_header", 0, _HEADER_LIMIT)
-    line_end = data.find(b"\n", end)
-    if end < 0 or line_end < 0:
-        raise CorruptFile(f"{name}: the PLY header does not end")
-    lines = [line.split() for line in data[:end].decode("latin1").splitlines()]
-    columns: list[tuple[str, str, int]] = []
-    rows, element, encoding = -1, "", ""
-    try:
-        for line in filter(None, lines):
-            if line[0] == "format":
-                encoding = line[1]
-            elif line[0] == "element":
-                if rows < 0 and line[1] != "vertex":
-                    raise CorruptFile(f"{name}: the first PLY element must be vertex: {line[1]!r}")
-                element = line[1]
-                rows = int(line[2]) if element == "vertex" else rows
-            elif line[0] == "property" and element == "vertex":
-                columns.append((line[2].lower(), _PLY_ORDER[encoding] + _PLY_TYPES[line[1]], 1))
-    except (KeyError, ValueError, IndexError) as error:
-        raise CorruptFile(f"{name}: the PLY header makes no sense: {error!r}") from error
-    if rows < 0 or not columns or encoding not in _PLY_ORDER:
-        raise CorruptFile(f"{name}: a PLY header needs a format and an element vertex")
-    return _Layout(columns, rows, "ascii" if encoding == "ascii" else "binary", line_end + 1)
+def _bin_layout(size: int, name: str) -> Layout:
+    if size % 16:
+        raise CorruptFile(
+            f"{name}: a KITTI BIN file has 16 bytes a point (x y z intensity as float32), "
+            f"got {size} bytes, {size % 16} too many"
+        )
+    fields = tuple(Field(key, "<f4") for key in ("x", "y", "z", "intensity"))
+    return Layout(fields, size // 16, "binary", 0)
 
 
 # -- rows
 
 
-def _rows(data: bytes, layout: _Layout, name: str) -> Table:
-    if layout.encoding == "ascii":
-        return _ascii(data, layout, name)
-    if layout.encoding == "binary_compressed":
-        return _compressed(data, layout, name)
-    dtype, named = _row_dtype(layout)
-    needed, left = layout.rows * dtype.itemsize, len(data) - layout.data_at
-    if left < needed:
-        raise CorruptFile(
-            f"{name}: cut: {layout.rows} points of {dtype.itemsize} bytes need {needed} bytes "
-            f"behind the header, got {left}"
-        )
-    table = np.frombuffer(data, dtype, layout.rows, layout.data_at)
-    return {column: _first(table[key]) for key, column in named.items()}
+def _binary(file: BinaryIO, layout: Layout, name: str) -> Iterator[Table]:
+    dtype, named = layout.row_dtype(), layout.named()
+    step = max(1, _CHUNK_BYTES // layout.row_bytes)
+    file.seek(layout.data_at)
+    for first in range(0, max(1, layout.rows), step):
+        count = min(step, layout.rows - first)
+        table = np.frombuffer(_read(file, count * layout.row_bytes, name), dtype, count)
+        yield {column: _native(table[f"f{k}"][:, 0]) for column, k in named.items()}
 
 
-def _row_dtype(layout: _Layout) -> tuple[np.dtype[np.void], dict[str, str]]:
-    """Record of one row, and its keys with the column each is."""
-    fields: list[tuple[str, str, tuple[int]]] = []
-    named: dict[str, str] = {}
-    for k, (column, dtype, count) in enumerate(layout.columns):
-        fields.append((f"f{k}", dtype if dtype[0] in "<>" else f"<{dtype}", (count,)))
-        if column and column not in named.values():
-            named[f"f{k}"] = column
-    return np.dtype(fields), named
+def _ascii(file: BinaryIO, layout: Layout, name: str) -> Iterator[Table]:
+    """As many lines as there are rows; what follows them is not looked at (PLY has faces there)."""
+    file.seek(layout.data_at)
+    done = 0
+    while True:
+        lines = _some_lines(file, layout.rows - done, name)
+        if not lines and done < layout.rows:
+            raise CorruptFile(f"{name}: cut: {layout.rows} points promised, got {done} lines")
+        yield _columns(lines, layout, f"{name}: behind point {done}")
+        done += len(lines)
+        if done == layout.rows:
+            return
 
 
-def _first(column: NDArray[Any]) -> NDArray[Any]:
-    return np.ascontiguousarray(column[:, 0]).astype(column.dtype.newbyteorder("="))
+def _some_lines(file: BinaryIO, most: int, name: str) -> list[str]:
+    """Lines with something in them, at most `_CHUNK_BYTES` of them."""
+    lines: list[str] = []
+    size = 0
+    while len(lines) < most and size < _CHUNK_BYTES:
+        line = file.readline(MOST_LINE_BYTES + 1)
+        if not line:
+            break
+        if len(line) > MOST_LINE_BYTES:
+            raise CorruptFile(
+                f"{name}: expected lines of at most {MOST_LINE_BYTES} bytes, got a longer one"
+            )
+        size += len(line)
+        # Files of old Macs end their lines with \r alone.
+        lines += [part for part in line.decode("latin1").splitlines() if part.strip()]
+    return lines[:most]
 
 
-def _ascii(data: bytes, layout: _Layout, name: str) -> Table:
-    width = sum(count for _, _, count in layout.columns)
-    lines = data[layout.data_at :].decode("latin1").splitlines()
-    rows = [line for line in lines if line.strip()][: layout.rows]
-    if len(rows) < layout.rows:
-        raise CorruptFile(f"{name}: cut: {layout.rows} points promised, got {len(rows)} lines")
-    try:
-        values = np.loadtxt(io.StringIO("\n".join(rows)), np.float64, ndmin=2) if rows else None
-    except ValueError as error:
-        raise CorruptFile(f"{name}: not a table of numbers: {error}") from error
-    if values is None:
-        values = np.empty((0, width))
-    if values.shape[1] != width:
-        raise CorruptFile(f"{name}: {width} numbers a line expected, got {values.shape[1]}")
-    starts = np.cumsum([0] + [count for _, _, count in layout.columns])
+def _columns(lines: list[str], layout: Layout, where: str) -> Table:
+    width = sum(field.count for field in layout.fields)
+    values = np.empty((0, width))
+    if lines:
+        try:
+            text = io.StringIO("\n".join(lines))
+            values = np.loadtxt(text, np.float64, ndmin=2, comments=None)
+        except ValueError as error:
+            raise CorruptFile(f"{where}: not a table of numbers: {error}") from error
+    if values.shape != (len(lines), width):
+        raise CorruptFile(f"{where}: {width} numbers a line expected, got {values.shape[1]}")
+    starts = np.cumsum([0] + [field.count for field in layout.fields])
+    fields = layout.fields
     return {
-        column: values[:, start].astype(dtype.lstrip("<>"))
-        for (column, dtype, _), start in zip(layout.columns, starts, strict=False)
-        if column
+        column: _cast(values[:, starts[k]], fields[k].dtype, f"{where}: {column}")
+        for column, k in layout.named().items()
     }
 
 
-def _compressed(data: bytes, layout: _Layout, name: str) -> Table:
+def _cast(values: NDArray[np.float64], dtype: str, where: str) -> NDArray[Any]:
+    """Numbers as the type of their field; an integer field cannot hold just any number."""
+    kind = np.dtype(dtype).newbyteorder("=")
+    if kind.kind == "f":
+        with np.errstate(over="ignore"):
+            return values.astype(kind)
+    limits = np.iinfo(kind)
+    fits = (values >= limits.min) & (values <= limits.max)
+    if kind.itemsize == 8:  # the limits of 64 bits are no float64
+        fits &= np.abs(values) < 2.0**63
+    if not np.all(fits):
+        bad = values[~fits][0]
+        raise CorruptFile(f"{where}: expected {limits.min} to {limits.max}, got {bad:g}")
+    return values.astype(kind)
+
+
+def _compressed(file: BinaryIO, layout: Layout, name: str) -> Iterator[Table]:
     """Columns one behind the other, compressed as one block."""
-    sizes = [np.dtype(dtype).itemsize * count for _, dtype, count in layout.columns]
-    body = data[layout.data_at :]
-    if len(body) < 8:
-        raise CorruptFile(f"{name}: cut inside the sizes of the compressed block")
-    packed, unpacked = (int(v) for v in np.frombuffer(body, "<u4", 2))
-    if unpacked != layout.rows * sum(sizes) or unpacked > packed * _LZF_MOST:
+    expected = layout.rows * layout.row_bytes
+    file.seek(layout.data_at)
+    packed, unpacked = (int(v) for v in np.frombuffer(_read(file, 8, name), "<u4", 2))
+    if unpacked != expected or unpacked > packed * _LZF_MOST:
         raise CorruptFile(
-            f"{name}: {layout.rows} points are {layout.rows * sum(sizes)} bytes, "
-            f"the compressed block says {unpacked}"
+            f"{name}: {layout.rows} points are {expected} bytes, "
+            f"the compressed block of {packed} bytes says {unpacked}"
         )
-    if len(body) - 8 < packed:
-        raise CorruptFile(f"{name}: cut: {packed} compressed bytes promised, got {len(body) - 8}")
+    if max(unpacked, packed) > MOST_FRAME_BYTES + (MOST_FRAME_BYTES >> 4):
+        raise CorruptFile(
+            f"{name}: expected a compressed block of at most {MOST_FRAME_BYTES} bytes, "
+            f"got {packed} bytes that unpack to {unpacked}"
+        )
     out = np.zeros(unpacked, np.uint8)
-    if lzf_decompress(np.frombuffer(body, np.uint8, packed, 8), out) != unpacked:
+    body = np.frombuffer(_read(file, packed, name), np.uint8)
+    if lzf_decompress(body, out) != unpacked:
         raise CorruptFile(f"{name}: the compressed block is damaged")
-    table, at = {}, 0
-    for (column, dtype, count), size in zip(layout.columns, sizes, strict=True):
-        if column:
-            values = np.frombuffer(out.data, f"<{dtype}", layout.rows * count, at)
-            table[column] = values.reshape(layout.rows, count)[:, 0].copy()
-        at += layout.rows * size
-    return table
+    starts = np.cumsum([0] + [layout.rows * field.row_bytes for field in layout.fields])
+    table = {}
+    for column, k in layout.named().items():
+        field = layout.fields[k]
+        values = np.frombuffer(out.data, field.dtype, layout.rows * field.count, int(starts[k]))
+        table[column] = _native(values.reshape(layout.rows, field.count)[:, 0])
+    yield table
 
 
-def _bin(data: bytes, name: str) -> Table:
-    if len(data) % 16:
-        raise CorruptFile(
-            f"{name}: a KITTI BIN file has 16 bytes a point (x y z intensity as float32), "
-            f"got {len(data)} bytes, {len(data) % 16} too many"
-        )
-    values = np.frombuffer(data, "<f4").reshape(-1, 4)
-    return {key: values[:, k].copy() for k, key in enumerate(("x", "y", "z", "intensity"))}
+def _native(column: NDArray[Any]) -> NDArray[Any]:
+    return np.array(column, dtype=column.dtype.newbyteorder("="))
+
+
+def _read(file: BinaryIO, count: int, name: str) -> bytes:
+    """Exactly so many bytes; the file's size is known to suffice, or ``count`` is small."""
+    left = _size(file) - file.tell()
+    if left < count:
+        raise CorruptFile(f"{name}: cut: {count} bytes promised, got {left}")
+    data = file.read(count)
+    if len(data) < count:
+        raise CorruptFile(f"{name}: cut: {count} bytes promised, got {len(data)}")
+    return data
+
+
+def _size(file: BinaryIO) -> int:
+    return os.fstat(file.fileno()).st_size

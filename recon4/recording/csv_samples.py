@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import csv
 import math
+from array import array
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
-from recon4.errors import CorruptFile, EmptyRecording, UnknownFormat
+from recon4.bounded import lines_limited, parse_float
+from recon4.errors import CorruptFile, EmptyRecording, RecordingError, UnknownFormat
 from recon4.geometry.se3 import Array
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
@@ -20,6 +23,9 @@ GNSS_HEADER = (
 )
 _OPTIONAL = {*IMU_HEADER[4:], *GNSS_HEADER[3:]}
 _SEPARATORS = ";\t,"
+MOST_BYTES = 1 << 30
+"""About ten million samples: an IMU of 400 Hz for seven hours."""
+_MOST_LINE_BYTES = 16 * 1024
 
 
 def read_imu_csv(path: Path) -> ImuSamples:
@@ -66,56 +72,80 @@ def read_gnss_csv(path: Path) -> GnssSamples:
 def csv_header(path: Path) -> list[str]:
     """Names of the columns; empty when the first line is no text."""
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            line = file.readline(4096)
-    except (OSError, UnicodeDecodeError):
+        return _names(next(_lines(path), ""))
+    except RecordingError:
         return []
-    return [cell.strip().strip('"').lower() for cell in line.split(_separator(line))]
+
+
+def _names(line: str) -> list[str]:
+    return [cell.strip().strip('"').lower() for cell in line.strip().split(_separator(line))]
 
 
 def _separator(header: str) -> str:
     return next((sign for sign in _SEPARATORS if sign in header), ",")
 
 
+def _lines(path: Path) -> Iterator[str]:
+    return lines_limited(path, most_bytes=MOST_BYTES, most_line_bytes=_MOST_LINE_BYTES)
+
+
 def _read(path: Path, known: tuple[str, ...]) -> tuple[Times, dict[str, Array]]:
-    header = csv_header(path)
-    missing = [name for name in known if name not in header and name not in _OPTIONAL]
-    if missing:
-        raise UnknownFormat(
-            f"{path.name}: missing columns {', '.join(missing)}; expected header: {','.join(known)}"
-        )
+    """Times and columns; a column that is not in the file is NaN."""
+    lines = _lines(path)
+    first = next(lines, "")
+    header = _checked_header(first, known, path.name)
     at = [header.index(name) if name in header else -1 for name in known]
-    times: list[int] = []
-    values: list[list[float]] = []
-    with path.open(encoding="utf-8-sig", newline="") as file:
-        separator = _separator(file.readline())
-        for number, row in enumerate(csv.reader(file, delimiter=separator), start=2):
-            if not any(row):
-                continue
-            where = f"{path.name}: line {number}"
-            if len(row) != len(header):
-                raise CorruptFile(f"{where}: expected {len(header)} cells, got {len(row)}")
-            times.append(_time(row[at[0]], where))
-            values.append([_value(row[k], where) if k >= 0 else math.nan for k in at[1:]])
+    times, values = array("q"), array("d")
+    for number, row in _rows(lines, _separator(first), path.name):
+        where = f"{path.name}: line {number}"
+        if len(row) != len(header):
+            raise CorruptFile(f"{where}: expected {len(header)} cells, got {len(row)}")
+        times.append(_time(row[at[0]], where))
+        values.extend(_value(row[k], where) if k >= 0 else math.nan for k in at[1:])
     if not times:
         raise EmptyRecording(f"{path.name}: no samples under the header")
-    table = np.array(values, dtype=np.float64)
+    table = np.array(values, np.float64).reshape(len(times), -1)
     return np.array(times, np.int64), {name: table[:, k] for k, name in enumerate(known[1:])}
+
+
+def _checked_header(line: str, known: tuple[str, ...], name: str) -> list[str]:
+    if not line.strip():
+        raise UnknownFormat(f"{name}: line 1 is empty; expected header: {','.join(known)}")
+    header = _names(line)
+    missing = [column for column in known if column not in header and column not in _OPTIONAL]
+    if missing:
+        raise UnknownFormat(
+            f"{name}: missing columns {', '.join(missing)}; expected header: {','.join(known)}"
+        )
+    twice = sorted({column for column in known if header.count(column) > 1})
+    if twice:
+        raise UnknownFormat(f"{name}: line 1: expected each column once, got {twice} twice")
+    return header
+
+
+def _rows(lines: Iterator[str], separator: str, name: str) -> Iterator[tuple[int, list[str]]]:
+    """Cells of each line that is not blank, with its number; a sample never spans lines."""
+    for number, line in enumerate(lines, start=2):
+        try:
+            row = next(csv.reader([line.rstrip("\r\n")], delimiter=separator), [])
+        except csv.Error as error:
+            raise CorruptFile(f"{name}: line {number}: expected cells of a CSV: {error}") from error
+        if any(row):
+            yield number, row
 
 
 def _time(text: str, where: str) -> int:
     """Whole nanoseconds; read as text because a float cannot hold them."""
-    try:
-        t_ns = int(text)
-    except ValueError as error:
-        raise CorruptFile(f"{where}: t_ns must be whole nanoseconds, got {text!r}") from error
-    if not 0 <= t_ns < 2**63:
-        raise CorruptFile(f"{where}: t_ns must be 0 to 2^63, got {text}")
-    return t_ns
+    digits = text.strip()
+    if not (digits.isascii() and digits.lstrip("-").isdigit()):
+        raise CorruptFile(f"{where}: t_ns must be whole nanoseconds, got {text[:80]!r}")
+    if len(digits) > 19 or not 0 <= int(digits) < 2**63:
+        raise CorruptFile(f"{where}: t_ns must be 0 to 2^63, got {digits[:80]}")
+    return int(digits)
 
 
 def _value(text: str, where: str) -> float:
     try:
-        return float(text.replace(",", ".")) if text.strip() else math.nan
+        return parse_float(text.strip().replace(",", ".")) if text.strip() else math.nan
     except ValueError as error:
-        raise CorruptFile(f"{where}: expected a number, got {text!r}") from error
+        raise CorruptFile(f"{where}: expected a number, got {text[:80]!r}") from error

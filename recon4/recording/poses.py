@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import re
+from array import array
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from recon4.errors import CorruptFile, EmptyRecording, UnknownFormat
+from recon4.bounded import lines_limited
+from recon4.errors import CorruptFile, EmptyRecording
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.trajectory import Times, Trajectory
 
-_SECONDS = re.compile(r"(-?)(\d+)(?:\.(\d*))?")
+_SECONDS = re.compile(r"([-+]?)([0-9]{1,18})(?:\.([0-9]*))?")
 _ROTATION_TOLERANCE = 1e-2
+_MOST_BYTES = 1 << 30
+_MOST_LINE_BYTES = 4096
 
 
 def read_tum(path: Path) -> Trajectory:
@@ -24,18 +30,18 @@ def read_tum(path: Path) -> Trajectory:
         CorruptFile: Naming the line and what is wrong with it; also for times that do not increase.
         EmptyRecording: If there is no pose.
     """
-    lines = _lines(path)
-    values = _table(lines, 8, path.name)
-    t_ns = np.array([_nanoseconds(words[0], n, path.name) for n, words in lines], np.int64)
+    table = _Table.read(path, width=8)
+    values = table.values
+    times = [_nanoseconds(text, table.where(row)) for row, text in enumerate(table.first)]
+    t_ns = np.array(times, np.int64)
     backwards = np.flatnonzero(np.diff(t_ns) <= 0)
     if len(backwards):
-        raise CorruptFile(f"{path.name}: line {lines[backwards[0] + 1][0]}: times must increase")
+        raise CorruptFile(f"{table.where(int(backwards[0]) + 1)}: times must increase")
     norms = np.linalg.norm(values[:, 4:], axis=1)
     bad = np.flatnonzero(np.abs(norms - 1.0) > _ROTATION_TOLERANCE)
     if len(bad):
         raise CorruptFile(
-            f"{path.name}: line {lines[bad[0]][0]}: a quaternion has length 1, "
-            f"got {norms[bad[0]]:.4g}"
+            f"{table.where(int(bad[0]))}: a quaternion has length 1, got {norms[bad[0]]:.4g}"
         )
     return Trajectory(t_ns, SE3.from_quat(values[:, 4:], values[:, 1:4]))
 
@@ -61,8 +67,8 @@ def read_kitti(path: Path, t_ns: Times) -> Trajectory:
         CorruptFile: Naming the line and what is wrong with it.
         EmptyRecording: If there is no pose.
     """
-    lines = _lines(path)
-    values = _table(lines, 12, path.name)
+    table = _Table.read(path, width=12)
+    values = table.values
     if len(values) != len(t_ns):
         raise CorruptFile(f"{path.name}: {len(t_ns)} poses expected, got {len(values)}")
     matrices = values.reshape(-1, 3, 4)
@@ -70,7 +76,7 @@ def read_kitti(path: Path, t_ns: Times) -> Trajectory:
     off = np.abs(R @ np.swapaxes(R, -1, -2) - np.eye(3)).max(axis=(1, 2))
     bad = np.flatnonzero((off > _ROTATION_TOLERANCE) | (np.linalg.det(R) < 0.0))
     if len(bad):
-        raise CorruptFile(f"{path.name}: line {lines[bad[0]][0]}: not a rotation")
+        raise CorruptFile(f"{table.where(int(bad[0]))}: not a rotation")
     return Trajectory(t_ns, SE3(R.copy(), matrices[..., 3].copy()))
 
 
@@ -94,44 +100,74 @@ def pose_format(path: Path) -> str:
     return ""
 
 
-def _lines(path: Path) -> list[tuple[int, list[str]]]:
+@dataclass(frozen=True, slots=True, eq=False)
+class _Table:
+    """The numbers of a text file of poses."""
+
+    name: str
+    first: list[str]
+    """First word of each row, as text: a float64 cannot hold nanoseconds since 1970."""
+    lines: array[int]
+    """Line number of each row."""
+    values: Array
+    """(N, width), finite."""
+
+    @staticmethod
+    def read(path: Path, *, width: int) -> _Table:
+        """Rows of ``width`` numbers, separated by blanks or commas; ``#`` starts a comment.
+
+        Raises:
+            CorruptFile: Naming the line, what was expected and what was found.
+            EmptyRecording: If there is no row.
+        """
+        first, lines, values = [], array("q"), array("d")
+        for number, words in _words(path):
+            try:
+                if len(words) != width or any("_" in word for word in words):
+                    raise ValueError(f"{len(words)} words")
+                row = [float(word) for word in words]
+            except ValueError as error:
+                raise CorruptFile(
+                    f"{path.name}: line {number}: expected {width} numbers, got {len(words)}: "
+                    f"{' '.join(words)[:80]!r}"
+                ) from error
+            first.append(words[0])
+            lines.append(number)
+            values.extend(row)
+        if not first:
+            raise EmptyRecording(f"{path.name}: no poses")
+        table = _Table(path.name, first, lines, np.array(values).reshape(-1, width))
+        bad = np.flatnonzero(~np.all(np.isfinite(table.values), axis=1))
+        if len(bad):
+            raise CorruptFile(
+                f"{table.where(int(bad[0]))}: expected finite numbers, got one that is not"
+            )
+        return table
+
+    def where(self, row: int) -> str:
+        """File and line of a row, for messages."""
+        return f"{self.name}: line {self.lines[row]}"
+
+
+def _words(path: Path) -> Iterator[tuple[int, list[str]]]:
     """Words of each line with its number, without comments and blank lines."""
-    try:
-        text = path.read_text("ascii")
-    except UnicodeDecodeError as error:
-        raise UnknownFormat(f"{path.name}: expected a text file of poses: {error}") from error
-    numbered = enumerate(text.splitlines(), start=1)
-    lines = [(n, words) for n, line in numbered if (words := line.split("#")[0].split())]
-    if not lines:
-        raise EmptyRecording(f"{path.name}: no poses")
-    return lines
+    lines = lines_limited(path, most_bytes=_MOST_BYTES, most_line_bytes=_MOST_LINE_BYTES)
+    for number, line in enumerate(lines, start=1):
+        words = line.partition("#")[0].replace(",", " ").split()
+        if words:
+            yield number, words
 
 
-def _table(lines: list[tuple[int, list[str]]], width: int, name: str) -> Array:
-    rows = []
-    for number, words in lines:
-        if len(words) != width:
-            raise CorruptFile(f"{name}: line {number}: {width} numbers expected, got {len(words)}")
-        try:
-            rows.append([float(word) for word in words])
-        except ValueError as error:
-            raise CorruptFile(f"{name}: line {number}: {error}") from error
-    values = np.array(rows)
-    bad = np.flatnonzero(~np.all(np.isfinite(values), axis=1))
-    if len(bad):
-        raise CorruptFile(f"{name}: line {lines[bad[0]][0]}: numbers must be finite")
-    return values
-
-
-def _nanoseconds(text: str, line: int, name: str) -> int:
+def _nanoseconds(text: str, where: str) -> int:
     found = _SECONDS.fullmatch(text)
     if found is None:
-        try:
-            return round(float(text) * 1e9)
-        except (ValueError, OverflowError) as error:
-            raise CorruptFile(f"{name}: line {line}: no time: {text!r}") from error
-    sign = -1 if found[1] else 1
-    return sign * (int(found[2]) * 1_000_000_000 + int((found[3] or "").ljust(9, "0")[:9]))
+        t_ns = round(float(text) * 1e9)
+    else:
+        sign = -1 if found[1] == "-" else 1
+        t_ns = sign * (int(found[2]) * 1_000_000_000 + int((found[3] or "").ljust(9, "0")[:9]))
+    if not -(2**63) <= t_ns < 2**63:
+        raise CorruptFile(f"{where}: expected a time within 292 years of 1970, got {text[:40]} s")
+    return t_ns
 
 
 def _seconds(t_ns: int) -> str:

@@ -59,7 +59,7 @@ class Alignment:
         return told
 
 
-def pair_points(root: Path, pair: Pair, reach: int) -> bytes:
+def pair_points(source: Source, pair: Pair, reach: int) -> bytes:
     """Points of two multiframes, each with ``reach`` others before and after, as `LAYOUT`.
 
     Raises:
@@ -68,21 +68,19 @@ def pair_points(root: Path, pair: Pair, reach: int) -> bytes:
     """
     if not 0 <= reach <= MOST_REACH:
         raise ConfigError(f"reach must be 0 to {MOST_REACH} multiframes, got {reach}")
-    source = Source.of(root)
     nodes_of(source.verified, pair)
     clouds = [_cloud(source, frame, reach) for frame in pair]
     head = LAYOUT.pack(MAGIC, 1, len(clouds[0]), len(clouds[1]))
     return head + b"".join(np.ascontiguousarray(cloud, "<f4").tobytes() for cloud in clouds)
 
 
-def pair_facts(root: Path, pair: Pair) -> dict[str, Any]:
+def pair_facts(source: Source, pair: Pair) -> dict[str, Any]:
     """Poses and alternative paths of a pair, tried or not, as JSON values.
 
     Raises:
         ConfigError: If one of them is no node of the graph.
         StoreError: If there is no verified graph.
     """
-    source = Source.of(root)
     graph = source.verified
     i, j = nodes_of(graph, pair)
     row = rows_by_pair(graph).get(pair)
@@ -108,11 +106,11 @@ def pair_facts(root: Path, pair: Pair) -> dict[str, Any]:
     return told
 
 
-def align(root: Path, pair: Pair, guess: tuple[float, ...]) -> Alignment:
+def align(source: Source, pair: Pair, guess: tuple[float, ...]) -> Alignment:
     """Register two nodes as the search does, from a person's guess.
 
     Args:
-        root: The project folder.
+        source: The project's latest graph.
         pair: Two multiframes that are nodes.
         guess: First ``T_i_j``, x y z [m] and quaternion x y z w.
 
@@ -121,7 +119,6 @@ def align(root: Path, pair: Pair, guess: tuple[float, ...]) -> Alignment:
         StoreError: If artifacts are missing or damaged.
     """
     T_guess = _checked(guess)
-    source = Source.of(root)
     nodes_of(source.verified, pair)
     # What a person points at is tried, however little the two see of each other.
     settings = replace(source.settings, overlap=replace(source.settings.overlap, threshold=0.0))
@@ -170,13 +167,13 @@ def fit_points(p_i: Array, p_j: Array) -> tuple[float, ...]:
     return numbers_of(align_points(p_i, p_j))
 
 
-def walk_facts(root: Path) -> dict[str, Any]:
+def walk_facts(source: Source) -> dict[str, Any]:
     """The nodes for a map of the walk and its sliders: frame ids, seconds, x y z [m].
 
     Raises:
         StoreError: If there is no verified graph.
     """
-    graph = Source.of(root).verified
+    graph = source.verified
     seconds = (graph.t_ns - graph.t_ns[0]) / 1e9
     return {
         "frames": graph.frame_ids.tolist(),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -18,11 +17,11 @@ _solved: OrderedDict[tuple[str, str], Reviewed] = OrderedDict()
 _sources: OrderedDict[str, Source] = OrderedDict()
 
 
-def preview(root: Path, decided: Decided, before: Decided) -> dict[str, Any]:
+def preview(source: Source, decided: Decided, before: Decided) -> dict[str, Any]:
     """What the stage ``review`` would find, and what changed since another set of decisions.
 
     Args:
-        root: The project folder.
+        source: The project's latest graph.
         decided: What stands now.
         before: What stood before the last decision.
 
@@ -36,7 +35,7 @@ def preview(root: Path, decided: Decided, before: Decided) -> dict[str, Any]:
         GraphError: If the graph cannot be solved.
     """
     began_s = perf_counter()
-    source = _source(root)
+    source = _known(source)
     earlier, now = _review(source, before).graph, _review(source, decided)
     told: dict[str, Any] = {
         "key": decided.key,
@@ -61,10 +60,9 @@ def _review(source: Source, decided: Decided) -> Reviewed:
     return _solved[known]
 
 
-def _source(root: Path) -> Source:
-    """The project's graph, read once."""
-    found = Source.of(root)
-    known = f"{root}:{found.key}"
+def _known(found: Source) -> Source:
+    """The same, with what was read of it before: its artifacts never change."""
+    known = str(found.artifacts["verification"])
     if known not in _sources:
         _sources[known] = found
         if len(_sources) > _REMEMBERED:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -34,7 +33,7 @@ _DOUBTS_ITSELF = (Reason.ERROR, Reason.FEW_MATCHES, Reason.DEGENERATE)
 """Turned down for what the registration itself says, whatever the rest of the graph does."""
 
 
-def queue_json(root: Path) -> bytes:
+def queue_json(source: Source) -> bytes:
     """All pairs but odometry as JSON: ``key``, ``columns`` and ``rows``, as `queue_rows` has them.
 
     Figures are those of the verified graph, before any decision, so that the order does not change
@@ -43,7 +42,6 @@ def queue_json(root: Path) -> bytes:
     Raises:
         StoreError: If there is no verified graph.
     """
-    source = Source.of(root)
     graph = source.verified
     rows = queue_rows(graph, settings=source.settings)
     told = {

@@ -68,9 +68,14 @@ def canonical(value: object) -> bytes:
     return text.encode()
 
 
-def _private_key(path: Path) -> Ed25519PrivateKey:
+def ensure_key(path: Path) -> None:
+    """Make the private key if there is none: its folder need not be open to who signs."""
     if not path.exists():
         _make(path)
+
+
+def _private_key(path: Path) -> Ed25519PrivateKey:
+    ensure_key(path)
     try:
         key = load_pem_private_key(path.read_bytes(), password=None)
     except (OSError, ValueError) as error:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
+from recon4.bounded import read_json_object
 from recon4.errors import StoreError
 from recon4.review.decisions import NOTHING_DECIDED
 from recon4.store.stage import read_manifest
+
+MOST_SUMMARY_BYTES = 16 << 20
 
 
 def read_summary(root: Path) -> dict[str, Any] | None:
@@ -21,12 +23,9 @@ def read_summary(root: Path) -> dict[str, Any] | None:
     if not path.is_file():
         return None
     try:
-        told = json.loads(path.read_text("utf-8"))
-    except (OSError, ValueError) as error:
+        return read_json_object(path, MOST_SUMMARY_BYTES, failure=StoreError)
+    except StoreError as error:
         raise StoreError(f"{path} cannot be read: {error}") from error
-    if not isinstance(told, dict):
-        raise StoreError(f"{path}: expected an object")
-    return told
 
 
 def artifact_keys(summary: dict[str, Any]) -> dict[str, str]:

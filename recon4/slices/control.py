@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import csv
-import io
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from recon4.bounded import parse_float
 from recon4.errors import CorruptFile
 
 Role = Literal["control", "check"]
 Order = Literal["EN", "NE"]
 MOST_POINTS = 5000
+MOST_BYTES = 4 << 20
+_MOST_SKIPPED = 100
+"""Lines left out that are told one by one."""
 _E = ("x", "e", "east", "easting", "x_m")
 _N = ("y", "n", "north", "northing", "y_m")
 _Z = ("z", "h", "u", "height", "elevation", "up", "z_m")
@@ -61,13 +64,15 @@ def read_control(data: bytes, *, name: str = "file", order: Order | None = None)
     Raises:
         CorruptFile: If no line has an id and three numbers.
     """
+    if len(data) > MOST_BYTES:
+        raise CorruptFile(f"{name}: expected at most {MOST_BYTES} bytes, got {len(data)}")
     text = _decoded(data, name)
     sample = [line for line in text.splitlines() if line.strip()][:20]
     if not sample:
         raise CorruptFile(f"{name} is empty; expected lines of ID,X,Y,Z")
     delimiter = max((";", "\t", ","), key=lambda d: min(line.count(d) for line in sample))
     decimal = "," if delimiter != "," and any("," in line for line in sample) else "."
-    rows = [row for row in csv.reader(io.StringIO(text), delimiter=delimiter)]
+    rows = _cells(text, delimiter, name)
     head = [cell.strip().lower() for cell in rows[0]] if rows else []
     columns, named = _columns(head)
     points, skipped = _points(rows[1:] if named else rows, columns, decimal, first=1 + int(named))
@@ -88,9 +93,24 @@ def read_control(data: bytes, *, name: str = "file", order: Order | None = None)
     )
 
 
+def _cells(text: str, delimiter: str, name: str) -> list[list[str]]:
+    """Rows of cells; lines may end as on any system."""
+    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    rows: list[list[str]] = []
+    try:
+        rows.extend(next(csv.reader([line], delimiter=delimiter), []) for line in lines)
+    except csv.Error as error:
+        raise CorruptFile(f"{name}: line {len(rows) + 1}: expected CSV cells: {error}") from error
+    return rows
+
+
 def _decoded(data: bytes, name: str) -> str:
-    if b"\0" in data[:4096]:
-        raise CorruptFile(f"{name} is not text; expected CSV lines of ID,X,Y,Z")
+    if b"\0" in data:
+        line = data.count(b"\n", 0, data.index(b"\0")) + 1
+        raise CorruptFile(
+            f"{name}: line {line}: expected text, CSV lines of ID,X,Y,Z, got a NUL byte "
+            "(a file in UTF-16? save it as UTF-8)"
+        )
     for encoding in ("utf-8-sig", "cp1252"):
         try:
             return data.decode(encoding)
@@ -114,7 +134,7 @@ def _columns(head: list[str]) -> tuple[tuple[int, ...], bool]:
 
 def _number_at(row: list[str], place: int) -> bool:
     try:
-        float(row[place].replace(",", "."))
+        parse_float(row[place].replace(",", "."))
     except (ValueError, IndexError):
         return False
     return True
@@ -122,7 +142,11 @@ def _number_at(row: list[str], place: int) -> bool:
 
 def _order_of(head: list[str], columns: tuple[int, ...]) -> Order | None:
     """Known when the head names east and north; x and y mean either in surveys."""
-    if head[columns[1]] in _E[1:5] and head[columns[2]] in _N[1:5]:
+    if (
+        max(columns[1:3]) < len(head)
+        and head[columns[1]] in _E[1:5]
+        and head[columns[2]] in _N[1:5]
+    ):
         return "EN"
     return None
 
@@ -147,13 +171,14 @@ def _points(
             break
         else:
             points[point.id] = point
-    return list(points.values()), skipped
+    more = len(skipped) - _MOST_SKIPPED
+    return list(points.values()), skipped[:_MOST_SKIPPED] + [f"{more} more lines"] * (more > 0)
 
 
 def _point(row: list[str], columns: tuple[int, ...], decimal: str) -> ControlPoint:
     def number(place: int) -> float:
         text = row[place].strip().replace(" ", "").replace("\u202f", "")
-        value = float(text.replace(",", ".") if decimal == "," else text)
+        value = parse_float(text.replace(",", ".") if decimal == "," else text)
         if not math.isfinite(value) or abs(value) > 1e8:
             raise ValueError(text)
         return value

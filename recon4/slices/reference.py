@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,6 +11,7 @@ from typing import Any, Literal
 import numpy as np
 from scipy.spatial import cKDTree
 
+from recon4.bounded import read_json_object
 from recon4.errors import ConfigError, StoreError
 from recon4.evaluation.mesh import Mesh, distance_to
 from recon4.geometry.se3 import SE3, Array
@@ -20,6 +20,8 @@ from recon4.slices.cut import Cut
 from recon4.slices.points import Window, points_in
 
 Method = Literal["plane", "point"]
+MOST_FACTS_BYTES = 1 << 20
+"""Size of ``reference.json``."""
 FAR_M = 0.5
 """Distances are not looked for beyond this [m]; they come back as infinite."""
 _MARGIN_M = 2.0
@@ -139,9 +141,10 @@ def read_facts(folder: Path) -> dict[str, Any]:
         StoreError: If it is missing or damaged.
     """
     try:
-        facts = json.loads((folder / "reference.json").read_text("utf-8"))
+        path = folder / "reference.json"
+        facts = read_json_object(path, MOST_FACTS_BYTES, failure=StoreError)
         missing = {"name", "kind", "T_map_reference"} - set(facts)
-    except (OSError, ValueError, TypeError) as error:
+    except StoreError as error:
         raise StoreError(f"{folder.name} is not a reference: {error}") from error
     if missing:
         raise StoreError(f"{folder.name}/reference.json lacks {sorted(missing)}")

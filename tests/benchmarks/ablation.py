@@ -20,7 +20,6 @@ import numpy as np
 from recon4.evaluation.ate import absolute_error, pair_poses
 from recon4.evaluation.floor import ErrorFloor, relative_error_floor
 from recon4.evaluation.mesh import read_mesh
-from recon4.evaluation.trajectories import read_tum
 from recon4.model.rig import Rig, load_rig
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph, save_graph
@@ -28,6 +27,7 @@ from recon4.pose_graph.search import build_graph
 from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
 from recon4.recording.ingest import ingest
+from recon4.recording.poses import read_tum
 from recon4.registration.stage import run_odometry
 from recon4.semi_rigid.refine import refine
 from recon4.settings import Settings, override, preset

@@ -19,12 +19,12 @@ import numpy as np
 
 from recon4.evaluation.ate import absolute_error, pair_poses
 from recon4.evaluation.table import number, text_table
-from recon4.evaluation.trajectories import read_tum
 from recon4.geometry.se3 import SE3, Array, so3_exp
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
+from recon4.recording.poses import read_tum
 from recon4.store.frames import FrameStore
 
 VOXEL_M = 0.25

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from recon4.cli import main
-from recon4.evaluation.trajectories import read_tum
 from recon4.geometry.se3 import SE3
 from recon4.progress import Silent
 from recon4.recording.ingest import ingest
+from recon4.recording.poses import read_tum
 from recon4.registration.odometry import Odometry
 from recon4.registration.result import StopReason
 from recon4.registration.scans import make_scan, register_scans, search_scans

@@ -19,6 +19,7 @@ from recon4.recording.poses import read_tum
 from recon4.results import RESULTS
 from recon4.review.decisions import Decision, Kind, fold
 from recon4.review.journal import NAME, append, read_rows
+from recon4.review.source import Source
 from recon4.store.hashing import hash_file
 from tests.review_project import make
 from tests.service.running import Running, server_thread
@@ -230,11 +231,11 @@ def test_a_guess_far_off_does_not_become_an_edge(server):
 def test_the_latest_look_wins():
     import asyncio
 
-    class SlowDesk:
+    class SlowPool:
         def __init__(self):
             self.asked = []
 
-        async def run(self, kind, function, root, decided, before):
+        async def run_interactive(self, lane, terms, function, source, decided, before):
             self.asked.append(decided.key)
             await asyncio.sleep(0)
             return {"key": decided.key}
@@ -243,11 +244,15 @@ def test_the_latest_look_wins():
         return fold(Decision(kind=Kind.REJECT, who="Eva", pair=(1, f)) for f in frames)
 
     async def three_at_once():
-        desk = SlowDesk()
-        reviews = Reviews(desk)
+        pool = SlowPool()
+        reviews = Reviews(pool)
+        source = Source({"verification": Path("graph")})
         states = [decided(2), decided(2, 3), decided(2, 3, 4)]
-        asks = [reviews.effect("office", "graph", s, fold([])) for s in states]
-        return desk.asked, [s.key for s in states], await asyncio.gather(*asks)
+        asks = [
+            reviews.effect(Path("office"), source, decided=s, before=fold([]), person="Eva")
+            for s in states
+        ]
+        return pool.asked, [s.key for s in states], await asyncio.gather(*asks)
 
     asked, keys, answers = asyncio.run(three_at_once())
 

@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 from tests.project_builder import ROOM_M, build_project
-from tests.service.running import server_thread, wait_for
+from tests.service.running import server_thread
 
 Z1 = {"kind": "horizontal", "z_m": 1.5, "thickness_m": 0.2}
 BASE = "/api/projects/office/slices"
@@ -221,7 +221,7 @@ def test_exports_open_in_other_programs(server):
     assert svg.startswith("<?xml") and "office" in svg and "Not approved" in svg
     assert csv[0].startswith("# recon4 slice") and len({line[:2] for line in csv[2:]}) == 2
     folder = server.root / ".recon4" / "slices" / "exports"
-    wait_for(lambda: not list(folder.iterdir()), "what was sent stays on the server", most_s=10.0)
+    assert {".laz", ".png", ".svg", ".csv"} <= {path.suffix for path in folder.iterdir()}
 
 
 def test_an_export_of_an_approved_map_says_so(server):
@@ -250,10 +250,24 @@ def test_an_export_of_an_approved_map_says_so(server):
 
 
 def test_an_export_of_nothing_is_refused_in_words(server):
+    folder = server.root / ".recon4" / "slices" / "exports"
+    before = sorted(folder.iterdir()) if folder.exists() else []
+
     answer = exported(server, "laz", cut=Z1 | {"z_m": 90.0})
 
     assert answer.status_code == 422 and "no points" in answer.json()["detail"]
-    assert list((server.root / ".recon4" / "slices" / "exports").iterdir()) == []
+    assert sorted(folder.iterdir()) == before
+
+
+def test_an_export_that_broke_off_goes_on_where_it_was(server):
+    whole = exported(server, "csv", count=2)
+    part = server.get(
+        whole.request.url.raw_path.decode(),
+        headers={"Range": "bytes=1000-", "If-Range": whole.headers["etag"]},
+    )
+
+    assert part.status_code == 206
+    assert part.content == whole.content[1000:]
 
 
 def test_double_walls_are_looked_for_once_a_map(server):

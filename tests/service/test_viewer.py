@@ -18,7 +18,6 @@ from app.jobs.events import EventWriter
 from app.viewer import proxy
 from app.viewer.legend_html import count
 from app.viewer.page import SHIMS
-from app.viewer.pool import Sockets
 from app.viewer.proxy import Rate, allowed, passes
 from recon4.model.pose_graph import Reason
 from tests.benchmarks.viewer_figures import PEOPLE, own_server
@@ -249,14 +248,6 @@ def test_a_flood_of_messages_arrives_late_but_whole(server):
     assert waited_s > 1.0
 
 
-def test_sockets_are_counted_in_all_and_by_person():
-    sockets = Sockets(most=3, most_a_person=2)
-
-    assert [sockets.enter(who) for who in "aaabc"] == [True, True, False, True, False]
-    sockets.leave("a")
-    assert sockets.enter("c") and not sockets.enter("b")
-
-
 def test_one_viewer_too_many_is_told_so_and_the_others_stay(root):
     with (
         server_thread(root, viewer_sockets=2) as server,
@@ -270,16 +261,6 @@ def test_one_viewer_too_many_is_told_so_and_the_others_stay(root):
         for client in (first, second):
             client.send(camera())
             client.until(lambda c: c.shown == POINTS)
-
-
-def test_the_viewer_listens_on_loopback_only(looking, root):
-    listening = [
-        connection.laddr.ip
-        for connection in viewer_process(root).net_connections("inet")
-        if connection.status == psutil.CONN_LISTEN
-    ]
-
-    assert listening == ["127.0.0.1"]
 
 
 def test_a_killed_viewer_is_there_again_soon(server, root):

@@ -167,7 +167,7 @@ sys.exit(recon4.cli.main(["verify", "."]))
 
 
 @pytest.mark.parametrize("stop", [signal.SIGINT, signal.SIGTERM])
-def test_an_interrupted_command_ends_with_130_and_says_that_it_resumes(stop):
+def test_a_stopped_command_ends_with_128_plus_the_signal_and_says_which(stop):
     with subprocess.Popen(
         [sys.executable, "-c", STUCK],
         stdin=subprocess.PIPE,
@@ -179,5 +179,5 @@ def test_an_interrupted_command_ends_with_130_and_says_that_it_resumes(stop):
         child.send_signal(stop)
         _, err = child.communicate(timeout=20)
 
-    assert child.returncode == 130
-    assert err == b"recon4: interrupted; the same command resumes where it stopped\n"
+    assert child.returncode == 128 + stop
+    assert err == f"recon4: stopped by {stop.name}\n".encode()

@@ -16,12 +16,13 @@ import pytest
 from packaging.requirements import Requirement
 
 ROOT = Path(__file__).parents[2]
-BASE = {"recon4.errors", "recon4.progress", "recon4.settings"}
+BASE = {"recon4.errors", "recon4.bounded", "recon4.progress", "recon4.settings"}
 MODEL = BASE | {"recon4.geometry", "recon4.model"}
 STAGE = MODEL | {"recon4.kernels", "recon4.store"}
 
 MAY_IMPORT = {
     "recon4/errors.py": set(),
+    "recon4/bounded.py": {"recon4.errors"},
     "recon4/progress.py": {"recon4.errors"},
     "recon4/settings.py": {"recon4.errors"},
     "recon4/geometry": {"recon4.geometry"},
@@ -42,7 +43,9 @@ MAY_IMPORT = {
     "recon4/intensity": STAGE | {"recon4.mapping", "recon4.intensity"},
     "recon4/mapping": STAGE | {"recon4.intensity", "recon4.mapping"},
     "recon4/export": STAGE | {"recon4.mapping", "recon4.export"},
-    "recon4/evaluation": STAGE | {"recon4.mapping", "recon4.evaluation", "recon4.simulation"},
+    "recon4/evaluation": STAGE
+    | {"recon4.mapping", "recon4.evaluation", "recon4.simulation"}
+    | {f"recon4.recording.{reader}" for reader in ("cloud_files", "cloud_headers", "poses")},
     "recon4/slices": STAGE
     | {f"recon4.{room}" for room in ("recording", "mapping", "georeference", "export")}
     | {"recon4.evaluation", "recon4.slices"},
@@ -69,7 +72,7 @@ ONLY_HERE = {
     "open3d": {"recon4/simulation/raycast.py"},
     "laspy": {"recon4/export/laz.py", "recon4/slices/clouds.py"},
     "ctypes": {"recon4/sandbox"},
-    "viser": {"app/viewer/show.py", "app/viewer/panels.py"},
+    "viser": {"app/viewer/show.py", "app/viewer/panels.py", "app/viewer/unix_socket.py"},
     "matplotlib": {
         "recon4/report",
         "recon4/slices/colors.py",

@@ -5,7 +5,7 @@ import pytest
 
 from app.live.health import lidars
 from app.live.power import Battery, Power, battery_words, read_battery
-from app.live.rigs import rigs_at_hand
+from app.live.rigs import rig_files, rigs_in, shipped_rigs
 from app.live.store import marks_of
 from recon4.live.notes import Notes
 from recon4.live.session import Session
@@ -121,7 +121,8 @@ def test_own_rig_files_come_first_and_a_broken_one_says_why(tmp_path):
     (tmp_path / "broken.toml").write_text('[[sensor]]\nname = "a"\nmodel = "VLP-99"')
     (tmp_path / "pyproject.toml").write_text("[project]")
 
-    broken, ours, *shipped = rigs_at_hand([tmp_path])
+    broken, ours = rigs_in(rig_files([tmp_path]))
+    shipped = shipped_rigs()
 
     assert "VLP-99" in broken.problem
     assert (ours.rig, ours.problem) == (str(tmp_path / "rigs" / "ours.toml"), "")

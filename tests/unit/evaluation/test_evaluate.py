@@ -10,9 +10,10 @@ import trimesh
 from recon4.errors import CorruptFile, EmptyRecording, UnknownFormat
 from recon4.evaluation.evaluate import at_frames, evaluate
 from recon4.evaluation.mesh import Mesh, sample_mesh
-from recon4.evaluation.trajectories import find_trajectory, read_tum
+from recon4.evaluation.trajectories import find_trajectory
 from recon4.geometry.se3 import SE3
 from recon4.model.trajectory import Trajectory
+from recon4.recording.poses import read_tum
 from recon4.store.arrays import save_trajectory
 
 START_NS = 1_750_000_000_123_456_789
@@ -65,7 +66,7 @@ def test_a_bad_line_is_refused_by_number(tmp_path: Path, line: str) -> None:
     file = tmp_path / "bad.tum"
     file.write_text(f"# head\n0 0 0 0 0 0 0 1\n{line}\n")
 
-    with pytest.raises(CorruptFile, match=r"bad\.tum line 3: expected"):
+    with pytest.raises(CorruptFile, match=r"bad\.tum: line 3: expected"):
         read_tum(file)
 
 
@@ -73,7 +74,7 @@ def test_times_that_go_back_are_refused(tmp_path: Path) -> None:
     file = tmp_path / "bad.tum"
     file.write_text("1 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n")
 
-    with pytest.raises(CorruptFile, match="pose 1 is not later"):
+    with pytest.raises(CorruptFile, match="line 2: times must increase"):
         read_tum(file)
 
 

@@ -175,7 +175,7 @@ def test_the_simulators_model_is_read(tmp_path: Path) -> None:
 def test_a_file_that_is_no_mesh_is_refused_by_name(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "model.ply").write_bytes(content)
 
-    with pytest.raises(CorruptFile, match=r"model\.ply: expected a triangle mesh"):
+    with pytest.raises(CorruptFile, match=r"model\.ply: .*(a triangle mesh|a PLY header needs)"):
         read_mesh(tmp_path / "model.ply")
 
 

@@ -248,7 +248,7 @@ def test_kitti_comes_back(tmp_path):
     ("text", "error", "message"),
     [
         ("", EmptyRecording, "no poses"),
-        ("1 2 3\n", CorruptFile, "line 1: 8 numbers expected, got 3"),
+        ("1 2 3\n", CorruptFile, "line 1: expected 8 numbers, got 3"),
         ("1 0 0 0 0 0 0 2\n", CorruptFile, "a quaternion has length 1, got 2"),
         ("2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n", CorruptFile, "line 2: times must increase"),
         ("1 0 0 nan 0 0 0 1\n", CorruptFile, "finite"),

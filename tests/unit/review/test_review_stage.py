@@ -108,7 +108,7 @@ def test_the_quick_look_says_what_the_stage_will_say(run):
     append(run.root, Decision(kind=Kind.ACCEPT, who="Eva", pair=(52, 202)))
     decided = read_decided(run.root)
 
-    quick = preview(run.root, decided, before)
+    quick = preview(Source.of(run.root), decided, before)
 
     artifact = run()["review"].artifact.folder
     told = json.loads((artifact / "review.json").read_text())
@@ -122,7 +122,7 @@ def test_the_quick_look_says_what_the_stage_will_say(run):
 def test_the_queue_is_ordered_by_influence_and_always_the_same(run):
     run()
 
-    told = json.loads(queue_json(run.root))
+    told = json.loads(queue_json(Source.of(run.root)))
 
     rows = [dict(zip(COLUMNS, row, strict=True)) for row in told["rows"]]
     influence = [row["influence_m"] for row in rows if row["measured"]]
@@ -131,7 +131,7 @@ def test_the_queue_is_ordered_by_influence_and_always_the_same(run):
     assert rows[0]["verdict"] == "rejected"
     assert rows[0]["verification_m"] > 1.0  # of rejected pairs too
     assert all(row["kind"] != "odometry" for row in rows)
-    assert queue_json(run.root) == queue_json(run.root)
+    assert queue_json(Source.of(run.root)) == queue_json(Source.of(run.root))
 
 
 def test_pairs_without_a_registration_that_holds_come_last():

@@ -1,0 +1,36 @@
+"""What a child of the pool may do: the policy that its file access means."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from app.compute_pool.model import FileAccess
+from recon4.sandbox import Confinement, Policy, confine
+
+MOST_FILE_BYTES = 64 << 30
+MOST_MEMORY_BYTES = 8 << 30
+"""Private memory of a child; maps are mapped from their files and do not count."""
+
+
+def confine_child(access: FileAccess, scratch: Path, kernels: tuple[Path, ...]) -> Confinement:
+    """Confine this process: no network, no other files, no programs, bounded memory.
+
+    Args:
+        access: What its work may open.
+        scratch: Its working folder, the only place it can write besides ``access.write``.
+        kernels: Folders of compiled kernels that it may read.
+    """
+    return confine(
+        Policy(
+            read=(*access.read, *kernels),
+            write=(*access.write, scratch),
+            temporary=scratch / "tmp",
+            memory_bytes=min(MOST_MEMORY_BYTES, _half_of_the_memory()),
+            file_bytes=MOST_FILE_BYTES,
+        )
+    )
+
+
+def _half_of_the_memory() -> int:
+    return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") // 2

@@ -1,0 +1,188 @@
+"""One child process, seen from the server."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import pickle
+import secrets
+import shutil
+import signal
+import stat
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from app.compute_pool.messages import (
+    FAILED,
+    HEAD,
+    LENGTH,
+    MOST_RESULT_BYTES,
+    RESULT,
+    Call,
+    Setup,
+    decode_error,
+    decode_result,
+)
+from app.compute_pool.model import FileAccess
+from app.errors import ComputeFailed
+from app.settings import worker_environment
+
+
+class ChildFailed(RuntimeError):
+    """A call ended in an error that is our own fault; the message is the child's traceback."""
+
+
+class ChildProcess:
+    """A child, its scratch folder, and whether it is confined yet."""
+
+    def __init__(self, process: asyncio.subprocess.Process, scratch: Path, lifeline: int) -> None:
+        self._process = process
+        self._lifeline = lifeline
+        self.scratch = scratch
+        self._set_up = False
+
+    @staticmethod
+    async def start(
+        scratch_of_all: Path, *, background: bool, modules: Sequence[str] = ()
+    ) -> ChildProcess:
+        """Start a child; it imports ``modules`` and waits for its first call."""
+        scratch = scratch_of_all / secrets.token_hex(8)
+        scratch.mkdir(mode=0o700, parents=True)
+        # -P: a module in the working folder is not imported in place of ours.
+        command = [sys.executable, "-P", "-m", "app.compute_pool.child"]
+        watched, held = os.pipe()
+        try:
+            process = await asyncio.create_subprocess_exec(
+                *command,
+                str(scratch),
+                str(watched),
+                *(("--background",) if background else ()),
+                *modules,
+                stdin=asyncio.subprocess.PIPE,
+                stdout=asyncio.subprocess.PIPE,
+                env=_environment(scratch),
+                pass_fds=(watched,),
+                start_new_session=True,
+            )
+        except BaseException:
+            os.close(held)
+            raise
+        finally:
+            os.close(watched)
+        return ChildProcess(process, scratch, held)
+
+    @property
+    def alive(self) -> bool:
+        """Whether it runs."""
+        return self._process.returncode is None
+
+    async def call(self, call: Call, access: FileAccess) -> Any:
+        """What a call returns. A child serves one `FileAccess`, that of its first call.
+
+        Raises:
+            ComputeFailed: If the child died, in words, or sent what is no answer.
+            ChildFailed: If the function failed by a fault of the program.
+            Recon4Error: Whatever the function raises.
+        """
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        messages: list[object] = [call]
+        if not self._set_up:
+            messages.insert(0, Setup(access, call.function.__module__))
+            self._set_up = True
+        try:
+            for message in messages:
+                data = pickle.dumps(message)
+                self._process.stdin.write(LENGTH.pack(len(data)) + data)
+            await self._process.stdin.drain()
+            kind, size = HEAD.unpack(await self._process.stdout.readexactly(HEAD.size))
+            if size > MOST_RESULT_BYTES:
+                raise ComputeFailed(
+                    f"expected a result of at most {MOST_RESULT_BYTES} bytes, got {size}: "
+                    "ask for less at a time"
+                )
+            answer = await self._process.stdout.readexactly(size)
+        except (OSError, asyncio.IncompleteReadError) as error:
+            raise ComputeFailed(await self._last_words()) from error
+        if kind == RESULT:
+            return decode_result(call.function, answer)
+        if kind == FAILED:
+            raise ChildFailed(answer.decode("utf-8", "replace"))
+        raise decode_error(answer)
+
+    async def end(self) -> None:
+        """Kill it and remove its scratch folder."""
+        if self.alive:
+            self._process.kill()
+        await self._process.wait()
+        if self._lifeline >= 0:
+            os.close(self._lifeline)
+            self._lifeline = -1
+        # Closes the pipes, which otherwise wait for the garbage collector.
+        self._process._transport.close()  # type: ignore[attr-defined]
+        await asyncio.to_thread(shutil.rmtree, self.scratch, ignore_errors=True)
+
+    def keep(self, outputs: Mapping[str, Path]) -> None:
+        """Move what a call made out of the scratch folder: name there -> place.
+
+        Raises:
+            ComputeFailed: If there is no such file, or it is a link or something else.
+        """
+        for name, place in outputs.items():
+            made = self.scratch / name
+            refuse_links(made)
+            place.parent.mkdir(parents=True, exist_ok=True)
+            _move(made, place)
+
+    async def _last_words(self) -> str:
+        """Why there is no answer."""
+        try:
+            await asyncio.wait_for(self._process.wait(), 5.0)
+        except TimeoutError:
+            return "the helper process does not answer; try again"
+        code = self._process.returncode or 0
+        how = f"killed by {signal.Signals(-code).name}" if code < 0 else f"exit code {code}"
+        return f"the helper process died ({how}: out of memory, or a damaged file); try again"
+
+
+def refuse_links(path: Path) -> None:
+    """See that a path is a regular file, or a folder of nothing but those.
+
+    Raises:
+        ComputeFailed: If it is not: a child that was taken over could make the server follow it.
+    """
+    found = [path]
+    while found:
+        one = found.pop()
+        try:
+            mode = one.lstat().st_mode
+        except OSError as error:
+            raise ComputeFailed(f"the helper process made no {one.name}") from error
+        if stat.S_ISDIR(mode):
+            found += one.iterdir()
+        elif not stat.S_ISREG(mode):
+            raise ComputeFailed(f"{one.name}: expected a file, got a link or a device")
+
+
+def _move(made: Path, place: Path) -> None:
+    """Rename, durably; what is on another file system is copied first."""
+    if made.stat().st_dev != place.parent.stat().st_dev:
+        near = place.with_name(f".tmp-{secrets.token_hex(6)}-{place.name}")
+        (shutil.copytree if made.is_dir() else shutil.copyfile)(made, near)
+        made = near
+    if made.is_file():
+        with made.open("rb") as file:
+            os.fsync(file.fileno())
+    os.replace(made, place)
+    descriptor = os.open(place.parent, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def _environment(scratch: Path) -> dict[str, str]:
+    """The environment of workers, with a temporary folder of its own."""
+    return {**worker_environment(), "TMPDIR": str(scratch)}

@@ -1,0 +1,38 @@
+"""What a server that was killed left behind: ended and removed before the next one starts."""
+
+from __future__ import annotations
+
+import logging
+import shutil
+
+from app.settings import ServerSettings
+from app.viewer.pool import socket_folder
+from recon4.processes import ChildRegister
+from recon4.store.atomic import sweep
+
+log = logging.getLogger(__name__)
+
+
+def child_register(settings: ServerSettings) -> ChildRegister:
+    """Where the children of a server are registered."""
+    return ChildRegister(settings.state / "children")
+
+
+def sweep_leftovers(settings: ServerSettings) -> None:
+    """End processes and remove sockets and unfinished files of an earlier server.
+
+    Call it only while this server holds the folder (`app.listen.only_one`). Job workers and the
+    processes of a live capture are no leftovers: they go on, and the server takes them over.
+    """
+    killed = child_register(settings).end_leftovers()
+    if killed:
+        log.warning("ended %d processes an earlier server left: %s", len(killed), killed)
+    shutil.rmtree(socket_folder(settings.state), ignore_errors=True)
+    removed = [
+        name
+        for folder in (settings.state, settings.state / "pictures")
+        if folder.is_dir()
+        for name in sweep(folder)
+    ]
+    if removed:
+        log.warning("removed %d unfinished files: %s", len(removed), removed[:10])

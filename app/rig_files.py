@@ -1,0 +1,28 @@
+"""Rig files of users: looked at in a child, never parsed in the server first."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from app.access.caller import Caller
+from app.compute_pool import ComputePool, FileAccess, Lane, Terms
+from recon4.model.rig import load_rig
+
+LIMIT_S = 20.0
+"""A rig file that takes longer to parse is refused [s]; it has at most 128 KiB."""
+
+
+async def check_rig_file(pool: ComputePool, caller: Caller, path: Path) -> None:
+    """See that a file is a rig.
+
+    Raises:
+        ConfigError: If it is none, in words.
+        ComputeFailed: If it takes too long to parse.
+    """
+    terms = Terms(person=caller.name, access=FileAccess(read=(path,)), limit_s=LIMIT_S)
+    await caller.wait(pool.run_interactive(Lane.INSPECT, terms, rig_name, path))
+
+
+def rig_name(path: Path) -> str:
+    """The name of the rig in a file."""
+    return load_rig(path).name

@@ -1,0 +1,279 @@
+"""Bounded reading of files of unknown origin.
+
+The size of a file, the length of a line and the nesting of a document are checked before memory
+is allocated for them. Errors say the file, the place, what was expected and what was found.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import stat
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from recon4.errors import CorruptFile, Recon4Error
+
+Failure = type[Recon4Error]
+"""Class of the error that a reader raises."""
+
+MOST_LINE_BYTES = 64 * 1024
+"""No table that recon4 reads has longer lines [bytes]."""
+MOST_DEPTH = 64
+"""Nesting of a JSON document: what recon4 writes has fewer than ten levels."""
+
+_UTF16 = (b"\xff\xfe", b"\xfe\xff")
+_SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
+
+
+def open_regular(path: Path, *, failure: Failure = CorruptFile) -> BinaryIO:
+    """Open a regular file for reading; a pipe or a device is refused, it might never end.
+
+    Raises:
+        Recon4Error: Of the class ``failure``, if there is no such file or it cannot be opened.
+    """
+    try:
+        # A named pipe without a writer blocks an ordinary open().
+        descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the name
+        raise _unreadable(path, error, failure) from error
+    if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+        os.close(descriptor)
+        raise failure(f"{path.name}: expected a regular file, got a folder, pipe or device")
+    return os.fdopen(descriptor, "rb")
+
+
+def read_bytes_limited(path: Path, most_bytes: int, *, failure: Failure = CorruptFile) -> bytes:
+    """Read a whole file of at most ``most_bytes``.
+
+    Raises:
+        Recon4Error: Of the class ``failure``, if it is larger or cannot be read.
+    """
+    with open_regular(path, failure=failure) as file:
+        check_file_size(file, path, most_bytes, failure=failure)
+        try:
+            data = file.read(most_bytes + 1)
+        except OSError as error:
+            raise _unreadable(path, error, failure) from error
+    if len(data) > most_bytes:  # it grew meanwhile
+        raise failure(f"{path.name}: expected at most {most_bytes} bytes, got more")
+    return data
+
+
+def check_file_size(
+    file: BinaryIO, path: Path, most_bytes: int, *, failure: Failure = CorruptFile
+) -> int:
+    """The size of an open file [bytes], checked against the largest allowed.
+
+    Raises:
+        Recon4Error: Of the class ``failure``, if it is larger.
+    """
+    size = os.fstat(file.fileno()).st_size
+    if size > most_bytes:
+        raise failure(f"{path.name}: expected at most {most_bytes} bytes, got {size}")
+    return size
+
+
+def read_text_limited(path: Path, most_bytes: int, *, failure: Failure = CorruptFile) -> str:
+    """Read a whole UTF-8 file of at most ``most_bytes``; a byte order mark is left out.
+
+    Raises:
+        Recon4Error: Of the class ``failure``, if it is larger, not UTF-8 or cannot be read.
+    """
+    return decode_text(
+        read_bytes_limited(path, most_bytes, failure=failure), path.name, failure=failure
+    )
+
+
+def decode_text(data: bytes, name: str, *, failure: Failure = CorruptFile) -> str:
+    """UTF-8 bytes as text, without a byte order mark.
+
+    Raises:
+        Recon4Error: Of the class ``failure``, naming line and offset of what is not UTF-8, or of
+            a NUL byte.
+    """
+    _refuse_utf16(data, name, failure)
+    nul = data.find(b"\0")
+    if nul >= 0:
+        line = data.count(b"\n", 0, nul) + 1
+        raise failure(f"{name}: line {line}: expected text, got a NUL byte at offset {nul}")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise failure(
+            f"{name}: line {line}: expected UTF-8 text, got byte 0x{data[error.start]:02x} "
+            f"at offset {error.start}"
+        ) from error
+
+
+def lines_limited(
+    path: Path,
+    *,
+    most_line_bytes: int = MOST_LINE_BYTES,
+    most_bytes: int,
+    failure: Failure = CorruptFile,
+) -> Iterator[str]:
+    r"""Lines of a UTF-8 text file with their ends, one in memory at a time.
+
+    A byte order mark is left out; ``\n``, ``\r\n`` and a lone ``\r`` inside a line are kept as
+    they are.
+
+    Raises:
+        Recon4Error: Of the class ``failure``, naming the line that is too long, holds a NUL or is
+            not UTF-8, or if the file is too large.
+    """
+    with open_regular(path, failure=failure) as file:
+        check_file_size(file, path, most_bytes, failure=failure)
+        number = 0
+        while line := file.readline(most_line_bytes + 1):
+            number += 1
+            if len(line) > most_line_bytes:
+                raise failure(
+                    f"{path.name}: line {number}: expected at most {most_line_bytes} bytes, "
+                    "got a longer line"
+                )
+            yield _line(line, number, path.name, failure)
+
+
+def text_blocks(
+    path: Path, *, block_bytes: int, most_bytes: int, failure: Failure = CorruptFile
+) -> Iterator[str]:
+    """Whole lines of a UTF-8 text file, as many as fit into ``block_bytes`` at a time.
+
+    Raises:
+        Recon4Error: Of the class ``failure``, as `lines_limited`; a line longer than
+            `MOST_LINE_BYTES` is refused.
+    """
+    with open_regular(path, failure=failure) as file:
+        check_file_size(file, path, most_bytes, failure=failure)
+        number, rest = 1, b""
+        while data := file.read(block_bytes):
+            data = rest + data
+            end = data.rfind(b"\n") + 1
+            block, rest = data[:end], data[end:]
+            if len(rest) > MOST_LINE_BYTES:
+                line = number + block.count(b"\n")
+                raise failure(
+                    f"{path.name}: line {line}: expected at most {MOST_LINE_BYTES} bytes, "
+                    "got a longer line"
+                )
+            if block:
+                yield _block(block, number, path.name, failure)
+                number += block.count(b"\n")
+        if rest:
+            yield _block(rest, number, path.name, failure)
+
+
+def parse_float(text: str) -> float:
+    """A number as tables have it; Python's own ``1_000`` is refused.
+
+    Raises:
+        ValueError: If it is no number.
+    """
+    if "_" in text or not text.isascii():
+        raise ValueError(f"expected a number, got {text[:40]!r}")
+    return float(text)
+
+
+def parse_json(text: str | bytes, name: str, *, failure: Failure = CorruptFile) -> Any:
+    """Parse JSON of unknown origin.
+
+    Raises:
+        Recon4Error: Of the class ``failure``, if it is no JSON, nested deeper than `MOST_DEPTH`
+            or has text that cannot be written as UTF-8 (a lone surrogate).
+    """
+    if isinstance(text, bytes):
+        text = decode_text(text, name, failure=failure)
+    try:
+        value = json.loads(text)
+    except ValueError as error:
+        raise failure(f"{name}: expected JSON, got something else: {error}") from error
+    except RecursionError as error:
+        raise failure(f"{name}: expected JSON of at most {MOST_DEPTH} levels, got more") from error
+    _check_depth(value, name, failure)
+    if _SURROGATE.search(text):
+        _check_surrogates(value, name, failure)
+    return value
+
+
+def read_json_limited(path: Path, most_bytes: int, *, failure: Failure = CorruptFile) -> Any:
+    """Read and parse a JSON file of unknown origin, see `parse_json`.
+
+    Raises:
+        Recon4Error: Of the class ``failure``, if it is too large, damaged or cannot be read.
+    """
+    data = read_bytes_limited(path, most_bytes, failure=failure)
+    return parse_json(data, path.name, failure=failure)
+
+
+def read_json_object(
+    path: Path, most_bytes: int, *, failure: Failure = CorruptFile
+) -> dict[str, Any]:
+    """Read a JSON file whose outermost value must be an object.
+
+    Raises:
+        Recon4Error: Of the class ``failure``, as `read_json_limited`.
+    """
+    found = read_json_limited(path, most_bytes, failure=failure)
+    if not isinstance(found, dict):
+        raise failure(f"{path.name}: expected a JSON object, got {type(found).__name__}")
+    return found
+
+
+def _check_depth(value: Any, name: str, failure: Failure) -> None:
+    level = [value]
+    for _ in range(MOST_DEPTH + 1):
+        level = [
+            child
+            for item in level
+            if isinstance(item, (dict, list))
+            for child in (item.values() if isinstance(item, dict) else item)
+        ]
+        if not level:
+            return
+    raise failure(f"{name}: expected JSON of at most {MOST_DEPTH} levels, got more")
+
+
+def _check_surrogates(value: Any, name: str, failure: Failure) -> None:
+    try:
+        json.dumps(value, ensure_ascii=False).encode("utf-8")
+    except UnicodeEncodeError as error:
+        raise failure(f"{name}: expected Unicode text, got a lone surrogate: {error}") from error
+
+
+def _block(block: bytes, number: int, name: str, failure: Failure) -> str:
+    try:
+        if b"\0" not in block:
+            return block.decode("utf-8-sig" if number == 1 else "utf-8")
+    except UnicodeDecodeError:
+        pass
+    for k, line in enumerate(block.splitlines(keepends=True)):
+        _line(line, number + k, name, failure)
+    raise failure(f"{name}: behind line {number}: expected UTF-8 text, got something else")
+
+
+def _line(line: bytes, number: int, name: str, failure: Failure) -> str:
+    if number == 1:
+        _refuse_utf16(line, name, failure)
+    if b"\0" in line:
+        raise failure(f"{name}: line {number}: expected text, got a NUL byte")
+    try:
+        return line.decode("utf-8-sig" if number == 1 else "utf-8")
+    except UnicodeDecodeError as error:
+        raise failure(
+            f"{name}: line {number}: expected UTF-8 text, got byte 0x{line[error.start]:02x} "
+            f"in column {error.start + 1}"
+        ) from error
+
+
+def _refuse_utf16(data: bytes, name: str, failure: Failure) -> None:
+    if data.startswith(_UTF16):
+        raise failure(f"{name}: expected UTF-8 text, got UTF-16; save it as UTF-8")
+
+
+def _unreadable(path: Path, error: Exception, failure: Failure) -> Recon4Error:
+    words = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    return failure(f"{path.name[:200]}: cannot be read: {words}")

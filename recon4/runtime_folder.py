@@ -1,0 +1,61 @@
+"""The folder of this user's sockets: short, and closed to every other user.
+
+A Unix socket's path has at most 103 bytes (macOS; 107 on Linux), and a project may lie deep.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import stat
+import tempfile
+from pathlib import Path
+
+from recon4.errors import StoreError
+
+LONGEST_FOLDER = 50
+"""Leaves 53 bytes for the names below [bytes]."""
+
+
+def runtime_folder() -> Path:
+    """This user's folder for sockets, made if there is none; the same for every process.
+
+    Raises:
+        StoreError: If another user has taken every place there is.
+    """
+    problems = []
+    for path in _places():
+        if len(os.fsencode(path)) > LONGEST_FOLDER:
+            continue
+        try:
+            return private_folder(path)
+        except (OSError, StoreError) as error:
+            problems.append(str(error))
+    raise StoreError(f"no place for sockets: {'; '.join(problems)}")
+
+
+def private_folder(path: Path) -> Path:
+    """A folder that belongs to this user alone (0700), made if there is none.
+
+    Raises:
+        StoreError: If another user owns it, others may enter it, or it is a link or a file.
+    """
+    with contextlib.suppress(FileExistsError):
+        path.mkdir(mode=0o700)
+    found = path.lstat()
+    mode = stat.S_IMODE(found.st_mode)
+    if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid() or mode & 0o077:
+        raise StoreError(
+            f"{path}: expected a folder of user {os.getuid()} with mode 0700, "
+            f"got {stat.filemode(found.st_mode)} of user {found.st_uid}: remove it"
+        )
+    return path
+
+
+def _places() -> list[Path]:
+    """Where it may be, the best first. The second is for a place another user squats on."""
+    name = f"recon4-{os.getuid()}"
+    places = [Path(tempfile.gettempdir()) / name, Path("/tmp") / name]
+    if session := os.environ.get("XDG_RUNTIME_DIR"):
+        places.append(Path(session) / "recon4")
+    return [*places, Path.home() / ".cache" / "recon4-sockets"]

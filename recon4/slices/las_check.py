@@ -1,0 +1,224 @@
+"""Sizes inside LAS and LAZ files, checked before a decoder sees them.
+
+The decoder of LAZ (lazrs, in Rust) allocates what the chunk table and the layers of a chunk ask
+for. Where they lie, the allocation fails and ends the process, which no ``except`` can catch. So
+this module walks the header, the variable length records, the chunk table's head and the layer
+sizes of every chunk, and compares them with the size of the file.
+
+Sources: ASPRS LAS 1.4 R15, tables 3 and 6; "LASzip specification" of rapidlasso, chunks and layers.
+"""
+
+from __future__ import annotations
+
+import os
+import struct
+from dataclasses import dataclass
+from typing import BinaryIO
+
+from recon4.errors import CorruptFile
+
+_POINT_BYTES = {0: 20, 1: 28, 2: 26, 3: 34, 4: 57, 5: 63, 6: 30, 7: 36, 8: 38, 9: 59, 10: 67}
+"""Point format -> bytes of a point without extra bytes."""
+_LAYERS = {10: 9, 11: 1, 12: 2, 13: 1}
+"""Item of a layered chunk -> its layers; item 14, extra bytes, has one a byte."""
+_EXTRA_BYTES_14 = 14
+_VLR_HEAD = 54
+_MOST_ITEMS = 16
+_MOST_CHUNK_POINTS = 10_000_000
+_VARIABLE = 0xFFFFFFFF
+_LAZ_RECORD = (b"laszip encoded", 22204)
+
+
+@dataclass(frozen=True, slots=True)
+class LasHeader:
+    """What the header promises."""
+
+    points: int
+    point_format: int
+    point_bytes: int
+    data_at: int
+    """Offset of the first point, or of the pointer to the chunk table [bytes]."""
+    compressed: bool
+
+
+@dataclass(frozen=True, slots=True)
+class _Compression:
+    """The LASzip record."""
+
+    layered: bool
+    chunk_points: int
+    """Points of each chunk but the last; `_VARIABLE` = the chunk table says."""
+    layers: int
+    """Sizes in front of the layers of a chunk."""
+
+
+def check_las(file: BinaryIO, name: str) -> LasHeader:
+    """Check all sizes of a LAS or LAZ file against its length.
+
+    Raises:
+        CorruptFile: Naming what was expected and what was found.
+    """
+    size = os.fstat(file.fileno()).st_size
+    head = _read(file, 0, min(size, 375))
+    header = _header(head, size, name)
+    laz = _records(file, head, header, name)
+    if not header.compressed:
+        needed = header.points * header.point_bytes
+        if needed > size - header.data_at:
+            raise CorruptFile(
+                f"{name}: cut: {header.points} points of {header.point_bytes} bytes need {needed} "
+                f"bytes, got {size - header.data_at}"
+            )
+        return header
+    if laz is None:
+        raise CorruptFile(f"{name}: expected a LASzip record in a compressed file, got none")
+    if header.points:
+        _check_chunks(file, header, _compression(laz, header, name), name)
+    return header
+
+
+def _header(head: bytes, size: int, name: str) -> LasHeader:
+    if len(head) < 227:
+        raise CorruptFile(f"{name}: cut: a LAS header has 227 bytes or more, got {len(head)}")
+    major, minor = head[24], head[25]
+    least = {0: 227, 1: 227, 2: 227, 3: 235, 4: 375}.get(minor)
+    if major != 1 or least is None:
+        raise CorruptFile(f"{name}: expected LAS 1.0 to 1.4, got {major}.{minor}")
+    header_bytes, data_at = struct.unpack_from("<HI", head, 94)
+    point_id, point_bytes = struct.unpack_from("<BH", head, 104)
+    points = struct.unpack_from("<Q", head, 247)[0] if minor == 4 and len(head) >= 255 else 0
+    legacy = struct.unpack_from("<I", head, 107)[0]
+    if minor < 4:
+        points = legacy
+    elif legacy not in (0, points):
+        raise CorruptFile(f"{name}: the LAS header has {points} points and {legacy} legacy points")
+    if not least <= header_bytes <= data_at <= size:
+        raise CorruptFile(
+            f"{name}: expected a header of at least {least} bytes, then points, then the end at "
+            f"{size}; got a header of {header_bytes} bytes and points at {data_at}"
+        )
+    point_format = point_id & 0x3F
+    if point_bytes < _POINT_BYTES.get(point_format, 1 << 16):
+        raise CorruptFile(
+            f"{name}: expected a point format 0 to 10 and its length, "
+            f"got format {point_format} of {point_bytes} bytes"
+        )
+    return LasHeader(points, point_format, point_bytes, data_at, bool(point_id & 0x80))
+
+
+def _records(file: BinaryIO, head: bytes, header: LasHeader, name: str) -> bytes | None:
+    """Walk the variable length records; returns the body of LASzip's, if there is one."""
+    header_bytes, count = struct.unpack_from("<H", head, 94)[0], struct.unpack_from("<I", head, 100)
+    at, found = header_bytes, None
+    for number in range(count[0]):
+        if at + _VLR_HEAD > header.data_at:
+            raise CorruptFile(
+                f"{name}: {count[0]} variable length records promised, "
+                f"got {number} before the points"
+            )
+        record = _read(file, at, _VLR_HEAD)
+        user, record_id, length = struct.unpack_from("<16sHH", record, 2)
+        at += _VLR_HEAD + length
+        if at > header.data_at:
+            raise CorruptFile(
+                f"{name}: variable length record {number} has {length} bytes and reaches into "
+                f"the points by {at - header.data_at}"
+            )
+        if (user.rstrip(b"\0"), record_id) == _LAZ_RECORD:
+            found = _read(file, at - length, length)
+    return found
+
+
+def _compression(laz: bytes, header: LasHeader, name: str) -> _Compression:
+    if len(laz) < 34:
+        raise CorruptFile(f"{name}: a LASzip record has 34 bytes or more, got {len(laz)}")
+    compressor, coder = struct.unpack_from("<HH", laz, 0)
+    chunk_points, count = struct.unpack_from("<I", laz, 12)[0], struct.unpack_from("<H", laz, 32)[0]
+    if compressor not in (2, 3) or coder != 0:
+        raise CorruptFile(
+            f"{name}: expected LASzip's compressor 2 or 3 and coder 0, got {compressor}, {coder}"
+        )
+    if not 1 <= count <= _MOST_ITEMS or len(laz) < 34 + 6 * count:
+        raise CorruptFile(
+            f"{name}: expected 1 to {_MOST_ITEMS} LASzip items, got {count} in {len(laz)} bytes"
+        )
+    items = [struct.unpack_from("<HHH", laz, 34 + 6 * k) for k in range(count)]
+    if sum(size for _, size, _ in items) != header.point_bytes:
+        raise CorruptFile(
+            f"{name}: points have {header.point_bytes} bytes, "
+            f"the LASzip items {sum(size for _, size, _ in items)}"
+        )
+    if chunk_points != _VARIABLE and not 1 <= chunk_points <= _MOST_CHUNK_POINTS:
+        raise CorruptFile(
+            f"{name}: expected chunks of 1 to {_MOST_CHUNK_POINTS} points, got {chunk_points}"
+        )
+    return _Compression(compressor == 3, chunk_points, _layer_count(items, compressor, name))
+
+
+def _layer_count(items: list[tuple[int, int, int]], compressor: int, name: str) -> int:
+    if compressor == 2:
+        return 0
+    unknown = [kind for kind, _, _ in items if kind not in _LAYERS and kind != _EXTRA_BYTES_14]
+    if unknown:
+        raise CorruptFile(f"{name}: expected LASzip items 10 to 14 in layers, got {unknown}")
+    return sum(size if kind == _EXTRA_BYTES_14 else _LAYERS[kind] for kind, size, _ in items)
+
+
+def _check_chunks(file: BinaryIO, header: LasHeader, laz: _Compression, name: str) -> None:
+    size = os.fstat(file.fileno()).st_size
+    first = header.data_at + 8
+    if size < first + 8:
+        raise CorruptFile(f"{name}: cut: {header.points} points promised, got no chunk")
+    table_at = struct.unpack("<q", _read(file, header.data_at, 8))[0]
+    if table_at == -1:  # written to a stream: the pointer comes last
+        table_at = struct.unpack("<q", _read(file, size - 8, 8))[0]
+    if not first <= table_at <= size - 8:
+        raise CorruptFile(
+            f"{name}: expected the chunk table between {first} and {size - 8}, got {table_at}"
+        )
+    version, chunks = struct.unpack("<II", _read(file, table_at, 8))
+    expected = -(-header.points // laz.chunk_points)
+    fits = chunks == expected
+    if laz.chunk_points == _VARIABLE:
+        fits = 1 <= chunks <= (table_at - first) // header.point_bytes + 1
+    if version != 0 or not fits:
+        raise CorruptFile(
+            f"{name}: expected a chunk table of version 0 with the chunks of {header.points} "
+            f"points, got version {version} with {chunks} chunks"
+        )
+    # A chunk starts with one whole point, so that fewer bytes cannot be that many chunks.
+    if chunks * header.point_bytes > table_at - first:
+        raise CorruptFile(f"{name}: {chunks} chunks promised in {table_at - first} bytes")
+    if laz.layered:
+        _check_layers(file, header, laz, (chunks, table_at), name=name)
+
+
+def _check_layers(
+    file: BinaryIO, header: LasHeader, laz: _Compression, table: tuple[int, int], *, name: str
+) -> None:
+    """Walk the chunks: first point, count of points, sizes of the layers, layers."""
+    chunks, table_at = table
+    at, points = header.data_at + 8, 0
+    head_bytes = header.point_bytes + 4 + 4 * laz.layers
+    for chunk in range(chunks):
+        if at + head_bytes > table_at:
+            raise CorruptFile(f"{name}: cut: {chunks} chunks promised, got {chunk}")
+        head = _read(file, at, head_bytes)
+        count, *layers = struct.unpack_from(f"<{1 + laz.layers}I", head, header.point_bytes)
+        at += head_bytes + sum(layers)
+        points += count
+        if at > table_at:
+            raise CorruptFile(
+                f"{name}: the layers of chunk {chunk} reach beyond the chunks by {at - table_at} "
+                "bytes"
+            )
+    if points != header.points:
+        raise CorruptFile(f"{name}: {header.points} points promised, got {points} in the chunks")
+
+
+def _read(file: BinaryIO, at: int, count: int) -> bytes:
+    file.seek(at)
+    data = file.read(count)
+    if len(data) < count:
+        raise CorruptFile(f"cut: {count} bytes expected at {at}, got {len(data)}")
+    return data

@@ -1,0 +1,100 @@
+"""How long one person's small picture takes beside six whole-map exports of another.
+
+    python -m tests.benchmarks.fair_exports PROJECT
+
+Prints the seconds alone and beside the six, then how long children run on after the six clients
+left. The project is copied (hard links) and not changed.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sys
+import tempfile
+import threading
+import time
+from pathlib import Path
+
+import httpx
+import psutil
+
+from tests.service.secure import secure_server
+
+LIMIT_S = 150.0
+WHOLE = {"cut": {"kind": "horizontal", "z_m": 0.0, "thickness_m": 5.0}}
+
+
+def small(z_m: float) -> dict[str, object]:
+    """A sheet of one meter of one cut; each asks for another one, so that none is kept."""
+    window = {"left": 5.0, "bottom": 0.0, "right": 6.0, "top": 1.0}
+    return {"cut": {"kind": "horizontal", "z_m": z_m, "thickness_m": 0.1}, "window": window}
+
+
+def export(client: httpx.Client, ending: str, ask: dict[str, object]) -> float:
+    """Seconds until the whole file has come."""
+    began_s = time.perf_counter()
+    path = f"/api/projects/office/slices/export.{ending}"
+    answer = client.get(path, params={"ask": json.dumps(ask)}, timeout=LIMIT_S)
+    if answer.status_code not in (200, 422):
+        raise SystemExit(f"{answer.status_code}: {answer.text[:200]}")
+    return time.perf_counter() - began_s
+
+
+def leave_soon(client: httpx.Client, number: int, until: threading.Event) -> None:
+    """Ask for the whole map and hang up when told."""
+    ask = WHOLE | {"cut": WHOLE["cut"] | {"z_m": number / 1000.0}}
+    path = "/api/projects/office/slices/export.csv"
+    while not until.is_set():
+        try:
+            client.get(
+                path, params={"ask": json.dumps(ask)}, timeout=1.0 if until.is_set() else LIMIT_S
+            )
+        except httpx.HTTPError:
+            return
+
+
+def children() -> int:
+    """Running children of the compute pool."""
+    count = 0
+    for process in psutil.Process().children(recursive=True):
+        try:
+            count += process.cpu_percent(0.2) > 5.0
+        except psutil.Error:
+            continue
+    return count
+
+
+def main(project: Path) -> None:
+    with tempfile.TemporaryDirectory(dir=project.parent) as folder:
+        root = Path(folder)
+        shutil.copytree(project, root / "office", copy_function=lambda a, b: Path(b).hardlink_to(a))
+        with secure_server(root) as server, server.signed_in("vera") as vera:
+            export(vera, "png", small(0.5))
+            print(f"alone: {export(vera, 'png', small(0.51)):.1f} s", flush=True)
+            until = threading.Event()
+            with server.signed_in("otto") as otto:
+                others = [
+                    threading.Thread(target=leave_soon, args=(otto, k, until), daemon=True)
+                    for k in range(6)
+                ]
+                for other in others:
+                    other.start()
+                time.sleep(3.0)
+                try:
+                    print(f"beside six: {export(vera, 'png', small(0.52)):.1f} s", flush=True)
+                except httpx.TimeoutException:
+                    print(f"beside six: over {LIMIT_S:.0f} s", flush=True)
+                until.set()
+            left_s = time.perf_counter()  # otto's client is closed
+            while children() and time.perf_counter() - left_s < 20.0:
+                time.sleep(0.2)
+            print(
+                f"children at work after the six left: {children()}, "
+                f"{time.perf_counter() - left_s:.1f} s later",
+                flush=True,
+            )
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

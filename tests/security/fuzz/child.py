@@ -1,0 +1,90 @@
+"""The child that reads mutants: started again by `tests.security.fuzz.runner` when it dies."""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import resource
+import sys
+import traceback
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
+
+from recon4.errors import Recon4Error
+from tests.security.fuzz.kind import Kind
+from tests.security.fuzz.kinds import KINDS
+from tests.security.fuzz.mutators import Mutant, mutant
+
+MEMORY_BYTES = 1 << 30
+"""What a reader may ask for beyond what the child has when it starts."""
+
+
+def main(arguments: Sequence[str]) -> None:
+    """Read mutants ``first`` to ``stop`` of a kind; one line before and one behind each."""
+    name, seed, first, stop, place = arguments
+    kind, folder = KINDS[name], Path(place)
+    warnings.simplefilter("ignore")
+    logging.disable()
+    kind.prepare(folder)
+    path = folder / kind.file_name
+    seeds = list(kind.seeds())
+    whole = [_count_of_seed(kind, path, data) for data in seeds]
+    limit = _virtual_bytes() + MEMORY_BYTES
+    resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    for number in range(int(first), int(stop)):
+        _say({"start": number})
+        made = mutant(kind, seeds, int(seed), number)
+        path.write_bytes(made.data)
+        outcome, words = _judge(kind, path, made, whole)
+        _say({"number": number, "outcome": outcome, "words": words, "how": made.how})
+
+
+def _count_of_seed(kind: Kind, path: Path, data: bytes) -> int:
+    path.write_bytes(data)
+    found = kind.read(path)
+    assert not found.salvaged, f"{kind.name}: a seed is read as damaged"
+    assert kind.promised(data) in (None, found.count), f"{kind.name}: a seed promises otherwise"
+    return found.count
+
+
+def _judge(kind: Kind, path: Path, made: Mutant, whole: Sequence[int]) -> tuple[str, str]:
+    try:
+        found = kind.read(path)
+    except Recon4Error as error:
+        return ("rejected", str(error)[:300]) if str(error) else ("TRACEBACK", "without words")
+    except MemoryError as error:
+        return "MEMORY", _place(error)
+    except Exception as error:
+        return "TRACEBACK", _place(error)
+    if found.salvaged:
+        return "salvaged", ""
+    promised = kind.promised(made.data)
+    if promised is not None and promised != found.count:
+        return "SILENT", f"{promised} promised, {found.count} returned"
+    if made.cut_from is not None and kind.knows_end and found.count < whole[made.cut_from]:
+        return "SILENT", f"cut file: {found.count} of {whole[made.cut_from]} returned"
+    return "ok", ""
+
+
+def _place(error: BaseException) -> str:
+    frames = traceback.extract_tb(error.__traceback__)
+    ours = [f for f in frames if "/recon4/" in f.filename or "/app/" in f.filename] or frames
+    at = ours[-1]
+    return f"{type(error).__name__} at {Path(at.filename).name}:{at.lineno}: {str(error)[:120]}"
+
+
+def _virtual_bytes() -> int:
+    pages = int(Path("/proc/self/statm").read_text("ascii").split()[0])
+    return pages * os.sysconf("SC_PAGE_SIZE")
+
+
+def _say(facts: dict[str, object]) -> None:
+    sys.__stdout__.write(json.dumps(facts) + "\n")
+    sys.__stdout__.flush()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
