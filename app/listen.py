@@ -6,38 +6,69 @@ import asyncio
 import fcntl
 import os
 import socket
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 
 import uvicorn
 from fastapi import FastAPI
 
+from app.accept import Acceptor
 from app.access.certificate import Certificate, made_certificate, own_certificate
+from app.access.connections import Connection, ConnectionTable
 from app.access.guard import Hosts
 from app.access.hosts import LOOPBACK, own_names
-from app.access.patience import PatientProtocol
+from app.access.http_timeouts import KEEP_ALIVE_S, HttpTimeoutsProtocol
 from app.settings import ServerSettings
 from recon4.errors import StoreError
 
 
 class AnnouncingServer(uvicorn.Server):
-    """Says when it listens."""
+    """uvicorn with our accept loop; says when it listens."""
 
     def __init__(self, config: uvicorn.Config, ready: Callable[[], None]) -> None:
         super().__init__(config)
         self._ready = ready
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Start, then say so."""
-        await super().startup(sockets)
+        """Start, accept connections, then say so."""
+        await self.lifespan.startup()
+        if self.lifespan.should_exit:
+            sys.exit(uvicorn.config.STARTUP_FAILURE)
+        table = table_of(self.config)
+        protocol = partial(self._protocol, table)
+        self.servers = []
+        for listener in sockets or ():
+            acceptor = Acceptor(listener, table, protocol=protocol, context=self.config.ssl)
+            acceptor.start()
+            self.servers.append(acceptor)  # type: ignore[arg-type]  # closed and waited for
+        self.started = True
         self._ready()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        """End; who still takes nothing when the patience is over is hung up on."""
+        """End; connections that are still open after the graceful time are aborted."""
         await super().shutdown(sockets)
-        for connection in list(self.server_state.connections):
-            connection.transport.abort()
+        for connection in table_of(self.config):
+            connection.abort()
         await asyncio.sleep(0)  # the sockets close on the loop's next round
+
+    def _protocol(self, table: ConnectionTable, connection: Connection) -> asyncio.Protocol:
+        return HttpTimeoutsProtocol(
+            self.config,
+            self.server_state,
+            self.lifespan.state,
+            connection=connection,
+            table=table,
+        )
+
+
+def table_of(config: uvicorn.Config) -> ConnectionTable:
+    """The connection table of the application that is run, which `create_app` makes."""
+    app = config.app
+    assert isinstance(app, FastAPI)
+    table: ConnectionTable = app.state.connections
+    return table
 
 
 def uvicorn_config(app: FastAPI, certificate: Certificate | None = None) -> uvicorn.Config:
@@ -45,12 +76,14 @@ def uvicorn_config(app: FastAPI, certificate: Certificate | None = None) -> uvic
     context = certificate.context() if certificate is not None else None
     return uvicorn.Config(
         app,
-        http=PatientProtocol,
+        http=HttpTimeoutsProtocol,
         log_level="warning",
+        log_config=None,  # `app.logs` writes what uvicorn logs, too
         access_log=False,
         proxy_headers=False,  # nobody stands in between: such headers are made up
         ws_max_size=1 << 20,
         ws_per_message_deflate=False,  # costs 0.3 s of processor time a million points
+        timeout_keep_alive=KEEP_ALIVE_S,
         timeout_graceful_shutdown=2,  # event streams never end by themselves
         server_header=False,
         ssl_context_factory=(lambda config, default: context) if context is not None else None,

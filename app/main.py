@@ -17,6 +17,12 @@ from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 from app import errors, server_routes
 from app.access import admin_routes, pairing_routes
 from app.access import routes as access_routes
+from app.access.connections import (
+    ConnectionLimits,
+    ConnectionTable,
+    open_file_limit,
+    raise_file_limit,
+)
 from app.access.door import Access, open_access
 from app.access.guard import Guard
 from app.access.people import May, anybody, needs
@@ -42,7 +48,8 @@ from app.listen import (
 )
 from app.live import routes as live_routes
 from app.live.store import Captures
-from app.maintenance import look_after
+from app.logs import Logs
+from app.maintenance import look_after, rotate_logs
 from app.projects import routes as project_routes
 from app.projects.picture import Pictures
 from app.projects.store import ProjectStore
@@ -73,6 +80,14 @@ def create_app(settings: ServerSettings) -> FastAPI:
         openapi_url=None,
         lifespan=lambda app: _running(app, settings),
     )
+    app.state.connections = ConnectionTable(
+        ConnectionLimits.within(
+            settings.max_connections,
+            per_address=settings.max_connections_per_address,
+            files=open_file_limit(),
+        )
+    )
+    app.state.logs = Logs(settings.state / "logs" / "server.log")
     app.add_middleware(RequestBodyLimitMiddleware, max_body_size=settings.max_body_bytes)
     pinned = settings.tls_certificate is not None
     app.add_middleware(Guard, hosts=hosts_of(settings), login=settings.lan, pinned=pinned)
@@ -114,6 +129,7 @@ def serve(
         ConfigError: If ``root`` does not hold projects, or the certificate is none.
         StoreError: If it cannot listen there, or another server runs on the same folder.
     """
+    raise_file_limit()
     with private_files(settings.lan), only_one(settings), listening(settings) as listener:
         certificate = certificate_of(settings)
         app = create_app(settings)
@@ -127,7 +143,9 @@ def serve(
         server = AnnouncingServer(uvicorn_config(app, certificate), ready)
         # uvicorn shuts down in order, then raises what it caught once more: by then all is done
         signal.signal(signal.SIGTERM, lambda *_: None)
-        asyncio.run(server.serve([listener]))
+        logs: Logs = app.state.logs
+        with logs.installed():
+            asyncio.run(server.serve([listener]))
 
 
 @asynccontextmanager
@@ -168,6 +186,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
     watching = [
         asyncio.create_task(supervisor.run()),
         asyncio.create_task(look_after(jobs, uploads, trash)),
+        asyncio.create_task(rotate_logs(settings.state, jobs, captures)),
         asyncio.create_task(captures.adopt()),
     ]
     try:
