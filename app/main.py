@@ -14,7 +14,7 @@ from fastapi.responses import FileResponse, JSONResponse
 from fastapi.staticfiles import StaticFiles
 from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 
-from app import errors, server_routes
+from app import errors, metrics_routes, server_routes
 from app.access import admin_routes, pairing_routes
 from app.access import routes as access_routes
 from app.access.connections import (
@@ -50,6 +50,7 @@ from app.live import routes as live_routes
 from app.live.store import Captures
 from app.logs import Logs
 from app.maintenance import look_after, rotate_logs
+from app.metrics import Metrics, MetricsMiddleware
 from app.projects import routes as project_routes
 from app.projects.picture import Pictures
 from app.projects.store import ProjectStore
@@ -91,10 +92,12 @@ def create_app(settings: ServerSettings) -> FastAPI:
     app.add_middleware(RequestBodyLimitMiddleware, max_body_size=settings.max_body_bytes)
     pinned = settings.tls_certificate is not None
     app.add_middleware(Guard, hosts=hosts_of(settings), login=settings.lan, pinned=pinned)
+    metrics = app.state.metrics = Metrics(app.state.connections, app.state.logs)
+    app.add_middleware(MetricsMiddleware, metrics=metrics.http)
     errors.install(app)
     for part in (access_routes, admin_routes, pairing_routes, project_routes, job_routes):
         app.include_router(part.router)
-    for part in (choices, server_routes):
+    for part in (choices, server_routes, metrics_routes):
         app.include_router(part.router)
     for part in (page, proxy):
         app.include_router(part.router, dependencies=MAY_LOOK)
@@ -183,6 +186,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
         reviews=Reviews(desk),
         slices=Slices(desk, projects, settings.state / "slices"),
     )
+    app.state.metrics.follow(app.state.parts)
     watching = [
         asyncio.create_task(supervisor.run()),
         asyncio.create_task(look_after(jobs, uploads, trash)),
