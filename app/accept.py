@@ -29,6 +29,8 @@ ACCEPTS_A_ROUND = 64
 """Connections accepted before the event loop gets to do something else."""
 ACCEPT_PAUSE_S = 0.25
 """How long nothing is accepted after file descriptors or memory ran out [s]."""
+SPARED_S = 1.0
+"""A connection this young is not closed when file descriptors run out [s]."""
 SWEEP_S = 5.0
 """How often clients that do not read are looked for [s]."""
 EXHAUSTED = frozenset({errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM})
@@ -122,13 +124,13 @@ class Acceptor:
         self._table.counts.accept_errors[errno.errorcode.get(number, str(number))] += 1
         if number not in EXHAUSTED:
             return False  # this client went before it was accepted
-        self._table.make_room()
+        self._table.make_room(accepted_before_s=self._loop.time() - SPARED_S)
         self._loop.remove_reader(self._listener)
         self._later(ACCEPT_PAUSE_S, self._resume)
         return True
 
     def _admit(self, sock: AcceptedSocket, address: str) -> None:
-        connection = Connection(address)
+        connection = Connection(address, accepted_s=self._loop.time())
         sock.on_close = partial(self._table.remove, connection)
         sock.setblocking(False)
         if not self._table.admit(connection):

@@ -23,6 +23,10 @@ from app.access.http_timeouts import KEEP_ALIVE_S, HttpTimeoutsProtocol
 from app.settings import ServerSettings
 from recon4.errors import StoreError
 
+PING_INTERVAL_S = 20.0
+PING_TIMEOUT_S = 20.0
+"""A WebSocket is pinged that often; one that does not answer in time is closed [s]."""
+
 
 class AnnouncingServer(uvicorn.Server):
     """uvicorn with our accept loop; says when it listens."""
@@ -82,6 +86,8 @@ def uvicorn_config(app: FastAPI, certificate: Certificate | None = None) -> uvic
         access_log=False,
         proxy_headers=False,  # nobody stands in between: such headers are made up
         ws_max_size=1 << 20,
+        ws_ping_interval=PING_INTERVAL_S,
+        ws_ping_timeout=PING_TIMEOUT_S,
         ws_per_message_deflate=False,  # costs 0.3 s of processor time a million points
         timeout_keep_alive=KEEP_ALIVE_S,
         timeout_graceful_shutdown=2,  # event streams never end by themselves

@@ -12,7 +12,7 @@ import threading
 import time
 from collections import Counter, OrderedDict
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from logging.handlers import RotatingFileHandler
 from pathlib import Path
@@ -122,6 +122,11 @@ class QuietRotatingFile(RotatingFileHandler):
     def handleError(self, record: logging.LogRecord) -> None:  # noqa: N802 - name of the library
         """Count."""
         self.failures += 1
+
+    def close(self) -> None:
+        """Close; what a full disk does not take is lost."""
+        with suppress(OSError):
+            super().close()
 
 
 class Logs:

@@ -8,6 +8,7 @@ request is being worked on is never closed for another.
 
 from __future__ import annotations
 
+import math
 import resource
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -56,6 +57,8 @@ class Connection:
 
     address: str
     """Of the client; for IPv6 its network, since one household has 2^64 addresses."""
+    accepted_s: float = 0.0
+    """When it was accepted, on a monotonic clock [s]."""
     abort: Callable[[], None] = lambda: None
     """Closes it at once."""
     phase: Phase = Phase.WAITING
@@ -137,9 +140,13 @@ class ConnectionTable:
             queue.by_phase[connection.phase][connection] = None
         return True
 
-    def make_room(self) -> bool:
-        """Close the connection that can best be spared; False if there is none."""
-        return self._evict(self._all)
+    def make_room(self, *, accepted_before_s: float = math.inf) -> bool:
+        """Close the connection that can best be spared; False if there is none.
+
+        Args:
+            accepted_before_s: Younger connections are left alone: their request may be on its way.
+        """
+        return self._evict(self._all, accepted_before_s)
 
     def move(self, connection: Connection, phase: Phase) -> None:
         """Note that a connection enters a phase; it becomes the youngest there."""
@@ -162,9 +169,9 @@ class ConnectionTable:
     def _queues(self, connection: Connection) -> tuple[_Queue, _Queue]:
         return self._all, self._by_address[connection.address]
 
-    def _evict(self, queue: _Queue) -> bool:
+    def _evict(self, queue: _Queue, accepted_before_s: float = math.inf) -> bool:
         victim = queue.expendable()
-        if victim is None:
+        if victim is None or victim.accepted_s >= accepted_before_s:
             return False
         self.counts.evicted[victim.phase] += 1
         self.remove(victim)

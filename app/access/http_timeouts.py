@@ -78,6 +78,10 @@ class HttpTimeoutsProtocol(HttpToolsProtocol):
         """Leave the connection to the WebSocket, which has its own pings."""
         self._stop_timer()
         super().handle_websocket_upgrade()
+        protocol = self.transport.get_protocol()
+        if not getattr(protocol, "handshake_initiated", True):
+            # uvicorn waits forever after an opening handshake that is none, as one with POST.
+            self._reject(b"400 Bad Request", "malformed")
 
     def on_body(self, body: bytes) -> None:
         """Count."""
