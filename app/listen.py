@@ -9,14 +9,18 @@ import socket
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import partial
 
 import uvicorn
 from fastapi import FastAPI
 
 from app.accept import Acceptor
 from app.access.certificate import Certificate, made_certificate, own_certificate
-from app.access.connections import Connection, ConnectionTable
+from app.access.connections import (
+    Connection,
+    ConnectionLimits,
+    ConnectionTable,
+    open_file_limit,
+)
 from app.access.guard import Hosts
 from app.access.hosts import LOOPBACK, own_names
 from app.access.http_timeouts import KEEP_ALIVE_S, HttpTimeoutsProtocol
@@ -34,17 +38,18 @@ class AnnouncingServer(uvicorn.Server):
     def __init__(self, config: uvicorn.Config, ready: Callable[[], None]) -> None:
         super().__init__(config)
         self._ready = ready
+        self._table = connections_of(config)
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         """Start, accept connections, then say so."""
         await self.lifespan.startup()
         if self.lifespan.should_exit:
             sys.exit(uvicorn.config.STARTUP_FAILURE)
-        table = table_of(self.config)
-        protocol = partial(self._protocol, table)
         self.servers = []
         for listener in sockets or ():
-            acceptor = Acceptor(listener, table, protocol=protocol, context=self.config.ssl)
+            acceptor = Acceptor(
+                listener, self._table, protocol=self._protocol, context=self.config.ssl
+            )
             acceptor.start()
             self.servers.append(acceptor)  # type: ignore[arg-type]  # closed and waited for
         self.started = True
@@ -53,26 +58,26 @@ class AnnouncingServer(uvicorn.Server):
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """End; connections that are still open after the graceful time are aborted."""
         await super().shutdown(sockets)
-        for connection in table_of(self.config):
+        for connection in self._table:
             connection.abort()
         await asyncio.sleep(0)  # the sockets close on the loop's next round
 
-    def _protocol(self, table: ConnectionTable, connection: Connection) -> asyncio.Protocol:
+    def _protocol(self, connection: Connection) -> asyncio.Protocol:
         return HttpTimeoutsProtocol(
             self.config,
             self.server_state,
             self.lifespan.state,
             connection=connection,
-            table=table,
+            table=self._table,
         )
 
 
-def table_of(config: uvicorn.Config) -> ConnectionTable:
-    """The connection table of the application that is run, which `create_app` makes."""
-    app = config.app
-    assert isinstance(app, FastAPI)
-    table: ConnectionTable = app.state.connections
-    return table
+def connections_of(config: uvicorn.Config) -> ConnectionTable:
+    """The connection table that `create_app` made; of another application a table of its own."""
+    if isinstance(config.app, FastAPI):
+        table: ConnectionTable = config.app.state.connections
+        return table
+    return ConnectionTable(ConnectionLimits.within(1024, per_address=256, files=open_file_limit()))
 
 
 def uvicorn_config(app: FastAPI, certificate: Certificate | None = None) -> uvicorn.Config:
