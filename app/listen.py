@@ -6,38 +6,78 @@ import asyncio
 import fcntl
 import os
 import socket
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import uvicorn
 from fastapi import FastAPI
 
+from app.accept import Acceptor
 from app.access.certificate import Certificate, made_certificate, own_certificate
+from app.access.connections import (
+    Connection,
+    ConnectionLimits,
+    ConnectionTable,
+    open_file_limit,
+)
 from app.access.guard import Hosts
 from app.access.hosts import LOOPBACK, own_names
-from app.access.patience import PatientProtocol
+from app.access.http_timeouts import KEEP_ALIVE_S, HttpTimeoutsProtocol
 from app.settings import ServerSettings
 from recon4.errors import StoreError
 
+PING_INTERVAL_S = 20.0
+PING_TIMEOUT_S = 20.0
+"""A WebSocket is pinged that often; one that does not answer in time is closed [s]."""
+
 
 class AnnouncingServer(uvicorn.Server):
-    """Says when it listens."""
+    """uvicorn with our accept loop; says when it listens."""
 
     def __init__(self, config: uvicorn.Config, ready: Callable[[], None]) -> None:
         super().__init__(config)
         self._ready = ready
+        self._table = connections_of(config)
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Start, then say so."""
-        await super().startup(sockets)
+        """Start, accept connections, then say so."""
+        await self.lifespan.startup()
+        if self.lifespan.should_exit:
+            sys.exit(uvicorn.config.STARTUP_FAILURE)
+        self.servers = []
+        for listener in sockets or ():
+            acceptor = Acceptor(
+                listener, self._table, protocol=self._protocol, context=self.config.ssl
+            )
+            acceptor.start()
+            self.servers.append(acceptor)  # type: ignore[arg-type]  # closed and waited for
+        self.started = True
         self._ready()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        """End; who still takes nothing when the patience is over is hung up on."""
+        """End; connections that are still open after the graceful time are aborted."""
         await super().shutdown(sockets)
-        for connection in list(self.server_state.connections):
-            connection.transport.abort()
+        for connection in self._table:
+            connection.abort()
         await asyncio.sleep(0)  # the sockets close on the loop's next round
+
+    def _protocol(self, connection: Connection) -> asyncio.Protocol:
+        return HttpTimeoutsProtocol(
+            self.config,
+            self.server_state,
+            self.lifespan.state,
+            connection=connection,
+            table=self._table,
+        )
+
+
+def connections_of(config: uvicorn.Config) -> ConnectionTable:
+    """The connection table that `create_app` made; of another application a table of its own."""
+    if isinstance(config.app, FastAPI):
+        table: ConnectionTable = config.app.state.connections
+        return table
+    return ConnectionTable(ConnectionLimits.within(1024, per_address=256, files=open_file_limit()))
 
 
 def uvicorn_config(app: FastAPI, certificate: Certificate | None = None) -> uvicorn.Config:
@@ -45,12 +85,16 @@ def uvicorn_config(app: FastAPI, certificate: Certificate | None = None) -> uvic
     context = certificate.context() if certificate is not None else None
     return uvicorn.Config(
         app,
-        http=PatientProtocol,
+        http=HttpTimeoutsProtocol,
         log_level="warning",
+        log_config=None,  # `app.logs` writes what uvicorn logs, too
         access_log=False,
         proxy_headers=False,  # nobody stands in between: such headers are made up
         ws_max_size=1 << 20,
+        ws_ping_interval=PING_INTERVAL_S,
+        ws_ping_timeout=PING_TIMEOUT_S,
         ws_per_message_deflate=False,  # costs 0.3 s of processor time a million points
+        timeout_keep_alive=KEEP_ALIVE_S,
         timeout_graceful_shutdown=2,  # event streams never end by themselves
         server_header=False,
         ssl_context_factory=(lambda config, default: context) if context is not None else None,

@@ -14,9 +14,15 @@ from fastapi.responses import FileResponse, JSONResponse
 from fastapi.staticfiles import StaticFiles
 from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 
-from app import errors, server_routes
+from app import errors, metrics_routes, server_routes
 from app.access import admin_routes, pairing_routes
 from app.access import routes as access_routes
+from app.access.connections import (
+    ConnectionLimits,
+    ConnectionTable,
+    open_file_limit,
+    raise_file_limit,
+)
 from app.access.door import Access, open_access
 from app.access.guard import Guard
 from app.access.people import May, anybody, needs
@@ -43,7 +49,9 @@ from app.listen import (
 )
 from app.live import routes as live_routes
 from app.live.store import Captures
-from app.maintenance import look_after
+from app.logs import Logs
+from app.maintenance import look_after, rotate_logs
+from app.metrics import Metrics, MetricsMiddleware
 from app.projects import routes as project_routes
 from app.projects.picture import Pictures
 from app.projects.store import ProjectStore
@@ -76,13 +84,23 @@ def create_app(settings: ServerSettings) -> FastAPI:
         openapi_url=None,
         lifespan=lambda app: _running(app, settings),
     )
+    app.state.connections = ConnectionTable(
+        ConnectionLimits.within(
+            settings.max_connections,
+            per_address=settings.max_connections_per_address,
+            files=open_file_limit(),
+        )
+    )
+    app.state.logs = Logs(settings.state / "logs" / "server.log")
     app.add_middleware(RequestBodyLimitMiddleware, max_body_size=settings.max_body_bytes)
     pinned = settings.tls_certificate is not None
     app.add_middleware(Guard, hosts=hosts_of(settings), login=settings.lan, pinned=pinned)
+    metrics = app.state.metrics = Metrics(app.state.connections, app.state.logs)
+    app.add_middleware(MetricsMiddleware, metrics=metrics.http)
     errors.install(app)
     for part in (access_routes, admin_routes, pairing_routes, project_routes, job_routes):
         app.include_router(part.router)
-    for part in (choices, server_routes):
+    for part in (choices, server_routes, metrics_routes):
         app.include_router(part.router)
     for part in (page, proxy):
         app.include_router(part.router, dependencies=MAY_LOOK)
@@ -117,6 +135,7 @@ def serve(
         ConfigError: If ``root`` does not hold projects, or the certificate is none.
         StoreError: If it cannot listen there, or another server runs on the same folder.
     """
+    raise_file_limit()
     with private_files(settings.lan), only_one(settings), listening(settings) as listener:
         sweep_leftovers(settings)
         certificate = certificate_of(settings)
@@ -131,7 +150,9 @@ def serve(
         server = AnnouncingServer(uvicorn_config(app, certificate), ready)
         # uvicorn shuts down in order, then raises what it caught once more: by then all is done
         signal.signal(signal.SIGTERM, lambda *_: None)
-        asyncio.run(server.serve([listener]))
+        logs: Logs = app.state.logs
+        with logs.installed():
+            asyncio.run(server.serve([listener]))
 
 
 @asynccontextmanager
@@ -169,9 +190,11 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
         reviews=Reviews(pool),
         slices=slices,
     )
+    app.state.metrics.follow(app.state.parts)
     watching = [
         asyncio.create_task(supervisor.run()),
         asyncio.create_task(look_after(jobs, uploads, trash, slices)),
+        asyncio.create_task(rotate_logs(settings.state, jobs, captures)),
         asyncio.create_task(captures.adopt()),
     ]
     try:

@@ -1,12 +1,17 @@
-"""What has to be done now and then: sweep uploads and trash, copy the queue."""
+"""What has to be done now and then: sweep uploads and trash, copy the queue, rotate logs."""
 
 from __future__ import annotations
 
 import asyncio
 import logging
 import time
+from collections.abc import Iterator
+from pathlib import Path
 
+from app.jobs.model import JobState
 from app.jobs.store import JobStore
+from app.live.store import Captures
+from app.logs import rotate_grown
 from app.projects.trash import Trash
 from app.slices.store import Slices
 from app.uploads.store import UploadStore
@@ -14,6 +19,8 @@ from app.uploads.store import UploadStore
 log = logging.getLogger(__name__)
 
 EVERY_S = 3600.0
+ROTATE_LOGS_S = 20.0
+"""How often the logs of workers, viewers and captures are looked at [s]."""
 
 
 async def look_after(jobs: JobStore, uploads: UploadStore, trash: Trash, slices: Slices) -> None:
@@ -30,3 +37,29 @@ async def look_after(jobs: JobStore, uploads: UploadStore, trash: Trash, slices:
             except Exception:
                 log.exception("could not clean up or back up; trying again in an hour")
         await asyncio.sleep(EVERY_S)
+
+
+async def rotate_logs(state: Path, jobs: JobStore, captures: Captures) -> None:
+    """Keep the logs other processes append to within their size, until cancelled."""
+    while True:
+        try:
+            for path in await asyncio.to_thread(lambda: list(growing_logs(state, jobs, captures))):
+                await asyncio.to_thread(rotate_grown, path)
+        except Exception:
+            log.exception("could not rotate the logs; trying again")
+        await asyncio.sleep(ROTATE_LOGS_S)
+
+
+def growing_logs(state: Path, jobs: JobStore, captures: Captures) -> Iterator[Path]:
+    """Logs of the processes that may be running.
+
+    Args:
+        state: The server's own folder.
+        jobs: Its queue.
+        captures: Its live capture.
+    """
+    yield from (state / "viewers").glob("*.txt")
+    for job in jobs.in_state(JobState.RUNNING):
+        yield state / "jobs" / job.id / "log.txt"
+    if captures.newest is not None:
+        yield from captures.newest.session.folder.glob("*.txt")

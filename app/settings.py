@@ -48,6 +48,10 @@ class ServerSettings:
     """At most so many viewers are open at the same time."""
     viewer_sockets_a_person: int = 8
     """At most so many of them belong to one person."""
+    max_connections: int = 1024
+    """At most this many connections are open; fewer where the limit of open files is low."""
+    max_connections_per_address: int = 256
+    """At most this many of them come from one address; phones behind one router share it."""
     worker: str = "app.jobs.worker"
     """Module run for a job."""
     max_body_bytes: int = 1 << 20

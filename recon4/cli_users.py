@@ -98,6 +98,20 @@ def audit(
     write(f"{chain.entries} entries, chain whole; newest hash {chain.newest}")
 
 
+@users.command("metrics-token")
+def metrics_token(
+    root: RootOption = Path(),
+    renew: Annotated[bool, typer.Option("--renew", help="Replace it; the old one ends.")] = False,
+) -> None:
+    """Show the token with which a program reads /metrics; made the first time."""
+    from app.metrics_routes import make_metrics_token
+
+    with _access(root) as access:
+        token = make_metrics_token(root / ".recon4", renew=renew)
+        _note(access, "show metrics token", "renewed" if renew else "")
+    write(token)
+
+
 @contextmanager
 def _access(root: Path) -> Iterator[Access]:
     """The access database below a folder of projects."""

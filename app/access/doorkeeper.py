@@ -22,7 +22,7 @@ BROWSER_COOKIE = "__Host-browser"
 FORM_HEADER = "X-Recon4-Token"
 
 PAIRING = frozenset({"/pair", "/api/pairing/redeem", "/api/pairing/requests", "/api/pairing/claim"})
-OPEN_PATHS = PAIRING | {"/login", "/api/login", "/api/setup", "/healthz"}
+OPEN_PATHS = PAIRING | {"/login", "/api/login", "/api/setup", "/healthz", "/metrics"}
 """What is answered without a session, besides the files of `OPEN_FOLDER`; tested."""
 OPEN_FOLDER = "/web/"
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})

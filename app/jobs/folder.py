@@ -168,6 +168,8 @@ class JobFolder:
         """Whole lines of the log from a byte offset on, and the offset to ask from next time."""
         try:
             with (self.path / "log.txt").open("rb") as file:
+                if offset > file.seek(0, os.SEEK_END):
+                    offset = 0  # it was rotated (`app.logs.rotate_grown`)
                 file.seek(offset)
                 data = file.read(MOST_LOG_BYTES)
         except FileNotFoundError:

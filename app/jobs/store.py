@@ -95,6 +95,12 @@ class JobStore:
         """Jobs in any of the states, oldest first."""
         return self._select(JOBS.select().where(JOBS.c.state.in_(states)).order_by(JOBS.c.number))
 
+    def counts(self) -> dict[JobState, int]:
+        """How many jobs there are in each state; states without jobs are left out."""
+        query = sa.select(JOBS.c.state, sa.func.count()).group_by(JOBS.c.state)
+        with self._engine.connect() as connection:
+            return {JobState(state): count for state, count in connection.execute(query)}
+
     def latest(self) -> dict[str, Job]:
         """The newest job of each project."""
         newest = sa.select(sa.func.max(JOBS.c.number)).group_by(JOBS.c.project)

@@ -108,11 +108,11 @@ def server_thread(root: Path, **settings: Any) -> Iterator[Running]:
 
 @contextmanager
 def server_process(
-    root: Path, worker: str = SLOW
+    root: Path, worker: str = SLOW, *, live_address: str = "0.0.0.0"
 ) -> Iterator[tuple[Running, subprocess.Popen[str]]]:
     """A server in a process of its own."""
     process = subprocess.Popen(
-        [sys.executable, "-m", "tests.service.running", str(root), worker],
+        [sys.executable, "-m", "tests.service.running", str(root), worker, live_address],
         stdout=subprocess.PIPE,
         text=True,
         cwd=ROOT,
@@ -175,6 +175,7 @@ if __name__ == "__main__":
             port=0,
             recordings=recordings_from_environment(),
             worker=sys.argv[2],
+            live_address=sys.argv[3],
         ),
         on_ready=lambda url, notes: sys.stdout.write(url + "\n") and sys.stdout.flush(),
     )

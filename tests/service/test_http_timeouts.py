@@ -9,7 +9,7 @@ import httpx
 import numpy as np
 import pytest
 
-from app.access import patience
+from app.access import http_timeouts
 from tests.service.running import server_thread
 
 SOON_S = 0.6
@@ -18,9 +18,9 @@ SOON_S = 0.6
 @pytest.fixture
 def server(tmp_path, monkeypatch):
     """A server that is less patient, so that the test is short."""
-    monkeypatch.setattr(patience, "HEAD_WITHIN_S", SOON_S)
-    monkeypatch.setattr(patience, "BODY_LOOKED_AT_EVERY_S", SOON_S)
-    monkeypatch.setattr(patience, "LEAST_BODY_BYTES", 60_000)
+    monkeypatch.setattr(http_timeouts, "HEAD_TIMEOUT_S", SOON_S)
+    monkeypatch.setattr(http_timeouts, "BODY_WINDOW_S", SOON_S)
+    monkeypatch.setattr(http_timeouts, "MIN_BODY_BYTES", 60_000)
     with server_thread(tmp_path) as running:
         yield running
 

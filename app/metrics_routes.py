@@ -1,0 +1,80 @@
+"""HTTP face of the metrics, and the token that lets a program read them."""
+
+from __future__ import annotations
+
+import hmac
+import os
+import secrets
+from pathlib import Path
+
+from fastapi import APIRouter, Depends
+from prometheus_client import CONTENT_TYPE_LATEST
+from starlette.requests import Request
+from starlette.responses import Response
+
+from app.access.people import NOBODY, May, Person, anybody, person
+from app.errors import Refused, Unknown
+from app.metrics import Metrics
+
+TOKEN_FILE = "metrics.token"
+TOKEN_BYTES = 32
+
+router = APIRouter()
+
+
+def make_metrics_token(state: Path, *, renew: bool = False) -> str:
+    """The token for ``/metrics``, made if there is none yet.
+
+    Args:
+        state: Folder of the server's own files; exists.
+        renew: Replace the one there is.
+    """
+    path = state / TOKEN_FILE
+    if renew or not path.exists():
+        fresh = path.with_suffix(".new")
+        fresh.unlink(missing_ok=True)
+        descriptor = os.open(fresh, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+        with os.fdopen(descriptor, "w") as file:
+            file.write(secrets.token_urlsafe(TOKEN_BYTES) + "\n")
+            file.flush()
+            os.fsync(file.fileno())
+        fresh.replace(path)
+    return path.read_text("ascii").strip()
+
+
+def may_read_metrics(request: Request) -> None:
+    """A dependency that lets admins pass, and programs with the token.
+
+    Raises (when called by the framework):
+        Unknown: If nobody is signed in and the token is missing or wrong.
+        Refused: If who is signed in is no admin.
+    """
+    who: Person = person(request)
+    if who.may(May.ADMINISTER) or _has_token(request):
+        return
+    if who == NOBODY:
+        raise Unknown("sign in as an admin, or send the token of: recon4 users metrics-token")
+    raise Refused(f"{who.name} is a {who.role} here and may not read metrics; ask an admin")
+
+
+@router.get(
+    "/metrics",
+    include_in_schema=False,
+    dependencies=[Depends(anybody), Depends(may_read_metrics)],
+)
+def read_metrics(request: Request) -> Response:
+    """All figures in Prometheus' text format."""
+    metrics: Metrics = request.app.state.metrics
+    return Response(metrics.text(), media_type=CONTENT_TYPE_LATEST)
+
+
+def _has_token(request: Request) -> bool:
+    scheme, _, given = request.headers.get("authorization", "").partition(" ")
+    state: Path = request.app.state.parts.settings.state
+    if scheme.lower() != "bearer" or not given:
+        return False
+    try:
+        token = (state / TOKEN_FILE).read_text("ascii").strip()
+    except FileNotFoundError:
+        return False
+    return len(token) > TOKEN_BYTES and hmac.compare_digest(given.strip().encode(), token.encode())
