@@ -51,8 +51,8 @@ class Desk:
         self, kind: Kind, function: Callable[..., T], args: tuple[object, ...], limit_s: float
     ) -> T:
         pool = self._pool(kind)
-        future = asyncio.wrap_future(pool.submit(function, *args))
-        try:
+        try:  # a child that died since the last call is noticed by submit()
+            future = asyncio.wrap_future(pool.submit(function, *args))
             return await asyncio.wait_for(future, limit_s)
         except TimeoutError as error:
             self._drop(kind, pool)

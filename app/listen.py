@@ -18,6 +18,7 @@ from app.access.hosts import LOOPBACK, own_names
 from app.access.patience import PatientProtocol
 from app.settings import ServerSettings
 from recon4.errors import StoreError
+from recon4.store.atomic import make_folders
 
 
 class AnnouncingServer(uvicorn.Server):
@@ -107,7 +108,7 @@ def only_one(settings: ServerSettings) -> Iterator[None]:
 
 def make_state(settings: ServerSettings) -> None:
     """The folder of the server's own files, for nobody but its user."""
-    settings.state.mkdir(mode=0o700, exist_ok=True)
+    make_folders(settings.state, 0o700)
     settings.state.chmod(0o700)
 
 

@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import Literal
 
 from app.jobs.model import Inputs
-from recon4.store.atomic import write_json
+from recon4.store.atomic import make_folders, write_json
 
 KEPT_BYTES = 64 << 10
 MOST_LOG_BYTES = 256 << 10
@@ -57,7 +57,7 @@ class JobFolder:
 
     def prepare(self, inputs: Inputs, project: Path, limits: Limits) -> None:
         """Write the request; clear what an earlier attempt left."""
-        self.path.mkdir(parents=True, exist_ok=True)
+        make_folders(self.path)
         for name in ("pid", "heartbeat", "outcome.json"):
             (self.path / name).unlink(missing_ok=True)
         request = {"project": str(project), "inputs": asdict(inputs), "limits": asdict(limits)}
