@@ -26,6 +26,7 @@ from app.access.hosts import LOOPBACK, own_names
 from app.access.http_timeouts import KEEP_ALIVE_S, HttpTimeoutsProtocol
 from app.settings import ServerSettings
 from recon4.errors import StoreError
+from recon4.store.atomic import make_folders
 
 PING_INTERVAL_S = 20.0
 PING_TIMEOUT_S = 20.0
@@ -151,7 +152,7 @@ def only_one(settings: ServerSettings) -> Iterator[None]:
 
 def make_state(settings: ServerSettings) -> None:
     """The folder of the server's own files, for nobody but its user."""
-    settings.state.mkdir(mode=0o700, exist_ok=True)
+    make_folders(settings.state, 0o700)
     settings.state.chmod(0o700)
 
 

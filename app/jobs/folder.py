@@ -29,7 +29,7 @@ from typing import Literal
 import msgspec
 
 from app.jobs.model import Inputs
-from recon4.store.atomic import write_json
+from recon4.store.atomic import make_folders, write_json
 
 KEPT_BYTES = 64 << 10
 MOST_LOG_BYTES = 256 << 10
@@ -67,7 +67,7 @@ class JobFolder:
 
     def prepare(self, inputs: Inputs, project: Path, limits: Limits) -> None:
         """Write the request; clear what an earlier attempt left."""
-        self.path.mkdir(parents=True, exist_ok=True)
+        make_folders(self.path)
         for path in self.path.iterdir():
             if path.is_dir() and not path.is_symlink():  # none of ours but the temporary files
                 shutil.rmtree(path)

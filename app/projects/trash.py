@@ -15,6 +15,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from app.errors import Conflict, NotFound
+from recon4.store.atomic import make_folders
 
 NAME = re.compile(r"(?P<project>[A-Za-z0-9][A-Za-z0-9._-]{0,63})@(?P<moment>\d{8}T\d{12})")
 MOMENT = "%Y%m%dT%H%M%S%f"
@@ -43,7 +44,7 @@ class Trash:
 
     def put(self, project: Path) -> Deleted:
         """Move a project aside; it is found under its name no more."""
-        self._folder.mkdir(parents=True, exist_ok=True)
+        make_folders(self._folder)
         target = self._folder / f"{project.name}@{datetime.now(UTC).strftime(MOMENT)}"
         project.rename(target)
         _fsync(self._folder)

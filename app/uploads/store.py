@@ -27,7 +27,7 @@ from app.errors import BadRequest, NoRoom, NotFound, TooLarge, TooMany
 from app.settings import ServerSettings
 from app.uploads.model import Part, Upload
 from app.uploads.names import another, safe_path, slug
-from recon4.store.atomic import write_json
+from recon4.store.atomic import make_folders, write_json
 
 log = logging.getLogger(__name__)
 
@@ -101,8 +101,8 @@ class UploadStore:
                 folder=f"{slug(name)}-{upload_id}",
             )
             folder = self._folder / upload_id
-            (folder / "parts").mkdir(parents=True)
-            (folder / "data").mkdir()
+            make_folders(folder / "parts")
+            make_folders(folder / "data")
             self._note(upload)
             fsync(self._folder)
             self._uploads[upload_id] = upload
@@ -124,7 +124,7 @@ class UploadStore:
             part = Part(number=len(upload.parts), name=name, path=path, bytes=length)
             data = self._data(upload, part)
             try:
-                data.parent.mkdir(parents=True, exist_ok=True)
+                make_folders(data.parent)
                 os.close(os.open(data, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600))
                 fsync(data.parent)
                 note = {"name": name, "path": str(path), "bytes": length}
@@ -144,7 +144,7 @@ class UploadStore:
             if upload.finished or not upload.whole:
                 return
             data, target = self._folder / upload.id / "data", self.recordings / upload.folder
-            self.recordings.mkdir(exist_ok=True)
+            make_folders(self.recordings)
             if data.exists():
                 for path in data.rglob("*"):
                     path.chmod(0o755 if path.is_dir() else 0o444)  # a recording is never changed
@@ -235,7 +235,7 @@ class UploadStore:
 
     def _read(self) -> None:
         """Take in what a server before left, and end what it had begun to end."""
-        self._folder.mkdir(parents=True, exist_ok=True)
+        make_folders(self._folder)
         for folder in sorted(self._folder.iterdir()):
             if not UPLOAD_ID.fullmatch(folder.name):
                 shutil.rmtree(folder, ignore_errors=True)  # removal was begun

@@ -14,7 +14,7 @@ from recon4.live.session import Session
 from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.progress import Silent
 from recon4.settings import Settings
-from recon4.store.atomic import write_text
+from recon4.store.atomic import make_folders, write_text
 from recon4.store.hashing import hash_json, size_of
 from recon4.store.inputs import input_file, input_files
 from recon4.store.project import Project, is_project
@@ -43,7 +43,7 @@ def begin(project: Path, rig: Rig, **how: Any) -> Session:
         raise StoreError(f"there is a project {project.name} already; give a new name")
     with Project.open(project) as opened:
         opened.describe(preset=session.preset, rig=rig.name)
-        session.capture.parent.mkdir(exist_ok=True)
+        make_folders(session.capture.parent)
         write_text(session.rig, format_rig(rig))
         session.save()
     return session

@@ -16,7 +16,7 @@ from pathlib import Path
 from recon4.bounded import read_json_object
 from recon4.errors import StoreError
 from recon4.runtime_folder import runtime_folder
-from recon4.store.atomic import write_json
+from recon4.store.atomic import make_folders, write_json
 
 _DAY_NS = 86_400_000_000_000
 
@@ -70,7 +70,7 @@ class Session:
 
     def save(self) -> None:
         """Write ``session.json``."""
-        self.folder.mkdir(parents=True, exist_ok=True)
+        make_folders(self.folder)
         told = {k: v for k, v in asdict(self).items() if k != "project"}
         write_json(self.folder / "session.json", told)
 

@@ -22,7 +22,7 @@ from recon4.review.signature import sign
 from recon4.review.source import graph_key
 from recon4.review.stamp import Stamp, stamp_file
 from recon4.review.state import artifact_keys, decisions_in_map, read_summary
-from recon4.store.atomic import atomic_file, atomic_folder, sweep, write_json
+from recon4.store.atomic import atomic_file, atomic_folder, make_folders, sweep, write_json
 from recon4.store.hashing import hash_file, hash_json
 from recon4.store.project import Project
 
@@ -93,7 +93,7 @@ def approve(
             raise NotApprovable("the map was changed since it was looked at: look at it again")
         _refuse_again(root, asked)
         _refuse(root, asked, confirmed=confirmed)
-        (root / VERSIONS).mkdir(exist_ok=True)
+        make_folders(root / VERSIONS)
         sweep(root / VERSIONS)
         version = 1 + sum(row.kind == Kind.APPROVE for row in asked.rows)
         approval = _issue(root, asked, version=version, key_file=key_file)

@@ -82,6 +82,26 @@ def atomic_folder(path: Path) -> Iterator[Path]:
         shutil.rmtree(temporary, ignore_errors=True)
 
 
+def make_folders(path: Path, mode: int = 0o777) -> None:
+    """Make a folder and those above it, as ``mkdir -p``, durable when this returns.
+
+    Without the fsync of the folder above, a power cut takes a new folder away with all that was
+    fsynced inside it.
+
+    Args:
+        path: The folder; nothing happens if it is there.
+        mode: Of ``path``; those above it get the usual one.
+
+    Raises:
+        OSError: If one cannot be made.
+    """
+    if path.is_dir():
+        return
+    make_folders(path.parent)
+    path.mkdir(mode, exist_ok=True)
+    _fsync(path.parent)
+
+
 def write_text(path: Path, text: str) -> None:
     """Write a text file, completely or not at all."""
     with atomic_file(path) as temporary:

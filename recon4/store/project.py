@@ -11,7 +11,7 @@ from types import TracebackType
 from typing import Any
 
 from recon4.errors import StoreError
-from recon4.store.atomic import raise_if_full, sweep, write_json
+from recon4.store.atomic import make_folders, raise_if_full, sweep, write_json
 from recon4.store.ledger import FinishedStage, Ledger
 
 FORMAT = 1
@@ -124,14 +124,14 @@ def _reading(root: Path) -> Ledger:
 
 def _make_folder(root: Path) -> None:
     try:
-        root.mkdir(parents=True, exist_ok=True)
+        make_folders(root)
         if not is_project(root):
             _refuse_foreign(root)
             created = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
             name = root.resolve().name
             write_json(root / "project.json", {"format": FORMAT, "name": name, "created": created})
         read_description(root)
-        (root / "artifacts").mkdir(exist_ok=True)
+        make_folders(root / "artifacts")
     except OSError as error:
         raise_if_full(error, root)
         raise StoreError(f"cannot use {root} as a project: {error.strerror}") from error

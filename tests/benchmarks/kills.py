@@ -1,8 +1,9 @@
-"""Many kills of server, workers and viewers in real runs: ``… kills.py [--runs 10] [--kills 8]``.
+"""Many kills of processes in real runs: ``… kills.py [--count 200] [--a-run 25]``.
 
 Each run is killed at random moments, evenly over all of it, and must end in the bytes of an
-unbroken one, with no stage run twice to its end. ``--matrix``: instead three runs in which server,
-worker and viewer are each killed in the middle of every stage once.
+unbroken one, with no stage run twice to its end, no process left and no unfinished file.
+``--matrix``: instead four runs in which server, worker, viewer and child of the compute pool are
+each killed in the middle of every stage once.
 """
 
 from __future__ import annotations
@@ -22,11 +23,11 @@ from tests.service import killing
 def main() -> None:
     """Run, compare and print."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--runs", type=int, default=10)
-    parser.add_argument("--kills", type=int, default=8)
+    parser.add_argument("--count", type=int, default=200)
+    parser.add_argument("--a-run", type=int, default=25)
     parser.add_argument("--matrix", action="store_true")
     given = parser.parse_args()
-    runs = len(killing.IN_A_STAGE) if given.matrix else given.runs
+    runs = len(killing.IN_A_STAGE) if given.matrix else -(-given.count // given.a_run)
     top = Path(tempfile.mkdtemp(prefix="recon4-kills-"))
     try:
         simulate("office", top / "walk", seconds=5.0, seed=3, bag=False, progress=Silent())
@@ -41,12 +42,14 @@ def main() -> None:
             survived = (
                 killing.run_gated(root, request, killing.row_of_the_matrix(seed))
                 if given.matrix
-                else killing.run(root, request, kills=given.kills, seed=seed)
+                else killing.run(root, request, kills=given.a_run, seed=seed)
             )
             found = killing.results(root / "office"), killing.artifacts(root / "office")
             assert found == expected, f"run {seed} ended in other bytes: {survived}"
             twice = {k: n for k, n in killing.completed(root, survived).items() if n > 1}
             assert not twice, f"run {seed} did stages twice: {twice}"
+            orphans, left = killing.orphans(root), killing.leftover_files(root)
+            assert not orphans and not left, f"run {seed} left {orphans} {left}"
             hits.update(survived.hits)
             shutil.rmtree(root)
             print(f"run {seed}: {len(survived.hits)} kills survived", flush=True)

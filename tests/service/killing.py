@@ -1,4 +1,4 @@
-"""Kills servers, workers and viewers in a real run, until the run ends all the same.
+"""Kills servers, workers, viewers and pool children in a real run; the run ends all the same.
 
 `run_gated` kills one of them in the middle of each stage, `run` at random moments.
 """
@@ -16,17 +16,19 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TextIO
 
+import httpx
 import numpy as np
 import psutil
 from websockets.exceptions import ConnectionClosed
 
 from app.jobs.overall import AFTER, BEFORE, SHARES
+from app.viewer.pool import socket_folder
 from tests.service.gated_worker import AT_GATE
-from tests.service.running import Running, end_workers, server_process
+from tests.service.running import WITHOUT_TLS, Running, end_workers, server_process
 from tests.service.viser_client import camera, viewing
 
 STAGES = tuple(stage for stage in SHARES if stage not in (BEFORE, AFTER))
-IN_A_STAGE = ("worker", "server", "viewer")
+IN_A_STAGE = ("worker", "server", "viewer", "pool")
 RESULTS = ("trajectory.tum", "odometry.tum", "edges.json", "map.laz", "graph.g2o")
 VICTIMS = ("worker", "server", "both")
 QUICK = ["map.voxel_m=0.1", "graph.node_stride=4", "segments.preserved=2"]
@@ -56,7 +58,7 @@ def request_for(root: Path) -> dict[str, Any]:
 
 
 def row_of_the_matrix(row: int) -> dict[str, str]:
-    """Stage -> who is killed in it; rows 0 to 2 together are everybody in every stage."""
+    """Stage -> who is killed in it; all rows together are everybody in every stage."""
     return {stage: IN_A_STAGE[(k + row) % len(IN_A_STAGE)] for k, stage in enumerate(STAGES)}
 
 
@@ -109,6 +111,8 @@ def _live_gated(
             _signal(server, job, signal.SIGKILL)
         elif victims[stage] == "viewer":
             _kill_viewer(server, process)
+        elif victims[stage] == "pool":
+            _kill_pool_child(server, process)
         else:
             process.kill()
             process.wait()
@@ -139,6 +143,47 @@ def _kill_viewer(server: Running, process: subprocess.Popen[str]) -> None:
     with viewing(server.url) as client:
         client.send(camera())
         client.until(lambda c: "/grid" in c.nodes)
+
+
+def _kill_pool_child(server: Running, process: subprocess.Popen[str]) -> None:
+    """Kill the child that answers a page, and see that the next request is answered."""
+
+    def ask() -> int:
+        recording = server.root / "walk" / "recording.pcap"
+        return httpx.get(
+            server.url + "/api/look",
+            params={"path": str(recording)},
+            timeout=120.0,  # the child imports everything first, perhaps on a busy computer
+            verify=WITHOUT_TLS,
+        ).status_code
+
+    assert ask() == 200
+    children = psutil.Process(process.pid).children(recursive=True)
+    pool = [one for one in children if any("spawn_main" in word for word in one.cmdline())]
+    assert pool, "the compute pool has a child"
+    for child in pool:
+        child.kill()
+    psutil.wait_procs(pool, timeout=10.0)
+    assert ask() in (200, 503)  # 503: the death was noticed by this request
+    assert ask() == 200
+
+
+def orphans(root: Path) -> list[psutil.Process]:
+    """Processes that servers on a folder started and that live on, 5 s after the last of them."""
+    found = []
+    for one in psutil.process_iter():
+        with contextlib.suppress(psutil.Error):
+            if one.pid != os.getpid() and one.environ().get("RECON4_RECORDINGS") == str(root):
+                found.append(one)
+    return psutil.wait_procs(found, timeout=5.0)[1]
+
+
+def leftover_files(root: Path) -> list[str]:
+    """Unfinished files, sockets and records of children below a folder of projects."""
+    patterns = (".tmp-*", "buckets-*", ".slice-*", "room", "children/*")
+    found = [path for pattern in patterns for path in root.rglob(pattern)]
+    sockets = socket_folder(root / ".recon4")
+    return sorted(map(str, [*found, *(sockets.iterdir() if sockets.is_dir() else [])]))
 
 
 def _started(server: Running, request: dict[str, Any]) -> str:
