@@ -10,6 +10,7 @@ from typing import Any
 
 from recon4.errors import ConfigError, StoreError
 from recon4.export.laz import export_laz
+from recon4.export.names import check_name
 from recon4.export.ply import export_ply
 from recon4.georeference.stage import read_crs
 from recon4.model.pose_graph import Verdict
@@ -179,11 +180,13 @@ def export_map(project: Path, path: Path, *, crs: str, progress: Progress) -> in
     artifacts = read_artifacts(project)
     if "map" not in artifacts:
         raise StoreError(f"{project} has no map yet: run recon4 process")
-    if path.suffix not in (".laz", ".ply"):
+    ending = path.suffix.lower()
+    if ending not in (".laz", ".ply"):
         raise ConfigError(f"a map is written as .laz or .ply, got {path.name}")
+    check_name(path, ending)
     place = read_crs(artifacts["level"], crs)
     to_crs = place.to_crs if place else None
-    if path.suffix == ".laz":
+    if ending == ".laz":
         wkt = place.wkt if place else None
         count = export_laz(artifacts["map"], path, crs=wkt, to_crs=to_crs, progress=progress)
     else:

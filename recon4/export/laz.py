@@ -20,8 +20,9 @@ import pyproj
 from numpy.typing import NDArray
 
 import recon4
-from recon4.errors import ConfigError, GeoreferenceError, StoreError
+from recon4.errors import GeoreferenceError, StoreError
 from recon4.export.gps_time import day_of, is_absolute, point_time_s
+from recon4.export.names import check_name
 from recon4.export.points import Block, ToCrs, blocks, center, into_crs
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Progress, Silent
@@ -84,13 +85,12 @@ def export_laz(
         How many points were written.
 
     Raises:
-        ConfigError: If the map has no points.
+        ConfigError: If the map has no points, or the name is not one of a LAZ file.
         GeoreferenceError: If the CRS is not understood, or coordinates do not fit.
         StoreError: If the file cannot be written or does not read back (`NoSpace`: disk full).
     """
+    check_name(path, ".laz")
     tiles = TileSet.open(folder)
-    if path.suffix.lower() != ".laz":
-        raise ConfigError(f"a LAZ file must be named .laz, got {path.name}")
     transform = into_crs(tiles, to_crs)
     header = _header(tiles, center(tiles, transform), crs or (tiles.crs and tiles.crs.wkt) or None)
     fields = [name for name in [*FIELDS, "intensity_normalized"] if name in tiles.fields]

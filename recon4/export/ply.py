@@ -6,8 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.errors import ConfigError, StoreError
+from recon4.errors import StoreError
 from recon4.export.gps_time import is_absolute, point_time_s
+from recon4.export.names import check_name
 from recon4.export.points import Block, ToCrs, blocks, center, into_crs
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Progress, Silent
@@ -48,12 +49,11 @@ def export_ply(
         How many points were written.
 
     Raises:
-        ConfigError: If the map has no points.
+        ConfigError: If the map has no points, or the name is not one of a PLY file.
         StoreError: If the file cannot be written (`NoSpace`: disk full) or has a wrong length.
     """
+    check_name(path, ".ply")
     tiles = TileSet.open(folder)
-    if path.suffix.lower() != ".ply":
-        raise ConfigError(f"a PLY file must be named .ply, got {path.name}")
     transform = into_crs(tiles, to_crs)
     center(tiles, transform)
     fields = [name for name in _COLUMNS if name in tiles.fields]

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from recon4.bounded import read_json_object
 from recon4.errors import GeoreferenceError, StoreError
 from recon4.geometry.se3 import Array
 from recon4.georeference.crs import CrsTransform, Origin
@@ -29,6 +29,8 @@ from recon4.store.frames import FrameStore
 _FLOOR_FRAMES = 200
 _FLOOR_POINTS = 2000
 """So many points of so many multiframes, evenly chosen, show where the floor is."""
+
+_MOST_JSON_BYTES = 16 << 20
 
 
 def run_level(
@@ -111,7 +113,7 @@ def read_crs(artifact: Path, crs: str = "") -> CrsTransform | None:
     """
     path = artifact / "georeference.json"
     try:
-        told = json.loads(path.read_text("utf-8"))
+        told = read_json_object(path, _MOST_JSON_BYTES, failure=StoreError)
         if not told["crs"]:
             if crs:
                 raise GeoreferenceError(
@@ -123,7 +125,7 @@ def read_crs(artifact: Path, crs: str = "") -> CrsTransform | None:
         return CrsTransform(
             Origin(lat_rad, lon_rad, origin["height_m"]), crs or told["crs"]["name"]
         )
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
         raise StoreError(f"{path} cannot be read: {error!r}") from error
 
 

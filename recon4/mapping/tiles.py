@@ -8,23 +8,27 @@ Rows ``start`` to ``stop`` belong to a tile; any first part of them is an even s
 
 from __future__ import annotations
 
-import json
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import Any, BinaryIO, Self
+from typing import Any, BinaryIO, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.bounded import read_json_object
 from recon4.errors import StoreError
 from recon4.geometry.se3 import Array
 from recon4.mapping.tile import FIELDS, Columns, spatial_order
 from recon4.store.atomic import raise_if_full, write_json
 
 FORMAT = 1
+Number = TypeVar("Number", int, float)
 _HEADER_BYTES = 128
+_MOST_FACTS_BYTES = 256 << 20
+"""``tiles.json`` has some 300 bytes a tile."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,18 +106,17 @@ class TileSet:
         """
         path = folder / "tiles.json"
         try:
-            facts = json.loads(path.read_text("utf-8"))
+            facts = _read_facts(path)
             if facts["format"] != FORMAT:
                 raise StoreError(f"{path.name}: expected format {FORMAT}, got {facts['format']}")
             fields = tuple(str(name) for name in facts["fields"])
             tiles = tuple(_tile(folder / "tiles", fields, row) for row in facts.pop("tiles"))
             crs = facts["crs"] and MapCrs(facts["crs"]["wkt"], tuple(facts["crs"]["origin_m"]))
             points = int(facts["points"])
-        except (OSError, ValueError, KeyError, TypeError) as error:
+        except (ValueError, KeyError, TypeError, IndexError, OverflowError) as error:
             raise StoreError(f"{path} is not the list of a map's tiles: {error!r}") from error
         _check_columns(folder / "tiles", fields, points)
-        if points != sum(map(len, tiles)):
-            raise StoreError(f"{path.name}: {points} points, but the tiles do not add up to them")
+        _check_rows(tiles, points, path.name)
         return TileSet(tiles, fields, crs or None, facts)
 
     def __len__(self) -> int:
@@ -201,17 +204,51 @@ class TileWriter:
         write_json(self._folder / "tiles.json", facts)
 
 
+def _read_facts(path: Path) -> dict[str, Any]:
+    try:
+        return read_json_object(path, _MOST_FACTS_BYTES, failure=StoreError)
+    except StoreError as error:
+        raise StoreError(f"{path} is not the list of a map's tiles: {error}") from error
+
+
 def _tile(folder: Path, fields: tuple[str, ...], row: dict[str, Any]) -> Tile:
     return Tile(
         folder,
         fields,
-        tuple(row["ijk"]),
-        tuple(row["origin_m"]),
+        _triple(row["ijk"], int),
+        _triple(row["origin_m"], float),
         int(row["start"]),
         int(row["stop"]),
-        tuple(row["low_m"]),
-        tuple(row["high_m"]),
+        _triple(row["low_m"], float),
+        _triple(row["high_m"], float),
     )
+
+
+def _triple(values: Any, kind: type[Number]) -> tuple[Number, Number, Number]:
+    """Three finite numbers.
+
+    Raises:
+        TypeError, ValueError, OverflowError: If they are something else.
+    """
+    x, y, z = (kind(value) for value in values)
+    if not all(map(math.isfinite, (x, y, z))):
+        raise ValueError(f"expected three finite numbers, got {values}")
+    return x, y, z
+
+
+def _check_rows(tiles: Sequence[Tile], points: int, name: str) -> None:
+    """Tiles follow each other without a gap and are all of the points."""
+    at = 0
+    for tile in tiles:
+        if tile.start != at or tile.stop < at:
+            raise StoreError(
+                f"{name}: expected a tile from point {at} on, got {tile.start} to {tile.stop}"
+            )
+        at = tile.stop
+    if at != points:
+        raise StoreError(
+            f"{name}: {points} points, but the tiles do not add up to them: they have {at}"
+        )
 
 
 def _shape(name: str, rows: int) -> tuple[int, ...]:
@@ -236,7 +273,7 @@ def _map_rows(folder: Path, name: str, start: int, count: int) -> NDArray[Any]:
         mapped = np.memmap(
             folder / f"{name}.npy", dtype, mode="r", offset=offset, shape=_shape(name, count)
         )
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, OverflowError) as error:
         raise StoreError(f"{folder.name}/{name}.npy cannot be read: {error}") from error
     return mapped.view(np.ndarray)
 

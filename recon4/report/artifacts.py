@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,12 +10,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.bounded import read_json_object
 from recon4.errors import StoreError
 from recon4.geometry.se3 import Array
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
-from recon4.store.arrays import load_trajectory
+from recon4.store.arrays import load_arrays, load_trajectory
+
+_MOST_JSON_BYTES = 64 << 20
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -80,12 +82,9 @@ def _json(artifacts: Mapping[str, Path], stage: str, name: str) -> dict[str, Any
     if path is None:
         return {}
     try:
-        found = json.loads(path.read_text("utf-8"))
-    except (OSError, ValueError) as error:
+        return read_json_object(path, _MOST_JSON_BYTES, failure=StoreError)
+    except StoreError as error:
         raise StoreError(f"{stage}/{name} cannot be read: {error}") from error
-    if not isinstance(found, dict):
-        raise StoreError(f"{stage}/{name}: expected an object, got {type(found).__name__}")
-    return found
 
 
 def _arrays(artifacts: Mapping[str, Path], stage: str, name: str) -> dict[str, NDArray[Any]]:
@@ -93,9 +92,8 @@ def _arrays(artifacts: Mapping[str, Path], stage: str, name: str) -> dict[str, N
     if path is None:
         return {}
     try:
-        with np.load(path, allow_pickle=False) as file:
-            return {key: file[key] for key in file.files}
-    except (OSError, ValueError, EOFError) as error:
+        return load_arrays(path)
+    except StoreError as error:
         raise StoreError(f"{stage}/{name} cannot be read: {error}") from error
 
 

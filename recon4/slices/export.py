@@ -13,6 +13,7 @@ import numpy as np
 
 from recon4.errors import ConfigError, GeoreferenceError
 from recon4.export.laz import export_laz
+from recon4.export.names import check_name
 from recon4.geometry.se3 import Array
 from recon4.mapping.tile import progressive
 from recon4.mapping.tiles import TileSet, TileWriter
@@ -166,6 +167,8 @@ def write_geotiff(
         StoreError: If the file cannot be written.
     """
     from PIL import Image, TiffImagePlugin
+
+    check_name(path, ".tif")
 
     tags = TiffImagePlugin.ImageFileDirectory_v2()
     geo = _georeference(picture, frame)

@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.errors import ConfigError, UnknownFormat
+from recon4.errors import CorruptFile, UnknownFormat
 from recon4.geometry.se3 import SE3, Array
 from recon4.mapping.normals import local_normals
 from recon4.mapping.tile import progressive
@@ -24,7 +24,8 @@ TILE_M = 5.0
 NORMAL_CELLS_M = (0.05, 0.10, 0.20)
 """Normals come from neighborhoods of three of the smallest of these cells that hold enough."""
 _BURST = 4_000_000
-_MOST_TRIANGLES = 20_000_000
+MOST_TILES = 100_000
+"""Each tile is a file for a while: points scattered over the Earth are no survey."""
 
 
 def import_reference(
@@ -92,8 +93,6 @@ def write_tiles(chunks: Iterable[Array], out: Path) -> TileSet:
 
 def _mesh(path: Path, out: Path, frame: Frame | None) -> dict[str, object]:
     mesh = load_mesh(path)
-    if len(mesh.triangles) > _MOST_TRIANGLES:
-        raise ConfigError(f"{path.name} has more than {_MOST_TRIANGLES} triangles")
     vertices = frame.from_crs(mesh.vertices_m) if frame else mesh.vertices_m
     np.savez(out / "mesh.npz", vertices_m=vertices, triangles=mesh.triangles)
     return {"kind": "mesh", "triangles": len(mesh.triangles)}
@@ -112,6 +111,7 @@ def _deal_out(chunks: Iterable[Array], place: Path) -> dict[tuple[int, int, int]
             points = chunk[first : first + _BURST]
             ijk = np.floor(points / TILE_M).astype(np.int64)
             order = np.lexsort(ijk.T)
+            _refuse_scattered(ijk, order, len(names))
             cuts = np.flatnonzero(np.any(np.diff(ijk[order], axis=0) != 0, axis=1)) + 1
             for rows in np.split(order, cuts) if len(points) else []:
                 i, j, k = (int(x) for x in ijk[rows[0]])
@@ -120,6 +120,16 @@ def _deal_out(chunks: Iterable[Array], place: Path) -> dict[tuple[int, int, int]
                 with file.open("ab") as out:
                     out.write(local.astype(np.float32).tobytes())
     return names
+
+
+def _refuse_scattered(ijk: NDArray[np.int64], order: NDArray[np.intp], before: int) -> None:
+    changes = np.any(np.diff(ijk[order], axis=0) != 0, axis=1)
+    count = max(before, int(np.count_nonzero(changes)) + 1)
+    if count > MOST_TILES:
+        raise CorruptFile(
+            f"expected points in at most {MOST_TILES} cubes of {TILE_M:g} m, got {count} or more: "
+            "are the coordinates in meters?"
+        )
 
 
 def _normals(xyz: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -18,12 +18,13 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.mapping.tiles import TileSet
 from recon4.slices.cut import Cut
 from recon4.slices.points import Window, points_in
+from recon4.store.arrays import load_arrays
 
 Method = Literal["plane", "point"]
-MOST_FACTS_BYTES = 1 << 20
-"""Size of ``reference.json``."""
 FAR_M = 0.5
 """Distances are not looked for beyond this [m]; they come back as infinite."""
+MOST_FACTS_BYTES = 1 << 20
+"""Size of ``reference.json``."""
 _MARGIN_M = 2.0
 """Points of a request are measured in cubes of this size, each with its own search tree [m]."""
 
@@ -122,15 +123,10 @@ def load_reference(folder: Path, *, method: Method = "plane") -> Reference:
         StoreError: If it is missing or damaged.
     """
     facts = read_facts(folder)
-    T = SE3.from_matrix(np.array(facts["T_map_reference"]))
+    T = SE3.from_matrix(_matrix(facts["T_map_reference"], folder.name))
     name = str(facts["name"])
     if facts["kind"] == "mesh":
-        try:
-            with np.load(folder / "mesh.npz") as file:
-                mesh = Mesh(file["vertices_m"], file["triangles"])
-        except (OSError, ValueError, KeyError) as error:
-            raise StoreError(f"{folder.name}/mesh.npz cannot be read: {error}") from error
-        return Reference(name, folder, T, method, mesh=mesh)
+        return Reference(name, folder, T, method, mesh=_mesh(folder / "mesh.npz"))
     return Reference(name, folder, T, method, tiles=TileSet.open(folder))
 
 
@@ -141,14 +137,41 @@ def read_facts(folder: Path) -> dict[str, Any]:
         StoreError: If it is missing or damaged.
     """
     try:
-        path = folder / "reference.json"
-        facts = read_json_object(path, MOST_FACTS_BYTES, failure=StoreError)
-        missing = {"name", "kind", "T_map_reference"} - set(facts)
+        facts = read_json_object(folder / "reference.json", MOST_FACTS_BYTES, failure=StoreError)
     except StoreError as error:
         raise StoreError(f"{folder.name} is not a reference: {error}") from error
+    missing = {"name", "kind", "T_map_reference"} - set(facts)
     if missing:
         raise StoreError(f"{folder.name}/reference.json lacks {sorted(missing)}")
-    return dict(facts)
+    return facts
+
+
+def _mesh(path: Path) -> Mesh:
+    arrays = load_arrays(path, ["vertices_m", "triangles"])
+    vertices, triangles = arrays["vertices_m"], arrays["triangles"]
+    fits = vertices.shape[1:] == (3,) and triangles.shape[1:] == (3,) and len(triangles) > 0
+    if not fits or vertices.dtype.kind != "f" or triangles.dtype.kind not in "iu":
+        raise StoreError(
+            f"{path.name}: expected vertices and triangles of three numbers each, "
+            f"got {vertices.dtype} {vertices.shape} and {triangles.dtype} {triangles.shape}"
+        )
+    if triangles.min() < 0 or triangles.max() >= len(vertices):
+        raise StoreError(f"{path.name}: triangles name corners that do not exist")
+    return Mesh(vertices.astype(np.float64), triangles.astype(np.int64))
+
+
+def _matrix(value: Any, name: str) -> Array:
+    try:
+        matrix = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise StoreError(f"{name}/reference.json: expected a 4x4 matrix: {error}") from error
+    turned = matrix[:3, :3] if matrix.shape == (4, 4) else np.zeros((3, 3))
+    if not np.isfinite(matrix).all() or np.abs(turned @ turned.T - np.eye(3)).max() > 1e-3:
+        raise StoreError(
+            f"{name}/reference.json: expected T_map_reference as a 4x4 rigid motion, "
+            f"got {str(value)[:80]}"
+        )
+    return matrix
 
 
 def moved_cut(cut: Cut, T_b_a: SE3) -> Cut:

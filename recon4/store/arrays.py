@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import io
+import math
+import tokenize
 import zipfile
 import zlib
 from dataclasses import fields
@@ -9,15 +12,30 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
+from recon4.bounded import check_file_size, open_regular
 from recon4.errors import StoreError
 from recon4.geometry.se3 import SE3
 from recon4.model.trajectory import Trajectory
 
 Record = TypeVar("Record")
 
-_DAMAGED = (OSError, KeyError, ValueError, EOFError, TypeError, zipfile.BadZipFile, zlib.error)
-"""What numpy raises over a file that is missing, cut off, altered or something else."""
+MOST_ARRAY_BYTES = 1 << 30
+"""Of all arrays that are read from one file together [bytes]."""
+_MOST_RATIO = 200
+_FREE_BYTES = 64 << 20
+"""Small files may be packed as well as they like: a table of intensities is mostly zeros."""
+_HEADERS = {
+    (1, 0): np.lib.format.read_array_header_1_0,
+    (2, 0): np.lib.format.read_array_header_2_0,
+}
+_DAMAGED = (
+    *(OSError, KeyError, ValueError, EOFError, TypeError, NotImplementedError, OverflowError),
+    *(zipfile.BadZipFile, zlib.error, tokenize.TokenError, RuntimeError, SyntaxError),
+    *(AttributeError, IndexError),
+)
+"""What numpy and zipfile raise over a file that is missing, cut off, altered or something else."""
 
 
 def save_record(path: Path, record: Any) -> None:
@@ -50,15 +68,72 @@ def load_trajectory(path: Path) -> Trajectory:
     return Trajectory(arrays["t_ns"], SE3.from_quat(arrays["quat_xyzw"], arrays["t_m"]))
 
 
-def load_arrays(path: Path, names: list[str]) -> dict[str, Any]:
-    """Named arrays of an ``.npz`` file.
+def load_arrays(path: Path, names: list[str] | None = None) -> dict[str, Any]:
+    """Named arrays of an ``.npz`` file, or all of them.
 
     Raises:
-        StoreError: If the file is missing, damaged or lacks one of the names.
+        StoreError: If the file is missing, damaged, lacks one of the names, or its arrays are
+            larger than `MOST_ARRAY_BYTES` together.
     """
-    try:
-        # Opened here: numpy leaves a file that it cannot read open behind its error.
-        with path.open("rb") as raw, np.load(raw, allow_pickle=False) as file:
-            return {name: file[name] for name in names}
-    except _DAMAGED as error:
-        raise StoreError(f"{path.name}: expected arrays {names}: {error}") from error
+    with open_regular(path, failure=StoreError) as raw:
+        try:
+            with zipfile.ZipFile(raw) as archive:
+                return _members(archive, names, path.name)
+        except _DAMAGED as error:
+            raise StoreError(f"{path.name}: expected arrays {names or ''}: {error}") from error
+
+
+def load_array(path: Path, dtype: np.dtype[Any]) -> NDArray[Any]:
+    """The rows of an ``.npy`` file of one dimension and a known type.
+
+    Raises:
+        StoreError: If the file is missing, damaged, of another type or length.
+    """
+    with open_regular(path, failure=StoreError) as raw:
+        check_file_size(raw, path, MOST_ARRAY_BYTES, failure=StoreError)
+        try:
+            return _array(raw.read(), path.name, dtype)
+        except _DAMAGED as error:
+            raise StoreError(f"{path.name}: expected an array of {dtype}: {error}") from error
+
+
+def _members(archive: zipfile.ZipFile, names: list[str] | None, where: str) -> dict[str, Any]:
+    found = {info.filename: info for info in archive.infolist()}
+    if names is None:
+        names = [name.removesuffix(".npy") for name in found if name.endswith(".npy")]
+    missing = [name for name in names if f"{name}.npy" not in found]
+    if missing:
+        raise StoreError(f"{where}: expected arrays {names}, got none of {missing}")
+    chosen = {name: found[f"{name}.npy"] for name in names}
+    size = sum(info.file_size for info in chosen.values())
+    packed = sum(info.compress_size for info in chosen.values())
+    if size > MOST_ARRAY_BYTES or size > _MOST_RATIO * packed + _FREE_BYTES:
+        raise StoreError(
+            f"{where}: expected at most {MOST_ARRAY_BYTES} bytes and {_MOST_RATIO} times the "
+            f"packed size, got {size} bytes from {packed}"
+        )
+    out = {}
+    for name, info in chosen.items():
+        with archive.open(info) as member:
+            # One byte more than promised would not be read either: the size is a claim.
+            out[name] = _array(member.read(info.file_size), f"{where}: {name}", None)
+    return out
+
+
+def _array(data: bytes, where: str, dtype: np.dtype[Any] | None) -> NDArray[Any]:
+    """The array of an ``.npy`` file; its header must fit its size before anything is allocated."""
+    file = io.BytesIO(data)
+    version = np.lib.format.read_magic(file)
+    if version not in _HEADERS:
+        raise StoreError(f"{where}: expected an array of version 1 or 2, got {version}")
+    shape, fortran, found = _HEADERS[version](file)
+    if found.hasobject or (dtype is not None and (found != dtype or len(shape) != 1)):
+        raise StoreError(f"{where}: expected {dtype or 'plain values'}, got {found} of {shape}")
+    left = len(data) - file.tell()
+    if min(shape, default=1) < 0 or math.prod(shape) * found.itemsize != left:
+        raise StoreError(
+            f"{where}: an array of {found} of {shape} needs "
+            f"{math.prod(shape) * found.itemsize} bytes, got {left}"
+        )
+    flat = np.frombuffer(data, found, offset=file.tell()) if left else np.empty(0, found)
+    return flat.reshape(shape, order="F" if fortran else "C").copy()

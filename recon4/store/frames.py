@@ -23,12 +23,13 @@ from typing import Any, BinaryIO, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.bounded import read_json_object
 from recon4.errors import ConfigError, NoSpace, StoreError
 from recon4.model.multiframe import COLUMNS, Multiframe
 from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
-from recon4.store.arrays import load_record, save_record
+from recon4.store.arrays import load_array, load_record, save_record
 
 INDEX = np.dtype(
     [
@@ -42,6 +43,7 @@ INDEX = np.dtype(
 """One row of ``index.npy``."""
 
 _HEADER_BYTES = 128
+_MOST_REPORT_BYTES = 64 << 20
 _NO_SPACE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
@@ -159,12 +161,11 @@ class FrameStore:
             StoreError: If something is missing or the files do not fit each other.
         """
         try:
-            index = np.load(folder / "index.npy", allow_pickle=False)
+            index = load_array(folder / "index.npy", INDEX)
             rig = load_rig(folder / "rig.toml")
-        except (OSError, ValueError, EOFError, ConfigError) as error:
+        except (StoreError, ConfigError) as error:
             raise StoreError(f"{folder.name} is not a finished frame store: {error}") from error
-        if index.dtype != INDEX or index.ndim != 1:
-            raise StoreError(f"{folder.name}/index.npy: expected {INDEX}, got {index.dtype}")
+        _check_index(folder, index)
         _check_columns(folder, int(index["stop"][-1]) if len(index) else 0)
         imu, gnss = folder / "imu.npz", folder / "gnss.npz"
         return FrameStore(
@@ -228,9 +229,24 @@ def _map_rows(folder: Path, name: str, start: int, stop: int) -> NDArray[Any]:
     try:
         # "c" rather than "r": a writable array, for which Numba needs no second compilation.
         mapped = np.memmap(folder / f"{name}.npy", dtype, mode="c", offset=offset, shape=shape)
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, OverflowError) as error:
         raise StoreError(f"{folder.name}/{name}.npy cannot be read: {error}") from error
     return mapped.view(np.ndarray)
+
+
+def _check_index(folder: Path, index: NDArray[np.void]) -> None:
+    """Frames count from 0, and each has the points behind those of the one before."""
+    if not len(index):
+        return
+    stops = np.concatenate([[0], index["stop"]])
+    good = (index["frame_id"] == np.arange(len(index))) & (index["start"] == stops[:-1])
+    good &= np.diff(stops) >= 0
+    if not good.all():
+        row = int(np.argmin(good))
+        raise StoreError(
+            f"{folder.name}/index.npy: row {row}: expected frame {row} from point {stops[row]} on, "
+            f"got {index[row]}"
+        )
 
 
 def _check_columns(folder: Path, points: int) -> None:
@@ -247,10 +263,11 @@ def _check_columns(folder: Path, points: int) -> None:
 
 def _read_report(path: Path) -> dict[str, Any]:
     try:
-        report = json.loads(path.read_text("utf-8")) if path.exists() else {}
-    except (OSError, ValueError) as error:
+        return read_json_object(path, _MOST_REPORT_BYTES, failure=StoreError)
+    except StoreError as error:
+        if not path.exists():
+            return {}
         raise StoreError(f"{path.name} cannot be read: {error}") from error
-    return dict(report)
 
 
 @contextmanager

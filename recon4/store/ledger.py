@@ -95,7 +95,8 @@ class Ledger:
     def _errors(self) -> Iterator[None]:
         try:
             yield
-        except sqlite3.Error as error:
+        # UnicodeDecodeError: damaged text in a page, or in SQLite's own message about one.
+        except (sqlite3.Error, UnicodeDecodeError) as error:
             raise_if_full(error, self.path)
             raise StoreError(
                 f"{self.path} is damaged or cannot be used ({error}); move it away and start "

@@ -1,0 +1,31 @@
+"""File names that promise a format: what is written must be what the name says."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from recon4.errors import ConfigError
+
+_UNWRITTEN = {
+    ".copc.laz": "COPC",
+    ".ept.laz": "an Entwine point tile",
+    ".splat.ply": "a Gaussian splat",
+    ".compressed.ply": "a compressed splat",
+    ".cog.tif": "a cloud optimized GeoTIFF",
+}
+"""Endings of formats that share their last part with one that recon4 writes."""
+
+
+def check_name(path: Path, ending: str) -> None:
+    """Refuse a name whose ending is not ``ending``, or that promises a special kind of it.
+
+    Raises:
+        ConfigError: Saying which name would do.
+    """
+    name = path.name.lower()
+    for special, words in _UNWRITTEN.items():
+        if special.endswith(ending) and name.endswith(special):
+            plain = path.name[: -len(special)] + ending
+            raise ConfigError(f"{path.name}: {words} is not written; take {plain}")
+    if path.suffix.lower() != ending:
+        raise ConfigError(f"a {ending[1:].upper()} file must be named {ending}, got {path.name}")
