@@ -44,6 +44,7 @@ from app.live import routes as live_routes
 from app.live.store import Captures
 from app.maintenance import look_after
 from app.projects import routes as project_routes
+from app.projects.import_folders import ImportFolders
 from app.projects.picture import Pictures
 from app.projects.store import ProjectStore
 from app.projects.trash import Trash
@@ -138,7 +139,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
     supervisor = Supervisor(jobs, settings)
     desk = Desk()
     captures = Captures(settings.root)
-    projects = ProjectStore(settings.root, settings.import_roots)
+    projects = ProjectStore(settings.root, _import_folders(settings))
     viewers = ViewerPool(
         idle_s=settings.viewer_idle_s,
         points=settings.viewer_points,
@@ -182,6 +183,12 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
         await viewers.close()
         jobs.close()
         access.close()
+
+
+def _import_folders(settings: ServerSettings) -> ImportFolders:
+    """What requests may name: folders of recordings without what is the server's own."""
+    private = [settings.state, *([settings.tls_key] if settings.tls_key else [])]
+    return ImportFolders(settings.import_roots, private=private)
 
 
 def _add_pages(app: FastAPI) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -27,9 +27,16 @@ class RigChoice:
     """Why it cannot be used, in words; empty = it can."""
 
 
-def rigs_at_hand(folders: Sequence[Path]) -> list[RigChoice]:
-    """Rig files that lie in some folders, not deeper, or in ``rigs`` in them; then shipped ones."""
-    files = [path for folder in folders for path in _files(folder)]
+def rigs_at_hand(
+    folders: Sequence[Path], shows: Callable[[Path], bool] = lambda _: True
+) -> list[RigChoice]:
+    """Rig files that lie in some folders, not deeper, or in ``rigs`` in them; then shipped ones.
+
+    Args:
+        folders: Where to look.
+        shows: Whether a file may be shown at all (`ImportFolders.shows`).
+    """
+    files = [path for folder in folders for path in _files(folder) if shows(path)]
     own = [choice for path in files[:MOST_FILES] if (choice := _choice(path)) is not None]
     return own + [_shipped(name) for name in rig_presets()]
 

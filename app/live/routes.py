@@ -98,7 +98,8 @@ def read_capture(server: Server, who: Who) -> CaptureView | None:
 def read_choices(server: Server) -> CaptureChoices:
     """Rig files in the folder of the projects, or where recordings may lie; shipped rigs."""
     folders = server.settings.import_roots
-    return CaptureChoices(presets=list(PRESETS), rigs=rigs_at_hand(folders))
+    rigs = rigs_at_hand(folders, server.projects.imports.shows)
+    return CaptureChoices(presets=list(PRESETS), rigs=rigs)
 
 
 @router.post("", status_code=201, dependencies=CAPTURE, summary="Start a capture")
