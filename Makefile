@@ -6,16 +6,25 @@
 #   make bench               benchmarks, by hand: they need a quiet machine
 #   make docs                write the generated pages of docs/
 #   make constraints         pin the versions that are installed now
+#   make lock                write requirements/*.lock: every file of every version, with its hash
+#   make audit               known vulnerabilities of what is locked (needs the network)
+#   make sbom                out/sbom.json: what is installed, as CycloneDX
 
 SHELL := /bin/sh
 VENV := .venv
 BIN := $(VENV)/bin
+TOOLS := .venv-tools
+# Only files whose hash is in the lock; the build of recon4 itself fetches nothing.
+LOCKED := -m pip install -q --require-hashes -r
+OURSELVES := -m pip install -q --no-deps --no-build-isolation -e .
+COMPILE := $(TOOLS)/bin/uv pip compile -q --universal --python-version 3.11 --generate-hashes \
+	--no-emit-index-url --no-annotate --no-header -c constraints.txt
 PYTHON ?= $(shell for python in python3 python3.13 python3.12 python3.11; do \
 	$$python -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))' 2>/dev/null \
 	&& echo $$python && break; done)
 export PYTHON
 
-.PHONY: demo test format lint types unit web e2e bench docs constraints clean
+.PHONY: demo test format lint types unit web e2e bench docs constraints lock audit sbom clean
 .DELETE_ON_ERROR:
 
 demo: $(VENV)/installed-run
@@ -53,21 +62,41 @@ docs: $(VENV)/installed-dev
 	$(BIN)/recon4 settings --markdown > docs/settings.md
 
 constraints: $(VENV)/installed-dev
-	$(BIN)/pip freeze --exclude-editable | grep '==' > constraints.txt
+	$(BIN)/pip freeze --all --exclude-editable | grep '==' > constraints.txt
+
+lock: $(TOOLS)/installed
+	$(COMPILE) --extra build -o requirements/run.lock pyproject.toml
+	$(COMPILE) --extra build --extra dev -o requirements/dev.lock pyproject.toml
+	$(COMPILE) -o requirements/tools.lock requirements/tools.in
+
+audit: $(TOOLS)/installed
+	$(TOOLS)/bin/pip-audit --require-hashes --disable-pip -r requirements/run.lock
+
+sbom: $(TOOLS)/installed $(VENV)/installed-run
+	@mkdir -p out
+	$(TOOLS)/bin/cyclonedx-py environment --pyproject pyproject.toml \
+		--output-reproducible -o out/sbom.json $(BIN)/python
 
 clean:
-	rm -rf $(VENV) demo .mypy_cache .ruff_cache .pytest_cache
+	rm -rf $(VENV) $(TOOLS) demo .mypy_cache .ruff_cache .pytest_cache
 
 $(VENV)/bin/python:
 	@test -n '$(PYTHON)' || { echo 'recon4: needs Python 3.11, 3.12 or 3.13 (found: '"$$(python3 --version 2>&1)"'); name one with make PYTHON=…' >&2; exit 1; }
 	.ci/apt run
 	$(PYTHON) -m venv $(VENV)
 
-$(VENV)/installed-run: $(VENV)/bin/python pyproject.toml constraints.txt
-	$(BIN)/python -m pip install -q -c constraints.txt -e .
+$(VENV)/installed-run: $(VENV)/bin/python pyproject.toml requirements/run.lock
+	$(BIN)/python $(LOCKED) requirements/run.lock
+	$(BIN)/python $(OURSELVES)
 	@touch $@
 
-$(VENV)/installed-dev: $(VENV)/bin/python pyproject.toml constraints.txt
+$(VENV)/installed-dev: $(VENV)/bin/python pyproject.toml requirements/dev.lock
 	.ci/apt run test
-	$(BIN)/python -m pip install -q -c constraints.txt -e '.[dev]'
+	$(BIN)/python $(LOCKED) requirements/dev.lock
+	$(BIN)/python $(OURSELVES)
 	@touch $@ $(VENV)/installed-run
+
+$(TOOLS)/installed: requirements/tools.lock
+	test -x $(TOOLS)/bin/python || $(PYTHON) -m venv $(TOOLS)
+	$(TOOLS)/bin/python $(LOCKED) requirements/tools.lock
+	@touch $@

@@ -53,6 +53,7 @@ from app.logs import Logs
 from app.maintenance import look_after, rotate_logs
 from app.metrics import Metrics, MetricsMiddleware
 from app.projects import routes as project_routes
+from app.projects.import_folders import ImportFolders
 from app.projects.picture import Pictures
 from app.projects.store import ProjectStore
 from app.projects.trash import Trash
@@ -163,7 +164,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
     supervisor = Supervisor(jobs, settings)
     pool = ComputePool(settings.state / "compute")
     captures = Captures(settings.root)
-    projects = ProjectStore(settings.root, settings.import_roots)
+    projects = ProjectStore(settings.root, _import_folders(settings))
     viewers = ViewerPool(
         idle_s=settings.viewer_idle_s,
         points=settings.viewer_points,
@@ -219,6 +220,12 @@ def _viewer_limits(settings: ServerSettings) -> StreamLimits:
         per_address=max(most // 2, settings.viewer_sockets_a_person),
         reserved=most // 8,
     )
+
+
+def _import_folders(settings: ServerSettings) -> ImportFolders:
+    """What requests may name: folders of recordings without what is the server's own."""
+    private = [settings.state, *([settings.tls_key] if settings.tls_key else [])]
+    return ImportFolders(settings.import_roots, private=private)
 
 
 def _add_pages(app: FastAPI) -> None:

@@ -1,83 +1,94 @@
-"""Passwords: argon2id hashes, and refusal of those that are guessed first."""
+"""Passwords: argon2id hashes, and refusal of those an attacker guesses first."""
 
 from __future__ import annotations
 
 import re
+import socket
+import threading
 import unicodedata
 
 from argon2 import PasswordHasher
 from argon2.exceptions import InvalidHashError, VerificationError
+from zxcvbn import zxcvbn
 
 from app.errors import WeakPassword
+from app.settings import names_from_environment
 
 SHORTEST, LONGEST = 12, 256
 """Characters of a password."""
-LEAST_FREE = 6
-"""So many characters must be left after all that is guessed first is taken out."""
+LEAST_GUESSES = 10**10
+"""Guesses a new password must withstand ("very unguessable" in zxcvbn's scale)."""
+LONGEST_ESTIMATED = 64
+"""Characters the estimate looks at; its time grows with the square."""
+MOST_SUBSTITUTES = 8
+"""Different substitutes (``4`` for ``a``) in one estimate: zxcvbn tries all combinations."""
 
 HASHER = PasswordHasher(time_cost=2, memory_cost=64 * 1024, parallelism=1)
-"""64 MiB, two passes: a tenth of a second here, dear on a graphics card."""
+"""64 MiB, two passes: a tenth of a second here, expensive on a graphics card."""
 STAND_IN = HASHER.hash("nobody has this password")
 """Verified when there is no such person, so that the answer takes as long."""
 
-WORDS = (
-    *(
-        "password",
-        "passwort",
-        "passord",
-        "heslo",
-        "secret",
-        "geheim",
-        "tajne",
-        "letmein",
-        "welcome",
-    ),
-    *("changeme", "default", "admin", "administrator", "root", "user", "guest", "test", "login"),
-    *("master", "server", "access", "hello", "hallo", "monkey", "dragon", "football", "baseball"),
-    *("sunshine", "princess", "iloveyou", "superman", "batman", "starwars", "pokemon", "whatever"),
-    *("spring", "summer", "autumn", "winter", "recon4", "recon", "lidar", "backpack", "velodyne"),
-    *("mapping", "survey", "company", "computer", "internet", "system", "demo", "love", "pass"),
-)
-"""Words that guessing begins with, the product's own included."""
+SUBSTITUTES = frozenset("4@8({[<3691!|70$5+%2")
+"""Characters zxcvbn reads as letters."""
 
-ROWS = (
-    "abcdefghijklmnopqrstuvwxyz",
-    "01234567890",
-    "qwertyuiop",
-    "qwertzuiop",
-    "azertyuiop",
-    "asdfghjkl",
-    "zxcvbnm",
-    "yxcvbnm",
-    "1q2w3e4r5t6y7u8i9o0p",
-    "1qaz2wsx3edc4rfv5tgb",
+CONTEXT = (
+    *("viewer", "operator", "reviewer", "admin", "administrator", "root", "user", "guest", "local"),
+    *("recon4", "4recon", "recon", "lidar", "backpack", "velodyne", "mapping", "survey", "slam"),
+    *("pointcloud", "surveyor", "scanner", "project", "server", "workstation", "company", "demo"),
 )
-"""Neighbours in the alphabet and on keyboards."""
+"""What an attacker knows of this product: roles, its name, what it is for."""
 
-LEET = str.maketrans("013457@$!", "oleastasi")
-YEAR = re.compile(r"(19|20)\d\d")
-REPEATED = re.compile(r"(.{1,4})\1{2,}")
+COMMON = (
+    *("passwort", "passord", "heslo", "haslo", "motdepasse", "contrasena", "senha", "wachtwoord"),
+    *("geheim", "tajne", "hallo", "sommer", "winter", "bonjour", "soleil", "changeme", "default"),
+    *("thequickbrownfox", "correcthorsebatterystaple", "tobeornottobe", "maytheforcebewithyou"),
+    *("qwertzuiop", "asdfghjkl", "yxcvbnm", "azertyuiop", "qsdfghjklm", "wxcvbn"),
+    *("йцукенгшщзхъ", "йцукен", "фывапролджэ", "фыва", "ячсмить", "пароль", "привет"),
+)
+"""Common words, sentences and keyboard rows that the lists of zxcvbn (English, QWERTY) lack."""
+
+WEAKNESS = {
+    "repeat": "a repetition",
+    "spatial": "neighboring keys",
+    "sequence": "a sequence such as abc or 123",
+    "regex": "a year",
+    "date": "a date or year",
+    "user_inputs": "your name, a role, or a name of this product or computer",
+    "dictionary": "a common word, name or password",
+    "bruteforce": "too few different characters",
+}
+"""Pattern of zxcvbn -> what it is, in words."""
+
+_estimating = threading.Lock()
+"""zxcvbn keeps the words it is given in a global dictionary."""
 
 
 def check(password: str, name: str) -> None:
-    """See that a new password is none that is guessed first.
+    """Check that a new password withstands guessing.
+
+    The estimate is that of zxcvbn (30 000 common passwords, words and names, repetitions, keyboard
+    rows, sequences, dates, reversed and with substitutes), given what is known here: the person's
+    name, the roles, the product, the computer. Spaces and punctuation between weak parts do not
+    help much, so the estimate is repeated without them and both must suffice.
+
+    Args:
+        password: The new password.
+        name: The person's name.
 
     Raises:
-        WeakPassword: With the reason, never with the password.
+        WeakPassword: With the reason and what to change, never with the password.
     """
     if not SHORTEST <= len(password) <= LONGEST:
         raise WeakPassword(
             f"the password needs {SHORTEST} to {LONGEST} characters, got {len(password)}; "
-            "a few words you do not say together are good"
+            "use three or four unrelated words, or let a password manager make one"
         )
-    folded = unicodedata.normalize("NFKC", password).casefold()
-    for text in (folded, folded.translate(LEET)):
-        free = _free(text, name.casefold())
-        if len(free) < LEAST_FREE or len(set(free)) < LEAST_FREE - 1:
-            raise WeakPassword(
-                "the password is guessed too easily: it is mostly a common word, your name, a "
-                "year, a row of keys or a repetition; take a few words you do not say together"
-            )
+    text = _normal(password)[:LONGEST_ESTIMATED]
+    known = _known_words(name)
+    if len(SUBSTITUTES.intersection(text)) <= MOST_SUBSTITUTES:
+        _check_reading(text, known, separators=0)
+    letters = "".join(one for one in unicodedata.normalize("NFKD", text) if one.isalnum())
+    _check_reading(letters, known, separators=len({one for one in text if not one.isalnum()}))
 
 
 def hashed(password: str) -> str:
@@ -98,21 +109,31 @@ def _normal(password: str) -> str:
     return unicodedata.normalize("NFKC", password)
 
 
-def _free(text: str, name: str) -> str:
-    """What is left of a password when all that is guessed first is taken out."""
-    names = {part for part in re.split(r"[\W_]+", name) if len(part) > 2} | {name}
-    for word in sorted({*WORDS, *names} - {""}, key=len, reverse=True):
-        text = text.replace(word, "")
-    text = REPEATED.sub("", YEAR.sub("", text))
-    for row in ROWS:
-        for way in (row, row[::-1]):
-            text = _without_runs(text, way)
-    return re.sub(r"\s", "", text)
+def _check_reading(text: str, known: list[str], *, separators: int) -> None:
+    """Check one reading of a password; each kind of separator left out counts ten guesses."""
+    with _estimating:
+        found = zxcvbn(text, user_inputs=known, max_length=2 * LONGEST_ESTIMATED)
+    strings = len(set(text.casefold())) ** len(text)
+    guesses = min(int(found["guesses"]), strings) * 10**separators
+    if guesses < LEAST_GUESSES:
+        kinds = dict.fromkeys(_kind(match) for match in found["sequence"])
+        weak = [WEAKNESS[kind] for kind in kinds if kind != "bruteforce"]
+        raise WeakPassword(
+            f"the password is guessed in about {float(f'{guesses:.0e}'):,.0f} tries, it needs "
+            f"{LEAST_GUESSES:,}: it is mostly {'; '.join(weak) or WEAKNESS['bruteforce']}. "
+            "Add two or three unrelated words; digits or signs at the end, repeating and "
+            "reversing help little"
+        )
 
 
-def _without_runs(text: str, row: str) -> str:
-    """Without pieces of four or more neighbours in a row."""
-    for length in range(len(row), 3, -1):
-        for start in range(len(row) - length + 1):
-            text = text.replace(row[start : start + length], "")
-    return text
+def _kind(match: dict[str, object]) -> str:
+    """Key of `WEAKNESS` for a match of zxcvbn."""
+    known = match.get("dictionary_name") == "user_inputs"
+    return "user_inputs" if known and match["matched_word"] not in COMMON else str(match["pattern"])
+
+
+def _known_words(name: str) -> list[str]:
+    """What an attacker would try first for this person on this computer."""
+    names = (name, socket.gethostname(), *names_from_environment())
+    parts = {part for one in names for part in re.split(r"[\W_]+", one) if len(part) > 2}
+    return [*sorted({*parts, *names} - {""}), *CONTEXT, *COMMON]

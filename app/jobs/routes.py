@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import secrets
 from collections.abc import AsyncIterator, Iterator
 from dataclasses import dataclass, replace
@@ -154,6 +155,7 @@ def cancel_job(job_id: str, server: Server, request: Request) -> JobView:
 def retry_job(job_id: str, server: Server, request: Request) -> JobView:
     """Run the same again as a new job; it goes on after the last finished stage."""
     job = server.jobs.get(job_id)
+    _refuse_hidden(server, job.inputs)
     _refuse_too_many(server)
     _refuse_if_full(server, job.project, job.inputs)
     added = _add(server, job.project, job.inputs)
@@ -255,6 +257,16 @@ def _checked(new: NewJob, server: Parts) -> Inputs:
     )
     _refuse_if_full(server, new.project, inputs)
     return inputs
+
+
+def _refuse_hidden(server: Parts, inputs: Inputs) -> None:
+    """Check the files of an earlier job again: links may have changed, or the folders."""
+    if inputs.remake:
+        return
+    rig = () if inputs.rig in rig_presets() else (inputs.rig,)
+    for path in (*inputs.recordings, *rig, inputs.imu, inputs.gnss):
+        if path and os.path.lexists(path):  # a missing file is for the job to report
+            server.projects.importable(path)
 
 
 def _refuse_too_many(server: Parts) -> None:

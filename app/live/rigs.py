@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -30,9 +30,16 @@ class RigChoice:
     """Why it cannot be used, in words; empty = it can."""
 
 
-def rig_files(folders: Sequence[Path]) -> tuple[Path, ...]:
-    """TOML files that lie in some folders, not deeper, or in ``rigs`` in them."""
-    files = (path for folder in folders for path in _files(folder) if _fits(path))
+def rig_files(
+    folders: Sequence[Path], shows: Callable[[Path], bool] = lambda _: True
+) -> tuple[Path, ...]:
+    """TOML files that lie in some folders, not deeper, or in ``rigs`` in them.
+
+    Args:
+        folders: Where to look.
+        shows: Whether a file may be shown at all (`ImportFolders.shows`).
+    """
+    files = (path for folder in folders for path in _files(folder) if _fits(path) and shows(path))
     return tuple(islice(files, MOST_FILES))
 
 

@@ -100,7 +100,9 @@ def read_capture(server: Server, who: Who) -> CaptureView | None:
 @router.get("/choices", dependencies=LOOK, summary="Rigs and presets")
 async def read_choices(server: Server, caller: CalledBy) -> CaptureChoices:
     """Rig files in the folder of the projects, or where recordings may lie; shipped rigs."""
-    files = await run_in_threadpool(rig_files, server.settings.import_roots)
+    files = await run_in_threadpool(
+        rig_files, server.settings.import_roots, server.projects.imports.shows
+    )
     own: list[RigChoice] = []
     if files:
         terms = Terms(person=caller.name, access=FileAccess(read=files))

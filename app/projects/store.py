@@ -9,8 +9,9 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from app.errors import Conflict, NotFound, Refused
+from app.errors import Conflict, NotFound
 from app.projects.clone import clone_artifacts
+from app.projects.import_folders import ImportFolders
 from app.projects.model import (
     RESULTS,
     STAGE_ORDER,
@@ -26,16 +27,15 @@ from recon4.store.project import is_project, read_artifacts, read_stages
 
 PROJECT_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 Stamp = tuple[int | None, ...]
-MOST_ENTRIES = 2000
-"""A longer folder listing is cut."""
 
 
 class ProjectStore:
     """Reads project folders. Paths are made from checked names only."""
 
-    def __init__(self, root: Path, import_roots: tuple[Path, ...]) -> None:
+    def __init__(self, root: Path, imports: ImportFolders) -> None:
         self._root = root.resolve()
-        self._import_roots = import_roots
+        self.imports = imports
+        """What requests may name of this computer's files."""
         self._cards: dict[str, tuple[Stamp, ProjectCard]] = {}
 
     def all(self) -> list[ProjectCard]:
@@ -125,40 +125,22 @@ class ProjectStore:
         clone_artifacts(_artifacts(folder), self._root / target, work)
 
     def importable(self, path: str) -> Path:
-        """A recording's path, if the server may read it.
+        """The real path of a recording, rig, IMU, GNSS or reference file on this computer.
 
         Raises:
-            Refused: If it is outside of the folders recordings may lie in.
+            Refused: If it is outside of the folders recordings may lie in, hidden or private.
             NotFound: If it does not exist.
         """
-        try:
-            real = Path(path).resolve()
-        except (OSError, ValueError) as error:
-            raise NotFound(f"no such file or folder: {path[:200]!r}") from error
-        if not any(real.is_relative_to(root) for root in self._import_roots):
-            roots = ", ".join(str(root) for root in self._import_roots)
-            raise Refused(
-                f"recordings may only lie in {roots}; name more folders in RECON4_RECORDINGS"
-            )
-        if not os.path.exists(real):  # nor if it has a name no file can have
-            raise NotFound(f"no such file or folder: {path[:200]!r}")
-        return real
+        return self.imports.checked(path)
 
     def browse(self, folder: str) -> list[FolderEntry]:
         """What lies in a folder, or the folders to begin with when none is given.
 
         Raises:
-            Refused: If it is outside of the folders recordings may lie in.
+            Refused: If it is outside of the folders recordings may lie in, hidden or private.
             NotFound: If it is not a folder.
         """
-        if not folder:
-            return [_entry(root, str(root)) for root in self._import_roots]
-        real = self.importable(folder)
-        if not real.is_dir():
-            raise NotFound(f"{real} is not a folder")
-        shown = [path for path in real.iterdir() if not path.name.startswith(".")]
-        shown.sort(key=lambda path: (not path.is_dir(), path.name.lower()))
-        return [_entry(path, path.name) for path in shown[:MOST_ENTRIES]]
+        return self.imports.entries(folder)
 
     def _card(self, entry: os.DirEntry[str]) -> ProjectCard | None:
         if not PROJECT_ID.fullmatch(entry.name) or not entry.is_dir(follow_symlinks=False):
@@ -302,9 +284,3 @@ def _weigh(folder: Path) -> tuple[int, float]:
             if not name.startswith("ledger"):  # reading touches it too
                 changed_s = max(changed_s, status.st_mtime)
     return size, changed_s
-
-
-def _entry(path: Path, name: str) -> FolderEntry:
-    folder = path.is_dir()
-    size = 0 if folder or not path.is_file() else path.stat().st_size
-    return FolderEntry(name=name, path=str(path), folder=folder, bytes=size)

@@ -30,6 +30,7 @@ from app.errors import WeakPassword
         "            ",
         "adminadmin12",
         "letmeinletmein",
+        "correct horse battery staple",
     ],
 )
 def test_what_is_guessed_first_is_refused_without_repeating_it(password):
@@ -42,7 +43,8 @@ def test_what_is_guessed_first_is_refused_without_repeating_it(password):
 @pytest.mark.parametrize(
     "password",
     [
-        "correct horse battery staple",
+        "copper violin under seven hedges",
+        "Xk7$m-2!vR9z",
         "three green owls dance",
         "vGk3-tPq9-LmZ2",
         "žlutý kůň skáče přes",

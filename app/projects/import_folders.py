@@ -1,0 +1,119 @@
+"""Which files and folders of this computer a person may name in a request, and list."""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Iterable
+from pathlib import Path
+
+from app.errors import NotFound, Refused
+from app.projects.model import FolderEntry
+
+SYSTEM = tuple(map(Path, ("/boot", "/dev", "/etc", "/proc", "/run", "/sys")))
+"""Never recordings, even where a folder of recordings contains them (``/``)."""
+MOST_ENTRIES = 2000
+"""A longer folder listing is cut."""
+
+
+class ImportFolders:
+    """The folders recordings may lie in, without what is hidden, private or of the system.
+
+    A path is resolved first: links count as what they lead to. Then it must lie in one of the
+    folders, with no hidden name (``.recon4``, ``.ssh``) between that folder and the file.
+    """
+
+    def __init__(self, folders: Iterable[Path], *, private: Iterable[Path] = ()) -> None:
+        """Take the folders.
+
+        Args:
+            folders: Where recordings may lie.
+            private: Files and folders that are never given out, such as the server's own.
+        """
+        self._folders = tuple(dict.fromkeys(folder.resolve() for folder in folders))
+        self._private = tuple(path.resolve() for path in private)
+
+    def checked(self, path: str) -> Path:
+        """The real path of a file or folder, if requests may name it.
+
+        Raises:
+            Refused: If it lies outside of the folders, is hidden, or is neither file nor folder.
+            NotFound: If it does not exist.
+        """
+        try:
+            real = Path(path).resolve()
+        except (OSError, ValueError, RuntimeError) as error:
+            raise NotFound(f"no such file or folder: {path[:200]!r}") from error
+        if not self._within(real):
+            folders = ", ".join(str(folder) for folder in self._folders)
+            raise Refused(
+                f"recordings may only lie in {folders}; name more folders in RECON4_RECORDINGS"
+            )
+        if not self._visible(real):
+            raise Refused(
+                f"{path[:200]!r} is hidden, or belongs to the server or the system: move what you "
+                "need into a folder of recordings"
+            )
+        mode = _mode(real)
+        if mode is None:  # nor if it has a name no file can have
+            raise NotFound(f"no such file or folder: {path[:200]!r}")
+        if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
+            raise Refused(f"{path[:200]!r} is neither a file nor a folder")
+        return real
+
+    def shows(self, path: Path) -> bool:
+        """Whether a path may be named, without saying why not."""
+        try:
+            self.checked(str(path))
+        except (NotFound, Refused):
+            return False
+        return True
+
+    def entries(self, folder: str) -> list[FolderEntry]:
+        """What lies in a folder, folders first; the folders of recordings for an empty path.
+
+        Raises:
+            Refused: If requests may not name it.
+            NotFound: If it is not a folder, or cannot be read.
+        """
+        if not folder:
+            return [_entry(one, str(one)) for one in self._folders if self.shows(one)]
+        real = self.checked(folder)
+        try:
+            inside = [path for path in real.iterdir() if not path.name.startswith(".")]
+        except OSError as error:
+            raise NotFound(f"{folder[:200]!r} cannot be listed: {error.strerror}") from error
+        shown = [path for path in inside if self.shows(path)]
+        shown.sort(key=lambda path: (not path.is_dir(), path.name.lower()))
+        return [_entry(path, path.name) for path in shown[:MOST_ENTRIES]]
+
+    def _within(self, real: Path) -> bool:
+        return any(real.is_relative_to(folder) for folder in self._folders)
+
+    def _visible(self, real: Path) -> bool:
+        if any(real.is_relative_to(path) for path in self._private):
+            return False
+        return any(
+            _openly_below(folder, real) for folder in self._folders if real.is_relative_to(folder)
+        )
+
+
+def _openly_below(folder: Path, real: Path) -> bool:
+    """Whether nothing hidden and no system folder lies between a folder and a path in it."""
+    if any(part.startswith(".") for part in real.relative_to(folder).parts):
+        return False
+    return not any(real.is_relative_to(one) and not folder.is_relative_to(one) for one in SYSTEM)
+
+
+def _mode(path: Path) -> int | None:
+    try:
+        return os.stat(path).st_mode
+    except (OSError, ValueError):
+        return None
+
+
+def _entry(path: Path, name: str) -> FolderEntry:
+    folder = path.is_dir()
+    return FolderEntry(
+        name=name, path=str(path), folder=folder, bytes=0 if folder else path.stat().st_size
+    )
