@@ -224,7 +224,7 @@ class PartsCollector(Collector):
         yield GaugeMetricFamily("recon4_disk_total_bytes", "Size of the disk", value=disk.total)
         captures = self._parts.captures
         yield GaugeMetricFamily(
-            "recon4_live_clients", "Clients of the live capture", value=captures.listeners
+            "recon4_live_clients", "Clients of the live capture", value=captures.streams.open
         )
         running = captures.newest is not None and not captures.newest.over
         yield GaugeMetricFamily("recon4_live_captures", "Live captures that run", value=running)

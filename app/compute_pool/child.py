@@ -15,7 +15,7 @@ import traceback
 from pathlib import Path
 from typing import BinaryIO
 
-from recon4.sandbox.kernel_cache import use_private_cache
+from recon4.sandbox.private_cache import use_private_cache
 
 from app.compute_pool.confinement import confine_child
 from app.compute_pool.messages import (
