@@ -15,7 +15,7 @@ from multiprocessing import get_context
 from typing import Literal, TypeVar
 
 from app.errors import DeskFailed
-from recon4.sandbox import ONE_THREAD
+from app.settings import ONE_THREAD
 
 T = TypeVar("T")
 Kind = Literal["look", "review", "pairs", "slices", "surveys"]
