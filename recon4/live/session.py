@@ -19,6 +19,8 @@ from pathlib import Path
 from recon4.errors import StoreError
 from recon4.store.atomic import write_json
 
+_SHARED_TEMPORARY = Path(tempfile.gettempdir())
+"""All processes of this user meet here; a confined one has a temporary folder of its own."""
 _DAY_NS = 86_400_000_000_000
 
 
@@ -64,7 +66,7 @@ class Session:
     def socket(self, name: str) -> Path:
         """Where a process of this capture listens: short, as a socket's path must be."""
         name_of_us = hashlib.sha256(str(self.project.resolve()).encode()).hexdigest()[:16]
-        folder = Path(tempfile.gettempdir()) / f"recon4-{os.getuid()}"
+        folder = _SHARED_TEMPORARY / f"recon4-{os.getuid()}"
         folder.mkdir(mode=0o700, exist_ok=True)
         if folder.stat().st_uid != os.getuid() or folder.stat().st_mode & 0o077:
             raise StoreError(f"{folder} is not ours alone: remove it")
