@@ -7,7 +7,7 @@ from pathlib import Path
 
 from recon4.live.session import Session
 from recon4.model.rig import Rig
-from recon4.sandbox import Confinement, Network, Policy, confine
+from recon4.sandbox import Confinement, Network, Policy, confine, restart_with_one_thread
 from recon4.sandbox.limits import physical_memory_bytes
 from recon4.sandbox.private_cache import cached_elsewhere, private_cache
 
@@ -21,6 +21,7 @@ def confine_recorder(session: Session, rig: Rig) -> Confinement:
     With a serial GNSS receiver it also opens devices, because a receiver that is plugged in again
     is another file in ``/dev``.
     """
+    restart_with_one_thread()
     devices = (Path("/dev"),) if rig.gnss_serial else ()
     policy = Policy(
         write=(session.capture.parent, session.folder, _sockets(session), *devices),
@@ -34,6 +35,7 @@ def confine_recorder(session: Session, rig: Rig) -> Confinement:
 
 def confine_mapper(session: Session) -> Confinement:
     """Let this process write its project and talk over Unix sockets, and nothing else."""
+    restart_with_one_thread()
     policy = Policy(
         write=(session.project, _sockets(session)),
         read=cached_elsewhere(scratch_of(session)),
