@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from recon4.errors import ConfigError
-from recon4.sandbox import ONE_THREAD, allowed_environment
+from recon4.sandbox import ONE_THREAD as ONE_THREAD
+from recon4.sandbox import allowed_environment
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -13,6 +13,8 @@ from pathlib import Path
 
 from recon4.errors import StoreError
 
+_SHARED_TEMPORARY = Path(tempfile.gettempdir())
+"""Where all processes of this user meet; a confined one has a temporary folder of its own later."""
 LONGEST_FOLDER = 50
 """Leaves 53 bytes for the names below [bytes]."""
 
@@ -55,7 +57,7 @@ def private_folder(path: Path) -> Path:
 def _places() -> list[Path]:
     """Where it may be, the best first. The second is for a place another user squats on."""
     name = f"recon4-{os.getuid()}"
-    places = [Path(tempfile.gettempdir()) / name, Path("/tmp") / name]
+    places = [_SHARED_TEMPORARY / name, Path("/tmp") / name]
     if session := os.environ.get("XDG_RUNTIME_DIR"):
         places.append(Path(session) / "recon4")
     return [*places, Path.home() / ".cache" / "recon4-sockets"]

@@ -15,8 +15,6 @@ import traceback
 from pathlib import Path
 from typing import BinaryIO
 
-from recon4.sandbox.private_cache import use_private_cache
-
 from app.compute_pool.confinement import confine_child
 from app.compute_pool.messages import (
     FAILED,
@@ -31,6 +29,7 @@ from app.compute_pool.messages import (
 )
 from recon4.errors import Recon4Error
 from recon4.processes import die_with_parent
+from recon4.sandbox.private_cache import use_private_cache
 
 BACKGROUND_NICE = 10
 

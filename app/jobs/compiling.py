@@ -18,7 +18,7 @@ from recon4.sandbox.private_cache import is_cold
 
 log = logging.getLogger("recon4.job")
 
-WALK_S = 4
+WALK_S = 6
 WITHIN_S = 1800.0
 BEAT_EVERY_S = 1.0
 

@@ -140,7 +140,7 @@ class JobFolder:
 
     def _group(self) -> int | None:
         """The worker's process group as it wrote it, None if that cannot be one."""
-        with contextlib.suppress(FileNotFoundError, ValueError):
+        with contextlib.suppress(OSError, ValueError):
             number = int(_start(self.path / "pid"))
             if number > 1 and number != os.getpgrp():
                 return number
@@ -161,7 +161,7 @@ class JobFolder:
         """How it ended, None if it has not, was killed, or wrote something else."""
         try:
             return msgspec.json.decode(_start(self.path / "outcome.json"), type=Outcome)
-        except (FileNotFoundError, msgspec.DecodeError, RecursionError):
+        except (OSError, msgspec.DecodeError, RecursionError):
             return None
 
     def log_since(self, offset: int) -> tuple[str, int]:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from app.jobs.compiling import compile_kernels_once
 from app.jobs.folder import JobFolder
-from recon4.sandbox import Confinement, Policy, confine
+from recon4.sandbox import Confinement, Policy, confine, restart_with_one_thread
 from recon4.sandbox.limits import physical_memory_bytes
 from recon4.sandbox.private_cache import use_private_cache
 
@@ -53,6 +53,7 @@ def worker_policy(folder: JobFolder) -> Policy:
 
 def prepare_worker(folder: JobFolder, policy: Policy) -> Confinement:
     """Confine this process to the policy of its job, before it opens a file of a user."""
+    restart_with_one_thread()
     os.nice(NICENESS)
     faulthandler.enable()  # a crash in native code says where in the log
     project, _ = folder.request()

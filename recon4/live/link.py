@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from recon4.errors import ConfigError
+from recon4.live.confinement import mapper_environment
 from recon4.live.session import Session
 from recon4.sandbox import ONE_THREAD, allowed_environment
 
@@ -77,6 +78,9 @@ async def started(
     Raises:
         ConfigError: If it does not get ready, in its own last words.
     """
+    env = {**allowed_environment(os.environ), **ONE_THREAD} if env is None else dict(env)
+    if name == "mapper":
+        env |= mapper_environment(session)
     log_path = session.folder / f"{name}.txt"
     with log_path.open("ab") as log_file:
         process = await asyncio.create_subprocess_exec(
@@ -85,7 +89,7 @@ async def started(
             stdout=asyncio.subprocess.PIPE,
             stderr=log_file,
             start_new_session=True,  # Ctrl-C is not for it
-            env={**allowed_environment(os.environ), **ONE_THREAD} if env is None else env,
+            env=env,
         )
     assert process.stdout is not None
     with suppress(TimeoutError):

@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from recon4.errors import Recon4Error
-from recon4.live.confinement import confine_mapper
+from recon4.live.confinement import confine_mapper, scratch_of
 from recon4.live.gnss_watch import GnssWatch
 from recon4.live.growing import GrowingFile, Growth
 from recon4.live.in_step import InStep
@@ -230,7 +230,9 @@ def main(project: Path) -> int:
     try:
         session = load_session(project)
         confine_mapper(session)
-        return asyncio.run(run())
+        code = asyncio.run(run())
+        shutil.rmtree(scratch_of(session), ignore_errors=True)
+        return code
     except Recon4Error as error:
         sys.stderr.write(f"{error}\n")
         return 1

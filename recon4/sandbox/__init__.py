@@ -10,7 +10,11 @@ computer provides; ``recon4 doctor`` prints them.
 
 from recon4.sandbox.available import available_barriers
 from recon4.sandbox.confine import confine, refuse_new_sockets
-from recon4.sandbox.environment import ONE_THREAD, allowed_environment
+from recon4.sandbox.environment import (
+    ONE_THREAD,
+    allowed_environment,
+    restart_with_one_thread,
+)
 from recon4.sandbox.policy import Barrier, Confinement, Network, Policy
 
 __all__ = [
@@ -23,4 +27,5 @@ __all__ = [
     "available_barriers",
     "confine",
     "refuse_new_sockets",
+    "restart_with_one_thread",
 ]

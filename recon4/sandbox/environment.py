@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from collections.abc import Mapping
+
+from recon4.sandbox.kernel import threads_of_this_process
 
 ALLOWED = frozenset(
     {"PATH", "HOME", "USER", "LOGNAME", "LANG", "LANGUAGE", "TZ", "TMPDIR", "VIRTUAL_ENV"}
@@ -27,3 +31,13 @@ def allowed_environment(variables: Mapping[str, str]) -> dict[str, str]:
         for name, value in variables.items()
         if name in ALLOWED or name.startswith("LC_")
     }
+
+
+def restart_with_one_thread() -> None:
+    """Start this program again with one thread a library, if libraries started threads already.
+
+    `confine` must come before other threads; whoever starts us by hand need not know that.
+    """
+    if threads_of_this_process() > 1 and not ONE_THREAD.items() <= os.environ.items():
+        os.environ |= ONE_THREAD
+        os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])

@@ -21,7 +21,7 @@ KERNELS = Path(recon4.__file__).parent / "kernels"
 
 
 def use_private_cache(folder: Path) -> tuple[Path, ...]:
-    """Make Numba and matplotlib use private caches; call before they are imported.
+    """Make Numba and matplotlib use private caches; call before our kernels are imported.
 
     Args:
         folder: The confined process may write it; made when missing.
@@ -29,16 +29,28 @@ def use_private_cache(folder: Path) -> tuple[Path, ...]:
     Returns:
         Files and folders with what is cached already: the process must be able to read them.
     """
+    os.environ |= private_cache(folder)
+    return cached_elsewhere(folder)
+
+
+def private_cache(folder: Path) -> dict[str, str]:
+    """Make a private cache folder.
+
+    Returns:
+        The environment of a process that is to use it. A parent passes it to a child whose
+        modules import the kernels before it can confine itself.
+    """
     kernels, fonts = folder / "numba", folder / "matplotlib"
-    shared = tuple(shared_caches())
-    for cache in shared:
+    for cache in shared_caches():
         _link(_files(cache, ".nbi", ".nbc"), kernels / _numba_name(KERNELS))
-    lists = tuple(_font_lists())
-    _link(lists, fonts)
-    os.environ["MPLCONFIGDIR"], os.environ["NUMBA_CACHE_DIR"] = str(fonts), str(kernels)
-    if (config := sys.modules.get("numba.core.config")) is not None:
-        config.__dict__["CACHE_DIR"] = str(kernels)
-    return (*shared, *lists)
+    _link(_font_lists(), fonts)
+    return {"MPLCONFIGDIR": str(fonts), "NUMBA_CACHE_DIR": str(kernels)}
+
+
+def cached_elsewhere(folder: Path) -> tuple[Path, ...]:
+    """Where the links in a private cache folder lead: what its process must be able to read."""
+    links = (path for path in folder.rglob("*") if path.is_symlink())
+    return tuple(dict.fromkeys(link.resolve().parent for link in links))
 
 
 def _link(paths: Iterable[Path], folder: Path) -> None:
