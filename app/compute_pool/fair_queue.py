@@ -47,6 +47,11 @@ class FairQueue:
         """Calls that run."""
         return len(self._running)
 
+    @property
+    def granted(self) -> int:
+        """Calls that were ever given a slot."""
+        return self._grants
+
     async def acquire(self, person: str, *, large: bool = False) -> Slot:
         """Wait for a slot; a cancelled wait takes none.
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
-from app.compute_pool.fair_queue import FairQueue, Slot
+from app.compute_pool.fair_queue import FairQueue
 from app.compute_pool.messages import Call, declared
 from app.compute_pool.model import QUOTAS, FileAccess, Lane, Quota, Terms
 from app.compute_pool.process import ChildProcess
@@ -68,6 +68,7 @@ class ComputePool:
         self._spare: ChildProcess | None = None
         self._preparing: asyncio.TimerHandle | None = None
         self._tasks: set[asyncio.Task[Any]] = set()
+        self._closed = False
 
     async def run_interactive(
         self, lane: Lane, terms: Terms, function: Callable[..., T], *args: object, **kwargs: object
@@ -97,6 +98,7 @@ class ComputePool:
 
     async def close(self) -> None:
         """End all calls and children."""
+        self._closed = True
         if self._preparing is not None:
             self._preparing.cancel()
         for task in self._tasks:
@@ -111,7 +113,12 @@ class ComputePool:
     async def _run(self, lane: Lane, terms: Terms, call: Call, *, background: bool) -> Any:
         declared(call.function)  # a function without a declared result is refused before it waits
         slot = await self.queues[lane].acquire(terms.person, large=terms.large)
-        serving = self._start(self._serve(lane, slot, terms, call=call, background=background))
+        if self._closed:
+            self.queues[lane].release(slot)
+            raise ComputeFailed("the server is stopping")
+        serving = self._start(self._serve(lane, terms, call, background=background))
+        # Not in `_serve`: a task that is cancelled before its first step runs none of its code.
+        serving.add_done_callback(lambda _: self.queues[lane].release(slot))
         try:
             return await asyncio.shield(serving)
         except asyncio.CancelledError:
@@ -122,10 +129,8 @@ class ComputePool:
             serving.add_done_callback(_retrieved)
             raise
 
-    async def _serve(
-        self, lane: Lane, slot: Slot, terms: Terms, *, call: Call, background: bool
-    ) -> Any:
-        """Run a call in a child; the slot is given back when no child works on it any more."""
+    async def _serve(self, lane: Lane, terms: Terms, call: Call, *, background: bool) -> Any:
+        """Run a call in a child; at the end no child works on it any more."""
         usual_s = BACKGROUND_LIMIT_S if background else INTERACTIVE_LIMIT_S
         limit_s = terms.limit_s or usual_s
         permission = _Permission.of(lane, terms.access)
@@ -145,10 +150,7 @@ class ComputePool:
             whole = True  # the function failed, not its child
             raise
         finally:
-            try:
-                await self._put_away(permission, child, keep=whole and not background)
-            finally:
-                self.queues[lane].release(slot)
+            await self._put_away(permission, child, keep=whole and not background)
 
     async def _child(self, permission: _Permission, *, background: bool) -> ChildProcess:
         """A kept child that may open these files, else a fresh one; background always fresh."""
@@ -190,6 +192,8 @@ class ComputePool:
         """Start the next child soon, so that the next map to be opened need not wait for it."""
         if self._preparing is not None:
             self._preparing.cancel()
+        if self._closed:
+            return
         loop = asyncio.get_running_loop()
         self._preparing = loop.call_later(SPARE_AFTER_S, lambda: self._start(self._add_spare()))
 

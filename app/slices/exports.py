@@ -20,6 +20,8 @@ from app.errors import NoRoom
 from app.slices import work
 from app.slices.model import AskExport
 
+LIMIT_S = 1800.0
+"""Longest time an export may take [s]."""
 KEPT_S = 86_400.0
 """A finished export is kept at least this long, unless they get too large together [s]."""
 MOST_KEPT_BYTES = 20 << 30
@@ -84,9 +86,12 @@ class Exports:
             if not place.exists():
                 await asyncio.to_thread(self._refuse_if_full)
                 name = f"export.{request.ending}"
-                await self._pool.run_background(
+                pool = self._pool
+                # A kept child has its fonts and its map open: a sheet takes a second, not five.
+                run = pool.run_background if request.large else pool.run_interactive
+                await run(
                     Lane.EXPORT,
-                    replace(terms, outputs={name: place}, large=request.large),
+                    replace(terms, outputs={name: place}, large=request.large, limit_s=LIMIT_S),
                     work.export,
                     dict(request.artifacts),
                     request.ask,

@@ -198,6 +198,19 @@ def test_work_ends_when_its_client_leaves(root, kind):
     in_pool(root, leave)
 
 
+def test_a_call_cancelled_before_its_first_step_gives_its_slot_back(root):
+    async def leave_at_once(pool):
+        asked = asyncio.ensure_future(pool.run_background(Lane.SIGN, EVE, work.environment))
+        await asyncio.sleep(0)  # it has its slot, its task has not begun
+        asked.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await asked
+        await asyncio.wait_for(idle(pool.queues[Lane.SIGN]), 10.0)
+        return await pool.run_background(Lane.SIGN, EVE, work.identity, 3)
+
+    assert in_pool(root, leave_at_once)[0] == 3
+
+
 async def idle(queue: FairQueue) -> None:
     while queue.running or queue.waiting:
         await asyncio.sleep(0.01)
