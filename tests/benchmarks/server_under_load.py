@@ -21,6 +21,7 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from multiprocessing.queues import Queue
+from multiprocessing.synchronize import Barrier
 from pathlib import Path
 from typing import Any
 
@@ -40,7 +41,7 @@ from tests.service.viser_client import PROTOCOL, camera
 MAP = "office"
 PATHS = (
     "/", f"/projects/{MAP}/", "/live", "/api/projects", f"/api/projects/{MAP}", "/api/jobs",
-    "/api/server", "/api/live", f"/api/projects/{MAP}/picture", f"/projects/{MAP}/report",
+    "/api/server", "/api/live", f"/api/projects/{MAP}/picture", f"/api/projects/{MAP}/report",
     f"/api/projects/{MAP}/files/trajectory.tum", "/web/api.js",
 )  # fmt: skip
 THINK_S = 0.5
@@ -98,31 +99,39 @@ def main() -> None:
 
 def measure(root: Path, given: argparse.Namespace) -> bool:
     """Run everything for the given time; whether the requirements held."""
-    address = an_address()
+    address, seconds = an_address(), 60.0 * given.minutes
+    spawn = multiprocessing.get_context("spawn")
     with server_process(root, worker="app.jobs.worker", live_address=address) as (server, process):
-        until_s = time.monotonic() + 60.0 * given.minutes
         tally = Tally()
-        probes: Queue[tuple[str, list[float]]] = multiprocessing.get_context("spawn").Queue()
-        probing = [
-            multiprocessing.get_context("spawn").Process(target=probe, args=args)
-            for kept in (True, False)
-            for args in [(server.url, kept, 60.0 * given.minutes, probes)]
+        probes: Queue[tuple[str, list[float]]] = spawn.Queue()
+        ready = spawn.Barrier(4)  # they take a while to start, and none of their work is ours
+        apart = [
+            spawn.Process(target=send, args=(given.recording, address, seconds, ready)),
+            *(
+                spawn.Process(target=probe, args=(server.url, kept, seconds, ready, probes))
+                for kept in (True, False)
+            ),
         ]
+        for one in apart:
+            one.start()
+        start_capture(server, given)
+        ready.wait()
+        until_s = time.monotonic() + seconds
         memory = Memory(process.pid)
         threads = [
             threading.Thread(target=memory.follow, args=(until_s,)),
             threading.Thread(target=keep_a_job, args=(server, root, given, until_s, tally)),
         ]
-        start_capture(server, given)
-        sending = threading.Thread(target=send, args=(given.recording, address, until_s))
-        for one in (*probing, *threads, sending):
-            one.start()
+        for thread in threads:
+            thread.start()
         asyncio.run(look_on(server.url, given, until_s, tally))
-        health = dict(probes.get() for _ in probing)
-        for other in (*probing, *threads, sending):
+        health = dict(probes.get(timeout=60.0) for _ in range(2))
+        for other in (*apart, *threads):
             other.join()
         with tally.counting("end of the capture"):
             server.post("/api/live/stop").raise_for_status()
+            while server.get("/api/live").json()["state"] != "ready":
+                time.sleep(0.5)
     return report(tally, health, memory, given)
 
 
@@ -150,9 +159,12 @@ def percentiles(times_s: list[float]) -> str:
     return f"p50 {p50:6.1f} ms  p99 {p99:6.1f} ms  max {most:6.0f} ms  ({len(times_s)} requests)"
 
 
-def probe(url: str, kept: bool, seconds: float, out: Queue[tuple[str, list[float]]]) -> None:
+def probe(
+    url: str, kept: bool, seconds: float, ready: Barrier, out: Queue[tuple[str, list[float]]]
+) -> None:
     """Ask for ``/healthz``, on one connection or on a new one each time."""
     times_s = []
+    ready.wait()
     until_s = time.monotonic() + seconds
     headers = {} if kept else {"Connection": "close"}
     with httpx.Client(base_url=url, timeout=30.0, headers=headers) as client:
@@ -221,8 +233,10 @@ def start_capture(server: Running, given: argparse.Namespace) -> None:
     server.post("/api/live", json=capture).raise_for_status()
 
 
-def send(recording: Path, address: str, until_s: float) -> None:
-    """Replay at true speed until the end of the time or of the recording."""
+def send(recording: Path, address: str, seconds: float, ready: Barrier) -> None:
+    """Replay at true speed until the end of the time or of the recording, again and again."""
+    ready.wait()
+    until_s = time.monotonic() + seconds
 
     def while_it_lasts(shipment: Any) -> tuple[Any]:
         if time.monotonic() > until_s:
@@ -230,7 +244,8 @@ def send(recording: Path, address: str, until_s: float) -> None:
         return (shipment,)
 
     with contextlib.suppress(Ended):
-        replay(recording, progress=Silent(), target=address, alter=while_it_lasts)
+        while time.monotonic() < until_s:
+            replay(recording, progress=Silent(), target=address, alter=while_it_lasts)
 
 
 async def look_on(url: str, given: argparse.Namespace, until_s: float, tally: Tally) -> None:
