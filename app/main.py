@@ -48,6 +48,7 @@ from app.projects.picture import Pictures
 from app.projects.store import ProjectStore
 from app.projects.trash import Trash
 from app.review import routes as review_routes
+from app.review.checks import ApprovalChecks
 from app.review.store import Reviews
 from app.settings import ServerSettings
 from app.slices import routes as slice_routes
@@ -137,6 +138,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
     jobs = JobStore(settings.state / "jobs.sqlite")
     supervisor = Supervisor(jobs, settings)
     desk = Desk()
+    checks = ApprovalChecks()
     captures = Captures(settings.root)
     projects = ProjectStore(settings.root, settings.import_roots)
     viewers = ViewerPool(
@@ -162,8 +164,9 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
         viewers=viewers,
         desk=desk,
         captures=captures,
+        checks=checks,
         reviews=Reviews(desk),
-        slices=Slices(desk, projects, settings.state / "slices"),
+        slices=Slices(desk, projects, checks, settings.state / "slices"),
     )
     watching = [
         asyncio.create_task(supervisor.run()),
@@ -178,6 +181,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
         await asyncio.gather(*watching, return_exceptions=True)
         await captures.leave()
         desk.close()
+        checks.close()
         supervisor.close()
         await viewers.close()
         jobs.close()

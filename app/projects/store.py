@@ -21,6 +21,9 @@ from app.projects.model import (
     ResultFile,
 )
 from recon4.errors import StoreError
+from recon4.review.approved import approval_of
+from recon4.review.state import artifact_keys
+from recon4.store.checked import Altered
 from recon4.store.project import Project as Folder
 from recon4.store.project import is_project, read_artifacts, read_stages
 
@@ -76,14 +79,21 @@ class ProjectStore:
             )
 
     def result(self, project_id: str, name: str) -> Path:
-        """A result file.
+        """A result file; one of an approved map only if it is the one that was approved.
 
         Raises:
             NotFound: If the project, or the file in it, does not exist.
+            Altered: If it was approved and changed since.
         """
         folder = self.folder(project_id)
         if name not in RESULTS or not _is_result(folder, name):
             raise NotFound(f"project {project_id} has no file {name[:64]!r}")
+        summary = _json(folder / "summary.json")
+        if name != "summary.json" and summary.get("approval"):
+            approval = approval_of(folder, artifact_keys(summary))
+            if approval is None:
+                raise Altered("summary.json names an approval that is in no row of the journal")
+            approval.check_issued_file(folder / name)
         return folder / name
 
     def map_artifact(self, project_id: str) -> Path:

@@ -115,7 +115,8 @@ class ReviewView:
     may_review: bool
     may_process: bool
     approval: dict[str, Any] | None
-    """The newest approval: version, who, when, hash, and whether it is of these results."""
+    """The newest approval: version, who, when, hash, and whether it is of these results. Of these
+    also ``check``: ``checked``, ``checking`` or ``altered``, with the reason in ``altered``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -73,10 +73,12 @@ async def picture(project_id: str, ask: AskPicture, server: Server) -> PictureVi
     Of the requests of one ``page`` only the latest is answered; the others get 409.
     """
     slices = server.slices
+    evidence = await run_in_threadpool(slices.evidence, project_id, ask.source)
     artifacts = await run_in_threadpool(slices.artifacts, project_id, ask.source)
     reference = slices.reference(project_id, ask.reference)
     ask.cut.cut()  # a plane without meaning is refused before it waits
-    return await slices.newest(ask.page, ask.turn, work.picture, artifacts["map"], reference, ask)
+    what = (artifacts["map"], reference, ask, evidence)
+    return await slices.newest(ask.page, ask.turn, work.picture, *what)
 
 
 @router.get("/overview", response_class=FileResponse, summary="The map from above")
@@ -160,11 +162,14 @@ async def export(
     """PNG, SVG and PDF are sheets at a true scale; ``ask`` is an AskExport as JSON."""
     asked = _parsed(ask)
     slices = server.slices
-    artifacts = await run_in_threadpool(slices.artifacts, project_id, asked.source)
+    evidence = await run_in_threadpool(slices.evidence, project_id, asked.source)
+    artifacts = await run_in_threadpool(
+        slices.approved_artifacts, project_id, asked.source, evidence
+    )
     told = {
         "project": server.projects.get(project_id).name,
         "key": Path(artifacts["map"]).name,
-        "approval": await run_in_threadpool(slices.approval, project_id, asked.source),
+        "evidence": evidence,
     }
     out = await run_in_threadpool(slices.place_for, f".{ending}")
     reference = slices.reference(project_id, asked.reference)
@@ -221,7 +226,7 @@ async def control_file(project_id: str, ending: Literal["csv", "html"], server: 
     state = await run_in_threadpool(slices.control, project_id)
     told = {
         "project": server.projects.get(project_id).name,
-        "approval": await run_in_threadpool(slices.approval_words, project_id),
+        "evidence": await run_in_threadpool(slices.evidence, project_id),
     }
     text = await slices.draw(work.control_file, artifacts, state, ending, told)
     if ending == "csv":

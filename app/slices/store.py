@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import re
 import secrets
 import shutil
 import threading
 from collections import OrderedDict
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, TypeVar
 
 from app.desk import Desk
 from app.errors import Conflict, NotFound
 from app.projects.store import PROJECT_ID, ProjectStore
+from app.review.checks import ApprovalChecks
 from app.slices import work
 from app.slices.model import ControlState
 from recon4.errors import StoreError
-from recon4.review.approval import approval_of_map
+from recon4.review.approved import Approval, approval_of, approval_of_map
+from recon4.review.evidence import Evidence
 from recon4.store.atomic import write_json
+from recon4.store.checked import Altered
 from recon4.store.project import read_artifacts, read_stages
 
 T = TypeVar("T")
@@ -39,8 +42,11 @@ class Superseded(Conflict):
 class Slices:
     """Of all projects. Keeps pictures from above and checks of maps beside the queue of jobs."""
 
-    def __init__(self, desk: Desk, projects: ProjectStore, kept: Path) -> None:
+    def __init__(
+        self, desk: Desk, projects: ProjectStore, checks: ApprovalChecks, kept: Path
+    ) -> None:
         self._desk = desk
+        self._checks = checks
         self._projects = projects
         self._kept = kept
         self._newest: OrderedDict[str, tuple[int, int]] = OrderedDict()
@@ -86,28 +92,53 @@ class Slices:
         ]
         return earlier[:20] + others[:200]
 
-    def approval(self, project_id: str, source: str = "") -> dict[str, Any] | None:
-        """Who approved the map that a request means, as in ``summary.json``; None = nobody.
+    def evidence(self, project_id: str, source: str = "") -> Evidence | None:
+        """Who approved the map that a request means, and what its bytes must be; None = nobody.
 
         Raises:
-            StoreError: If the approval of an earlier map is damaged.
+            Altered: If an approval counts but was changed.
         """
-        kind, _, name = source.partition(":")
-        if kind == "map":
-            return approval_of_map(self._projects.folder(project_id), name)
-        root = self._projects.folder(name if kind == "project" else project_id)
-        try:
-            told = json.loads((root / "summary.json").read_text())
-        except (OSError, ValueError):
-            return None
-        found = told.get("approval") if isinstance(told, dict) else None
-        return found if isinstance(found, dict) else None
+        _, found = self._approval(project_id, source)
+        return found.evidence if found else None
 
     def approval_words(self, project_id: str, source: str = "") -> str:
-        """The same in words."""
+        """Who approved the map that a request means, and whether its bytes are still those."""
+        try:
+            root, found = self._approval(project_id, source)
+        except Altered as error:
+            return f"ALTERED: {error}"
         from recon4.slices.sheet import approval_words
 
-        return approval_words(self.approval(project_id, source))
+        words = approval_words(asdict(found.evidence.stamp) if found else None)
+        if found is None:
+            return words
+        check = self._checks.state(root, found)
+        if check.state == "altered":
+            return f"ALTERED: {check.words}"
+        return words if check.state == "checked" else f"{words}, bytes not compared yet"
+
+    def _approval(self, project_id: str, source: str) -> tuple[Path, Approval | None]:
+        kind, _, name = source.partition(":")
+        root = self._projects.folder(name if kind == "project" else project_id)
+        if kind == "map":
+            return root, approval_of_map(root, name)
+        keys = {stage: folder.name for stage, folder in read_artifacts(root).items()}
+        return root, approval_of(root, keys)
+
+    def approved_artifacts(
+        self, project_id: str, source: str, evidence: Evidence | None
+    ) -> dict[str, str]:
+        """Folders of the run that a request means; of an approved earlier map its own frame too.
+
+        Raises:
+            NotFound: If there is no such map.
+        """
+        found = self.artifacts(project_id, source)
+        if evidence is None or not source.startswith("map:"):
+            return found
+        level = Path(found["map"]).parent / evidence.artifacts.get("level", "")
+        without = {stage: folder for stage, folder in found.items() if stage != "level"}
+        return without | ({"level": str(level)} if "level" in evidence.artifacts else {})
 
     def references(self, project_id: str) -> list[dict[str, Any]]:
         """References of a project."""

@@ -27,7 +27,8 @@ from app.slices.model import (
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3
 from recon4.mapping.tiles import TileSet
-from recon4.review.stamp import Stamp, stamp_file
+from recon4.review.evidence import Evidence
+from recon4.review.stamp import stamp_file
 from recon4.slices.acceptance import SheetWords, render_acceptance
 from recon4.slices.align import align_by_icp, align_by_pairs
 from recon4.slices.colors import SENSOR_COLORS, ColorBy, Ground, Span, table
@@ -52,6 +53,7 @@ from recon4.slices.sheet import (
     write_sheet,
 )
 from recon4.store.atomic import atomic_file, null_for_nan, write_json
+from recon4.store.checked import CheckedArtifact
 
 Artifacts = dict[str, str]
 """Stage -> folder of its artifact."""
@@ -64,6 +66,25 @@ MOST_GEOTIFF_PX = 6000
 def tiles_of(folder: str) -> TileSet:
     """A map; its folder is named by its content, so it never changes."""
     return TileSet.open(Path(folder))
+
+
+@lru_cache(maxsize=4)
+def _approved_tiles(folder: str, manifest_sha256: str) -> TileSet:
+    """The same, every byte of it compared before it is used."""
+    return TileSet.open(Path(folder), CheckedArtifact.open(Path(folder), manifest_sha256))
+
+
+def _map_of(artifacts: Artifacts, evidence: Evidence | None) -> TileSet:
+    """The map of a request; what is approved is compared with what was signed.
+
+    Raises:
+        Altered: If the map, or what says where it lies, is not what was approved.
+    """
+    if evidence is None:
+        return tiles_of(artifacts["map"])
+    evidence.check_frame({stage: Path(folder) for stage, folder in artifacts.items()})
+    evidence.artifact("map", Path(artifacts["map"])).check("tiles.json")
+    return _approved_tiles(artifacts["map"], evidence.manifests["map"])
 
 
 @lru_cache(maxsize=2)
@@ -98,10 +119,12 @@ def facts(artifacts: Artifacts, told: dict[str, Any]) -> SliceFacts:
     )
 
 
-def picture(map_folder: str, reference: str, ask: AskPicture) -> PictureView:
-    """A picture of a slice for the screen."""
+def picture(
+    map_folder: str, reference: str, ask: AskPicture, evidence: Evidence | None = None
+) -> PictureView:
+    """A picture of a slice for the screen; of an approved map, of approved points only."""
     began = time.perf_counter()
-    tiles, cut = tiles_of(map_folder), ask.cut.cut()
+    tiles, cut = _map_of({"map": map_folder}, evidence), ask.cut.cut()
     window = _shaped(_window(ask, tiles, cut), ask.width / ask.height)
     paper = Paper(window, (window.right - window.left) / ask.width)
     made = draw(tiles, cut, paper, color=ask.color, reference=reference_of(reference, ask.method))
@@ -224,9 +247,13 @@ def align_reference(
 def export(
     artifacts: Artifacts, ask: AskExport, out: str, *, reference: str, told: dict[str, Any]
 ) -> str:
-    """Write a file of slices; its ending says which. It carries the approval, if there is one."""
-    path = Path(out)
-    tiles, frame = tiles_of(artifacts["map"]), _frame(artifacts)
+    """Write a file of slices; its ending says which. It carries the approval, if there is one.
+
+    Raises:
+        Altered: If a tile that it shows is not what was approved.
+    """
+    path, evidence = Path(out), told["evidence"]
+    tiles, frame = _map_of(artifacts, evidence), _frame(artifacts)
     cuts = ask.cut.cut().repeated(ask.count, spacing_m=ask.spacing_m)
     window = Window(**ask.window.model_dump()) if ask.window else None
     if path.suffix == ".laz":
@@ -239,21 +266,21 @@ def export(
         _export_geotiff(artifacts, ask, path, reference=reference, told=told)
     else:
         _export_sheet(artifacts, ask, path, reference=reference, told=told)
-    if told["approval"] and path.suffix in (".laz", ".csv", ".dxf"):
-        stamp_file(path, path, Stamp(**told["approval"]))
+    if evidence and path.suffix in (".laz", ".csv", ".dxf"):
+        stamp_file(path, path, evidence.stamp)
     return out
 
 
 def _export_geotiff(
     artifacts: Artifacts, ask: AskExport, path: Path, *, reference: str, told: dict[str, Any]
 ) -> None:
-    tiles, cut = tiles_of(artifacts["map"]), ask.cut.cut()
+    tiles, cut = _map_of(artifacts, told["evidence"]), ask.cut.cut()
     window = _window(ask, tiles, cut)
     side_m = max(window.right - window.left, window.top - window.bottom)
     paper = Paper(window, max(FINEST_M, side_m / MOST_GEOTIFF_PX))
     against = reference_of(reference, ask.method)
     made = draw(tiles, cut, paper, color=ask.color, reference=against)
-    words = f"{told['project']}: {approval_words(told['approval'])}"
+    words = f"{told['project']}: {_approval_words(told['evidence'])}"
     frame = _frame(artifacts)
     write_geotiff(made, path, frame=frame, span=span_of(ask, made), words=words)
 
@@ -261,7 +288,7 @@ def _export_geotiff(
 def _export_sheet(
     artifacts: Artifacts, ask: AskExport, path: Path, *, reference: str, told: dict[str, Any]
 ) -> None:
-    tiles, cut = tiles_of(artifacts["map"]), ask.cut.cut()
+    tiles, cut = _map_of(artifacts, told["evidence"]), ask.cut.cut()
     against = reference_of(reference, ask.method)
     layout = lay_out(_window(ask, tiles, cut), ask.size, ask.scale)
     made = draw(tiles, cut, layout.paper, color=ask.color, reference=against)
@@ -269,7 +296,7 @@ def _export_sheet(
         project=told["project"],
         frame=_frame(artifacts).words,
         sources=source_words(told["key"]),
-        approval=approval_words(told["approval"]),
+        approval=_approval_words(told["evidence"]),
         reference=against.name if against else "",
         sensors=tuple(str(name) for name in tiles.facts.get("sensors", [])),
     )
@@ -288,11 +315,24 @@ def control_report(artifacts: Artifacts, state: ControlState) -> dict[str, Any]:
 
 
 def control_file(
-    artifacts: Artifacts, state: ControlState, ending: str, told: dict[str, str]
+    artifacts: Artifacts, state: ControlState, ending: str, told: dict[str, Any]
 ) -> str:
-    """The same as CSV or as a sheet in HTML."""
+    """The same as CSV or as a sheet in HTML.
+
+    Raises:
+        Altered: If the map, or what says where it lies, is not what was approved.
+    """
+    evidence = told["evidence"]
+    if evidence:
+        _map_of(artifacts, evidence)
+        evidence.artifact("map", Path(artifacts["map"])).check_all()  # points were found in it
     found, sources = _residuals(artifacts, state), source_words(Path(artifacts["map"]).name)
-    words = SheetWords(frame=_frame(artifacts).words, sources=sources, **told)
+    words = SheetWords(
+        project=told["project"],
+        frame=_frame(artifacts).words,
+        sources=sources,
+        approval=_approval_words(evidence),
+    )
     if ending == "html":
         return render_acceptance(found, words)
     line = f"of {words.project}, {words.sources}, {words.frame}. {words.approval}"
@@ -337,6 +377,10 @@ def span_of(ask: Look, made: Picture) -> Span:
     if not high > low:
         raise ConfigError(f"colors need a low end below the high end, got {low} and {high}")
     return Span(low, high)
+
+
+def _approval_words(evidence: Evidence | None) -> str:
+    return approval_words(asdict(evidence.stamp) if evidence else None)
 
 
 def _window(ask: Look, tiles: TileSet, cut: Cut) -> Window:

@@ -60,7 +60,7 @@ class _Watched(io.BufferedWriter):
 
 
 def export_laz(
-    folder: Path,
+    map_: Path | TileSet,
     path: Path,
     *,
     crs: str | None = None,
@@ -74,7 +74,7 @@ def export_laz(
     are adjusted standard GPS time, or seconds of the recording's clock if that is not UTC.
 
     Args:
-        folder: Artifact of the stage ``map``.
+        map_: Artifact of the stage ``map``, or what is open of it.
         path: File to write, ``.laz``.
         crs: WKT or code of the CRS; None = that of the map, if it has one.
         to_crs: Map coordinates to those of ``crs``; None = the shift by the map's origin in it.
@@ -88,7 +88,7 @@ def export_laz(
         GeoreferenceError: If the CRS is not understood, or coordinates do not fit.
         StoreError: If the file cannot be written or does not read back (`NoSpace`: disk full).
     """
-    tiles = TileSet.open(folder)
+    tiles = TileSet.open(map_) if isinstance(map_, Path) else map_
     if path.suffix.lower() != ".laz":
         raise ConfigError(f"a LAZ file must be named .laz, got {path.name}")
     transform = into_crs(tiles, to_crs)

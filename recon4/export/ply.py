@@ -27,7 +27,7 @@ _COLUMNS = {
 
 
 def export_ply(
-    folder: Path,
+    map_: Path | TileSet,
     path: Path,
     *,
     to_crs: ToCrs | None = None,
@@ -39,7 +39,7 @@ def export_ply(
     the map's frame; ``gps_time`` is as in `recon4.export.laz.export_laz`.
 
     Args:
-        folder: Artifact of the stage ``map``.
+        map_: Artifact of the stage ``map``, or what is open of it.
         path: File to write, ``.ply``.
         to_crs: Map coordinates to those wanted; None = the shift by the map's origin in its CRS.
         progress: Who watches.
@@ -51,7 +51,7 @@ def export_ply(
         ConfigError: If the map has no points.
         StoreError: If the file cannot be written (`NoSpace`: disk full) or has a wrong length.
     """
-    tiles = TileSet.open(folder)
+    tiles = TileSet.open(map_) if isinstance(map_, Path) else map_
     if path.suffix.lower() != ".ply":
         raise ConfigError(f"a PLY file must be named .ply, got {path.name}")
     transform = into_crs(tiles, to_crs)

@@ -17,7 +17,7 @@ from recon4.errors import StoreError
 from recon4.progress import Progress
 from recon4.settings import Settings, to_json
 from recon4.store.atomic import atomic_folder, write_json
-from recon4.store.hashing import files_below, hash_file, hash_json
+from recon4.store.hashing import FileDigest, files_below, hash_file, hash_json
 from recon4.store.ledger import FinishedStage
 from recon4.store.project import Project
 from recon4.store.usage import Meter
@@ -271,10 +271,7 @@ def _recipe(
 def _write_manifest(
     folder: Path, done: FinishedStage, recipe: dict[str, Any], figures: Mapping[str, Any]
 ) -> None:
-    files = {
-        name: {"bytes": (folder / name).stat().st_size, "sha256": hash_file(folder / name)}
-        for name in files_below(folder)
-    }
+    files = {name: FileDigest.of(folder / name).to_json() for name in files_below(folder)}
     write_json(
         folder / "manifest.json",
         {
