@@ -11,6 +11,7 @@ from app.access.people import May, needs
 from app.deps import Parts, Server
 from app.errors import Conflict, Problem
 from app.jobs.model import JobState
+from app.names import Name
 from app.projects.look import Found, look_at
 from app.projects.model import FolderEntry, Project, ProjectCard
 from app.projects.trash import Deleted
@@ -35,7 +36,7 @@ class Rename(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    name: str = Field(min_length=1, max_length=100, pattern=r"^[^\x00-\x1f\x7f]+$")
+    name: Name = Field(min_length=1, max_length=100)
     """For people; any letters."""
 
 

@@ -24,9 +24,10 @@ from app.slices.model import (
     WindowSpec,
     Xyz,
 )
-from recon4.errors import ConfigError
+from recon4.errors import ConfigError, StoreError
 from recon4.geometry.se3 import SE3
 from recon4.mapping.tiles import TileSet
+from recon4.names import visible
 from recon4.review.evidence import Evidence
 from recon4.review.stamp import stamp_file
 from recon4.slices.acceptance import SheetWords, render_acceptance
@@ -364,10 +365,19 @@ def references_in(folder: Path) -> list[dict[str, Any]]:
     """The references of a project, by name."""
     entries = sorted(folder.iterdir()) if folder.is_dir() else []
     return [
-        {"id": entry.name} | read_facts(entry)
+        {"id": entry.name} | _facts_or_problem(entry)
         for entry in entries
         if not entry.name.startswith(".") and (entry / "reference.json").is_file()
     ]
+
+
+def _facts_or_problem(folder: Path) -> dict[str, Any]:
+    """One reference that cannot be read does not hide the others."""
+    try:
+        return read_facts(folder)
+    except StoreError as error:
+        words = visible(str(error).replace(f"{folder.parent}/", ""))
+        return {"name": f"{folder.name}: {words}", "kind": "damaged", "problem": words}
 
 
 def span_of(ask: Look, made: Picture) -> Span:

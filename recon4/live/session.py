@@ -10,7 +10,6 @@ PROJECT/live/outcome.json       written last by the recorder: how it ended
 from __future__ import annotations
 
 import hashlib
-import json
 import os
 import tempfile
 from dataclasses import asdict, dataclass
@@ -18,6 +17,7 @@ from pathlib import Path
 
 from recon4.errors import StoreError
 from recon4.store.atomic import write_json
+from recon4.store.json_files import read_object
 
 _DAY_NS = 86_400_000_000_000
 
@@ -94,6 +94,6 @@ def load_session(project: Path) -> Session:
     """
     path = project / "live" / "session.json"
     try:
-        return Session(project=project, **json.loads(path.read_text("utf-8")))
-    except (OSError, ValueError, TypeError) as error:
+        return Session(project=project, **read_object(path))
+    except TypeError as error:
         raise StoreError(f"{path} cannot be read: {error}") from error

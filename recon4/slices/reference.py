@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,8 +15,10 @@ from recon4.errors import ConfigError, StoreError
 from recon4.evaluation.mesh import Mesh, distance_to
 from recon4.geometry.se3 import SE3, Array
 from recon4.mapping.tiles import TileSet
+from recon4.names import visible
 from recon4.slices.cut import Cut
 from recon4.slices.points import Window, points_in
+from recon4.store.json_files import read_object
 
 Method = Literal["plane", "point"]
 FAR_M = 0.5
@@ -138,14 +139,11 @@ def read_facts(folder: Path) -> dict[str, Any]:
     Raises:
         StoreError: If it is missing or damaged.
     """
-    try:
-        facts = json.loads((folder / "reference.json").read_text("utf-8"))
-        missing = {"name", "kind", "T_map_reference"} - set(facts)
-    except (OSError, ValueError, TypeError) as error:
-        raise StoreError(f"{folder.name} is not a reference: {error}") from error
+    facts = read_object(folder / "reference.json")
+    missing = {"name", "kind", "T_map_reference"} - set(facts)
     if missing:
         raise StoreError(f"{folder.name}/reference.json lacks {sorted(missing)}")
-    return dict(facts)
+    return facts | {"name": visible(str(facts["name"]))}
 
 
 def moved_cut(cut: Cut, T_b_a: SE3) -> Cut:

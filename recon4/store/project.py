@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import fcntl
-import json
 import os
 import time
 from pathlib import Path
@@ -12,9 +11,11 @@ from typing import Any
 
 from recon4.errors import StoreError
 from recon4.store.atomic import raise_if_full, sweep, write_json
+from recon4.store.json_files import read_object
 from recon4.store.ledger import FinishedStage, Ledger
 
 FORMAT = 1
+MOST_DESCRIPTION_BYTES = 4 << 20
 
 
 class Project:
@@ -86,13 +87,10 @@ def read_description(root: Path) -> dict[str, Any]:
         StoreError: If it is missing or damaged.
     """
     path = root / "project.json"
-    try:
-        found = json.loads(path.read_text("utf-8"))
-    except FileNotFoundError as error:
-        raise StoreError(f"{root} is not a recon4 project: it has no project.json") from error
-    except (OSError, ValueError) as error:
-        raise StoreError(f"{path} cannot be read: {error}") from error
-    if not isinstance(found, dict) or found.get("format") != FORMAT:
+    if not path.exists():
+        raise StoreError(f"{root} is not a recon4 project: it has no project.json")
+    found = read_object(path, most_bytes=MOST_DESCRIPTION_BYTES)
+    if found.get("format") != FORMAT:
         raise StoreError(f"{path}: expected format {FORMAT}")
     return found
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import platform
 import secrets
 import time
@@ -18,6 +17,7 @@ from recon4.progress import Progress
 from recon4.settings import Settings, to_json
 from recon4.store.atomic import atomic_folder, write_json
 from recon4.store.hashing import FileDigest, files_below, hash_file, hash_json
+from recon4.store.json_files import read_object
 from recon4.store.ledger import FinishedStage
 from recon4.store.project import Project
 from recon4.store.usage import Meter
@@ -218,10 +218,10 @@ def read_manifest(folder: Path) -> dict[str, Any]:
     """
     path = folder / "manifest.json"
     try:
-        found = json.loads(path.read_text("utf-8"))
+        found = read_object(path)
         return {name: found[name] for name in ("recipe", "done", "figures", "versions", "files")}
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise StoreError(f"{path} cannot be read: {error}") from error
+    except KeyError as error:
+        raise StoreError(f"{path} cannot be read: it lacks {error}") from error
 
 
 def damage_of(folder: Path, *, hashes: bool) -> list[str]:

@@ -176,7 +176,7 @@ def test_an_issued_file_that_was_altered_is_neither_served_nor_put_back(office):
 
     assert (whole.status_code, altered.status_code) == (200, 422)
     assert "trajectory.tum: expected " in altered.json()["detail"]
-    with pytest.raises(Altered, match="trajectory.tum"):
+    with pytest.raises(Altered, match=r"trajectory\.tum"):
         put_back(office, approval)
 
 
