@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import signal
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
@@ -58,6 +59,9 @@ from app.uploads.store import UploadStore
 from app.viewer import page, proxy
 from app.viewer.pool import Sockets, ViewerPool
 from recon4 import __version__
+from recon4.verify import STATE, open_state, seal_state
+
+log = logging.getLogger(__name__)
 
 WEB = Path(__file__).parents[1] / "web"
 MAY_LOOK = [Depends(needs(May.LOOK))]
@@ -134,6 +138,8 @@ def serve(
 @asynccontextmanager
 async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None]:
     make_state(settings)
+    for words in open_state(settings.state):
+        log.error("%s: %s; recon4 verify %s lists all", STATE, words, settings.root)
     access = open_access(settings.state, login=settings.lan)
     jobs = JobStore(settings.state / "jobs.sqlite")
     supervisor = Supervisor(jobs, settings)
@@ -186,6 +192,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
         await viewers.close()
         jobs.close()
         access.close()
+        seal_state(settings.state)
 
 
 def _add_pages(app: FastAPI) -> None:

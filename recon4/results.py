@@ -29,10 +29,10 @@ from recon4.store.arrays import load_trajectory
 from recon4.store.atomic import atomic_file, copy_file, write_json
 from recon4.store.checked import Altered
 from recon4.store.hashing import hash_file
-from recon4.store.project import read_artifacts
+from recon4.store.project import SUMMARY, read_artifacts
+from recon4.store.seal import changing
 from recon4.store.stage import StageRun, versions
 
-SUMMARY = "summary.json"
 RESULTS = (
     "trajectory.tum",
     "odometry.tum",
@@ -114,6 +114,13 @@ def publish(
     Raises:
         StoreError: If an artifact is damaged or the folder cannot be written.
     """
+    with changing(root, SUMMARY, compared=False):
+        return _publish(root, runs, about, progress=progress)
+
+
+def _publish(
+    root: Path, runs: Mapping[str, StageRun], about: About, *, progress: Progress
+) -> Summary:
     (root / SUMMARY).unlink(missing_ok=True)
     created = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
     trajectory = load_trajectory(runs["level"].artifact.folder / "trajectory.npz")

@@ -128,7 +128,8 @@ async def add_reference(project_id: str, add: AddReference, server: Server) -> d
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     out = await run_in_threadpool(server.slices.new_reference, project_id)
     in_crs = artifacts if add.frame == "crs" else None
-    facts = await server.slices.long(work.add_reference, str(path), str(out), add.name, in_crs)
+    what = (str(path), str(out), add.name, in_crs)
+    facts = await server.slices.write_reference(project_id, out, work.add_reference, *what)
     return {"id": out.name} | facts
 
 
@@ -149,7 +150,10 @@ async def align(
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     folder = server.slices.reference(project_id, reference_id)
     pairs = (ask.p_map, ask.p_reference)
-    return await server.slices.long(work.align_reference, artifacts["map"], folder, ask.how, pairs)
+    what = (artifacts["map"], folder, ask.how, pairs)
+    return await server.slices.write_reference(
+        project_id, Path(folder), work.align_reference, *what
+    )
 
 
 @router.get("/export.{ending}", response_class=FileResponse, summary="A file of slices")

@@ -13,6 +13,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any, TypeVar
 
+from starlette.concurrency import run_in_threadpool
+
 from app.desk import Desk
 from app.errors import Conflict, NotFound
 from app.projects.store import PROJECT_ID, ProjectStore
@@ -25,11 +27,13 @@ from recon4.review.evidence import Evidence
 from recon4.store.atomic import write_json
 from recon4.store.checked import Altered
 from recon4.store.project import read_artifacts, read_stages
+from recon4.store.seal import begin_change, changing, check_sealed, end_change
 
 T = TypeVar("T")
 _KEY = re.compile(r"[0-9a-f]{16,64}")
 _REFERENCE = re.compile(r"[0-9a-f]{12}")
 MOST_REFERENCES = 20
+CONTROL = "slices/control.json"
 MOST_PAGES = 256
 LONG_S = 1800.0
 """A reference of gigabytes takes minutes."""
@@ -155,6 +159,8 @@ class Slices:
         folder = self._folder(project_id) / "references" / reference_id
         if not _REFERENCE.fullmatch(reference_id) or not (folder / "reference.json").is_file():
             raise NotFound(f"no reference {reference_id[:20]!r} in project {project_id}")
+        root = self._projects.folder(project_id)
+        check_sealed(root, f"{_name_of(folder)}/reference.json")
         return str(folder)
 
     def new_reference(self, project_id: str) -> Path:
@@ -169,11 +175,23 @@ class Slices:
         folder.mkdir(parents=True, exist_ok=True)
         return folder / secrets.token_hex(6)
 
+    async def write_reference(
+        self, project_id: str, folder: Path, function: Callable[..., T], *args: object
+    ) -> T:
+        """Run what writes a reference in a child, and seal the files it wrote."""
+        root, names = self._projects.folder(project_id), (_name_of(folder),)
+        await run_in_threadpool(begin_change, root, names)
+        try:
+            return await self.long(function, *args)
+        finally:
+            await run_in_threadpool(end_change, root, names)
+
     def remove_reference(self, project_id: str, reference_id: str) -> None:
         """Remove one; the file it was made of stays."""
         folder = Path(self.reference(project_id, reference_id))
         gone = folder.with_name(f".tmp-{secrets.token_hex(6)}-{folder.name}")
-        folder.rename(gone)
+        with changing(self._projects.folder(project_id), _name_of(folder), compared=False):
+            folder.rename(gone)
         shutil.rmtree(gone)
 
     def control(self, project_id: str) -> ControlState:
@@ -182,7 +200,9 @@ class Slices:
         Raises:
             StoreError: If the file is damaged.
         """
-        path = self._folder(project_id) / "control.json"
+        root = self._projects.folder(project_id)
+        check_sealed(root, CONTROL)  # an acceptance sheet is made of it
+        path = root / CONTROL
         if not path.exists():
             return ControlState(version=0)
         try:
@@ -213,7 +233,8 @@ class Slices:
         kept = state.model_copy(update={"found_in": found_in, "version": version})
         folder = self._folder(project_id)
         folder.mkdir(exist_ok=True)
-        write_json(folder / "control.json", kept.model_dump(mode="json"))
+        with changing(self._projects.folder(project_id), CONTROL):
+            write_json(folder / "control.json", kept.model_dump(mode="json"))
         return kept
 
     # -- work
@@ -274,3 +295,8 @@ class Slices:
         self._projects.map_artifact(project_id)  # says what is missing
         found = read_artifacts(self._projects.folder(project_id))
         return {stage: str(folder) for stage, folder in found.items()}
+
+
+def _name_of(reference: Path) -> str:
+    """Of a reference's folder, below its project."""
+    return f"slices/references/{reference.name}"

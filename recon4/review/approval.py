@@ -26,7 +26,8 @@ from recon4.review.state import artifact_keys, decisions_in_map, read_summary
 from recon4.store.atomic import atomic_file, atomic_folder, sweep, write_json
 from recon4.store.checked import Altered, CheckedArtifact
 from recon4.store.hashing import hash_file, hash_json
-from recon4.store.project import Project
+from recon4.store.project import SUMMARY, Project
+from recon4.store.seal import changing, check_sealed
 
 FORMAT = 2
 """Of the statement. 2: it names the hash of the manifest of every artifact."""
@@ -106,8 +107,9 @@ def put_back(root: Path, approval: Approval) -> None:
 
 def _hand_out(root: Path, approval: Approval) -> None:
     """The results and the summary of the project are from now on those that were issued."""
-    put_back(root, approval)
-    _link(approval.folder / "summary.json", root / "summary.json")
+    with changing(root, SUMMARY, compared=False):
+        put_back(root, approval)
+        _link(approval.folder / SUMMARY, root / SUMMARY)
 
 
 def _refuse_again(root: Path, asked: _Asked) -> None:
@@ -129,6 +131,7 @@ def _refuse_again(root: Path, asked: _Asked) -> None:
 
 
 def _asked(root: Path, signer: Mapping[str, str]) -> _Asked:
+    check_sealed(root, SUMMARY)
     summary = read_summary(root)
     if summary is None:
         raise NotApprovable("there is no finished map yet: nothing to approve")

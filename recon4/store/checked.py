@@ -94,8 +94,22 @@ class CheckedArtifact:
             self.check(name)
 
 
-def check_file(path: Path, expected: FileDigest, start: int = 0, stop: int | None = None) -> None:
+def check_file(
+    path: Path,
+    expected: FileDigest,
+    start: int = 0,
+    stop: int | None = None,
+    *,
+    remembered: bool = True,
+) -> None:
     """Compare the blocks of a file that hold some bytes with their hashes.
+
+    Args:
+        path: The file.
+        expected: Its size and hashes.
+        start: First byte.
+        stop: Byte behind the last; None = to the end.
+        remembered: Do not read again what was compared before in this process.
 
     Raises:
         Altered: If the file is missing, has another size, or a block has other bytes.
@@ -108,7 +122,7 @@ def check_file(path: Path, expected: FileDigest, start: int = 0, stop: int | Non
         size = os.fstat(descriptor).st_size
         if size != expected.size:
             raise Altered(_differs(path, "", f"{expected.size} bytes", f"{size} bytes"))
-        flags = _flags(descriptor, expected)
+        flags = _flags(descriptor, expected) if remembered else _no_flags(expected)
         if not expected.blocks:
             _check_whole(descriptor, path, expected, flags)
             return
@@ -149,11 +163,15 @@ def _flags(descriptor: int, expected: FileDigest) -> bytearray:
     times = (status.st_mtime_ns, status.st_ctime_ns)
     identity = (status.st_dev, status.st_ino, status.st_size, *times, expected.sha256)
     with _lock:
-        flags = _checked.setdefault(identity, bytearray(max(1, -(-expected.size // BLOCK_BYTES))))
+        flags = _checked.setdefault(identity, _no_flags(expected))
         _checked.move_to_end(identity)
         while len(_checked) > MOST_FILES:
             _checked.popitem(last=False)
     return flags
+
+
+def _no_flags(expected: FileDigest) -> bytearray:
+    return bytearray(max(1, -(-expected.size // BLOCK_BYTES)))
 
 
 def _short(path: Path) -> str:

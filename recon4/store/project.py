@@ -5,6 +5,7 @@ from __future__ import annotations
 import fcntl
 import os
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -13,8 +14,13 @@ from recon4.errors import StoreError
 from recon4.store.atomic import raise_if_full, sweep, write_json
 from recon4.store.json_files import read_object
 from recon4.store.ledger import FinishedStage, Ledger
+from recon4.store.seal import adopt, begin_change, end_change
 
 FORMAT = 1
+LEDGER = "ledger.sqlite"
+SUMMARY = "summary.json"
+SEALED = ("project.json", LEDGER)
+"""What changes while a project is open, and is sealed when it is closed."""
 MOST_DESCRIPTION_BYTES = 4 << 20
 
 
@@ -44,7 +50,8 @@ class Project:
         try:
             sweep(root)
             sweep(root / "artifacts")
-            return Project(root, Ledger(root / "ledger.sqlite"), lock)
+            begin_change(root, SEALED, missing_allowed=LEDGER)
+            return Project(root, Ledger(root / LEDGER), lock)
         except BaseException:
             os.close(lock)
             raise
@@ -59,9 +66,14 @@ class Project:
         write_json(self.root / "project.json", read_description(self.root) | facts)
 
     def close(self) -> None:
-        """Close the ledger and let others in."""
-        self.ledger.close()
-        os.close(self._lock)
+        """Close the ledger, seal what was written, and let others in."""
+        try:
+            whole = self.ledger.settle()
+            self.ledger.close()
+            end_change(self.root, SEALED, left_open=() if whole else (LEDGER,))
+            adopt(self.root, loose_files(self.root))
+        finally:
+            os.close(self._lock)
 
     def __enter__(self) -> Project:
         return self
@@ -117,7 +129,15 @@ def read_artifacts(root: Path) -> dict[str, Path]:
 
 def _reading(root: Path) -> Ledger:
     read_description(root)
-    return Ledger(root / "ledger.sqlite")
+    return Ledger(root / LEDGER)
+
+
+def loose_files(root: Path) -> Iterator[str]:
+    """Files of a project that a run leaves and that no hash of another file covers."""
+    for pattern in ("project.json", SUMMARY, LEDGER, "artifacts/*/manifest.json"):
+        yield from (path.relative_to(root).as_posix() for path in sorted(root.glob(pattern)))
+    for path in sorted(root.glob("versions/[0-9]*/approval.json")):
+        yield path.relative_to(root).as_posix()
 
 
 def _make_folder(root: Path) -> None:

@@ -7,9 +7,11 @@ file of the approval's chain was altered; 0 tracebacks.
 import json
 import shutil
 
+import httpx
 import pytest
 
 from recon4.cli import main
+from recon4.progress import Silent
 from recon4.review.approval import put_back
 from recon4.review.approved import approval_of
 from recon4.review.decisions import Decision, Kind
@@ -18,7 +20,11 @@ from recon4.review.signature import sign
 from recon4.store.atomic import write_json
 from recon4.store.checked import Altered
 from recon4.store.hashing import FileDigest, hash_json
-from recon4.store.project import read_artifacts
+from recon4.store.project import Project, read_artifacts
+from recon4.store.recipes import settings_in
+from recon4.store.seal import begin_change
+from recon4.verify import verify
+from tests.benchmarks.flips import flip_bits, make, make_server_state
 from tests.project_builder import approve_project, build_project
 from tests.service.running import server_thread
 
@@ -225,3 +231,95 @@ def sign_as_before(root, key_file):
     (root / "decisions.sqlite").unlink()
     facts = {"version": 1, "approval": sha256, "artifacts": hash_json(statement["artifacts"])}
     append(root, Decision(kind=Kind.APPROVE, who="anna", facts=facts))
+
+
+def test_every_flipped_bit_of_a_project_and_its_server_is_found(tmp_path):
+    """A tenth of ``python -m tests.benchmarks.flips``."""
+    make_server_state(tmp_path)
+    make(tmp_path)
+    assert verify(tmp_path, Silent()).damaged == ()
+
+    found = flip_bits(tmp_path, 200, seed=7)
+
+    assert (found.missed, found.tracebacks, found.found) == ([], [], 200)
+
+
+def edit_settings(root):
+    """`remake` reads the settings of the stages it keeps in their manifests."""
+    path = read_artifacts(root)["verification"] / "manifest.json"
+    path.write_text(path.read_text().replace('"version": 1', '"version": 2', 1))
+
+
+@pytest.mark.parametrize(
+    ("spoil", "words"),
+    [
+        (edit_settings, "manifest.json is not what recon4 wrote"),
+        (lambda root: (root / "summary.json").write_text("{"), "summary.json"),
+        (lambda root: (root / "project.json").write_text('{"format": 1}'), "project.json is not"),
+        (lambda root: (root / "decisions.sqlite").unlink(), "decisions.sqlite"),
+        (lambda root: (root / "seals.json").write_text("[]"), "seals.json is not what was"),
+    ],
+)
+def test_verify_names_what_was_edited(office, spoil, words, capsys):
+    assert main(["verify", str(office)]) == 0
+    spoil(office)
+
+    assert main(["verify", str(office)]) == 1
+
+    told = capsys.readouterr()
+    assert words in told.out and "Traceback" not in told.out + told.err
+
+
+def test_settings_edited_in_a_manifest_are_not_used_to_make_a_map_again(office):
+    edit_settings(office)
+
+    with pytest.raises(Altered, match=r"manifest\.json is not what recon4 wrote"):
+        settings_in([read_artifacts(office)["verification"]])
+
+
+def test_control_points_that_were_edited_make_no_acceptance_sheet(office):
+    base = "/api/projects/office/slices/control"
+    with server_thread(office.parent) as server:
+        put = httpx.put(
+            server.url + base, json={"points": []}, headers={"Origin": server.url}, timeout=30.0
+        )
+        whole = server.get(f"{base}/report.csv")
+        path = office / "slices" / "control.json"
+        path.write_text(path.read_text().replace('"map"', '"crs"'))
+        edited = server.get(f"{base}/report.csv")
+
+    assert (put.status_code, whole.status_code, edited.status_code) == (200, 200, 422)
+    assert "control.json is not what recon4 wrote" in edited.json()["detail"]
+
+
+def test_a_process_killed_while_it_changed_a_file_leaves_it_open_not_altered(office):
+    begin_change(office, ("slices/control.json",))
+    (office / "slices").mkdir()
+    (office / "slices" / "control.json").write_text('{"version": 1}')
+
+    found = verify(office, Silent())
+
+    assert found.damaged == ()
+    assert [note for note in found.notes if note.startswith("slices/control.json is open")]
+
+
+def test_what_is_accepted_is_sealed_as_it_is(office, capsys):
+    (office / "project.json").write_text('{"format": 1, "name": "by hand"}')
+    with pytest.raises(Altered, match="recon4 verify --accept"):
+        Project.open(office)
+
+    assert main(["verify", "--accept", str(office)]) == 0
+    Project.open(office).close()
+
+
+def test_what_a_server_left_and_somebody_changed_is_found_and_named(tmp_path, capsys):
+    with server_thread(tmp_path):
+        pass
+    state = tmp_path / ".recon4"
+    assert main(["verify", str(tmp_path)]) == 0
+    data = bytearray((state / "access.sqlite").read_bytes())
+    data[-1] ^= 1
+    (state / "access.sqlite").write_bytes(data)
+
+    assert main(["verify", str(tmp_path)]) == 1
+    assert ".recon4: access.sqlite is not what recon4 wrote" in capsys.readouterr().out
