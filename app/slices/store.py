@@ -160,7 +160,7 @@ class Slices:
         if not _REFERENCE.fullmatch(reference_id) or not (folder / "reference.json").is_file():
             raise NotFound(f"no reference {reference_id[:20]!r} in project {project_id}")
         root = self._projects.folder(project_id)
-        check_sealed(root, f"{_name_of(folder)}/reference.json")
+        check_sealed(root, _name_of(folder))
         return str(folder)
 
     def new_reference(self, project_id: str) -> Path:

@@ -131,10 +131,13 @@ def _refuse_again(root: Path, asked: _Asked) -> None:
 
 
 def _asked(root: Path, signer: Mapping[str, str]) -> _Asked:
-    check_sealed(root, SUMMARY)
     summary = read_summary(root)
     if summary is None:
         raise NotApprovable("there is no finished map yet: nothing to approve")
+    try:
+        check_sealed(root, SUMMARY)
+    except Altered as error:
+        raise NotApprovable(f"{error}: make a new map first") from error
     rows = read_rows(root)
     if told := broken(rows):
         raise NotApprovable(f"the journal is not what was written: {told[0]}")

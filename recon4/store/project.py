@@ -10,7 +10,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from recon4.errors import StoreError
+from recon4.errors import NoSpace, StoreError
 from recon4.store.atomic import raise_if_full, sweep, write_json
 from recon4.store.json_files import read_object
 from recon4.store.ledger import FinishedStage, Ledger
@@ -68,12 +68,22 @@ class Project:
     def close(self) -> None:
         """Close the ledger, seal what was written, and let others in."""
         try:
-            whole = self.ledger.settle()
-            self.ledger.close()
+            whole = self._settle()
             end_change(self.root, SEALED, left_open=() if whole else (LEDGER,))
             adopt(self.root, loose_files(self.root))
+        except NoSpace:
+            return  # the files stay marked as open: verify says so, and the next run seals them
         finally:
             os.close(self._lock)
+
+    def _settle(self) -> bool:
+        """Close the ledger; whether all of it is in its file now."""
+        try:
+            return self.ledger.settle()
+        except NoSpace:
+            return False
+        finally:
+            self.ledger.close()
 
     def __enter__(self) -> Project:
         return self

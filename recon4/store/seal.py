@@ -61,12 +61,17 @@ def read_seals(root: Path) -> dict[str, Seal]:
 
 
 def check_sealed(root: Path, name: str) -> None:
-    """Compare a file with its seal; one without a seal, or open, is taken as it is.
+    """Compare a file, or all files below a folder, with their seals before they are used.
+
+    What has no seal, or is open, is taken as it is; what was compared before and has the same
+    inode, size and times is not read again.
 
     Raises:
-        Altered: If the file, or the list of seals, was changed.
+        Altered: If a file, or the list of seals, was changed.
     """
-    _compare(root, name, read_seals(root).get(name, OPEN))
+    seals = read_seals(root)
+    for one in _below(seals, (name,)):
+        _compare(root, one, seals[one], remembered=True)
 
 
 def compare_all(root: Path) -> Iterator[tuple[str, str]]:
@@ -180,19 +185,21 @@ def seal_of(path: Path) -> dict[str, Any]:
     return {"bytes": digest.size, "sha256": digest.sha256}
 
 
-def _compare(root: Path, name: str, seal: Seal, *, advice: bool = False) -> None:
+def _compare(
+    root: Path, name: str, seal: Seal, *, advice: bool = False, remembered: bool = False
+) -> None:
     if seal == OPEN:
         return
     try:
         expected = FileDigest(int(seal["bytes"]), str(seal["sha256"]), b"")
-        check_file(root / name, expected, remembered=False)
+        check_file(root / name, expected, remembered=remembered)
     except (KeyError, ValueError, TypeError) as error:
         raise Altered(f"{SEALS}: the entry {name} makes no sense: {error!r}") from error
     except Altered as error:
         words = f"{name} is not what recon4 wrote: {error}"
         more = (
             f"; put it back from a backup, or take it as it is (recon4 verify --accept {root}); "
-            "a ledger may also be moved away: finished stages are found by their artifacts"
+            "if it is the ledger, move it away: finished stages are found by their artifacts"
         )
         raise Altered(words + more if advice else words) from error
 
