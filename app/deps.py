@@ -16,6 +16,7 @@ from app.live.store import Captures
 from app.projects.picture import Pictures
 from app.projects.store import ProjectStore
 from app.projects.trash import Trash
+from app.review.checks import ApprovalChecks
 from app.review.store import Reviews
 from app.settings import ServerSettings
 from app.slices.store import Slices
@@ -40,6 +41,7 @@ class Parts:
     compute_pool: ComputePool
     event_streams: Streams
     captures: Captures
+    checks: ApprovalChecks
     reviews: Reviews
     slices: Slices
 

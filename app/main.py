@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import signal
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
@@ -58,6 +59,7 @@ from app.projects.picture import Pictures
 from app.projects.store import ProjectStore
 from app.projects.trash import Trash
 from app.review import routes as review_routes
+from app.review.checks import ApprovalChecks
 from app.review.store import Reviews
 from app.settings import ServerSettings
 from app.slices import routes as slice_routes
@@ -68,6 +70,9 @@ from app.uploads.store import UploadStore
 from app.viewer import page, proxy
 from app.viewer.pool import ViewerPool
 from recon4 import __version__
+from recon4.verify import STATE, open_state, seal_state
+
+log = logging.getLogger(__name__)
 
 WEB = Path(__file__).parents[1] / "web"
 EVENT_STREAMS = StreamLimits(most=128, per_person=16, per_address=48, reserved=8)
@@ -159,10 +164,13 @@ def serve(
 @asynccontextmanager
 async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None]:
     make_state(settings)
+    for words in open_state(settings.state):
+        log.error("%s: %s; recon4 verify %s lists all", STATE, words, settings.root)
     access = open_access(settings.state, login=settings.lan)
     jobs = JobStore(settings.state / "jobs.sqlite")
     supervisor = Supervisor(jobs, settings)
     pool = ComputePool(settings.state / "compute")
+    checks = ApprovalChecks()
     captures = Captures(settings.root)
     projects = ProjectStore(settings.root, _import_folders(settings))
     viewers = ViewerPool(
@@ -173,7 +181,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
         children=child_register(settings),
     )
     uploads = UploadStore(settings)
-    slices = Slices(pool, projects, settings)
+    slices = Slices(pool, projects, checks, settings)
     trash = Trash(settings.root, settings.state / "trash", kept_s=settings.trash_s)
     app.state.parts = Parts(
         settings=settings,
@@ -188,6 +196,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
         compute_pool=pool,
         event_streams=Streams("event streams", EVENT_STREAMS),
         captures=captures,
+        checks=checks,
         reviews=Reviews(pool),
         slices=slices,
     )
@@ -206,10 +215,12 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
         await asyncio.gather(*watching, return_exceptions=True)
         await captures.leave()
         await pool.close()
+        checks.close()
         supervisor.close()
         await viewers.close()
         jobs.close()
         access.close()
+        seal_state(settings.state)
 
 
 def _viewer_limits(settings: ServerSettings) -> StreamLimits:

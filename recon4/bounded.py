@@ -7,6 +7,7 @@ is allocated for them. Errors say the file, the place, what was expected and wha
 from __future__ import annotations
 
 import json
+import math
 import os
 import re
 import stat
@@ -178,8 +179,16 @@ def parse_float(text: str) -> float:
     return float(text)
 
 
-def parse_json(text: str | bytes, name: str, *, failure: Failure = CorruptFile) -> Any:
+def parse_json(
+    text: str | bytes, name: str, *, failure: Failure = CorruptFile, finite: bool = False
+) -> Any:
     """Parse JSON of unknown origin.
+
+    Args:
+        text: The document; bytes are UTF-8.
+        name: What it is, for the error.
+        failure: Class of the error.
+        finite: Also refuse NaN and numbers that are too large for a computer.
 
     Raises:
         Recon4Error: Of the class ``failure``, if it is no JSON, nested deeper than `MOST_DEPTH`
@@ -188,7 +197,8 @@ def parse_json(text: str | bytes, name: str, *, failure: Failure = CorruptFile) 
     if isinstance(text, bytes):
         text = decode_text(text, name, failure=failure)
     try:
-        value = json.loads(text)
+        strict: dict[str, Any] = {"parse_constant": _finite, "parse_float": _finite}
+        value = json.loads(text, **(strict if finite else {}))
     except ValueError as error:
         raise failure(f"{name}: expected JSON, got something else: {error}") from error
     except RecursionError as error:
@@ -221,6 +231,13 @@ def read_json_object(
     if not isinstance(found, dict):
         raise failure(f"{path.name}: expected a JSON object, got {type(found).__name__}")
     return found
+
+
+def _finite(text: str) -> float:
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(f"expected a finite number, got {text[:40]}")
+    return value
 
 
 def _check_depth(value: Any, name: str, failure: Failure) -> None:

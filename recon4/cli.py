@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 import recon4
+from recon4.cli_backup import backups
 from recon4.cli_live import live
 from recon4.cli_serve import server
 from recon4.cli_slices import slices
@@ -40,6 +41,7 @@ app.add_typer(users, name="users")
 app.add_typer(server)
 app.add_typer(live)
 app.add_typer(slices)
+app.add_typer(backups)
 
 _INTERRUPTED = 130
 """What shells report for a program that Ctrl-C ended."""
@@ -199,31 +201,37 @@ def settings(
 
 @app.command()
 def verify(
-    project: Annotated[Path, typer.Argument(help="Folder that `recon4 process --out` made.")],
+    folder: Annotated[Path, typer.Argument(help="A project, or the folder of a server.")],
+    *,
+    accept: Annotated[
+        bool, typer.Option("--accept", help="Seal the files as they are now; approvals stay.")
+    ] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Read every byte of a project again; compare hashes, the journal's chain and signatures."""
+    """Read every byte again; compare hashes, seals, the journal's chain and signatures."""
     from dataclasses import asdict
 
-    from recon4.review.audit import audit_review
-    from recon4.store.audit import audit
     from recon4.terminal import watcher
+    from recon4.verify import accept as seal_again
+    from recon4.verify import verify as read_again
 
+    if accept:
+        seal_again(folder)
     with watcher() as progress:
-        found, reviewed = audit(project, progress), audit_review(project, progress)
-    damaged = [*found.damaged, *reviewed.damaged]
+        found = read_again(folder, progress)
     if as_json:
-        told = {"rows": reviewed.rows, "approvals": reviewed.approvals, "damaged": damaged}
-        _write_json(asdict(found) | told)
+        _write_json(asdict(found))
     else:
         for name in found.unknown:
             write(f"not of recon4, left alone: artifacts/{name}")
-        for what in damaged:
+        for what in found.notes:
+            write(f"note: {what}")
+        for what in found.damaged:
             write(f"damaged: {what}")
-        for what in reviewed.approvals:
+        for what in found.approvals:
             write(what)
-        write(f"{found.checked + reviewed.rows} checked, {len(damaged)} damaged")
-    if damaged:
+        write(f"{found.checked} checked, {len(found.damaged)} damaged")
+    if found.damaged:
         raise typer.Exit(1)
 
 

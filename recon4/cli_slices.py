@@ -38,15 +38,19 @@ def cut_map(  # noqa: PLR0913 - options of a command
 ) -> None:
     """Cut a map and write the slice, at full resolution. It carries the map's approval."""
     from recon4.mapping.tiles import TileSet
-    from recon4.review.approval import approval_of
+    from recon4.review.approved import approval_of
     from recon4.slices.frames import frame_of
     from recon4.store.project import read_artifacts
 
-    artifacts = read_artifacts(project)
-    frame = frame_of(artifacts)
-    tiles = TileSet.open(artifacts["map"])
     cuts = _cut(z, line, plane, thickness).repeated(count, spacing_m=spacing)
+    artifacts = read_artifacts(project)
     approval = approval_of(project, {stage: folder.name for stage, folder in artifacts.items()})
+    if approval:
+        approval.evidence.check_frame(artifacts)
+    frame = frame_of(artifacts)
+    tiles = (
+        approval.evidence.open_map(artifacts["map"]) if approval else TileSet.open(artifacts["map"])
+    )
     about = {"color": color, "name": project.name, "stamp": approval.stamp if approval else None}
     points = _write(tiles, cuts, file, frame, about=about)
     sys.stdout.write(f"{points} points in {file}\n")
@@ -106,13 +110,15 @@ def _write(
 ) -> int:
     from recon4.review.stamp import stamp_file
     from recon4.slices.export import write_csv, write_dxf, write_laz
+    from recon4.store.atomic import atomic_file
 
     ending = file.suffix.lower()
     writers = {".laz": write_laz, ".csv": write_csv, ".dxf": write_dxf}
     if ending in writers:
-        points = writers[ending](tiles, cuts, file, frame=frame)
-        if about["stamp"]:
-            stamp_file(file, file, about["stamp"])
+        with atomic_file(file) as temporary:
+            points = writers[ending](tiles, cuts, temporary, frame=frame)
+            if about["stamp"]:
+                stamp_file(temporary, temporary, about["stamp"])
         return points
     if ending not in {".png", ".svg", ".pdf", ".tif"}:
         raise ConfigError(f"a slice is written as png svg pdf tif dxf laz csv, got {file.name}")

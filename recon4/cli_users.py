@@ -119,16 +119,18 @@ def _access(root: Path) -> Iterator[Access]:
     from app.errors import AppError
     from app.listen import make_state
     from app.settings import ServerSettings
+    from recon4.verify import state_change
 
     settings = ServerSettings(root=root)
     make_state(settings)
-    access = open_access(settings.state, login=True)
-    try:
-        yield access
-    except AppError as error:
-        raise StoreError(str(error)) from error
-    finally:
-        access.close()
+    with state_change(settings.state, "access.sqlite"):
+        access = open_access(settings.state, login=True)
+        try:
+            yield access
+        except AppError as error:
+            raise StoreError(str(error)) from error
+        finally:
+            access.close()
 
 
 def _role(text: str) -> Role:

@@ -13,6 +13,7 @@ from recon4.export.laz import export_laz
 from recon4.export.names import check_name
 from recon4.export.ply import export_ply
 from recon4.georeference.stage import read_crs
+from recon4.mapping.tiles import TileSet
 from recon4.model.pose_graph import Verdict
 from recon4.pose_graph.files import load_graph
 from recon4.pose_graph.g2o import write_g2o
@@ -21,16 +22,18 @@ from recon4.recording.poses import write_tum
 from recon4.report.artifacts import way_m
 from recon4.report.facts import InputFile, ReportFacts, StageTiming
 from recon4.report.html import write_report
-from recon4.review.approval import approval_of, put_back
+from recon4.review.approval import put_back
+from recon4.review.approved import Approval, approval_of
 from recon4.review.stamp import stamp_file
 from recon4.settings import Settings, to_json
 from recon4.store.arrays import load_trajectory
 from recon4.store.atomic import atomic_file, copy_file, write_json
+from recon4.store.checked import Altered
 from recon4.store.hashing import hash_file
-from recon4.store.project import read_artifacts
+from recon4.store.project import SUMMARY, read_artifacts
+from recon4.store.seal import changing
 from recon4.store.stage import StageRun, versions
 
-SUMMARY = "summary.json"
 RESULTS = (
     "trajectory.tum",
     "odometry.tum",
@@ -112,15 +115,20 @@ def publish(
     Raises:
         StoreError: If an artifact is damaged or the folder cannot be written.
     """
+    with changing(root, SUMMARY, compared=False):
+        return _publish(root, runs, about, progress=progress)
+
+
+def _publish(
+    root: Path, runs: Mapping[str, StageRun], about: About, *, progress: Progress
+) -> Summary:
     (root / SUMMARY).unlink(missing_ok=True)
     created = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
     trajectory = load_trajectory(runs["level"].artifact.folder / "trajectory.npz")
     facts = _facts(runs, about, created=created)
     for write in track(_writers(root, runs, facts), progress, what="results", unit="files"):
         write()
-    approval = approval_of(root, {name: run.artifact.key for name, run in runs.items()})
-    if approval:
-        put_back(root, approval)
+    approval, warning = _put_back(root, {name: run.artifact.key for name, run in runs.items()})
     summary = Summary(
         name=about.project["name"],
         created=created,
@@ -133,7 +141,7 @@ def publish(
         lost=runs["odometry"].figures["lost"],
         points=runs["map"].figures["points"],
         edges=edges_by_verdict(runs["level"].artifact.folder),
-        warnings=(*runs["frames"].figures["warnings"], *_later_warnings(runs)),
+        warnings=(*runs["frames"].figures["warnings"], *_later_warnings(runs), *warning),
         seconds=round(sum(run.done.seconds for run in runs.values()), 3),
         peak_bytes=max(run.done.peak_bytes for run in runs.values()),
         stages=tuple(_stage(run) for run in runs.values()),
@@ -148,6 +156,17 @@ def publish(
     )
     write_json(root / SUMMARY, summary.to_json())
     return summary
+
+
+def _put_back(root: Path, keys: Mapping[str, str]) -> tuple[Approval | None, tuple[str, ...]]:
+    """The approval of these results, put back; and why not, when what was issued was changed."""
+    try:
+        approval = approval_of(root, keys)
+        if approval:
+            put_back(root, approval)
+    except Altered as error:
+        return None, (f"the approved files were not put back, this is a draft: {error}",)
+    return approval, ()
 
 
 def edges_by_verdict(artifact: Path) -> dict[str, int]:
@@ -173,6 +192,7 @@ def export_map(project: Path, path: Path, *, crs: str, progress: Progress) -> in
         How many points were written.
 
     Raises:
+        Altered: If it was approved and is not what was approved; nothing is written.
         ConfigError: If the ending is another.
         GeoreferenceError: If a CRS is asked for and the map has no place on earth.
         StoreError: If there is no map yet or the file cannot be written.
@@ -184,16 +204,23 @@ def export_map(project: Path, path: Path, *, crs: str, progress: Progress) -> in
     if ending not in (".laz", ".ply"):
         raise ConfigError(f"a map is written as .laz or .ply, got {path.name}")
     check_name(path, ending)
+    approval = approval_of(project, {name: folder.name for name, folder in artifacts.items()})
+    checked = None
+    if approval:
+        approval.evidence.check_frame(artifacts)
+        checked = approval.evidence.artifact("map", artifacts["map"])
     place = read_crs(artifacts["level"], crs)
     to_crs = place.to_crs if place else None
-    if ending == ".laz":
-        wkt = place.wkt if place else None
-        count = export_laz(artifacts["map"], path, crs=wkt, to_crs=to_crs, progress=progress)
-    else:
-        count = export_ply(artifacts["map"], path, to_crs=to_crs, progress=progress)
-    approval = approval_of(project, {name: folder.name for name, folder in artifacts.items()})
-    if approval:
-        stamp_file(path, path, approval.stamp)
+    tiles = TileSet.open(artifacts["map"], checked)
+    # The stamp goes onto a file beside it, so that a file without one is never there.
+    with atomic_file(path) as temporary:
+        if ending == ".laz":
+            wkt = place.wkt if place else None
+            count = export_laz(tiles, temporary, crs=wkt, to_crs=to_crs, progress=progress)
+        else:
+            count = export_ply(tiles, temporary, to_crs=to_crs, progress=progress)
+        if approval:
+            stamp_file(temporary, temporary, approval.stamp)
     return count
 
 

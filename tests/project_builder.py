@@ -16,10 +16,16 @@ from recon4.model.rig import Rig, Sensor
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import save_graph
 from recon4.progress import Progress, Silent
+from recon4.report.approval import draft_block
+from recon4.review.approval import approve
+from recon4.review.approved import Approval
 from recon4.settings import Settings
 from recon4.store.arrays import save_trajectory
+from recon4.store.atomic import write_json
 from recon4.store.frames import FrameWriter
-from recon4.store.project import Project
+from recon4.store.hashing import hash_file
+from recon4.store.project import Project, read_artifacts
+from recon4.store.seal import changing
 from recon4.store.stage import Input, Stage, StageRunner
 
 ROOM_M = (16.0, 10.0, 3.0)
@@ -40,7 +46,9 @@ def build_project(root: Path, *, points: int = 60_000, with_map: bool = True) ->
         runner.run(Stage("level", 1, (), _level), walk=walk)
         runner.run(Stage("map", 1, (), _map), points=Input(f"points {points}", points))
     (root / "trajectory.tum").write_text("0 0 0 0 0 0 0 1\n")
-    (root / "report.html").write_text("<!doctype html><title>Report</title><h1>Report</h1>")
+    (root / "report.html").write_text(
+        "<!doctype html><title>Report</title><h1>Report</h1>" + draft_block()
+    )
     figures = {
         "way_m": 58.2,
         "points": points,
@@ -51,7 +59,30 @@ def build_project(root: Path, *, points: int = 60_000, with_map: bool = True) ->
         "seconds": 41.5,
         "peak_bytes": 812_000_000,
     }
-    (root / "summary.json").write_text(json.dumps(figures))
+    write_summary(root, figures)
+
+
+def approve_project(root: Path, key_file: Path, *, who: str = "Eva") -> Approval:
+    """Sign what `build_project` made."""
+    with changing(root, "summary.json", compared=False):
+        told = json.loads((root / "summary.json").read_text())
+        artifacts = read_artifacts(root)
+        told |= {
+            "name": root.name,
+            "approval": None,
+            "stages": [{"stage": name, "key": at.name} for name, at in artifacts.items()],
+            "hashes": {
+                "inputs": {},
+                "results": {n: hash_file(root / n) for n in ("trajectory.tum", "report.html")},
+            },
+        }
+        write_summary(root, told)
+    return approve(root, key_file, {"who": who, "role": "reviewer", "why": ""}, False)
+
+
+def write_summary(root: Path, told: dict[str, object]) -> None:
+    """The way a run writes it."""
+    write_json(root / "summary.json", told)
 
 
 def add_multiframes(root: Path) -> None:
@@ -157,6 +188,8 @@ def _verification(*, out: Path, settings: Settings, progress: Progress, walk: Tr
 def _level(*, out: Path, settings: Settings, progress: Progress, walk: Trajectory) -> None:
     save_trajectory(out / "trajectory.npz", walk)
     save_graph(out, verified_graph(walk))
+    local = {"origin": None, "reason": "no positions"}
+    write_json(out / "georeference.json", {"levelling": {}, "georeference": local, "crs": {}})
 
 
 def _map(*, out: Path, settings: Settings, progress: Progress, points: int) -> None:

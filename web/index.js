@@ -39,6 +39,7 @@ function draw(id, project = projects.find((one) => one.id === id)) {
     make("a", { href: projectUrl(id), className: "cover" }, picture, make("strong", {}, project?.name ?? id)),
     open ? null : badge(stateOf(project, view)),
     make("p", { className: "quiet" }, words.join(" · ")),
+    project?.problem ? make("p", { className: "error" }, `Damaged: ${project.problem}`) : null,
   );
   status.hidden = !open;
   if (view) status.view = view;

@@ -97,7 +97,8 @@ async function reload() {
 /** Why there is no project; that of a job which waits, or ended before it made one, has no folder. */
 function drawMessage() {
   const expected = lacking instanceof ApiError && lacking.status === 404 && view;
-  byId("message").textContent = lacking && !expected ? lacking.message : "";
+  const damage = project?.problem ? `Damaged: ${project.problem}` : "";
+  byId("message").textContent = lacking && !expected ? lacking.message : damage;
 }
 
 function onJob(fresh) {

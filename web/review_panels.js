@@ -64,7 +64,9 @@ export function showEffect(panel, effect, { working, choose }) {
 function approvalWords({ approval, in_map }) {
   if (!approval) return "Not approved, a draft";
   const version = `version ${approval.version} by ${approval.who}, ${when(approval.time)}`;
+  if (approval.check === "altered") return `✗ Altered since the approval: ${approval.altered}`;
   if (!approval.current) return `A draft. An earlier map was approved: ${version}`;
+  if (in_map && approval.check === "checking") return `Approved: ${version}; the bytes are being compared with the signature`;
   return in_map ? `✓ Approved: ${version}` : `A draft again: decisions came after the approval of ${version}`;
 }
 
@@ -78,11 +80,11 @@ function mapWords({ busy, finished, in_map, standing }) {
 /** Whether the map knows the decisions, and who approved it. */
 export function showSigning(panel, state, { remake, approve }) {
   const { approval } = state;
-  const hurdle = state.busy ? "A job waits or runs" : !state.finished ? "There is no finished map yet" : !state.in_map ? "The map does not know the last decisions" : approval?.current ? "This map is approved" : "";
+  const hurdle = state.busy ? "A job waits or runs" : !state.finished ? "There is no finished map yet" : !state.in_map ? "The map does not know the last decisions" : approval?.current && approval.check !== "altered" ? "This map is approved" : "";
   fill(panel,
     make("h2", {}, "Map"),
     make("p", {}, mapWords(state)),
-    make("p", { className: approval?.current && state.in_map ? "good" : "" }, approvalWords(state)),
+    make("p", { className: approval?.check === "altered" ? "error" : approval?.check === "checked" && state.in_map ? "good" : "" }, approvalWords(state)),
     approval ? make("p", { className: "quiet hash" }, approval.hash) : null,
     make("div", { className: "buttons" },
       make("button", { type: "button", id: "remake", disabled: state.busy || state.in_map || !state.may_process }, "Make a new map"),

@@ -19,6 +19,7 @@ from app.access.routes import Me, Text, Wire, enter_paired
 from app.deps import Server
 from app.errors import AppError, Conflict, Problem, Refused
 from app.listen import presented_fingerprint
+from app.names import Name
 
 router = APIRouter(
     prefix="/api/pairing",
@@ -44,7 +45,7 @@ class Token(Wire):
 class NewRequest(Wire):
     """A phone that wants in."""
 
-    name: Annotated[str, Field(max_length=64)] = ""
+    name: Annotated[Name, Field(max_length=64)] = ""
     """What it calls itself."""
 
 

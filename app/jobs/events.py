@@ -16,7 +16,8 @@ import time
 from pathlib import Path
 from typing import Any
 
-from recon4.errors import Cancelled
+from recon4.errors import Cancelled, StoreError
+from recon4.store.json_files import parse_object
 
 log = logging.getLogger("recon4.job")
 
@@ -122,7 +123,6 @@ def read_events(path: Path, offset: int) -> tuple[list[dict[str, Any]], int]:
 
 def _event(line: bytes) -> dict[str, Any] | None:
     try:
-        event = json.loads(line)
-    except (ValueError, RecursionError):
+        return parse_object(line, "an event")
+    except StoreError:
         return None
-    return event if isinstance(event, dict) else None

@@ -15,6 +15,9 @@ from app.databases import migrate, open_engine
 from app.errors import Conflict, NotFound
 from app.jobs.backups import Backups
 from app.jobs.model import Inputs, Job, JobState
+from recon4.errors import StoreError
+from recon4.names import visible
+from recon4.store.json_files import parse_object
 
 METADATA = sa.MetaData()
 JOBS = sa.Table(
@@ -23,7 +26,7 @@ JOBS = sa.Table(
     sa.Column("number", sa.Integer, primary_key=True),
     sa.Column("id", sa.String, unique=True, nullable=False),
     sa.Column("project", sa.String, nullable=False),
-    sa.Column("inputs", sa.JSON, nullable=False),
+    sa.Column("inputs", sa.String, nullable=False),
     sa.Column("created", sa.String, nullable=False),
     sa.Column("state", sa.String, nullable=False),
     sa.Column("attempt", sa.Integer, nullable=False),
@@ -31,7 +34,8 @@ JOBS = sa.Table(
     sa.Column("finished", sa.String, nullable=False),
     sa.Column("note", sa.String, nullable=False),
 )
-"""The table as the newest migration leaves it; ``number`` is the order of the queue."""
+"""The table as the newest migration leaves it; ``number`` is the order of the queue. ``inputs`` is
+JSON that `_job` reads itself: in a list, SQLAlchemy's own type fails over one damaged row."""
 
 
 class JobStore:
@@ -118,11 +122,27 @@ class JobStore:
 
 
 def _row(job: Job) -> dict[str, Any]:
-    return asdict(job)
+    row = asdict(job)
+    return row | {"inputs": json.dumps(row["inputs"])}
 
 
 def _job(row: sa.RowMapping) -> Job:
-    inputs = dict(row["inputs"] if isinstance(row["inputs"], dict) else json.loads(row["inputs"]))
+    """A row as a job; one that is damaged is a failed job that says so."""
+    try:
+        return _whole_job(row)
+    except (ValueError, KeyError, TypeError, StoreError) as error:
+        return Job(
+            id=visible(str(row["id"])),
+            project=visible(str(row["project"])),
+            inputs=Inputs(recordings=()),
+            created=visible(str(row["created"])),
+            state=JobState.FAILED,
+            note=f"this row of jobs.sqlite is damaged: {visible(repr(error))}",
+        )
+
+
+def _whole_job(row: sa.RowMapping) -> Job:
+    inputs = parse_object(row["inputs"], "inputs")
     tuples: dict[str, Sequence[str]] = {n: tuple(inputs[n]) for n in ("recordings", "settings")}
     fields = {name: row[name] for name in row if name not in ("number", "inputs", "state")}
     return Job(**fields, inputs=Inputs(**{**inputs, **tuples}), state=JobState(row["state"]))

@@ -21,6 +21,7 @@ from app.jobs.routes import JobView, NewJob, add_job
 from app.live.phone import Phone, state_of
 from app.live.rigs import RigChoice, rig_files, rigs_in, shipped_rigs
 from app.live.store import Captures
+from app.names import Name, Note
 from app.rig_files import check_rig_file
 from app.streams import TOO_MANY
 from recon4.settings import PRESETS
@@ -47,7 +48,7 @@ class NewCapture(BaseModel):
     rig: str = "4recon"
     """Name of a shipped rig or path of a rig file on the server."""
     preset: str = "indoor"
-    place: str = Field(default="", max_length=200)
+    place: Name = Field(default="", max_length=200)
     """What the place is called."""
 
 
@@ -57,7 +58,7 @@ class NewMark(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     what: Literal["point", "place"] = "point"
-    text: str = Field(default="", max_length=500)
+    text: Note = Field(default="", max_length=500)
     ago_s: float = Field(default=0.0, ge=0.0, le=600.0)
     """How long ago that was: a note takes a while to type, and one walks on."""
 

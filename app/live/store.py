@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import logging
 from pathlib import Path
 from typing import Any
@@ -18,6 +17,7 @@ from recon4.live.link import listens
 from recon4.live.project_files import begin
 from recon4.live.session import Session, load_session
 from recon4.model.rig import Rig, load_rig
+from recon4.store.json_files import parse_object
 
 log = logging.getLogger(__name__)
 
@@ -132,7 +132,7 @@ def marks_of(session: Session) -> list[dict[str, Any]]:
     marks = []
     for line in lines:
         try:
-            marks.append(json.loads(line))
-        except ValueError:
+            marks.append(parse_object(line, "a note"))
+        except StoreError:
             log.warning("%s: a line is damaged", session.marks)
     return marks

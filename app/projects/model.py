@@ -76,6 +76,8 @@ class Project:
     """Whether there is a map to draw a picture of."""
     summary: dict[str, Any]
     """``summary.json`` as the run wrote it; empty before."""
+    problem: str = ""
+    """Which files of the project cannot be read and why; empty = none."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,6 +97,8 @@ class ProjectCard:
     """Length of the way [m]; None before the first run ended."""
     points: int | None
     """Points of the map; None before the first run ended."""
+    problem: str = ""
+    """Which file of the project cannot be read and why; empty = none."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

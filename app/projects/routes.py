@@ -14,6 +14,7 @@ from app.compute_pool import FileAccess, Lane, Terms
 from app.deps import Parts, Server
 from app.errors import Conflict, Problem
 from app.jobs.model import JobState
+from app.names import Name
 from app.projects.look import Found, files_beside, look_at
 from app.projects.model import FolderEntry, Project, ProjectCard
 from app.projects.trash import Deleted
@@ -38,7 +39,7 @@ class Rename(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    name: str = Field(min_length=1, max_length=100, pattern=r"^[^\x00-\x1f\x7f]+$")
+    name: Name = Field(min_length=1, max_length=100)
     """For people; any letters."""
 
 

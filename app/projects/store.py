@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+import math
 import os
 import re
 from datetime import UTC, datetime
@@ -22,11 +22,23 @@ from app.projects.model import (
     ResultFile,
 )
 from recon4.errors import StoreError
+from recon4.names import visible
+from recon4.review.approved import approval_of
+from recon4.review.state import artifact_keys
+from recon4.store.checked import Altered
+from recon4.store.json_files import read_object
+from recon4.store.ledger import FinishedStage as StageRow
 from recon4.store.project import Project as Folder
 from recon4.store.project import is_project, read_artifacts, read_stages
 
 PROJECT_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 Stamp = tuple[int | None, ...]
+MOST_PROBLEM = 400
+"""A longer description of what is wrong with a project is cut [characters]."""
+_LARGE = 1 << 53
+"""Greater numbers are no figures of a map, and not the same in a browser."""
+MOST_ENTRIES = 2000
+"""A longer folder listing is cut."""
 
 
 class ProjectStore:
@@ -76,14 +88,21 @@ class ProjectStore:
             )
 
     def result(self, project_id: str, name: str) -> Path:
-        """A result file.
+        """A result file; one of an approved map only if it is the one that was approved.
 
         Raises:
             NotFound: If the project, or the file in it, does not exist.
+            Altered: If it was approved and changed since.
         """
         folder = self.folder(project_id)
         if name not in RESULTS or not _is_result(folder, name):
             raise NotFound(f"project {project_id} has no file {name[:64]!r}")
+        summary, _ = _object(folder, "summary.json")
+        if name != "summary.json" and summary.get("approval"):
+            approval = approval_of(folder, artifact_keys(summary))
+            if approval is None:
+                raise Altered("summary.json names an approval that is in no row of the journal")
+            approval.check_issued_file(folder / name)
         return folder / name
 
     def map_artifact(self, project_id: str) -> Path:
@@ -155,22 +174,24 @@ class ProjectStore:
         return kept[1]
 
     def _read(self, folder: Path) -> Project:
-        facts = _json(folder / "project.json")
+        facts, problems = _object(folder, "project.json")
+        summary, more = _object(folder, "summary.json")
+        stages, most = _stages(folder)
         size, changed_s = _weigh(folder)
-        stages = _stages(folder)
         return Project(
             id=folder.name,
-            name=str(facts.get("name") or folder.name),
+            name=_name(facts, folder),
             finished=(folder / "summary.json").exists(),
-            updated=datetime.fromtimestamp(changed_s, UTC).isoformat(timespec="seconds"),
+            updated=_iso(changed_s),
             bytes=size,
-            preset=str(facts.get("preset") or ""),
+            preset=visible(str(facts.get("preset") or "")),
             rig=_name_of(facts.get("rig")),
             files=tuple(_results(folder)),
             stages=stages,
             viewable=any(stage.stage in ("odometry", "map") for stage in stages),
             pictured=any(stage.stage == "map" for stage in stages),
-            summary=_json(folder / "summary.json"),
+            summary=summary,
+            problem="; ".join(filter(None, (problems, more, most))),
         )
 
 
@@ -189,28 +210,41 @@ def _changed_ns(path: Path) -> int | None:
 
 
 def _read_card(folder: Path, stamp: Stamp) -> ProjectCard:
-    facts, summary = _json(folder / "project.json"), _json(folder / "summary.json")
-    changed_s = max(t_ns for t_ns in stamp if t_ns is not None) / 1e9
+    facts, problem = _object(folder, "project.json")
+    summary, more = _object(folder, "summary.json")
     finished = stamp[1] is not None
     return ProjectCard(
         id=folder.name,
-        name=str(facts.get("name") or folder.name),
+        name=_name(facts, folder),
         finished=finished,
-        updated=datetime.fromtimestamp(changed_s, UTC).isoformat(timespec="seconds"),
-        preset=str(facts.get("preset") or ""),
+        updated=_iso(max(t_ns for t_ns in stamp if t_ns is not None) / 1e9),
+        preset=visible(str(facts.get("preset") or "")),
         rig=_name_of(facts.get("rig")),
         pictured=finished and "points" in summary,
         way_m=_number(summary.get("way_m")),
         points=_whole(summary.get("points")),
+        problem="; ".join(filter(None, (problem, more))),
     )
 
 
+def _name(facts: dict[str, Any], folder: Path) -> str:
+    return visible(str(facts.get("name") or folder.name))
+
+
+def _iso(t_s: float) -> str:
+    """UTC, ISO 8601; the first moment of 1970 for a time no calendar has."""
+    try:
+        return datetime.fromtimestamp(t_s, UTC).isoformat(timespec="seconds")
+    except (ValueError, OverflowError, OSError):
+        return datetime.fromtimestamp(0, UTC).isoformat(timespec="seconds")
+
+
 def _number(value: Any) -> float | None:
-    return float(value) if isinstance(value, int | float) else None
+    return float(value) if isinstance(value, int | float) and abs(value) < _LARGE else None
 
 
 def _whole(value: Any) -> int | None:
-    return value if isinstance(value, int) else None
+    return value if isinstance(value, int) and abs(value) < _LARGE else None
 
 
 def _is_project(folder: Path) -> bool:
@@ -243,32 +277,47 @@ def _artifacts(folder: Path) -> dict[str, Path]:
         return {}
 
 
-def _stages(folder: Path) -> tuple[FinishedStage, ...]:
-    """Stages of the latest run in the order of the pipeline."""
-    current = {path.name for path in _artifacts(folder).values()}
-    if not current:
-        return ()
+def _stages(folder: Path) -> tuple[tuple[FinishedStage, ...], str]:
+    """Stages of the latest run in the order of the pipeline, and why there are none."""
+    if not (folder / "ledger.sqlite").exists():
+        return (), ""
+    try:
+        current = {path.name for path in read_artifacts(folder).values()}
+        rows = [row for row in read_stages(folder) if row.key in current]
+        found = tuple(map(_stage, rows))
+    except (StoreError, ValueError, TypeError) as error:
+        return (), visible(str(error), most=MOST_PROBLEM)
     order = {stage: k for k, stage in enumerate(STAGE_ORDER)}
-    rows = [row for row in read_stages(folder) if row.key in current]
-    return tuple(
-        FinishedStage(
-            stage=row.stage, seconds=row.seconds, peak_bytes=row.peak_bytes, finished=row.finished
-        )
-        for row in sorted(rows, key=lambda row: order.get(row.stage, len(order)))
+    return tuple(sorted(found, key=lambda one: order.get(one.stage, len(order)))), ""
+
+
+def _stage(row: StageRow) -> FinishedStage:
+    """A row as it may be sent; SQLite keeps whatever a damaged file has in a column."""
+    seconds = float(row.seconds)
+    if not math.isfinite(seconds):
+        raise ValueError(f"ledger.sqlite: {row.stage} took {seconds} s")
+    return FinishedStage(
+        stage=visible(str(row.stage)),
+        seconds=seconds,
+        peak_bytes=int(row.peak_bytes),
+        finished=visible(str(row.finished)),
     )
 
 
-def _json(path: Path) -> dict[str, Any]:
-    """A JSON object; empty when it is missing or damaged, as a page shows what there is."""
+def _object(folder: Path, name: str) -> tuple[dict[str, Any], str]:
+    """A JSON object, and what is wrong with the file; a page shows what there is."""
+    path = folder / name
+    if not path.exists():
+        return {}, ""
     try:
-        value = json.loads(path.read_text("utf-8"))
-    except (OSError, ValueError):
-        return {}
-    return value if isinstance(value, dict) else {}
+        return read_object(path), ""
+    except StoreError as error:
+        words = str(error).replace(f"{folder}/", "")
+        return {}, visible(words, most=MOST_PROBLEM)
 
 
 def _name_of(rig: Any) -> str:
-    return str(rig.get("name", "")) if isinstance(rig, dict) else str(rig or "")
+    return visible(str(rig.get("name", "")) if isinstance(rig, dict) else str(rig or ""))
 
 
 def _weigh(folder: Path) -> tuple[int, float]:

@@ -53,7 +53,7 @@ class Trash:
 
     def all(self) -> list[Deleted]:
         """What lies aside, the newest first."""
-        found = [path for path in self._entries() if NAME.fullmatch(path.name)]
+        found = [path for path in self._entries() if _is_deleted(path)]
         return sorted(map(self._deleted, found), key=lambda one: one.deleted, reverse=True)
 
     def restore(self, deleted_id: str) -> str:
@@ -91,7 +91,7 @@ class Trash:
         for path in self._entries():
             if path.name.startswith(".going-"):
                 shutil.rmtree(path, ignore_errors=True)
-        old = [path for path in self._entries() if NAME.fullmatch(path.name)]
+        old = [path for path in self._entries() if _is_deleted(path)]
         old = [path for path in old if _deleted_s(path) + self._kept_s < now_s]
         for path in old:
             self._remove(path)
@@ -103,7 +103,7 @@ class Trash:
         shutil.rmtree(going, ignore_errors=True)
 
     def _find(self, deleted_id: str) -> Path:
-        if not NAME.fullmatch(deleted_id) or not (self._folder / deleted_id).is_dir():
+        if not _is_deleted(self._folder / deleted_id) or not (self._folder / deleted_id).is_dir():
             raise NotFound("this project is gone for good")
         return self._folder / deleted_id
 
@@ -118,6 +118,17 @@ class Trash:
             deleted=_iso(at_s),
             goes=_iso(at_s + self._kept_s),
         )
+
+
+def _is_deleted(path: Path) -> bool:
+    """Whether it bears a name of ours, with a moment that a calendar has."""
+    if not NAME.fullmatch(path.name):
+        return False
+    try:
+        _deleted_s(path)
+    except ValueError:
+        return False
+    return True
 
 
 def _deleted_s(path: Path) -> float:

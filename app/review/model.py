@@ -7,11 +7,13 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.names import Note
+
 Frame = Annotated[int, Field(ge=0, le=1 << 40)]
 Finite = Annotated[float, Field(ge=-1e8, le=1e8, allow_inf_nan=False)]
 PoseNumbers = Annotated[list[Finite], Field(min_length=7, max_length=7)]
 """x y z [m], quaternion x y z w."""
-Why = Annotated[str, Field(max_length=500)]
+Why = Annotated[Note, Field(max_length=500)]
 
 
 class NewDecision(BaseModel):
@@ -115,7 +117,8 @@ class ReviewView:
     may_review: bool
     may_process: bool
     approval: dict[str, Any] | None
-    """The newest approval: version, who, when, hash, and whether it is of these results."""
+    """The newest approval: version, who, when, hash, and whether it is of these results. Of these
+    also ``check``: ``checked``, ``checking`` or ``altered``, with the reason in ``altered``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -32,14 +32,16 @@ from app.review.model import (
     Step,
 )
 from app.review.store import terms_of
-from recon4.review.approval import Approval, NotApprovable, latest_approval
+from recon4.review.approval import NotApprovable
 from recon4.review.approval import approve as sign
+from recon4.review.approved import Approval, approval_of, latest_approval
 from recon4.review.decisions import Decided, Decision, Kind, fold
 from recon4.review.journal import JournalMoved, NothingToTakeBack, Row, append, read_rows
 from recon4.review.pairs import align, fit_points, pair_facts, pair_points, walk_facts
 from recon4.review.signature import ensure_key
 from recon4.review.source import Source, graph_key
-from recon4.review.state import decisions_in_map
+from recon4.review.state import artifact_keys, decisions_in_map, read_summary
+from recon4.store.checked import Altered
 
 T = TypeVar("T")
 
@@ -282,8 +284,23 @@ def _view(project_id: str, server: Parts, who: Person) -> ReviewView:
         busy=_busy(project_id, server),
         may_review=who.may(May.REVIEW),
         may_process=who.may(May.PROCESS),
-        approval=latest_approval(root, rows),
+        approval=_approval(root, rows, server),
     )
+
+
+def _approval(root: Path, rows: Sequence[Row], server: Parts) -> dict[str, Any] | None:
+    """The newest approval for people, and whether the bytes are still those that were signed."""
+    found = latest_approval(root, rows)
+    if found is None or not found["current"]:
+        return found
+    try:
+        approval = approval_of(root, artifact_keys(read_summary(root) or {}))
+    except Altered as error:
+        return found | {"check": "altered", "altered": str(error)}
+    if approval is None:
+        return found | {"check": "altered", "altered": "the results are of other artifacts"}
+    check = server.checks.state(root, approval)
+    return found | {"check": check.state, "altered": check.words}
 
 
 def _busy(project_id: str, server: Parts) -> bool:

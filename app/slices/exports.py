@@ -11,7 +11,7 @@ import hashlib
 import json
 import shutil
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -42,18 +42,19 @@ class ExportRequest:
     reference: str
     """Folder of the reference; empty = none."""
     told: Mapping[str, Any]
-    """Name of the project, key of the map, approval."""
+    """Name of the project, key of the map, evidence of its approval."""
 
     @property
     def key(self) -> str:
         """Hash of the request; another alignment of the reference is another one."""
+        evidence = self.told["evidence"]
         facts = Path(self.reference) / "reference.json" if self.reference else None
         determines = {
             "ending": self.ending,
             "ask": self.ask.model_dump(mode="json"),
             "artifacts": dict(self.artifacts),
             "reference": [str(facts), facts.stat().st_mtime_ns] if facts else None,
-            "told": dict(self.told),
+            "told": dict(self.told) | {"evidence": asdict(evidence) if evidence else None},
         }
         return hashlib.sha256(json.dumps(determines, sort_keys=True).encode()).hexdigest()
 

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.names import Name
 from recon4.slices.colors import ColorBy, Ground
 from recon4.slices.cut import MOST_SLICES, MOST_THICKNESS_M, Cut, free, horizontal, vertical
 
@@ -148,7 +149,7 @@ class AddReference(Strict):
     """A file on this computer becomes a reference."""
 
     path: str = Field(min_length=1, max_length=4096)
-    name: str = Field(default="", max_length=100, pattern=r"^[^\x00-\x1f\x7f]*$")
+    name: Name = Field(default="", max_length=100)
     frame: Literal["map", "crs"] = "map"
     """Whether its coordinates are those of the map's own frame or of its CRS."""
 
@@ -174,7 +175,7 @@ class AskExport(Look):
 class ControlFile(Strict):
     """A survey's file, as it is."""
 
-    name: str = Field(default="points.csv", max_length=200)
+    name: Name = Field(default="points.csv", max_length=200)
     base64: str = Field(max_length=900_000)
     order: Literal["EN", "NE"] | None = None
 
@@ -182,7 +183,7 @@ class ControlFile(Strict):
 class ControlSpec(Strict):
     """A surveyed point."""
 
-    id: str = Field(min_length=1, max_length=64)
+    id: Name = Field(min_length=1, max_length=64)
     xyz_m: Xyz
     role: Literal["control", "check"] = "check"
     radius_m: float = Field(default=0.0, ge=0.0, le=10.0)
@@ -193,7 +194,7 @@ class ControlState(Strict):
 
     points: list[ControlSpec] = Field(default=[], max_length=5000)
     frame: Literal["map", "crs"] = "map"
-    picks: dict[str, Xyz] = {}
+    picks: dict[Name, Xyz] = {}
     """Id -> place in the map's frame [m]."""
     found_in: dict[str, str] = {}
     """Id -> key of the map it was found in; the server knows it and takes nobody's word."""

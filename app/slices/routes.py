@@ -83,13 +83,14 @@ async def picture(
     Of the requests of one ``page`` only the latest is answered; the others get 409.
     """
     slices = server.slices
+    evidence = await run_in_threadpool(slices.evidence, project_id, ask.source)
     artifacts = await run_in_threadpool(slices.artifacts, project_id, ask.source)
     reference = slices.reference(project_id, ask.reference)
     ask.cut.cut()  # a plane without meaning is refused before it waits
     terms = slices.terms(project_id, caller.name, ask.source)
     asking = Asking(ask.page, ask.turn)
     return await caller.wait(
-        slices.newest(asking, terms, work.picture, artifacts["map"], reference, ask)
+        slices.newest(asking, terms, work.picture, artifacts["map"], reference, ask, evidence)
     )
 
 
@@ -171,7 +172,9 @@ async def add_reference(
         large=True,
     )
     facts = await caller.wait(
-        server.slices.survey(terms, work.add_reference, str(path), REFERENCE, add.name, in_crs)
+        server.slices.write_reference(
+            project_id, out, terms, work.add_reference, str(path), REFERENCE, add.name, in_crs
+        )
     )
     return {"id": out.name} | facts
 
@@ -199,7 +202,16 @@ async def align(
         large=True,
     )
     return await caller.wait(
-        server.slices.survey(terms, work.align_reference, artifacts["map"], folder, ask.how, pairs)
+        server.slices.write_reference(
+            project_id,
+            Path(folder),
+            terms,
+            work.align_reference,
+            artifacts["map"],
+            folder,
+            ask.how,
+            pairs,
+        )
     )
 
 
@@ -219,11 +231,14 @@ async def export(
     """
     asked = _parsed(ask)
     slices = server.slices
-    artifacts = await run_in_threadpool(slices.artifacts, project_id, asked.source)
+    evidence = await run_in_threadpool(slices.evidence, project_id, asked.source)
+    artifacts = await run_in_threadpool(
+        slices.approved_artifacts, project_id, asked.source, evidence
+    )
     told = {
         "project": (await run_in_threadpool(server.projects.get, project_id)).name,
         "key": Path(artifacts["map"]).name,
-        "approval": await run_in_threadpool(slices.approval, project_id, asked.source),
+        "evidence": evidence,
     }
     request = ExportRequest(
         ending=ending,
@@ -287,7 +302,7 @@ async def control_file(
     state = await run_in_threadpool(slices.control, project_id)
     told = {
         "project": (await run_in_threadpool(server.projects.get, project_id)).name,
-        "approval": await run_in_threadpool(slices.approval_words, project_id),
+        "evidence": await run_in_threadpool(slices.evidence, project_id),
     }
     terms = slices.terms(project_id, caller.name)
     text = await caller.wait(slices.draw(terms, work.control_file, artifacts, state, ending, told))

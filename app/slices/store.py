@@ -9,29 +9,35 @@ import shutil
 import threading
 from collections import OrderedDict
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, TypeVar
+
+from starlette.concurrency import run_in_threadpool
 
 from app.compute_pool import ComputePool, FileAccess, Lane, Terms
 from app.errors import Conflict, NotFound
 from app.projects.store import PROJECT_ID, ProjectStore
+from app.review.checks import ApprovalChecks
 from app.settings import ServerSettings
 from app.slices import work
 from app.slices.exports import Exports
 from app.slices.model import ControlState
-from recon4.bounded import read_json_object, read_text_limited
-from recon4.errors import CorruptFile, StoreError
-from recon4.review.approval import approval_of_map
+from recon4.bounded import read_text_limited
+from recon4.errors import StoreError
+from recon4.review.approved import Approval, approval_of, approval_of_map
+from recon4.review.evidence import Evidence
 from recon4.store.atomic import write_json
+from recon4.store.checked import Altered
 from recon4.store.project import read_artifacts, read_stages
+from recon4.store.seal import begin_change, changing, check_sealed, end_change
 
 T = TypeVar("T")
 _KEY = re.compile(r"[0-9a-f]{16,64}")
 _REFERENCE = re.compile(r"[0-9a-f]{12}")
 MOST_REFERENCES = 20
+CONTROL = "slices/control.json"
 MOST_PAGES = 256
-MOST_SUMMARY_BYTES = 16 << 20
 MOST_CONTROL_BYTES = 16 << 20
 
 
@@ -60,8 +66,14 @@ class _Latest:
 class Slices:
     """Of all projects. Keeps pictures from above and checks of maps beside the queue of jobs."""
 
-    def __init__(self, pool: ComputePool, projects: ProjectStore, settings: ServerSettings) -> None:
-        self._pool = pool
+    def __init__(
+        self,
+        pool: ComputePool,
+        projects: ProjectStore,
+        checks: ApprovalChecks,
+        settings: ServerSettings,
+    ) -> None:
+        self._pool, self._checks = pool, checks
         self._projects = projects
         self._kept = settings.state / "slices"
         self.exports = Exports(pool, self._kept / "exports", reserve_bytes=settings.reserve_bytes)
@@ -107,28 +119,53 @@ class Slices:
         ]
         return earlier[:20] + others[:200]
 
-    def approval(self, project_id: str, source: str = "") -> dict[str, Any] | None:
-        """Who approved the map that a request means, as in ``summary.json``; None = nobody.
+    def evidence(self, project_id: str, source: str = "") -> Evidence | None:
+        """Who approved the map that a request means, and what its bytes must be; None = nobody.
 
         Raises:
-            StoreError: If the approval of an earlier map is damaged.
+            Altered: If an approval counts but was changed.
         """
-        kind, _, name = source.partition(":")
-        if kind == "map":
-            return approval_of_map(self._projects.folder(project_id), name)
-        root = self._projects.folder(name if kind == "project" else project_id)
-        try:
-            told = read_json_object(root / "summary.json", MOST_SUMMARY_BYTES)
-        except CorruptFile:
-            return None
-        found = told.get("approval")
-        return found if isinstance(found, dict) else None
+        _, found = self._approval(project_id, source)
+        return found.evidence if found else None
 
     def approval_words(self, project_id: str, source: str = "") -> str:
-        """The same in words."""
+        """Who approved the map that a request means, and whether its bytes are still those."""
+        try:
+            root, found = self._approval(project_id, source)
+        except Altered as error:
+            return f"ALTERED: {error}"
         from recon4.slices.sheet import approval_words
 
-        return approval_words(self.approval(project_id, source))
+        words = approval_words(asdict(found.evidence.stamp) if found else None)
+        if found is None:
+            return words
+        check = self._checks.state(root, found)
+        if check.state == "altered":
+            return f"ALTERED: {check.words}"
+        return words if check.state == "checked" else f"{words}, bytes not compared yet"
+
+    def _approval(self, project_id: str, source: str) -> tuple[Path, Approval | None]:
+        kind, _, name = source.partition(":")
+        root = self._projects.folder(name if kind == "project" else project_id)
+        if kind == "map":
+            return root, approval_of_map(root, name)
+        keys = {stage: folder.name for stage, folder in read_artifacts(root).items()}
+        return root, approval_of(root, keys)
+
+    def approved_artifacts(
+        self, project_id: str, source: str, evidence: Evidence | None
+    ) -> dict[str, str]:
+        """Folders of the run that a request means; of an approved earlier map its own frame too.
+
+        Raises:
+            NotFound: If there is no such map.
+        """
+        found = self.artifacts(project_id, source)
+        if evidence is None or not source.startswith("map:"):
+            return found
+        level = Path(found["map"]).parent / evidence.artifacts.get("level", "")
+        without = {stage: folder for stage, folder in found.items() if stage != "level"}
+        return without | ({"level": str(level)} if "level" in evidence.artifacts else {})
 
     def references(self, project_id: str) -> list[dict[str, Any]]:
         """References of a project."""
@@ -145,6 +182,8 @@ class Slices:
         folder = self._folder(project_id) / "references" / reference_id
         if not _REFERENCE.fullmatch(reference_id) or not (folder / "reference.json").is_file():
             raise NotFound(f"no reference {reference_id[:20]!r} in project {project_id}")
+        root = self._projects.folder(project_id)
+        check_sealed(root, _name_of(folder))
         return str(folder)
 
     def new_reference(self, project_id: str) -> Path:
@@ -159,11 +198,28 @@ class Slices:
         folder.mkdir(parents=True, exist_ok=True)
         return folder / secrets.token_hex(6)
 
+    async def write_reference(
+        self,
+        project_id: str,
+        folder: Path,
+        terms: Terms,
+        function: Callable[..., T],
+        *args: object,
+    ) -> T:
+        """Run what writes a reference in a child, and seal the files it wrote."""
+        root, names = self._projects.folder(project_id), (_name_of(folder),)
+        await run_in_threadpool(begin_change, root, names)
+        try:
+            return await self.survey(terms, function, *args)
+        finally:
+            await run_in_threadpool(end_change, root, names)
+
     def remove_reference(self, project_id: str, reference_id: str) -> None:
         """Remove one; the file it was made of stays."""
         folder = Path(self.reference(project_id, reference_id))
         gone = folder.with_name(f".tmp-{secrets.token_hex(6)}-{folder.name}")
-        folder.rename(gone)
+        with changing(self._projects.folder(project_id), _name_of(folder), compared=False):
+            folder.rename(gone)
         shutil.rmtree(gone)
 
     def control(self, project_id: str) -> ControlState:
@@ -172,7 +228,9 @@ class Slices:
         Raises:
             StoreError: If the file is damaged.
         """
-        path = self._folder(project_id) / "control.json"
+        root = self._projects.folder(project_id)
+        check_sealed(root, CONTROL)  # an acceptance sheet is made of it
+        path = root / CONTROL
         if not path.exists():
             return ControlState(version=0)
         try:
@@ -204,7 +262,8 @@ class Slices:
         kept = state.model_copy(update={"found_in": found_in, "version": version})
         folder = self._folder(project_id)
         folder.mkdir(exist_ok=True)
-        write_json(folder / "control.json", kept.model_dump(mode="json"))
+        with changing(self._projects.folder(project_id), CONTROL):
+            write_json(folder / "control.json", kept.model_dump(mode="json"))
         return kept
 
     # -- work
@@ -270,3 +329,8 @@ class Slices:
         self._projects.map_artifact(project_id)  # says what is missing
         found = read_artifacts(self._projects.folder(project_id))
         return {stage: str(folder) for stage, folder in found.items()}
+
+
+def _name_of(reference: Path) -> str:
+    """Of a reference's folder, below its project."""
+    return f"slices/references/{reference.name}"

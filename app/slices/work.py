@@ -27,7 +27,9 @@ from recon4.bounded import read_json_object
 from recon4.errors import ConfigError, StoreError
 from recon4.geometry.se3 import SE3
 from recon4.mapping.tiles import TileSet
-from recon4.review.stamp import Stamp, stamp_file
+from recon4.names import visible
+from recon4.review.evidence import Evidence
+from recon4.review.stamp import stamp_file
 from recon4.slices.acceptance import SheetWords, render_acceptance
 from recon4.slices.align import align_by_icp, align_by_pairs
 from recon4.slices.colors import SENSOR_COLORS, ColorBy, Ground, Span, table
@@ -52,6 +54,7 @@ from recon4.slices.sheet import (
     write_sheet,
 )
 from recon4.store.atomic import atomic_file, null_for_nan, write_json
+from recon4.store.checked import CheckedArtifact
 
 Artifacts = dict[str, str]
 """Stage -> folder of its artifact."""
@@ -65,6 +68,25 @@ MOST_KEPT_BYTES = 64 << 20
 def tiles_of(folder: str) -> TileSet:
     """A map; its folder is named by its content, so it never changes."""
     return TileSet.open(Path(folder))
+
+
+@lru_cache(maxsize=4)
+def _approved_tiles(folder: str, manifest_sha256: str) -> TileSet:
+    """The same, every byte of it compared before it is used."""
+    return TileSet.open(Path(folder), CheckedArtifact.open(Path(folder), manifest_sha256))
+
+
+def _map_of(artifacts: Artifacts, evidence: Evidence | None) -> TileSet:
+    """The map of a request; what is approved is compared with what was signed.
+
+    Raises:
+        Altered: If the map, or what says where it lies, is not what was approved.
+    """
+    if evidence is None:
+        return tiles_of(artifacts["map"])
+    evidence.check_frame({stage: Path(folder) for stage, folder in artifacts.items()})
+    evidence.artifact("map", Path(artifacts["map"])).check("tiles.json")
+    return _approved_tiles(artifacts["map"], evidence.manifests["map"])
 
 
 @lru_cache(maxsize=2)
@@ -99,10 +121,12 @@ def facts(artifacts: Artifacts, told: dict[str, Any]) -> SliceFacts:
     )
 
 
-def picture(map_folder: str, reference: str, ask: AskPicture) -> PictureView:
-    """A picture of a slice for the screen."""
+def picture(
+    map_folder: str, reference: str, ask: AskPicture, evidence: Evidence | None = None
+) -> PictureView:
+    """A picture of a slice for the screen; of an approved map, of approved points only."""
     began = time.perf_counter()
-    tiles, cut = tiles_of(map_folder), ask.cut.cut()
+    tiles, cut = _map_of({"map": map_folder}, evidence), ask.cut.cut()
     window = _shaped(_window(ask, tiles, cut), ask.width / ask.height)
     paper = Paper(window, (window.right - window.left) / ask.width)
     made = draw(tiles, cut, paper, color=ask.color, reference=reference_of(reference, ask.method))
@@ -225,9 +249,13 @@ def align_reference(
 def export(
     artifacts: Artifacts, ask: AskExport, out: str, *, reference: str, told: dict[str, Any]
 ) -> str:
-    """Write a file of slices; its ending says which. It carries the approval, if there is one."""
-    path = Path(out)
-    tiles, frame = tiles_of(artifacts["map"]), _frame(artifacts)
+    """Write a file of slices; its ending says which. It carries the approval, if there is one.
+
+    Raises:
+        Altered: If a tile that it shows is not what was approved.
+    """
+    path, evidence = Path(out), told["evidence"]
+    tiles, frame = _map_of(artifacts, evidence), _frame(artifacts)
     cuts = ask.cut.cut().repeated(ask.count, spacing_m=ask.spacing_m)
     window = Window(**ask.window.model_dump()) if ask.window else None
     if path.suffix == ".laz":
@@ -240,21 +268,21 @@ def export(
         _export_geotiff(artifacts, ask, path, reference=reference, told=told)
     else:
         _export_sheet(artifacts, ask, path, reference=reference, told=told)
-    if told["approval"] and path.suffix in (".laz", ".csv", ".dxf"):
-        stamp_file(path, path, Stamp(**told["approval"]))
+    if evidence and path.suffix in (".laz", ".csv", ".dxf"):
+        stamp_file(path, path, evidence.stamp)
     return out
 
 
 def _export_geotiff(
     artifacts: Artifacts, ask: AskExport, path: Path, *, reference: str, told: dict[str, Any]
 ) -> None:
-    tiles, cut = tiles_of(artifacts["map"]), ask.cut.cut()
+    tiles, cut = _map_of(artifacts, told["evidence"]), ask.cut.cut()
     window = _window(ask, tiles, cut)
     side_m = max(window.right - window.left, window.top - window.bottom)
     paper = Paper(window, max(FINEST_M, side_m / MOST_GEOTIFF_PX))
     against = reference_of(reference, ask.method)
     made = draw(tiles, cut, paper, color=ask.color, reference=against)
-    words = f"{told['project']}: {approval_words(told['approval'])}"
+    words = f"{told['project']}: {_approval_words(told['evidence'])}"
     frame = _frame(artifacts)
     write_geotiff(made, path, frame=frame, span=span_of(ask, made), words=words)
 
@@ -262,7 +290,7 @@ def _export_geotiff(
 def _export_sheet(
     artifacts: Artifacts, ask: AskExport, path: Path, *, reference: str, told: dict[str, Any]
 ) -> None:
-    tiles, cut = tiles_of(artifacts["map"]), ask.cut.cut()
+    tiles, cut = _map_of(artifacts, told["evidence"]), ask.cut.cut()
     against = reference_of(reference, ask.method)
     layout = lay_out(_window(ask, tiles, cut), ask.size, ask.scale)
     made = draw(tiles, cut, layout.paper, color=ask.color, reference=against)
@@ -270,7 +298,7 @@ def _export_sheet(
         project=told["project"],
         frame=_frame(artifacts).words,
         sources=source_words(told["key"]),
-        approval=approval_words(told["approval"]),
+        approval=_approval_words(told["evidence"]),
         reference=against.name if against else "",
         sensors=tuple(str(name) for name in tiles.facts.get("sensors", [])),
     )
@@ -289,11 +317,24 @@ def control_report(artifacts: Artifacts, state: ControlState) -> dict[str, Any]:
 
 
 def control_file(
-    artifacts: Artifacts, state: ControlState, ending: str, told: dict[str, str]
+    artifacts: Artifacts, state: ControlState, ending: str, told: dict[str, Any]
 ) -> str:
-    """The same as CSV or as a sheet in HTML."""
+    """The same as CSV or as a sheet in HTML.
+
+    Raises:
+        Altered: If the map, or what says where it lies, is not what was approved.
+    """
+    evidence = told["evidence"]
+    if evidence:
+        _map_of(artifacts, evidence)
+        evidence.artifact("map", Path(artifacts["map"])).check_all()  # points were found in it
     found, sources = _residuals(artifacts, state), source_words(Path(artifacts["map"]).name)
-    words = SheetWords(frame=_frame(artifacts).words, sources=sources, **told)
+    words = SheetWords(
+        project=told["project"],
+        frame=_frame(artifacts).words,
+        sources=sources,
+        approval=_approval_words(evidence),
+    )
     if ending == "html":
         return render_acceptance(found, words)
     line = f"of {words.project}, {words.sources}, {words.frame}. {words.approval}"
@@ -325,10 +366,19 @@ def references_in(folder: Path) -> list[dict[str, Any]]:
     """The references of a project, by name."""
     entries = sorted(folder.iterdir()) if folder.is_dir() else []
     return [
-        {"id": entry.name} | read_facts(entry)
+        {"id": entry.name} | _facts_or_problem(entry)
         for entry in entries
         if not entry.name.startswith(".") and (entry / "reference.json").is_file()
     ]
+
+
+def _facts_or_problem(folder: Path) -> dict[str, Any]:
+    """One reference that cannot be read does not hide the others."""
+    try:
+        return read_facts(folder)
+    except StoreError as error:
+        words = visible(str(error).replace(f"{folder.parent}/", ""))
+        return {"name": f"{folder.name}: {words}", "kind": "damaged", "problem": words}
 
 
 def span_of(ask: Look, made: Picture) -> Span:
@@ -338,6 +388,10 @@ def span_of(ask: Look, made: Picture) -> Span:
     if not high > low:
         raise ConfigError(f"colors need a low end below the high end, got {low} and {high}")
     return Span(low, high)
+
+
+def _approval_words(evidence: Evidence | None) -> str:
+    return approval_words(asdict(evidence.stamp) if evidence else None)
 
 
 def _window(ask: Look, tiles: TileSet, cut: Cut) -> Window:

@@ -20,9 +20,11 @@ from app.access.audit import audit
 from app.access.people import May, Who, needs
 from app.deps import Parts, Server
 from app.errors import AppError, BadRequest, Conflict, Problem
+from app.names import Name
 from app.uploads import tus
 from app.uploads.model import Part, Upload
 from app.uploads.receive import receive
+from recon4.names import check_name
 
 PREFIX = "/api/uploads/files"
 SETTLES_WITHIN_S = 3.0
@@ -69,13 +71,13 @@ class NewUpload(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    name: str = Field(min_length=1, max_length=200)
+    name: Name = Field(min_length=1, max_length=200)
     """As people call it: the name of the file or folder."""
     files: int = Field(ge=1, le=100_000)
     """How many files it has."""
     bytes: int = Field(ge=0)
     """How large all of them are."""
-    fingerprint: str = Field(default="", max_length=200)
+    fingerprint: Name = Field(default="", max_length=200)
     """What you recognize the same files by, to go on after a break."""
 
 
@@ -264,6 +266,7 @@ def terminate(file_id: Annotated[str, Path(max_length=40)], server: Server) -> R
 
 def _announce(server: Parts, metadata: dict[str, str], length: int, by: str) -> tuple[Upload, Part]:
     name = metadata.get("relativePath") or metadata.get("filename") or metadata.get("name") or ""
+    check_name(name, what="the name of a file", most=1000)
     if metadata.get("upload"):
         upload = server.uploads.get(metadata["upload"])
     else:

@@ -10,7 +10,6 @@ What a request was told is on disk before it is told (fsync). The server process
 
 from __future__ import annotations
 
-import json
 import logging
 import os
 import re
@@ -22,15 +21,20 @@ from collections.abc import Iterator
 from dataclasses import fields
 from datetime import UTC, datetime
 from pathlib import Path, PurePosixPath
+from typing import Any
 
 from app.errors import BadRequest, NoRoom, NotFound, TooLarge, TooMany
 from app.settings import ServerSettings
 from app.uploads.model import Part, Upload
 from app.uploads.names import another, safe_path, slug
+from recon4.errors import StoreError
+from recon4.names import visible
 from recon4.store.atomic import make_folders, write_json
+from recon4.store.json_files import read_object
 
 log = logging.getLogger(__name__)
 
+_PLAIN = {"str": str, "int": int, "bool": bool}
 UPLOAD_ID = re.compile(r"[0-9a-f]{12}")
 
 
@@ -242,21 +246,35 @@ class UploadStore:
                 continue
             try:
                 upload = self._read_one(folder)
-            except (OSError, ValueError, TypeError, KeyError) as error:
+            except (OSError, ValueError, TypeError, KeyError, StoreError) as error:
                 log.warning("upload %s is damaged and left alone: %s", folder.name, error)
                 continue
             self._uploads[upload.id] = upload
             self.finish(upload)
 
     def _read_one(self, folder: Path) -> Upload:
-        upload = Upload(**json.loads((folder / "upload.json").read_text("utf-8")))
+        upload = _upload(read_object(folder / "upload.json"))
         moved = upload.finished or not (folder / "data").exists()
         for path in sorted((folder / "parts").glob("*.json"), key=lambda p: int(p.stem)):
-            note = json.loads(path.read_text("utf-8"))
+            note = read_object(path)
             part = Part(number=int(path.stem), **{**note, "path": PurePosixPath(note["path"])})
             part.offset = part.bytes if moved else self._data(upload, part).stat().st_size
             upload.parts[part.name] = part
         return upload
+
+
+def _upload(facts: dict[str, Any]) -> Upload:
+    """An upload of what was noted; a name from before names were refused is made visible.
+
+    Raises:
+        TypeError, ValueError: If a fact is missing, unknown or of another kind.
+    """
+    upload = Upload(**facts)
+    for fact in fields(Upload):
+        if fact.type in _PLAIN and type(getattr(upload, fact.name)) is not _PLAIN[str(fact.type)]:
+            raise TypeError(f"{fact.name}: expected {fact.type}, got {facts[fact.name]!r}"[:200])
+    upload.name = visible(upload.name)
+    return upload
 
 
 def fsync(path: Path) -> None:

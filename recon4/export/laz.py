@@ -61,7 +61,7 @@ class _Watched(io.BufferedWriter):
 
 
 def export_laz(
-    folder: Path,
+    map_: Path | TileSet,
     path: Path,
     *,
     crs: str | None = None,
@@ -75,7 +75,7 @@ def export_laz(
     are adjusted standard GPS time, or seconds of the recording's clock if that is not UTC.
 
     Args:
-        folder: Artifact of the stage ``map``.
+        map_: Artifact of the stage ``map``, or what is open of it.
         path: File to write, ``.laz``.
         crs: WKT or code of the CRS; None = that of the map, if it has one.
         to_crs: Map coordinates to those of ``crs``; None = the shift by the map's origin in it.
@@ -90,7 +90,7 @@ def export_laz(
         StoreError: If the file cannot be written or does not read back (`NoSpace`: disk full).
     """
     check_name(path, ".laz")
-    tiles = TileSet.open(folder)
+    tiles = TileSet.open(map_) if isinstance(map_, Path) else map_
     transform = into_crs(tiles, to_crs)
     header = _header(tiles, center(tiles, transform), crs or (tiles.crs and tiles.crs.wkt) or None)
     fields = [name for name in [*FIELDS, "intensity_normalized"] if name in tiles.fields]

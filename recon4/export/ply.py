@@ -28,7 +28,7 @@ _COLUMNS = {
 
 
 def export_ply(
-    folder: Path,
+    map_: Path | TileSet,
     path: Path,
     *,
     to_crs: ToCrs | None = None,
@@ -40,7 +40,7 @@ def export_ply(
     the map's frame; ``gps_time`` is as in `recon4.export.laz.export_laz`.
 
     Args:
-        folder: Artifact of the stage ``map``.
+        map_: Artifact of the stage ``map``, or what is open of it.
         path: File to write, ``.ply``.
         to_crs: Map coordinates to those wanted; None = the shift by the map's origin in its CRS.
         progress: Who watches.
@@ -53,7 +53,7 @@ def export_ply(
         StoreError: If the file cannot be written (`NoSpace`: disk full) or has a wrong length.
     """
     check_name(path, ".ply")
-    tiles = TileSet.open(folder)
+    tiles = TileSet.open(map_) if isinstance(map_, Path) else map_
     transform = into_crs(tiles, to_crs)
     center(tiles, transform)
     fields = [name for name in _COLUMNS if name in tiles.fields]

@@ -13,10 +13,10 @@ import hashlib
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from recon4.bounded import read_json_object
 from recon4.errors import StoreError
 from recon4.runtime_folder import runtime_folder
 from recon4.store.atomic import make_folders, write_json
+from recon4.store.json_files import read_object
 
 _DAY_NS = 86_400_000_000_000
 
@@ -92,8 +92,6 @@ def load_session(project: Path) -> Session:
     """
     path = project / "live" / "session.json"
     try:
-        return Session(
-            project=project, **read_json_object(path, MOST_JSON_BYTES, failure=StoreError)
-        )
-    except (StoreError, ValueError, TypeError) as error:
+        return Session(project=project, **read_object(path))
+    except TypeError as error:
         raise StoreError(f"{path} cannot be read: {error}") from error

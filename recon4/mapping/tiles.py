@@ -23,6 +23,7 @@ from recon4.errors import StoreError
 from recon4.geometry.se3 import Array
 from recon4.mapping.tile import FIELDS, Columns, spatial_order
 from recon4.store.atomic import raise_if_full, write_json
+from recon4.store.checked import Altered, CheckedArtifact
 
 FORMAT = 1
 Number = TypeVar("Number", int, float)
@@ -58,6 +59,8 @@ class Tile:
     """Smallest coordinates of its points in the map [m]."""
     high_m: tuple[float, float, float]
     """Largest coordinates of its points in the map [m]."""
+    checked: CheckedArtifact | None = None
+    """What is read is compared with these hashes first; None = it is taken as it is."""
 
     def __len__(self) -> int:
         return self.stop - self.start
@@ -70,13 +73,25 @@ class Tile:
             limit: At most so many points, an even sample of the tile; None = all.
 
         Raises:
+            Altered: If the tile is checked and its bytes are not those that were approved.
             StoreError: If the map does not have a field, or a file is damaged.
         """
         unknown = sorted(set(fields) - set(self.fields))
         if unknown:
             raise StoreError(f"the map has no field {unknown}; it has {list(self.fields)}")
         count = len(self) if limit is None else min(limit, len(self))
+        for name in fields:
+            self._check(name, count)
         return {name: _map_rows(self.folder, name, self.start, count) for name in fields}
+
+    def _check(self, name: str, count: int) -> None:
+        if self.checked is None or count == 0:
+            return
+        first, row_bytes = _row_offset(name, self.start)
+        try:
+            self.checked.check(f"tiles/{name}.npy", first, first + count * row_bytes)
+        except Altered as error:
+            raise Altered(f"tile {self.ijk} of the map was changed: {error}") from error
 
     def xyz_m(self, *, limit: int | None = None) -> Array:
         """Points in the map [m], float64 (N, 3)."""
@@ -98,19 +113,27 @@ class TileSet:
     """The rest of ``tiles.json``: ``points``, ``bounds_m``, ``time_ns``, ``removed`` …"""
 
     @staticmethod
-    def open(folder: Path) -> TileSet:
+    def open(folder: Path, checked: CheckedArtifact | None = None) -> TileSet:
         """Open the artifact of the stage ``map``.
 
+        Args:
+            folder: The artifact.
+            checked: Hashes that everything read from it must have; None = nothing is compared.
+
         Raises:
+            Altered: If ``checked`` is given and ``tiles.json`` was changed.
             StoreError: If it is missing, damaged or of another version.
         """
         path = folder / "tiles.json"
+        if checked is not None:
+            checked.check("tiles.json")
         try:
             facts = _read_facts(path)
             if facts["format"] != FORMAT:
                 raise StoreError(f"{path.name}: expected format {FORMAT}, got {facts['format']}")
             fields = tuple(str(name) for name in facts["fields"])
-            tiles = tuple(_tile(folder / "tiles", fields, row) for row in facts.pop("tiles"))
+            rows = facts.pop("tiles")
+            tiles = tuple(_tile(folder / "tiles", fields, row, checked) for row in rows)
             crs = facts["crs"] and MapCrs(facts["crs"]["wkt"], tuple(facts["crs"]["origin_m"]))
             points = int(facts["points"])
         except (ValueError, KeyError, TypeError, IndexError, OverflowError) as error:
@@ -211,7 +234,9 @@ def _read_facts(path: Path) -> dict[str, Any]:
         raise StoreError(f"{path} is not the list of a map's tiles: {error}") from error
 
 
-def _tile(folder: Path, fields: tuple[str, ...], row: dict[str, Any]) -> Tile:
+def _tile(
+    folder: Path, fields: tuple[str, ...], row: dict[str, Any], checked: CheckedArtifact | None
+) -> Tile:
     return Tile(
         folder,
         fields,
@@ -221,6 +246,7 @@ def _tile(folder: Path, fields: tuple[str, ...], row: dict[str, Any]) -> Tile:
         int(row["stop"]),
         _triple(row["low_m"], float),
         _triple(row["high_m"], float),
+        checked,
     )
 
 
@@ -264,11 +290,17 @@ def _header(name: str, rows: int) -> bytes:
     return b"\x93NUMPY\x01\x00" + len(body).to_bytes(2, "little") + body
 
 
+def _row_offset(name: str, row: int) -> tuple[int, int]:
+    """Where a row begins in its file, and how long it is [bytes]."""
+    row_bytes = np.dtype(FIELDS[name][0]).itemsize * FIELDS[name][1]
+    return _HEADER_BYTES + row * row_bytes, row_bytes
+
+
 def _map_rows(folder: Path, name: str, start: int, count: int) -> NDArray[Any]:
-    dtype, width = np.dtype(FIELDS[name][0]), FIELDS[name][1]
+    dtype = np.dtype(FIELDS[name][0])
     if count == 0:
         return np.empty(_shape(name, 0), dtype)
-    offset = _HEADER_BYTES + start * dtype.itemsize * width
+    offset, _ = _row_offset(name, start)
     try:
         mapped = np.memmap(
             folder / f"{name}.npy", dtype, mode="r", offset=offset, shape=_shape(name, count)

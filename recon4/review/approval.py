@@ -10,12 +10,13 @@ import json
 import os
 import secrets
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 from recon4.errors import StoreError
+from recon4.review.approved import VERSIONS, Approval, approval_of
 from recon4.review.decisions import Decided, Decision, Kind, fold
 from recon4.review.journal import Row, append, broken, head, read_rows
 from recon4.review.signature import sign
@@ -23,30 +24,18 @@ from recon4.review.source import graph_key
 from recon4.review.stamp import Stamp, stamp_file
 from recon4.review.state import artifact_keys, decisions_in_map, read_summary
 from recon4.store.atomic import atomic_file, atomic_folder, make_folders, sweep, write_json
+from recon4.store.checked import Altered, CheckedArtifact
 from recon4.store.hashing import hash_file, hash_json
-from recon4.store.project import Project
+from recon4.store.project import SUMMARY, Project
+from recon4.store.seal import changing, check_sealed
 
-VERSIONS = "versions"
-FORMAT = 1
+FORMAT = 2
+"""Of the statement. 2: it names the hash of the manifest of every artifact."""
 _FIGURES = ("points", "way_m", "duration_s", "multiframes", "lost", "edges", "crs", "warnings")
 
 
 class NotApprovable(StoreError):
     """The results cannot be approved as they are."""
-
-
-@dataclass(frozen=True, slots=True)
-class Approval:
-    """One that counts."""
-
-    version: int
-    hash: str
-    """SHA-256 of the statement."""
-    folder: Path
-    """Holds the files issued with it."""
-    stamp: Stamp
-    artifacts: Mapping[str, str]
-    """Stage -> key of what was approved."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,57 +93,13 @@ def approve(
     return approval
 
 
-def approval_of(root: Path, keys: Mapping[str, str]) -> Approval | None:
-    """The newest approval of results made of these artifacts; None if nobody approved them.
-
-    Raises:
-        StoreError: If it counts but is not there or damaged.
-    """
-    wanted = hash_json(dict(keys))
-    for row in reversed(read_rows(root)):
-        facts = row.decision().facts or {}
-        if row.kind == Kind.APPROVE and facts.get("artifacts") == wanted:
-            folder = root / VERSIONS / str(facts["version"])
-            return _read(folder, facts["version"], facts["approval"])
-    return None
-
-
-def approval_of_map(root: Path, map_key: str) -> dict[str, Any] | None:
-    """The newest approval of an earlier map, by the key of its artifact, as a stamp has it.
-
-    Raises:
-        StoreError: If an approval counts but is not there or damaged.
-    """
-    for row in reversed(read_rows(root)):
-        if row.kind == Kind.APPROVE:
-            facts = row.decision().facts or {}
-            folder = root / VERSIONS / str(facts["version"])
-            approval = _read(folder, facts["version"], facts["approval"])
-            if approval.artifacts.get("map") == map_key:
-                return asdict(approval.stamp)
-    return None
-
-
-def latest_approval(root: Path, rows: Sequence[Row]) -> dict[str, Any] | None:
-    """The newest approval for people; ``current`` = the results in the folder are those and say so.
-
-    Raises:
-        StoreError: If a file is damaged.
-    """
-    for row in reversed(rows):
-        if row.kind == Kind.APPROVE:
-            facts = row.decision().facts or {}
-            said = ((read_summary(root) or {}).get("approval") or {}).get("hash")
-            current = said == facts["approval"]
-            told = {"version": facts["version"], "hash": facts["approval"], "who": row.who}
-            return told | {
-                "time": row.time, "why": row.why, "current": current,
-            }  # fmt: skip
-    return None
-
-
 def put_back(root: Path, approval: Approval) -> None:
-    """Make the results in the project folder those that were issued."""
+    """Make the results in the project folder those that were issued.
+
+    Raises:
+        Altered: If a file of the version is not what was signed; nothing is put back.
+    """
+    approval.check_issued()
     for path in sorted(approval.folder.iterdir()):
         if path.name not in ("approval.json", "summary.json"):
             _link(path, root / path.name)
@@ -162,17 +107,24 @@ def put_back(root: Path, approval: Approval) -> None:
 
 def _hand_out(root: Path, approval: Approval) -> None:
     """The results and the summary of the project are from now on those that were issued."""
-    put_back(root, approval)
-    _link(approval.folder / "summary.json", root / "summary.json")
+    with changing(root, SUMMARY, compared=False):
+        put_back(root, approval)
+        _link(approval.folder / SUMMARY, root / SUMMARY)
 
 
 def _refuse_again(root: Path, asked: _Asked) -> None:
-    """Results are signed once; what was cut off after it counted is handed out first."""
-    before = approval_of(root, asked.keys)
-    if before is None:
+    """Results are signed once; what was cut off after it counted is handed out first.
+
+    A version that was changed since is worth nothing: then they may be signed again.
+    """
+    try:
+        before = approval_of(root, asked.keys)
+        if before is None:
+            return
+        if (asked.summary.get("approval") or {}).get("hash") != before.hash:
+            _hand_out(root, before)
+    except Altered:
         return
-    if (asked.summary.get("approval") or {}).get("hash") != before.hash:
-        _hand_out(root, before)
     raise NotApprovable(
         f"version {before.version} by {before.stamp.who} approves these results already"
     )
@@ -182,6 +134,10 @@ def _asked(root: Path, signer: Mapping[str, str]) -> _Asked:
     summary = read_summary(root)
     if summary is None:
         raise NotApprovable("there is no finished map yet: nothing to approve")
+    try:
+        check_sealed(root, SUMMARY)
+    except Altered as error:
+        raise NotApprovable(f"{error}: make a new map first") from error
     rows = read_rows(root)
     if told := broken(rows):
         raise NotApprovable(f"the journal is not what was written: {told[0]}")
@@ -212,6 +168,11 @@ def _refuse(root: Path, asked: _Asked, *, confirmed: bool) -> None:
         path = root / name
         if not path.is_file() or hash_file(path) != sha256:
             raise NotApprovable(f"{name} is not what the run wrote: make a new map first")
+    try:
+        for key in asked.keys.values():
+            CheckedArtifact.open(root / "artifacts" / key).check_all()
+    except Altered as error:
+        raise NotApprovable(f"{error}: make a new map first") from error
 
 
 def _issue(root: Path, asked: _Asked, *, version: int, key_file: Path) -> Approval:
@@ -238,7 +199,7 @@ def _issue(root: Path, asked: _Asked, *, version: int, key_file: Path) -> Approv
         write_json(made / "approval.json", told | {"signature": signature})
         for path in made.iterdir():
             path.chmod(0o444)
-    return Approval(version, stamp.hash, folder, stamp, asked.keys)
+    return Approval(version, stamp.hash, folder, stamp, asked.keys, statement["manifests"], issued)
 
 
 def _statement(root: Path, asked: _Asked, *, version: int, time: str) -> dict[str, Any]:
@@ -254,6 +215,10 @@ def _statement(root: Path, asked: _Asked, *, version: int, time: str) -> dict[st
         "time": time,
         "figures": figures | {"chi2": graph.get("chi2_after"), "conflicts": asked.conflicts},
         "artifacts": asked.keys,
+        "manifests": {
+            stage: hash_file(root / "artifacts" / key / "manifest.json")
+            for stage, key in asked.keys.items()
+        },
         "inputs": summary["hashes"]["inputs"],
         "results": summary["hashes"]["results"],
         "journal": {
@@ -270,19 +235,6 @@ def _write_summary(folder: Path, summary: dict[str, Any], stamp: Stamp) -> None:
     told = dict(summary) | {"approval": json.loads(stamp.words())}
     told["hashes"] = dict(summary["hashes"]) | {"results": hashes}
     write_json(folder / "summary.json", told)
-
-
-def _read(folder: Path, version: int, sha256: str) -> Approval:
-    try:
-        told = json.loads((folder / "approval.json").read_text("utf-8"))
-        said = told["statement"]
-        stamp = Stamp(
-            version=version, who=said["who"], role=said["role"], time=said["time"], hash=sha256
-        )
-        artifacts = dict(said["artifacts"])
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise StoreError(f"{folder}/approval.json cannot be read: {error!r}") from error
-    return Approval(version, sha256, folder, stamp, artifacts)
 
 
 def _link(source: Path, target: Path) -> None:

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from recon4.progress import Progress, track
-from recon4.review.approval import VERSIONS
+from recon4.review.approved import VERSIONS, read_approval
 from recon4.review.decisions import Kind
 from recon4.review.journal import Row, broken, read_rows
-from recon4.review.signature import fingerprint, is_signed
-from recon4.store.hashing import hash_file, hash_json
+from recon4.store.checked import Altered
+from recon4.store.hashing import hash_file
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ def audit_review(root: Path, progress: Progress) -> ReviewAudit:
         facts = json.loads(row.body)["facts"]
         version = int(facts["version"])
         counted.add(str(version))
-        wrong, key = _check(root / VERSIONS / str(version), row, facts["approval"])
+        wrong, key = _check(root / VERSIONS / str(version), row)
         damaged += [f"version {version}: {what}" for what in wrong]
         if not wrong:
             approvals.append(f"version {version}, approved by {row.who}, {row.time}, key {key}")
@@ -50,22 +50,13 @@ def audit_review(root: Path, progress: Progress) -> ReviewAudit:
     return ReviewAudit(len(rows), tuple(approvals), tuple(damaged))
 
 
-def _check(folder: Path, row: Row, sha256: str) -> tuple[list[str], str]:
+def _check(folder: Path, row: Row) -> tuple[list[str], str]:
     """What is wrong with a version, and the short name of the key that signed it."""
     try:
-        told = json.loads((folder / "approval.json").read_text("utf-8"))
-        statement, issued, signature = told["statement"], told["issued"], told["signature"]
-        key = fingerprint(signature["public_key"])
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        return [f"approval.json cannot be read: {error!r}"], ""
-    wrong = []
-    if hash_json(statement) != sha256 or told["hash"] != sha256:
-        wrong.append("the statement is not the one in the journal")
-    if not is_signed({"hash": sha256, "issued": issued}, signature):
-        wrong.append("the signature does not hold")
-    if statement["journal"]["head"] != row.prev_hash:
-        wrong.append("it was signed over another journal")
-    return wrong + _files(folder, issued), key
+        approval, key = read_approval(folder, row)
+    except Altered as error:
+        return [str(error)], ""
+    return _files(folder, dict(approval.issued)), key
 
 
 def _files(folder: Path, issued: dict[str, Any]) -> list[str]:

@@ -18,6 +18,7 @@ from pathlib import Path
 from recon4.errors import StoreError
 from recon4.review.decisions import Decided, Decision, Kind, fold
 from recon4.store.atomic import raise_if_full
+from recon4.store.seal import changing
 
 NAME = "decisions.sqlite"
 START = "0" * 64
@@ -128,7 +129,7 @@ def append(root: Path, decision: Decision, *, after_seq: int | None = None) -> R
         JournalMoved: If the last row is not ``after_seq``.
         StoreError: If the file is damaged or cannot be written (`NoSpace`: disk full).
     """
-    with _database(root / NAME, write=True) as db:
+    with changing(root, NAME), _database(root / NAME, write=True) as db:
         db.execute("BEGIN IMMEDIATE")  # from here on no other writer
         rows = _rows(db)
         _check(rows, decision, after_seq)
@@ -138,6 +139,7 @@ def append(root: Path, decision: Decision, *, after_seq: int | None = None) -> R
             tuple(getattr(row, name) for name in _COLUMNS.split(", ")),
         )
         db.execute("COMMIT")
+        db.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()
     return row
 
 

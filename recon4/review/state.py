@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from recon4.bounded import read_json_object
 from recon4.errors import StoreError
 from recon4.review.decisions import NOTHING_DECIDED
+from recon4.store.json_files import read_object
 from recon4.store.stage import read_manifest
 
 MOST_SUMMARY_BYTES = 16 << 20
@@ -22,15 +22,15 @@ def read_summary(root: Path) -> dict[str, Any] | None:
     path = root / "summary.json"
     if not path.is_file():
         return None
-    try:
-        return read_json_object(path, MOST_SUMMARY_BYTES, failure=StoreError)
-    except StoreError as error:
-        raise StoreError(f"{path} cannot be read: {error}") from error
+    return read_object(path)
 
 
 def artifact_keys(summary: dict[str, Any]) -> dict[str, str]:
     """Stage -> key of the artifact its results were made of."""
-    return {stage["stage"]: stage["key"] for stage in summary.get("stages", [])}
+    try:
+        return {str(one["stage"]): str(one["key"]) for one in summary.get("stages", [])}
+    except (TypeError, KeyError) as error:
+        raise StoreError(f"summary.json: its list of stages cannot be read: {error!r}") from error
 
 
 def decisions_in_map(root: Path) -> str | None:

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from recon4.bounded import parse_float
-from recon4.errors import CorruptFile
+from recon4.errors import ConfigError, CorruptFile
+from recon4.names import check_name
 
 Role = Literal["control", "check"]
 Order = Literal["EN", "NE"]
@@ -161,6 +162,9 @@ def _points(
             continue
         try:
             point = _point(row, columns, decimal)
+        except ConfigError as error:
+            skipped.append(f"line {line}: {error}")
+            continue
         except (ValueError, IndexError):
             skipped.append(f"line {line}: expected ID,X,Y,Z, got {';'.join(row)[:60]!r}")
             continue
@@ -186,7 +190,7 @@ def _point(row: list[str], columns: tuple[int, ...], decimal: str) -> ControlPoi
     name, a, b, c, radius, role = columns
     words = row[role].strip().lower() if 0 <= role < len(row) else ""
     has_radius = 0 <= radius < len(row) and row[radius].strip()
-    point_id = row[name].strip()[:64]
+    point_id = check_name(row[name].strip(), what="the id of a point", most=64)
     if not point_id:
         raise ValueError("no id")
     return ControlPoint(

@@ -14,6 +14,7 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.mapping.normals import local_normals
 from recon4.mapping.tile import progressive
 from recon4.mapping.tiles import TileSet, TileWriter
+from recon4.names import visible
 from recon4.slices.clouds import read_points
 from recon4.slices.frames import Frame
 from recon4.slices.meshes import is_mesh, load_mesh
@@ -49,8 +50,8 @@ def import_reference(
         raise UnknownFormat(f"{path.name}: expected one file, got a folder or nothing")
     with atomic_folder(out) as folder:
         facts: dict[str, object] = {
-            "name": name or path.name,
-            "file": path.name,
+            "name": name or visible(path.name),
+            "file": visible(path.name),
             "frame": "crs" if frame else "map",
             "T_map_reference": np.eye(4).tolist(),
             "alignment": "none",

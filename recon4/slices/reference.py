@@ -11,14 +11,15 @@ from typing import Any, Literal
 import numpy as np
 from scipy.spatial import cKDTree
 
-from recon4.bounded import read_json_object
 from recon4.errors import ConfigError, StoreError
 from recon4.evaluation.mesh import Mesh, distance_to
 from recon4.geometry.se3 import SE3, Array
 from recon4.mapping.tiles import TileSet
+from recon4.names import visible
 from recon4.slices.cut import Cut
 from recon4.slices.points import Window, points_in
 from recon4.store.arrays import load_arrays
+from recon4.store.json_files import read_object
 
 Method = Literal["plane", "point"]
 FAR_M = 0.5
@@ -136,14 +137,11 @@ def read_facts(folder: Path) -> dict[str, Any]:
     Raises:
         StoreError: If it is missing or damaged.
     """
-    try:
-        facts = read_json_object(folder / "reference.json", MOST_FACTS_BYTES, failure=StoreError)
-    except StoreError as error:
-        raise StoreError(f"{folder.name} is not a reference: {error}") from error
+    facts = read_object(folder / "reference.json", most_bytes=MOST_FACTS_BYTES)
     missing = {"name", "kind", "T_map_reference"} - set(facts)
     if missing:
         raise StoreError(f"{folder.name}/reference.json lacks {sorted(missing)}")
-    return facts
+    return facts | {"name": visible(str(facts["name"]))}
 
 
 def _mesh(path: Path) -> Mesh:

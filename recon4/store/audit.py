@@ -2,14 +2,32 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import dataclass
+import sqlite3
+from collections.abc import Iterator
+from contextlib import closing
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
+from recon4.errors import StoreError
 from recon4.progress import Progress, track
-from recon4.store.hashing import hash_file
-from recon4.store.project import read_artifacts, read_stages
-from recon4.store.stage import damage_of
+from recon4.store.checked import Altered
+from recon4.store.hashing import files_below, hash_file
+from recon4.store.json_files import read_object
+from recon4.store.ledger import FinishedStage
+from recon4.store.project import (
+    LEDGER,
+    SUMMARY,
+    is_project,
+    loose_files,
+    read_artifacts,
+    read_description,
+    read_stages,
+)
+from recon4.store.seal import OPEN, compare_all, read_seals
+from recon4.store.stage import damage_of, read_manifest
+
+_JOURNAL = "decisions.sqlite"
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,40 +35,121 @@ class Audit:
     """What re-hashing found."""
 
     checked: int
-    """Artifacts and results whose bytes were compared."""
+    """Artifacts, results and sealed files whose bytes were compared."""
     damaged: tuple[str, ...]
     """What differs, in words; empty = all is well."""
     unknown: tuple[str, ...]
     """Entries below ``artifacts/`` that no stage accounts for; they are left alone."""
+    notes: tuple[str, ...] = ()
+    """Files that could be compared by their content only, and why."""
 
 
 def audit(root: Path, progress: Progress) -> Audit:
-    """Compare every artifact and result of a project with the hashes kept when it was written.
+    """Compare every artifact, result and sealed file of a project with the hashes kept of it.
 
     Raises:
-        StoreError: If the folder is not a project or its ledger is damaged.
+        StoreError: If the folder is not a project.
     """
-    stages = read_stages(root)
-    damaged: list[str] = []
+    if not is_project(root):
+        read_description(root)
+    sealed, damaged, notes = audit_seals(root, [*loose_files(root), *_later_files(root)])
+    stages, known = _ledger(root, damaged)
     for row in track(stages, progress, what="artifacts", unit="artifacts"):
-        folder = root / "artifacts" / row.key
-        damage = damage_of(folder, hashes=True) if folder.is_dir() else ["is missing"]
-        damaged += [f"{row.stage} {row.key[:12]}: {what}" for what in damage]
-    results = _result_hashes(root)
+        damaged += [f"{row.stage} {row.key[:12]}: {what}" for what in _stage_damage(root, row)]
+    results = _result_hashes(root, damaged)
     for name, sha256 in track(results.items(), progress, what="results", unit="files"):
         path = root / name
         if not path.is_file():
             damaged.append(f"{name} is missing")
         elif hash_file(path) != sha256:
             damaged.append(f"{name} has other bytes")
-    known = {row.key for row in stages} | {path.name for path in read_artifacts(root).values()}
-    unknown = sorted(p.name for p in (root / "artifacts").iterdir() if p.name not in known)
-    return Audit(len(stages) + len(results), tuple(damaged), tuple(unknown))
+    folder = root / "artifacts"
+    there = sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
+    unknown = tuple(name for name in there if name not in known)
+    checked = len(stages) + len(results) + sealed
+    return Audit(checked, tuple(dict.fromkeys(damaged)), unknown, tuple(notes))
 
 
-def _result_hashes(root: Path) -> dict[str, str]:
-    path = root / "summary.json"
-    if not path.is_file():
+def audit_seals(root: Path, expected: list[str]) -> tuple[int, list[str], list[str]]:
+    """Compare what is sealed.
+
+    Args:
+        root: The folder that has the seals.
+        expected: Files that should have one.
+
+    Returns:
+        How many files were compared, what differs, and which files have no seal at the moment.
+    """
+    try:
+        seals = read_seals(root)
+        found = list(compare_all(root))
+    except Altered as error:
+        return 0, [str(error)], []
+    damaged = [words for _, words in found if words]
+    notes = []
+    for name in sorted({*expected, *seals}):
+        seal = seals.get(name)
+        if seal is not None and seal != OPEN:
+            continue
+        why = "has no seal (an earlier recon4 wrote it)"
+        if seal is not None:
+            why = "is open (in use, or a process was killed)"
+        notes.append(f"{name} {why}: only its content was checked")
+        damaged += content_damage(root / name)
+    return len(found), damaged, notes
+
+
+def content_damage(path: Path) -> list[str]:
+    """What can be seen without a hash: that a file reads as what it is."""
+    try:
+        if path.suffix == ".sqlite" and path.exists():
+            with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as db:
+                words = [str(row[0]) for row in db.execute("PRAGMA integrity_check(5)")]
+            return [] if words == ["ok"] else [f"{path.name}: {words[0]}"]
+        if path.suffix == ".json" and path.exists():
+            read_object(path)
+    except (sqlite3.Error, StoreError) as error:
+        return [f"{path.name}: {error}"]
+    return []
+
+
+def _later_files(root: Path) -> Iterator[str]:
+    """Files that people's work leaves beside a run."""
+    if (root / _JOURNAL).exists():
+        yield _JOURNAL
+    if (root / "slices").is_dir():
+        yield from (f"slices/{name}" for name in files_below(root / "slices"))
+
+
+def _ledger(root: Path, damaged: list[str]) -> tuple[list[FinishedStage], set[str]]:
+    try:
+        stages = read_stages(root)
+        current = {path.name for path in read_artifacts(root).values()}
+    except StoreError as error:
+        damaged.append(str(error))
+        return [], set()
+    return stages, {row.key for row in stages} | current
+
+
+def _stage_damage(root: Path, row: FinishedStage) -> list[str]:
+    folder = root / "artifacts" / str(row.key)
+    if not folder.is_dir():
+        return ["is missing"]
+    damage = damage_of(folder, hashes=True)
+    try:
+        if read_manifest(folder)["done"] != asdict(row):
+            damage.append(f"{LEDGER} and manifest.json tell different things of it")
+    except StoreError as error:
+        damage.append(str(error))
+    return damage
+
+
+def _result_hashes(root: Path, damaged: list[str]) -> dict[str, str]:
+    if not (root / SUMMARY).is_file():
         return {}
-    hashes: dict[str, str] = json.loads(path.read_text("utf-8"))["hashes"]["results"]
-    return hashes
+    try:
+        hashes: Any = read_object(root / SUMMARY).get("hashes", {}).get("results", {})
+        return {str(name): str(sha256) for name, sha256 in hashes.items()}
+    except (StoreError, AttributeError) as error:
+        damaged.append(f"{SUMMARY}: {error}")
+        return {}

@@ -2,13 +2,66 @@
 
 from __future__ import annotations
 
+import base64
 import hashlib
 import json
 import os
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-_BLOCK = 1 << 20
+BLOCK_BYTES = 1 << 20
+"""Files are hashed as a whole and in blocks of this size, so that a part can be checked alone."""
+_DIGEST_BYTES = 32
+
+
+@dataclass(frozen=True, slots=True)
+class FileDigest:
+    """Size and SHA-256 of a file and of each of its blocks."""
+
+    size: int
+    """Bytes of the file."""
+    sha256: str
+    """Of the whole file, as hex."""
+    blocks: bytes
+    """SHA-256 of every block, one behind the other; empty for a file of at most one block."""
+
+    @staticmethod
+    def of(path: Path, seen: Callable[[int], None] = lambda length: None) -> FileDigest:
+        """Read a file once; ``seen`` is called with the length of every block read [bytes]."""
+        whole, blocks, size = hashlib.sha256(), bytearray(), 0
+        with path.open("rb") as file:
+            while block := file.read(BLOCK_BYTES):
+                whole.update(block)
+                blocks += hashlib.sha256(block).digest()
+                size += len(block)
+                seen(len(block))
+        return FileDigest(size, whole.hexdigest(), bytes(blocks) if size > BLOCK_BYTES else b"")
+
+    @staticmethod
+    def from_json(value: dict[str, Any]) -> FileDigest:
+        """What `to_json` made; manifests of earlier versions have no blocks.
+
+        Raises:
+            KeyError, TypeError, ValueError: If it is something else.
+        """
+        blocks = base64.b64decode(value.get("blocks", ""), validate=True)
+        size, sha256 = int(value["bytes"]), str(value["sha256"])
+        if blocks and len(blocks) != -(-size // BLOCK_BYTES) * _DIGEST_BYTES:
+            raise ValueError(f"{len(blocks)} bytes of block hashes do not fit {size} bytes")
+        return FileDigest(size, sha256, blocks)
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain JSON values; the blocks as base64, 44 characters a MiB."""
+        told: dict[str, Any] = {"bytes": self.size, "sha256": self.sha256}
+        return told | ({"blocks": base64.b64encode(self.blocks).decode()} if self.blocks else {})
+
+    def block(self, number: int) -> bytes:
+        """SHA-256 of one block."""
+        if not self.blocks:
+            return bytes.fromhex(self.sha256)
+        return self.blocks[number * _DIGEST_BYTES : (number + 1) * _DIGEST_BYTES]
 
 
 def hash_file(path: Path, seen: Callable[[int], None] | None = None) -> str:
@@ -20,7 +73,7 @@ def hash_file(path: Path, seen: Callable[[int], None] | None = None) -> str:
     """
     digest = hashlib.sha256()
     with path.open("rb") as file:
-        while block := file.read(_BLOCK):
+        while block := file.read(BLOCK_BYTES):
             digest.update(block)
             if seen is not None:
                 seen(len(block))

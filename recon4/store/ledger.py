@@ -166,6 +166,12 @@ class Ledger:
 
     # -- closing
 
+    def settle(self) -> bool:
+        """Move what is in the write-ahead log into the file itself; False = a reader kept us."""
+        with self._errors():
+            (busy, _, _) = self._db.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()
+        return not busy
+
     def close(self) -> None:
         """Close the file; closing twice is allowed."""
         self._db.close()

@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 import fcntl
-import json
 import os
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from recon4.errors import StoreError
+from recon4.errors import NoSpace, StoreError
 from recon4.store.atomic import make_folders, raise_if_full, sweep, write_json
+from recon4.store.json_files import read_object
 from recon4.store.ledger import FinishedStage, Ledger
+from recon4.store.seal import adopt, begin_change, end_change
 
 FORMAT = 1
+LEDGER = "ledger.sqlite"
+SUMMARY = "summary.json"
+SEALED = ("project.json", LEDGER)
+"""What changes while a project is open, and is sealed when it is closed."""
+MOST_DESCRIPTION_BYTES = 4 << 20
 
 
 class Project:
@@ -43,7 +50,8 @@ class Project:
         try:
             sweep(root)
             sweep(root / "artifacts")
-            return Project(root, Ledger(root / "ledger.sqlite"), lock)
+            begin_change(root, SEALED, missing_allowed=LEDGER)
+            return Project(root, Ledger(root / LEDGER), lock)
         except BaseException:
             os.close(lock)
             raise
@@ -58,9 +66,24 @@ class Project:
         write_json(self.root / "project.json", read_description(self.root) | facts)
 
     def close(self) -> None:
-        """Close the ledger and let others in."""
-        self.ledger.close()
-        os.close(self._lock)
+        """Close the ledger, seal what was written, and let others in."""
+        try:
+            whole = self._settle()
+            end_change(self.root, SEALED, left_open=() if whole else (LEDGER,))
+            adopt(self.root, loose_files(self.root))
+        except NoSpace:
+            return  # the files stay marked as open: verify says so, and the next run seals them
+        finally:
+            os.close(self._lock)
+
+    def _settle(self) -> bool:
+        """Close the ledger; whether all of it is in its file now."""
+        try:
+            return self.ledger.settle()
+        except NoSpace:
+            return False
+        finally:
+            self.ledger.close()
 
     def __enter__(self) -> Project:
         return self
@@ -86,13 +109,10 @@ def read_description(root: Path) -> dict[str, Any]:
         StoreError: If it is missing or damaged.
     """
     path = root / "project.json"
-    try:
-        found = json.loads(path.read_text("utf-8"))
-    except FileNotFoundError as error:
-        raise StoreError(f"{root} is not a recon4 project: it has no project.json") from error
-    except (OSError, ValueError) as error:
-        raise StoreError(f"{path} cannot be read: {error}") from error
-    if not isinstance(found, dict) or found.get("format") != FORMAT:
+    if not path.exists():
+        raise StoreError(f"{root} is not a recon4 project: it has no project.json")
+    found = read_object(path, most_bytes=MOST_DESCRIPTION_BYTES)
+    if found.get("format") != FORMAT:
         raise StoreError(f"{path}: expected format {FORMAT}")
     return found
 
@@ -119,7 +139,15 @@ def read_artifacts(root: Path) -> dict[str, Path]:
 
 def _reading(root: Path) -> Ledger:
     read_description(root)
-    return Ledger(root / "ledger.sqlite", read_only=True)
+    return Ledger(root / LEDGER, read_only=True)
+
+
+def loose_files(root: Path) -> Iterator[str]:
+    """Files of a project that a run leaves and that no hash of another file covers."""
+    for pattern in ("project.json", SUMMARY, LEDGER, "artifacts/*/manifest.json"):
+        yield from (path.relative_to(root).as_posix() for path in sorted(root.glob(pattern)))
+    for path in sorted(root.glob("versions/[0-9]*/approval.json")):
+        yield path.relative_to(root).as_posix()
 
 
 def _make_folder(root: Path) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from recon4.settings import Settings
+from recon4.store.seal import check_sealed
 from recon4.store.stage import read_manifest
 
 
@@ -24,6 +25,7 @@ def settings_in(artifacts: Iterable[Path]) -> Settings:
     """
     told: dict[str, dict[str, Any]] = {}
     for folder in artifacts:
+        check_sealed(folder.parent.parent, f"artifacts/{folder.name}/manifest.json")
         told |= read_manifest(folder)["recipe"]["settings"]
     settings = Settings()
     groups = {}

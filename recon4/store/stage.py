@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import platform
 import secrets
 import time
@@ -17,9 +16,12 @@ from recon4.errors import StoreError
 from recon4.progress import Progress
 from recon4.settings import Settings, to_json
 from recon4.store.atomic import atomic_folder, write_json
-from recon4.store.hashing import files_below, hash_file, hash_json
+from recon4.store.checked import Altered
+from recon4.store.hashing import FileDigest, files_below, hash_file, hash_json
+from recon4.store.json_files import read_object
 from recon4.store.ledger import FinishedStage
 from recon4.store.project import Project
+from recon4.store.seal import changing, check_sealed
 from recon4.store.usage import Meter
 
 SAVING = "save"
@@ -156,6 +158,10 @@ class StageRunner:
             return None
         # No row: killed between the rename and the commit, or the ledger was lost. Trust nothing.
         damage = damage_of(artifact.folder, hashes=row is None)
+        try:
+            check_sealed(self._project.root, f"artifacts/{artifact.key}/manifest.json")
+        except Altered as error:
+            damage.append(str(error))
         if damage:
             self._set_aside(artifact, damage)
             return None
@@ -166,7 +172,8 @@ class StageRunner:
 
     def _set_aside(self, artifact: Artifact, damage: list[str]) -> None:
         aside = artifact.folder.with_name(f"damaged-{artifact.key[:12]}-{secrets.token_hex(3)}")
-        artifact.folder.rename(aside)
+        with changing(self._project.root, f"artifacts/{artifact.key}", compared=False):
+            artifact.folder.rename(aside)
         self._project.ledger.forget(artifact.key)
         self._progress.event(
             "damaged", stage=artifact.stage, moved_to=f"artifacts/{aside.name}", files=damage[:10]
@@ -222,10 +229,10 @@ def read_manifest(folder: Path) -> dict[str, Any]:
     """
     path = folder / "manifest.json"
     try:
-        found = json.loads(path.read_text("utf-8"))
+        found = read_object(path)
         return {name: found[name] for name in ("recipe", "done", "figures", "versions", "files")}
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise StoreError(f"{path} cannot be read: {error}") from error
+    except KeyError as error:
+        raise StoreError(f"{path} cannot be read: it lacks {error}") from error
 
 
 def damage_of(folder: Path, *, hashes: bool) -> list[str]:
@@ -236,16 +243,19 @@ def damage_of(folder: Path, *, hashes: bool) -> list[str]:
         hashes: Also read and hash every byte; otherwise only names and sizes are compared.
     """
     try:
-        files = read_manifest(folder)["files"]
+        found = read_manifest(folder)["files"].items()
+        files = {str(name): FileDigest.from_json(value) for name, value in found}
     except StoreError as error:
         return [str(error)]
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        return [f"manifest.json: its list of files makes no sense: {error!r}"]
     there = set(files_below(folder)) - {"manifest.json"}
     damage = [f"{name} is missing" for name in sorted(files.keys() - there)]
     damage += [f"{name} does not belong here" for name in sorted(there - files.keys())]
     for name in sorted(files.keys() & there):
-        if (folder / name).stat().st_size != files[name]["bytes"]:
+        if (folder / name).stat().st_size != files[name].size:
             damage.append(f"{name} has another size")
-        elif hashes and hash_file(folder / name) != files[name]["sha256"]:
+        elif hashes and hash_file(folder / name) != files[name].sha256:
             damage.append(f"{name} has other bytes")
     return damage
 
@@ -276,10 +286,7 @@ def _hash_files(folder: Path, progress: Progress) -> dict[str, Any]:
     """Name -> size and hash of every file of an artifact."""
     sizes = {name: (folder / name).stat().st_size for name in files_below(folder)}
     progress.start(SAVING, sum(sizes.values()), "B")
-    return {
-        name: {"bytes": size, "sha256": hash_file(folder / name, progress.advance)}
-        for name, size in sizes.items()
-    }
+    return {name: FileDigest.of(folder / name, progress.advance).to_json() for name in sizes}
 
 
 def _write_manifest(

@@ -5,6 +5,7 @@ import io
 import json
 import threading
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict
 
 import ezdxf
 import httpx
@@ -13,7 +14,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tests.project_builder import ROOM_M, build_project
+from tests.project_builder import ROOM_M, approve_project, build_project
 from tests.service.running import server_thread
 
 Z1 = {"kind": "horizontal", "z_m": 1.5, "thickness_m": 0.2}
@@ -225,19 +226,14 @@ def test_exports_open_in_other_programs(server):
 
 
 def test_an_export_of_an_approved_map_says_so(server):
-    summary = server.root / "office" / "summary.json"
-    before = summary.read_text()
-    stamp = {
-        "version": 2,
-        "who": "Eva",
-        "role": "reviewer",
-        "time": "2026-11-21",
-        "hash": "ab" * 32,
-    }
-    summary.write_text(json.dumps(json.loads(before) | {"approval": stamp}))
+    stamp = asdict(approve_project(server.root / "office", server.root / "signing.key").stamp)
 
     files = {ending: exported(server, ending).content for ending in ("laz", "csv", "dxf", "tif")}
-    summary.write_text(before)
+    shown = server.get(BASE).json()["approval"]
+    (server.root / "office" / "decisions.sqlite").unlink()
+    later = server.get(BASE).json()["approval"]
+
+    assert shown.startswith("Approved by Eva (reviewer)") and later == "Not approved"
 
     with laspy.open(io.BytesIO(files["laz"])) as laz:
         (told,) = [vlr for vlr in laz.header.vlrs if vlr.user_id == "recon4"]

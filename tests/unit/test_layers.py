@@ -16,13 +16,20 @@ import pytest
 from packaging.requirements import Requirement
 
 ROOT = Path(__file__).parents[2]
-BASE = {"recon4.errors", "recon4.bounded", "recon4.progress", "recon4.settings"}
+BASE = {
+    "recon4.errors",
+    "recon4.bounded",
+    "recon4.names",
+    "recon4.progress",
+    "recon4.settings",
+}
 MODEL = BASE | {"recon4.geometry", "recon4.model"}
 STAGE = MODEL | {"recon4.kernels", "recon4.store"}
 
 MAY_IMPORT = {
     "recon4/errors.py": set(),
     "recon4/bounded.py": {"recon4.errors"},
+    "recon4/names.py": {"recon4.errors"},
     "recon4/progress.py": {"recon4.errors"},
     "recon4/settings.py": {"recon4.errors"},
     "recon4/geometry": {"recon4.geometry"},

@@ -10,14 +10,16 @@ import pytest
 from recon4.progress import Silent
 from recon4.report.approval import draft_block
 from recon4.review import approval
-from recon4.review.approval import NotApprovable, approval_of_map, approve, latest_approval
+from recon4.review.approval import NotApprovable, approve
+from recon4.review.approved import approval_of_map, latest_approval
 from recon4.review.audit import audit_review
 from recon4.review.decisions import Decision, Kind
 from recon4.review.journal import NAME, JournalMoved, append, read_rows
 from recon4.review.signature import is_signed, sign
 from recon4.store.atomic import write_json
-from recon4.store.hashing import hash_file
+from recon4.store.hashing import FileDigest, hash_file
 from recon4.store.project import Project
+from recon4.store.seal import changing
 
 SIGNER = {"who": "Eva", "role": "reviewer", "why": "compared with the plan"}
 FILES = {
@@ -28,8 +30,19 @@ FILES = {
 }
 
 
+def make_artifact(root, key):
+    """One file and its manifest."""
+    folder = root / "artifacts" / key
+    folder.mkdir()
+    (folder / "points.txt").write_text(f"points of {key}\n")
+    files = {"points.txt": FileDigest.of(folder / "points.txt").to_json()}
+    empty = {"recipe": {}, "done": {}, "figures": {}, "versions": {}}
+    write_json(folder / "manifest.json", empty | {"files": files})
+
+
 def publish(root, key="ab"):
     """What a run leaves, small."""
+    make_artifact(root, key)
     for name, text in FILES.items():
         (root / name).unlink(missing_ok=True)
         (root / name).write_text(text)
@@ -40,8 +53,9 @@ def publish(root, key="ab"):
         "stages": [{"stage": "map", "key": key, "figures": {}}],
         "hashes": {"inputs": {}, "results": {name: hash_file(root / name) for name in FILES}},
     }
-    (root / "summary.json").unlink(missing_ok=True)
-    write_json(root / "summary.json", told)
+    with changing(root, "summary.json", compared=False):
+        (root / "summary.json").unlink(missing_ok=True)
+        write_json(root / "summary.json", told)
 
 
 @pytest.fixture
@@ -102,6 +116,11 @@ def forge_journal(root):
         (lambda root: (root / "edges.json").write_text("{}"), "edges.json is not what the run"),
         (lambda root: (root / "graph.g2o").unlink(), "graph.g2o is not what the run wrote"),
         (lambda root: append(root, reject(9)), "does not know the last decisions"),
+        (
+            lambda root: (root / "artifacts/ab/points.txt").write_text("points of AB\n"),
+            "artifacts/ab/points.txt: expected .* make a new map first",
+        ),
+        (lambda root: (root / "artifacts/ab/manifest.json").unlink(), "manifest.json cannot be"),
     ],
 )
 def test_what_is_not_as_it_was_made_is_not_signed(root, key, spoil, words):
@@ -170,8 +189,8 @@ def test_an_earlier_map_keeps_its_approval(root, key):
     second = approve(root, key, SIGNER | {"who": "Jan"}, False)
 
     assert (first.version, second.version) == (1, 2)
-    assert approval_of_map(root, "ab")["who"] == "Eva"
-    assert approval_of_map(root, "cd")["hash"] == second.hash
+    assert approval_of_map(root, "ab").stamp.who == "Eva"
+    assert approval_of_map(root, "cd").hash == second.hash
     assert approval_of_map(root, "ef") is None
     assert damage(root) == () and not killed.exists()
 
@@ -200,8 +219,9 @@ def other_signature(told):
         (other_algorithm, "the signature does not hold"),
         (other_signature, "the signature does not hold"),
         (lambda told: told.pop("signature"), "approval.json cannot be read"),
-        (lambda told: told["issued"].update({"more.txt": "ab"}), "more.txt is missing"),
-        (lambda told: told["issued"].pop("edges.json"), "edges.json does not belong here"),
+        (lambda told: told["issued"].update({"more.txt": "ab"}), "the signature does not hold"),
+        (lambda told: told["issued"].pop("edges.json"), "the signature does not hold"),
+        (lambda told: told["signature"].update(key="0" * 16), "it names the key 0000"),
     ],
 )
 def test_a_changed_approval_is_found(root, key, change, words):
@@ -214,12 +234,24 @@ def test_a_changed_approval_is_found(root, key, change, words):
     assert any(words in what for what in damage(root))
 
 
+def test_files_added_to_and_taken_from_a_version_are_found(root, key):
+    folder = approve(root, key, SIGNER, False).folder
+    (folder / "more.txt").write_text("x")
+    (folder / "edges.json").unlink()
+
+    assert damage(root) == (
+        "version 1: edges.json is missing",
+        "version 1: more.txt does not belong here",
+    )
+
+
 def test_a_journal_written_anew_from_its_first_row_does_not_fit_what_was_signed(root, key):
     append(root, reject())
     append(root, undo())
     approve(root, key, SIGNER, False)
     rows = read_rows(root)
     (root / NAME).unlink()
+    (root / "seals.json").unlink()
     append(root, reject(who="Jan"))
     append(root, undo())
     forged = replace(rows[2], prev_hash=read_rows(root)[1].hash)

@@ -16,7 +16,11 @@ def test_an_untouched_project_is_whole(tmp_path):
 
     found = audit(tmp_path / "p", Silent())
 
-    assert (found.checked, found.damaged, found.unknown) == (3, (), ())
+    assert (found.checked, found.damaged, found.unknown) == (
+        8,
+        (),
+        (),
+    )  # 3 artifacts; project.json, ledger, 3 manifests
 
 
 def test_one_flipped_bit_is_found_and_named(tmp_path):

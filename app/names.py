@@ -1,0 +1,23 @@
+"""Names and notes in requests: kinds of fields that refuse characters nobody sees."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import AfterValidator
+
+from recon4.names import check_name, check_note
+
+
+def _name(text: str) -> str:
+    return check_name(text, what="a name")
+
+
+def _note(text: str) -> str:
+    return check_note(text, what="a note")
+
+
+Name = Annotated[str, AfterValidator(_name)]
+"""One line that people read; the field's own limits of length come on top."""
+Note = Annotated[str, AfterValidator(_note)]
+"""Some lines that people read."""

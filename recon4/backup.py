@@ -1,0 +1,363 @@
+"""Back up a folder of projects with the server's state while it runs, and restore it.
+
+A backup is a folder of files by their SHA-256 and one list a backup of which file is which:
+
+    objects/ab/abcdef…            bytes, read-only, named by their hash
+    2026-11-22T08-00-00Z.json     name, size, hash, mode of every file; the list's own hash
+
+So a second backup into the same folder adds what changed only. SQLite files are copied by SQLite
+itself, at one moment each; artifacts and versions never change. Files that a running job is just
+making are not taken, and are counted.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import secrets
+import shutil
+import sqlite3
+import stat
+import time
+from collections.abc import Iterator
+from contextlib import closing
+from dataclasses import asdict, dataclass
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from recon4.errors import ConfigError, StoreError
+from recon4.progress import Progress, track
+from recon4.store.atomic import atomic_file, raise_if_full, write_json
+from recon4.store.hashing import hash_file, hash_json
+from recon4.store.json_files import read_object
+from recon4.store.project import is_project
+from recon4.store.seal import LOCK, OPEN, SEALS, TURN, Seal, read_seals, seals_text
+
+FORMAT = 1
+STATE = ".recon4"
+SECRETS = ("signing.key", "access.sqlite", "tls")
+"""Of the server's state: keys, passwords' hashes and sessions. Only taken when asked for."""
+_MADE_AGAIN = ("pictures", "slices", "viewers", "clones", "trash")
+_TEMPORARY = re.compile(r"\.(tmp|slice|going)-.*|buckets-.*|\.lock|server\.lock|lock|pid|heartbeat")
+_BESIDE_SQLITE = ("-wal", "-shm", "-journal")
+_LIST = re.compile(r"\d{4}-\d{2}-\d{2}T\d{2}-\d{2}-\d{2}Z(-\d+)?\.json")
+_MOST_TRIES = 5
+Entries = dict[str, dict[str, Any]]
+"""Relative name -> ``bytes``, ``sha256`` and ``mode``."""
+
+
+@dataclass(frozen=True, slots=True)
+class BackedUp:
+    """What a backup holds."""
+
+    path: Path
+    """The list of this backup."""
+    files: int
+    bytes: int
+    """Of all files."""
+    new_bytes: int
+    """Of those that an earlier backup in the folder did not hold."""
+    left_out: tuple[str, ...]
+    """Files that changed while they were copied, or went away: of a job that runs."""
+    damaged: tuple[str, ...]
+    """Files that were not what was sealed when they were copied; the backup holds them as found."""
+
+
+def back_up(root: Path, out: Path, *, with_keys: bool, progress: Progress) -> BackedUp:
+    """Copy projects, recordings and the server's state, and compare every byte written.
+
+    Args:
+        root: A folder of projects, or one project.
+        out: Folder of backups; made when missing; not below ``root``.
+        with_keys: Also the signing key, the people with their passwords' hashes, and TLS keys.
+        progress: Counts files.
+
+    Raises:
+        ConfigError: If ``root`` is neither, or ``out`` lies in it.
+        StoreError: If a file cannot be read or written (`NoSpace`: disk full), or reads back wrong.
+    """
+    _check_places(root, out)
+    objects = out / "objects"
+    try:
+        objects.mkdir(parents=True, exist_ok=True, mode=0o700)
+        names = sorted(_names(root, with_keys=with_keys))
+        before = _seals_below(root, names)
+        taken, left_out, new_bytes = _copy_all(root, names, objects, progress)
+        damaged = _settle_seals(root, before, taken, objects)
+        path = _write_list(out, taken, left_out, with_keys=with_keys)
+    except OSError as error:
+        raise_if_full(error, out)
+        raise StoreError(f"cannot write {out}: {error.strerror or error}") from error
+    check_backup(path, progress)
+    total = sum(int(entry["bytes"]) for entry in taken.values())
+    return BackedUp(path, len(taken), total, new_bytes, tuple(left_out), tuple(damaged))
+
+
+def restore(backup: Path, root: Path, *, with_keys: bool, progress: Progress) -> int:
+    """Put a backup into an empty folder; nothing is left there if a byte differs.
+
+    Args:
+        backup: The list of a backup, or the folder of backups: then the newest.
+        root: Folder that is missing or empty.
+        with_keys: Also keys and people; the backup must hold them.
+        progress: Counts files.
+
+    Returns:
+        How many files were written.
+
+    Raises:
+        ConfigError: If ``root`` is not empty, or keys are asked for and not there.
+        StoreError: If the backup is damaged, or the folder cannot be written.
+    """
+    path = newest(backup)
+    told = read_list(path)
+    if root.exists() and any(root.iterdir()):
+        raise ConfigError(f"{root} is not empty: a backup is restored into an empty folder")
+    if with_keys and not told["with_keys"]:
+        raise ConfigError(f"{path.name} was made without keys: leave out --with-keys")
+    files = {n: e for n, e in told["files"].items() if with_keys or not _is_secret(n)}
+    check_backup(path, progress)
+    building = root.with_name(f".tmp-restore-{root.name}-{os.getpid()}")
+    try:
+        for name, entry in track(files.items(), progress, what="restore", unit="files"):
+            _put(path.parent / "objects", building, name, entry)
+        if root.exists():
+            root.rmdir()
+        building.rename(root)
+    except OSError as error:
+        raise_if_full(error, root)
+        raise StoreError(f"cannot write {root}: {error.strerror or error}") from error
+    finally:
+        shutil.rmtree(building, ignore_errors=True)
+    return len(files)
+
+
+def newest(backup: Path) -> Path:
+    """The list that a path means: itself, or the newest in a folder.
+
+    Raises:
+        StoreError: If there is none.
+    """
+    if backup.is_file():
+        return backup
+    lists = sorted(p for p in backup.glob("*.json") if _LIST.fullmatch(p.name))
+    if not lists:
+        raise StoreError(f"{backup} holds no backup: expected files named by time, .json")
+    return lists[-1]
+
+
+def read_list(path: Path) -> dict[str, Any]:
+    """The list of a backup.
+
+    Raises:
+        StoreError: If it is damaged or of another version, or a name in it leads elsewhere.
+    """
+    told = read_object(path, most_bytes=1 << 30)
+    body = {name: value for name, value in told.items() if name != "sha256"}
+    if told.get("format") != FORMAT or told.get("sha256") != hash_json(body):
+        raise StoreError(f"{path} is not the list of a backup, or was changed")
+    for name in told["files"]:
+        parts = PurePosixPath(name).parts
+        if name.startswith("/") or ".." in parts or not parts:
+            raise StoreError(f"{path}: the name {name[:100]!r} leads elsewhere")
+    return told
+
+
+def check_backup(path: Path, progress: Progress) -> None:
+    """Read every byte of a backup and compare it.
+
+    Raises:
+        StoreError: If a file is missing or has other bytes.
+    """
+    objects = path.parent / "objects"
+    hashes = {str(entry["sha256"]) for entry in read_list(path)["files"].values()}
+    for sha256 in track(sorted(hashes), progress, what="compare", unit="files", total=len(hashes)):
+        place = _place(objects, sha256)
+        got = hash_file(place) if place.is_file() else "no file"
+        if got != sha256:
+            raise StoreError(f"{place}: expected SHA-256 {sha256}, got {got}")
+
+
+def _check_places(root: Path, out: Path) -> None:
+    if not is_project(root) and not (root / STATE).is_dir():
+        raise ConfigError(f"{root} is neither a project nor a folder that a server ran on")
+    if out.resolve().is_relative_to(root.resolve()):
+        raise ConfigError(f"{out} lies in {root}: a backup belongs elsewhere, best on another disk")
+
+
+def _names(root: Path, *, with_keys: bool) -> Iterator[str]:
+    """Files to copy, relative to the root."""
+    for parent, folders, names in os.walk(root):
+        place = Path(parent).relative_to(root)
+        folders[:] = [f for f in folders if not _TEMPORARY.fullmatch(f) and not _again(place, f)]
+        for name in names:
+            relative = (place / name).as_posix()
+            if _TEMPORARY.fullmatch(name) or name in (LOCK, TURN) or _is_beside(name):
+                continue
+            if not with_keys and _is_secret(relative):
+                continue
+            if stat.S_ISREG((root / relative).lstat().st_mode):
+                yield relative
+
+
+def _again(place: Path, folder: str) -> bool:
+    return place == Path(STATE) and folder in _MADE_AGAIN
+
+
+def _is_beside(name: str) -> bool:
+    return any(name.endswith(f".sqlite{suffix}") for suffix in _BESIDE_SQLITE)
+
+
+def _is_secret(name: str) -> bool:
+    parts = PurePosixPath(name).parts
+    return len(parts) > 1 and parts[0] == STATE and parts[1] in SECRETS
+
+
+def _copy_all(
+    root: Path, names: list[str], objects: Path, progress: Progress
+) -> tuple[Entries, list[str], int]:
+    """Entries of the files copied, names of those that did not hold still, and new bytes."""
+    taken: Entries = {}
+    left_out: list[str] = []
+    new_bytes = 0
+    for name in track(names, progress, what="back up", unit="files", total=len(names)):
+        copied = _copy(root / name, objects)
+        if copied is None:
+            left_out.append(name)
+            continue
+        taken[name], added = copied
+        new_bytes += added
+    return taken, left_out, new_bytes
+
+
+def _copy(path: Path, objects: Path) -> tuple[dict[str, Any], int] | None:
+    """Copy a file under its hash: its entry and how many bytes are new; None = it did not hold."""
+    for _ in range(_MOST_TRIES):
+        temporary = objects / f".tmp-{secrets.token_hex(6)}"
+        try:
+            before, mode = _identity(path), stat.S_IMODE(path.stat().st_mode)
+            by_sqlite = _copy_bytes(path, temporary)
+            if by_sqlite or _identity(path) == before:
+                return _keep(temporary, objects, mode)
+        except FileNotFoundError:
+            return None
+        finally:
+            temporary.unlink(missing_ok=True)
+    return None
+
+
+def _keep(temporary: Path, objects: Path, mode: int) -> tuple[dict[str, Any], int]:
+    """Give a copy its place; on the disk when this returns."""
+    sha256, size = hash_file(temporary), temporary.stat().st_size
+    place = _place(objects, sha256)
+    new = not place.exists()
+    if new:
+        place.parent.mkdir(exist_ok=True)
+        temporary.chmod(0o400)
+        _fsync(temporary)
+        os.replace(temporary, place)
+        _fsync(place.parent)
+    return {"bytes": size, "sha256": sha256, "mode": mode}, size if new else 0
+
+
+def _copy_bytes(source: Path, target: Path) -> bool:
+    """Copy a file; one of SQLite that is being written, by SQLite: then True."""
+    log = source.with_name(f"{source.name}-wal")
+    if source.suffix != ".sqlite" or not (log.exists() and log.stat().st_size):
+        shutil.copyfile(source, target)
+        return False
+    try:
+        with (
+            closing(sqlite3.connect(f"file:{source}?mode=ro", uri=True)) as read,
+            closing(sqlite3.connect(target)) as written,
+        ):
+            read.backup(written)
+    except sqlite3.Error as error:
+        raise StoreError(f"{source} cannot be copied: {error}") from error
+    return True
+
+
+def _seals_below(root: Path, names: list[str]) -> dict[str, dict[str, Seal]]:
+    """Folder -> its seals."""
+    folders = [PurePosixPath(n).parent.as_posix() for n in names if n.endswith(SEALS)]
+    return {folder: read_seals(root / folder) for folder in folders}
+
+
+def _settle_seals(
+    root: Path, before: dict[str, dict[str, Seal]], taken: Entries, objects: Path
+) -> list[str]:
+    """Make the seals in the backup those of the files in it; says which files were damaged.
+
+    A file that changed between its seal and its copy is ``open`` in the backup.
+    """
+    damaged = []
+    for folder, first in before.items():
+        last = read_seals(root / folder)
+        settled: dict[str, Seal] = {}
+        for name in first.keys() | last.keys():
+            full = (PurePosixPath(folder) / name).as_posix()
+            if full not in taken:
+                continue
+            seals = (last.get(name, OPEN), first.get(name, OPEN))
+            got = taken[full]["sha256"]
+            fits = [seal for seal in seals if seal.get("sha256") == got]
+            settled[name] = fits[0] if fits else OPEN
+            if not fits and OPEN not in seals and seals[0] == seals[1]:
+                settled[name] = seals[0]
+                damaged.append(full)
+        path = objects / f".tmp-{secrets.token_hex(6)}"
+        path.write_text(seals_text(settled), "utf-8")
+        list_name = (PurePosixPath(folder) / SEALS).as_posix()
+        taken[list_name], _ = _keep(path, objects, 0o644)
+        path.unlink(missing_ok=True)
+    return damaged
+
+
+def _fsync(path: Path) -> None:
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def _identity(path: Path) -> tuple[int, int, int]:
+    status = path.stat()
+    return status.st_ino, status.st_size, status.st_mtime_ns
+
+
+def _place(objects: Path, sha256: str) -> Path:
+    if not re.fullmatch(r"[0-9a-f]{64}", sha256):
+        raise StoreError(f"not a SHA-256: {sha256[:80]!r}")
+    return objects / sha256[:2] / sha256
+
+
+def _write_list(out: Path, files: Entries, left_out: list[str], *, with_keys: bool) -> Path:
+    moment = time.strftime("%Y-%m-%dT%H-%M-%SZ", time.gmtime())
+    path, number = out / f"{moment}.json", 1
+    while path.exists():
+        path, number = out / f"{moment}-{number}.json", number + 1
+    body = {
+        "format": FORMAT,
+        "made": moment,
+        "with_keys": with_keys,
+        "left_out": left_out,
+        "files": files,
+    }
+    write_json(path, body | {"sha256": hash_json(body)})
+    return path
+
+
+def _put(objects: Path, building: Path, name: str, entry: dict[str, Any]) -> None:
+    target, sha256 = building / name, str(entry["sha256"])
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with atomic_file(target) as temporary:
+        shutil.copyfile(_place(objects, sha256), temporary)
+        if (got := hash_file(temporary)) != sha256:
+            raise StoreError(f"{name}: expected SHA-256 {sha256}, got {got}")
+        temporary.chmod(int(entry["mode"]) & 0o777)
+
+
+def to_json(found: BackedUp) -> dict[str, Any]:
+    """Plain JSON values."""
+    return asdict(found) | {"path": str(found.path)}

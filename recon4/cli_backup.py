@@ -1,0 +1,67 @@
+"""The commands ``recon4 backup`` and ``recon4 restore``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from recon4.terminal import write
+
+backups = typer.Typer()
+
+KeysOption = Annotated[
+    bool,
+    typer.Option(
+        "--with-keys", help="Also the signing key, TLS keys, and people with their passwords."
+    ),
+]
+
+
+@backups.command()
+def backup(
+    root: Annotated[Path, typer.Argument(help="Folder of a server, or one project.")],
+    *,
+    out: Annotated[Path, typer.Option(help="Folder of backups, best on another disk.")],
+    with_keys: KeysOption = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Write JSON for programs.")] = False,
+) -> None:
+    """Copy what is new since the last backup, also while a server runs; compare what was written.
+
+    Exit code 1: files were damaged before they were copied. The backup holds them as found.
+    """
+    from recon4.backup import back_up, to_json
+    from recon4.terminal import watcher
+
+    with watcher() as progress:
+        made = back_up(root, out, with_keys=with_keys, progress=progress)
+    if as_json:
+        write(json.dumps(to_json(made), indent=1, ensure_ascii=False))
+    else:
+        for name in made.left_out:
+            write(f"left out, it changed meanwhile: {name}")
+        for name in made.damaged:
+            write(f"damaged before it was copied: {name}")
+        write(f"{made.path}: {made.files} files, {made.bytes} bytes, {made.new_bytes} of them new")
+        if not with_keys:
+            write("keys and people are not in it (--with-keys)")
+    if made.damaged:
+        raise typer.Exit(1)
+
+
+@backups.command()
+def restore(
+    backup: Annotated[Path, typer.Argument(help="A backup, or a folder of them: the newest.")],
+    root: Annotated[Path, typer.Argument(help="Folder that is missing or empty.")],
+    *,
+    with_keys: KeysOption = False,
+) -> None:
+    """Put a backup into an empty folder; a byte that differs is refused, and nothing is left."""
+    from recon4.backup import restore as put
+    from recon4.terminal import watcher
+
+    with watcher() as progress:
+        files = put(backup, root, with_keys=with_keys, progress=progress)
+    write(f"{files} files in {root}; recon4 verify {root} compares them with their seals")

@@ -1,0 +1,61 @@
+"""Names that people give: what is refused, and how what is on disk already is shown.
+
+A character nobody sees can make one name look like another: controls, marks of writing direction
+(U+202E), zero-width characters, halves of characters.
+"""
+
+from __future__ import annotations
+
+import unicodedata
+
+from recon4.errors import ConfigError
+
+LONGEST_NAME = 200
+LONGEST_NOTE = 500
+_HIDDEN = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})
+"""Unicode categories of control, format and surrogate characters, line and paragraph separators."""
+
+
+def check_name(text: str, *, what: str, most: int = LONGEST_NAME) -> str:
+    """A name as it was given.
+
+    Args:
+        text: The name.
+        what: What it names, for the error.
+        most: How many characters it may have.
+
+    Raises:
+        ConfigError: If it is too long or has characters nobody sees.
+    """
+    return _check(text, what, most, allowed="")
+
+
+def check_note(text: str, *, what: str, most: int = LONGEST_NOTE) -> str:
+    """A text of several lines as it was given.
+
+    Raises:
+        ConfigError: If it is too long or has characters nobody sees, except tabs and line ends.
+    """
+    return _check(text, what, most, allowed="\t\n\r")
+
+
+def visible(text: str, *, most: int = LONGEST_NAME) -> str:
+    """A name from a file, fit to be shown: hidden characters as their numbers, cut at ``most``."""
+    short = text if len(text) <= most else f"{text[: most - 1]}…"
+    return "".join(f"<U+{ord(one):04X}>" if _hidden(one) else one for one in short)
+
+
+def _check(text: str, what: str, most: int, *, allowed: str) -> str:
+    if len(text) > most:
+        raise ConfigError(f"{what} has at most {most} characters, got {len(text)}")
+    hidden = [one for one in text if _hidden(one) and one not in allowed]
+    if hidden:
+        raise ConfigError(
+            f"{what} may not have characters that nobody sees, got U+{ord(hidden[0]):04X} at "
+            f"place {text.index(hidden[0]) + 1}"
+        )
+    return text
+
+
+def _hidden(character: str) -> bool:
+    return unicodedata.category(character) in _HIDDEN

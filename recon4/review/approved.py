@@ -1,0 +1,173 @@
+"""Find an approval that counts, and compare it with the journal and its signature."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from recon4.review.decisions import Kind
+from recon4.review.evidence import Evidence
+from recon4.review.journal import Row, broken, read_rows
+from recon4.review.signature import fingerprint, is_signed
+from recon4.review.stamp import Stamp
+from recon4.review.state import read_summary
+from recon4.store.checked import Altered, check_file
+from recon4.store.hashing import FileDigest, hash_json
+
+VERSIONS = "versions"
+
+
+@dataclass(frozen=True, slots=True)
+class Approval:
+    """One that counts: its row in the journal, its statement, and its signature fit together."""
+
+    version: int
+    hash: str
+    """SHA-256 of the statement."""
+    folder: Path
+    """Holds the files issued with it."""
+    stamp: Stamp
+    artifacts: Mapping[str, str]
+    """Stage -> key of what was approved."""
+    manifests: Mapping[str, str]
+    """Stage -> SHA-256 of the manifest of its artifact; nothing before statement format 2."""
+    issued: Mapping[str, str]
+    """File name -> SHA-256, as signed."""
+
+    @property
+    def evidence(self) -> Evidence:
+        """What the artifacts must hash to."""
+        known = self.manifests
+        manifests = {stage: known.get(stage, "") for stage in self.artifacts}
+        return Evidence(self.stamp, self.artifacts, manifests)
+
+    def check_issued(self) -> None:
+        """Compare every file that was issued; one that was checked before is not read again.
+
+        Raises:
+            Altered: If one is missing or has other bytes.
+        """
+        for name in self.issued:
+            self.check_issued_file(self.folder / name)
+
+    def check_issued_file(self, path: Path) -> None:
+        """Compare a file with the one of its name that was issued, wherever it lies.
+
+        Raises:
+            Altered: If none was issued under this name, or this one is missing or has other bytes.
+        """
+        if path.name not in self.issued:
+            raise Altered(f"{path.name} was not issued with version {self.version}")
+        try:
+            size = path.stat().st_size
+        except OSError as error:
+            raise Altered(f"{path.name} cannot be read: {error.strerror}") from error
+        try:
+            check_file(path, FileDigest(size, self.issued[path.name], b""))
+        except Altered as error:
+            raise Altered(f"{self.evidence.refusal}: {error}") from error
+
+
+def approval_of(root: Path, keys: Mapping[str, str]) -> Approval | None:
+    """The newest approval of results made of these artifacts; None if nobody approved them.
+
+    Raises:
+        Altered: If it counts but its file was changed, or the journal was.
+        StoreError: If a file cannot be read.
+    """
+    wanted = hash_json(dict(keys))
+    rows = read_rows(root)
+    for row in reversed(rows):
+        if row.kind == Kind.APPROVE and _facts(row).get("artifacts") == wanted:
+            return _counted(root, rows, row)
+    return None
+
+
+def approval_of_map(root: Path, map_key: str) -> Approval | None:
+    """The newest approval of an earlier map, by the key of its artifact.
+
+    Raises:
+        Altered: If an approval counts but its file was changed, or the journal was.
+        StoreError: If a file cannot be read.
+    """
+    rows = read_rows(root)
+    for row in reversed(rows):
+        if row.kind == Kind.APPROVE:
+            approval = _counted(root, rows, row)
+            if approval.artifacts.get("map") == map_key:
+                return approval
+    return None
+
+
+def latest_approval(root: Path, rows: Sequence[Row]) -> dict[str, Any] | None:
+    """The newest approval for people; ``current`` = the results in the folder are those and say so.
+
+    Raises:
+        StoreError: If a file is damaged.
+    """
+    for row in reversed(rows):
+        if row.kind == Kind.APPROVE:
+            facts = _facts(row)
+            named = ((read_summary(root) or {}).get("approval") or {}).get("hash")
+            return {
+                "version": facts["version"],
+                "hash": facts["approval"],
+                "who": row.who,
+                "time": row.time,
+                "why": row.why,
+                "current": named == facts["approval"],
+            }
+    return None
+
+
+def read_approval(folder: Path, row: Row) -> tuple[Approval, str]:
+    """The approval that a row of the journal names, and the short name of the key that signed it.
+
+    Raises:
+        Altered: If ``approval.json`` is missing or damaged, is not the one of the row, was signed
+            over another journal, or the signature does not hold.
+    """
+    facts, path = _facts(row), folder / "approval.json"
+    try:
+        found = json.loads(path.read_text("utf-8"))
+        statement, issued, signature = found["statement"], found["issued"], found["signature"]
+        key = fingerprint(signature["public_key"])
+        stamp = _stamp(int(facts["version"]), statement, str(facts["approval"]))
+        artifacts, manifests = dict(statement["artifacts"]), dict(statement.get("manifests", {}))
+        signed_head = statement["journal"]["head"]
+        approval = Approval(
+            stamp.version, stamp.hash, folder, stamp, artifacts, manifests, dict(issued)
+        )
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        raise Altered(f"versions/{folder.name}/approval.json cannot be read: {error!r}") from error
+    if hash_json(statement) != stamp.hash or found["hash"] != stamp.hash:
+        raise Altered("the statement is not the one in the journal")
+    if not is_signed({"hash": stamp.hash, "issued": issued}, signature):
+        raise Altered("the signature does not hold")
+    if signature.get("key") != key:
+        raise Altered(f"it names the key {signature.get('key')}, its signature is by {key}")
+    if signed_head != row.prev_hash:
+        raise Altered("it was signed over another journal")
+    return approval, key
+
+
+def _counted(root: Path, rows: Sequence[Row], row: Row) -> Approval:
+    version = str(_facts(row).get("version"))
+    if wrong := broken(rows):
+        raise Altered(f"the journal is not what was written: {wrong[0]}")
+    try:
+        return read_approval(root / VERSIONS / version, row)[0]
+    except Altered as error:
+        raise Altered(f"the approval of version {version} does not hold: {error}") from error
+
+
+def _facts(row: Row) -> dict[str, Any]:
+    return row.decision().facts or {}
+
+
+def _stamp(version: int, statement: dict[str, Any], sha256: str) -> Stamp:
+    who = {name: str(statement[name]) for name in ("who", "role", "time")}
+    return Stamp(version=version, hash=sha256, **who)

@@ -1,0 +1,187 @@
+"""Artifacts whose bytes are compared with the hashes in their manifest before they are used.
+
+What carries an approval is made of such artifacts only. A part is checked alone, block by block
+(`recon4.store.hashing.BLOCK_BYTES`), so a slice costs the hashing of what it reads, once a process:
+a block that was checked is not read again as long as the file has the same inode, size, and times.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import threading
+from collections import OrderedDict
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from recon4.errors import StoreError
+from recon4.store.hashing import BLOCK_BYTES, FileDigest, files_below
+
+MOST_FILES = 4096
+"""Files whose checked blocks are remembered."""
+_Identity = tuple[int, int, int, int, int, str]
+_checked: OrderedDict[_Identity, bytearray] = OrderedDict()
+_lock = threading.Lock()
+
+
+class Altered(StoreError):
+    """Bytes are not those that were written or approved."""
+
+
+@dataclass(frozen=True, slots=True)
+class CheckedArtifact:
+    """The files of an artifact and what they must hash to."""
+
+    folder: Path
+    files: Mapping[str, FileDigest]
+
+    @staticmethod
+    def open(folder: Path, manifest_sha256: str = "") -> CheckedArtifact:
+        """Read the manifest of an artifact.
+
+        Args:
+            folder: The artifact.
+            manifest_sha256: Hash the manifest must have; empty = an approval of an earlier version
+                of recon4, which does not name it: then the manifest is trusted.
+
+        Raises:
+            Altered: If the manifest is missing, or not the one that was approved.
+        """
+        path = folder / "manifest.json"
+        try:
+            data = path.read_bytes()
+        except OSError as error:
+            raise Altered(f"{_short(path)} cannot be read: {error.strerror}") from error
+        got = hashlib.sha256(data).hexdigest()
+        if manifest_sha256 and got != manifest_sha256:
+            raise Altered(_differs(path, "", manifest_sha256, got))
+        try:
+            found = json.loads(data)["files"]
+            files = {str(name): FileDigest.from_json(value) for name, value in found.items()}
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+            raise Altered(f"{_short(path)} is not a manifest: {error!r}") from error
+        return CheckedArtifact(folder, files)
+
+    def check(self, name: str, start: int = 0, stop: int | None = None) -> None:
+        """Compare the blocks of a file that hold some bytes; those checked before are not read.
+
+        Args:
+            name: Relative name of the file, with forward slashes.
+            start: First byte.
+            stop: Byte behind the last; None = to the end.
+
+        Raises:
+            Altered: If the file is missing, has another size, or a block has other bytes.
+        """
+        expected = self.files.get(name)
+        if expected is None:
+            raise Altered(f"{_short(self.folder / name)} is not in the manifest")
+        check_file(self.folder / name, expected, start, stop)
+
+    def check_all(self) -> None:
+        """Compare every file, and see that there are no others.
+
+        Raises:
+            Altered: If anything differs.
+        """
+        there = set(files_below(self.folder)) - {"manifest.json"}
+        for name in sorted(there ^ self.files.keys()):
+            state = "is missing" if name in self.files else "does not belong here"
+            raise Altered(f"{_short(self.folder / name)} {state}")
+        for name in self.files:
+            self.check(name)
+
+
+def check_file(
+    path: Path,
+    expected: FileDigest,
+    start: int = 0,
+    stop: int | None = None,
+    *,
+    remembered: bool = True,
+) -> None:
+    """Compare the blocks of a file that hold some bytes with their hashes.
+
+    Args:
+        path: The file.
+        expected: Its size and hashes.
+        start: First byte.
+        stop: Byte behind the last; None = to the end.
+        remembered: Do not read again what was compared before in this process.
+
+    Raises:
+        Altered: If the file is missing, has another size, or a block has other bytes.
+    """
+    try:
+        descriptor = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
+    except OSError as error:
+        raise Altered(f"{_short(path)} cannot be read: {error.strerror}") from error
+    try:
+        size = os.fstat(descriptor).st_size
+        if size != expected.size:
+            raise Altered(_differs(path, "", f"{expected.size} bytes", f"{size} bytes"))
+        flags = _flags(descriptor, expected) if remembered else _no_flags(expected)
+        if not expected.blocks:
+            _check_whole(descriptor, path, expected, flags)
+            return
+        last = min(size, stop if stop is not None else size)
+        for number in range(start // BLOCK_BYTES, -(-last // BLOCK_BYTES)):
+            if not flags[number]:
+                _check_block(descriptor, path, expected, number)
+                flags[number] = 1
+    finally:
+        os.close(descriptor)
+
+
+def _check_whole(descriptor: int, path: Path, expected: FileDigest, flags: bytearray) -> None:
+    """Of a small file, or of one whose manifest has no block hashes."""
+    if flags[0]:
+        return
+    digest, offset = hashlib.sha256(), 0
+    while block := os.pread(descriptor, BLOCK_BYTES, offset):
+        digest.update(block)
+        offset += len(block)
+    if digest.hexdigest() != expected.sha256:
+        raise Altered(_differs(path, "", expected.sha256, digest.hexdigest()))
+    flags[0] = 1
+
+
+def _check_block(descriptor: int, path: Path, expected: FileDigest, number: int) -> None:
+    offset = number * BLOCK_BYTES
+    block = os.pread(descriptor, BLOCK_BYTES, offset)
+    wanted, got = expected.block(number), hashlib.sha256(block).digest()
+    if got != wanted:
+        where = f", bytes {offset} to {offset + len(block)}"
+        raise Altered(_differs(path, where, wanted.hex(), got.hex()))
+
+
+def _flags(descriptor: int, expected: FileDigest) -> bytearray:
+    """Which blocks of exactly this file were checked; the change time cannot be set back."""
+    status = os.fstat(descriptor)
+    times = (status.st_mtime_ns, status.st_ctime_ns)
+    identity = (status.st_dev, status.st_ino, status.st_size, *times, expected.sha256)
+    with _lock:
+        flags = _checked.setdefault(identity, _no_flags(expected))
+        _checked.move_to_end(identity)
+        while len(_checked) > MOST_FILES:
+            _checked.popitem(last=False)
+    return flags
+
+
+def _no_flags(expected: FileDigest) -> bytearray:
+    return bytearray(max(1, -(-expected.size // BLOCK_BYTES)))
+
+
+def _short(path: Path) -> str:
+    """Enough of a path to find it: from the folder that holds artifacts or versions on."""
+    parts = path.parts
+    for name in ("artifacts", "versions"):
+        if name in parts:
+            return "/".join(parts[len(parts) - 1 - parts[::-1].index(name) :])
+    return path.name
+
+
+def _differs(path: Path, where: str, expected: str, got: str) -> str:
+    return f"{_short(path)}{where}: expected {expected[:16]}, got {got[:16]}"

@@ -1,0 +1,235 @@
+"""Seals: SHA-256 of the files of a folder that no manifest and no signature covers.
+
+``seals.json`` names every such file with its size and hash, and carries its own hash. A file is
+marked ``open`` before it changes and sealed again afterwards, so that a killed process leaves a
+file that is known to have been in change, never one that merely looks altered. A whole file is
+hashed: of a SQLite file its unused pages too.
+
+Seals find damage and careless edits. They are no signature: who can write the folder can write
+them anew. What was approved is signed (`recon4.review.approved`).
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from recon4.errors import StoreError
+from recon4.store.atomic import write_json
+from recon4.store.checked import Altered, check_file
+from recon4.store.hashing import FileDigest, files_below, hash_json
+from recon4.store.json_files import parse_object
+
+SEALS = "seals.json"
+LOCK = ".seals.lock"
+TURN = ".changes.lock"
+FORMAT = 1
+OPEN: dict[str, Any] = {"open": True}
+"""In place of size and hash: the file was about to change."""
+
+Seal = Mapping[str, Any]
+
+
+def read_seals(root: Path) -> dict[str, Seal]:
+    """File name -> ``bytes`` and ``sha256``, or `OPEN`; none before anything was sealed.
+
+    Raises:
+        Altered: If the list itself was changed.
+    """
+    path = root / SEALS
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError:
+        return {}
+    except OSError as error:
+        raise Altered(f"{SEALS} cannot be read: {error.strerror}") from error
+    try:
+        found = parse_object(data, SEALS)
+        files: dict[str, Seal] = found["files"]
+        if found["format"] != FORMAT or found["sha256"] != hash_json(files):
+            raise ValueError("its own hash does not fit")
+        if data != seals_text(files).encode():
+            raise ValueError("it is not as it was written")
+    except (StoreError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise Altered(f"{SEALS} is not what was written: {error}") from error
+    return files
+
+
+def check_sealed(root: Path, name: str) -> None:
+    """Compare a file, or all files below a folder, with their seals before they are used.
+
+    What has no seal, or is open, is taken as it is; what was compared before and has the same
+    inode, size and times is not read again.
+
+    Raises:
+        Altered: If a file, or the list of seals, was changed.
+    """
+    seals = read_seals(root)
+    for one in _below(seals, (name,)):
+        _compare(root, one, seals[one], remembered=True)
+
+
+def compare_all(root: Path) -> Iterator[tuple[str, str]]:
+    """Every sealed name, and what is wrong with the file in words; empty = nothing.
+
+    Raises:
+        Altered: If the list of seals was changed.
+    """
+    for name, seal in sorted(read_seals(root).items()):
+        try:
+            _compare(root, name, seal)
+        except Altered as error:
+            yield name, str(error)
+        else:
+            yield name, ""
+
+
+@contextmanager
+def changing(root: Path, *names: str, compared: bool = True) -> Iterator[None]:
+    """Change files, or all files below folders, and seal them when the block ends.
+
+    One block at a time runs for a folder. If it raises, the files are sealed as they are.
+
+    Args:
+        root: The folder that has the seals.
+        names: Files and folders below it, with forward slashes; they need not exist.
+        compared: Refuse if one is not what was sealed; False = it is written anew as a whole.
+
+    Raises:
+        Altered: If a file is not what was sealed; nothing was changed.
+        StoreError: If the folder cannot be written.
+    """
+    with _locked(root / TURN):
+        begin_change(root, names, compared=compared)
+        try:
+            yield
+        finally:
+            end_change(root, names)
+
+
+def begin_change(
+    root: Path, names: tuple[str, ...], *, compared: bool = True, missing_allowed: str = ""
+) -> None:
+    """Mark files as open; see `changing`. The mark is on the disk when this returns.
+
+    Args:
+        root: The folder that has the seals.
+        names: Files and folders below it.
+        compared: Refuse if one is not what was sealed.
+        missing_allowed: A file that people may move away; it is made again.
+    """
+    with _locked(root / LOCK):
+        seals = read_seals(root)
+        mine = _below(seals, names)
+        for name in mine if compared else ():
+            if name == missing_allowed and not (root / name).exists():
+                continue
+            _compare(root, name, seals[name], advice=True)
+        _write(root, seals | dict.fromkeys([*mine, *names], OPEN))
+
+
+def end_change(
+    root: Path,
+    names: tuple[str, ...],
+    *,
+    left_open: tuple[str, ...] = (),
+    most_bytes: int | None = None,
+) -> None:
+    """Seal files as they are now, and forget those that are gone.
+
+    Args:
+        root: The folder that has the seals.
+        names: Files and folders below it.
+        left_open: Files that may still change; they get no seal.
+        most_bytes: Larger files get no seal; None = every file gets one.
+    """
+    with _locked(root / LOCK):
+        seals = read_seals(root)
+        for name in _below(seals, names):
+            seals.pop(name)
+        for name in names:
+            seals.pop(name, None)
+            path = root / name
+            inside = [f"{name}/{one}" for one in files_below(path)] if path.is_dir() else [name]
+            for one in inside:
+                if one in left_open:
+                    seals[one] = OPEN
+                elif _is_sealable(root / one, most_bytes):
+                    seals[one] = seal_of(root / one)
+        _write(root, seals)
+
+
+def _is_sealable(path: Path, most_bytes: int | None) -> bool:
+    if not path.is_file() or path.is_symlink():
+        return False
+    return most_bytes is None or path.stat().st_size <= most_bytes
+
+
+def adopt(root: Path, names: Iterator[str] | list[str]) -> None:
+    """Seal files that have no seal yet; those that have one keep it."""
+    with _locked(root / LOCK):
+        seals = read_seals(root)
+        fresh = {name: seal_of(root / name) for name in names if name not in seals}
+        if fresh:
+            _write(root, seals | fresh)
+
+
+def seal_of(path: Path) -> dict[str, Any]:
+    """Size and hash of a file."""
+    digest = FileDigest.of(path)
+    return {"bytes": digest.size, "sha256": digest.sha256}
+
+
+def _compare(
+    root: Path, name: str, seal: Seal, *, advice: bool = False, remembered: bool = False
+) -> None:
+    if seal == OPEN:
+        return
+    try:
+        expected = FileDigest(int(seal["bytes"]), str(seal["sha256"]), b"")
+        check_file(root / name, expected, remembered=remembered)
+    except (KeyError, ValueError, TypeError) as error:
+        raise Altered(f"{SEALS}: the entry {name} makes no sense: {error!r}") from error
+    except Altered as error:
+        words = f"{name} is not what recon4 wrote: {error}"
+        more = (
+            f"; put it back from a backup, or take it as it is (recon4 verify --accept {root}); "
+            "if it is the ledger, move it away: finished stages are found by their artifacts"
+        )
+        raise Altered(words + more if advice else words) from error
+
+
+def _below(seals: Mapping[str, Seal], names: tuple[str, ...]) -> list[str]:
+    return [one for one in seals if any(one == n or one.startswith(f"{n}/") for n in names)]
+
+
+def _write(root: Path, seals: Mapping[str, Seal]) -> None:
+    write_json(root / SEALS, _value(seals))
+
+
+def _value(seals: Mapping[str, Seal]) -> dict[str, Any]:
+    files = {name: dict(seals[name]) for name in sorted(seals)}
+    return {"format": FORMAT, "sha256": hash_json(files), "files": files}
+
+
+def seals_text(seals: Mapping[str, Seal]) -> str:
+    """What ``seals.json`` holds for these seals."""
+    return json.dumps(_value(seals), indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+
+
+@contextmanager
+def _locked(path: Path) -> Iterator[None]:
+    try:
+        descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+    except OSError as error:
+        raise StoreError(f"cannot lock {path}: {error.strerror}") from error
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(descriptor)
