@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import importlib
 import os
-import pickle
 import signal
 import sys
 import traceback
@@ -24,6 +23,7 @@ from app.compute_pool.messages import (
     RESULT,
     Call,
     Setup,
+    decode_request,
     encode_error,
     encode_result,
 )
@@ -66,7 +66,7 @@ def _read(calls: BinaryIO) -> bytes | None:
 
 def _confine(message: bytes, scratch: Path, kernels: tuple[Path, ...]) -> None:
     """Take away from this process whatever its work does not need; the one place for it."""
-    setup: Setup = pickle.loads(message)  # from the server, which is trusted
+    setup: Setup = decode_request(message)
     importlib.import_module(setup.module)
     os.chdir(scratch)
     confine_child(setup.access, scratch, kernels)
@@ -74,7 +74,7 @@ def _confine(message: bytes, scratch: Path, kernels: tuple[Path, ...]) -> None:
 
 def _answer(answers: BinaryIO, message: bytes) -> None:
     try:
-        call: Call = pickle.loads(message)  # from the server, which is trusted
+        call: Call = decode_request(message)
         data = encode_result(call.function, call.function(*call.args, **call.kwargs))
         kind = RESULT
     except Recon4Error as error:

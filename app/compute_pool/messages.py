@@ -7,6 +7,7 @@ a result is JSON (or bytes) of the type that the function's annotation declares,
 from __future__ import annotations
 
 import json
+import pickle  # only what the server sends is unpickled, and only in the child
 import struct
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -52,6 +53,17 @@ class Refusal(BaseModel):
     name: str
     words: str
     problems: dict[str, str] = {}
+
+
+def encode_request(request: Setup | Call) -> bytes:
+    """What the server sends to a child (server's side)."""
+    data = pickle.dumps(request)
+    return LENGTH.pack(len(data)) + data
+
+
+def decode_request(data: bytes) -> Any:
+    """The `Setup` or `Call` that the server sent (child's side)."""
+    return pickle.loads(data)
 
 
 def encode_result(function: Callable[..., Any], result: object) -> bytes:

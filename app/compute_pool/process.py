@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import os
-import pickle
 import secrets
 import shutil
 import signal
@@ -17,13 +16,13 @@ from typing import Any
 from app.compute_pool.messages import (
     FAILED,
     HEAD,
-    LENGTH,
     MOST_RESULT_BYTES,
     RESULT,
     Call,
     Setup,
     decode_error,
     decode_result,
+    encode_request,
 )
 from app.compute_pool.model import FileAccess
 from app.errors import ComputeFailed
@@ -88,14 +87,13 @@ class ChildProcess:
         """
         assert self._process.stdin is not None
         assert self._process.stdout is not None
-        messages: list[object] = [call]
+        messages: list[Setup | Call] = [call]
         if not self._set_up:
             messages.insert(0, Setup(access, call.function.__module__))
             self._set_up = True
         try:
             for message in messages:
-                data = pickle.dumps(message)
-                self._process.stdin.write(LENGTH.pack(len(data)) + data)
+                self._process.stdin.write(encode_request(message))
             await self._process.stdin.drain()
             kind, size = HEAD.unpack(await self._process.stdout.readexactly(HEAD.size))
             if size > MOST_RESULT_BYTES:

@@ -99,6 +99,8 @@ ONLY_HERE = {
 
 NEVER = {"pickle", "marshal", "shelve", "yaml", "cPickle", "dill", "cloudpickle"}
 """Loading these from a file of unknown origin runs its code."""
+ONLY_TO_CHILDREN = Path("app/compute_pool/messages.py")
+"""The server sends calls to its children as pickles; nothing comes back as one."""
 
 SOURCES = [
     path.relative_to(ROOT) for top in ("recon4", "app") for path in (ROOT / top).rglob("*.py")
@@ -159,7 +161,8 @@ def test_the_ends_of_the_program_are_called_from_outside_only(path):
 
 @pytest.mark.parametrize("path", SOURCES, ids=str)
 def test_nothing_that_runs_code_from_files_is_imported(path):
-    assert {name for name in imported(path) if name.split(".")[0] in NEVER} == set()
+    allowed = {"pickle"} if path == ONLY_TO_CHILDREN else set()
+    assert {name for name in imported(path) if name.split(".")[0] in NEVER} == allowed
 
 
 def test_the_page_names_every_room():
