@@ -116,7 +116,10 @@ class Supervisor:
         if job.over:
             raise Conflict(f"job {job.id} is {job.state} already")
         if job.state is JobState.QUEUED:
-            job = self._store.change(job, job.to(JobState.CANCELLED, finished=now()))
+            try:
+                job = self._store.change(job, job.to(JobState.CANCELLED, finished=now()))
+            except Conflict:  # it was started between the caller's look and ours
+                return self.cancel(self._store.get(job.id))
         else:
             self.folder(job.id).ask_to_stop()
         self.wake(job)
@@ -153,7 +156,8 @@ class Supervisor:
         free = self._settings.running_jobs - len(self._store.in_state(JobState.RUNNING))
         waiting = self._store.in_state(JobState.QUEUED)[: max(0, free)]
         for job in waiting:
-            self._start(job)
+            with contextlib.suppress(Conflict):  # cancelled since it was read: nothing to start
+                self._start(job)
         return changed | {job.id for job in waiting}
 
     def close(self) -> None:
