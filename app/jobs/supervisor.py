@@ -130,7 +130,10 @@ class Supervisor:
         if job.over:
             raise Conflict(f"job {job.id} is {job.state} already")
         if job.state is JobState.QUEUED:
-            job = self._store.change(job, job.to(JobState.CANCELLED, finished=now()))
+            try:
+                job = self._store.change(job, job.to(JobState.CANCELLED, finished=now()))
+            except Conflict:  # it was started between the caller's look and ours
+                return self.cancel(self._store.get(job.id))
         else:
             self.folder(job.id).ask_to_stop()
         self.wake(job)
@@ -172,6 +175,8 @@ class Supervisor:
         """Take a step with one job; if it fails the others go on. Whether the job changed."""
         try:
             return step(job)
+        except Conflict:  # cancelled since it was read: nothing to do
+            return True
         except Exception:
             log.exception("job %s: trying again", job.id)
             return False
