@@ -63,6 +63,8 @@ class ViewerPool:
         """
         async with self._starting.setdefault(project, asyncio.Lock()):
             running = self._running.get(project)
+            if running is not None and running[0].returncode is not None:
+                await self._end(*running)  # it died or was idle: its socket and record are there
             if running is None or running[0].returncode is not None:
                 self._running[project] = await self._start(project)
             return self._running[project][1]

@@ -14,8 +14,10 @@ import time
 import psutil
 import pytest
 
+from app.viewer.pool import socket_folder
 from recon4.processes import ChildRegister, process_identity
 from tests.project_builder import build_project
+from tests.service.killing import leftover_files
 from tests.service.running import ROOT, server_process, wait_for
 from tests.service.viser_client import camera, viewing
 
@@ -121,3 +123,22 @@ def test_the_next_server_ends_a_leftover_it_knows_and_nothing_else(root):
             assert not list(register.folder.glob(f"{leftover.pid}-*"))
             assert not list(register.folder.glob(f"{stranger.pid}-*"))
         stranger.kill()
+
+
+def test_a_viewer_that_was_killed_leaves_no_socket_and_no_record(root):
+    with server_process(root) as (server, process):
+        for _ in range(2):
+            with viewing(server.url) as client:
+                client.send(camera())
+                client.until(lambda c: "/grid" in c.nodes)
+                viewers = psutil.Process(process.pid).children()
+                (viewer,) = [one for one in viewers if "app.viewer.process" in one.cmdline()]
+                viewer.kill()
+                psutil.wait_procs([viewer], timeout=GONE_WITHIN_S)
+        with viewing(server.url) as client:
+            client.send(camera())
+            client.until(lambda c: "/grid" in c.nodes)
+        assert len(list(socket_folder(root / ".recon4").iterdir())) == 1
+        assert len(list((root / ".recon4" / "children").iterdir())) == 1
+
+    assert leftover_files(root) == []
