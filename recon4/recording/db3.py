@@ -150,7 +150,7 @@ class Db3:
                     number.append(topic)
                 else:
                     bad += 1
-        except (apsw.Error, MemoryError) as error:
+        except (apsw.Error, MemoryError, ValueError) as error:
             self._damage = str(error) or type(error).__name__
         if bad:
             self._corrupt(bad, "a row without a topic or a sensible time")
@@ -192,7 +192,7 @@ class Db3:
         try:
             query = "SELECT data FROM messages NOT INDEXED WHERE rowid = ?"
             found = next(self._execute(query, (row,)), (None,))[0]
-        except (apsw.Error, MemoryError) as error:
+        except (apsw.Error, MemoryError, ValueError) as error:
             self._corrupt(1, f"row {row} of table messages: {error}")
             return None
         if not isinstance(found, bytes):
@@ -210,7 +210,7 @@ class Db3:
 def _reading(name: str) -> Iterator[None]:
     try:
         yield
-    except (apsw.Error, MemoryError, OSError) as error:
+    except (apsw.Error, MemoryError, OSError, ValueError) as error:  # ValueError: no UTF-8
         raise CorruptFile(f"{name}: no readable SQLite database: {error}") from error
 
 
