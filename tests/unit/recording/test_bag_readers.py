@@ -1,6 +1,7 @@
 """Our readers of bags against the library's, and what damage costs."""
 
 import signal
+import struct
 import subprocess
 import sys
 import zlib
@@ -118,6 +119,17 @@ def test_a_directory_that_counts_more_messages_than_there_are_is_said(tmp_path):
     assert report.outcome == "lossy"
     assert report.counts["messages_missing"] == 9999 - count
     assert f"expected 9999 messages as metadata.yaml says, got {count}" in report.warnings[0]
+
+
+def test_a_summary_that_counts_more_messages_than_the_chunks_hold_is_said(tmp_path):
+    path = tmp_path / "x.mcap"
+    content = mcap(mcap_message(b"0" * 100))
+    path.write_bytes(content.replace(struct.pack("<IHQ", 10, 1, 1), struct.pack("<IHQ", 10, 1, 7)))
+    report = ImportReport()
+
+    assert len(ours(path, report)) == 1
+    assert report.outcome == "lossy"
+    assert report.counts["messages_missing"] == 6
 
 
 @pytest.mark.parametrize("how", ["bz2", "lz4", "zstd"])
