@@ -108,6 +108,8 @@ def _indexed(file: RecordFile) -> Directory:
         )
     topics = dict(_connection(file) for _ in range(connections))
     infos = [_chunk_info(file) for _ in range(chunks)]
+    if len({info.offset for info in infos}) < len(infos):
+        raise CorruptFile(f"{file.name}: the index of the file lists a chunk more than once")
     found = [_chunk_at(file, info, index_at) for info in infos]
     require_apart(found, file.name, index_at)
     _count(topics, found)

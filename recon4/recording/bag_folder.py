@@ -10,10 +10,10 @@ from typing import Any
 from recon4.errors import CorruptFile
 
 METADATA = "metadata.yaml"
-MAX_METADATA_BYTES = 1 << 20
+MAX_METADATA_BYTES = 512 << 10
 """A topic takes less than 1 kB."""
 _MAX_DEPTH = 20
-_MAX_EVENTS = 200_000
+_MAX_EVENTS = 100_000
 _MAX_FILES = 100_000
 _NEWEST_VERSION = 9
 
@@ -50,38 +50,48 @@ def read_metadata(folder: Path) -> BagMetadata:
 
 
 def _load(text: bytes) -> Any:
-    """The document, built from a stream of events that is checked while it is parsed.
+    """The document as dictionaries, lists and strings, built while it is parsed.
 
     Raises:
         CorruptFile: If it is no YAML, has references, is too deep or too long.
     """
-    import yaml
+    from ruamel.yaml import YAML
+    from ruamel.yaml.error import YAMLError
 
-    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     try:
-        decoded = text.decode("utf-8")
-        _check_events(yaml.parse(decoded, Loader=loader))
-        return yaml.load(decoded, Loader=loader)
-    except (yaml.YAMLError, ValueError, TypeError, RecursionError) as error:
+        return _build(YAML(typ="safe", pure=True).parse(text.decode("utf-8")))
+    except (YAMLError, ValueError, TypeError, AttributeError, IndexError) as error:
         reason = " ".join(str(error).split()) or type(error).__name__
         raise CorruptFile(f"{METADATA}: no readable YAML: {reason[:200]}") from error
 
 
-def _check_events(events: Iterator[Any]) -> None:
-    from yaml.events import AliasEvent, CollectionEndEvent, CollectionStartEvent
+def _build(events: Iterator[Any]) -> Any:
+    """Build a document without tags and references: every value is a string."""
+    from ruamel.yaml.events import AliasEvent, CollectionEndEvent, CollectionStartEvent, ScalarEvent
 
-    depth = 0
+    open_: list[list[Any]] = [[]]
+    kinds: list[str] = ["document"]
     for number, event in enumerate(events):
-        depth += isinstance(event, CollectionStartEvent) - isinstance(event, CollectionEndEvent)
         line = event.start_mark.line + 1
         if isinstance(event, AliasEvent):
             raise CorruptFile(
                 f"{METADATA}, line {line}: expected no reference, got *{event.anchor}"
             )
-        if depth > _MAX_DEPTH:
-            raise CorruptFile(f"{METADATA}, line {line}: nested deeper than {_MAX_DEPTH} levels")
-        if number > _MAX_EVENTS:
-            raise CorruptFile(f"{METADATA}, line {line}: more than {_MAX_EVENTS} values")
+        if len(open_) > _MAX_DEPTH or number > _MAX_EVENTS:
+            raise CorruptFile(
+                f"{METADATA}, line {line}: nested deeper than {_MAX_DEPTH} levels or more than "
+                f"{_MAX_EVENTS} values"
+            )
+        if isinstance(event, CollectionStartEvent):
+            open_.append([])
+            kinds.append(type(event).__name__)
+        elif isinstance(event, CollectionEndEvent):
+            items, kind = open_.pop(), kinds.pop()
+            pairs = zip(items[::2], items[1::2], strict=True)
+            open_[-1].append({str(k): v for k, v in pairs} if kind.startswith("Mapping") else items)
+        elif isinstance(event, ScalarEvent):
+            open_[-1].append("" if event.value in {"null", "~"} else event.value)
+    return open_[0][0]
 
 
 def _metadata(folder: Path, document: Any) -> BagMetadata:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import heapq
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from types import TracebackType
@@ -166,14 +166,20 @@ class Bag:
         """The files that the description lists; without one, all storage files."""
         try:
             metadata = read_metadata(path)
-            missing = [file.name for file in metadata.files if not file.is_file()]
-            if missing:
-                raise CorruptFile(f"{len(missing)} files are missing: {', '.join(missing[:5])}")
         except CorruptFile as error:
             self.report.warn(f"{path.name}: {error}; its files are read one by one")
-            if not _is_absent(path):
-                self.report.outcome = "lossy"
             metadata = BagMetadata(_storage_files(path, error), "", 0)
+        missing = [file.name for file in metadata.files if not file.is_file()]
+        if missing:
+            self.report.outcome = "lossy"
+            self.report.count("files_missing", len(missing))
+            self.report.warn(
+                f"{path.name}: {len(missing)} files of metadata.yaml are missing: "
+                f"{', '.join(missing[:5])}; the others are read"
+            )
+            absent = CorruptFile(f"no file of metadata.yaml is there: {', '.join(missing[:5])}")
+            there = tuple(file for file in metadata.files if file.is_file())
+            metadata = replace(metadata, files=there or _storage_files(path, absent))
         self._compressed_messages = metadata.compression == "message"
         files = metadata.files
         if metadata.compression == "file":
@@ -287,10 +293,6 @@ def _typestore(ros1: bool) -> Any:
 def _is_sqlite(path: Path) -> bool:
     with path.open("rb") as file:
         return file.read(16) == db3.MAGIC
-
-
-def _is_absent(folder: Path) -> bool:
-    return not (folder / "metadata.yaml").exists()
 
 
 def _storage_files(folder: Path, error: CorruptFile) -> tuple[Path, ...]:

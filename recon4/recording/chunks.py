@@ -164,6 +164,7 @@ class ChunkStream:
         self._load = load
         self._first_damage: CorruptFile | None = None
         self._loaded = 0
+        self._found: Counter[int] = Counter()
 
     def messages(self, topics: set[str]) -> Iterator[Row]:
         """Messages in order of time.
@@ -179,6 +180,13 @@ class ChunkStream:
         if self._first_damage is not None and not self._loaded:
             self._report.outcome = "nothing"
             raise self._first_damage
+        missing = sum(max(0, names[k].msgcount - self._found[k]) for k in wanted)
+        if missing:
+            self._report.outcome = "lossy"
+            self._report.count("messages_missing", missing)
+            self._report.warn(
+                f"{self._name}: {missing} messages fewer than the directory of the file says"
+            )
 
     def _merged(self, chunks: list[ChunkRef], wanted: set[int]) -> Iterator[Message]:
         """Messages of all chunks by time; a chunk is open from its first to its last message."""
@@ -207,13 +215,7 @@ class ChunkStream:
             return None
         self._loaded += 1
         found = Counter(messages.connection)
-        missing = sum(max(0, n - found[k]) for k, n in chunk.counts.items())
-        if missing:
-            self._report.count("messages_missing", missing)
-            self._report.outcome = "lossy"
-            self._report.warn(
-                f"{self._name}: chunks with fewer messages than the index of the file says"
-            )
+        self._found += found
         unknown = sum(n for k, n in found.items() if k not in self._directory.topics)
         if messages.rejected or unknown:
             self._report.outcome = "lossy"

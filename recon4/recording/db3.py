@@ -22,6 +22,7 @@ from recon4.errors import CorruptFile, EmptyRecording
 from recon4.recording.chunks import Directory, Row, Topic
 from recon4.recording.limits import MAX_MESSAGE_BYTES, MAX_TOPICS, clean_name
 from recon4.recording.report import ImportReport
+from recon4.recording.sqlite_tree import check_table_tree
 
 MAGIC = b"SQLite format 3\0"
 _PROGRESS_STEPS = 100_000
@@ -60,12 +61,14 @@ class Db3:
         self._name, self.report = path.name, report
         self._silent = 0
         self._damage = ""
-        whole = _is_whole(path)
+        whole, page_bytes = _pages(path)
+        check_table_tree(path, 1, page_bytes)
         with _reading(path.name):
             self._database = self._open(path, whole=whole)
         try:
             with _reading(path.name):
-                _require_tables(self._database, path.name)
+                for root in _require_tables(self._database, path.name):
+                    check_table_tree(path, root, page_bytes)
                 self._database.set_authorizer(_authorize)
                 topics = self._topics()
                 self._rows = self._scan()
@@ -147,7 +150,7 @@ class Db3:
                     number.append(topic)
                 else:
                     bad += 1
-        except (apsw.Error, MemoryError) as error:
+        except (apsw.Error, MemoryError, ValueError) as error:
             self._damage = str(error) or type(error).__name__
         if bad:
             self._corrupt(bad, "a row without a topic or a sensible time")
@@ -189,7 +192,7 @@ class Db3:
         try:
             query = "SELECT data FROM messages NOT INDEXED WHERE rowid = ?"
             found = next(self._execute(query, (row,)), (None,))[0]
-        except (apsw.Error, MemoryError) as error:
+        except (apsw.Error, MemoryError, ValueError) as error:
             self._corrupt(1, f"row {row} of table messages: {error}")
             return None
         if not isinstance(found, bytes):
@@ -207,7 +210,7 @@ class Db3:
 def _reading(name: str) -> Iterator[None]:
     try:
         yield
-    except (apsw.Error, MemoryError, OSError) as error:
+    except (apsw.Error, MemoryError, OSError, ValueError) as error:  # ValueError: no UTF-8
         raise CorruptFile(f"{name}: no readable SQLite database: {error}") from error
 
 
@@ -220,12 +223,13 @@ def _authorize(action: int, table: str | None, *_: str | None) -> int:
     return apsw.SQLITE_DENY
 
 
-def _require_tables(database: apsw.Connection, name: str) -> None:
-    """Check that both tables are plain tables with plain columns.
+def _require_tables(database: apsw.Connection, name: str) -> list[int]:
+    """Check that both tables are plain tables with plain columns; gives their root pages.
 
     Raises:
         CorruptFile: If one is a view, a virtual table, missing, or computes a column.
     """
+    roots = []
     for table, columns in _COLUMNS.items():
         query = "SELECT type, rootpage FROM sqlite_schema WHERE name = ?"
         found = [*database.execute(query, (table,))]
@@ -241,6 +245,8 @@ def _require_tables(database: apsw.Connection, name: str) -> None:
                 raise CorruptFile(f"{name}: expected a column {column} in {table}, got {got}")
         if {"rowid", "oid", "_rowid_"} & {str(column).lower() for column in hidden}:
             raise CorruptFile(f"{name}: table {table} hides the numbers of its rows")
+        roots.append(int(found[0][1]))
+    return roots
 
 
 # -- files that were cut off
@@ -254,8 +260,8 @@ def _page_bytes(header: bytes) -> int:
     return 65536 if page == 1 else page
 
 
-def _is_whole(path: Path) -> bool:
-    """Whether the file has all the pages that its header counts.
+def _pages(path: Path) -> tuple[bool, int]:
+    """Whether the file has all the pages that its header counts, and the size of a page.
 
     Raises:
         CorruptFile: If there is not even one page.
@@ -272,7 +278,7 @@ def _is_whole(path: Path) -> bool:
             f"{path.name}: expected an SQLite database of at least one page of {page} bytes, "
             f"got {size} bytes that start with {header[:8].hex(' ')}; not one message is left"
         )
-    return int.from_bytes(header[28:32], "big") * page <= size
+    return int.from_bytes(header[28:32], "big") * page <= size, page
 
 
 class _CutFile(apsw.VFSFile):

@@ -10,6 +10,7 @@ import fcntl
 import os
 import shutil
 import tempfile
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,6 +18,8 @@ from pathlib import Path
 from recon4.errors import NoSpace, StoreError
 
 _LOCK = "lock"
+_UNLOCKED_S = 3600.0
+"""A folder without a lock that is older has lost its owner between two system calls."""
 _RESERVE_BYTES = 1 << 30
 """Left free on the disk."""
 
@@ -53,8 +56,9 @@ def scratch_folder(needed_bytes: int) -> Iterator[Path]:
 def sweep_scratch() -> int:
     """Remove what killed processes left behind; gives the number of folders removed."""
     removed = 0
-    base = _base()
-    # The lock of the base keeps a folder from being swept between its creation and its own lock.
+    base = _base_path()
+    if not base.is_dir():
+        return 0
     for folder in base.iterdir():
         if folder.is_dir() and not folder.is_symlink() and _is_abandoned(folder):
             shutil.rmtree(folder, ignore_errors=True)
@@ -66,7 +70,7 @@ def _is_abandoned(folder: Path) -> bool:
     try:
         lock = os.open(folder / _LOCK, os.O_RDWR)
     except OSError:
-        return False  # just being created or removed by its owner
+        return _age_s(folder) > _UNLOCKED_S  # else it is being created or removed by its owner
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError:
@@ -76,13 +80,24 @@ def _is_abandoned(folder: Path) -> bool:
     return True
 
 
+def _age_s(folder: Path) -> float:
+    try:
+        return time.time() - folder.stat().st_mtime
+    except OSError:
+        return 0.0
+
+
+def _base_path() -> Path:
+    return Path(tempfile.gettempdir()) / f"recon4-scratch-{os.getuid()}"
+
+
 def _base() -> Path:
     """The folder of all temporary copies of this user.
 
     Raises:
         StoreError: If somebody else can write there.
     """
-    base = Path(tempfile.gettempdir()) / f"recon4-scratch-{os.getuid()}"
+    base = _base_path()
     base.mkdir(mode=0o700, exist_ok=True)
     status = base.lstat()
     if base.is_symlink() or status.st_uid != os.getuid() or status.st_mode & 0o077:

@@ -308,6 +308,43 @@ def _database(path: Path, script: str) -> None:
         database.commit()
 
 
+def db3_cycle(path: Path) -> None:
+    """Inner pages that name the same child 100 times each, six levels deep: 10¹² rows."""
+    _database(
+        path,
+        f"PRAGMA page_size = 4096; {_TOPICS} CREATE TABLE messages(id INTEGER PRIMARY KEY, "
+        f"topic_id INTEGER, timestamp INTEGER, data BLOB); {_ENDLESS} INSERT INTO messages "
+        "SELECT i, 1, i, zeroblob(3000) FROM n LIMIT 40;",
+    )
+    with closing(sqlite3.connect(path)) as database:
+        query = "SELECT rootpage FROM sqlite_schema WHERE name = 'messages'"
+        (root,) = database.execute(query).fetchone()
+    content = bytearray(path.read_bytes())
+    pages = len(content) // 4096
+    first_leaf = next(k for k in range(pages) if k + 1 != root and content[k * 4096] == 13) + 1
+    child = first_leaf
+    for level in range(6):
+        number = root if level == 5 else pages + 1 + level
+        page = _inner_page(child)
+        at = (number - 1) * 4096
+        content[at : at + 4096] = page
+        child = number
+    content[28:32] = (len(content) // 4096).to_bytes(4, "big")
+    path.write_bytes(content)
+
+
+def _inner_page(child: int, cells: int = 100) -> bytes:
+    """An inner page of a table whose children are all the same page."""
+    page = bytearray(4096)
+    start = 4096 - 5 * cells
+    page[0:12] = struct.pack(">BHHHBI", 5, 0, cells, start, 0, child)
+    for k in range(cells):
+        at = start + 5 * k
+        page[12 + 2 * k : 14 + 2 * k] = at.to_bytes(2, "big")
+        page[at : at + 5] = child.to_bytes(4, "big") + bytes([k + 1])
+    return bytes(page)
+
+
 _TOPICS = """
 CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, serialization_format TEXT,
                     offered_qos_profiles TEXT);
@@ -527,6 +564,7 @@ BOMBS: dict[str, tuple[Callable[[Path], None], ...]] = {
         db3_blob,
         db3_topics_repeated,
         db3_sparse,
+        db3_cycle,
     ),
     "metadata": (
         metadata_brackets,
@@ -547,3 +585,5 @@ SUFFIXES = {
     "pcap": ".pcap",
     "pcapng": ".pcapng",
 }
+LINEAR = {bag1_tiny_messages, mcap_tiny_messages}
+"""These are honest work that grows with the file: bounded in memory, not refused."""
