@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from recon4.errors import Recon4Error
+from tests.security.fuzz.broken import BROKEN
 from tests.security.fuzz.kind import Kind
 from tests.security.fuzz.kinds import KINDS
 from tests.security.fuzz.mutators import Mutant, mutant
@@ -24,7 +25,7 @@ MEMORY_BYTES = 1 << 30
 def main(arguments: Sequence[str]) -> None:
     """Read mutants ``first`` to ``stop`` of a kind; one line before and one behind each."""
     name, seed, first, stop, place = arguments
-    kind, folder = KINDS[name], Path(place)
+    kind, folder = (KINDS | BROKEN)[name], Path(place)
     warnings.simplefilter("ignore")
     logging.disable()
     kind.prepare(folder)

@@ -55,23 +55,33 @@ class Tally:
             self.findings.append(Finding(number, outcome, words, how))
 
 
-def fuzz(kind: str, *, count: int, seed: int, first: int = 0) -> Tally:
-    """Read ``count`` mutants of a kind, from number ``first`` on."""
+def fuzz(kind: str, *, count: int, seed: int, first: int = 0, hang_s: float = HANG_S) -> Tally:
+    """Read ``count`` mutants of a kind, from number ``first`` on.
+
+    Args:
+        kind: Name of one of ``KINDS``.
+        count: How many.
+        seed: Other seeds give other mutants.
+        first: Number of the first one.
+        hang_s: A reader that takes longer hangs [s].
+    """
     tally = Tally(kind, seed)
     number, stop = first, first + count
     with tempfile.TemporaryDirectory(prefix="fuzz-", dir=_fast_folder()) as place:
         while number < stop:
-            number = _batch(tally, number, min(stop, number + BATCH), Path(place))
+            batch = range(number, min(stop, number + BATCH))
+            number = _batch(tally, batch, Path(place), hang_s=hang_s)
     return tally
 
 
-def _batch(tally: Tally, first: int, stop: int, place: Path) -> int:
+def _batch(tally: Tally, batch: range, place: Path, *, hang_s: float) -> int:
     """Read with one child until it is done or dies; returns the next number to read."""
     running = -1
+    first, stop = batch.start, batch.stop
     with tempfile.TemporaryFile() as errors, tempfile.TemporaryDirectory(dir=place) as folder:
         arguments = [tally.kind, str(tally.seed), str(first), str(stop), folder]
         with _child(arguments, errors) as child:
-            for line in _lines(child, HANG_S):
+            for line in _lines(child, hang_s):
                 if "start" in line:
                     running = line["start"]
                     continue
@@ -84,7 +94,7 @@ def _batch(tally: Tally, first: int, stop: int, place: Path) -> int:
         words = _tail(errors)
         assert running >= 0, f"the child did not get to its first mutant:\n{words}"
         if hung:
-            tally.add(running, "HANG", f"more than {HANG_S:g} s", "")
+            tally.add(running, "HANG", f"more than {hang_s:g} s", "")
         elif "memory allocation" in words or code == -signal.SIGKILL:
             tally.add(running, "MEMORY", words[-200:], "")
         else:
