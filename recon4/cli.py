@@ -10,6 +10,7 @@ import os
 import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -262,6 +263,16 @@ def _every_command(
     if context.invoked_subcommand is None:
         write(context.get_help())
         raise typer.Exit(2)
+    _sweep()
+
+
+def _sweep() -> None:
+    """Remove temporary copies that killed commands left behind."""
+    from recon4.recording.scratch import sweep_scratch
+
+    # A folder that is not ours is a matter of the command that needs it.
+    with suppress(Recon4Error, OSError):
+        sweep_scratch()
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -93,9 +93,38 @@ def _sensors(rig: Rig, status: Told) -> list[Word]:
     silent = {name: seconds for name, seconds in silent_s.items() if seconds >= _SILENT_S}
     if silent and len(silent) == len(silent_s):
         shortest = min(silent.values())
+        arrives = _arriving(rig, status)
+        if arrives:
+            return [Word("bad", f"No LiDAR of the rig sends: {arrives}")]
         text = f"No LiDAR sends anything for {_seconds(shortest)}: check power and cables"
         return [Word("bad", text)]
     return [Word("bad", f"{name} LiDAR silent for {_seconds(s)}") for name, s in silent.items()]
+
+
+def _arriving(rig: Rig, status: Told) -> str:
+    """What comes in on the LiDARs' ports though none of the rig's LiDARs is heard; empty = none."""
+    for sensor in rig.sensors:
+        there = [one for one in status["senders"] if one["port"] == sensor.port]
+        data = [one for one in there if _data_rate(one) > 0 and one["source"] != sensor.address]
+        if sensor.address and data:
+            return (
+                f"{sensor.name} is expected from {sensor.address}, but data packets for port "
+                f"{sensor.port} come from {_sources(data)}: correct the address in the rig or in "
+                "the sensor"
+            )
+        other = [one for one in there if one["per_s"] > 0]
+        if other:
+            return (
+                f"datagrams for port {sensor.port} ({sensor.name}) come from {_sources(other)}, "
+                "but they are no data packets of a LiDAR"
+            )
+    return ""
+
+
+def _sources(senders: list[Told]) -> str:
+    """Addresses of some senders, at most three."""
+    sources = sorted({str(one["source"]) for one in senders})
+    return ", ".join(sources[:3]) + " …" * (len(sources) > 3)
 
 
 def _silent_s(senders: list[Told], status: Told) -> float:

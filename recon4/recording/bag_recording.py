@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from recon4.recording.assemble import moved
 from recon4.recording.bags import CLOUD, FIX, IMU, ODOMETRY, SCAN, Bag, BagMessage, BagTopic
 from recon4.recording.cloud_files import Table
 from recon4.recording.cloud_points import CloudDecoder, model_of_points
+from recon4.recording.message_limits import MAX_CLOUD_POINTS, require_apart_fields
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream, assign_topics, choose_rig
 from recon4.recording.shots import Shots
@@ -30,6 +32,9 @@ Item = Shots | ImuSamples | GnssSamples | Trajectory
 _BATCH = 500
 """Samples of the IMU are handed on so many at a time."""
 _PERIOD_NS = 100_000_000
+_PROBED_MESSAGES = 50
+"""Messages of a topic that are tried to find out what it is."""
+_NAMES_LISTED = 20
 _FIELD_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
 _FIX_QUALITY = {0: GnssQuality.SINGLE, 1: GnssQuality.DIFFERENTIAL, 2: GnssQuality.RTK_FIXED}
 
@@ -57,7 +62,8 @@ class BagRecording:
             self.topics = bag.topics
             self.streams = lidar_streams(bag, report)
         if not self.streams:
-            names = ", ".join(f"{t.name} ({t.type})" for t in self.topics)
+            names = ", ".join(f"{t.name} ({t.type})" for t in self.topics[:_NAMES_LISTED])
+            names += " …" * (len(self.topics) > _NAMES_LISTED)
             raise EmptyRecording(f"{paths[0].name}: no LiDAR data; topics: {names}")
         chosen = rig or choose_rig(self.streams, report)
         self.rig = assign_topics(chosen, self.streams, report)
@@ -123,7 +129,7 @@ def lidar_streams(bag: Bag, report: ImportReport) -> list[Stream]:
 
 def _model(bag: Bag, topic: BagTopic) -> str:
     """What sensor a topic is from, by its first readable message."""
-    for message in bag.messages([topic.name]):
+    for message in islice(bag.messages([topic.name]), _PROBED_MESSAGES):
         content = bag.decode(message)
         if content is None:
             continue
@@ -227,6 +233,11 @@ def cloud_table(cloud: Any) -> Table:
             f"a cloud of {width} x {height} points of {step} bytes in rows of {row_step} "
             f"does not fit into {len(data)} bytes"
         )
+    if width * height > MAX_CLOUD_POINTS:
+        raise CorruptFile(
+            f"a cloud of {width} x {height} points: expected at most {MAX_CLOUD_POINTS}"
+        )
+    require_apart_fields([(int(f.offset), int(_FIELD_TYPES[f.datatype][1])) for f in known])
     dtype = _point_dtype(known, step, order)
     rows = data[: row_step * height].reshape(height, row_step)[:, : step * width]
     points = np.ascontiguousarray(rows).reshape(-1).view(dtype)

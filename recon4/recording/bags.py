@@ -1,7 +1,7 @@
 """ROS bags of every kind as one stream of messages; damaged files are salvaged.
 
 Only the message types below are decoded, with definitions from here: code is never generated from
-definitions found inside a bag.
+definitions found inside a bag. What a file may ask for is in `recon4.recording.limits`.
 """
 
 from __future__ import annotations
@@ -9,16 +9,30 @@ from __future__ import annotations
 import heapq
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, Protocol, Self
 
-from recon4.errors import CorruptFile, EmptyRecording, RecordingError
+from recon4.errors import CorruptFile, EmptyRecording
+from recon4.recording import db3
+from recon4.recording.bag1 import Bag1, is_bag1
+from recon4.recording.bag_folder import BagMetadata, read_metadata
+from recon4.recording.chunks import Directory, Row
 from recon4.recording.folders import natural
+from recon4.recording.limits import (
+    MAX_MESSAGE_BYTES,
+    MAX_RATIO,
+    RATIO_FLOOR_BYTES,
+    RecordFile,
+    decompress_partly,
+)
+from recon4.recording.mcap_file import Mcap
+from recon4.recording.message_limits import check_message
 from recon4.recording.report import ImportReport
-from recon4.recording.salvage import Salvage, open_salvage
+from recon4.recording.scratch import scratch_folder
+from recon4.recording.zstd_file import decompress_file
 
 SCAN = "velodyne_msgs/msg/VelodyneScan"
 CLOUD = "sensor_msgs/msg/PointCloud2"
@@ -54,6 +68,18 @@ class BagMessage:
     data: bytes
 
 
+class Source(Protocol):
+    """One storage file."""
+
+    ros1: bool
+    directory: Directory
+    report: ImportReport
+
+    def messages(self, topics: set[str]) -> Iterator[Row]:
+        """Messages of some topics in order of time."""
+        ...
+
+
 class Bag:
     """One or several bag files read as one; use as a context manager."""
 
@@ -62,13 +88,14 @@ class Bag:
 
         Args:
             paths: rosbag1 files, rosbag2 folders, ``.db3`` or ``.mcap`` files; not mixed.
-            report: Told what had to be salvaged.
+            report: Receives what had to be salvaged.
         """
         self._paths = paths
         self.report = report
-        """Told what is damaged; may be changed once the bag is open."""
+        """Receives what is damaged; may be replaced once the bag is open."""
         self._stack = ExitStack()
-        self._sources: list[Any] = []
+        self._sources: list[Source] = []
+        self._compressed_messages = False
         self.ros1 = False
         self.topics: tuple[BagTopic, ...] = ()
         self.t_first_ns, self.t_last_ns = 0, 0
@@ -82,7 +109,7 @@ class Bag:
         """
         try:
             for path in self._paths:
-                self._sources += self._open(path)
+                self._open(path)
             self._summarize()
         except BaseException:
             self._stack.close()
@@ -100,7 +127,11 @@ class Bag:
         return (self.t_last_ns - self.t_first_ns) / 1e9
 
     def messages(self, topics: Collection[str]) -> Iterator[BagMessage]:
-        """Messages of some topics in order of recording, as a stream."""
+        """Messages of some topics in order of recording, as a stream.
+
+        Raises:
+            CorruptFile: If not one chunk of a file can be read.
+        """
         streams = [self._of_source(source, set(topics)) for source in self._sources]
         yield from heapq.merge(*streams, key=lambda message: message.t_ns)
 
@@ -108,80 +139,145 @@ class Bag:
         """The message as an object with its fields; None (counted) when its bytes are damaged."""
         store = _typestore(self.ros1)
         try:
+            check_message(message.type, message.data, ros1=self.ros1)
             if self.ros1:
                 return store.deserialize_ros1(message.data, message.type)
             return store.deserialize_cdr(message.data, message.type)
+        except CorruptFile as error:
+            self._left_out(f"{message.topic}: left out: {error}")
         except Exception:  # damaged bytes raise errors of many kinds in generated code
-            self.report.count("messages_corrupt")
-            self.report.warn(f"{message.topic}: messages that cannot be decoded are left out")
-            return None
+            self._left_out(f"{message.topic}: messages that cannot be decoded are left out")
+        return None
+
+    def _left_out(self, why: str) -> None:
+        self.report.count("messages_corrupt")
+        self.report.outcome = "lossy"
+        self.report.warn(why)
 
     # -- opening
 
-    def _open(self, path: Path) -> list[Any]:
+    def _open(self, path: Path) -> None:
+        if path.is_dir():
+            self._open_folder(path)
+        else:
+            self._open_file(path)
+
+    def _open_folder(self, path: Path) -> None:
+        """The files that the description lists; without one, all storage files."""
         try:
-            return [self._open_whole(path)]
-        except RecordingError:
-            raise
-        except Exception as error:  # rosbags raises many kinds on damaged files
-            if path.is_dir():
-                return self._open_folder(path, error)
-            self.report.warn(f"{path.name}: {_reason(error)}; salvaging what is left")
-        source = self._stack.enter_context(open_salvage(path, self.report))
-        self.ros1 = source.ros1
-        return [source]
+            metadata = read_metadata(path)
+        except CorruptFile as error:
+            self.report.warn(f"{path.name}: {error}; its files are read one by one")
+            metadata = BagMetadata(_storage_files(path, error), "", 0)
+        missing = [file.name for file in metadata.files if not file.is_file()]
+        if missing:
+            self.report.outcome = "lossy"
+            self.report.count("files_missing", len(missing))
+            self.report.warn(
+                f"{path.name}: {len(missing)} files of metadata.yaml are missing: "
+                f"{', '.join(missing[:5])}; the others are read"
+            )
+            absent = CorruptFile(f"no file of metadata.yaml is there: {', '.join(missing[:5])}")
+            there = tuple(file for file in metadata.files if file.is_file())
+            metadata = replace(metadata, files=there or _storage_files(path, absent))
+        self._compressed_messages = metadata.compression == "message"
+        files = metadata.files
+        if metadata.compression == "file":
+            files = self._decompressed(files)
+        for file in files:
+            try:
+                self._open_file(file)
+            except (CorruptFile, EmptyRecording) as error:
+                if len(files) == 1:
+                    raise
+                self.report.outcome = "lossy"
+                self.report.count("files_damaged")
+                self.report.warn(f"{path.name}: a file is left out: {error}")
+        self._compare(path, metadata.messages)
 
-    def _open_whole(self, path: Path) -> Any:
-        if path.is_file() and path.stat().st_size == 0:
-            raise EmptyRecording(f"{path.name}: the file is empty (0 bytes)")
-        self.ros1 = path.is_file() and _is_bag1(path)
-        if self.ros1:
-            from rosbags.rosbag1 import Reader as Reader1
+    def _compare(self, path: Path, expected: int) -> None:
+        found = sum(source.directory.message_count for source in self._sources)
+        if found < expected:
+            self.report.outcome = "lossy"
+            self.report.count("messages_missing", expected - found)
+            self.report.warn(
+                f"{path.name}: expected {expected} messages as metadata.yaml says, got {found}"
+            )
 
-            return self._stack.enter_context(Reader1(path))
-        from rosbags.rosbag2 import Reader as Reader2
+    def _decompressed(self, files: Sequence[Path]) -> tuple[Path, ...]:
+        """Copies of files that are compressed as a whole, for as long as the bag is open."""
+        needed = sum(file.stat().st_size for file in files)
+        folder = self._stack.enter_context(scratch_folder(needed))
+        return tuple(decompress_file(file, folder) for file in files)
 
-        return self._stack.enter_context(Reader2(path))
+    def _open_file(self, path: Path) -> None:
+        if is_bag1(path):
+            self.ros1 = True
+            file = self._stack.enter_context(RecordFile(path))
+            self._sources.append(self._bag1(file))
+        elif _is_sqlite(path):
+            database = db3.Db3(path, self.report)
+            self._stack.callback(database.close)
+            self._sources.append(database)
+        else:
+            self._sources.append(self._mcap(self._stack.enter_context(RecordFile(path))))
 
-    def _open_folder(self, path: Path, error: Exception) -> list[Any]:
-        """A folder whose description is missing or wrong: its files one by one."""
-        files = sorted((f for f in path.iterdir() if f.suffix in STORAGE_SUFFIXES), key=natural)
-        if not files:
-            raise CorruptFile(f"{path.name}: no readable rosbag2: {_reason(error)}") from error
-        self.report.warn(f"{path.name}: {_reason(error)}; its files are read one by one")
-        return [source for file in files for source in self._open(file)]
+    def _bag1(self, file: RecordFile) -> Source:
+        try:
+            return Bag1(file, self.report)
+        except CorruptFile as error:
+            self.report.warn(f"{error}; salvaging what is left")
+        source = Bag1.scan(file, self.report)
+        self._salvaged(source, file.name)
+        return source
+
+    def _mcap(self, file: RecordFile) -> Source:
+        reason = ""
+        try:
+            return Mcap(file, self.report)
+        except CorruptFile as error:
+            reason = f"{error}; salvaging what is left"
+        source, whole = Mcap.scan(file, self.report)
+        if not whole:
+            self.report.warn(reason)
+            self._salvaged(source, file.name)
+        return source
+
+    def _salvaged(self, source: Source, name: str) -> None:
+        count = source.directory.message_count
+        if not count:
+            self.report.outcome = "nothing"
+            raise CorruptFile(f"{name}: damaged or cut off, not one message is left")
+        self.report.outcome = "lossy"
+        self.report.count("files_cut")
+        self.report.count("messages_salvaged", count)
+        self.report.warn(f"{name}: cut off or damaged; {count} messages were salvaged")
 
     def _summarize(self) -> None:
         counts: dict[tuple[str, str], int] = {}
         for source in self._sources:
-            for connection in source.connections:
-                key = (connection.topic, connection.msgtype)
-                counts[key] = counts.get(key, 0) + int(connection.msgcount or 0)
+            for topic in source.directory.topics.values():
+                key = (topic.topic, topic.msgtype)
+                counts[key] = counts.get(key, 0) + topic.msgcount
         self.topics = tuple(BagTopic(n, t, c) for (n, t), c in sorted(counts.items()))
-        filled = [s for s in self._sources if s.message_count]
+        filled = [s.directory for s in self._sources if s.directory.message_count]
         if not filled:
             names = ", ".join(path.name for path in self._paths)
             raise EmptyRecording(f"{names}: a bag without messages")
-        self.t_first_ns = min(int(source.start_time) for source in filled)
-        self.t_last_ns = max(int(source.end_time) for source in filled) - 1
+        self.t_first_ns = min(directory.start_time for directory in filled)
+        self.t_last_ns = max(directory.end_time for directory in filled) - 1
 
     # -- reading
 
-    def _of_source(self, source: Any, topics: set[str]) -> Iterator[BagMessage]:
-        if isinstance(source, Salvage):
-            for topic, kind, t_ns, data in source.messages(topics):
+    def _of_source(self, source: Source, topics: set[str]) -> Iterator[BagMessage]:
+        source.report = self.report
+        for topic, kind, t_ns, data in source.messages(topics):
+            if not self._compressed_messages:
                 yield BagMessage(topic, kind, t_ns, data)
-            return
-        wanted = [c for c in source.connections if c.topic in topics]
-        if not wanted:
-            return
-        try:
-            for connection, t_ns, data in source.messages(wanted):
-                yield BagMessage(connection.topic, connection.msgtype, int(t_ns), bytes(data))
-        except Exception as error:  # rosbags raises many kinds on damaged files
-            self.report.outcome = "lossy"
-            self.report.count("files_cut")
-            self.report.warn(f"{_name(source)}: damaged, read up to there: {_reason(error)}")
+                continue
+            most = min(MAX_MESSAGE_BYTES, max(RATIO_FLOOR_BYTES, MAX_RATIO * len(data)))
+            plain = decompress_partly("zstd", data, most=most, where=topic)
+            yield BagMessage(topic, kind, t_ns, plain)
 
 
 @cache
@@ -194,15 +290,13 @@ def _typestore(ros1: bool) -> Any:
     return store
 
 
-def _is_bag1(path: Path) -> bool:
+def _is_sqlite(path: Path) -> bool:
     with path.open("rb") as file:
-        return file.read(9) == b"#ROSBAG V"
+        return file.read(16) == db3.MAGIC
 
 
-def _name(source: Any) -> str:
-    return Path(str(getattr(source, "path", "bag"))).name
-
-
-def _reason(error: Exception) -> str:
-    text = str(error).strip().splitlines()
-    return (text[0] if text else type(error).__name__).rstrip(".")[:200]
+def _storage_files(folder: Path, error: CorruptFile) -> tuple[Path, ...]:
+    files = sorted((f for f in folder.iterdir() if f.suffix in STORAGE_SUFFIXES), key=natural)
+    if not files:
+        raise CorruptFile(f"{folder.name}: no readable rosbag2: {error}") from error
+    return tuple(files)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -42,8 +43,13 @@ from recon4.settings import IngestSettings
 _WHOLE_BYTES = 64 << 20
 """Files up to this size are looked through to the end."""
 _HEAD_PACKETS = 4000
+_WHOLE_PACKETS = 100_000
+"""Of a small capture file with more datagrams than that, counts are estimates too."""
+_PROBED_MESSAGES = 50
 _EARLIEST_NS = 300_000_000 * 1_000_000_000
 """Times before 1979 are counted from something else than 1970."""
+_LATEST_NS = 253_402_300_800 * 1_000_000_000
+"""Start of the year 10000."""
 _HEAD_ITEMS = 40
 _HEAD_NS = 1_000_000_000
 
@@ -97,11 +103,10 @@ class RecordingInfo:
         """The same in words."""
         about = "about " if self.estimated else ""
         lines = [f"{self.path}: {self.kind}, {self.bytes / 1e6:.1f} MB"]
-        if self.t_last_ns > self.t_first_ns:
-            start = "no absolute times"
-        if self.t_first_ns > _EARLIEST_NS:
-            start = f"{utc(self.t_first_ns)} UTC"
-        lines.append(f"time      {start}, {about}{self.seconds:.2f} s")
+        absolute = self.t_first_ns > _EARLIEST_NS
+        if absolute or self.t_last_ns > self.t_first_ns:
+            start = f"{utc(self.t_first_ns)} UTC" if absolute else "no absolute times"
+            lines.append(f"time      {start}, {about}{self.seconds:.2f} s")
         for sensor in self.sensors:
             lines += _sensor_lines(sensor, about)
         lines += [f"samples   {text}" for text in self.samples]
@@ -138,7 +143,9 @@ def describe(path: Path, *, settings: IngestSettings | None = None) -> Recording
 
 
 def utc(t_ns: int) -> str:
-    """A time in words, to the millisecond."""
+    """A time in words, to the millisecond; times beyond the year 9999 in seconds."""
+    if not 0 <= t_ns < _LATEST_NS:
+        return f"{t_ns / 1e9:.3f} s since 1970"
     moment = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(milliseconds=t_ns // 1_000_000)
     return moment.strftime("%Y-%m-%d %H:%M:%S.%f")[:-3]
 
@@ -165,7 +172,7 @@ def _sensor_lines(sensor: SensorInfo, about: str) -> list[str]:
 
 def _describe_pcap(info: RecordingInfo, path: Path) -> RecordingInfo:
     files = pcap_files(path)
-    most = 1 << 40 if info.bytes <= _WHOLE_BYTES else _HEAD_PACKETS
+    most = _WHOLE_PACKETS if info.bytes <= _WHOLE_BYTES else _HEAD_PACKETS
     streams = [stream for file in files for stream in scan_pcap(file, max_packets=most)]
     words = {"position": "position packets", "IMU": "IMU samples", "GNSS": "GNSS samples"}
     samples = [s for s in streams if s.kind in words]
@@ -234,7 +241,7 @@ def _bag_sensor(bag: Bag, topic: BagTopic, model: str) -> SensorInfo:
 
 
 def _message_fields(bag: Bag, topic: BagTopic) -> tuple[str, ...]:
-    for message in bag.messages([topic.name]):
+    for message in islice(bag.messages([topic.name]), _PROBED_MESSAGES):
         cloud = bag.decode(message)
         if cloud is not None:
             try:

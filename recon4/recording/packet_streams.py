@@ -32,6 +32,8 @@ from recon4.recording.velodyne_models import (
 
 KINDS = ("data", "position", "IMU", "GNSS", "other")
 _SAMPLES_TRIED = 20
+MAX_STREAMS = 256
+"""Senders and ports with the most datagrams at the head of a file; a LiDAR is among them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -99,7 +101,8 @@ def scan_pcap(
     """
     head = _head(path, max_packets, open_file)
     keys = head.source.astype(np.int64) << 16 | head.port
-    _, first = np.unique(keys, return_index=True)
+    _, first, packets = np.unique(keys, return_index=True, return_counts=True)
+    first = first[np.argsort(-packets, kind="stable")[:MAX_STREAMS]]
     streams = [_stream(path, head, keys == keys[row]) for row in sorted(first.tolist())]
     streams.sort(key=lambda stream: KINDS.index(stream.kind))
     offsets = {s.source: s.utc_offset_ns for s in streams if s.kind == "position"}

@@ -12,8 +12,10 @@ from typing import IO
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.errors import EmptyRecording, UnknownFormat
+from recon4.errors import CorruptFile, EmptyRecording, UnknownFormat
 from recon4.model.trajectory import Times
+from recon4.recording.pcapng import MAGIC as PCAPNG
+from recon4.recording.pcapng import MAX_PACKET_BYTES, Packet, read_packets
 from recon4.recording.report import ImportReport
 
 _CLASSIC = {
@@ -23,14 +25,15 @@ _CLASSIC = {
     b"\xa1\xb2\x3c\x4d": (">", 1),
 }
 """First four bytes to byte order and nanoseconds a unit of the stamps."""
-_PCAPNG = b"\x0a\x0d\x0d\x0a"
 _ETHERTYPE_AT = {1: 12, 113: 14, 276: 0}
 """Link type (Ethernet, Linux cooked 1 and 2) to the place of the ethertype in a packet."""
 _IP_AT = {1: 14, 113: 16, 276: 20, 101: 0, 228: 0, 0: 4, 108: 4}
 """Link type to the place of the IP header; without an ethertype the packet is IP anyway."""
+_LINK_TYPES = np.array(sorted(_IP_AT))
+_IP_STARTS = np.array([_IP_AT[link] for link in sorted(_IP_AT)])
+_ETHERTYPES = np.array([_ETHERTYPE_AT.get(link, -1) for link in sorted(_IP_AT)])
+"""The two tables as columns; -1 = no ethertype."""
 _RECORD_HEADER = 16
-_LONGEST_RECORD = 262_144
-"""The largest capture length in use: a longer one means that the bytes are not a record."""
 _CHUNK = 4 << 20
 _MARGIN = 2048
 """Zeros behind the buffer, so that a short payload at its end can be viewed at full size."""
@@ -76,7 +79,8 @@ class _Records:
     start: NDArray[np.int64]
     length: NDArray[np.int64]
     buffer: NDArray[np.uint8]
-    link_type: int
+    link_type: NDArray[np.int64]
+    """Of the interface of each, (N,)."""
 
 
 def address_text(source: int) -> str:
@@ -106,28 +110,29 @@ def read_pcap(
         UnknownFormat: If the file is not a capture of Ethernet, Linux cooked or raw IP packets.
         EmptyRecording: If it holds no packet at all.
     """
-    found = 0
+    found, damaged = 0, report.counts["files_cut"]
     with open_file(path) as file:
         for records in _records(file, path.name, report):
             found += len(records.t_ns)
             report.count("records", len(records.t_ns))
             yield _datagrams(records, report)
     if not found:
-        raise EmptyRecording(f"{path.name}: a capture file without any packet")
+        why = f" ({report.warnings[-1]})" if report.counts["files_cut"] > damaged else ""
+        raise EmptyRecording(f"{path.name}: a capture file without any packet{why}")
 
 
 def is_pcap(path: Path) -> bool:
     """Whether the first bytes are those of a pcap or pcapng file."""
     with path.open("rb") as file:
         magic = file.read(4)
-    return magic in _CLASSIC or magic == _PCAPNG
+    return magic in _CLASSIC or magic == PCAPNG
 
 
 def _records(file: IO[bytes], name: str, report: ImportReport) -> Iterator[_Records]:
     magic = file.read(4)
     if not magic:
         raise EmptyRecording(f"{name}: the file is empty (0 bytes)")
-    if magic == _PCAPNG:
+    if magic == PCAPNG:
         file.seek(0)
         yield from _next_generation(file, name, report)
     elif magic in _CLASSIC:
@@ -147,15 +152,21 @@ def _classic(
         raise EmptyRecording(f"{name}: cut inside the file header, no packet is left")
     link_type = struct.unpack(f"{order}I", header[16:])[0] & 0x0FFF_FFFF
     _require_link_type(link_type, name)
-    rest = b""
+    rest, at = b"", 24
     while chunk := file.read(_CHUNK):
         data = rest + chunk
         stamps, end, broken = _walk(data, order)
         if stamps:
             yield _batch(stamps, data, unit_ns, link_type)
-        rest = data[end:]
+        rest, at = data[end:], at + end
         if broken:
-            _salvaged(report, name, "a record header makes no sense; what follows is not read")
+            captured = struct.unpack_from(f"{order}I", rest, 8)[0]
+            _salvaged(
+                report,
+                name,
+                f"packet at byte {at}: expected a length of 1 to {MAX_PACKET_BYTES} bytes, "
+                f"got {captured}; what follows is not read",
+            )
             return
     if rest:
         _salvaged(report, name, f"it ends inside a packet; the last {len(rest)} bytes are dropped")
@@ -168,7 +179,7 @@ def _walk(data: bytes, order: str) -> tuple[list[tuple[int, int, int, int]], int
     at, size = 0, len(data)
     while at + _RECORD_HEADER <= size:
         seconds, fraction, captured = unpack(data, at)
-        if captured > _LONGEST_RECORD:
+        if not 0 < captured <= MAX_PACKET_BYTES:  # 0: holes of a sparse file
             return rows, at, True
         start = at + _RECORD_HEADER
         if start + captured > size:
@@ -183,38 +194,31 @@ def _batch(
 ) -> _Records:
     seconds, fraction, length, start = np.array(rows, dtype=np.int64).T
     t_ns = seconds * 1_000_000_000 + fraction * unit_ns
-    return _Records(t_ns, start, length, _with_margin(data), link_type)
+    return _Records(t_ns, start, length, _with_margin(data), np.full(len(rows), link_type))
 
 
 def _next_generation(file: IO[bytes], name: str, report: ImportReport) -> Iterator[_Records]:
-    import dpkt
-
-    try:
-        reader = dpkt.pcapng.Reader(file)
-    except (dpkt.UnpackError, ValueError, struct.error) as error:
-        raise EmptyRecording(f"{name}: cut inside the file header, no packet is left") from error
-    link_type = reader.datalink()
-    _require_link_type(link_type, name)
-    packets = _until_damaged(iter(reader), name, report)
+    packets = _until_damaged(read_packets(file, report.count), name, report)
+    supported = False
     while batch := list(islice(packets, 2048)):
-        yield _joined(batch, link_type)
+        supported = supported or any(packet.link_type in _IP_AT for packet in batch)
+        if not supported:
+            _require_link_type(batch[0].link_type, name)
+        yield _joined(batch)
 
 
-def _until_damaged(
-    packets: Iterator[tuple[float, bytes]], name: str, report: ImportReport
-) -> Iterator[tuple[float, bytes]]:
-    import dpkt
-
+def _until_damaged(packets: Iterator[Packet], name: str, report: ImportReport) -> Iterator[Packet]:
     try:
         yield from packets
-    except (dpkt.UnpackError, ValueError, struct.error) as error:
-        _salvaged(report, name, f"it ends inside a packet or is damaged ({error!r})")
+    except CorruptFile as error:
+        _salvaged(report, name, f"{error}; what follows is not read")
 
 
-def _joined(packets: list[tuple[float, bytes]], link_type: int) -> _Records:
-    length = np.array([len(data) for _, data in packets], dtype=np.int64)
-    t_ns = np.array([round(float(t) * 1e6) * 1000 for t, _ in packets], dtype=np.int64)
-    buffer = _with_margin(b"".join(data for _, data in packets))
+def _joined(packets: list[Packet]) -> _Records:
+    length = np.array([len(packet.data) for packet in packets], dtype=np.int64)
+    t_ns = np.array([packet.t_ns for packet in packets], dtype=np.int64)
+    link_type = np.array([packet.link_type for packet in packets], dtype=np.int64)
+    buffer = _with_margin(b"".join(packet.data for packet in packets))
     return _Records(t_ns, np.cumsum(length) - length, length, buffer, link_type)
 
 
@@ -266,19 +270,20 @@ def _datagrams(records: _Records, report: ImportReport) -> Datagrams:
 
 def _ip_header(records: _Records) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
     """Where the IP header of each record would start, and whether there is one."""
-    at = records.start + _IP_AT[records.link_type]
-    if records.link_type not in _ETHERTYPE_AT:
-        return at, np.ones(len(at), dtype=np.bool_)
-    ethertype = _word(records, records.start + _ETHERTYPE_AT[records.link_type])
+    kind = np.minimum(np.searchsorted(_LINK_TYPES, records.link_type), len(_LINK_TYPES) - 1)
+    known = _LINK_TYPES[kind] == records.link_type
+    at = records.start + _IP_STARTS[kind]
+    plain = _ETHERTYPES[kind] < 0
+    ethertype = np.where(plain, 0x0800, _word(records, records.start + _ETHERTYPES[kind]))
     for _ in range(2):
-        tagged = (ethertype == 0x8100) | (ethertype == 0x88A8)
+        tagged = ~plain & ((ethertype == 0x8100) | (ethertype == 0x88A8))
         ethertype = np.where(tagged, _word(records, at + 2), ethertype)
         at = at + 4 * tagged
-    return at, ethertype == 0x0800
+    return at, known & (ethertype == 0x0800)
 
 
 def _byte(records: _Records, at: NDArray[np.int64]) -> NDArray[np.int64]:
-    return records.buffer[np.minimum(at, len(records.buffer) - 1)].astype(np.int64)
+    return records.buffer[np.clip(at, 0, len(records.buffer) - 1)].astype(np.int64)
 
 
 def _word(records: _Records, at: NDArray[np.int64]) -> NDArray[np.int64]:

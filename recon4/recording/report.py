@@ -5,6 +5,10 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field
 
+MAX_TEXTS = 200
+"""Different remarks that are kept; the others are counted."""
+MAX_TEXT_CHARACTERS = 1000
+
 
 @dataclass(slots=True)
 class ImportReport:
@@ -32,10 +36,16 @@ class ImportReport:
 
     def derive(self, text: str) -> None:
         """Remember once what was worked out."""
-        if text not in self.derived:
-            self.derived.append(text)
+        self._remember(self.derived, text)
 
     def warn(self, text: str) -> None:
         """Remember a warning once."""
-        if text not in self.warnings:
-            self.warnings.append(text)
+        self._remember(self.warnings, text)
+
+    def _remember(self, texts: list[str], text: str) -> None:
+        if text in texts:
+            return
+        if len(texts) < MAX_TEXTS:
+            texts.append(text[:MAX_TEXT_CHARACTERS])
+        else:
+            self.count("remarks_more")

@@ -33,6 +33,7 @@ from recon4.settings import IngestSettings
 WAIT_S = 1.0
 """A sensor silent for so long holds the others' frames up no longer: datagrams are read in the
 order in which they came, a slot at a time (`in_slots`)."""
+_STREAMS_NAMED = 10
 _FOREIGN_SHARE = 0.2
 """A stream with fewer packets than this share of the largest one's is of no sensor of the rig
 unless its port (and address) says so."""
@@ -87,7 +88,11 @@ class VelodynePcap:
         self.streams = [s for path in paths for s in scan_pcap(path, open_file=open_file)]
         groups = _sensors_of(self.streams)
         if not groups and rig is None:
-            seen = ", ".join(f"{s.packets} packets to port {s.port}" for s in self.streams)
+            named = self.streams[:_STREAMS_NAMED]
+            seen = ", ".join(f"{s.packets} packets to port {s.port}" for s in named)
+            seen += f" and {len(self.streams) - len(named)} other streams" * (
+                len(self.streams) > len(named)
+            )
             raise EmptyRecording(
                 f"{paths[0].name}: no Velodyne data packets (1206 bytes of UDP payload); "
                 f"found: {seen or 'no UDP datagrams'}"

@@ -96,10 +96,10 @@ def seed_pcapng() -> bytes:
     out.write(_block(1, struct.pack("<HHI", 1, 0, 262144) + nanoseconds))
     at, number = 24, 0
     while at < len(classic):
-        seconds, micros, captured, length = struct.unpack_from("<IIII", classic, at)
+        seconds, nanos, captured, length = struct.unpack_from("<IIII", classic, at)
         packet = classic[at + 16 : at + 16 + captured]
         interface = number % 2
-        ticks = (seconds * 1_000_000 + micros) * (1000 if interface else 1)
+        ticks = (seconds * 1_000_000_000 + nanos) // (1 if interface else 1000)
         head = struct.pack("<IIIII", interface, ticks >> 32, ticks & 0xFFFF_FFFF, captured, length)
         out.write(_block(6, head + packet + bytes(-captured % 4)))
         at, number = at + 16 + captured, number + 1

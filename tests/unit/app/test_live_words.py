@@ -83,6 +83,29 @@ def test_a_silent_lidar_is_named_with_how_long(senders, text):
     assert ("bad", text) in said(status(*senders))
 
 
+def test_datagrams_from_an_unexpected_address_are_named_not_called_silence():
+    strangers = (sender(2368, source="10.0.0.7"), sender(2369, source="10.0.0.8"))
+
+    found = said(status(*strangers, IMU), rig=WITH_ADDRESSES)
+
+    assert (
+        "bad",
+        "No LiDAR of the rig sends: horizontal is expected from 10.0.0.1, but data packets for "
+        "port 2368 come from 10.0.0.7: correct the address in the rig or in the sensor",
+    ) in found
+    assert not any("No LiDAR sends anything" in text for _, text in found)
+
+
+def test_datagrams_that_are_no_data_packets_are_named_not_called_silence():
+    found = said(status(sender(2368, 300.0, data_per_s=0.0, source="10.0.0.7"), IMU))
+
+    assert (
+        "bad",
+        "No LiDAR of the rig sends: datagrams for port 2368 (horizontal) come from 10.0.0.7, "
+        "but they are no data packets of a LiDAR",
+    ) in found
+
+
 def test_another_sender_on_the_port_of_a_silent_sensor_does_not_hide_it():
     stranger = sender(2369, 754.0, source="10.0.0.9")
 

@@ -102,6 +102,30 @@ def numbers(path):
     return found, report
 
 
+def test_datagrams_from_an_unexpected_address_are_no_silence(session):
+    """The rig names another address than the one that the datagrams really come from."""
+    session.rig.write_text('name = "test"\n[[sensor]]\nname = "lidar"\naddress = "127.0.0.5"\n')
+    rig = load_rig(session.rig)
+    with recording(session) as (process, talk):
+        sent = 0
+        while True:
+            send(session, 50, start=sent)
+            sent += 50
+            told = talk.hear("status")
+            if told["seconds"] > 3.0 and any(one["per_s"] for one in told["senders"]):
+                break
+        found = [word.text for word in words(rig, {"status": told}, "")]
+        talk.say(do="stop")
+        process.wait(20.0)
+
+    assert any(
+        "lidar is expected from 127.0.0.5, but data packets for port 2368 come from 127.0.0.77"
+        in text
+        for text in found
+    ), found
+    assert not any("No LiDAR sends anything" in text for text in found)
+
+
 def test_every_datagram_is_in_the_file_with_sender_port_and_time(session):
     before_ns = time.time_ns()
     with recording(session) as (process, talk):

@@ -1,0 +1,118 @@
+"""rosbag2 folders: what ``metadata.yaml`` says of the storage files beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path, PurePath
+from typing import Any
+
+from recon4.errors import CorruptFile
+
+METADATA = "metadata.yaml"
+MAX_METADATA_BYTES = 512 << 10
+"""A topic takes less than 1 kB."""
+_MAX_DEPTH = 20
+_MAX_EVENTS = 100_000
+_MAX_FILES = 100_000
+_NEWEST_VERSION = 9
+
+
+@dataclass(frozen=True, slots=True)
+class BagMetadata:
+    """Of ``metadata.yaml``, what is needed to read the files."""
+
+    files: tuple[Path, ...]
+    compression: str
+    """``file`` or ``message`` (always zstd), or empty."""
+    messages: int
+    """How many there should be in all files."""
+
+
+def read_metadata(folder: Path) -> BagMetadata:
+    """Read the description of a rosbag2.
+
+    Raises:
+        CorruptFile: If it is missing, too large, nested too deeply, has references, or is no
+            description of a rosbag2.
+    """
+    path = folder / METADATA
+    try:
+        with path.open("rb") as file:
+            text = file.read(MAX_METADATA_BYTES + 1)
+    except OSError as error:
+        raise CorruptFile(f"{METADATA} cannot be read: {error.strerror or error}") from error
+    if len(text) > MAX_METADATA_BYTES:
+        raise CorruptFile(
+            f"{METADATA}: expected at most {MAX_METADATA_BYTES} bytes, got {path.stat().st_size}"
+        )
+    return _metadata(folder, _load(text))
+
+
+def _load(text: bytes) -> Any:
+    """The document as dictionaries, lists and strings, built while it is parsed.
+
+    Raises:
+        CorruptFile: If it is no YAML, has references, is too deep or too long.
+    """
+    from ruamel.yaml import YAML
+    from ruamel.yaml.error import YAMLError
+
+    try:
+        return _build(YAML(typ="safe", pure=True).parse(text.decode("utf-8")))
+    except (YAMLError, ValueError, TypeError, AttributeError, IndexError) as error:
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise CorruptFile(f"{METADATA}: no readable YAML: {reason[:200]}") from error
+
+
+def _build(events: Iterator[Any]) -> Any:
+    """Build a document without tags and references: every value is a string."""
+    from ruamel.yaml.events import AliasEvent, CollectionEndEvent, CollectionStartEvent, ScalarEvent
+
+    open_: list[list[Any]] = [[]]
+    kinds: list[str] = ["document"]
+    for number, event in enumerate(events):
+        line = event.start_mark.line + 1
+        if isinstance(event, AliasEvent):
+            raise CorruptFile(
+                f"{METADATA}, line {line}: expected no reference, got *{event.anchor}"
+            )
+        if len(open_) > _MAX_DEPTH or number > _MAX_EVENTS:
+            raise CorruptFile(
+                f"{METADATA}, line {line}: nested deeper than {_MAX_DEPTH} levels or more than "
+                f"{_MAX_EVENTS} values"
+            )
+        if isinstance(event, CollectionStartEvent):
+            open_.append([])
+            kinds.append(type(event).__name__)
+        elif isinstance(event, CollectionEndEvent):
+            items, kind = open_.pop(), kinds.pop()
+            pairs = zip(items[::2], items[1::2], strict=True)
+            open_[-1].append({str(k): v for k, v in pairs} if kind.startswith("Mapping") else items)
+        elif isinstance(event, ScalarEvent):
+            open_[-1].append("" if event.value in {"null", "~"} else event.value)
+    return open_[0][0]
+
+
+def _metadata(folder: Path, document: Any) -> BagMetadata:
+    try:
+        about = document["rosbag2_bagfile_information"]
+        version, names = int(about["version"]), list(about["relative_file_paths"])
+        messages = int(about["message_count"])
+        mode = str(about.get("compression_mode") or "").lower()
+        compression = str(about.get("compression_format") or "")
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise CorruptFile(f"{METADATA}: no description of a rosbag2: {error!r}") from error
+    mode = "" if mode == "none" else mode
+    if version > _NEWEST_VERSION or mode not in {"", "file", "message"}:
+        raise CorruptFile(
+            f"{METADATA}: expected version {_NEWEST_VERSION} or less and compression mode file, "
+            f"message or none, got version {version}, mode {mode[:40]!r}"
+        )
+    if mode and compression != "zstd":
+        raise CorruptFile(f"{METADATA}: expected compression zstd, got {compression[:40]!r}")
+    if not names or len(names) > _MAX_FILES:
+        raise CorruptFile(f"{METADATA}: expected 1 to {_MAX_FILES} files, got {len(names)}")
+    # Only the last part of a path is used: a description cannot point outside of its folder.
+    files = tuple(folder / PurePath(str(name)).name for name in names)
+    return BagMetadata(files, mode, messages)

@@ -1,0 +1,259 @@
+"""Chunks of a bag as one stream of messages in order of time, with bounded memory.
+
+The index of single messages inside a bag is not used: it may point anywhere and as often as it
+likes. Every chunk is decompressed once and its messages are read one after the other.
+"""
+
+from __future__ import annotations
+
+import heapq
+from array import array
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from recon4.errors import CorruptFile
+from recon4.recording.report import ImportReport
+
+MAX_OPEN_BYTES = 256 << 20
+"""Chunks whose times overlap are held at the same time; of more than that the oldest go first."""
+MESSAGE_BYTES = 32
+"""What a message that is not given out yet takes beside its bytes."""
+
+Row = tuple[str, str, int, bytes]
+"""Topic, type, time [ns], bytes."""
+Message = tuple[int, int, bytes]
+"""Time [ns], connection, bytes."""
+_Head = tuple[int, int, Message, Iterator[Message], int]
+"""Time of the next message of an open chunk, place of the chunk, the message, those that follow,
+bytes that the chunk holds."""
+
+
+@dataclass(slots=True)
+class Topic:
+    """A topic of a bag."""
+
+    topic: str
+    msgtype: str
+    """ROS 2 spelling, as ``sensor_msgs/msg/Imu``."""
+    msgcount: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class ChunkRef:
+    """Where a chunk is and what the directory of the file says of it."""
+
+    offset: int
+    """Of its first byte behind its header."""
+    length: int
+    """Bytes in the file."""
+    size: int
+    """Bytes when decompressed."""
+    compression: str
+    t_first_ns: int
+    t_last_ns: int
+    counts: dict[int, int] = field(default_factory=dict)
+    """Connection to messages; a connection without a known count is not in it."""
+    connections: frozenset[int] | None = None
+    """Those with messages in it; None = not known, it is read for every topic."""
+    crc: int = 0
+    """Of the decompressed bytes; 0 = not known."""
+    partial: bool = False
+    """It is cut off: what there is of it is read."""
+
+    def has(self, wanted: set[int]) -> bool:
+        """Whether it may hold messages of some connections."""
+        return self.connections is None or not wanted.isdisjoint(self.connections)
+
+
+@dataclass(slots=True)
+class ChunkMessages:
+    """Where the messages of a decompressed chunk are."""
+
+    data: bytes
+    t_ns: array[int] = field(default_factory=lambda: array("q"))
+    connection: array[int] = field(default_factory=lambda: array("q"))
+    start: array[int] = field(default_factory=lambda: array("q"))
+    stop: array[int] = field(default_factory=lambda: array("q"))
+    rejected: int = 0
+    """Messages that are too large or whose header makes no sense."""
+
+    def add(self, t_ns: int, connection: int, start: int, stop: int) -> None:
+        """Remember a message."""
+        self.t_ns.append(t_ns)
+        self.connection.append(connection)
+        self.start.append(start)
+        self.stop.append(stop)
+
+    @property
+    def bytes_held(self) -> int:
+        return len(self.data) + MESSAGE_BYTES * len(self.t_ns)
+
+    def in_order(self, wanted: set[int]) -> Iterator[Message]:
+        """Time, connection and bytes of the messages of some connections, by time."""
+        order = np.argsort(np.frombuffer(self.t_ns, np.int64), kind="stable")
+        for k in array("q", order.tobytes()):
+            if self.connection[k] in wanted:
+                data = self.data[self.start[k] : self.stop[k]]
+                yield self.t_ns[k], self.connection[k], data
+
+
+Load = Callable[[ChunkRef], ChunkMessages]
+
+
+@dataclass(slots=True)
+class Directory:
+    """What a bag holds, from its index or from a scan of all of it."""
+
+    topics: dict[int, Topic]
+    """Number of the connection to its topic."""
+    chunks: list[ChunkRef]
+
+    start_time: int = 2**63 - 1
+    """Time of the first message [ns]."""
+    end_time: int = 0
+    """Behind the last message [ns]."""
+
+    @classmethod
+    def of_chunks(cls, topics: dict[int, Topic], chunks: list[ChunkRef]) -> Directory:
+        """A directory whose times are those of its chunks."""
+        filled = [chunk for chunk in chunks if chunk.t_first_ns <= chunk.t_last_ns]
+        first = min((chunk.t_first_ns for chunk in filled), default=2**63 - 1)
+        last = max((chunk.t_last_ns + 1 for chunk in filled), default=0)
+        return cls(topics, chunks, first, last)
+
+    @property
+    def message_count(self) -> int:
+        return sum(topic.msgcount for topic in self.topics.values())
+
+
+def survey(chunks: Sequence[ChunkRef], load: Load) -> list[ChunkRef]:
+    """Fill in times and counts of chunks by reading them; damaged ones are left out."""
+    found = []
+    for chunk in chunks:
+        try:
+            messages = load(chunk)
+        except CorruptFile:
+            continue
+        if len(messages.t_ns):
+            counts = Counter(messages.connection)
+            found.append(
+                ChunkRef(
+                    chunk.offset,
+                    chunk.length,
+                    chunk.size,
+                    chunk.compression,
+                    min(messages.t_ns),
+                    max(messages.t_ns),
+                    dict(counts),
+                    frozenset(counts),
+                    chunk.crc,
+                    chunk.partial,
+                )
+            )
+    return found
+
+
+class ChunkStream:
+    """Streams the messages of some topics of a bag."""
+
+    def __init__(self, name: str, directory: Directory, load: Load, report: ImportReport) -> None:
+        self._name, self._directory, self._report = name, directory, report
+        self._load = load
+        self._first_damage: CorruptFile | None = None
+        self._loaded = 0
+
+    def messages(self, topics: set[str]) -> Iterator[Row]:
+        """Messages in order of time.
+
+        Raises:
+            CorruptFile: If not one chunk can be read.
+        """
+        names = self._directory.topics
+        wanted = {number for number, topic in names.items() if topic.topic in topics}
+        chunks = [chunk for chunk in self._directory.chunks if chunk.has(wanted)]
+        for t_ns, number, data in self._merged(chunks, wanted):
+            yield names[number].topic, names[number].msgtype, t_ns, data
+        if self._first_damage is not None and not self._loaded:
+            self._report.outcome = "nothing"
+            raise self._first_damage
+
+    def _merged(self, chunks: list[ChunkRef], wanted: set[int]) -> Iterator[Message]:
+        """Messages of all chunks by time; a chunk is open from its first to its last message."""
+        heap: list[_Head] = []
+        held = 0
+        for place, chunk in enumerate(sorted(chunks, key=_by_time)):
+            while heap and (heap[0][0] < chunk.t_first_ns or held > MAX_OPEN_BYTES):
+                yield heap[0][2]
+                held -= _advance(heap)
+            messages = self._read(chunk)
+            if messages is not None:
+                stream = messages.in_order(wanted)
+                first = next(stream, None)
+                if first is not None:
+                    held += messages.bytes_held
+                    heapq.heappush(heap, (first[0], place, first, stream, messages.bytes_held))
+        while heap:
+            yield heap[0][2]
+            _advance(heap)
+
+    def _read(self, chunk: ChunkRef) -> ChunkMessages | None:
+        try:
+            messages = self._load(chunk)
+        except CorruptFile as error:
+            self._damaged(error)
+            return None
+        self._loaded += 1
+        found = Counter(messages.connection)
+        missing = sum(max(0, n - found[k]) for k, n in chunk.counts.items())
+        if missing:
+            self._report.count("messages_missing", missing)
+            self._report.outcome = "lossy"
+            self._report.warn(
+                f"{self._name}: chunks with fewer messages than the index of the file says"
+            )
+        unknown = sum(n for k, n in found.items() if k not in self._directory.topics)
+        if messages.rejected or unknown:
+            self._report.outcome = "lossy"
+            self._report.count("messages_corrupt", messages.rejected + unknown)
+            self._report.warn(f"{self._name}: messages without a topic, a time or a sensible size")
+        return messages
+
+    def _damaged(self, error: CorruptFile) -> None:
+        self._first_damage = self._first_damage or error
+        self._report.outcome = "lossy"
+        self._report.count("chunks_damaged")
+        self._report.warn(f"left out: {error}")
+
+
+def _by_time(chunk: ChunkRef) -> tuple[int, int]:
+    return chunk.t_first_ns, chunk.offset
+
+
+def _advance(heap: list[_Head]) -> int:
+    """Replace the first message by the next of its chunk; bytes freed if there is none."""
+    _, place, _, stream, size = heap[0]
+    following = next(stream, None)
+    if following is None:
+        heapq.heappop(heap)
+        return size
+    heapq.heapreplace(heap, (following[0], place, following, stream, size))
+    return 0
+
+
+def require_apart(chunks: Sequence[ChunkRef], name: str, end: int) -> None:
+    """Check that chunks lie one behind the other: an index may not list one twice.
+
+    Raises:
+        CorruptFile: If two overlap or one reaches beyond ``end``.
+    """
+    at = 0
+    for chunk in sorted(chunks, key=lambda chunk: chunk.offset):
+        if chunk.offset < at or chunk.offset + chunk.length > end:
+            raise CorruptFile(
+                f"{name}: the index of the file lists a chunk at byte {chunk.offset}: expected "
+                f"one between {at} and {end}, got {chunk.length} bytes"
+            )
+        at = chunk.offset + chunk.length

@@ -1,0 +1,208 @@
+"""What a recording may ask for: sizes are checked before memory is allocated or work is done."""
+
+from __future__ import annotations
+
+import bz2
+import io
+import os
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+from recon4.errors import CorruptFile, EmptyRecording
+
+MAX_CHUNK_BYTES = 128 << 20
+"""A chunk of a bag, compressed or not; recorders write less than 5 MB."""
+MAX_MESSAGE_BYTES = 64 << 20
+"""One message, compressed or not; a cloud of 128 beams x 2048 columns has 12 MB."""
+MAX_RECORD_HEADER_BYTES = 1 << 20
+MAX_TOPICS = 10_000
+MAX_RATIO = 200
+"""Bytes that one compressed byte may become, beyond `RATIO_FLOOR_BYTES`."""
+RATIO_FLOOR_BYTES = 16 << 20
+TOTAL_FLOOR_BYTES = 256 << 20
+"""As `RATIO_FLOOR_BYTES`, for all chunks of a file."""
+_PIECE = 1 << 20
+
+
+class RecordFile:
+    """A file that is read record by record; use as a context manager.
+
+    Every length is checked against the file and a limit before anything is allocated.
+    """
+
+    def __init__(self, path: Path) -> None:
+        """Open a file.
+
+        Raises:
+            EmptyRecording: If it has no bytes.
+        """
+        self.name = path.name
+        self._file = path.open("rb")
+        self.size = os.fstat(self._file.fileno()).st_size
+        self._inflated = 0
+        if not self.size:
+            self._file.close()
+            raise EmptyRecording(f"{path.name}: the file is empty (0 bytes)")
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None
+    ) -> None:
+        self._file.close()
+
+    @property
+    def at(self) -> int:
+        """Offset of the next byte."""
+        return self._file.tell()
+
+    @property
+    def left(self) -> int:
+        """Bytes behind the offset."""
+        return max(0, self.size - self.at)
+
+    def seek(self, offset: int) -> None:
+        """Go to an offset.
+
+        Raises:
+            CorruptFile: If the file does not have it.
+        """
+        if not 0 <= offset <= self.size:
+            raise CorruptFile(
+                f"{self.name}: expected an offset of at most {self.size} bytes, got {offset}"
+            )
+        self._file.seek(offset)
+
+    def take(self, length: int, what: str, *, most: int = MAX_CHUNK_BYTES) -> bytes:
+        """Read exactly ``length`` bytes.
+
+        Args:
+            length: How many, as the file itself says.
+            what: What they are, for the message.
+            most: More than that is damage or an attack.
+
+        Raises:
+            CorruptFile: If it is too much, or the file ends before.
+        """
+        if length > min(most, self.left):
+            raise CorruptFile(
+                f"{self.name}: {what} at byte {self.at}: expected at most "
+                f"{min(most, self.left)} bytes, got a length of {length}"
+            )
+        return self._file.read(length)
+
+    def restart_budget(self) -> None:
+        """Begin a new pass through the file, see `charge`."""
+        self._inflated = 0
+
+    def charge(self, size: int, where: str) -> None:
+        """Count bytes that a chunk becomes.
+
+        Raises:
+            CorruptFile: If all chunks of one pass become more than `MAX_RATIO` times the file.
+        """
+        self._inflated += size
+        most = max(TOTAL_FLOOR_BYTES, MAX_RATIO * self.size)
+        if self._inflated > most:
+            raise CorruptFile(
+                f"{where}: expected all chunks to become at most {most} bytes, {MAX_RATIO} times "
+                f"the file, got more"
+            )
+
+    def uint(self, size: int, what: str) -> int:
+        """Read an unsigned little-endian integer of ``size`` bytes."""
+        return int.from_bytes(self.take(size, what), "little")
+
+
+def decompress(how: str, data: bytes, *, expected: int, where: str) -> bytes:
+    """Decompress a chunk whose size is known from its header.
+
+    Args:
+        how: ``bz2``, ``lz4``, ``zstd``, or empty or ``none``.
+        data: Compressed bytes.
+        expected: How many bytes they must become.
+        where: File and offset, for the message.
+
+    Raises:
+        CorruptFile: If they would become more than is allowed, or other than expected.
+    """
+    check_ratio(len(data), expected, where)
+    found = decompress_partly(how, data, most=expected + 1, where=where)
+    if len(found) != expected:
+        more = "more" if len(found) > expected else f"{len(found)}"
+        raise CorruptFile(f"{where}: expected {expected} bytes when decompressed, got {more}")
+    return found
+
+
+def check_ratio(compressed: int, size: int, where: str) -> None:
+    """Refuse a chunk that claims to become too large.
+
+    Raises:
+        CorruptFile: If it does.
+    """
+    most = min(MAX_CHUNK_BYTES, max(RATIO_FLOOR_BYTES, MAX_RATIO * compressed))
+    if size > most:
+        raise CorruptFile(
+            f"{where}: expected {compressed} compressed bytes to become at most {most}, "
+            f"got a size of {size}"
+        )
+
+
+def decompress_partly(how: str, data: bytes, *, most: int, where: str) -> bytes:
+    """As many bytes, at most ``most``, as can be had of compressed bytes that may be damaged.
+
+    Raises:
+        CorruptFile: If the kind of compression is unknown.
+    """
+    if how in {"", "none"}:
+        return data[:most]
+    if how == "zstd":
+        return _zstd(data, most)
+    if how == "bz2":
+        return _inflate(bz2.BZ2Decompressor(), data, most)
+    if how == "lz4":
+        import lz4.frame
+
+        return _inflate(lz4.frame.LZ4FrameDecompressor(), data, most)
+    raise CorruptFile(f"{where}: expected compression none, bz2, lz4 or zstd, got {how[:40]!r}")
+
+
+def _inflate(decoder: Any, data: bytes, most: int) -> bytes:
+    """One compressed stream; what follows it is not a part of the chunk."""
+    found, at = bytearray(), 0
+    while len(found) < most and not decoder.eof:
+        piece = data[at : at + _PIECE] if decoder.needs_input else b""
+        at += len(piece)
+        if decoder.needs_input and not piece:
+            break
+        try:
+            found += decoder.decompress(piece, max_length=min(_PIECE, most - len(found)))
+        except (OSError, ValueError, RuntimeError, EOFError):
+            break
+    return bytes(found)
+
+
+def _zstd(data: bytes, most: int) -> bytes:
+    import zstandard
+
+    # A window is allocated before the first byte comes out.
+    decoder = zstandard.ZstdDecompressor(max_window_size=MAX_CHUNK_BYTES)
+    found = bytearray()
+    with decoder.stream_reader(io.BytesIO(data)) as stream:
+        while len(found) < most:
+            try:
+                piece = stream.read(min(_PIECE, most - len(found)))
+            except zstandard.ZstdError:
+                break
+            if not piece:
+                break
+            found += piece
+    return bytes(found)
+
+
+def clean_name(name: bytes | str) -> str:
+    """A name from a file without control characters, at most 256 characters long."""
+    text = name.decode("utf-8", "replace") if isinstance(name, bytes) else name
+    return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text[:256])

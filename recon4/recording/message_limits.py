@@ -1,0 +1,71 @@
+"""Which messages are small enough to be decoded: a list costs many times its bytes as objects."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+
+from recon4.errors import CorruptFile
+
+MAX_SAMPLE_BYTES = 64 << 10
+"""One message of an IMU, a GNSS receiver or a pose has less than 1 kB."""
+MAX_SCAN_BYTES = 8 << 20
+"""Raw packets of one revolution; the largest have 1 MB."""
+MAX_FIELDS = 100
+MAX_CLOUD_POINTS = 5_000_000
+"""128 beams x 4096 columns are 524 288."""
+_CLOUD = "sensor_msgs/msg/PointCloud2"
+_SCAN = "velodyne_msgs/msg/VelodyneScan"
+
+
+def check_message(kind: str, data: bytes, *, ros1: bool) -> None:
+    """Refuse a message that would need far more memory than its bytes.
+
+    Raises:
+        CorruptFile: If it is too large for its type, or is a cloud with too many fields.
+    """
+    if kind == _CLOUD:
+        count = _fields_of_cloud(data, ros1=ros1)
+        if count > MAX_FIELDS:
+            raise CorruptFile(f"a cloud: expected at most {MAX_FIELDS} fields, got {count}")
+        return
+    most = MAX_SCAN_BYTES if kind == _SCAN else MAX_SAMPLE_BYTES
+    if len(data) > most:
+        raise CorruptFile(f"a message {kind}: expected at most {most} bytes, got {len(data)}")
+
+
+def require_apart_fields(fields: Sequence[tuple[int, int]]) -> None:
+    """Check that the fields of a point do not share bytes: each becomes a column of its own.
+
+    Args:
+        fields: Offset and size of each [bytes].
+
+    Raises:
+        CorruptFile: If two overlap.
+    """
+    end = 0
+    for offset, size in sorted(fields):
+        if offset < end:
+            raise CorruptFile(
+                f"a cloud: expected a field at byte {end} of a point or behind, got {offset}"
+            )
+        end = offset + size
+
+
+def _fields_of_cloud(data: bytes, *, ros1: bool) -> int:
+    """The length of the list of fields, behind header, height and width.
+
+    Raises:
+        CorruptFile: If the message ends before.
+    """
+    order = "<" if ros1 or data[1:2] != b"\0" else ">"
+    base = 0 if ros1 else 4
+    try:
+        at = base + (12 if ros1 else 8)
+        (name,) = struct.unpack_from(f"{order}I", data, at)
+        at += 4 + name
+        if not ros1:
+            at += -(at - base) % 4
+        return int(struct.unpack_from(f"{order}I", data, at + 8)[0])
+    except struct.error as error:
+        raise CorruptFile(f"a cloud that ends inside its header: {error}") from error

@@ -1,0 +1,153 @@
+"""Packets of a pcapng file, block by block; every length is checked before it is read.
+
+Blocks and options: https://datatracker.ietf.org/doc/draft-ietf-opsawg-pcapng/ (sections 3 and 4).
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import IO, NamedTuple
+
+from recon4.errors import CorruptFile
+
+MAGIC = b"\x0a\x0d\x0d\x0a"
+MAX_BLOCK_BYTES = 16 << 20
+MAX_INTERFACES = 1024
+MAX_PACKET_BYTES = 262_144
+"""The largest capture length in use."""
+_SECTION, _INTERFACE, _OLD_PACKET, _SIMPLE_PACKET, _PACKET = 0x0A0D0D0A, 1, 2, 3, 6
+_TSRESOL, _TSOFFSET = 9, 14
+_MAX_TIME_NS = 2**62
+
+
+@dataclass(frozen=True, slots=True)
+class Interface:
+    """An interface that packets came from."""
+
+    link_type: int
+    ticks_per_s: int
+    offset_s: int
+
+    def t_ns(self, ticks: int) -> int:
+        """Time of capture [ns]."""
+        return self.offset_s * 1_000_000_000 + ticks * 1_000_000_000 // self.ticks_per_s
+
+
+class Packet(NamedTuple):
+    """One captured packet."""
+
+    t_ns: int
+    link_type: int
+    data: bytes
+
+
+def read_packets(file: IO[bytes], skipped: Callable[[str], None]) -> Iterator[Packet]:
+    """Stream the packets of a pcapng file from its start.
+
+    Args:
+        file: Open for reading bytes, at its start.
+        skipped: Receives the name of a count for a packet that has no usable time.
+
+    Raises:
+        CorruptFile: If a block makes no sense or is cut off; the packets before it were given.
+    """
+    order, interfaces, at = "<", list[Interface](), 0
+    while head := _read(file, 8):
+        where = f"block at byte {at}"
+        order = _order(file, head, order, where)
+        kind, body, length = _block(file, head, order, where)
+        at += length
+        if kind == _SECTION:
+            interfaces = []
+        elif kind == _INTERFACE:
+            if len(interfaces) >= MAX_INTERFACES:
+                raise CorruptFile(f"{where}: expected at most {MAX_INTERFACES} interfaces")
+            interfaces.append(_interface(body, order, where))
+        elif kind == _SIMPLE_PACKET:
+            skipped("records_without_time")
+        elif kind in {_PACKET, _OLD_PACKET}:
+            packet = _packet(kind, body, order, (interfaces, where))
+            if 0 <= packet.t_ns < _MAX_TIME_NS:
+                yield packet
+            else:
+                skipped("records_without_time")
+
+
+def _order(file: IO[bytes], head: bytes, order: str, where: str) -> str:
+    """Byte order: a section header says it, in four bytes that `_block` reads again."""
+    if head[:4] != MAGIC:
+        return order
+    magic = _read(file, 4)
+    file.seek(-len(magic), 1)
+    if magic not in {b"\x4d\x3c\x2b\x1a", b"\x1a\x2b\x3c\x4d"}:
+        raise CorruptFile(f"{where}: expected a byte order mark, got {magic.hex(' ')}")
+    return "<" if magic[0] == 0x4D else ">"
+
+
+def _block(file: IO[bytes], head: bytes, order: str, where: str) -> tuple[int, bytes, int]:
+    """Kind, body and length of a block."""
+    if len(head) < 8:
+        raise CorruptFile(f"{where}: expected 8 bytes, got {len(head)}: the file is cut off")
+    kind, length = struct.unpack(f"{order}II", head)
+    if not 12 <= length <= MAX_BLOCK_BYTES or length % 4:
+        raise CorruptFile(
+            f"{where}: expected a length of 12 to {MAX_BLOCK_BYTES} bytes in steps of 4, "
+            f"got {length}"
+        )
+    rest = _read(file, length - 8)
+    if len(rest) < length - 8:
+        raise CorruptFile(
+            f"{where}: expected {length} bytes, got {len(rest) + 8}: the file is cut off"
+        )
+    (again,) = struct.unpack_from(f"{order}I", rest, length - 12)
+    if again != length:
+        raise CorruptFile(f"{where}: expected the length {length} at its end too, got {again}")
+    return kind, rest[:-4], length
+
+
+def _read(file: IO[bytes], length: int) -> bytes:
+    """As many bytes as there are: a file that still grows may give them in pieces."""
+    found = file.read(length)
+    while 0 < len(found) < length and (more := file.read(length - len(found))):
+        found += more
+    return found
+
+
+def _interface(body: bytes, order: str, where: str) -> Interface:
+    if len(body) < 8:
+        raise CorruptFile(f"{where}: expected an interface of at least 8 bytes, got {len(body)}")
+    (link_type,) = struct.unpack_from(f"{order}H", body)
+    ticks_per_s, offset_s = 1_000_000, 0
+    at = 8
+    while at + 4 <= len(body):
+        code, length = struct.unpack_from(f"{order}HH", body, at)
+        value = body[at + 4 : at + 4 + length]
+        if code == _TSRESOL and length == 1 and value:
+            ticks_per_s = (2 if value[0] & 128 else 10) ** (value[0] & 127)
+        elif code == _TSOFFSET and len(value) == 8:
+            (offset_s,) = struct.unpack(f"{order}q", value)
+        at += 4 + length + (-length % 4)
+        if not code:
+            break
+    return Interface(link_type, ticks_per_s, offset_s)
+
+
+def _packet(kind: int, body: bytes, order: str, known: tuple[list[Interface], str]) -> Packet:
+    interfaces, where = known
+    layout = f"{order}IIIII" if kind == _PACKET else f"{order}H2xIIII"
+    size = struct.calcsize(layout)
+    if len(body) < size:
+        raise CorruptFile(f"{where}: expected a packet of at least {size} bytes, got {len(body)}")
+    number, high, low, captured, _ = struct.unpack_from(layout, body)
+    if number >= len(interfaces):
+        raise CorruptFile(
+            f"{where}: expected one of {len(interfaces)} interfaces, got number {number}"
+        )
+    most = min(MAX_PACKET_BYTES, len(body) - size)
+    if captured > most:
+        raise CorruptFile(f"{where}: expected at most {most} bytes of a packet, got {captured}")
+    source = interfaces[number]
+    data = body[size : size + captured]
+    return Packet(source.t_ns(high << 32 | low), source.link_type, data)

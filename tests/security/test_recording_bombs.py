@@ -1,0 +1,69 @@
+"""Small recordings that ask for endless memory or time are refused, or read within limits.
+
+Figures: 1 GiB of memory beyond the program itself, 10 s of processor time (60 s for a million
+honest messages), never a traceback; a refusal says what was expected.
+"""
+
+import pytest
+
+from tests.security.reader_process import GIB, ReaderProcess
+from tests.security.recording_bombs import BOMBS, LINEAR, SUFFIXES
+
+CASES = [
+    pytest.param(kind, build, id=build.__name__)
+    for kind, builds in BOMBS.items()
+    for build in builds
+]
+
+
+@pytest.fixture(scope="module")
+def quick():
+    with ReaderProcess(most_bytes=GIB, deadline_s=10) as process:
+        yield process
+
+
+@pytest.fixture(scope="module")
+def patient():
+    with ReaderProcess(most_bytes=GIB, deadline_s=60) as process:
+        yield process
+
+
+@pytest.mark.parametrize(("kind", "build"), CASES)
+def test_a_bomb_is_refused_or_read_within_limits(kind, build, quick, request, tmp_path):
+    path = tmp_path / f"{build.__name__}{SUFFIXES[kind]}"
+    build(path)
+    reader = request.getfixturevalue("patient") if build in LINEAR else quick
+
+    outcome = reader.read(path)
+    if path.is_file():
+        path.unlink()
+
+    assert outcome.sound, outcome
+    assert outcome.extra_bytes < GIB
+    if outcome.kind == "rejected":
+        assert path.name in outcome.text or "bag.db3" in outcome.text
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("bag1_bz2", "chunk at byte 4157: expected 786432 bytes when decompressed, got more"),
+        ("bag1_lz4", "chunk at byte 4157: expected 786432 bytes when decompressed, got more"),
+        ("mcap_zstd", "chunk at byte 82: expected 100 bytes when decompressed, got more"),
+        ("db3_view", "expected a table messages, got a view of that name"),
+        ("db3_generated", "expected a column data in messages, got one that is computed"),
+        ("db3_virtual", "expected a table messages, got a virtual table of that name"),
+        ("metadata_brackets", "metadata.yaml, line 1: nested deeper than 20 levels"),
+        ("db3_cycle", "expected a tree of pages, got page"),
+        ("metadata_aliases", "metadata.yaml, line 2: expected no reference, got *a0"),
+        ("metadata_file_zstd", "compressed bytes to become at most"),
+        ("pcap_sparse", "packet at byte 24: expected a length of 1 to 262144 bytes, got 0"),
+        ("pcapng_short_block", "block at byte 28: expected a length of 12 to 16777216 bytes"),
+    ],
+)
+def test_a_refusal_says_what_where_expected_and_got(name, words, quick, tmp_path):
+    kind, build = next((k, b) for k, builds in BOMBS.items() for b in builds if b.__name__ == name)
+    path = tmp_path / f"{name}{SUFFIXES[kind]}"
+    build(path)
+
+    assert words in quick.read(path).text
