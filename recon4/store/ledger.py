@@ -13,6 +13,8 @@ from recon4.errors import StoreError
 from recon4.store.atomic import raise_if_full
 
 SCHEMA_VERSION = 1
+_PAGE_BYTES = 512
+"""The smallest page of SQLite."""
 _SCHEMA = """
 CREATE TABLE stages (
     key TEXT PRIMARY KEY,
@@ -64,6 +66,11 @@ class Ledger:
             StoreError: If the file is damaged, of another version, or cannot be opened.
         """
         self.path = path
+        if path.is_file() and 0 < path.stat().st_size < _PAGE_BYTES:
+            # SQLite takes a file of a few bytes for a new one.
+            raise StoreError(
+                f"{path} is cut: expected a page or more, got {path.stat().st_size} bytes"
+            )
         with self._errors():
             self._db = _read_only(path) if read_only else _connect(str(path))
         try:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from tests.security.fuzz.kinds import KINDS
 from tests.security.fuzz.mutators import mutant
-from tests.security.fuzz.runner import GOOD, Tally, fuzz
+from tests.security.fuzz.runner import GOOD, Readers, Tally, fuzz
 
 
 def main() -> int:
@@ -26,7 +26,8 @@ def main() -> int:
     sys.stdout.write("kind | mutants | ok | rejected | salvaged | findings | a second\n")
     for kind in chosen.kind or sorted(KINDS):
         start = time.monotonic()
-        tally = fuzz(kind, count=chosen.count, seed=chosen.seed, first=chosen.first)
+        with Readers() as readers:
+            tally = fuzz(kind, readers, count=chosen.count, seed=chosen.seed, first=chosen.first)
         _print(tally, time.monotonic() - start)
         found += len(tally.findings)
         if chosen.keep:

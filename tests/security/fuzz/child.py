@@ -11,8 +11,10 @@ import traceback
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from recon4.errors import Recon4Error
+from tests.security.fuzz.broken import BROKEN
 from tests.security.fuzz.kind import Kind
 from tests.security.fuzz.kinds import KINDS
 from tests.security.fuzz.mutators import Mutant, mutant
@@ -21,12 +23,26 @@ MEMORY_BYTES = 1 << 30
 """What a reader may ask for beyond what the child has when it starts."""
 
 
-def main(arguments: Sequence[str]) -> None:
-    """Read mutants ``first`` to ``stop`` of a kind; one line before and one behind each."""
-    name, seed, first, stop, place = arguments
-    kind, folder = KINDS[name], Path(place)
+def main() -> None:
+    """Read batches as lines of JSON from the standard input, each in a fork of this process.
+
+    The imports are done once; whatever a reader breaks is gone with the fork.
+    """
     warnings.simplefilter("ignore")
     logging.disable()
+    _say({"ready": True})
+    for line in sys.stdin:
+        fork = os.fork()
+        if not fork:
+            _read_batch(json.loads(line))
+            os._exit(0)
+        _, status = os.waitpid(fork, 0)
+        _say({"end": os.waitstatus_to_exitcode(status)})
+
+
+def _read_batch(batch: dict[str, Any]) -> None:
+    """Read the mutants of a batch; one line before and one behind each."""
+    kind, folder = (KINDS | BROKEN)[batch["kind"]], Path(batch["folder"])
     kind.prepare(folder)
     path = folder / kind.file_name
     seeds = list(kind.seeds())
@@ -34,9 +50,10 @@ def main(arguments: Sequence[str]) -> None:
     limit = _virtual_bytes() + MEMORY_BYTES
     resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    for number in range(int(first), int(stop)):
+    _say({"pid": os.getpid()})
+    for number in range(batch["first"], batch["stop"]):
         _say({"start": number})
-        made = mutant(kind, seeds, int(seed), number)
+        made = mutant(kind, seeds, batch["seed"], number)
         path.write_bytes(made.data)
         outcome, words = _judge(kind, path, made, whole)
         _say({"number": number, "outcome": outcome, "words": words, "how": made.how})
@@ -87,4 +104,4 @@ def _say(facts: dict[str, object]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()

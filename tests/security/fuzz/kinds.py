@@ -138,10 +138,12 @@ def _manifest(path: Path) -> Reading:
 def _ledger(path: Path) -> Reading:
     for beside in ("-wal", "-shm"):
         path.with_name(path.name + beside).unlink(missing_ok=True)
+    empty = not path.stat().st_size
     with Ledger(path) as ledger:
         ledger.current()
         ledger.find("0" * 64)
-        return Reading(len(ledger.stages()))
+        # An empty file is a new ledger: its rows are made again from the artifacts.
+        return Reading(len(ledger.stages()), salvaged=empty)
 
 
 # -- counts in headers, parsed independently of the readers

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
-import selectors
+import os
+import select
 import signal
 import subprocess
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO, Any
+from typing import Any, Self
 
 ROOT = Path(__file__).parents[3]
 HANG_S = 10.0
@@ -55,81 +54,115 @@ class Tally:
             self.findings.append(Finding(number, outcome, words, how))
 
 
-def fuzz(kind: str, *, count: int, seed: int, first: int = 0) -> Tally:
-    """Read ``count`` mutants of a kind, from number ``first`` on."""
+class Readers:
+    """The process with the readers; a context manager."""
+
+    def __init__(self) -> None:
+        self._errors = tempfile.TemporaryFile()  # noqa: SIM115 - closed by __exit__
+        self._child = subprocess.Popen(
+            [sys.executable, "-m", "tests.security.fuzz.child"],
+            cwd=ROOT,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._errors,
+            env=os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"},
+        )
+        self._rest = b""
+        self._lines: list[bytes] = []
+        self._next(START_S)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._child.kill()
+        self._child.wait()
+        for stream in (self._child.stdin, self._child.stdout, self._errors):
+            if stream is not None:
+                stream.close()
+
+    def read(self, tally: Tally, batch: range, folder: Path, *, hang_s: float) -> int:
+        """Read mutants until the batch is done or its process dies; the next number to read."""
+        assert self._child.stdin is not None
+        request = {"kind": tally.kind, "seed": tally.seed, "folder": str(folder)}
+        request |= {"first": batch.start, "stop": batch.stop}
+        began = self._errors.seek(0, os.SEEK_END)
+        self._child.stdin.write(json.dumps(request).encode() + b"\n")
+        self._child.stdin.flush()
+        pid, running, hung = 0, -1, False
+        wait_s: float = START_S
+        while True:
+            line = self._next(wait_s)
+            if line is None:
+                assert pid, f"the readers do not start: {self._tail(began)}"
+                os.kill(pid, signal.SIGKILL)
+                hung, wait_s = True, START_S
+            elif "pid" in line:
+                pid, wait_s = line["pid"], hang_s
+            elif "start" in line:
+                running = line["start"]
+            elif "end" in line:
+                break
+            else:
+                tally.add(line["number"], line["outcome"], line["words"], line["how"])
+        if line["end"] == 0:
+            return batch.stop
+        words = self._tail(began)
+        assert running >= 0, f"the readers did not get to the first mutant: {words}"
+        if hung:
+            tally.add(running, "HANG", f"more than {hang_s:g} s", "")
+        elif "memory allocation" in words:
+            tally.add(running, "MEMORY", words[-200:], "")
+        else:
+            tally.add(running, "CRASH", f"exit code {line['end']}: {words[-200:]}", "")
+        return running + 1
+
+    def _next(self, wait_s: float) -> dict[str, Any] | None:
+        """The next line; None if there is none for so long."""
+        assert self._child.stdout is not None
+        while not self._lines:
+            ready, _, _ = select.select([self._child.stdout], [], [], wait_s)
+            if not ready:
+                return None
+            data = os.read(self._child.stdout.fileno(), 1 << 16)
+            if not data:
+                raise AssertionError(f"the process with the readers is gone: {self._tail(0)}")
+            *self._lines, self._rest = (self._rest + data).split(b"\n")
+        found: dict[str, Any] = json.loads(self._lines.pop(0))
+        return found
+
+    def _tail(self, start: int) -> str:
+        self._errors.seek(start)
+        return self._errors.read()[-2000:].decode("utf-8", "replace")
+
+
+def fuzz(
+    kind: str,
+    readers: Readers,
+    *,
+    count: int,
+    seed: int,
+    first: int = 0,
+    hang_s: float = HANG_S,
+) -> Tally:
+    """Read ``count`` mutants of a kind, from number ``first`` on.
+
+    Args:
+        kind: Name of one of ``KINDS``.
+        readers: The process that reads.
+        count: How many.
+        seed: Other seeds give other mutants.
+        first: Number of the first one.
+        hang_s: A reader that takes longer hangs [s].
+    """
     tally = Tally(kind, seed)
     number, stop = first, first + count
-    with tempfile.TemporaryDirectory(prefix="fuzz-", dir=_fast_folder()) as place:
-        while number < stop:
-            number = _batch(tally, number, min(stop, number + BATCH), Path(place))
+    while number < stop:
+        batch = range(number, min(stop, number + BATCH))
+        with tempfile.TemporaryDirectory(prefix="fuzz-", dir=_fast_folder()) as folder:
+            number = readers.read(tally, batch, Path(folder), hang_s=hang_s)
     return tally
 
 
-def _batch(tally: Tally, first: int, stop: int, place: Path) -> int:
-    """Read with one child until it is done or dies; returns the next number to read."""
-    running = -1
-    with tempfile.TemporaryFile() as errors, tempfile.TemporaryDirectory(dir=place) as folder:
-        arguments = [tally.kind, str(tally.seed), str(first), str(stop), folder]
-        with _child(arguments, errors) as child:
-            for line in _lines(child, HANG_S):
-                if "start" in line:
-                    running = line["start"]
-                    continue
-                tally.add(line["number"], line["outcome"], line["words"], line["how"])
-                if line["number"] == stop - 1:
-                    return stop
-            hung = child.poll() is None
-            child.kill()
-            code = child.wait()
-        words = _tail(errors)
-        assert running >= 0, f"the child did not get to its first mutant:\n{words}"
-        if hung:
-            tally.add(running, "HANG", f"more than {HANG_S:g} s", "")
-        elif "memory allocation" in words or code == -signal.SIGKILL:
-            tally.add(running, "MEMORY", words[-200:], "")
-        else:
-            tally.add(running, "CRASH", f"exit code {code}: {words[-200:]}", "")
-    return running + 1
-
-
-@contextlib.contextmanager
-def _child(arguments: list[str], errors: IO[bytes]) -> Iterator[subprocess.Popen[bytes]]:
-    child = subprocess.Popen(
-        [sys.executable, "-m", "tests.security.fuzz.child", *arguments],
-        cwd=ROOT,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=errors,
-    )
-    try:
-        yield child
-    finally:
-        child.kill()
-        child.wait()
-        if child.stdout is not None:
-            child.stdout.close()
-
-
-def _lines(child: subprocess.Popen[bytes], hang_s: float) -> Iterator[dict[str, Any]]:
-    """What the child says, until it is done, dead, or silent for too long."""
-    assert child.stdout is not None
-    patience_s, rest = START_S, b""
-    with selectors.DefaultSelector() as selector:
-        selector.register(child.stdout, selectors.EVENT_READ)
-        while selector.select(patience_s):
-            data = child.stdout.read1(1 << 16)  # type: ignore[attr-defined]
-            if not data:
-                child.wait()
-                return
-            *lines, rest = (rest + data).split(b"\n")
-            yield from (json.loads(line) for line in lines)
-            patience_s = hang_s
-
-
-def _tail(errors: IO[bytes]) -> str:
-    errors.seek(0)
-    return errors.read()[-2000:].decode("utf-8", "replace")
-
-
 def _fast_folder() -> str | None:
-    return "/dev/shm" if Path("/dev/shm").is_dir() else None
+    return "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
