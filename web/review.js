@@ -4,6 +4,7 @@ import { alignPair, approveMap, decide, fitPoints, readEffect, readJournal, read
 import { attempt, make } from "./dom.js";
 import { apart } from "./review_math.js";
 import { askForMoments, askToSign, showKeys } from "./review_dialogs.js";
+import { listenToKeys } from "./review_keys.js";
 import { journalWords, showEffect, showJournal, showPair, showSigning } from "./review_panels.js";
 import { keyOf, length } from "./review_words.js";
 import { withPassword } from "./sign_again.js";
@@ -21,11 +22,12 @@ let state = null;
 let effect = null;
 let effectAsked = 0;
 let effectShown = 0;
-let hand = null; // the pair in hand: {pair, row, facts, found, moved, busy}
+let hand = null; // the pair in hand: {pair, row, facts, found, moved, busy, drawn, decided}
 let last = Promise.resolve();
 let limit_m = 0.1;
 let graph = ""; // the queue is made of this one
 
+const GO_ON = "recon4-review-go-on"; // whether this browser goes on after a decision
 const EVERY_MS = 4000; // others decide too, in other browsers or by another server
 
 document.title = `Review of ${id} · recon4`;
@@ -46,7 +48,7 @@ async function fetched(pair) {
 
 async function take(pair) {
   const row = queue.get(keyOf(pair)) ?? newRow(pair);
-  hand = { pair, row, facts: null, found: null, moved: false, busy: false };
+  hand = { pair, row, facts: null, found: null, moved: false, busy: false, drawn: false, decided: false };
   const mine = hand;
   drawHand();
   view.clear("Reading points…");
@@ -55,8 +57,12 @@ async function take(pair) {
     const [facts, points] = await fetched(pair);
     if (hand !== mine) return;
     mine.facts = facts;
-    view.set(points, { odometry: facts.odometry, predicted: facts.predicted, after: poseOf(mine) }, facts.upright);
+    const drawn = view.set(points, { odometry: facts.odometry, predicted: facts.predicted, after: poseOf(mine) }, facts.upright);
     drawHand();
+    drawn.then(() => {
+      mine.drawn = true;
+      if (hand === mine) drawHand();
+    });
     for (const next of queue.neighbors()) fetched([next.frame_i, next.frame_j]).catch(() => {});
   } catch (error) {
     if (hand === mine) {
@@ -104,16 +110,17 @@ function drawHand() {
 /** What can be done with the pair in hand, or without one, by who looks. */
 function ableTo() {
   const may = Boolean(state?.may_review);
-  const can = may && Boolean(hand);
+  const can = may && Boolean(hand?.drawn); // nobody decides about points they have not seen
+  const open = can && !hand.decided;
   const stands = hand && standingOf(hand.pair);
   return {
     previous: queue.length > 0,
     next: queue.length > 0,
-    accept: can && Boolean(hand.row.measured || stands?.measured),
-    reject: can,
-    restore: can && Boolean(stands),
-    refine: can && !hand.busy && Boolean(hand.facts),
-    pick: can && Boolean(hand.facts),
+    accept: open && Boolean(hand.row.measured || stands?.measured),
+    reject: open,
+    restore: may && Boolean(stands),
+    refine: can && !hand.busy,
+    pick: can,
     undo: may && state.undoable > 0,
     redo: may && state.redoable > 0,
     add: Boolean(graph),
@@ -123,6 +130,7 @@ function ableTo() {
 
 function handWords() {
   if (!hand.facts) return "";
+  if (hand.decided) return "Decided. J shows the next pair, U or Ctrl Z takes the decision back";
   if (hand.found && !hand.moved) {
     const { found } = hand;
     const [m, degrees] = apart(found.T_i_j, hand.facts.predicted);
@@ -194,9 +202,10 @@ function refreshRows() {
 
 function decideNow(kind, more = {}) {
   if (!hand || !state?.may_review) return undefined;
-  const { pair, row, facts } = hand;
+  const mine = hand;
+  const { pair, row, facts } = mine;
   const stands = standingOf(pair);
-  if (kind === "restore" && !stands) return undefined;
+  if (kind === "restore" ? !stands : !mine.drawn || mine.decided) return undefined;
   if (kind === "accept" && !row.measured && !stands?.measured) {
     message.textContent = "This pair was never registered: lay it right and refine it first";
     return undefined;
@@ -205,17 +214,35 @@ function decideNow(kind, more = {}) {
   reason.value = "";
   const seen = row.measured ? (facts?.measured ?? []) : [];
   const body = { kind, frame_i: pair[0], frame_j: pair[1], T_i_j: seen, why, ...more };
-  const sent = inTurn(async () => become(await decide(id, body)));
+  mine.decided = kind !== "restore";
+  const sent = inTurn(async () => {
+    try {
+      become(await decide(id, body));
+    } catch (error) {
+      mine.decided = false;
+      throw error;
+    }
+  });
+  drawHand();
   if (onwards.checked && kind !== "restore") queue.step(1);
   return sent;
 }
 
-const undo = () => state?.may_review && inTurn(async () => become(await stepBack(id, state.seq)));
-const redo = () => state?.may_review && inTurn(async () => become(await stepForth(id, state.seq)));
+function step(through) {
+  if (!state?.may_review) return;
+  inTurn(async () => {
+    const fresh = await through(id, state.seq);
+    if (hand) hand.decided = false;
+    become(fresh);
+  });
+}
+
+const undo = () => step(stepBack);
+const redo = () => step(stepForth);
 
 /** Register from where it lies; once registered and not moved since, make it an edge. */
 async function enter() {
-  if (!hand?.facts || hand.busy || !state?.may_review) return;
+  if (!hand?.drawn || hand.busy || !state?.may_review) return;
   const mine = hand;
   if (mine.found?.measurement && !mine.moved) {
     const known = mine.row.kind !== "manual" && queue.get(mine.row.key);
@@ -229,7 +256,7 @@ async function enter() {
   const found = await attempt(message, () => alignPair(id, mine.pair, view.pose));
   mine.busy = false;
   if (found && hand === mine) {
-    [mine.found, mine.moved] = [found, false];
+    Object.assign(mine, { found, moved: false, decided: false });
     view.pose = found.T_i_j;
   }
   if (hand === mine) drawHand();
@@ -302,13 +329,15 @@ function approve() {
 // -- buttons and keys
 
 const reason = make("input", { autocomplete: "off", maxLength: 500, placeholder: "Reason (optional)", ariaLabel: "Reason" });
-const onwards = make("input", { type: "checkbox", checked: true });
+const onwards = make("input", { type: "checkbox", checked: localStorage.getItem(GO_ON) === "yes" });
+onwards.addEventListener("change", () => localStorage.setItem(GO_ON, onwards.checked ? "yes" : "no"));
 const button = (words, key, action, name = "") => make("button", { type: "button", className: name, onclick: action, title: `${words} (${key})` }, make("span", {}, words), make("kbd", {}, key));
+const once = (action) => (event) => event.detail < 2 && action(); // the second click of a double one would hit the next pair
 const buttons = {
   previous: button("Previous", "K", () => queue.step(-1)),
   next: button("Next", "J", () => queue.step(1)),
-  accept: button("Accept", "A", () => decideNow("accept"), "yes"),
-  reject: button("Reject", "R", () => decideNow("reject"), "no"),
+  accept: button("Accept", "A", once(() => decideNow("accept")), "yes"),
+  reject: button("Reject", "R", once(() => decideNow("reject")), "no"),
   restore: button("Restore", "U", () => decideNow("restore")),
   refine: button("Refine", "Enter", enter),
   pick: button("Pick points", "P", pick),
@@ -320,7 +349,7 @@ const buttons = {
 byId("decision").append(
   make("div", { className: "row main" }, buttons.previous, buttons.reject, buttons.accept, buttons.next),
   make("div", { className: "row" }, buttons.restore, buttons.refine, buttons.pick, buttons.undo, buttons.redo),
-  make("div", { className: "row reason" }, reason, make("label", { className: "check" }, onwards, make("span", {}, "Go on to the next after a decision"))),
+  make("div", { className: "row reason" }, reason, make("label", { className: "check" }, onwards, make("span", {}, "Go on to the next pair after a decision"))),
 );
 
 queue.tools.append(buttons.add, buttons.keys);
@@ -330,8 +359,7 @@ async function addLoop() {
   if (walk) askForMoments(walk, hand?.pair, take);
 }
 
-const TURN = Math.PI / 180;
-const PRESS = {
+const press = {
   j: () => queue.step(1),
   k: () => queue.step(-1),
   a: () => decideNow("accept"),
@@ -351,7 +379,7 @@ const PRESS = {
   Enter: enter,
   Escape: drop,
 };
-const MOVE = {
+const moves = {
   ArrowLeft: (m) => view.nudge(-m, 0),
   ArrowRight: (m) => view.nudge(m, 0),
   ArrowUp: (m) => view.nudge(0, m),
@@ -361,35 +389,6 @@ const MOVE = {
   Comma: (m, turn) => view.nudge(0, 0, turn),
   Period: (m, turn) => view.nudge(0, 0, -turn),
 };
-
-function onKey(event) {
-  if (document.querySelector("dialog[open]")) return;
-  if (event.target.matches("input:not([type=checkbox], [type=range]), select")) {
-    if (event.key === "Escape" || (event.key === "Enter" && event.target === reason)) event.target.blur();
-    return;
-  }
-  if (event.ctrlKey || event.metaKey) {
-    const key = event.key.toLowerCase();
-    if (key !== "z" && key !== "y") return;
-    event.preventDefault();
-    if (key === "y" || event.shiftKey) redo();
-    else undo();
-    return;
-  }
-  const move = MOVE[event.code] ?? MOVE[event.key];
-  const slider = event.target.matches("input");
-  if (move && !slider && hand?.facts) {
-    event.preventDefault();
-    const step = event.shiftKey ? 0.2 : event.altKey ? 10 : 1;
-    move(0.05 * step, TURN * (event.shiftKey ? 0.1 : event.altKey ? 10 : 1));
-    return;
-  }
-  if (event.key === "Enter" && event.target.matches("button, summary, a")) return;
-  const press = PRESS[event.key] ?? (event.altKey ? undefined : PRESS[event.key.toLowerCase()]);
-  if (!press) return;
-  event.preventDefault();
-  press();
-}
 
 // -- begin
 
@@ -406,7 +405,7 @@ view.addEventListener("laid", () => {
 });
 view.addEventListener("reach", () => hand && take(hand.pair));
 byId("journal").addEventListener("toggle", drawJournal);
-document.addEventListener("keydown", onKey);
+listenToKeys({ press, moves, undo, redo, reason, canMove: () => Boolean(hand?.drawn) });
 
 async function begin() {
   view.clear("Ordering the loops…");

@@ -23,6 +23,7 @@ class PairView extends HTMLElement {
   #pointers = new Map();
   #drag = null;
   #asked = false;
+  #drawn = null; // to call once the points are on the screen
   #canvas = make("canvas", { tabIndex: 0, role: "img", ariaLabel: "Points of both places" });
   #over = make("p", { className: "view-words" });
   #empty = make("p", { className: "view-empty" });
@@ -62,7 +63,10 @@ class PairView extends HTMLElement {
     return Number(this.#reach.value);
   }
 
-  /** Shows a pair: points of both, poses {odometry, predicted, after}, rotation to upright as a quaternion. */
+  /**
+   * Shows a pair: points of both, poses {odometry, predicted, after}, rotation to upright as a quaternion.
+   * The promise is kept once the points are drawn; never if another pair comes first.
+   */
   set(points, poses, upright) {
     this.#points = points;
     this.#poses = poses;
@@ -71,11 +75,12 @@ class PairView extends HTMLElement {
     this.#empty.textContent = "";
     this.#fit();
     this.#draw();
+    return new Promise((resolve) => (this.#drawn = resolve));
   }
 
   /** Shows nothing, and why. */
   clear(words) {
-    this.#points = null;
+    this.#points = this.#drawn = null;
     this.#empty.textContent = words;
     this.#draw();
   }
@@ -222,6 +227,7 @@ class PairView extends HTMLElement {
     }
     context.resetTransform();
     this.#say();
+    if (this.#points) this.#drawn?.();
   }
 
   /** Two by two pixels a point; where both colors meet they add up to a bright one. */

@@ -15,8 +15,8 @@ export const KINDS = {
 export const KEYS = [
   ["J", "Next pair"],
   ["K", "Previous pair"],
-  ["A", "Accept"],
-  ["R", "Reject"],
+  ["A", "Accept, once the points of this pair are drawn"],
+  ["R", "Reject, once the points of this pair are drawn"],
   ["U or Backspace", "Leave it to the program again"],
   ["Ctrl Z", "Undo"],
   ["Ctrl Y", "Redo"],
@@ -33,6 +33,7 @@ export const KEYS = [
   ["+ and −", "Zoom"],
   ["W", "Write a reason"],
   ["?", "This list"],
+  ["A key held down", "Counts once, except for moving, turning, the cut and zoom. After a decision A and R rest until another pair is drawn"],
 ];
 
 export const seconds = (s) => (s < 60 ? `${s.toFixed(1)} s` : `${Math.floor(s / 60)}:${(s % 60).toFixed(0).padStart(2, "0")} min`);

@@ -13,7 +13,8 @@ from pathlib import Path
 
 from playwright.sync_api import Page, expect, sync_playwright
 
-from tests.e2e.conftest import CHROMIUM, FLAGS, SCREENS
+from tests.chromium import CHROMIUM, FLAGS
+from tests.e2e.conftest import SCREENS
 from tests.service.running import server_thread
 
 STREAM = """(() => {

@@ -5,26 +5,14 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from functools import cache
-from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page, expect, sync_playwright
+from playwright.sync_api import BrowserContext, Page, expect
 
 from tests.service.running import ROOT
 
 expect.set_options(timeout=45_000)  # two busy cores draw WebGL in software
 
-CHROMIUM = Path(os.environ.get("RECON4_CHROMIUM", "/usr/bin/chromium"))
-FLAGS = [
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-]
 SCREENS = {"desktop": (1440, 900), "phone": (390, 844)}
 EXPECTED_NOISE = (
     "status of 4",
@@ -40,16 +28,6 @@ EXPECTED_NOISE = (
 def room_on_the_disk(monkeypatch):
     """The disk of whoever runs the tests is no part of the pages."""
     monkeypatch.setattr("app.server_routes.LITTLE_ROOM", 0.0)
-
-
-@pytest.fixture(scope="session")
-def browser() -> Iterator[Browser]:
-    if not CHROMIUM.exists():
-        pytest.skip(f"needs Chromium at {CHROMIUM} (set RECON4_CHROMIUM)")
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
-        yield browser
-        browser.close()
 
 
 @pytest.fixture(params=["desktop light", "desktop dark", "phone light", "phone dark"])

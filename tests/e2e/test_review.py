@@ -46,6 +46,7 @@ def settled(page):
     """The points of the pair in hand are there."""
     expect(page.locator(".view-empty")).to_be_empty()
     expect(page.locator("#pair dl")).to_be_visible()
+    expect(page.locator("#decision").get_by_role("button", name="Reject")).to_be_enabled()
 
 
 def fits(page):
@@ -95,27 +96,172 @@ def nearest_pixel(page, color, x, y):
     )
 
 
-def test_a_hundred_loops_are_reviewed_without_the_mouse(opened, root, look):
+PRESSES = """async (key) => {
+  for (let k = 0; k < 40; k += 1) {
+    for (const kind of ["keydown", "keyup"])
+      document.body.dispatchEvent(new KeyboardEvent(kind, { key, bubbles: true }));
+    await new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)));
+  }
+}"""
+"""A key pressed and let go at every second image of the screen."""
+
+
+def only_one_decision(page, root, key):
+    """Decide about another pair, after everything the page sent before, and look at the journal."""
+    page.get_by_label("Go on to the next", exact=False).uncheck()
+    page.keyboard.press("j")
+    decidable(page)
+    other = "r" if key == "a" else "a"
+    page.keyboard.press(other)
+    kinds = {"a": "accept", "r": "reject"}
+    expect(page.locator("review-queue")).to_contain_text("2 decided by people")
+    assert [row.kind for row in read_rows(root)] == [kinds[key], kinds[other]]
+
+
+def decidable(page):
+    """The points of the pair in hand are drawn and nobody at this page has decided about it."""
+    expect(page.locator("#decision").get_by_role("button", name="Reject")).to_be_enabled()
+
+
+def test_forty_loops_are_reviewed_without_the_mouse(opened, root, look):
     only(look, "desktop light")
     page = opened
 
+    page.get_by_label("Go on to the next pair after a decision").check()
     page.keyboard.press("j")
-    settled(page)
-    for k in range(100):
+    for k in range(40):
+        decidable(page)
+        page.wait_for_timeout(300)  # a key that comes again at once counts as held down
         page.keyboard.press("r" if k < 2 else "a")
 
-    expect(page.locator("review-queue")).to_contain_text("100 decided by people")
+    expect(page.locator("review-queue")).to_contain_text("40 decided by people")
     rows = read_rows(root)
-    assert [row.kind for row in rows] == ["reject"] * 2 + ["accept"] * 98
-    assert len({(row.frame_i, row.frame_j) for row in rows}) == 100
+    assert [row.kind for row in rows] == ["reject"] * 2 + ["accept"] * 38
+    assert len({(row.frame_i, row.frame_j) for row in rows}) == 40
     assert broken(rows) == []
     expect(page.locator("#effect")).not_to_contain_text("solving")
     expect(page.locator("#effect")).to_contain_text("chi²")
     for _ in range(3):
         page.keyboard.press("Control+z")
-    expect(page.locator("review-queue")).to_contain_text("97 decided by people")
+    expect(page.locator("review-queue")).to_contain_text("37 decided by people")
     page.keyboard.press("Control+y")
-    expect(page.locator("review-queue")).to_contain_text("98 decided by people")
+    expect(page.locator("review-queue")).to_contain_text("38 decided by people")
+
+
+@pytest.mark.parametrize("onwards", [False, True], ids=["stay", "go on"])
+@pytest.mark.parametrize("key", ["a", "r"])
+def test_a_key_held_down_decides_about_one_pair(opened, root, look, key, onwards):
+    only(look, "desktop light")
+    page = opened
+    if onwards:
+        page.get_by_label("Go on to the next pair after a decision").check()
+    page.keyboard.press("j")
+    decidable(page)
+
+    for _ in range(40):  # the second and later ones are repeats, as of a key held down
+        page.keyboard.down(key)
+    page.keyboard.up(key)
+
+    only_one_decision(page, root, key)
+
+
+@pytest.mark.parametrize("key", ["a", "r"])
+def test_a_key_that_a_remote_desktop_repeats_as_presses_decides_about_one_pair(
+    opened, root, look, key
+):
+    only(look, "desktop light")
+    page = opened
+    page.get_by_label("Go on to the next pair after a decision").check()
+    page.keyboard.press("j")
+    decidable(page)
+
+    page.evaluate(PRESSES, key)
+
+    only_one_decision(page, root, key)
+
+
+def test_a_double_click_decides_about_one_pair(opened, root, look):
+    only(look, "desktop light")
+    page = opened
+    page.get_by_label("Go on to the next pair after a decision").check()
+    page.keyboard.press("j")
+    decidable(page)
+    page.keyboard.press("k")
+    decidable(page)
+
+    page.locator("#decision").get_by_role("button", name="Accept").dblclick(delay=0)
+
+    only_one_decision(page, root, "a")
+
+
+def test_a_focused_button_held_down_decides_about_one_pair(opened, root, look):
+    only(look, "desktop light")
+    page = opened
+    page.get_by_label("Go on to the next pair after a decision").check()
+    page.keyboard.press("j")
+    decidable(page)
+    page.locator("#decision").get_by_role("button", name="Accept").focus()
+
+    for _ in range(40):
+        page.keyboard.down("Enter")
+    page.keyboard.up("Enter")
+
+    only_one_decision(page, root, "a")
+
+
+def test_nothing_is_decided_before_the_points_are_drawn(opened, root, look):
+    only(look, "desktop light")
+    page = opened
+    held = []
+    page.route("**/review/points?**", lambda route: held.append(route), times=1)
+
+    with page.expect_request("**/review/points?**"):
+        page.keyboard.press("j")
+    expect(page.locator(".view-empty")).to_have_text("Reading points…")
+    for key in ("a", "r", "Enter"):
+        page.keyboard.press(key)
+    expect(page.locator("#decision").get_by_role("button", name="Accept")).to_be_disabled()
+    (route,) = held
+    route.continue_()
+    decidable(page)
+
+    assert read_rows(root) == []
+    page.keyboard.press("a")
+    expect(page.locator("review-queue")).to_contain_text("1 decided by people")
+
+
+def test_after_a_decision_keys_rest_until_another_pair_is_drawn(opened, root, look):
+    only(look, "desktop light")
+    page = opened
+    page.keyboard.press("j")
+    decidable(page)
+
+    for key in ("a", "a", "r", "a"):
+        page.keyboard.press(key)
+    expect(page.locator("#said")).to_contain_text("J shows the next pair")
+    page.keyboard.press("Control+z")
+    decidable(page)
+    page.keyboard.press("r")
+    page.keyboard.press("j")
+    decidable(page)
+    page.keyboard.press("a")
+
+    expect(page.locator("review-queue")).to_contain_text("2 decided by people")
+    rows = read_rows(root)
+    assert [row.kind for row in rows] == ["accept", "undo", "reject", "accept"]
+    assert rows[2].frame_i != rows[3].frame_i or rows[2].frame_j != rows[3].frame_j
+
+
+def test_going_on_after_a_decision_is_off_at_first_and_remembered(opened, look):
+    only(look, "desktop light")
+    page = opened
+    onwards = page.get_by_label("Go on to the next pair after a decision")
+    expect(onwards).not_to_be_checked()
+
+    onwards.check()
+    page.reload()
+
+    expect(onwards).to_be_checked()
 
 
 def test_the_page_says_what_a_decision_does(opened, look, picture):

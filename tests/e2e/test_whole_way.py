@@ -132,12 +132,13 @@ def in_hand(page):
     page.keyboard.press("j")
     expect(page.locator(".view-empty")).to_be_empty()
     expect(page.locator("#pair dl")).to_be_visible()
+    expect(page.locator("#decision").get_by_role("button", name="Reject")).to_be_enabled()
 
 
 def decide(page, root, picture):
     """By keys alone: a mistake is named and taken back, a kept loop taken out."""
     expect(page.locator("review-queue li").first).to_be_visible()
-    page.get_by_label("Go on to the next after a decision").uncheck()
+    expect(page.get_by_label("Go on to the next pair after a decision")).not_to_be_checked()
     page.get_by_label("Which pairs").select_option("doubt")
     page.evaluate("document.activeElement.blur()")
     in_hand(page)

@@ -1,0 +1,65 @@
+// The keyboard of the review page. A key held down counts once, except where it moves, turns or zooms.
+
+const TURN = Math.PI / 180;
+const REPEATING = new Set(["[", "]", "+", "-"]);
+const DECIDING = new Set(["a", "r", "enter"]);
+const QUIET_MS = 300; // remote desktops send a held key as presses; nobody looks at a pair for less
+let last = { key: "", at: -Infinity };
+
+/** Whether a key is held down, by the browser's word or because it came again at once. */
+function isHeld(event) {
+  const key = event.key.toLowerCase();
+  const again = DECIDING.has(key) && key === last.key && event.timeStamp - last.at < QUIET_MS;
+  last = { key, at: event.timeStamp };
+  return event.repeat || again;
+}
+
+/** Step in meters and radians of a move key, by the keys held with it. */
+function stepOf(event) {
+  if (event.shiftKey) return [0.01, 0.1 * TURN];
+  return event.altKey ? [0.5, 10 * TURN] : [0.05, TURN];
+}
+
+function onUndoKey(event, actions) {
+  const key = event.key.toLowerCase();
+  if (key !== "z" && key !== "y") return;
+  event.preventDefault();
+  if (event.repeat) return;
+  if (key === "y" || event.shiftKey) actions.redo();
+  else actions.undo();
+}
+
+function onMoveKey(event, actions) {
+  const move = actions.moves[event.code] ?? actions.moves[event.key];
+  if (!move || event.target.matches("input") || !actions.canMove()) return false;
+  event.preventDefault();
+  move(...stepOf(event));
+  return true;
+}
+
+function onPressKey(event, { press }) {
+  const onControl = event.target.matches("button, summary, a");
+  const held = isHeld(event);
+  if (onControl && held) event.preventDefault(); // a held Enter would press the button again and again
+  if (event.key === "Enter" && onControl) return;
+  const action = press[event.key] ?? (event.altKey ? undefined : press[event.key.toLowerCase()]);
+  if (!action) return;
+  event.preventDefault();
+  if (!held || REPEATING.has(event.key)) action();
+}
+
+/**
+ * Listens to the keyboard. `actions`: `press` {key: action}, `moves` {code: (meters, radians)},
+ * `canMove()`, `undo`, `redo`, and `reason`, the field that Enter leaves.
+ */
+export function listenToKeys(actions) {
+  document.addEventListener("keydown", (event) => {
+    if (document.querySelector("dialog[open]")) return;
+    if (event.target.matches("input:not([type=checkbox], [type=range]), select")) {
+      if (event.key === "Escape" || (event.key === "Enter" && event.target === actions.reason)) event.target.blur();
+      return;
+    }
+    if (event.ctrlKey || event.metaKey) onUndoKey(event, actions);
+    else if (!onMoveKey(event, actions)) onPressKey(event, actions);
+  });
+}
