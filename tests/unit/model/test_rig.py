@@ -1,5 +1,7 @@
 """Rig files: what is right is read exactly, what is wrong is named."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -110,3 +112,86 @@ def test_a_rig_file_that_is_missing_or_not_text_is_refused(tmp_path):
     for name in ("missing.toml", "bad.toml"):
         with pytest.raises(ConfigError, match=f"cannot read rig file {name}"):
             load_rig(tmp_path / name)
+
+
+def test_a_name_cannot_add_to_the_file_it_is_written_into():
+    name = 'a"\n[[sensor]]\nname = "b" \\ \x7f ä'
+    quoted = json.dumps(name).replace("\x7f", "\\u007f")
+    rig = parse_rig(f'name = {quoted}\n[[sensor]]\nname = "x"', where="x")
+    again = parse_rig(format_rig(rig), where="again")
+
+    assert format_rig(again) == format_rig(parse_rig(format_rig(again), where="twice"))
+    for before, after in zip(rig.sensors, again.sensors, strict=True):
+        assert np.allclose(before.T_body_sensor.matrix(), after.T_body_sensor.matrix(), atol=1e-15)
+        assert (before.name, before.model, before.port) == (after.name, after.model, after.port)
+    assert np.allclose(rig.p_body_antenna, again.p_body_antenna)
+
+
+def test_lever_arm_and_time_offsets_are_kept():
+    text = ONE + "time_offset_s = 0.05\n[imu]\nxyz_m = [1, 2, 3]\ntime_offset_s = -0.01\n"
+
+    rig = parse_rig(text + "[gnss]\nlever_arm_m = [0, 0, 0.5]\n", where="x")
+
+    assert (rig.sensors[0].time_offset_s, rig.imu_time_offset_s) == (0.05, -0.01)
+    assert isinstance(rig.T_body_imu, SE3)
+    assert np.allclose(rig.T_body_imu.t, [1, 2, 3])
+    assert np.allclose(rig.p_body_antenna, [0, 0, 0.5])
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", r"x: a rig needs at least one \[\[sensor\]\]"),
+        ("sensor = [", "x: not a TOML file"),
+        (ONE + "colour = 1", r"x: sensor 0: unknown \['colour'\]; known: "),
+        ('[[sensor]]\nname = "a"\nmodel = "VLP-17"', "model must be one of .*got 'VLP-17'"),
+        ("[[sensor]]\nport = 1", "x: sensor 0: name must be a text, got None"),
+        (ONE + ONE, "sensor names must differ"),
+        (ONE + "xyz_m = [1, 2]", r"xyz_m must be 3 finite numbers, got \[1, 2\]"),
+        (ONE + "xyz_m = [1, 2, nan]", "xyz_m must be 3 finite numbers"),
+        (ONE + 'rpy_deg = ["a", 0, 0]', "rpy_deg must be 3 finite numbers"),
+        (ONE + "quat_xyzw = [0, 0, 0, 2]", "quat_xyzw must have length 1"),
+        (ONE + "time_offset_s = true", "time_offset_s must be a finite number, got True"),
+        (ONE + "[gnss]\nlever = [0, 0, 0]", r"x: gnss: unknown \['lever'\]"),
+        (ONE + "[imu]\nxyz_m = 1", "x: imu: xyz_m must be 3 finite numbers"),
+        ("wheels = 4\n" + ONE, r"x: unknown \['wheels'\]"),
+    ],
+)
+def test_what_is_wrong_with_a_rig_is_named(text, message):
+    with pytest.raises(ConfigError, match=message):
+        parse_rig(text, where="x")
+
+
+def test_a_rig_nobody_knows_is_refused_with_those_that_are_known():
+    with pytest.raises(ConfigError, match=r"no rig named '5recon'; shipped: .*4recon"):
+        load_rig("5recon")
+
+
+@pytest.mark.parametrize("name", ["../../pyproject", "../rigs/4recon", "", "\0", "x" * 5000])
+def test_a_name_is_no_way_to_a_file_elsewhere(name):
+    with pytest.raises(ConfigError, match="no rig named"):
+        load_rig(name)
+
+
+@pytest.mark.parametrize("name", ["\0.toml", "x" * 5000 + ".toml"])
+def test_a_name_no_file_can_have_is_refused(name):
+    with pytest.raises(ConfigError, match="cannot read rig file"):
+        load_rig(name)
+
+
+def test_a_rig_file_that_is_missing_or_not_text_is_refused(tmp_path):
+    (tmp_path / "bad.toml").write_bytes(b"\xff\xfe\x00")
+
+    for name in ("missing.toml", "bad.toml"):
+        with pytest.raises(ConfigError, match=f"cannot read rig file {name}"):
+            load_rig(tmp_path / name)
+
+
+def test_a_name_cannot_add_to_the_file_it_is_written_into():
+    name = 'a"\n[[sensor]]\nname = "b" \\ \x7f ä'
+    rig = parse_rig(
+        f'name = {json.dumps(name)}\n[[sensor]]\nname = "x"'.replace("\x7f", "\\u007f"), where="x"
+    )
+    again = parse_rig(format_rig(rig), where="x")
+    assert again.name == name
+    assert [sensor.name for sensor in again.sensors] == ["x"]
