@@ -1,5 +1,7 @@
 """Rig files: what is right is read exactly, what is wrong is named."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -110,3 +112,12 @@ def test_a_rig_file_that_is_missing_or_not_text_is_refused(tmp_path):
     for name in ("missing.toml", "bad.toml"):
         with pytest.raises(ConfigError, match=f"cannot read rig file {name}"):
             load_rig(tmp_path / name)
+
+
+def test_a_name_cannot_add_to_the_file_it_is_written_into():
+    name = 'a"\n[[sensor]]\nname = "b" \\ \x7f ä'
+    quoted = json.dumps(name).replace("\x7f", "\\u007f")
+    rig = parse_rig(f'name = {quoted}\n[[sensor]]\nname = "x"', where="x")
+    again = parse_rig(format_rig(rig), where="x")
+    assert again.name == name
+    assert [sensor.name for sensor in again.sensors] == ["x"]
