@@ -90,7 +90,7 @@ def test_verify_says_all_is_well(tmp_path, capsys):
     run_all(tmp_path / "p")
 
     assert main(["verify", str(tmp_path / "p")]) == 0
-    assert capsys.readouterr().out == "3 checked, 0 damaged\n"
+    assert capsys.readouterr().out == "8 checked, 0 damaged\n"
 
 
 def test_verify_names_damage_and_ends_with_1(tmp_path, capsys):

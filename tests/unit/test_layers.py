@@ -61,7 +61,7 @@ MAY_IMPORT = {
     "recon4/simulation": STAGE | {"recon4.recording", "recon4.simulation"},
     "recon4": {"recon4"},
     "recon4/cli_serve.py": {"recon4", "app"},
-    "recon4/cli_users.py": {"recon4.errors", "recon4.terminal", "app"},
+    "recon4/cli_users.py": {"recon4.errors", "recon4.terminal", "recon4.verify", "app"},
     "recon4/cli_live.py": {"recon4", "app.live.words"},
     "app": {"app", "recon4"},
 }
@@ -89,11 +89,13 @@ ONLY_HERE = {
     "ezdxf": {"recon4/slices/export.py"},
     "fastapi": {"app"},
     "uvicorn": {"app"},
-    "typer": {f"recon4/cli{part}.py" for part in ("", "_live", "_serve", "_slices", "_users")},
+    "typer": {
+        f"recon4/cli{part}.py" for part in ("", "_backup", "_live", "_serve", "_slices", "_users")
+    },
     "cryptography": {"app/access/certificate.py", "recon4/review/signature.py"},
     "argon2": {"app/access/passwords.py"},
     "rich": {"recon4/terminal.py"},
-    "sqlite3": {"recon4/store", "recon4/recording", "recon4/review", "app"},
+    "sqlite3": {"recon4/backup.py", "recon4/store", "recon4/recording", "recon4/review", "app"},
 }
 """Heavy or telling packages -> where alone they may be imported."""
 
