@@ -23,7 +23,7 @@ STAGE = MODEL | {"recon4.kernels", "recon4.store"}
 MAY_IMPORT = {
     "recon4/errors.py": set(),
     "recon4/progress.py": {"recon4.errors"},
-    "recon4/settings.py": {"recon4.errors"},
+    "recon4/settings": {"recon4.errors", "recon4.settings"},
     "recon4/geometry": {"recon4.geometry"},
     "recon4/model": MODEL,
     "recon4/kernels": {"recon4.kernels"},
