@@ -8,7 +8,6 @@ from dataclasses import dataclass, fields
 from itertools import pairwise
 from typing import Any, get_args, get_type_hints
 
-from recon4 import settings as declared
 from recon4.settings import PRESETS, Settings, to_json
 
 
@@ -41,8 +40,7 @@ class GroupHelp:
 
 def describe_settings() -> tuple[GroupHelp, ...]:
     """All groups in the order they are declared."""
-    texts = _texts_under_fields()
-    return tuple(_group(f.name, texts) for f in fields(Settings))
+    return tuple(_group(f.name) for f in fields(Settings))
 
 
 def differences(settings: Settings) -> dict[str, Any]:
@@ -61,7 +59,7 @@ def markdown() -> str:
     parts = [
         "# Settings",
         "",
-        "Written by `recon4 settings --markdown` from `recon4/settings.py`; do not edit.",
+        "Written by `recon4 settings --markdown` from `recon4/settings/`; do not edit.",
         "Change one with `--set group.name=value`, many with `--preset`.",
         "",
         "## Presets",
@@ -82,24 +80,21 @@ def markdown() -> str:
     return "\n".join(parts) + "\n"
 
 
-def _group(name: str, texts: dict[str, dict[str, str]]) -> GroupHelp:
+def _group(name: str) -> GroupHelp:
     kind = get_type_hints(Settings)[name]
-    hints = get_type_hints(kind)
+    hints, texts = get_type_hints(kind), _texts_under_fields(kind)
     settings = tuple(
-        SettingHelp(
-            name, f.name, _kind(hints[f.name]), f.default, texts[kind.__name__].get(f.name, "")
-        )
+        SettingHelp(name, f.name, _kind(hints[f.name]), f.default, texts.get(f.name, ""))
         for f in fields(kind)
     )
     return GroupHelp(name, inspect.getdoc(kind) or "", settings)
 
 
-def _texts_under_fields() -> dict[str, dict[str, str]]:
-    """Class -> field -> the string that stands under it; Python itself does not keep those."""
-    module = ast.parse(inspect.getsource(declared))
-    return {
-        node.name: _texts_in(node.body) for node in module.body if isinstance(node, ast.ClassDef)
-    }
+def _texts_under_fields(kind: type) -> dict[str, str]:
+    """Field -> the string that stands under it; Python itself does not keep those."""
+    declaration = ast.parse(inspect.getsource(kind)).body[0]
+    assert isinstance(declaration, ast.ClassDef)
+    return _texts_in(declaration.body)
 
 
 def _texts_in(body: list[ast.stmt]) -> dict[str, str]:

@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.georeference.crs import Origin, to_enu
-from recon4.model.pose_graph import PoseGraph
+from recon4.model.pose_graph import PoseGraph, Rows
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssQuality, GnssSamples
 from recon4.model.trajectory import Times, Trajectory
-from recon4.pose_graph.relations import Rows
 from recon4.settings import GnssSettings
 
 _RANKS: dict[int, int] = {

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
+from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.trajectory import Times
+
+Rows = NDArray[np.intp]
+Flags = NDArray[np.bool_]
 
 
 class EdgeKind(StrEnum):
@@ -93,6 +99,43 @@ class Edge:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Relations:
+    """Edges as arrays, one row an edge, in the order of ``PoseGraph.edges``."""
+
+    i: Rows
+    """First node, (E,)."""
+    j: Rows
+    """Second node, (E,)."""
+    T_i_j: SE3
+    """Pose of ``j`` in ``i``, a batch of E."""
+    information: Array
+    """Rotation first, (E, 6, 6)."""
+    in_graph: Flags
+    """Whether the optimizer uses it, (E,)."""
+    protected: Flags
+    """Never rejected automatically: odometry, which connects the graph, and decisions, (E,)."""
+
+    def __len__(self) -> int:
+        return len(self.i)
+
+
+def relations_of(edges: Sequence[Edge]) -> Relations:
+    """Edges as arrays; of a graph use `PoseGraph.relations`."""
+    return Relations(
+        i=np.array([edge.i for edge in edges], dtype=np.intp),
+        j=np.array([edge.j for edge in edges], dtype=np.intp),
+        T_i_j=SE3.stack(edge.T_i_j for edge in edges),
+        information=np.array([edge.information for edge in edges]).reshape(-1, 6, 6),
+        in_graph=np.array([edge.in_graph for edge in edges], dtype=np.bool_),
+        protected=np.array([_is_protected(edge) for edge in edges], dtype=np.bool_),
+    )
+
+
+def _is_protected(edge: Edge) -> bool:
+    return edge.kind is EdgeKind.ODOMETRY or edge.decided_by != "auto"
+
+
+@dataclass(frozen=True, eq=False)
 class PoseGraph:
     """Nodes with their poses, and all edges tried, whatever became of them."""
 
@@ -106,6 +149,11 @@ class PoseGraph:
 
     def __len__(self) -> int:
         return len(self.frame_ids)
+
+    @cached_property
+    def relations(self) -> Relations:
+        """The edges as arrays, made when they are first asked for."""
+        return relations_of(self.edges)
 
     def with_edges(self, edges: tuple[Edge, ...]) -> PoseGraph:
         """The same nodes with other edges."""

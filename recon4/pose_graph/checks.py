@@ -11,8 +11,7 @@ from scipy.sparse.csgraph import connected_components
 
 from recon4.errors import GraphError
 from recon4.geometry.se3 import SE3, Array
-from recon4.model.pose_graph import PoseGraph
-from recon4.pose_graph.relations import Flags, Relations, relations
+from recon4.model.pose_graph import Flags, PoseGraph, Relations
 
 _ROTATION_TOLERANCE = 1e-6
 
@@ -26,7 +25,7 @@ def check_graph(graph: PoseGraph) -> list[tuple[int, int]]:
     Raises:
         GraphError: Naming the node or the edge and what is wrong with it.
     """
-    return check_relations(graph.T_map_body, relations(graph.edges))
+    return check_relations(graph.T_map_body, graph.relations)
 
 
 def check_relations(T_map_body: SE3, of: Relations) -> list[tuple[int, int]]:

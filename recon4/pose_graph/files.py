@@ -12,7 +12,6 @@ import numpy as np
 from recon4.errors import StoreError
 from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
-from recon4.pose_graph.relations import relations
 from recon4.store.arrays import load_arrays
 
 _NUMBERS = ("overlap", "error_m", "limit_m", "degeneracy", "verification_m", "chi2")
@@ -24,7 +23,7 @@ _EDGES = ("i", "j", "edge_R", "edge_t", "information", "converged")
 
 def save_graph(folder: Path, graph: PoseGraph) -> None:
     """Write ``graph.npz`` (everything, bit for bit) and ``edges.json`` (every pair tried)."""
-    of = relations(graph.edges)
+    of = graph.relations
     columns: dict[str, Any] = {
         "frame_ids": graph.frame_ids,
         "t_ns": graph.t_ns,

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.paths import mark_affected, path_medians
-from recon4.pose_graph.relations import Flags, Relations
+from recon4.model.pose_graph import Flags, Relations
 
 
 @dataclass(slots=True, eq=False)

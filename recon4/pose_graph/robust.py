@@ -15,8 +15,8 @@ from scipy.spatial import cKDTree
 from scipy.stats import chi2 as chi2_distribution
 
 from recon4.geometry.se3 import SE3, Array
-from recon4.model.pose_graph import PoseGraph
-from recon4.pose_graph.relations import Flags, Relations, relations, squared_residuals
+from recon4.model.pose_graph import Flags, PoseGraph, Relations
+from recon4.pose_graph.relations import squared_residuals
 from recon4.pose_graph.solve import Priors, Problem, Solution, solved
 
 _STEP = 2.0
@@ -61,7 +61,7 @@ def optimize_gnc(
     Raises:
         GraphError: As `solve.optimize`.
     """
-    of = relations(graph.edges)
+    of = graph.relations
     problem = Problem.check(graph.T_map_body, of, fixed=fixed, priors=priors)
     everything = of.in_graph.astype(np.float64)
     T_cauchy, _ = problem.solve(graph.T_map_body, weights=everything, kernel="cauchy")

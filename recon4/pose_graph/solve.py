@@ -11,9 +11,9 @@ import numpy as np
 
 from recon4.errors import GraphError
 from recon4.geometry.se3 import SE3, Array
-from recon4.model.pose_graph import PoseGraph
+from recon4.model.pose_graph import PoseGraph, Relations, Rows
 from recon4.pose_graph.checks import check_relations
-from recon4.pose_graph.relations import Relations, Rows, relations, squared_residuals
+from recon4.pose_graph.relations import squared_residuals
 
 Kernel = Literal["none", "cauchy"]
 
@@ -94,7 +94,7 @@ def optimize(
     Raises:
         GraphError: If the graph cannot be solved (`checks`), or nothing holds it.
     """
-    of = relations(graph.edges)
+    of = graph.relations
     problem = Problem.check(graph.T_map_body, of, fixed=fixed, priors=priors)
     weights = of.in_graph.astype(np.float64)
     T_map_body, iterations = problem.solve(graph.T_map_body, weights=weights, kernel=kernel)
@@ -129,7 +129,7 @@ def initialize(graph: PoseGraph) -> SE3:
     Raises:
         GraphError: If the graph cannot be solved (`checks`).
     """
-    of = relations(graph.edges)
+    of = graph.relations
     problem = Problem.check(graph.T_map_body, of, fixed=(0,), priors=())
     factors = problem.factors(of.in_graph.astype(np.float64), kernel="none")
     # The chordal method wants a prior as its anchor; it is the last factor of the graph.

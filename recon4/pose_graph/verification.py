@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from recon4.geometry.se3 import Array
-from recon4.model.pose_graph import Edge, PoseGraph, Reason, Verdict
+from recon4.model.pose_graph import Edge, PoseGraph, Reason, Relations, Verdict
 from recon4.pose_graph.checks import check_relations
 from recon4.pose_graph.paths import PathIndex, reject_worst_first
-from recon4.pose_graph.relations import Relations, relations, squared_residuals
+from recon4.pose_graph.relations import squared_residuals
 from recon4.pose_graph.robust import optimize_gnc, outlier_limit
 from recon4.pose_graph.solve import Solution, optimize
 from recon4.progress import Progress, Silent
@@ -75,7 +75,7 @@ def verify(
     """
     watcher = progress or Silent()
     graph = graph.with_edges(tuple(_as_before(edge) for edge in graph.edges))
-    of = relations(graph.edges)
+    of = graph.relations
     duplicates = check_relations(graph.T_map_body, of)
     chi2_before = float(squared_residuals(graph.T_map_body, of)[of.in_graph].sum())
     watcher.start("Verification", 3, "steps")
@@ -110,7 +110,7 @@ def confirmed_anew(graph: PoseGraph, *, settings: VerificationSettings) -> PoseG
     Paths through these edges are gone. An edge whose last path went with them stays in the graph
     and is unverified from now on; odometry and what a person decided are treated as in `verify`.
     """
-    paths = _index(relations(graph.edges), nodes=len(graph), settings=settings)
+    paths = _index(graph.relations, nodes=len(graph), settings=settings)
     edges = list(graph.edges)
     for row, edge in enumerate(edges):
         if not edge.in_graph or edge.paths == 0:  # it was not confirmed before either
@@ -150,7 +150,7 @@ def _solve(graph: PoseGraph, settings: VerificationSettings) -> tuple[Solution, 
     """The final poses, and the edges that do not fit them."""
     if settings.robust == "none":
         return optimize(graph, kernel="none"), []
-    of = relations(graph.edges)
+    of = graph.relations
     free = of.in_graph & ~of.protected
     if settings.robust == "gnc":
         solution = optimize_gnc(graph, probability=settings.inlier_probability)

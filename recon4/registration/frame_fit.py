@@ -13,6 +13,7 @@ from recon4.registration.degeneracy import held_directions
 from recon4.registration.motion import Prediction
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.segments import Segments
+from recon4.registration.state import END_POSE, POSES, START, STATE
 from recon4.settings import OdometrySettings
 
 _GATES_M = (1.0, 0.5, 0.3, 0.2)
@@ -67,12 +68,12 @@ class FrameFitter:
             )  # fmt: skip
             H_lidar, g_lidar = self._weighted(match)
             H, g = information.copy(), information @ delta
-            H[:12, :12] += H_lidar
-            g[:12] += g_lidar
+            H[POSES, POSES] += H_lidar
+            g[POSES] += g_lidar
             if self.aid is not None:
                 H_aid, g_aid = self.aid.pull(T_dense[-1], prediction.end.t_ns)
-                H[6:12, 6:12] += H_aid
-                g[6:12] += g_aid
+                H[END_POSE, END_POSE] += H_aid
+                g[END_POSE] += g_aid
             step = -np.linalg.solve(H, g)
             delta = delta + step
             T_dense = _correct(prediction, delta, center)
@@ -92,8 +93,9 @@ class FrameFitter:
 def _correct(prediction: Prediction, delta: Array, center: Array) -> SE3:
     """The predicted poses moved by a correction that grows linearly over the frame."""
     s = (prediction.t_s / prediction.t_s[-1])[:, None]
-    omega = (1.0 - s) * delta[:3] + s * delta[6:9]
-    shift = (1.0 - s) * delta[3:6] + s * delta[9:12]
+    start, end = delta[START], delta[END_POSE]
+    omega = (1.0 - s) * start[STATE.rotation] + s * end[STATE.rotation]
+    shift = (1.0 - s) * start[STATE.position] + s * end[STATE.position]
     R = so3_exp(omega)
     predicted = prediction.T_odom_body
     arm = np.einsum("nij,nj->ni", R, predicted.t - center)

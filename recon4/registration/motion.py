@@ -11,6 +11,7 @@ from recon4.kernels.imu import propagate
 from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
 from recon4.model.trajectory import Times
+from recon4.registration.state import STATE, VECTOR
 from recon4.settings import OdometrySettings
 
 _FREE_SD = (0.01, 0.05, 0.3, 0.3)
@@ -39,27 +40,30 @@ class MotionState:
     @property
     def T_odom_body(self) -> SE3:
         """The pose."""
-        return SE3(self.R, self.vector[:3])
+        return SE3(self.R, self.vector[VECTOR.position])
 
     def at_pose(self, T_odom_body: SE3, *, sd_rad: float, sd_m: float) -> MotionState:
         """The same state at another pose, known with these standard deviations."""
         P = self.P.copy()
-        P[:6, :] = P[:, :6] = 0.0
-        P[range(6), range(6)] = np.repeat([sd_rad, sd_m], 3) ** 2
-        vector = np.concatenate([T_odom_body.t, self.vector[3:]])
+        P[STATE.pose, :] = P[:, STATE.pose] = 0.0
+        P[STATE.pose, STATE.pose] = np.diag(np.repeat([sd_rad, sd_m], 3) ** 2)
+        vector = self.vector.copy()
+        vector[VECTOR.position] = T_odom_body.t
         return replace(self, R=T_odom_body.R, vector=vector, P=P)
 
     def with_biases(self, vector: Array, cov: Array) -> MotionState:
         """The same motion with other biases and gravity, (9,), and their covariance, (9, 9)."""
         P = self.P.copy()
-        P[9:, :] = P[:, 9:] = 0.0
-        P[9:, 9:] = cov
-        return replace(self, vector=np.concatenate([self.vector[:6], vector]), P=P)
+        P[STATE.calibration, :] = P[:, STATE.calibration] = 0.0
+        P[STATE.calibration, STATE.calibration] = cov
+        whole = self.vector.copy()
+        whole[VECTOR.calibration] = vector
+        return replace(self, vector=whole, P=P)
 
     def corrected(self, delta: Array, P: Array) -> MotionState:
         """The state moved by an error (18,), with a new covariance."""
-        R = proper(so3_exp(delta[:3]) @ self.R)
-        return replace(self, R=R, vector=self.vector + delta[3:], P=P)
+        R = proper(so3_exp(delta[STATE.rotation]) @ self.R)
+        return replace(self, R=R, vector=self.vector + delta[STATE.position.start :], P=P)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -111,9 +115,10 @@ class ImuMotion:
         up_body = self._accel[near].mean(axis=0) if self._has_accel else np.array([0, 0, 1.0])
         sd = np.repeat([1e-4, 1e-4, 1.0, 0.02, 0.2, 0.3], 3)
         if not self._has_accel:
-            sd[12:] = 1e-9
+            sd[STATE.accel_bias] = sd[STATE.gravity] = 1e-9
         vector = np.zeros(15)
-        vector[14] = -STANDARD_GRAVITY_M_S2 if self._has_accel else 0.0
+        if self._has_accel:
+            vector[VECTOR.gravity] = [0.0, 0.0, -STANDARD_GRAVITY_M_S2]
         return MotionState(t_ns, _level(up_body), vector, np.diag(sd**2))
 
     def turn(self, start_ns: int, end_ns: int) -> Array:
@@ -156,8 +161,8 @@ class FreeMotion:
         turn_rate = so3_log(T_odom_body.R[0].T @ T_odom_body.R[1]) / span_s
         back_s = (t_ns[1] - start_ns) * 1e-9
         vector = np.zeros(15)
-        vector[:3] = T_odom_body.t[1] - back_s * velocity
-        vector[3:6], vector[6:9] = velocity, -turn_rate
+        vector[VECTOR.position] = T_odom_body.t[1] - back_s * velocity
+        vector[VECTOR.velocity], vector[VECTOR.gyro_bias] = velocity, -turn_rate
         sd = np.repeat([*_FREE_SD, 1e-9, 1e-9], 3)
         R = T_odom_body.R[1] @ so3_exp(-back_s * turn_rate)
         return MotionState(start_ns, R, vector, np.diag(sd**2))
@@ -170,7 +175,7 @@ class FreeMotion:
     def at_rest(self, state: MotionState, t_ns: int) -> MotionState:
         """The state held still until ``t_ns``: what a lost body did is not known."""
         vector = np.zeros(15)
-        vector[:3] = state.vector[:3]
+        vector[VECTOR.position] = state.vector[VECTOR.position]
         return replace(self.initial(t_ns), R=state.R, vector=vector)
 
     def predict(self, state: MotionState, end_ns: int) -> Prediction:
@@ -191,9 +196,9 @@ def _predict(
     R, p, v, Phi, P = propagate(t_s, gyro, accel, state.R, state.vector, state.P, noise)
     R = proper(R)
     vector = state.vector.copy()
-    vector[:3], vector[3:6] = p[-1], v
-    cross = state.P[:6] @ Phi.T
-    prior = np.block([[state.P[:6, :6], cross], [cross.T, P]])
+    vector[VECTOR.position], vector[VECTOR.velocity] = p[-1], v
+    cross = state.P[STATE.pose] @ Phi.T
+    prior = np.block([[state.P[STATE.pose, STATE.pose], cross], [cross.T, P]])
     return Prediction(t_s, SE3(R, p), MotionState(int(t_ns[-1]), R[-1], vector, P), prior)
 
 

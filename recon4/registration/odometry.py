@@ -20,6 +20,7 @@ from recon4.registration.plane_map import PlaneMap
 from recon4.registration.rest import hold_still, seems_still
 from recon4.registration.scan_chain import ScanChain, body_points
 from recon4.registration.segments import Segments, sample_segments
+from recon4.registration.state import END, END_POSE, START, STATE, VECTOR
 from recon4.settings import Settings
 
 
@@ -154,7 +155,10 @@ class Odometry:
         if self._motion.covers(state.t_ns, end_ns):
             if self._before_hole is not None:
                 before, self._before_hole = self._before_hole, None
-                state = state.with_biases(before.vector[6:], before.P[9:, 9:])
+                state = state.with_biases(
+                    before.vector[VECTOR.calibration],
+                    before.P[STATE.calibration, STATE.calibration],
+                )
             return self._motion.predict(state, end_ns)
         if self._before_hole is None:
             self._before_hole = state
@@ -202,7 +206,7 @@ class Odometry:
 def _updated(prediction: Prediction, fit: FrameFit, *, lost: bool, first: bool) -> MotionState:
     if lost or first:
         return prediction.end
-    return prediction.end.corrected(fit.delta[6:], fit.P[6:, 6:])
+    return prediction.end.corrected(fit.delta[END], fit.P[END, END])
 
 
 def _step(
@@ -232,5 +236,5 @@ def _step(
 
 def _motion_cov(P: Array) -> Array:
     """Covariance of the end pose against the start pose, from their joint covariance."""
-    start, end = slice(0, 6), slice(6, 12)
-    return P[start, start] + P[end, end] - P[start, end] - P[end, start]
+    cross = P[START, END_POSE]
+    return P[START, START] + P[END_POSE, END_POSE] - cross - P[END_POSE, START]

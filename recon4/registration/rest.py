@@ -9,6 +9,7 @@ import numpy as np
 from recon4.geometry.se3 import SE3, Array, so3_exp, so3_log
 from recon4.registration.frame_fit import FrameFit
 from recon4.registration.motion import Prediction
+from recon4.registration.state import END_MOTION, POSES, VECTOR
 
 _STILL_M = 0.01
 """Two scans that follow each other agree to this [m] …"""
@@ -37,7 +38,7 @@ def hold_still(fit: FrameFit, prediction: Prediction, T_odom_body: SE3) -> Frame
         T_odom_body: The pose at which the body may still stand.
     """
     delta = _standing(fit, prediction, T_odom_body)
-    d = (delta - fit.delta)[:12]
+    d = (delta - fit.delta)[POSES]
     if d @ fit.H_lidar @ d > _STILL_CHI2:
         return fit
     poses = len(prediction.t_s)
@@ -54,5 +55,6 @@ def _standing(fit: FrameFit, prediction: Prediction, T_odom_body: SE3) -> Array:
         arm = so3_exp(omega) @ (predicted.t[k] - center)
         delta[first : first + 3] = omega
         delta[first + 3 : first + 6] = T_odom_body.t - center - arm
-    delta[12:18] = -end.vector[3:9]  # no velocity, no turn rate
+    still = np.concatenate([end.vector[VECTOR.velocity], end.vector[VECTOR.gyro_bias]])
+    delta[END_MOTION] = -still  # no velocity, no turn rate
     return delta

@@ -22,8 +22,8 @@ from scipy.sparse.linalg import splu
 
 from recon4.geometry.se3 import Array
 from recon4.kernels.selected_inverse import entries, selected_inverse
-from recon4.model.pose_graph import PoseGraph
-from recon4.pose_graph.relations import Relations, adjoint, relations
+from recon4.model.pose_graph import PoseGraph, Relations
+from recon4.pose_graph.relations import adjoint
 
 ARM_M = 5.0
 """A turn counts as what it moves at this distance [m]."""
@@ -42,7 +42,7 @@ def influence_m(graph: PoseGraph, asked: NDArray[np.bool_]) -> Array:
     Returns:
         (E,), NaN where not asked.
     """
-    of = relations(graph.edges)
+    of = graph.relations
     out = np.full(len(of), np.nan)
     rows = np.flatnonzero(asked)
     if len(rows) == 0:

@@ -14,7 +14,6 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.paths import path_medians
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason
 from recon4.pose_graph.paths import PathIndex
-from recon4.pose_graph.relations import relations
 from recon4.review.apply import is_measured
 from recon4.review.influence import influence_m
 from recon4.review.solve import pair_of
@@ -161,7 +160,7 @@ def _index(graph: PoseGraph, settings: Settings) -> PathIndex:
     v = settings.verification
     cycle = v.variant == "cycle"
     return PathIndex.build(
-        relations(graph.edges),
+        graph.relations,
         nodes=len(graph),
         max_edges=2 if cycle else v.max_path_edges,
         with_itself=cycle,

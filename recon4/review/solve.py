@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import Edge, PoseGraph, Verdict
 from recon4.pose_graph.files import load_graph, save_graph
-from recon4.pose_graph.relations import relations, squared_residuals
+from recon4.pose_graph.relations import squared_residuals
 from recon4.pose_graph.robust import outlier_limit
 from recon4.pose_graph.solve import optimize
 from recon4.pose_graph.verification import verify
@@ -200,7 +200,7 @@ def _solved(graph: PoseGraph) -> PoseGraph:
 
 def conflicts(graph: PoseGraph, *, probability: float) -> tuple[Conflict, ...]:
     """Edges that people accepted and that do not fit, worst first."""
-    of = relations(graph.edges)
+    of = graph.relations
     chi2 = squared_residuals(graph.T_map_body, of)
     free = of.in_graph & ~of.protected
     limit = outlier_limit(chi2[free], probability=probability)
@@ -243,7 +243,7 @@ def difference(before: PoseGraph, after: PoseGraph) -> Difference:
 
 def chi2_of(graph: PoseGraph) -> tuple[float, int]:
     """Sum of the squared residuals of the edges in the graph, and how many those are."""
-    of = relations(graph.edges)
+    of = graph.relations
     used: NDArray[np.float64] = squared_residuals(graph.T_map_body, of)[of.in_graph]
     return float(used.sum()), len(used)
 

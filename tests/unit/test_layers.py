@@ -31,7 +31,7 @@ MAY_IMPORT = {
     "recon4/bounded.py": {"recon4.errors"},
     "recon4/names.py": {"recon4.errors"},
     "recon4/progress.py": {"recon4.errors"},
-    "recon4/settings.py": {"recon4.errors"},
+    "recon4/settings": {"recon4.errors", "recon4.settings"},
     "recon4/geometry": {"recon4.geometry"},
     "recon4/model": MODEL,
     "recon4/kernels": {"recon4.kernels"},

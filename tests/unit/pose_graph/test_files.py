@@ -12,7 +12,7 @@ from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import Edge, PoseGraph, Reason, Verdict
 from recon4.pose_graph.files import load_graph, save_graph
 from recon4.pose_graph.g2o import read_g2o, write_g2o
-from recon4.pose_graph.relations import relations, squared_residuals
+from recon4.pose_graph.relations import squared_residuals
 from tests.benchmarks.false_loops import office_graph
 
 
@@ -115,8 +115,8 @@ def test_g2o_keeps_poses_edges_and_residuals(tmp_path: Path) -> None:
     assert len(back.edges) == len(used.edges) == len(graph.edges) - 1
     np.testing.assert_allclose(back.T_map_body.matrix(), graph.T_map_body.matrix(), atol=1e-14)
     np.testing.assert_allclose(
-        squared_residuals(back.T_map_body, relations(back.edges)),
-        squared_residuals(used.T_map_body, relations(used.edges)),
+        squared_residuals(back.T_map_body, back.relations),
+        squared_residuals(used.T_map_body, used.relations),
         rtol=1e-9,
         atol=1e-9,
     )
@@ -139,7 +139,7 @@ def test_gtsam_reads_our_file_and_agrees_about_the_error(tmp_path: Path) -> None
     write_g2o(tmp_path / "graph.g2o", graph)
     factors, values = gtsam.readG2o(str(tmp_path / "graph.g2o"), True)
 
-    of = relations(graph.edges)
+    of = graph.relations
     ours = squared_residuals(graph.T_map_body, of)[of.in_graph].sum()
     assert 2.0 * factors.error(values) == pytest.approx(ours, rel=1e-6)
 

@@ -3,9 +3,9 @@ import pytest
 
 from recon4.errors import GraphError
 from recon4.geometry.se3 import SE3
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict, relations_of
 from recon4.pose_graph.checks import check_graph
-from recon4.pose_graph.relations import relations, reverse, squared_residuals
+from recon4.pose_graph.relations import reverse, squared_residuals
 from recon4.pose_graph.robust import optimize_gnc, outlier_limit
 from recon4.pose_graph.solve import PosePriors, PositionPriors, initialize, optimize
 from tests.benchmarks.false_loops import inject_random, office_graph
@@ -170,8 +170,10 @@ def test_a_relation_seen_from_the_other_end_has_the_same_residual() -> None:
     T_map_body = SE3.exp(rng.normal(size=(2, 6)))
     T_j_i, information = reverse(T_i_j, root @ root.T)
 
-    forth = squared_residuals(T_map_body, relations([edge(0, 1, T_i_j, information=root @ root.T)]))
-    back = squared_residuals(T_map_body, relations([edge(1, 0, T_j_i, information=information)]))
+    forth = squared_residuals(
+        T_map_body, relations_of([edge(0, 1, T_i_j, information=root @ root.T)])
+    )
+    back = squared_residuals(T_map_body, relations_of([edge(1, 0, T_j_i, information=information)]))
 
     np.testing.assert_allclose(back, forth, rtol=1e-9)
 

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict, relations_of
 from recon4.pose_graph.paths import PathIndex
-from recon4.pose_graph.relations import relations
 from recon4.pose_graph.solve import optimize
 from recon4.pose_graph.verification import confirmed_anew, verify
 from recon4.settings import VerificationSettings
@@ -83,7 +82,7 @@ def test_medians_are_those_of_all_simple_paths(max_edges: int) -> None:
         (0, 2, 0.1), (0, 3, -0.2), (1, 3, 0.3), (1, 4, 0.4), (0, 3, 0.6), nodes=5, turn=0.7
     )
 
-    index = PathIndex.build(relations(graph.edges), nodes=5, max_edges=max_edges)
+    index = PathIndex.build(graph.relations, nodes=5, max_edges=max_edges)
 
     medians, counts = slow_medians(graph, max_edges)
     np.testing.assert_array_equal(index.count, counts)
@@ -92,7 +91,7 @@ def test_medians_are_those_of_all_simple_paths(max_edges: int) -> None:
 
 def test_removing_edges_gives_the_same_as_starting_without_them() -> None:
     graph, _ = office_graph(np.random.default_rng(1), nodes=80)
-    of = relations(graph.edges)
+    of = graph.relations
     gone = np.random.default_rng(2).choice(np.flatnonzero(~of.protected), 40, replace=False)
     edges = list(graph.edges)
     for row in gone:
@@ -101,7 +100,7 @@ def test_removing_edges_gives_the_same_as_starting_without_them() -> None:
     index = PathIndex.build(of, nodes=80, max_edges=3)
     index.remove(gone)
 
-    fresh = PathIndex.build(relations(edges), nodes=80, max_edges=3)
+    fresh = PathIndex.build(relations_of(edges), nodes=80, max_edges=3)
     alive = index.alive
     np.testing.assert_array_equal(index.count[alive], fresh.count[alive])
     np.testing.assert_array_equal(index.median_m[alive], fresh.median_m[alive])
@@ -231,7 +230,7 @@ def test_after_the_robust_solve_poses_and_paths_are_those_of_the_edges_that_stay
     result = verify(graph, settings=settings)
 
     assert len(result.outliers) > 0
-    fresh = PathIndex.build(relations(result.graph.edges), nodes=len(graph), max_edges=3)
+    fresh = PathIndex.build(result.graph.relations, nodes=len(graph), max_edges=3)
     kept = np.array([edge.in_graph for edge in result.graph.edges])
     counts = np.array([edge.paths for edge in result.graph.edges])
     np.testing.assert_array_equal(counts[kept], fresh.count[kept])

@@ -1,0 +1,44 @@
+"""Every setting of the pipeline, declared once, one file a stage.
+
+Code, command line, API and docs are made from these declarations. A stage receives only its own
+group, so that a changed setting reruns only what depends on it.
+"""
+
+from recon4.settings.assign import canonical, override, to_json
+from recon4.settings.georeference import GnssSettings, LevelSettings
+from recon4.settings.graph import GraphSettings, VerificationSettings
+from recon4.settings.ingest import IngestSettings
+from recon4.settings.intensity import IntensitySettings
+from recon4.settings.mapping import MapSettings
+from recon4.settings.odometry import OdometrySettings, ScanSettings
+from recon4.settings.presets import PRESETS, Settings, preset
+from recon4.settings.refine import RefineSettings
+from recon4.settings.registration import (
+    OverlapSettings,
+    PlaneSettings,
+    RegistrationSettings,
+    SegmentSettings,
+)
+
+__all__ = [
+    "PRESETS",
+    "GnssSettings",
+    "GraphSettings",
+    "IngestSettings",
+    "IntensitySettings",
+    "LevelSettings",
+    "MapSettings",
+    "OdometrySettings",
+    "OverlapSettings",
+    "PlaneSettings",
+    "RefineSettings",
+    "RegistrationSettings",
+    "ScanSettings",
+    "SegmentSettings",
+    "Settings",
+    "VerificationSettings",
+    "canonical",
+    "override",
+    "preset",
+    "to_json",
+]

@@ -1,0 +1,97 @@
+"""Settings as text: assignments of the command line, JSON, the canonical form that is hashed."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import asdict, fields, is_dataclass, replace
+from typing import Any, get_args, get_type_hints
+
+from recon4.errors import ConfigError, WrongSettings
+from recon4.settings.presets import Settings
+
+
+def override(settings: Settings, assignments: list[str]) -> Settings:
+    """Apply ``group.field=value`` texts; of two for one field the later counts.
+
+    Raises:
+        WrongSettings: Naming every wrong one, what was expected and what was given.
+    """
+    problems: dict[str, str] = {}
+    values: dict[str, dict[str, Any]] = {}
+    for text in assignments:
+        path, _, value = (part.strip() for part in text.partition("="))
+        try:
+            group, name, kind = _find(settings, text)
+            values.setdefault(group, {})[name] = _parse(value, kind, path)
+        except ConfigError as error:
+            problems[path] = str(error)
+    changed = {
+        group: _replaced(getattr(settings, group), group, fresh, problems)
+        for group, fresh in values.items()
+    }
+    if problems:
+        raise WrongSettings(problems)
+    return replace(settings, **changed)
+
+
+def _find(settings: Settings, text: str) -> tuple[str, str, Any]:
+    """Group, name and type of the setting a text assigns."""
+    path, sign, _ = text.partition("=")
+    group_name, dot, name = path.strip().partition(".")
+    if not sign or not dot:
+        raise ConfigError(f"expected group.field=value, got {text!r}")
+    if group_name not in _names(settings):
+        raise ConfigError(f"no setting group {group_name!r}; known: {_names(settings)}")
+    group = getattr(settings, group_name)
+    if name not in _names(group):
+        raise ConfigError(f"no setting {path!r}; known in {group_name}: {_names(group)}")
+    return group_name, name, get_type_hints(type(group))[name]
+
+
+def _replaced(group: Any, name: str, values: dict[str, Any], problems: dict[str, str]) -> Any:
+    """The group with other values; those it refuses are left out and told."""
+    left = dict(values)
+    while left:
+        try:
+            return replace(group, **left)
+        except ConfigError as error:
+            # A rule may speak of two fields: blame those given, the first named first.
+            words = str(error)
+            blamed = [field for field in re.findall(r"\w+", words) if field in left]
+            wrong = blamed[0] if blamed else next(iter(left))
+            problems[f"{name}.{wrong}"] = words
+            del left[wrong]
+    return group
+
+
+def to_json(settings: object) -> dict[str, Any]:
+    """Plain JSON values of a group or of all settings."""
+    assert is_dataclass(settings) and not isinstance(settings, type)
+    return asdict(settings)
+
+
+def canonical(settings: object) -> str:
+    """One text for equal settings: what a stage's key is hashed from."""
+    return json.dumps(to_json(settings), sort_keys=True, separators=(",", ":"))
+
+
+def _parse(text: str, kind: Any, path: str) -> Any:
+    choices = get_args(kind)
+    if choices:
+        if text not in choices:
+            raise ConfigError(f"{path} must be one of {', '.join(choices)}, got {text!r}")
+        return text
+    if kind is bool:
+        if text.lower() not in {"true", "false"}:
+            raise ConfigError(f"{path} must be true or false, got {text!r}")
+        return text.lower() == "true"
+    try:
+        return kind(text)
+    except ValueError as error:
+        raise ConfigError(f"{path} must be {kind.__name__}, got {text!r}") from error
+
+
+def _names(group: object) -> list[str]:
+    assert is_dataclass(group)
+    return [f.name for f in fields(group)]

@@ -1,0 +1,31 @@
+"""Settings of the stage `frames`: reading a recording."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from recon4.settings.require import require
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class IngestSettings:
+    """Reading a recording into multiframes."""
+
+    rate_hz: float = 0.0
+    """Multiframes per second. 0 = one a revolution of the slowest LiDAR, as measured."""
+    reorder_window_s: float = 0.2
+    """Packets out of order by at most this are put back in order [s]."""
+    min_range_m: float = 0.7
+    """Nearer returns are the carrier and are dropped [m]."""
+    max_range_m: float = 120.0
+    """Farther returns are dropped [m]."""
+    gap_s: float = 0.2
+    """A jump of the clock larger than this is reported as a gap [s]."""
+
+    def __post_init__(self) -> None:
+        require(0.0 <= self.rate_hz <= 100.0, "rate_hz must be 0 to 100", self.rate_hz)
+        require(
+            0.0 <= self.min_range_m < self.max_range_m,
+            "min_range_m must be below max_range_m",
+            self.min_range_m,
+        )

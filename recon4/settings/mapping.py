@@ -1,0 +1,45 @@
+"""Settings of the stage `map`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from recon4.settings.require import require
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapSettings:
+    """The point map and what is written of it."""
+
+    voxel_m: float = 0.01
+    """Keep at most one point in a cube of this size, that with the shortest range [m]; 0 = all."""
+    max_range_m: float = 60.0
+    """Points farther from the sensor are left out of the map [m]."""
+    tile_m: float = 5.0
+    """Edge length of the tiles in which the map is made and stored [m]."""
+    normal_cell_m: float = 0.05
+    """Normals come from neighborhoods of three of these cells [m]."""
+    min_neighborhood: int = 2
+    """Points with fewer points in that neighborhood, themselves included, are noise; 1 = keep."""
+    far_ratio: float = 0.0
+    """Points measured from more than so many times the shortest range in their cubic meter are
+    left out (requirements A13 O-9: 2); 0 = keep."""
+
+    def __post_init__(self) -> None:
+        require(0.0 <= self.voxel_m <= 1.0, "voxel_m must be 0 to 1", self.voxel_m)
+        require(0.0 < self.max_range_m <= 130.0, "max_range_m must be 0 to 130", self.max_range_m)
+        require(self.normal_cell_m >= 0.01, "normal_cell_m must be over 0.01", self.normal_cell_m)
+        require(
+            1.0 <= self.tile_m <= 100.0
+            and self.tile_m >= 4 * max(self.normal_cell_m, self.voxel_m),
+            "tile_m must be 1 to 100 and at least four cells or voxels",
+            self.tile_m,
+        )
+        require(
+            self.min_neighborhood >= 1, "min_neighborhood must be 1 or more", self.min_neighborhood
+        )
+        require(
+            self.far_ratio == 0.0 or self.far_ratio > 1.0,
+            "far_ratio must be 0 or above 1",
+            self.far_ratio,
+        )

@@ -1,0 +1,80 @@
+"""All groups of settings together, and the presets."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from recon4.errors import ConfigError
+from recon4.settings.georeference import GnssSettings, LevelSettings
+from recon4.settings.graph import GraphSettings, VerificationSettings
+from recon4.settings.ingest import IngestSettings
+from recon4.settings.intensity import IntensitySettings
+from recon4.settings.mapping import MapSettings
+from recon4.settings.odometry import OdometrySettings, ScanSettings
+from recon4.settings.refine import RefineSettings
+from recon4.settings.registration import (
+    OverlapSettings,
+    PlaneSettings,
+    RegistrationSettings,
+    SegmentSettings,
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Settings:
+    """All of them. A preset is one of these; ``--set group.field=value`` changes one field."""
+
+    ingest: IngestSettings = field(default_factory=IngestSettings)
+    segments: SegmentSettings = field(default_factory=SegmentSettings)
+    overlap: OverlapSettings = field(default_factory=OverlapSettings)
+    registration: RegistrationSettings = field(default_factory=RegistrationSettings)
+    planes: PlaneSettings = field(default_factory=PlaneSettings)
+    scans: ScanSettings = field(default_factory=ScanSettings)
+    odometry: OdometrySettings = field(default_factory=OdometrySettings)
+    graph: GraphSettings = field(default_factory=GraphSettings)
+    verification: VerificationSettings = field(default_factory=VerificationSettings)
+    refine: RefineSettings = field(default_factory=RefineSettings)
+    level: LevelSettings = field(default_factory=LevelSettings)
+    gnss: GnssSettings = field(default_factory=GnssSettings)
+    intensity: IntensitySettings = field(default_factory=IntensitySettings)
+    map: MapSettings = field(default_factory=MapSettings)
+
+
+PRESETS: dict[str, Settings] = {
+    "indoor": Settings(),
+    "staircase": Settings(),
+    "outdoor": Settings(
+        map=MapSettings(voxel_m=0.03, max_range_m=100.0, tile_m=20.0, normal_cell_m=0.15)
+    ),
+    "thesis": Settings(
+        registration=RegistrationSettings(solver="svd", max_iterations=500),
+        odometry=OdometrySettings(
+            use_imu=False, use_gnss=False, history=1, history_mode="averaged", line_sd_rad=0.02
+        ),
+        graph=GraphSettings(
+            mode="verification",
+            exhaustive=True,
+            retry_rounds=0,
+            source_reach=0,
+            target_reach=0,
+            min_share=0.0,
+            min_degeneracy=0.0,
+            loop_sd_m=0.1,
+            loop_sd_rad=0.01,
+        ),
+        verification=VerificationSettings(robust="none"),
+        gnss=GnssSettings(judge_edges=False),
+        intensity=IntensitySettings(method="bins", min_contrast=0.0),
+    ),
+}
+
+
+def preset(name: str) -> Settings:
+    """The settings of a preset.
+
+    Raises:
+        ConfigError: If there is no such preset.
+    """
+    if name not in PRESETS:
+        raise ConfigError(f"no preset named {name!r}; there are: {', '.join(sorted(PRESETS))}")
+    return PRESETS[name]

@@ -1,0 +1,67 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import {
+  anglesOf,
+  cutOf,
+  distanceFrom,
+  format,
+  moved,
+  normalFrom,
+  normalOf,
+  parse,
+  roundStep,
+} from "../../web/slices_state.js";
+
+test("an empty address is the usual horizontal cut", () => {
+  const state = parse("");
+  assert.equal(state.given, false);
+  assert.deepEqual(cutOf(state), { kind: "horizontal", z_m: 1.5, thickness_m: 0.1 });
+});
+
+for (const query of [
+  "kind=horizontal&z=2.25&t=0.05&color=intensity",
+  "kind=vertical&a=1,2&b=4,6&lo=-0.5&hi=3",
+  "kind=free&o=1,2,3&n=0,1,1&u=0.5&v=-0.25&m=0.012",
+]) {
+  test(`the address comes back: ${query}`, () => {
+    assert.deepEqual(parse(format(parse(query))), parse(query));
+    assert.deepEqual(new Set(format(parse(query)).split("&")), new Set(query.split("&")));
+  });
+}
+
+for (const [query, key, usual] of [
+  ["kind=diagonal", "kind", "horizontal"],
+  ["color=rainbow", "color", "height"],
+  ["z=high", "z", 1.5],
+  ["z=Infinity", "z", 1.5],
+  ["t=-1", "t", 0.1],
+  ["kind=vertical&a=1,2,3", "a", [0, 0]],
+  ["kind=vertical&a=1,", "a", [0, 0]],
+]) {
+  test(`what makes no sense keeps its usual value: ${query}`, () => {
+    assert.deepEqual(parse(query)[key], usual);
+  });
+}
+
+test("a vertical cut looks along its unit normal", () => {
+  const state = parse("kind=vertical&a=0,0&b=3,4");
+  assert.deepEqual(normalOf(state), [0.8, -0.6, 0]);
+});
+
+test("moving a cut along its normal moves it by that distance", () => {
+  for (const query of ["kind=horizontal&z=1", "kind=vertical&a=0,1&b=2,5", "kind=free&o=1,1,1&n=1,2,2"]) {
+    const state = parse(query);
+    const point = { horizontal: [0, 0, 1], vertical: [0, 1, 0], free: [1, 1, 1] }[state.kind];
+    assert.ok(Math.abs(distanceFrom(moved(state, 0.75), point) - 0.75) < 1e-12, query);
+  }
+});
+
+test("steps of a scale are 1, 2 or 5 times a power of ten", () => {
+  assert.deepEqual([0.03, 0.2, 0.21, 7, 12].map(roundStep), [0.05, 0.2, 0.5, 10, 20]);
+});
+
+test("a normal and its angles are the same thing", () => {
+  const n = normalFrom({ azimuth: 120, tilt: 35 });
+  assert.deepEqual(anglesOf(n), { azimuth: 120, tilt: 35 });
+});
