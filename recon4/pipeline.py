@@ -17,7 +17,7 @@ from recon4.settings import preset as settings_of
 from recon4.store.hashing import hash_json, size_of
 from recon4.store.inputs import input_file, input_files
 from recon4.store.project import Project, read_artifacts, read_description
-from recon4.store.recipes import settings_in
+from recon4.store.recipes import check_recipes, settings_in
 from recon4.store.stage import Artifact, Input, StageRunner
 
 BEFORE_REVIEW = (stages.FRAMES, stages.ODOMETRY, stages.GRAPH, stages.VERIFICATION)
@@ -105,6 +105,7 @@ def remake(out: Path, *, progress: Progress | None = None) -> Summary:
         raise StoreError(f"{out.name} has no map yet: process its recording to the end first")
     before = [stage.name for stage in BEFORE_REVIEW]
     # Of a setting that a cut-off run changed, what the kept stages were made with counts.
+    check_recipes(made.values())
     settings = settings_in(made[name] for name in sorted(made, key=before.__contains__))
     with Project.open(out) as project:
         runner = StageRunner(project, settings, progress)

@@ -32,7 +32,7 @@ from app.review.model import (
     Step,
 )
 from app.review.store import terms_of
-from recon4.review.approval import NotApprovable
+from recon4.review.approval import NotApprovable, make_read_only
 from recon4.review.approval import approve as sign
 from recon4.review.approved import Approval, approval_of, latest_approval
 from recon4.review.decisions import Decided, Decision, Kind, fold
@@ -211,6 +211,7 @@ async def approve(
         approval = await _sign(root, key, signer, asked, server=server)
     except NotApprovable as error:
         raise Conflict(str(error)) from error
+    await run_in_threadpool(make_read_only, approval)
     what = f"{project_id} version {approval.version} {approval.hash}"
     await run_in_threadpool(audit, request, "approve", what)
     return await run_in_threadpool(_view, project_id, server, who)

@@ -105,6 +105,15 @@ def put_back(root: Path, approval: Approval) -> None:
             _link(path, root / path.name)
 
 
+def make_read_only(approval: Approval) -> None:
+    """Keep people from changing issued files by mistake; what is changed all the same is found.
+
+    A confined process may not change modes, so this is for the one that asked it to `approve`.
+    """
+    for path in approval.folder.iterdir():
+        path.chmod(0o444)
+
+
 def _hand_out(root: Path, approval: Approval) -> None:
     """The results and the summary of the project are from now on those that were issued."""
     with changing(root, SUMMARY, compared=False):
@@ -197,8 +206,6 @@ def _issue(root: Path, asked: _Asked, *, version: int, key_file: Path) -> Approv
         signature = sign({"hash": stamp.hash, "issued": issued}, key_file)
         told = {"statement": statement, "hash": stamp.hash, "issued": issued}
         write_json(made / "approval.json", told | {"signature": signature})
-        for path in made.iterdir():
-            path.chmod(0o444)
     return Approval(version, stamp.hash, folder, stamp, asked.keys, statement["manifests"], issued)
 
 

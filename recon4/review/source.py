@@ -14,7 +14,10 @@ from recon4.settings import Settings
 from recon4.store.arrays import load_trajectory
 from recon4.store.frames import FrameStore
 from recon4.store.project import read_artifacts
-from recon4.store.recipes import settings_in
+from recon4.store.recipes import check_recipes, settings_in
+
+_MADE_WITH = ("graph", "verification")
+"""Stages whose settings a review goes on with."""
 
 
 @dataclass(frozen=True)
@@ -28,11 +31,13 @@ class Source:
         """The latest run.
 
         Raises:
+            Altered: If the settings it was made with were changed.
             StoreError: If there is no verified graph yet.
         """
         artifacts = read_artifacts(root)
         if "verification" not in artifacts:
             raise StoreError(f"{root.name} has no verified graph yet: there is nothing to review")
+        check_recipes(artifacts[name] for name in _MADE_WITH if name in artifacts)
         return Source(artifacts)
 
     @property
@@ -48,8 +53,7 @@ class Source:
     @cached_property
     def settings(self) -> Settings:
         """Those the graph was searched and verified with; others are the defaults."""
-        made = [self.artifacts[n] for n in ("graph", "verification") if n in self.artifacts]
-        return settings_in(made)
+        return settings_in(self.artifacts[n] for n in _MADE_WITH if n in self.artifacts)
 
     @cached_property
     def odometry(self) -> Trajectory:

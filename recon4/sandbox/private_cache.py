@@ -29,7 +29,9 @@ def use_private_cache(folder: Path) -> tuple[Path, ...]:
     Returns:
         Files and folders with what is cached already: the process must be able to read them.
     """
-    os.environ |= private_cache(folder)
+    os.environ |= (environment := private_cache(folder))
+    if (config := sys.modules.get("numba.core.config")) is not None:  # it read its environment
+        config.__dict__["CACHE_DIR"] = environment["NUMBA_CACHE_DIR"]
     return cached_elsewhere(folder)
 
 

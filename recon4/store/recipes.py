@@ -12,10 +12,21 @@ from recon4.store.seal import check_sealed
 from recon4.store.stage import read_manifest
 
 
+def check_recipes(artifacts: Iterable[Path]) -> None:
+    """Compare the manifests of artifacts with their seals, before settings are taken from them.
+
+    Raises:
+        Altered: If one was changed.
+    """
+    for folder in artifacts:
+        check_sealed(folder.parent.parent, f"artifacts/{folder.name}/manifest.json")
+
+
 def settings_in(artifacts: Iterable[Path]) -> Settings:
     """The settings artifacts were made with, the last of them counting; the rest are the defaults.
 
-    Names that an older or newer recon4 wrote are left out.
+    Names that an older or newer recon4 wrote are left out. `check_recipes` comes before it, where
+    the seals can be read.
 
     Args:
         artifacts: Their folders.
@@ -23,13 +34,12 @@ def settings_in(artifacts: Iterable[Path]) -> Settings:
     Raises:
         StoreError: If an artifact is damaged.
     """
-    told: dict[str, dict[str, Any]] = {}
+    recorded: dict[str, dict[str, Any]] = {}
     for folder in artifacts:
-        check_sealed(folder.parent.parent, f"artifacts/{folder.name}/manifest.json")
-        told |= read_manifest(folder)["recipe"]["settings"]
+        recorded |= read_manifest(folder)["recipe"]["settings"]
     settings = Settings()
     groups = {}
-    for name, values in told.items():
+    for name, values in recorded.items():
         group = getattr(settings, name, None)
         if group is not None:
             known = {f.name for f in fields(group)}

@@ -154,7 +154,7 @@ def confine_as(kind: str, facts: dict[str, Any]) -> None:
             folder = JobFolder(mine)
             prepare_worker(folder, worker_policy(folder))
         case "viewer":
-            confine(viewer_policy(project, project / "jobs", mine))
+            confine(viewer_policy(project, project / "jobs", mine, socket=mine))
         case "recorder":
             confine_recorder(session, load_rig("4recon"))
             refuse_new_sockets()

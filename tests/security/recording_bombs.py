@@ -178,11 +178,11 @@ def bag1_definition(path: Path) -> None:
 
 
 def bag1_tiny_messages(path: Path) -> None:
-    """A million messages without content."""
+    """200 000 messages without content (a million take 48 s and no more memory)."""
     one = message_record(0, b"")
     per_chunk = 10_000
     chunk = connection_record() + one * per_chunk
-    path.write_bytes(bag1([(b"none", chunk, len(chunk))] * 100, index=(per_chunk, 1)))
+    path.write_bytes(bag1([(b"none", chunk, len(chunk))] * 20, index=(per_chunk, 1)))
 
 
 def bag1_fields(path: Path) -> None:
@@ -282,8 +282,8 @@ def mcap_schema(path: Path) -> None:
 
 
 def mcap_tiny_messages(path: Path) -> None:
-    """Two million messages without content in one chunk of 62 MB."""
-    path.write_bytes(mcap(mcap_message(b"") * 2_000_000))
+    """300 000 messages without content in one chunk (two million take 40 s)."""
+    path.write_bytes(mcap(mcap_message(b"") * 300_000))
 
 
 def mcap_sparse_record(path: Path) -> None:

@@ -31,7 +31,7 @@ from app.viewer import unix_socket
 from recon4 import runtime_folder as places
 from recon4.errors import StoreError
 from recon4.live.line_server import LineServer
-from tests.e2e.conftest import CHROMIUM, FLAGS
+from tests.chromium import CHROMIUM, FLAGS
 from tests.project_builder import build_project
 from tests.service.running import ROOT, server_process
 from tests.service.viser_client import PROTOCOL, camera, viewing

@@ -70,6 +70,7 @@ def test_a_signal_is_obeyed_where_python_throws_exceptions_away(where, name):
         cwd=ROOT,
         timeout=60,
         start_new_session=True,
+        preexec_fn=obey_sigint,
     )
 
     assert ended.stderr == f"recon4: stopped by {name}\n"
@@ -100,10 +101,20 @@ def test_processing_stopped_at_random_moments_leaves_nothing_and_goes_on(tmp_pat
     assert subprocess.run(command(tmp_path), check=False, capture_output=True).returncode == 0
 
 
+def obey_sigint():
+    """In the child: a shell that runs this in the background had it ignored."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def stop_after(folder, *, lines, sign):
     """Send a signal after so many lines of progress; exit code and standard error."""
     with subprocess.Popen(
-        command(folder), stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, cwd=ROOT
+        command(folder),
+        stderr=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        text=True,
+        cwd=ROOT,
+        preexec_fn=obey_sigint,
     ) as process:
         said = "".join(process.stderr.readline() for _ in range(lines))
         process.send_signal(sign)

@@ -159,7 +159,7 @@ def _kill_pool_child(server: Running, process: subprocess.Popen[str]) -> None:
 
     assert ask() == 200
     children = psutil.Process(process.pid).children(recursive=True)
-    pool = [one for one in children if any("spawn_main" in word for word in one.cmdline())]
+    pool = [one for one in children if "app.compute_pool.child" in one.cmdline()]
     assert pool, "the compute pool has a child"
     for child in pool:
         child.kill()

@@ -88,8 +88,8 @@ def test_every_good_project_is_listed_and_every_bad_one_says_why(server):
         for kind in BAD_JSON:
             problem = cards[f"{file}-{kind}"]["problem"]
             assert problem.startswith(f"{file}.json"), (kind, problem)
-    assert "nests deeper" in cards["project-deep"]["problem"]
-    assert "half of one" in cards["project-surrogate"]["problem"]
+    assert "at most 64 levels" in cards["project-deep"]["problem"]
+    assert "lone surrogate" in cards["project-surrogate"]["problem"]
 
 
 def test_a_name_from_the_disk_shows_what_nobody_would_see(server):

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from recon4.store.seal import changing
 from tests.project_builder import ROOM_M, approve_project, build_project
 from tests.service.running import server_thread
 
@@ -181,7 +182,7 @@ def test_a_reference_is_added_compared_aligned_and_removed(server):
     ("name", "content", "words"),
     [
         ("cut.ply", CUT_PLY, "cut: 1000 points"),
-        ("nothing.laz", b"LASF" + bytes(300), "not a sound LAS/LAZ"),
+        ("nothing.laz", b"LASF" + bytes(300), "expected LAS 1.0 to 1.4, got 0.0"),
         ("words.csv", b"a;b;c\nd;e;f\n", "numbers"),
         ("picture.png", b"\x89PNG\r\n\x1a\n" + bytes(200), "expected a PLY"),
     ],
@@ -327,7 +328,8 @@ def test_a_point_found_in_an_earlier_map_does_not_count_in_this_one(server):
     state = {"points": [{"id": "A", "xyz_m": [0.02, 5, 1.5]}], "picks": {"A": [0, 5, 1.5]}}
     url = f"{server.url}{BASE}/control"
     kept = httpx.put(url, json=state | {"found_in": {"A": "of another map"}}, timeout=30).json()
-    path.write_text(path.read_text().replace(kept["found_in"]["A"], "ab" * 32))
+    with changing(server.root / "office", "slices/control.json"):
+        path.write_text(path.read_text().replace(kept["found_in"]["A"], "ab" * 32))
 
     earlier = server.get(f"{BASE}/control/report").json()
     moved = httpx.put(url, json=state | {"picks": {"A": [0.01, 5, 1.5]}}, timeout=30).json()

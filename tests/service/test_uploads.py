@@ -101,7 +101,7 @@ def test_a_folder_keeps_its_names_and_is_one_recording(server):
         "clouds/0001.bin": b"bb",
         "clouds/CON.bin": b"c",
         "Clouds/0001.BIN": b"dddd",
-        "ů/\u202eevil\n=1+1.csv": b"",
+        "ů/=1+1 (ž).csv": b"",
     }
     upload = begin(server, "KITTI walk", len(names), sum(map(len, names.values())))
 
@@ -119,7 +119,7 @@ def test_a_folder_keeps_its_names_and_is_one_recording(server):
         "clouds/0001.bin": b"bb",
         "clouds/_CON.bin": b"c",
         "Clouds/0001~2.BIN": b"dddd",
-        "u/evil_1+1.csv": b"",
+        "u/_1+1_z_.csv": b"",
     }
 
 

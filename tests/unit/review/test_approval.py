@@ -10,7 +10,7 @@ import pytest
 from recon4.progress import Silent
 from recon4.report.approval import draft_block
 from recon4.review import approval
-from recon4.review.approval import NotApprovable, approve
+from recon4.review.approval import NotApprovable, approve, make_read_only
 from recon4.review.approved import approval_of_map, latest_approval
 from recon4.review.audit import audit_review
 from recon4.review.decisions import Decision, Kind
@@ -85,6 +85,7 @@ def damage(root):
 
 def test_what_was_approved_is_whole_read_only_and_says_so(root, key):
     found = approve(root, key, SIGNER, False)
+    make_read_only(found)
 
     assert damage(root) == ()
     assert {path.name for path in found.folder.iterdir()} == {
