@@ -49,7 +49,7 @@ e2e: $(VENV)/installed-dev
 
 web:
 	@if command -v node >/dev/null; then \
-		find web -name '*.js' -exec node --check {} \; && node --test tests/web/; \
+		find web -name '*.js' -exec node --check {} \; && node --test tests/web/*.test.js; \
 	else echo 'recon4: no node here: the pages are checked in the browser only'; fi
 
 bench: $(VENV)/installed-dev
