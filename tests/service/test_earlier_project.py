@@ -1,0 +1,57 @@
+"""A project that an earlier version made and approved still opens.
+
+`project-format1.tar.xz` is a small walk of 92 multiframes, processed, reviewed and approved by
+version 0.1.0 before projects had seals and approvals named the manifests.
+"""
+
+import tarfile
+from pathlib import Path
+
+import pytest
+
+from recon4.cli import main
+from tests.service.running import server_thread
+
+ARCHIVE = Path(__file__).parents[1] / "data" / "project-format1.tar.xz"
+
+
+@pytest.fixture(scope="module")
+def root(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("earlier")
+    with tarfile.open(ARCHIVE) as archive:
+        archive.extractall(folder, filter="data")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def server(root):
+    with server_thread(root) as running:
+        yield running
+
+
+def test_it_is_listed_with_its_figures(server):
+    (card,) = server.get("/api/projects").json()
+
+    assert card["finished"] and card["problem"] == ""
+    assert card["points"] > 10_000 and card["way_m"] == pytest.approx(9.2, abs=0.2)
+
+
+def test_its_loops_and_decisions_are_there(server):
+    review = server.get("/api/projects/format1/review").json()
+    queue = server.get("/api/projects/format1/review/queue").json()
+
+    assert [(one["frame_i"], one["frame_j"]) for one in review["standing"]] == [(20, 90)]
+    assert review["approval"]["who"] == "anna" and review["approval"]["current"]
+    assert len(queue["rows"]) > 50
+
+
+def test_its_map_can_be_cut_and_says_who_approved_it(server, root, capsys):
+    out = root / "slice.csv"
+
+    assert main(["slice", str(root / "format1"), str(out), "--z", "0.5"]) == 0
+    assert '"who": "anna"' in out.read_text().splitlines()[1]
+
+
+def test_nothing_of_it_counts_as_damaged(root, capsys):
+    assert main(["verify", str(root / "format1")]) == 0
+    assert "version 1, approved by anna" in capsys.readouterr().out
