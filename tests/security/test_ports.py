@@ -22,7 +22,6 @@ from urllib.parse import urlsplit
 import psutil
 import pytest
 import viser
-from playwright.sync_api import sync_playwright
 from viser import _messages
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidMessage
 from websockets.sync.client import connect
@@ -31,7 +30,6 @@ from app.viewer import unix_socket
 from recon4 import runtime_folder as places
 from recon4.errors import StoreError
 from recon4.live.line_server import LineServer
-from tests.chromium import CHROMIUM, FLAGS
 from tests.project_builder import build_project
 from tests.service.running import ROOT, server_process
 from tests.service.viser_client import PROTOCOL, camera, viewing
@@ -143,17 +141,12 @@ def test_a_foreign_origin_gets_nothing_from_any_port(served):
 
 
 @pytest.mark.e2e
-def test_a_foreign_page_in_a_browser_gets_nothing_from_any_port(served, tmp_path):
-    if not CHROMIUM.exists():
-        pytest.skip(f"needs Chromium at {CHROMIUM} (set RECON4_CHROMIUM)")
+def test_a_foreign_page_in_a_browser_gets_nothing_from_any_port(served, browser, tmp_path):
     _, process = served
     (tmp_path / "index.html").write_text(FOREIGN_PAGE % PROTOCOL)
-    with page_server(tmp_path) as url, sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
-        page = browser.new_page()
+    with page_server(tmp_path) as url, browser.new_page() as page:
         page.goto(url)
         got = {port: page.evaluate("port => steal(port)", port) for port in tcp_ports(process)}
-        browser.close()
 
     assert got == dict.fromkeys(tcp_ports(process), 0)
 
