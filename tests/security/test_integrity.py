@@ -11,17 +11,18 @@ import httpx
 import pytest
 
 from recon4.cli import main
+from recon4.pipeline import remake
 from recon4.progress import Silent
 from recon4.review.approval import put_back
 from recon4.review.approved import approval_of
 from recon4.review.decisions import Decision, Kind
 from recon4.review.journal import append
 from recon4.review.signature import sign
+from recon4.review.source import Source
 from recon4.store.atomic import write_json
 from recon4.store.checked import Altered
 from recon4.store.hashing import FileDigest, hash_json
 from recon4.store.project import Project, read_artifacts
-from recon4.store.recipes import settings_in
 from recon4.store.seal import begin_change
 from recon4.verify import verify
 from tests.benchmarks.flips import flip_bits, make, make_server_state
@@ -271,11 +272,12 @@ def test_verify_names_what_was_edited(office, spoil, words, capsys):
     assert words in told.out and "Traceback" not in told.out + told.err
 
 
-def test_settings_edited_in_a_manifest_are_not_used_to_make_a_map_again(office):
+@pytest.mark.parametrize("use", [remake, Source.of])
+def test_settings_edited_in_a_manifest_are_not_used_to_make_a_map_again(office, use):
     edit_settings(office)
 
     with pytest.raises(Altered, match=r"manifest\.json is not what recon4 wrote"):
-        settings_in([read_artifacts(office)["verification"]])
+        use(office)
 
 
 def test_control_points_that_were_edited_make_no_acceptance_sheet(office):
