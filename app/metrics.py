@@ -37,7 +37,7 @@ disable_created_metrics()  # type: ignore[no-untyped-call]
 
 
 class HttpMetrics:
-    """Counts and times requests; labels are route templates, so there are only so many series."""
+    """Counts and times requests; labels are route templates, so the number of series is bounded."""
 
     def __init__(self, registry: CollectorRegistry) -> None:
         self.responses = Counter(

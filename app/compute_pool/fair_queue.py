@@ -127,7 +127,7 @@ class FairQueue:
         )
 
     def _remember(self, person: str) -> None:
-        """Note whose turn it was; only people who still wait have to be told apart."""
+        """Record who was served; people who no longer wait are forgotten."""
         self._served[person] = self._grants
         if len(self._served) > 1000:
             present = {slot.person for slot in (*self._waiting, *self._running)}

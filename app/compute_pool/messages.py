@@ -40,7 +40,7 @@ class Call:
 
 @dataclass(frozen=True, slots=True)
 class Setup:
-    """What a child is told before its first call."""
+    """What a child receives before its first call."""
 
     access: FileAccess
     module: str

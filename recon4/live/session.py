@@ -92,6 +92,6 @@ def load_session(project: Path) -> Session:
     """
     path = project / "live" / "session.json"
     try:
-        return Session(project=project, **read_object(path))
+        return Session(project=project, **read_object(path, most_bytes=MOST_JSON_BYTES))
     except TypeError as error:
         raise StoreError(f"{path} cannot be read: {error}") from error

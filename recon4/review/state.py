@@ -22,7 +22,7 @@ def read_summary(root: Path) -> dict[str, Any] | None:
     path = root / "summary.json"
     if not path.is_file():
         return None
-    return read_object(path)
+    return read_object(path, most_bytes=MOST_SUMMARY_BYTES)
 
 
 def artifact_keys(summary: dict[str, Any]) -> dict[str, str]:

@@ -101,7 +101,7 @@ def _no_new_privileges() -> str:
 
 
 def _network(policy: Policy) -> str:
-    if policy.network in (Network.LISTEN_TCP, Network.RECEIVE):
+    if policy.network is Network.RECEIVE:
         return "its own ports need the network of this computer"
     return own_network()
 
@@ -120,7 +120,7 @@ def _files(policy: Policy) -> str:
     version = landlock.abi()
     if version == 0:
         raise OSError("this kernel has no Landlock (Linux 5.13 or later, turned on)")
-    landlock.restrict(_rules(policy), listen_tcp=policy.network is Network.LISTEN_TCP)
+    landlock.restrict(_rules(policy))
     scopes = "" if version >= landlock.SCOPES_SINCE else ", no scope of signals (since Linux 6.12)"
     return f"Landlock ABI {version}{scopes}"
 

@@ -24,7 +24,7 @@ _OF_A_FILE = EXECUTE | WRITE_FILE | READ_FILE | TRUNCATE | IOCTL_DEV
 
 _BIND_TCP, _CONNECT_TCP = 1 << 0, 1 << 1
 _SCOPE_ABSTRACT_UNIX_SOCKET, _SCOPE_SIGNAL = 1 << 0, 1 << 1
-_PATH_BENEATH, _NET_PORT, _VERSION = 1, 2, 1
+_PATH_BENEATH, _VERSION = 1, 1
 _RIGHTS_OF_ABI = {1: 13, 2: 14, 3: 15, 4: 15, 5: 16}
 """ABI -> how many rights on files it knows; later ones know as many as 5."""
 
@@ -45,10 +45,6 @@ class _PathBeneath(ctypes.Structure):
     _fields_ = [("access", ctypes.c_uint64), ("parent", ctypes.c_int32)]
 
 
-class _NetPort(ctypes.Structure):
-    _fields_ = [("access", ctypes.c_uint64), ("port", ctypes.c_uint64)]
-
-
 def abi() -> int:
     """Version of Landlock in this kernel; 0 = it has none, or it is turned off."""
     try:
@@ -57,14 +53,13 @@ def abi() -> int:
         return 0
 
 
-def restrict(rules: Iterable[tuple[Path, int]], *, listen_tcp: bool) -> None:
-    """Confine this thread, and all it starts, to the paths of an allow-list. Cannot be undone.
+def restrict(rules: Iterable[tuple[Path, int]]) -> None:
+    """Confine this thread, and all it starts, to the paths of an allow-list, without TCP. For good.
 
     Needs ``no_new_privs``. A path that does not exist is skipped.
 
     Args:
         rules: Paths, and the rights below each.
-        listen_tcp: Whether TCP sockets may be bound; none may connect.
 
     Raises:
         OSError: If the kernel refused, or has no Landlock.
@@ -79,9 +74,6 @@ def restrict(rules: Iterable[tuple[Path, int]], *, listen_tcp: bool) -> None:
     try:
         for path, rights in rules:
             _allow(descriptor, path, rights & known)
-        if listen_tcp and tcp:
-            any_free_port = _NetPort(_BIND_TCP, 0)
-            call("landlock_add_rule", descriptor, _NET_PORT, ctypes.byref(any_free_port), 0)
         call("landlock_restrict_self", descriptor, 0)
     finally:
         os.close(descriptor)

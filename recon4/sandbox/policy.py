@@ -15,8 +15,6 @@ class Network(StrEnum):
     """None at all; those it was given stay usable."""
     UNIX = "unix"
     """Unix sockets only: to listen and to connect."""
-    LISTEN_TCP = "listen tcp"
-    """TCP sockets that listen; no connection to anywhere."""
     RECEIVE = "receive"
     """UDP sockets that receive, and Unix sockets."""
 

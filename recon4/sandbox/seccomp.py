@@ -106,9 +106,6 @@ def _network_rules(network: Network) -> Iterable[tuple[str, list[Instruction]]]:
                 yield name, refuse
         case Network.UNIX:
             yield "socket", _only_sockets(unix)
-        case Network.LISTEN_TCP:
-            yield "socket", _only_sockets([(family, socket.SOCK_STREAM) for family in internet])
-            yield "connect", refuse
         case Network.RECEIVE:
             datagrams: list[tuple[int, int | None]] = [(f, socket.SOCK_DGRAM) for f in internet]
             yield "socket", _only_sockets(unix + datagrams)
