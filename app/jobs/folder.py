@@ -79,6 +79,7 @@ class JobFolder:
     def sweep(self) -> None:
         """Remove the temporary files of a worker that is gone."""
         shutil.rmtree(self.temporary, ignore_errors=True)
+        (self.path / "room").unlink(missing_ok=True)
 
     def request(self) -> tuple[Path, Inputs]:
         """Project folder and inputs."""

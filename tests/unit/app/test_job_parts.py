@@ -6,6 +6,7 @@ import pytest
 
 from app.errors import Conflict, IllegalTransition, NotFound
 from app.jobs.events import EventWriter, read_events
+from app.jobs.folder import JobFolder
 from app.jobs.model import TRANSITIONS, Inputs, Job, JobState
 from app.jobs.status import Status, after
 from app.jobs.store import JobStore
@@ -128,3 +129,14 @@ def test_a_run_stops_once_asked(tmp_path):
         writer.advance(3)
 
     writer.close()
+
+
+def test_nothing_temporary_is_left_of_a_worker_that_was_killed(tmp_path):
+    folder = JobFolder(tmp_path)
+    folder.temporary.mkdir()
+    (folder.temporary / "part").write_bytes(b"half")
+    folder.keep_room()
+
+    folder.sweep()
+
+    assert list(tmp_path.iterdir()) == []
