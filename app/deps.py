@@ -8,19 +8,19 @@ from typing import Annotated
 from fastapi import Depends
 from starlette.requests import HTTPConnection
 
-from app.access.door import Access
+from app.access.login.login_service import Access
 from app.compute_pool import ComputePool
 from app.jobs.store import JobStore
 from app.jobs.supervisor import Supervisor
 from app.live.store import Captures
-from app.projects.picture import Pictures
+from app.network.streams import Streams
 from app.projects.store import ProjectStore
+from app.projects.thumbnail import Thumbnails
 from app.projects.trash import Trash
 from app.review.checks import ApprovalChecks
 from app.review.store import Reviews
 from app.settings import ServerSettings
 from app.slices.store import Slices
-from app.streams import Streams
 from app.uploads.store import UploadStore
 from app.viewer.pool import ViewerPool
 
@@ -32,7 +32,7 @@ class Parts:
     settings: ServerSettings
     access: Access
     projects: ProjectStore
-    pictures: Pictures
+    pictures: Thumbnails
     trash: Trash
     uploads: UploadStore
     jobs: JobStore

@@ -10,7 +10,7 @@ from typing import Any
 
 from fastapi import FastAPI
 
-from app.access.doorkeeper import COOKIE, FORM_HEADER
+from app.access.middleware.session import COOKIE, FORM_HEADER
 from app.access.routes_check import declared
 
 WORDS = """Everything the pages do. Errors answer `{"error", "detail"}`; `detail` is for people.
@@ -59,11 +59,11 @@ def description(app: FastAPI) -> dict[str, Any]:
 
 def _tell_fields(schemas: dict[str, Any]) -> None:
     """Put the text below each field of a record's class into the record's description."""
-    for name, told in _documented(set(schemas)):
+    for name, record in _documented(set(schemas)):
         fields = schemas[name].get("properties", {})
-        if not told.keys() <= fields.keys():
+        if not record.keys() <= fields.keys():
             continue  # another class of the same name
-        for field, words in told.items():
+        for field, words in record.items():
             fields[field].setdefault("description", words)
 
 

@@ -43,7 +43,7 @@ from recon4.errors import Recon4Error, WrongSettings
 
 log = logging.getLogger(__name__)
 
-LOST = Path(__file__).parents[1] / "web" / "lost.html"
+LOST = Path(__file__).parents[1] / "web" / "shared" / "lost.html"
 """The page for people where there is none for them; ``{title}`` and ``{detail}`` are filled in."""
 TITLES = {403: "Not for you", 404: "There is nothing here"}
 FRAMEWORK_WORDS: Mapping[int, str] = {
@@ -156,7 +156,7 @@ class ClientLeft(AppError):
     status = 499
 
 
-class Problem(BaseModel):
+class ProblemDetail(BaseModel):
     """What every error answers."""
 
     error: str
@@ -168,7 +168,7 @@ class Problem(BaseModel):
 
 
 def install(app: FastAPI) -> None:
-    """Answer every error as a `Problem`, to a browser that wants a page as a page."""
+    """Answer every error as a `ProblemDetail`, to a browser that wants a page as a page."""
 
     @app.exception_handler(AppError)
     async def known(request: Request, error: AppError) -> Response:
@@ -236,7 +236,7 @@ def _problem(
     headers: Mapping[str, str] | None = None,
     problems: Mapping[str, str] | None = None,
 ) -> JSONResponse:
-    problem = Problem(error=error, detail=detail, problems=dict(problems or {}))
+    problem = ProblemDetail(error=error, detail=detail, problems=dict(problems or {}))
     return JSONResponse(
         problem.model_dump(exclude_defaults=True), status_code=status, headers=headers
     )

@@ -21,8 +21,8 @@ def child_register(settings: ServerSettings) -> ChildRegister:
 def sweep_leftovers(settings: ServerSettings) -> None:
     """End processes and remove sockets and unfinished files of an earlier server.
 
-    Call it only while this server holds the folder (`app.listen.only_one`). Job workers and the
-    processes of a live capture are no leftovers: they go on, and the server takes them over.
+    Call it only while this server holds the folder (`app.network.listen.only_one`). Job workers and
+    the processes of a live capture are no leftovers: they go on, and the server takes them over.
     """
     killed = child_register(settings).end_leftovers()
     if killed:

@@ -16,19 +16,14 @@ from fastapi.staticfiles import StaticFiles
 from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 
 from app import errors, metrics_routes, server_routes
-from app.access import admin_routes, pairing_routes
-from app.access import routes as access_routes
-from app.access.connections import (
-    ConnectionLimits,
-    ConnectionTable,
-    open_file_limit,
-    raise_file_limit,
-)
-from app.access.door import Access, open_access
-from app.access.guard import Guard
-from app.access.people import May, anybody, needs
+from app.access import admin_routes
+from app.access.login import routes as login_routes
+from app.access.login.login_service import Access, open_access
+from app.access.middleware.origin import OriginMiddleware
+from app.access.pairing import routes as pairing_routes
+from app.access.people import Permission, allow_anonymous, needs
 from app.access.routes_check import check_declared
-from app.access.welcome import welcome
+from app.access.startup_notice import startup_notice
 from app.compute_pool import ComputePool
 from app.deps import Parts, Server
 from app.description import description
@@ -37,7 +32,18 @@ from app.jobs import routes as job_routes
 from app.jobs.store import JobStore
 from app.jobs.supervisor import Supervisor
 from app.leftovers import child_register, sweep_leftovers
-from app.listen import (
+from app.live import routes as live_routes
+from app.live.store import Captures
+from app.logs import Logs
+from app.maintenance import look_after, rotate_logs
+from app.metrics import Metrics, MetricsMiddleware
+from app.network.connections import (
+    ConnectionLimits,
+    ConnectionTable,
+    open_file_limit,
+    raise_file_limit,
+)
+from app.network.listen import (
     AnnouncingServer,
     certificate_of,
     hosts_of,
@@ -48,15 +54,11 @@ from app.listen import (
     urls,
     uvicorn_config,
 )
-from app.live import routes as live_routes
-from app.live.store import Captures
-from app.logs import Logs
-from app.maintenance import look_after, rotate_logs
-from app.metrics import Metrics, MetricsMiddleware
+from app.network.streams import StreamLimits, Streams
 from app.projects import routes as project_routes
 from app.projects.import_folders import ImportFolders
-from app.projects.picture import Pictures
 from app.projects.store import ProjectStore
+from app.projects.thumbnail import Thumbnails
 from app.projects.trash import Trash
 from app.review import routes as review_routes
 from app.review.checks import ApprovalChecks
@@ -64,7 +66,6 @@ from app.review.store import Reviews
 from app.settings import ServerSettings
 from app.slices import routes as slice_routes
 from app.slices.store import Slices
-from app.streams import StreamLimits, Streams
 from app.uploads import routes as upload_routes
 from app.uploads.store import UploadStore
 from app.viewer import page, proxy
@@ -76,7 +77,7 @@ log = logging.getLogger(__name__)
 
 WEB = Path(__file__).parents[1] / "web"
 EVENT_STREAMS = StreamLimits(most=128, per_person=16, per_address=48, reserved=8)
-MAY_LOOK = [Depends(needs(May.LOOK))]
+REQUIRES_LOOK = [Depends(needs(Permission.LOOK))]
 
 
 def create_app(settings: ServerSettings) -> FastAPI:
@@ -100,16 +101,18 @@ def create_app(settings: ServerSettings) -> FastAPI:
     app.state.logs = Logs(settings.state / "logs" / "server.log")
     app.add_middleware(RequestBodyLimitMiddleware, max_body_size=settings.max_body_bytes)
     pinned = settings.tls_certificate is not None
-    app.add_middleware(Guard, hosts=hosts_of(settings), login=settings.lan, pinned=pinned)
+    app.add_middleware(
+        OriginMiddleware, hosts=hosts_of(settings), login=settings.lan, pinned=pinned
+    )
     metrics = app.state.metrics = Metrics(app.state.connections, app.state.logs)
     app.add_middleware(MetricsMiddleware, metrics=metrics.http)
     errors.install(app)
-    for part in (access_routes, admin_routes, pairing_routes, project_routes, job_routes):
+    for part in (login_routes, admin_routes, pairing_routes, project_routes, job_routes):
         app.include_router(part.router)
     for part in (choices, server_routes, metrics_routes):
         app.include_router(part.router)
     for part in (page, proxy):
-        app.include_router(part.router, dependencies=MAY_LOOK)
+        app.include_router(part.router, dependencies=REQUIRES_LOOK)
     for part in (review_routes, slice_routes):
         app.include_router(part.router)
         app.include_router(part.page)
@@ -151,7 +154,9 @@ def serve(
 
         def ready() -> None:
             access: Access = app.state.parts.access
-            on_ready(best + path, welcome(access, best, others=others, certificate=certificate))
+            on_ready(
+                best + path, startup_notice(access, best, others=others, certificate=certificate)
+            )
 
         server = AnnouncingServer(uvicorn_config(app, certificate), ready)
         # uvicorn shuts down in order, then raises what it caught once more: by then all is done
@@ -187,7 +192,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
         settings=settings,
         access=access,
         projects=projects,
-        pictures=Pictures(pool, settings.state / "pictures"),
+        pictures=Thumbnails(pool, settings.state / "pictures"),
         trash=trash,
         uploads=uploads,
         jobs=jobs,
@@ -240,14 +245,14 @@ def _import_folders(settings: ServerSettings) -> ImportFolders:
 
 
 def _add_pages(app: FastAPI) -> None:
-    administer, anyone = [Depends(needs(May.ADMINISTER))], [Depends(anybody)]
+    administer, anyone = [Depends(needs(Permission.ADMINISTER))], [Depends(allow_anonymous)]
 
     @app.get("/healthz", tags=["server"], dependencies=anyone)
     async def healthz() -> dict[str, str]:
         """Whether the server answers."""
         return {"status": "ok", "version": __version__}
 
-    @app.get("/openapi.json", include_in_schema=False, dependencies=MAY_LOOK)
+    @app.get("/openapi.json", include_in_schema=False, dependencies=REQUIRES_LOOK)
     def openapi() -> JSONResponse:
         return JSONResponse(description(app))
 
@@ -256,16 +261,16 @@ def _add_pages(app: FastAPI) -> None:
         def read() -> FileResponse:
             return FileResponse(WEB / file)
 
-    page("/", "index.html", MAY_LOOK)
-    page("/account", "account.html", MAY_LOOK)
-    page("/phone", "phone.html", MAY_LOOK)
-    page("/pair", "pair.html", anyone)
-    page("/login", "login.html", anyone)
-    page("/people", "people.html", administer)
-    page("/api", "api.html", MAY_LOOK)
+    page("/", "projects/index.html", REQUIRES_LOOK)
+    page("/account", "account/account.html", REQUIRES_LOOK)
+    page("/phone", "account/phone.html", REQUIRES_LOOK)
+    page("/pair", "account/pair.html", anyone)
+    page("/login", "account/login.html", anyone)
+    page("/people", "account/people.html", administer)
+    page("/api", "shared/api.html", REQUIRES_LOOK)
 
-    @app.get("/projects/{project_id}/", include_in_schema=False, dependencies=MAY_LOOK)
+    @app.get("/projects/{project_id}/", include_in_schema=False, dependencies=REQUIRES_LOOK)
     def project(project_id: str, server: Server) -> FileResponse:
         if not server.jobs.of_project(project_id):
             server.projects.folder(project_id)  # a waiting job's project has no folder yet
-        return FileResponse(WEB / "project.html")
+        return FileResponse(WEB / "projects/project.html")

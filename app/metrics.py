@@ -21,11 +21,11 @@ from prometheus_client.metrics_core import CounterMetricFamily, GaugeMetricFamil
 from prometheus_client.registry import Collector
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.access.connections import ConnectionTable, Phase
 from app.deps import Parts
 from app.jobs.model import JobState
 from app.live.capture import Capture
 from app.logs import Logs
+from app.network.connections import ConnectionTable, Phase
 from recon4 import __version__
 
 METHODS = frozenset({"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"})

@@ -12,7 +12,7 @@ from prometheus_client import CONTENT_TYPE_LATEST
 from starlette.requests import Request
 from starlette.responses import Response
 
-from app.access.people import NOBODY, May, Person, anybody, person
+from app.access.people import NOBODY, Permission, Person, allow_anonymous, person
 from app.errors import Refused, Unknown
 from app.metrics import Metrics
 
@@ -50,7 +50,7 @@ def may_read_metrics(request: Request) -> None:
         Refused: If who is signed in is no admin.
     """
     who: Person = person(request)
-    if who.may(May.ADMINISTER) or _has_token(request):
+    if who.may(Permission.ADMINISTER) or _has_token(request):
         return
     if who == NOBODY:
         raise Unknown("sign in as an admin, or send the token of: recon4 users metrics-token")
@@ -60,7 +60,7 @@ def may_read_metrics(request: Request) -> None:
 @router.get(
     "/metrics",
     include_in_schema=False,
-    dependencies=[Depends(anybody), Depends(may_read_metrics)],
+    dependencies=[Depends(allow_anonymous), Depends(may_read_metrics)],
 )
 def read_metrics(request: Request) -> Response:
     """All figures in Prometheus' text format."""

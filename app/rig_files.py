@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from app.access.caller import Caller
 from app.compute_pool import ComputePool, FileAccess, Lane, Terms
+from app.network.request_caller import Caller
 from recon4.model.rig import load_rig
 
 LIMIT_S = 20.0

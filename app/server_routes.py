@@ -7,11 +7,11 @@ import shutil
 from fastapi import APIRouter, Depends
 from pydantic import BaseModel
 
-from app.access.people import May, needs
+from app.access.people import Permission, needs
 from app.deps import Server
 from recon4 import __version__
 
-router = APIRouter(prefix="/api", tags=["server"], dependencies=[Depends(needs(May.LOOK))])
+router = APIRouter(prefix="/api", tags=["server"], dependencies=[Depends(needs(Permission.LOOK))])
 
 LITTLE_ROOM = 0.1
 """Less than this share of the disk free is worth a word."""

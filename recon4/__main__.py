@@ -11,7 +11,7 @@ def main() -> None:
     """Run the command of this process and end it."""
     with StopSignals() as stop:  # before the imports, which take half a second
         try:
-            from recon4.cli import run
+            from recon4.cli.main import run
 
             code = run(sys.argv[1:], stop)
         except BaseException:

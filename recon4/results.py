@@ -18,8 +18,8 @@ from recon4.model.pose_graph import Verdict
 from recon4.pose_graph.files import load_graph
 from recon4.pose_graph.g2o import write_g2o
 from recon4.progress import Progress, track
-from recon4.recording.poses import write_tum
-from recon4.report.artifacts import way_m
+from recon4.recording.formats.poses import write_tum
+from recon4.report.artifacts import path_length_m
 from recon4.report.facts import InputFile, ReportFacts, StageTiming
 from recon4.report.html import write_report
 from recon4.review.approval import put_back
@@ -55,6 +55,10 @@ class About:
     """In force."""
 
 
+FORMAT = 2
+"""Of ``summary.json``; 2 renamed ``way_m`` to ``path_length_m`` and the settings of ``share``."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Summary:
     """What ``summary.json`` says; the fields are its keys."""
@@ -71,7 +75,7 @@ class Summary:
     """Code of the map's CRS; empty = a local frame."""
     duration_s: float
     """Time covered by the trajectory [s]."""
-    way_m: float
+    path_length_m: float
     """Length of the way, in steps of half a second [m]."""
     multiframes: int
     lost: int
@@ -98,7 +102,8 @@ class Summary:
 
     def to_json(self) -> dict[str, Any]:
         """Plain JSON values."""
-        return {name: value for name, value in asdict(self).items() if name != "folder"}
+        values = {name: value for name, value in asdict(self).items() if name != "folder"}
+        return {"format": FORMAT} | values
 
 
 def publish(
@@ -136,7 +141,7 @@ def _publish(
         rig=runs["frames"].figures["rig"],
         crs=runs["level"].figures["crs"],
         duration_s=round(int(trajectory.t_ns[-1] - trajectory.t_ns[0]) / 1e9, 3),
-        way_m=round(float(way_m(trajectory)[-1]), 3),
+        path_length_m=round(float(path_length_m(trajectory)[-1]), 3),
         multiframes=runs["frames"].figures["multiframes"],
         lost=runs["odometry"].figures["lost"],
         points=runs["map"].figures["points"],
@@ -275,15 +280,15 @@ def _facts(runs: Mapping[str, StageRun], about: About, *, created: str) -> Repor
 
 def _later_warnings(runs: Mapping[str, StageRun]) -> tuple[str, ...]:
     """What stages after the import have to say."""
-    told = tuple(runs["odometry"].figures.get("warnings", []))
+    record = tuple(runs["odometry"].figures.get("warnings", []))
     if "review" in runs:
-        told += tuple(runs["review"].figures["warnings"])
+        record += tuple(runs["review"].figures["warnings"])
     level = runs["level"].figures
     if runs["frames"].figures["gnss"] and not level["crs"]:
-        told += (f"the positions were not used, the map is local: {level['local']}",)
-    return told
+        record += (f"the positions were not used, the map is local: {level['local']}",)
+    return record
 
 
 def _stage(run: StageRun) -> dict[str, Any]:
-    told = asdict(run.done) | {"reused": run.reused, "figures": dict(run.figures)}
-    return {name: round(v, 3) if isinstance(v, float) else v for name, v in told.items()}
+    record = asdict(run.done) | {"reused": run.reused, "figures": dict(run.figures)}
+    return {name: round(v, 3) if isinstance(v, float) else v for name, v in record.items()}

@@ -52,13 +52,13 @@ def frames_figures(folder: Path) -> dict[str, Any]:
 
 
 def _odometry(*, out: Path, settings: Settings, progress: Progress, frames: Path) -> dict[str, Any]:
-    from recon4.georeference.aid import make_aid
+    from recon4.georeference.gnss_aiding import make_gnss_aiding
     from recon4.registration.stage import run_odometry
     from recon4.store.frames import FrameStore
 
     store = FrameStore.open(frames)
-    aid = make_aid(store.gnss, store.rig, settings.odometry)
-    return run_odometry(store, out, settings=settings, progress=progress, aid=aid)
+    aiding = make_gnss_aiding(store.gnss, store.rig, settings.odometry)
+    return run_odometry(store, out, settings=settings, progress=progress, aiding=aiding)
 
 
 def _graph(
@@ -82,9 +82,9 @@ def _verification(
         return {}
     found = verify(load_graph(graph), settings=settings.verification, progress=progress)
     save_graph(out, found.graph)
-    told = found.to_json()
-    write_json(out / "verification.json", told)
-    return {name: told[name] for name in ("edges", "chi2_before", "chi2_after")}
+    record = found.to_json()
+    write_json(out / "verification.json", record)
+    return {name: record[name] for name in ("edges", "chi2_before", "chi2_after")}
 
 
 def _review(

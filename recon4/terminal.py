@@ -166,15 +166,15 @@ def describe_event(kind: str, facts: dict[str, object]) -> str:
         return _describe_stage(facts)
     if kind not in _TOLD:
         return ""
-    told = [str(v) if name == "text" else f"{name} {v}" for name, v in facts.items()]
-    return f"{_TOLD[kind]}: " + ", ".join(told)
+    text = [str(v) if name == "text" else f"{name} {v}" for name, v in facts.items()]
+    return f"{_TOLD[kind]}: " + ", ".join(text)
 
 
 def describe_summary(summary: Mapping[str, Any], folder: Path) -> str:
     """What a finished run came to, and where its results are."""
     edges = ", ".join(f"{count} {verdict}" for verdict, count in summary["edges"].items())
     lines = [
-        f"{summary['duration_s']:.1f} s, {summary['way_m']:.1f} m, "
+        f"{summary['duration_s']:.1f} s, {summary['path_length_m']:.1f} m, "
         f"{summary['multiframes']} multiframes ({summary['lost']} lost)",
         f"{sum(summary['edges'].values())} pairs tried: {edges}",
         f"{summary['points']} points in the map",

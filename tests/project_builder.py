@@ -50,7 +50,7 @@ def build_project(root: Path, *, points: int = 60_000, with_map: bool = True) ->
         "<!doctype html><title>Report</title><h1>Report</h1>" + draft_block()
     )
     figures = {
-        "way_m": 58.2,
+        "path_length_m": 58.2,
         "points": points,
         "duration_s": 59.9,
         "multiframes": 600,

@@ -48,8 +48,8 @@ def rounds(t_s):
 def drifting(t_s):
     """The same as odometry has it: ``T_odom_body``."""
     T = rounds(t_s)
-    share = (np.asarray(t_s) / 12.0)[..., None]
-    return SE3(T.R, T.t + share * np.array([0.12, -0.08, 0.02]))
+    match_ratio = (np.asarray(t_s) / 12.0)[..., None]
+    return SE3(T.R, T.t + match_ratio * np.array([0.12, -0.08, 0.02]))
 
 
 def make(root: Path, *, graph_only: bool = False, progress: Progress | None = None) -> None:
@@ -101,8 +101,9 @@ def _odometry(
     np.savez(
         out / "steps.npz",
         frame_id=np.arange(NODES), t_mid_ns=mid, quat_xyzw=T.quat_xyzw(), t_m=T.t,
-        error_m=0.01 * one, share=one, rounds=one, converged=one > 0, degeneracy=0.1 * one,
-        gap_m=nothing, lost=nothing > 0, motion_cov=np.tile(1e-6 * np.eye(6), (NODES, 1, 1)),
+        error_m=0.01 * one, match_ratio=one, rounds=one, converged=one > 0, degeneracy=0.1 * one,
+        prediction_offset_m=nothing, lost=nothing > 0,
+        motion_cov=np.tile(1e-6 * np.eye(6), (NODES, 1, 1)),
     )  # fmt: skip
     return {"multiframes": NODES, "lost": 0, "imu": False, "warnings": [], "gnss": False}
 

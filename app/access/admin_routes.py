@@ -8,20 +8,24 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Query, Request
 from pydantic import Field
 
-from app.access.accounts import Account
 from app.access.audit import Chain, Entry, audit
-from app.access.people import May, Role, fresh_login, needs
-from app.access.routes import SessionView, Text, Wire, views
+from app.access.login.accounts import Account
+from app.access.login.routes import SessionView, Text, Wire, views
+from app.access.people import Permission, Role, needs, recent_login
 from app.deps import Server
-from app.errors import Problem
+from app.errors import ProblemDetail
 
 router = APIRouter(
     prefix="/api",
     tags=["administration"],
-    dependencies=[Depends(needs(May.ADMINISTER))],
-    responses={403: {"model": Problem}, 404: {"model": Problem}, 409: {"model": Problem}},
+    dependencies=[Depends(needs(Permission.ADMINISTER))],
+    responses={
+        403: {"model": ProblemDetail},
+        404: {"model": ProblemDetail},
+        409: {"model": ProblemDetail},
+    },
 )
-FRESH = Depends(fresh_login)
+RECENT_LOGIN = Depends(recent_login)
 
 
 class NewPerson(Wire):
@@ -56,7 +60,7 @@ def list_people(server: Server) -> list[Account]:
     return server.access.accounts.all()
 
 
-@router.post("/people", status_code=201, dependencies=[FRESH])
+@router.post("/people", status_code=201, dependencies=[RECENT_LOGIN])
 def add_person(new: NewPerson, request: Request, server: Server) -> Account:
     """Add a person."""
     account = server.access.accounts.add(new.name, new.role, new.password)
@@ -64,7 +68,7 @@ def add_person(new: NewPerson, request: Request, server: Server) -> Account:
     return account
 
 
-@router.patch("/people/{name}", dependencies=[FRESH])
+@router.patch("/people/{name}", dependencies=[RECENT_LOGIN])
 def change_person(name: str, changes: Changes, request: Request, server: Server) -> Account:
     """Change role or password, lock out or let in again; the person's sessions end."""
     accounts = server.access.accounts
@@ -78,7 +82,7 @@ def change_person(name: str, changes: Changes, request: Request, server: Server)
     if changes.disabled is not None:
         account = accounts.set_disabled(name, changes.disabled)
         audit(request, "disable" if changes.disabled else "enable", account.name)
-    server.access.sessions.forget_believed()
+    server.access.sessions.forget_cached()
     return account
 
 

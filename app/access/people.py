@@ -15,7 +15,7 @@ from app.access.audit import audit
 from app.errors import Refused, SignInAgain
 
 
-class May(StrEnum):
+class Permission(StrEnum):
     """What a route needs; deny by default: every route names one."""
 
     LOOK = "look"
@@ -41,15 +41,15 @@ class Role(StrEnum):
     ADMIN = "admin"
 
 
-MAY: dict[Role, frozenset[May]] = {
+MAY: dict[Role, frozenset[Permission]] = {
     Role.NOBODY: frozenset(),
-    Role.VIEWER: frozenset({May.LOOK}),
-    Role.OPERATOR: frozenset({May.LOOK, May.PROCESS, May.CAPTURE}),
-    Role.REVIEWER: frozenset({May.LOOK, May.PROCESS, May.REVIEW}),
-    Role.ADMIN: frozenset(May),
+    Role.VIEWER: frozenset({Permission.LOOK}),
+    Role.OPERATOR: frozenset({Permission.LOOK, Permission.PROCESS, Permission.CAPTURE}),
+    Role.REVIEWER: frozenset({Permission.LOOK, Permission.PROCESS, Permission.REVIEW}),
+    Role.ADMIN: frozenset(Permission),
 }
 
-FRESH_S = 900.0
+RECENT_LOGIN_S = 900.0
 """What is signed with one's name needs a password given within this time [s]."""
 
 
@@ -60,7 +60,7 @@ class Person:
     name: str
     role: Role
 
-    def may(self, what: May) -> bool:
+    def may(self, what: Permission) -> bool:
         """Whether this person is allowed to."""
         return what in MAY[self.role]
 
@@ -86,7 +86,7 @@ def signed_in_s(connection: HTTPConnection) -> float:
 Who = Annotated[Person, Depends(person)]
 
 
-def needs(what: May) -> Callable[[HTTPConnection], Awaitable[Person]]:
+def needs(what: Permission) -> Callable[[HTTPConnection], Awaitable[Person]]:
     """A dependency that lets only those pass who may: ``dependencies=[Depends(needs(May.LOOK))]``.
 
     Raises (when called by the framework):
@@ -105,11 +105,11 @@ def needs(what: May) -> Callable[[HTTPConnection], Awaitable[Person]]:
     return check
 
 
-def anybody() -> None:
+def allow_anonymous() -> None:
     """The dependency of the few routes that answer before login: ``Depends(anybody)``."""
 
 
-def signed_in_by_hand(connection: HTTPConnection) -> Person:
+def interactive_login(connection: HTTPConnection) -> Person:
     """A dependency for what a phone that was let in may not, as ending its owner's sessions.
 
     Raises:
@@ -121,12 +121,12 @@ def signed_in_by_hand(connection: HTTPConnection) -> Person:
     return person(connection)
 
 
-def fresh_login(connection: HTTPConnection) -> Person:
+def recent_login(connection: HTTPConnection) -> Person:
     """A dependency for what is signed with one's name: the password was given a moment ago.
 
     Raises:
-        SignInAgain: If it was given more than `FRESH_S` ago; ``POST /api/login/again`` helps.
+        SignInAgain: If it was given more than `RECENT_LOGIN_S` ago: ``POST /api/login/again``.
     """
-    if signed_in_s(connection) > FRESH_S:
+    if signed_in_s(connection) > RECENT_LOGIN_S:
         raise SignInAgain("give your password again: this is signed with your name")
     return person(connection)

@@ -10,7 +10,7 @@ from fastapi.dependencies.models import Dependant
 from fastapi.routing import iter_route_contexts
 from starlette.routing import Mount
 
-from app.access.people import May, anybody
+from app.access.people import Permission, allow_anonymous
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,9 +20,9 @@ class Declared:
     path: str
     methods: frozenset[str]
     """Empty for a WebSocket."""
-    needs: frozenset[May]
+    needs: frozenset[Permission]
     """All of which a person must have."""
-    anybody: bool
+    allow_anonymous: bool
     """Whether it answers before login."""
 
 
@@ -36,7 +36,7 @@ def declared(app: FastAPI) -> Iterator[Declared]:
             path=str(route.path),
             methods=frozenset(getattr(route, "methods", None) or ()),
             needs=frozenset(call.needs for call in calls if hasattr(call, "needs")),
-            anybody=anybody in calls,
+            allow_anonymous=allow_anonymous in calls,
         )
 
 
@@ -46,7 +46,7 @@ def check_declared(app: FastAPI) -> None:
     Raises:
         AssertionError: Naming those that do not.
     """
-    silent = [one.path for one in declared(app) if not one.needs and not one.anybody]
+    silent = [one.path for one in declared(app) if not one.needs and not one.allow_anonymous]
     assert not silent, f"say who may use them, dependencies=[Depends(needs(May.…))]: {silent}"
 
 

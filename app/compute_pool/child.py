@@ -22,7 +22,7 @@ from app.compute_pool.messages import (
     REFUSED,
     RESULT,
     Call,
-    Setup,
+    ChildSetup,
     decode_request,
     encode_error,
     encode_result,
@@ -66,7 +66,7 @@ def _read(calls: BinaryIO) -> bytes | None:
 
 def _confine(message: bytes, scratch: Path, kernels: tuple[Path, ...]) -> None:
     """Take away from this process whatever its work does not need; the one place for it."""
-    setup: Setup = decode_request(message)
+    setup: ChildSetup = decode_request(message)
     importlib.import_module(setup.module)
     os.chdir(scratch)
     confine_child(setup.access, scratch, kernels)

@@ -39,7 +39,7 @@ class Call:
 
 
 @dataclass(frozen=True, slots=True)
-class Setup:
+class ChildSetup:
     """What a child receives before its first call."""
 
     access: FileAccess
@@ -47,7 +47,7 @@ class Setup:
     """Imported before the child is confined: it may lie where it cannot read afterwards."""
 
 
-class Refusal(BaseModel):
+class CallError(BaseModel):
     """An error of the library, or a failure, in words."""
 
     name: str
@@ -55,14 +55,14 @@ class Refusal(BaseModel):
     problems: dict[str, str] = {}
 
 
-def encode_request(request: Setup | Call) -> bytes:
+def encode_request(request: ChildSetup | Call) -> bytes:
     """What the server sends to a child (server's side)."""
     data = pickle.dumps(request)
     return LENGTH.pack(len(data)) + data
 
 
 def decode_request(data: bytes) -> Any:
-    """The `Setup` or `Call` that the server sent (child's side)."""
+    """The `ChildSetup` or `Call` that the server sent (child's side)."""
     return pickle.loads(data)
 
 
@@ -105,13 +105,13 @@ def encode_error(error: Exception) -> bytes:
     """An error of the library (child's side)."""
     problems = error.problems if isinstance(error, WrongSettings) else {}
     name, words = f"{type(error).__module__}.{type(error).__qualname__}", str(error)[:MOST_WORDS]
-    return Refusal(name=name, words=words, problems=problems).model_dump_json().encode()
+    return CallError(name=name, words=words, problems=problems).model_dump_json().encode()
 
 
 def decode_error(data: bytes) -> Exception:
     """The error that a child sent, as the class of the library it names if there is one."""
     try:
-        refusal = Refusal.model_validate_json(data)
+        refusal = CallError.model_validate_json(data)
     except ValueError:
         return ComputeFailed("the helper process answered nonsense")
     if refusal.problems:

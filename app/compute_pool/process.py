@@ -19,7 +19,7 @@ from app.compute_pool.messages import (
     MOST_RESULT_BYTES,
     RESULT,
     Call,
-    Setup,
+    ChildSetup,
     decode_error,
     decode_result,
     encode_request,
@@ -87,9 +87,9 @@ class ChildProcess:
         """
         assert self._process.stdin is not None
         assert self._process.stdout is not None
-        messages: list[Setup | Call] = [call]
+        messages: list[ChildSetup | Call] = [call]
         if not self._set_up:
-            messages.insert(0, Setup(access, call.function.__module__))
+            messages.insert(0, ChildSetup(access, call.function.__module__))
             self._set_up = True
         try:
             for message in messages:

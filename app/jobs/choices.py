@@ -9,13 +9,13 @@ from typing import Any
 from fastapi import APIRouter, Depends
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.access.people import May, needs
+from app.access.people import Permission, needs
 from recon4.errors import WrongSettings
 from recon4.model.rig import rig_presets
 from recon4.settings import PRESETS, override, preset, to_json
 from recon4.settings_help import GroupHelp, SettingHelp, describe_settings
 
-router = APIRouter(prefix="/api", tags=["settings"], dependencies=[Depends(needs(May.LOOK))])
+router = APIRouter(prefix="/api", tags=["settings"], dependencies=[Depends(needs(Permission.LOOK))])
 
 UNITS = {
     "m": "m",
@@ -74,7 +74,7 @@ class Assignments(BaseModel):
     """``group.field=value`` texts over the preset."""
 
 
-class Verdict(BaseModel):
+class SettingsCheck(BaseModel):
     """What is wrong with them."""
 
     problems: dict[str, str]
@@ -95,14 +95,14 @@ def read_settings(of: str = "indoor") -> list[GroupView]:
 
 
 @router.post("/settings/check", summary="Check settings")
-def check_settings(given: Assignments) -> Verdict:
+def check_settings(given: Assignments) -> SettingsCheck:
     """Whether a job would take these settings; every mistake is named."""
     chosen = preset(given.preset)
     try:
         override(chosen, given.settings)
     except WrongSettings as error:
-        return Verdict(problems=error.problems)
-    return Verdict(problems={})
+        return SettingsCheck(problems=error.problems)
+    return SettingsCheck(problems={})
 
 
 @cache

@@ -16,15 +16,15 @@ from pydantic import BaseModel, ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
 from app.access.audit import audit
-from app.access.caller import CalledBy
-from app.access.people import May, needs
-from app.access.rate_limit import at_most
+from app.access.people import Permission, needs
 from app.deps import Parts, Server
-from app.errors import NoRoom, NotFound, Problem, TooMany
+from app.errors import NoRoom, NotFound, ProblemDetail, TooMany
 from app.jobs.model import Inputs, Job, JobState
 from app.jobs.space import refuse_if_full
 from app.jobs.status import Status
 from app.jobs.supervisor import now
+from app.network.rate_limit import at_most
+from app.network.request_caller import CalledBy
 from app.rig_files import check_rig_file
 from recon4.errors import NoSpace
 from recon4.model.rig import rig_presets
@@ -33,13 +33,13 @@ from recon4.settings import override, preset
 router = APIRouter(
     prefix="/api",
     tags=["jobs"],
-    dependencies=[Depends(needs(May.LOOK))],
-    responses={404: {"model": Problem}, 409: {"model": Problem}},
+    dependencies=[Depends(needs(Permission.LOOK))],
+    responses={404: {"model": ProblemDetail}, 409: {"model": ProblemDetail}},
 )
-PROCESS = [Depends(needs(May.PROCESS))]
+PROCESS = [Depends(needs(Permission.PROCESS))]
 START = [*PROCESS, Depends(at_most(10, within_s=3600.0, what="jobs"))]
 REFUSALS: dict[int | str, dict[str, Any]] = {
-    status: {"model": Problem} for status in (403, 429, 507)
+    status: {"model": ProblemDetail} for status in (403, 429, 507)
 }
 
 LONGEST_QUIET_S = 15.0
@@ -219,7 +219,7 @@ def _event_place(request: Request, server: Server) -> Iterator[None]:
 @router.get(
     "/events",
     response_class=EventSourceResponse,
-    responses={429: {"model": Problem}},
+    responses={429: {"model": ProblemDetail}},
     dependencies=[Depends(_event_place)],
     summary="Changes as they happen",
 )

@@ -7,7 +7,7 @@ disk that takes a large artifact may be silent for longer.
 
 from __future__ import annotations
 
-from app.jobs.overall import AFTER
+from app.jobs.run_progress import AFTER
 from app.jobs.status import Status
 from recon4.store.stage import SAVING
 

@@ -19,13 +19,13 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from app.errors import Conflict
-from app.jobs.endings import ending
 from app.jobs.events import read_events
+from app.jobs.exit_reasons import ending
 from app.jobs.folder import JobFolder, Limits, Outcome
 from app.jobs.limits import allowed_memory
 from app.jobs.model import Job, JobState
-from app.jobs.overall import Overall
-from app.jobs.overall import after as further
+from app.jobs.run_progress import RunProgress
+from app.jobs.run_progress import after as further
 from app.jobs.silence import allowed_silence_s
 from app.jobs.status import Status, after
 from app.jobs.store import JobStore
@@ -41,7 +41,7 @@ class Tail:
 
     def __init__(self, folder: JobFolder) -> None:
         self.status = Status()
-        self.overall = Overall()
+        self.overall = RunProgress()
         self.unreadable = 0
         """Events that make no sense."""
         self._path = folder.path / "events.jsonl"
@@ -63,7 +63,7 @@ class Tail:
     def forget(self) -> None:
         """Start anew: what was said so far was another worker's."""
         self.read()
-        self.status, self.overall = Status(), Overall()
+        self.status, self.overall = Status(), RunProgress()
 
 
 class Supervisor:
@@ -98,10 +98,10 @@ class Supervisor:
             return Status()
         return self._tail(job).status
 
-    def overall(self, job: Job) -> Overall:
+    def overall(self, job: Job) -> RunProgress:
         """How far its whole run is."""
         if job.state is JobState.QUEUED:
-            return Overall()
+            return RunProgress()
         overall = self._tail(job).overall
         return replace(overall, over=True) if job.state is JobState.SUCCEEDED else overall
 

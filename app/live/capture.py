@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from app.errors import Conflict
-from app.live.picture import Picture
+from app.live.stream_state import StreamState
 from app.settings import worker_environment
 from recon4.errors import ConfigError
-from recon4.live.link import STARTS_WITHIN_S, Link, linked, started
+from recon4.live.ipc.line_client import STARTS_WITHIN_S, LineClient, linked, started
 from recon4.live.project_files import discard
-from recon4.live.session import Session
+from recon4.live.session import CaptureSession
 
 log = logging.getLogger(__name__)
 
@@ -36,13 +36,13 @@ class State(StrEnum):
 class Capture:
     """Starts, follows and steers one capture. Its processes outlive the server."""
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: CaptureSession) -> None:
         self.session = session
-        self.picture = Picture()
+        self.picture = StreamState()
         self.state = State.RECORDING
         self.problem = ""
         """Why the map does not grow, in words; empty = it does."""
-        self._recorder: Link | None = None
+        self._recorder: LineClient | None = None
         self._tasks: list[asyncio.Task[None]] = []
         self._mapper_starts = 0
         self._ended_because = ""
@@ -80,7 +80,7 @@ class Capture:
         ]
         await asyncio.wait_for(hearing.wait(), STARTS_WITHIN_S)
 
-    async def steer(self, told: dict[str, Any]) -> None:
+    async def steer(self, message: dict[str, Any]) -> None:
         """Tell the recorder: stop, pause, resume, mark.
 
         Raises:
@@ -88,9 +88,9 @@ class Capture:
         """
         if self._recorder is None:
             raise Conflict("the recording has ended")
-        if told["do"] in ("pause", "resume"):
-            self.state = State.PAUSED if told["do"] == "pause" else State.RECORDING
-        await self._recorder.say(told)
+        if message["do"] in ("pause", "resume"):
+            self.state = State.PAUSED if message["do"] == "pause" else State.RECORDING
+        await self._recorder.send(message)
 
     async def leave(self) -> None:
         """Stop following; the processes go on."""
@@ -103,12 +103,12 @@ class Capture:
             async with linked(self.session.socket("recorder")) as link:
                 self._recorder = link
                 hearing.set()
-                async for told in link.lines():
-                    if told["kind"] == "status":
-                        self.state = State.PAUSED if told["paused"] else State.RECORDING
-                    elif told["kind"] == "stopped" and told["why"] != "stopped":
-                        self._ended_because = f"The recording ended by itself: {told['why']}"
-                    self.picture.take(told)
+                async for message in link.lines():
+                    if message["kind"] == "status":
+                        self.state = State.PAUSED if message["paused"] else State.RECORDING
+                    elif message["kind"] == "stopped" and message["why"] != "stopped":
+                        self._ended_because = f"The recording ended by itself: {message['why']}"
+                    self.picture.take(message)
         except OSError as error:
             log.warning("recorder of %s: %s", self.project, error)
         finally:
@@ -125,7 +125,7 @@ class Capture:
         while done is None and self._mapper_starts < _MAPPER_STARTS:
             try:
                 async with linked(self.session.socket("mapper")) as link:
-                    done = await self._hear_mapper(link)
+                    done = await self._receive_mapper(link)
             except OSError:  # none listens: the last one died, or there was none yet
                 self._mapper_starts += 1
                 try:
@@ -140,18 +140,20 @@ class Capture:
             await self.picture.news(self.picture.version, timeout_s=1.0)
         self.state = State.READY
 
-    async def _hear_mapper(self, link: Link) -> dict[str, Any] | None:
+    async def _receive_mapper(self, link: LineClient) -> dict[str, Any] | None:
         """What the mapper says at the end; None if it went before, or let us go as too slow."""
         done = None
-        async for told in link.lines():
-            if told["kind"] == "done":
-                done = told
-            self.picture.take(told)
+        async for message in link.lines():
+            if message["kind"] == "done":
+                done = message
+            self.picture.take(message)
         return done
 
 
 def unfinished(root: Path) -> list[Path]:
     """Projects of an earlier server whose capture was not brought to an end."""
-    sessions = [Session(project=path.parents[1]) for path in root.glob("*/live/session.json")]
+    sessions = [
+        CaptureSession(project=path.parents[1]) for path in root.glob("*/live/session.json")
+    ]
     begun = [session for session in sessions if session.capture.exists()]
     return [session.project for session in begun if not session.outcome.exists()]

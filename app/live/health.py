@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from app.live.words import rates
-from recon4.live.notes import RECENT_S
+from recon4.live.findings import rates
+from recon4.live.mapper.notes import RECENT_S
 from recon4.model.rig import Rig
 
-Told = dict[str, Any]
+Fields = dict[str, Any]
 
 IN_STEP, SHIFTED, JUMPED = "in step", "own, shifted", "jumped"
 
@@ -28,7 +28,7 @@ class LidarHealth:
     or it, or the recorder's, `JUMPED` since the start; empty = not known."""
 
 
-def lidars(rig: Rig, newest: dict[str, Told]) -> list[LidarHealth]:
+def lidars(rig: Rig, newest: dict[str, Fields]) -> list[LidarHealth]:
     """Health of each LiDAR of a rig.
 
     Args:
@@ -41,7 +41,7 @@ def lidars(rig: Rig, newest: dict[str, Told]) -> list[LidarHealth]:
     return [_health(sensor.name, per_s[sensor.name], notes) for sensor in rig.sensors]
 
 
-def _health(name: str, per_s: float, notes: Told | None) -> LidarHealth:
+def _health(name: str, per_s: float, notes: Fields | None) -> LidarHealth:
     if notes is None or per_s <= 0.0:
         return LidarHealth(name, per_s, None, "")
     missing = notes["recent"].get(f"packets_missing_{name}", 0)
@@ -50,7 +50,7 @@ def _health(name: str, per_s: float, notes: Told | None) -> LidarHealth:
 
 
 def _clock(warnings: list[str]) -> str:
-    """From what `recon4.recording.sensor_clock` warns of."""
+    """From what `recon4.recording.velodyne.sensor_clock` warns of."""
     if any("jumped by" in text for text in warnings):
         return JUMPED
     return SHIFTED if any("no GPS drives it" in text for text in warnings) else IN_STEP

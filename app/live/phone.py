@@ -12,11 +12,11 @@ from fastapi import WebSocket
 
 from app.live.capture import Capture, State
 from app.live.health import lidars
-from app.live.picture import BYTES_A_POINT, Cursor
 from app.live.power import battery_words
 from app.live.store import Captures
-from app.live.words import rates, words
+from app.live.stream_state import BYTES_A_POINT, Cursor
 from recon4 import __version__
+from recon4.live.findings import rates, words
 
 SHOWN_EVERY_S = 0.05
 """A phone is told at most this often …"""
@@ -88,9 +88,9 @@ class Phone:
             self._allowance += BYTES_A_SECOND * (now_s - before_s)
             self._allowance, before_s = min(self._allowance, BYTES_AT_FIRST), now_s
             most = max(0, int(self._allowance) // BYTES_A_POINT)
-            told, points = picture.lacking(cursor, most=most)
+            message, points = picture.lacking(cursor, most=most)
             self._allowance -= len(points)
-            await self._send(told | self._changed(state_of(self._captures, capture)))
+            await self._send(message | self._changed(state_of(self._captures, capture)))
             if points:
                 await asyncio.wait_for(self._socket.send_bytes(points), STALLED_S)
             await self._rest(SHOWN_EVERY_S)
@@ -108,8 +108,8 @@ class Phone:
         assert self._leaving is not None
         await asyncio.wait([self._leaving], timeout=seconds)
 
-    async def _send(self, told: dict[str, Any]) -> None:
-        text = json.dumps(told, separators=(",", ":"))
+    async def _send(self, message: dict[str, Any]) -> None:
+        text = json.dumps(message, separators=(",", ":"))
         self._allowance -= len(text)
         await asyncio.wait_for(self._socket.send_text(text), STALLED_S)
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.live.words import Word
+from recon4.live.findings import Finding
 
 SUPPLIES = Path("/sys/class/power_supply")
 READ_EVERY_S = 15.0
@@ -19,7 +19,7 @@ VERY_LITTLE_S, VERY_LITTLE_SHARE = 300.0, 0.06
 class Battery:
     """What is left in all batteries of a computer together."""
 
-    share: float
+    match_ratio: float
     """Of what they hold when full, 0 to 1."""
     left_s: float | None
     """How long it lasts as now [s]; None = not told, or on mains."""
@@ -57,23 +57,23 @@ def read_battery(supplies: Path = SUPPLIES) -> Battery | None:
     return Battery(min(max(now / full, 0.0), 1.0), left_s, mains)
 
 
-def battery_words(battery: Battery | None) -> list[Word]:
+def battery_words(battery: Battery | None) -> list[Finding]:
     """What a person must know of it while walking."""
     if battery is None or battery.mains:
         return []
     left_s = float("inf") if battery.left_s is None else battery.left_s
-    if left_s >= LITTLE_S and battery.share >= LITTLE_SHARE:
+    if left_s >= LITTLE_S and battery.match_ratio >= LITTLE_SHARE:
         return []
-    urgent = left_s < VERY_LITTLE_S or battery.share < VERY_LITTLE_SHARE
+    urgent = left_s < VERY_LITTLE_S or battery.match_ratio < VERY_LITTLE_SHARE
     left = f", {left_s / 60:.0f} min" if battery.left_s is not None else ""
-    text = f"The computer's battery has {100 * battery.share:.0f} %{left} left"
-    return [Word("bad" if urgent else "care", text)]
+    text = f"The computer's battery has {100 * battery.match_ratio:.0f} %{left} left"
+    return [Finding("bad" if urgent else "care", text)]
 
 
 def _batteries(supplies: Path) -> Iterator[dict[str, float]]:
     """Content, size, and what flows out of each, in units that go together."""
     for folder in sorted(supplies.glob("*")):
-        about = _told(folder / "uevent")
+        about = _properties(folder / "uevent")
         if about.get("TYPE") != "Battery" or about.get("SCOPE") == "Device":
             continue  # mains, or the battery of a mouse
         for what, flow in (("ENERGY", "POWER"), ("CHARGE", "CURRENT")):
@@ -90,7 +90,7 @@ def _batteries(supplies: Path) -> Iterator[dict[str, float]]:
             yield {"now": now, "full": full, "flow": out if emptied else 0.0, "emptied": emptied}
 
 
-def _told(path: Path) -> dict[str, str]:
+def _properties(path: Path) -> dict[str, str]:
     try:
         lines = path.read_text("ascii", "replace").splitlines()
     except OSError:

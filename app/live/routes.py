@@ -12,28 +12,28 @@ from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 
 from app.access.audit import audit
-from app.access.caller import CalledBy
-from app.access.people import May, Who, needs
+from app.access.people import Permission, Who, needs
 from app.compute_pool import FileAccess, Lane, Terms
 from app.deps import Server, parts
-from app.errors import Conflict, Problem, TooMany
+from app.errors import Conflict, ProblemDetail, TooMany
 from app.jobs.routes import JobView, NewJob, add_job
 from app.live.phone import Phone, state_of
 from app.live.rigs import RigChoice, rig_files, rigs_in, shipped_rigs
 from app.live.store import Captures
 from app.names import Name, Note
+from app.network.request_caller import CalledBy
+from app.network.streams import TOO_MANY
 from app.rig_files import check_rig_file
-from app.streams import TOO_MANY
 from recon4.settings import PRESETS
 
-LOOK = [Depends(needs(May.LOOK))]
-CAPTURE = [Depends(needs(May.CAPTURE))]
+LOOK = [Depends(needs(Permission.LOOK))]
+CAPTURE = [Depends(needs(Permission.CAPTURE))]
 WEB = Path(__file__).parents[2] / "web"
 
 router = APIRouter(
     prefix="/api/live",
     tags=["live capture"],
-    responses={404: {"model": Problem}, 409: {"model": Problem}},
+    responses={404: {"model": ProblemDetail}, 409: {"model": ProblemDetail}},
 )
 page = APIRouter()
 
@@ -87,7 +87,7 @@ class CaptureView(BaseModel):
 
 @page.get("/live", include_in_schema=False, dependencies=LOOK)
 def live_page() -> FileResponse:
-    return FileResponse(WEB / "live.html")
+    return FileResponse(WEB / "live/live.html")
 
 
 @router.get("", dependencies=LOOK, summary="State of the capture")
@@ -95,7 +95,7 @@ def read_capture(server: Server, who: Who) -> CaptureView | None:
     """The capture that runs, or the last one; null if there was none since the server started."""
     if server.captures.newest is None:
         return None
-    return _view(server.captures, who.may(May.CAPTURE))
+    return _view(server.captures, who.may(Permission.CAPTURE))
 
 
 @router.get("/choices", dependencies=LOOK, summary="Rigs and presets")
@@ -154,7 +154,7 @@ async def resume_capture(server: Server) -> CaptureView:
 @router.post(
     "/process",
     status_code=201,
-    dependencies=[Depends(needs(May.PROCESS))],
+    dependencies=[Depends(needs(Permission.PROCESS))],
     summary="Make the map of a capture that has ended",
 )
 def process_capture(request: Request, server: Server) -> JobView:
@@ -174,8 +174,8 @@ def process_capture(request: Request, server: Server) -> JobView:
 @router.post("/marks", status_code=201, dependencies=CAPTURE, summary="Mark a point of interest")
 async def add_mark(mark: NewMark, server: Server, who: Who) -> dict[str, str]:
     """Note something here and now; on the disk before it appears in the stream."""
-    told = {"do": "mark", "who": who.name, **mark.model_dump()}
-    await server.captures.capture().steer(told)
+    message = {"do": "mark", "who": who.name, **mark.model_dump()}
+    await server.captures.capture().steer(message)
     return {"status": "noted"}
 
 

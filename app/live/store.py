@@ -10,12 +10,12 @@ from typing import Any
 from app.errors import Conflict, NotFound
 from app.live.capture import Capture, unfinished
 from app.live.power import Power, read_battery
-from app.streams import StreamLimits, Streams
+from app.network.streams import StreamLimits, Streams
 from recon4.bounded import read_text_limited
 from recon4.errors import ConfigError, CorruptFile, StoreError
-from recon4.live.link import listens
+from recon4.live.ipc.line_client import listens
 from recon4.live.project_files import begin
-from recon4.live.session import Session, load_session
+from recon4.live.session import CaptureSession, load_session
 from recon4.model.rig import Rig, load_rig
 from recon4.store.json_files import parse_object
 
@@ -65,7 +65,7 @@ class Captures:
         Args:
             project: Name of its folder, checked.
             rig: Name of a shipped rig or path of a rig file.
-            how: Fields of `Session`.
+            how: Fields of `CaptureSession`.
 
         Raises:
             Conflict: If one runs, or the recorder cannot start.
@@ -84,7 +84,7 @@ class Captures:
 
     async def adopt(self) -> None:
         """Follow the capture an earlier server started; if its recorder died, complete its map."""
-        found: list[tuple[bool, float, Session, Rig]] = []
+        found: list[tuple[bool, float, CaptureSession, Rig]] = []
         for project in unfinished(self._root):
             try:
                 session = load_session(project)
@@ -120,7 +120,7 @@ class Captures:
             await self._capture.leave()
 
 
-def marks_of(session: Session) -> list[dict[str, Any]]:
+def marks_of(session: CaptureSession) -> list[dict[str, Any]]:
     """What was noted so far; a line that was being written when the power went is not there."""
     try:
         if not session.marks.exists():

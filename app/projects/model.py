@@ -43,7 +43,7 @@ class ResultFile:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FinishedStage:
+class StageView:
     """A row of the project's ledger."""
 
     stage: str
@@ -54,7 +54,7 @@ class FinishedStage:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Project:
+class ProjectView:
     """What is known of a project without opening its arrays."""
 
     id: str
@@ -69,7 +69,7 @@ class Project:
     preset: str
     rig: str
     files: tuple[ResultFile, ...]
-    stages: tuple[FinishedStage, ...]
+    stages: tuple[StageView, ...]
     viewable: bool
     """Whether there is something to show in 3-D."""
     pictured: bool
@@ -93,7 +93,7 @@ class ProjectCard:
     rig: str
     pictured: bool
     """Whether there is a map to draw a picture of."""
-    way_m: float | None
+    path_length_m: float | None
     """Length of the way [m]; None before the first run ended."""
     points: int | None
     """Points of the map; None before the first run ended."""

@@ -8,25 +8,25 @@ from pydantic import BaseModel, ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
 from app.access.audit import audit
-from app.access.caller import CalledBy
-from app.access.people import May, needs
+from app.access.people import Permission, needs
 from app.compute_pool import FileAccess, Lane, Terms
 from app.deps import Parts, Server
-from app.errors import Conflict, Problem
+from app.errors import Conflict, ProblemDetail
 from app.jobs.model import JobState
 from app.names import Name
-from app.projects.look import Found, files_beside, look_at
-from app.projects.model import FolderEntry, Project, ProjectCard
+from app.network.request_caller import CalledBy
+from app.projects.inspect_recording import RecordingSummary, files_beside, inspect_recording
+from app.projects.model import FolderEntry, ProjectCard, ProjectView
 from app.projects.trash import Deleted
 
 router = APIRouter(
     prefix="/api",
     tags=["projects"],
-    dependencies=[Depends(needs(May.LOOK))],
-    responses={404: {"model": Problem}},
+    dependencies=[Depends(needs(Permission.LOOK))],
+    responses={404: {"model": ProblemDetail}},
 )
 
-PROCESS = [Depends(needs(May.PROCESS))]
+PROCESS = [Depends(needs(Permission.PROCESS))]
 REPORT_POLICY = "sandbox; default-src 'none'; style-src 'unsafe-inline'; img-src data:"
 """A report is a file of the project: it may show itself and nothing more."""
 
@@ -56,13 +56,13 @@ def list_projects(server: Server) -> list[ProjectCard]:
 
 
 @router.get("/projects/{project_id}", summary="One project")
-def read_project(project_id: str, server: Server) -> Project:
+def read_project(project_id: str, server: Server) -> ProjectView:
     """One project with its results and finished stages."""
     return server.projects.get(project_id)
 
 
 @router.patch("/projects/{project_id}", dependencies=PROCESS, summary="Rename")
-def rename_project(project_id: str, new: Rename, server: Server, request: Request) -> Project:
+def rename_project(project_id: str, new: Rename, server: Server, request: Request) -> ProjectView:
     """Give a project another name; its folder and addresses stay. Not while a job runs."""
     server.projects.rename(project_id, new.name.strip())
     audit(request, "rename project", f"{project_id}: {new.name}")
@@ -126,8 +126,8 @@ async def picture(project_id: str, server: Server, caller: CalledBy) -> FileResp
 
 @router.get(
     "/recordings",
-    dependencies=[Depends(needs(May.PROCESS))],
-    responses={403: {"model": Problem}},
+    dependencies=[Depends(needs(Permission.PROCESS))],
+    responses={403: {"model": ProblemDetail}},
     summary="Folders of this computer",
 )
 def browse(server: Server, folder: str = "") -> list[FolderEntry]:
@@ -138,16 +138,20 @@ def browse(server: Server, folder: str = "") -> list[FolderEntry]:
 @router.get(
     "/look",
     dependencies=PROCESS,
-    responses={403: {"model": Problem}, 422: {"model": Problem}, 503: {"model": Problem}},
+    responses={
+        403: {"model": ProblemDetail},
+        422: {"model": ProblemDetail},
+        503: {"model": ProblemDetail},
+    },
     summary="What is in a recording",
 )
-async def look(path: str, server: Server, caller: CalledBy) -> Found:
+async def look(path: str, server: Server, caller: CalledBy) -> RecordingSummary:
     """What is in a recording on this computer, and the settings that suit it."""
     real = await run_in_threadpool(server.projects.importable, path)
     beside = await run_in_threadpool(files_beside, real)
     terms = Terms(person=caller.name, access=FileAccess(read=(real, *beside)), limit_s=LOOK_LIMIT_S)
     return await caller.wait(
-        server.compute_pool.run_background(Lane.INSPECT, terms, look_at, real, beside)
+        server.compute_pool.run_background(Lane.INSPECT, terms, inspect_recording, real, beside)
     )
 
 

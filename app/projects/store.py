@@ -15,17 +15,18 @@ from app.projects.import_folders import ImportFolders
 from app.projects.model import (
     RESULTS,
     STAGE_ORDER,
-    FinishedStage,
     FolderEntry,
-    Project,
     ProjectCard,
+    ProjectView,
     ResultFile,
+    StageView,
 )
 from recon4.errors import StoreError
 from recon4.names import visible
 from recon4.review.approved import approval_of
 from recon4.review.state import artifact_keys
 from recon4.store.checked import Altered
+from recon4.store.earlier_names import SUMMARY, current_names
 from recon4.store.json_files import read_object
 from recon4.store.ledger import FinishedStage as StageRow
 from recon4.store.project import Project as Folder
@@ -56,7 +57,7 @@ class ProjectStore:
             found = [card for entry in entries if (card := self._card(entry)) is not None]
         return sorted(found, key=lambda card: card.updated, reverse=True)
 
-    def get(self, project_id: str) -> Project:
+    def get(self, project_id: str) -> ProjectView:
         """One project.
 
         Raises:
@@ -97,7 +98,7 @@ class ProjectStore:
         folder = self.folder(project_id)
         if name not in RESULTS or not _is_result(folder, name):
             raise NotFound(f"project {project_id} has no file {name[:64]!r}")
-        summary, _ = _object(folder, "summary.json")
+        summary, _ = _summary(folder)
         if name != "summary.json" and summary.get("approval"):
             approval = approval_of(folder, artifact_keys(summary))
             if approval is None:
@@ -173,12 +174,12 @@ class ProjectStore:
             kept = self._cards[entry.name] = (stamp, _read_card(folder, stamp))
         return kept[1]
 
-    def _read(self, folder: Path) -> Project:
+    def _read(self, folder: Path) -> ProjectView:
         facts, problems = _object(folder, "project.json")
-        summary, more = _object(folder, "summary.json")
+        summary, more = _summary(folder)
         stages, most = _stages(folder)
         size, changed_s = _weigh(folder)
-        return Project(
+        return ProjectView(
             id=folder.name,
             name=_name(facts, folder),
             finished=(folder / "summary.json").exists(),
@@ -211,7 +212,7 @@ def _changed_ns(path: Path) -> int | None:
 
 def _read_card(folder: Path, stamp: Stamp) -> ProjectCard:
     facts, problem = _object(folder, "project.json")
-    summary, more = _object(folder, "summary.json")
+    summary, more = _summary(folder)
     finished = stamp[1] is not None
     return ProjectCard(
         id=folder.name,
@@ -221,7 +222,7 @@ def _read_card(folder: Path, stamp: Stamp) -> ProjectCard:
         preset=visible(str(facts.get("preset") or "")),
         rig=_name_of(facts.get("rig")),
         pictured=finished and "points" in summary,
-        way_m=_number(summary.get("way_m")),
+        path_length_m=_number(summary.get("path_length_m")),
         points=_whole(summary.get("points")),
         problem="; ".join(filter(None, (problem, more))),
     )
@@ -277,7 +278,7 @@ def _artifacts(folder: Path) -> dict[str, Path]:
         return {}
 
 
-def _stages(folder: Path) -> tuple[tuple[FinishedStage, ...], str]:
+def _stages(folder: Path) -> tuple[tuple[StageView, ...], str]:
     """Stages of the latest run in the order of the pipeline, and why there are none."""
     if not (folder / "ledger.sqlite").exists():
         return (), ""
@@ -291,17 +292,23 @@ def _stages(folder: Path) -> tuple[tuple[FinishedStage, ...], str]:
     return tuple(sorted(found, key=lambda one: order.get(one.stage, len(order)))), ""
 
 
-def _stage(row: StageRow) -> FinishedStage:
+def _stage(row: StageRow) -> StageView:
     """A row as it may be sent; SQLite keeps whatever a damaged file has in a column."""
     seconds = float(row.seconds)
     if not math.isfinite(seconds):
         raise ValueError(f"ledger.sqlite: {row.stage} took {seconds} s")
-    return FinishedStage(
+    return StageView(
         stage=visible(str(row.stage)),
         seconds=seconds,
         peak_bytes=int(row.peak_bytes),
         finished=visible(str(row.finished)),
     )
+
+
+def _summary(folder: Path) -> tuple[dict[str, Any], str]:
+    """``summary.json`` under today's names, and what is wrong with it."""
+    summary, problem = _object(folder, "summary.json")
+    return current_names(summary, SUMMARY), problem
 
 
 def _object(folder: Path, name: str) -> tuple[dict[str, Any], str]:

@@ -13,12 +13,12 @@ from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 
 from app.access.audit import audit
-from app.access.caller import CalledBy, Caller
-from app.access.people import May, Person, Who, fresh_login, needs
+from app.access.people import Permission, Person, Who, needs, recent_login
 from app.compute_pool import FileAccess, Lane, Terms
 from app.deps import Parts, Server
-from app.errors import Conflict, Problem
+from app.errors import Conflict, ProblemDetail
 from app.jobs.model import JobState
+from app.network.request_caller import CalledBy, Caller
 from app.review.model import (
     AlignmentView,
     Approve,
@@ -35,8 +35,8 @@ from app.review.store import terms_of
 from recon4.review.approval import NotApprovable, make_read_only
 from recon4.review.approval import approve as sign
 from recon4.review.approved import Approval, approval_of, latest_approval
-from recon4.review.decisions import Decided, Decision, Kind, fold
-from recon4.review.journal import JournalMoved, NothingToTakeBack, Row, append, read_rows
+from recon4.review.decisions import Decided, Decision, DecisionKind, fold
+from recon4.review.journal import JournalChanged, NothingToUndo, Row, append, read_rows
 from recon4.review.pairs import align, fit_points, pair_facts, pair_points, walk_facts
 from recon4.review.signature import ensure_key
 from recon4.review.source import Source, graph_key
@@ -45,9 +45,9 @@ from recon4.store.checked import Altered
 
 T = TypeVar("T")
 
-LOOK = [Depends(needs(May.LOOK))]
-REVIEW = [Depends(needs(May.REVIEW))]
-SIGN = [Depends(needs(May.REVIEW)), Depends(fresh_login)]
+LOOK = [Depends(needs(Permission.LOOK))]
+REVIEW = [Depends(needs(Permission.REVIEW))]
+SIGN = [Depends(needs(Permission.REVIEW)), Depends(recent_login)]
 PREFIX = "/api/projects/{project_id}/review"
 SIGNING_LIMIT_S = 1800.0
 """A map of tens of gigabytes is read and written once for its approval."""
@@ -55,7 +55,11 @@ SIGNING_LIMIT_S = 1800.0
 router = APIRouter(
     prefix=PREFIX,
     tags=["review"],
-    responses={403: {"model": Problem}, 404: {"model": Problem}, 409: {"model": Problem}},
+    responses={
+        403: {"model": ProblemDetail},
+        404: {"model": ProblemDetail},
+        409: {"model": ProblemDetail},
+    },
 )
 page = APIRouter()
 
@@ -65,7 +69,7 @@ WEB = Path(__file__).parents[2] / "web"
 @page.get("/projects/{project_id}/review/", include_in_schema=False, dependencies=LOOK)
 def review_page(project_id: str, server: Server) -> FileResponse:
     server.projects.folder(project_id)
-    return FileResponse(WEB / "review.html")
+    return FileResponse(WEB / "review/review.html")
 
 
 @router.get("", dependencies=LOOK, summary="State of the review")
@@ -82,8 +86,8 @@ async def read_queue(project_id: str, server: Server, caller: CalledBy) -> Respo
     """
     root = server.projects.folder(project_id)
     source = await run_in_threadpool(Source.of, root)
-    told = await caller.wait(server.reviews.queue(root, source, person=caller.name))
-    return Response(told, media_type="application/json")
+    record = await caller.wait(server.reviews.queue(root, source, person=caller.name))
+    return Response(record, media_type="application/json")
 
 
 @router.get("/walk", dependencies=LOOK, summary="Moments of the walk")
@@ -115,8 +119,8 @@ async def read_points(
     Little-endian: ``R4PP``, uint32 version (1), uint32 numbers of points of i and of j, then
     float32 x y z of the points of i in the body frame at i, then of j at j [m].
     """
-    told = await _of_pairs(project_id, server, caller, pair_points, (frame_i, frame_j), reach)
-    return Response(told, media_type="application/octet-stream")
+    record = await _of_pairs(project_id, server, caller, pair_points, (frame_i, frame_j), reach)
+    return Response(record, media_type="application/octet-stream")
 
 
 @router.post("/align", dependencies=REVIEW, summary="Register a pair")
@@ -126,14 +130,14 @@ async def align_pair(
     """Register two places as the search does, from a first guess; decides nothing."""
     root, pair = server.projects.folder(project_id), (guess.frame_i, guess.frame_j)
     found = await _of_pairs(project_id, server, caller, align, pair, tuple(guess.T_i_j))
-    told = found.to_json()["measurement"]
+    record = found.to_json()["measurement"]
     figures = ("overlap", "error_m", "limit_m", "degeneracy", "iterations")
     return AlignmentView(
         measurement=server.reviews.remember(root, pair, found) if found.converged else "",
         T_i_j=list(found.measurement.T_i_j),
         converged=found.converged,
         reason=found.reason,
-        **{name: told[name] for name in figures},
+        **{name: record[name] for name in figures},
     )
 
 
@@ -149,7 +153,7 @@ def decide(project_id: str, new: NewDecision, server: Server, who: Who) -> Revie
     root, pair = server.projects.folder(project_id), (new.frame_i, new.frame_j)
     measured = new.kind in ("replace", "add")
     decision = Decision(
-        kind=Kind(new.kind),
+        kind=DecisionKind(new.kind),
         who=who.name,
         why=new.why,
         pair=pair,
@@ -163,13 +167,13 @@ def decide(project_id: str, new: NewDecision, server: Server, who: Who) -> Revie
 @router.post("/undo", status_code=201, dependencies=REVIEW, summary="Undo")
 def undo(project_id: str, step: Step, server: Server, who: Who) -> ReviewView:
     """Take back the last decision, whoever made it."""
-    return _step(Kind.UNDO, project_id, step, server=server, who=who)
+    return _step(DecisionKind.UNDO, project_id, step, server=server, who=who)
 
 
 @router.post("/redo", status_code=201, dependencies=REVIEW, summary="Redo")
 def redo(project_id: str, step: Step, server: Server, who: Who) -> ReviewView:
     """Decide again what was taken back last."""
-    return _step(Kind.REDO, project_id, step, server=server, who=who)
+    return _step(DecisionKind.REDO, project_id, step, server=server, who=who)
 
 
 @router.get("/effect", dependencies=LOOK, summary="What the decisions do")
@@ -181,10 +185,10 @@ async def read_effect(project_id: str, server: Server, caller: CalledBy) -> dict
     root = server.projects.folder(project_id)
     source = await run_in_threadpool(Source.of, root)
     decided, before = _now_and_before(await run_in_threadpool(read_rows, root))
-    told = await caller.wait(
+    record = await caller.wait(
         server.reviews.effect(root, source, decided=decided, before=before, person=caller.name)
     )
-    return {"superseded": True} if told is None else told
+    return {"superseded": True} if record is None else record
 
 
 @router.get("/journal", dependencies=LOOK, summary="Journal")
@@ -248,11 +252,13 @@ async def _sign(
     )
 
 
-def _step(kind: Kind, project_id: str, step: Step, *, server: Parts, who: Person) -> ReviewView:
+def _step(
+    kind: DecisionKind, project_id: str, step: Step, *, server: Parts, who: Person
+) -> ReviewView:
     root = server.projects.folder(project_id)
     try:
         append(root, Decision(kind=kind, who=who.name, why=step.why), after_seq=step.after_seq)
-    except (NothingToTakeBack, JournalMoved) as error:
+    except (NothingToUndo, JournalChanged) as error:
         raise Conflict(str(error)) from error
     return _view(project_id, server, who)
 
@@ -283,8 +289,8 @@ def _view(project_id: str, server: Parts, who: Person) -> ReviewView:
         in_map=in_map == decided.key,
         finished=in_map is not None,
         busy=_busy(project_id, server),
-        may_review=who.may(May.REVIEW),
-        may_process=who.may(May.PROCESS),
+        may_review=who.may(Permission.REVIEW),
+        may_process=who.may(Permission.PROCESS),
         approval=_approval(root, rows, server),
     )
 
@@ -312,5 +318,5 @@ def _busy(project_id: str, server: Parts) -> bool:
 def _now_and_before(rows: Sequence[Row]) -> tuple[Decided, Decided]:
     """What stands, and what stood before the last decision."""
     decisions = [row.decision() for row in rows]
-    decisions = [one for one in decisions if one.kind is not Kind.APPROVE]
+    decisions = [one for one in decisions if one.kind is not DecisionKind.APPROVE]
     return fold(decisions), fold(decisions[:-1])

@@ -83,8 +83,8 @@ class Reviews:
             if self._wanted[root] != mine:
                 return None
             if root not in self._effects or self._effects[root][0] != known:
-                told = await self._pool.run_interactive(
+                record = await self._pool.run_interactive(
                     Lane.REVIEW, terms_of(root, person), preview, source, decided, before
                 )
-                self._effects[root] = (known, told)
+                self._effects[root] = (known, record)
             return self._effects[root][1]

@@ -18,7 +18,7 @@ from typing import Any
 from app.compute_pool import ComputePool, Lane, Terms
 from app.errors import NoRoom
 from app.slices import work
-from app.slices.model import AskExport
+from app.slices.model import SliceExportRequest
 
 LIMIT_S = 1800.0
 """Longest time an export may take [s]."""
@@ -36,25 +36,25 @@ class ExportRequest:
     """Everything that determines the bytes of an export."""
 
     ending: str
-    ask: AskExport
+    ask: SliceExportRequest
     artifacts: Mapping[str, str]
     """Stage -> folder of its artifact."""
     reference: str
     """Folder of the reference; empty = none."""
-    told: Mapping[str, Any]
+    context: Mapping[str, Any]
     """Name of the project, key of the map, evidence of its approval."""
 
     @property
     def key(self) -> str:
         """Hash of the request; another alignment of the reference is another one."""
-        evidence = self.told["evidence"]
+        evidence = self.context["evidence"]
         facts = Path(self.reference) / "reference.json" if self.reference else None
         determines = {
             "ending": self.ending,
             "ask": self.ask.model_dump(mode="json"),
             "artifacts": dict(self.artifacts),
             "reference": [str(facts), facts.stat().st_mtime_ns] if facts else None,
-            "told": dict(self.told) | {"evidence": asdict(evidence) if evidence else None},
+            "context": dict(self.context) | {"evidence": asdict(evidence) if evidence else None},
         }
         return hashlib.sha256(json.dumps(determines, sort_keys=True).encode()).hexdigest()
 
@@ -98,7 +98,7 @@ class Exports:
                     request.ask,
                     name,
                     reference=request.reference,
-                    told=dict(request.told),
+                    context=dict(request.context),
                 )
         self._making.pop(place, None)
         return place

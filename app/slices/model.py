@@ -62,7 +62,7 @@ class WindowSpec(Strict):
     top: Reach
 
 
-class Look(Strict):
+class SliceView(Strict):
     """How a slice is shown."""
 
     cut: CutSpec
@@ -79,7 +79,7 @@ class Look(Strict):
     """``""`` = the latest map, ``map:KEY`` = an earlier one, ``project:ID`` = that of another."""
 
 
-class AskPicture(Look):
+class SliceImageRequest(SliceView):
     """A picture of a slice for the screen."""
 
     width: int = Field(ge=16, le=MOST_SIDE_PX)
@@ -91,7 +91,7 @@ class AskPicture(Look):
     """The page's own count of its requests: they may come in another order than they were sent."""
 
 
-class PictureView(BaseModel):
+class SliceImageView(BaseModel):
     """A picture and what is on it."""
 
     png: str
@@ -116,7 +116,7 @@ class PictureView(BaseModel):
     seconds: float
 
 
-class AskPick(Strict):
+class PickRequest(Strict):
     """A place on a slice."""
 
     cut: CutSpec
@@ -135,7 +135,7 @@ class PickView(BaseModel):
     about: dict[str, float] = {}
 
 
-class AskCompare(Strict):
+class CompareRequest(Strict):
     """A table of slices against a reference."""
 
     reference: str = Field(min_length=1)
@@ -154,7 +154,7 @@ class AddReference(Strict):
     """Whether its coordinates are those of the map's own frame or of its CRS."""
 
 
-class AskAlign(Strict):
+class AlignRequest(Strict):
     """Lay a reference onto the map."""
 
     how: Literal["none", "icp", "pairs"]
@@ -162,7 +162,7 @@ class AskAlign(Strict):
     p_reference: list[Xyz] = Field(default=[], max_length=100)
 
 
-class AskExport(Look):
+class SliceExportRequest(SliceView):
     """A file of slices."""
 
     count: int = Field(default=1, ge=1, le=MOST_SLICES)

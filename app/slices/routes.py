@@ -12,33 +12,33 @@ from fastapi import APIRouter, Depends, Response
 from fastapi.responses import FileResponse, HTMLResponse, PlainTextResponse
 from starlette.concurrency import run_in_threadpool
 
-from app.access.caller import CalledBy, Caller
-from app.access.people import May, needs
+from app.access.people import Permission, needs
 from app.compute_pool import FileAccess, Terms
 from app.deps import Server
-from app.errors import BadRequest, Problem
+from app.errors import BadRequest, ProblemDetail
+from app.network.request_caller import CalledBy, Caller
 from app.projects.routes import REPORT_POLICY
 from app.slices import work
 from app.slices.exports import ExportRequest
 from app.slices.model import (
     AddReference,
-    AskAlign,
-    AskCompare,
-    AskExport,
-    AskPick,
-    AskPicture,
+    AlignRequest,
+    CompareRequest,
     ControlFile,
     ControlState,
+    PickRequest,
     PickView,
-    PictureView,
+    SliceExportRequest,
     SliceFacts,
+    SliceImageRequest,
+    SliceImageView,
     Xyz,
 )
 from app.slices.store import Asking
 from recon4.errors import ConfigError
 
-LOOK = [Depends(needs(May.LOOK))]
-PROCESS = [Depends(needs(May.PROCESS))]
+LOOK = [Depends(needs(Permission.LOOK))]
+PROCESS = [Depends(needs(Permission.PROCESS))]
 WEB = Path(__file__).parents[2] / "web"
 SURFACES, REFERENCE = "surfaces.json", "reference"
 """Names of what children make, in their own working folder."""
@@ -47,7 +47,7 @@ router = APIRouter(
     prefix="/api/projects/{project_id}/slices",
     tags=["slices"],
     dependencies=LOOK,
-    responses={404: {"model": Problem}, 422: {"model": Problem}},
+    responses={404: {"model": ProblemDetail}, 422: {"model": ProblemDetail}},
 )
 page = APIRouter()
 
@@ -55,7 +55,7 @@ page = APIRouter()
 @page.get("/projects/{project_id}/slices/", include_in_schema=False, dependencies=LOOK)
 def slices_page(project_id: str, server: Server) -> FileResponse:
     server.projects.folder(project_id)
-    return FileResponse(WEB / "slices.html")
+    return FileResponse(WEB / "slices/slices.html")
 
 
 @router.get("", summary="What can be cut")
@@ -65,19 +65,19 @@ async def read_facts(
     """Bounds, frame, fields, references and the other maps to compare with."""
     slices = server.slices
     artifacts = await run_in_threadpool(slices.artifacts, project_id, source)
-    told = {
+    context = {
         "references": await run_in_threadpool(slices.references, project_id),
         "sources": await run_in_threadpool(slices.sources, project_id),
         "approval": await run_in_threadpool(slices.approval_words, project_id, source),
     }
     terms = slices.terms(project_id, caller.name, source)
-    return await caller.wait(slices.draw(terms, work.facts, artifacts, told))
+    return await caller.wait(slices.draw(terms, work.facts, artifacts, context))
 
 
 @router.post("/picture", summary="A picture of a slice")
 async def picture(
-    project_id: str, ask: AskPicture, server: Server, caller: CalledBy
-) -> PictureView:
+    project_id: str, ask: SliceImageRequest, server: Server, caller: CalledBy
+) -> SliceImageView:
     """All points of the map in the window, at full resolution.
 
     Of the requests of one ``page`` only the latest is answered; the others get 409.
@@ -113,7 +113,7 @@ async def overview_window(
 
 
 @router.post("/pick", summary="The point of the map at a place of a slice")
-async def pick(project_id: str, ask: AskPick, server: Server, caller: CalledBy) -> PickView:
+async def pick(project_id: str, ask: PickRequest, server: Server, caller: CalledBy) -> PickView:
     """Coordinates of the full-resolution point nearest to the place, in the map and its CRS."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, ask.source)
     terms = server.slices.terms(project_id, caller.name, ask.source)
@@ -144,7 +144,7 @@ async def doubles(
 
 @router.post("/compare", summary="Slices against a reference")
 async def compare(
-    project_id: str, ask: AskCompare, server: Server, caller: CalledBy
+    project_id: str, ask: CompareRequest, server: Server, caller: CalledBy
 ) -> dict[str, Any]:
     """Mean distance and shares within 2 and 5 cm of every slice (V Table 3.2)."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, ask.source)
@@ -190,7 +190,7 @@ def remove_reference(project_id: str, reference_id: str, server: Server) -> Resp
 
 @router.post("/references/{reference_id}/align", dependencies=PROCESS, summary="Align it")
 async def align(
-    project_id: str, reference_id: str, ask: AskAlign, *, server: Server, caller: CalledBy
+    project_id: str, reference_id: str, ask: AlignRequest, *, server: Server, caller: CalledBy
 ) -> dict[str, Any]:
     """Lay a reference onto the map: by ICP, by pairs of points, or as its file says."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
@@ -224,7 +224,7 @@ async def export(
     server: Server,
     caller: CalledBy,
 ) -> FileResponse:
-    """PNG, SVG and PDF are sheets at a true scale; ``ask`` is an AskExport as JSON.
+    """PNG, SVG and PDF are sheets at a true scale; ``ask`` is a SliceExportRequest as JSON.
 
     The work ends when the client disconnects. A finished file is kept for a day: the same request
     with ``Range`` continues a download that broke off.
@@ -235,7 +235,7 @@ async def export(
     artifacts = await run_in_threadpool(
         slices.approved_artifacts, project_id, asked.source, evidence
     )
-    told = {
+    context = {
         "project": (await run_in_threadpool(server.projects.get, project_id)).name,
         "key": Path(artifacts["map"]).name,
         "evidence": evidence,
@@ -245,7 +245,7 @@ async def export(
         ask=asked,
         artifacts=artifacts,
         reference=slices.reference(project_id, asked.reference),
-        told=told,
+        context=context,
     )
     terms = slices.terms(project_id, caller.name, asked.source)
     return FileResponse(
@@ -300,12 +300,14 @@ async def control_file(
     slices = server.slices
     artifacts = await run_in_threadpool(slices.artifacts, project_id)
     state = await run_in_threadpool(slices.control, project_id)
-    told = {
+    context = {
         "project": (await run_in_threadpool(server.projects.get, project_id)).name,
         "evidence": await run_in_threadpool(slices.evidence, project_id),
     }
     terms = slices.terms(project_id, caller.name)
-    text = await caller.wait(slices.draw(terms, work.control_file, artifacts, state, ending, told))
+    text = await caller.wait(
+        slices.draw(terms, work.control_file, artifacts, state, ending, context)
+    )
     if ending == "csv":
         head = {"Content-Disposition": f'attachment; filename="{project_id}-control.csv"'}
         return PlainTextResponse(text, media_type="text/csv; charset=utf-8", headers=head)
@@ -330,7 +332,7 @@ async def surface(project_id: str, point: str, server: Server, caller: CalledBy)
 async def compare_csv(
     project_id: str, ask: str, server: Server, caller: CalledBy
 ) -> PlainTextResponse:
-    """``ask`` is an AskCompare as JSON."""
+    """``ask`` is an CompareRequest as JSON."""
     asked = _parsed_compare(ask)
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, asked.source)
     reference = server.slices.reference(project_id, asked.reference)
@@ -356,15 +358,15 @@ async def _overview(project_id: str, server: Server, caller: Caller, source: str
     return await caller.wait(server.slices.kept(f"{Path(folder).name}-above.png", make))
 
 
-def _parsed(text: str) -> AskExport:
+def _parsed(text: str) -> SliceExportRequest:
     try:
-        return AskExport.model_validate_json(text)
+        return SliceExportRequest.model_validate_json(text)
     except ValueError as error:
         raise ConfigError(f"what to export is not understood: {error}") from error
 
 
-def _parsed_compare(text: str) -> AskCompare:
+def _parsed_compare(text: str) -> CompareRequest:
     try:
-        return AskCompare.model_validate_json(text)
+        return CompareRequest.model_validate_json(text)
     except ValueError as error:
         raise ConfigError(f"what to compare is not understood: {error}") from error

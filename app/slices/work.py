@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 
 from app.slices.model import (
-    AskCompare,
-    AskExport,
-    AskPicture,
+    CompareRequest,
     ControlState,
-    Look,
     PickView,
-    PictureView,
+    SliceExportRequest,
     SliceFacts,
+    SliceImageRequest,
+    SliceImageView,
+    SliceView,
     WindowSpec,
     Xyz,
 )
@@ -38,11 +38,10 @@ from recon4.slices.control import ControlPoint, read_control
 from recon4.slices.cut import Cut, horizontal
 from recon4.slices.doubles import find_double_walls
 from recon4.slices.export import write_csv, write_dxf, write_geotiff, write_laz
-from recon4.slices.frames import Frame, frame_of
+from recon4.slices.frames import MapFrame, frame_of
 from recon4.slices.imports import import_reference, set_alignment
 from recon4.slices.pick import nearest_surface, pick
-from recon4.slices.picture import Paper, Picture, draw, png
-from recon4.slices.points import Window, extent
+from recon4.slices.points import SliceWindow, extent
 from recon4.slices.reference import Method, Reference, load_reference, read_facts
 from recon4.slices.residuals import ControlReport, residual_csv, residuals
 from recon4.slices.sheet import (
@@ -53,6 +52,7 @@ from recon4.slices.sheet import (
     source_words,
     write_sheet,
 )
+from recon4.slices.slice_image import Paper, SliceImage, draw, png
 from recon4.store.atomic import atomic_file, null_for_nan, write_json
 from recon4.store.checked import CheckedArtifact
 
@@ -103,8 +103,8 @@ def reference_of(folder: str, method: Method) -> Reference | None:
     return _reference(folder, method, changed_ns)
 
 
-def facts(artifacts: Artifacts, told: dict[str, Any]) -> SliceFacts:
-    """What can be cut; ``told`` is what the front knows already."""
+def facts(artifacts: Artifacts, context: dict[str, Any]) -> SliceFacts:
+    """What can be cut; ``context`` is what the front knows already."""
     tiles, frame = tiles_of(artifacts["map"]), _frame(artifacts)
     low, high = (_xyz(np.nan_to_num(corner)) for corner in tiles.bounds_m)
     times = tiles.facts["time_ns"] or [0, 0]
@@ -117,13 +117,13 @@ def facts(artifacts: Artifacts, told: dict[str, Any]) -> SliceFacts:
         key=Path(artifacts["map"]).name,
         crs=frame.crs,
         frame=frame.words,
-        **told,
+        **context,
     )
 
 
 def picture(
-    map_folder: str, reference: str, ask: AskPicture, evidence: Evidence | None = None
-) -> PictureView:
+    map_folder: str, reference: str, ask: SliceImageRequest, evidence: Evidence | None = None
+) -> SliceImageView:
     """A picture of a slice for the screen; of an approved map, of approved points only."""
     began = time.perf_counter()
     tiles, cut = _map_of({"map": map_folder}, evidence), ask.cut.cut()
@@ -132,7 +132,7 @@ def picture(
     made = draw(tiles, cut, paper, color=ask.color, reference=reference_of(reference, ask.method))
     span = span_of(ask, made)
     image = base64.b64encode(png(made.rgba(span, ask.ground))).decode()
-    return PictureView(
+    return SliceImageView(
         png=image,
         window=WindowSpec(**asdict(window)),
         pixel_m=paper.pixel_m,
@@ -159,14 +159,14 @@ def overview(map_folder: str, image: str, about: str) -> None:
     middle, height = float(low[2] + high[2]) / 2.0, float(high[2] - low[2]) + 0.1
     cut = horizontal(middle, thickness_m=height)
     margin = 0.02 * float((high - low)[:2].max()) + 0.1
-    window = Window(low[0] - margin, low[1] - margin, high[0] + margin, high[1] + margin)
+    window = SliceWindow(low[0] - margin, low[1] - margin, high[0] + margin, high[1] + margin)
     pixel_m = max(window.right - window.left, window.top - window.bottom) / 1200.0
     made = draw(tiles, cut, Paper(window, pixel_m))
     dense = np.log1p(made.count / max(1.0, float(np.percentile(made.count[made.count > 0], 75))))
     rgba = np.zeros((*dense.shape, 4), np.uint8)
     rgba[..., :3] = (100, 116, 130)
     rgba[..., 3] = (255.0 * np.clip(dense / 1.6, 0.0, 1.0)).astype(np.uint8)
-    shown = Window(
+    shown = SliceWindow(
         window.left,
         window.top - dense.shape[0] * pixel_m,
         window.left + dense.shape[1] * pixel_m,
@@ -197,22 +197,22 @@ def pick_point(
 def double_walls(map_folder: str, out: str) -> None:
     """The check of the whole map, kept as JSON."""
     found = find_double_walls(tiles_of(map_folder))
-    told = asdict(found) | {"share": found.share}
-    write_json(Path(out), null_for_nan(told))
+    context = asdict(found) | {"share": found.share}
+    write_json(Path(out), null_for_nan(context))
 
 
-def comparison(map_folder: str, reference: str, ask: AskCompare) -> dict[str, Any]:
+def comparison(map_folder: str, reference: str, ask: CompareRequest) -> dict[str, Any]:
     """V Table 3.2 of some slices."""
     tiles = tiles_of(map_folder)
     against = reference_of(reference, ask.method)
     assert against is not None
     cuts = [spec.cut() for spec in ask.cuts] or usual_cuts(tiles)
     found = to_json(compare(tiles, cuts, against))
-    told: dict[str, Any] = null_for_nan(found)
-    return told | {"reference": against.name, "method": ask.method}
+    context: dict[str, Any] = null_for_nan(found)
+    return context | {"reference": against.name, "method": ask.method}
 
 
-def comparison_csv(map_folder: str, reference: str, ask: AskCompare) -> str:
+def comparison_csv(map_folder: str, reference: str, ask: CompareRequest) -> str:
     """The same as CSV."""
     tiles = tiles_of(map_folder)
     against = reference_of(reference, ask.method)
@@ -247,17 +247,22 @@ def align_reference(
 
 
 def export(
-    artifacts: Artifacts, ask: AskExport, out: str, *, reference: str, told: dict[str, Any]
+    artifacts: Artifacts,
+    ask: SliceExportRequest,
+    out: str,
+    *,
+    reference: str,
+    context: dict[str, Any],
 ) -> str:
     """Write a file of slices; its ending says which. It carries the approval, if there is one.
 
     Raises:
         Altered: If a tile that it shows is not what was approved.
     """
-    path, evidence = Path(out), told["evidence"]
+    path, evidence = Path(out), context["evidence"]
     tiles, frame = _map_of(artifacts, evidence), _frame(artifacts)
     cuts = ask.cut.cut().repeated(ask.count, spacing_m=ask.spacing_m)
-    window = Window(**ask.window.model_dump()) if ask.window else None
+    window = SliceWindow(**ask.window.model_dump()) if ask.window else None
     if path.suffix == ".laz":
         write_laz(tiles, cuts, path, frame=frame, window=window)
     elif path.suffix == ".csv":
@@ -265,40 +270,50 @@ def export(
     elif path.suffix == ".dxf":
         write_dxf(tiles, cuts, path, frame=frame, window=window, flat=ask.flat)
     elif path.suffix == ".tif":
-        _export_geotiff(artifacts, ask, path, reference=reference, told=told)
+        _export_geotiff(artifacts, ask, path, reference=reference, context=context)
     else:
-        _export_sheet(artifacts, ask, path, reference=reference, told=told)
+        _export_sheet(artifacts, ask, path, reference=reference, context=context)
     if evidence and path.suffix in (".laz", ".csv", ".dxf"):
         stamp_file(path, path, evidence.stamp)
     return out
 
 
 def _export_geotiff(
-    artifacts: Artifacts, ask: AskExport, path: Path, *, reference: str, told: dict[str, Any]
+    artifacts: Artifacts,
+    ask: SliceExportRequest,
+    path: Path,
+    *,
+    reference: str,
+    context: dict[str, Any],
 ) -> None:
-    tiles, cut = _map_of(artifacts, told["evidence"]), ask.cut.cut()
+    tiles, cut = _map_of(artifacts, context["evidence"]), ask.cut.cut()
     window = _window(ask, tiles, cut)
     side_m = max(window.right - window.left, window.top - window.bottom)
     paper = Paper(window, max(FINEST_M, side_m / MOST_GEOTIFF_PX))
     against = reference_of(reference, ask.method)
     made = draw(tiles, cut, paper, color=ask.color, reference=against)
-    words = f"{told['project']}: {_approval_words(told['evidence'])}"
+    words = f"{context['project']}: {_approval_words(context['evidence'])}"
     frame = _frame(artifacts)
     write_geotiff(made, path, frame=frame, span=span_of(ask, made), words=words)
 
 
 def _export_sheet(
-    artifacts: Artifacts, ask: AskExport, path: Path, *, reference: str, told: dict[str, Any]
+    artifacts: Artifacts,
+    ask: SliceExportRequest,
+    path: Path,
+    *,
+    reference: str,
+    context: dict[str, Any],
 ) -> None:
-    tiles, cut = _map_of(artifacts, told["evidence"]), ask.cut.cut()
+    tiles, cut = _map_of(artifacts, context["evidence"]), ask.cut.cut()
     against = reference_of(reference, ask.method)
     layout = lay_out(_window(ask, tiles, cut), ask.size, ask.scale)
     made = draw(tiles, cut, layout.paper, color=ask.color, reference=against)
     words = Words(
-        project=told["project"],
+        project=context["project"],
         frame=_frame(artifacts).words,
-        sources=source_words(told["key"]),
-        approval=_approval_words(told["evidence"]),
+        sources=source_words(context["key"]),
+        approval=_approval_words(context["evidence"]),
         reference=against.name if against else "",
         sensors=tuple(str(name) for name in tiles.facts.get("sensors", [])),
     )
@@ -312,25 +327,25 @@ def preview_control(data: bytes, name: str, order: str | None) -> dict[str, Any]
 
 def control_report(artifacts: Artifacts, state: ControlState) -> dict[str, Any]:
     """Residuals of the points that were found in the map."""
-    told: dict[str, Any] = null_for_nan(asdict(found := _residuals(artifacts, state)))
-    return told | {"passed": found.passed}
+    context: dict[str, Any] = null_for_nan(asdict(found := _residuals(artifacts, state)))
+    return context | {"passed": found.passed}
 
 
 def control_file(
-    artifacts: Artifacts, state: ControlState, ending: str, told: dict[str, Any]
+    artifacts: Artifacts, state: ControlState, ending: str, context: dict[str, Any]
 ) -> str:
     """The same as CSV or as a sheet in HTML.
 
     Raises:
         Altered: If the map, or what says where it lies, is not what was approved.
     """
-    evidence = told["evidence"]
+    evidence = context["evidence"]
     if evidence:
         _map_of(artifacts, evidence)
         evidence.artifact("map", Path(artifacts["map"])).check_all()  # points were found in it
     found, sources = _residuals(artifacts, state), source_words(Path(artifacts["map"]).name)
     words = SheetWords(
-        project=told["project"],
+        project=context["project"],
         frame=_frame(artifacts).words,
         sources=sources,
         approval=_approval_words(evidence),
@@ -381,7 +396,7 @@ def _facts_or_problem(folder: Path) -> dict[str, Any]:
         return {"name": f"{folder.name}: {words}", "kind": "damaged", "problem": words}
 
 
-def span_of(ask: Look, made: Picture) -> Span:
+def span_of(ask: SliceView, made: SliceImage) -> Span:
     """The ends of the colors: as asked, else as usual."""
     low = made.span.low if ask.low is None else ask.low
     high = made.span.high if ask.high is None else ask.high
@@ -394,12 +409,12 @@ def _approval_words(evidence: Evidence | None) -> str:
     return approval_words(asdict(evidence.stamp) if evidence else None)
 
 
-def _window(ask: Look, tiles: TileSet, cut: Cut) -> Window:
+def _window(ask: SliceView, tiles: TileSet, cut: Cut) -> SliceWindow:
     if ask.window is not None:
-        return Window(**ask.window.model_dump())
+        return SliceWindow(**ask.window.model_dump())
     all_of_it = extent(tiles, cut)
     margin = 0.03 * max(all_of_it.right - all_of_it.left, all_of_it.top - all_of_it.bottom) + 0.05
-    return Window(
+    return SliceWindow(
         all_of_it.left - margin,
         all_of_it.bottom - margin,
         all_of_it.right + margin,
@@ -407,7 +422,7 @@ def _window(ask: Look, tiles: TileSet, cut: Cut) -> Window:
     )
 
 
-def _shaped(window: Window, aspect: float) -> Window:
+def _shaped(window: SliceWindow, aspect: float) -> SliceWindow:
     """Widened to a shape, about its middle."""
     width, height = window.right - window.left, window.top - window.bottom
     if not (width > 0.0 and height > 0.0):
@@ -429,11 +444,11 @@ def _stops(color: ColorBy, ground: Ground) -> list[str]:
     return [f"#{r:02x}{g:02x}{b:02x}" for r, g, b in table(color, ground)[::15].tolist()]
 
 
-def _frame(artifacts: Artifacts) -> Frame:
+def _frame(artifacts: Artifacts) -> MapFrame:
     return frame_of({stage: Path(folder) for stage, folder in artifacts.items()})
 
 
-def _in_crs(frame: Frame, p_map: Xyz) -> Xyz | None:
+def _in_crs(frame: MapFrame, p_map: Xyz) -> Xyz | None:
     return _xyz(frame.to_crs(np.array([p_map]))[0]) if frame.to_crs else None
 
 

@@ -8,7 +8,7 @@ from pathlib import Path, PurePosixPath
 
 
 @dataclass(slots=True, kw_only=True)
-class Part:
+class UploadPart:
     """One file of an upload. Only the store changes it."""
 
     number: int
@@ -48,7 +48,7 @@ class Upload:
     folder: str
     """Name of the recording's folder once it is whole."""
     finished: bool = False
-    parts: dict[str, Part] = field(default_factory=dict)
+    parts: dict[str, UploadPart] = field(default_factory=dict)
     """Name as the sender calls it -> file."""
 
     @property

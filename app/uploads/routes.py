@@ -17,12 +17,12 @@ from starlette.requests import ClientDisconnect
 from starlette.types import Message, Receive, Scope, Send
 
 from app.access.audit import audit
-from app.access.people import May, Who, needs
+from app.access.people import Permission, Who, needs
 from app.deps import Parts, Server
-from app.errors import AppError, BadRequest, Conflict, Problem
+from app.errors import AppError, BadRequest, Conflict, ProblemDetail
 from app.names import Name
 from app.uploads import tus
-from app.uploads.model import Part, Upload
+from app.uploads.model import Upload, UploadPart
 from app.uploads.receive import receive
 from recon4.names import check_name
 
@@ -48,14 +48,14 @@ class TusRoute(APIRoute):
 router = APIRouter(
     prefix="/api/uploads",
     tags=["uploads"],
-    dependencies=[Depends(needs(May.PROCESS))],
-    responses={404: {"model": Problem}, 507: {"model": Problem}},
+    dependencies=[Depends(needs(Permission.PROCESS))],
+    responses={404: {"model": ProblemDetail}, 507: {"model": ProblemDetail}},
 )
 files = APIRouter(
     prefix=PREFIX,
     tags=["uploads"],
-    dependencies=[Depends(needs(May.PROCESS))],
-    responses={404: {"model": Problem}, 412: {"model": Problem}},
+    dependencies=[Depends(needs(Permission.PROCESS))],
+    responses={404: {"model": ProblemDetail}, 412: {"model": ProblemDetail}},
     route_class=TusRoute,
 )
 
@@ -264,7 +264,9 @@ def terminate(file_id: Annotated[str, Path(max_length=40)], server: Server) -> R
     return Response(status_code=204)
 
 
-def _announce(server: Parts, metadata: dict[str, str], length: int, by: str) -> tuple[Upload, Part]:
+def _announce(
+    server: Parts, metadata: dict[str, str], length: int, by: str
+) -> tuple[Upload, UploadPart]:
     name = metadata.get("relativePath") or metadata.get("filename") or metadata.get("name") or ""
     check_name(name, what="the name of a file", most=1000)
     if metadata.get("upload"):
@@ -277,7 +279,7 @@ def _announce(server: Parts, metadata: dict[str, str], length: int, by: str) -> 
     return upload, server.uploads.add(upload, name[:1000], length=length)
 
 
-async def _take(server: Parts, upload: Upload, part: Part, request: Request) -> None:
+async def _take(server: Parts, upload: Upload, part: UploadPart, request: Request) -> None:
     """The body of a request into its file; one request a file at a time."""
     if part.turn.locked():
         raise Locked("another request writes to this file; ask HEAD and try again")
@@ -301,14 +303,14 @@ async def _take(server: Parts, upload: Upload, part: Part, request: Request) -> 
                 part.offset = path.stat().st_size
 
 
-def _told(server: Parts, upload: Upload, part: Part) -> dict[str, str]:
+def _told(server: Parts, upload: Upload, part: UploadPart) -> dict[str, str]:
     told = {"Upload-Offset": str(part.offset)}
     if not upload.finished:
         told["Upload-Expires"] = formatdate(server.uploads.expires(upload), usegmt=True)
     return told
 
 
-def _url(upload: Upload, part: Part) -> str:
+def _url(upload: Upload, part: UploadPart) -> str:
     return f"{PREFIX}/{upload.id}-{part.number}"
 
 

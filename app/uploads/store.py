@@ -25,7 +25,7 @@ from typing import Any
 
 from app.errors import BadRequest, NoRoom, NotFound, TooLarge, TooMany
 from app.settings import ServerSettings
-from app.uploads.model import Part, Upload
+from app.uploads.model import Upload, UploadPart
 from app.uploads.names import another, safe_path, slug
 from recon4.errors import StoreError
 from recon4.names import visible
@@ -70,7 +70,7 @@ class UploadStore:
                 )
             return self._uploads[upload_id]
 
-    def part(self, part_id: str) -> tuple[Upload, Part]:
+    def part(self, part_id: str) -> tuple[Upload, UploadPart]:
         """One file of an upload, by the last part of its address.
 
         Raises:
@@ -112,7 +112,7 @@ class UploadStore:
             self._uploads[upload_id] = upload
             return upload
 
-    def add(self, upload: Upload, name: str, *, length: int) -> Part:
+    def add(self, upload: Upload, name: str, *, length: int) -> UploadPart:
         """Announce a file of an upload; announced twice, it is the same file.
 
         Raises:
@@ -125,7 +125,7 @@ class UploadStore:
             self._refuse_surplus(upload, name, length)
             taken = {str(part.path).lower() for part in upload.parts.values()}
             path = another(safe_path(name), taken)
-            part = Part(number=len(upload.parts), name=name, path=path, bytes=length)
+            part = UploadPart(number=len(upload.parts), name=name, path=path, bytes=length)
             data = self._data(upload, part)
             try:
                 make_folders(data.parent)
@@ -138,7 +138,7 @@ class UploadStore:
             upload.parts[name] = part
             return part
 
-    def data(self, upload: Upload, part: Part) -> Path:
+    def data(self, upload: Upload, part: UploadPart) -> Path:
         """Where the bytes of a file go."""
         return self._data(upload, part)
 
@@ -223,7 +223,7 @@ class UploadStore:
 
     # -- files
 
-    def _data(self, upload: Upload, part: Part) -> Path:
+    def _data(self, upload: Upload, part: UploadPart) -> Path:
         return self._folder / upload.id / "data" / part.path
 
     def _files(self, upload: Upload) -> Iterator[Path]:
@@ -257,7 +257,9 @@ class UploadStore:
         moved = upload.finished or not (folder / "data").exists()
         for path in sorted((folder / "parts").glob("*.json"), key=lambda p: int(p.stem)):
             note = read_object(path)
-            part = Part(number=int(path.stem), **{**note, "path": PurePosixPath(note["path"])})
+            part = UploadPart(
+                number=int(path.stem), **{**note, "path": PurePosixPath(note["path"])}
+            )
             part.offset = part.bytes if moved else self._data(upload, part).stat().st_size
             upload.parts[part.name] = part
         return upload

@@ -11,7 +11,7 @@ from fastapi import APIRouter, Request
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 
 from app.deps import Server
-from app.projects.model import Project
+from app.projects.model import ProjectView
 
 router = APIRouter()
 
@@ -98,7 +98,7 @@ def policy_for(host: str) -> str:
     )
 
 
-def frame_words(project: Project) -> str:
+def frame_words(project: ProjectView) -> str:
     """What the coordinates on screen mean."""
     crs = project.summary.get("crs")
     place = f"local map frame of {crs}" if isinstance(crs, str) and crs else "map frame"

@@ -15,8 +15,8 @@ import sys
 from pathlib import Path
 
 from app.errors import ViewerFailed
+from app.network.streams import Streams
 from app.settings import worker_environment
-from app.streams import Streams
 from recon4.processes import ChildRegister
 from recon4.runtime_folder import private_folder, runtime_folder
 

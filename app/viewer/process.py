@@ -15,10 +15,10 @@ import threading
 from pathlib import Path
 from typing import Any
 
-from app.viewer.palette import table
-from app.viewer.seat import Seat
-from app.viewer.show import Viewer
-from app.viewer.source import ProjectSource
+from app.viewer.client.client_session import ClientSession
+from app.viewer.client.show import Viewer
+from app.viewer.cloud.palette import table
+from app.viewer.scene.source import ProjectSource
 from recon4.processes import die_with_parent
 from recon4.sandbox import Network, Policy, confine
 from recon4.sandbox.limits import physical_memory_bytes
@@ -31,18 +31,18 @@ LOOK_EVERY_S = 0.5
 log = logging.getLogger(__name__)
 
 
-class Seats:
+class ClientSessions:
     """All clients of the viewer."""
 
     def __init__(self, source: ProjectSource, project: str, points: int) -> None:
         self._source, self._project, self._points = source, project, points
-        self._taken: dict[int, Seat] = {}
+        self._taken: dict[int, ClientSession] = {}
         self._gone: set[int] = set()
         self._lock = threading.Lock()
 
     def take(self, client: Any) -> None:
         """Seat a new client."""
-        seat = Seat(client, self._source, self._project, points=self._points)
+        seat = ClientSession(client, self._source, self._project, points=self._points)
         with self._lock:
             left = client.client_id in self._gone
             self._gone.discard(client.client_id)
@@ -86,7 +86,7 @@ def main(project: Path, idle_s: float, *, points: int, jobs: Path, socket: Path)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in the terminal is the server's to handle
     threading.Thread(target=table, args=("viridis",), daemon=True).start()  # slow the first time
     source = ProjectSource(project, jobs)
-    seats = Seats(source, project.name, points)
+    seats = ClientSessions(source, project.name, points)
     viewer = Viewer(socket, on_client=seats.take, on_leave=seats.leave)
     answer.write("ready\n")
     answer.flush()

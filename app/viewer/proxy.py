@@ -19,10 +19,10 @@ from websockets.asyncio.client import ClientConnection, unix_connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
 from websockets.typing import Subprotocol
 
-from app.access.people import May, person
+from app.access.people import Permission, person
 from app.deps import parts
 from app.errors import AppError, TooMany, ViewerFailed
-from app.streams import TOO_MANY
+from app.network.streams import TOO_MANY
 from app.viewer.pool import ViewerPool
 
 router = APIRouter()
@@ -79,7 +79,7 @@ async def relay(browser: WebSocket, project_id: str) -> None:
             viewer = await _viewer(server.viewers, folder, offered)
             try:
                 await browser.accept(subprotocol=viewer.subprotocol)
-                await _pump(browser, viewer, may_review=who.may(May.REVIEW))
+                await _pump(browser, viewer, may_review=who.may(Permission.REVIEW))
             finally:
                 await viewer.close()
     except TooMany as error:

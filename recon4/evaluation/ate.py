@@ -49,7 +49,7 @@ class PosePairs:
     """Estimated, N of them."""
     T_true_body: SE3
     """True, N of them, in a frame of their own."""
-    covered_share: float
+    coverage_ratio: float
     """Share of the estimate's poses that the truth covers, 0..1."""
 
     def __len__(self) -> int:
@@ -104,7 +104,7 @@ def pair_poses(
         t_ns=t[covered],
         T_map_body=estimate.T_a_b[covered],
         T_true_body=truth.at(t[covered]),
-        covered_share=float(covered.mean()),
+        coverage_ratio=float(covered.mean()),
     )
 
 

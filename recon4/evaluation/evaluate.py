@@ -20,7 +20,7 @@ from recon4.evaluation.kitti import (
     official_drift,
     thesis_drift,
 )
-from recon4.evaluation.mesh import Mesh, distance_to, read_mesh
+from recon4.evaluation.reference_mesh import TriangleMesh, distance_to, read_mesh
 from recon4.evaluation.sharpness import Sharpness, around, draw_places, sharpness, thin
 from recon4.evaluation.slices import RelativeError, relative_error, spread_slices
 from recon4.evaluation.text import evaluation_text
@@ -54,9 +54,9 @@ class Evaluation:
     truth: str
     """Name of what it was judged by."""
     poses: int
-    covered_share: float
+    coverage_ratio: float
     """Share of the estimate's poses that the truth covers, 0..1."""
-    way_m: float
+    path_length_m: float
     """Length of the true way [m]."""
     duration_s: float
     aligned: AbsoluteError
@@ -127,8 +127,8 @@ def evaluate(
         estimate=project_or_trajectory.name,
         truth=truth.name,
         poses=len(pairs),
-        covered_share=pairs.covered_share,
-        way_m=_way_m(pairs),
+        coverage_ratio=pairs.coverage_ratio,
+        path_length_m=_path_length_m(pairs),
         duration_s=float(pairs.t_ns[-1] - pairs.t_ns[0]) / 1e9,
         aligned=aligned,
         first_pose=absolute_error(pairs, alignment="first"),
@@ -178,7 +178,9 @@ def map_quality(chunks: Chunks, *, places: int = 2000, seed: int = 0) -> MapQual
     )
 
 
-def _relative(chunks: Chunks, mesh: Mesh, start: SE3, map_alignment: MapAlignment) -> RelativeError:
+def _relative(
+    chunks: Chunks, mesh: TriangleMesh, start: SE3, map_alignment: MapAlignment
+) -> RelativeError:
     T_model_map = SE3.identity() if map_alignment == "none" else start
     if map_alignment == "icp":
         rng = np.random.default_rng(0)
@@ -193,7 +195,7 @@ def _relative(chunks: Chunks, mesh: Mesh, start: SE3, map_alignment: MapAlignmen
     )
 
 
-def _way_m(pairs: PosePairs) -> float:
+def _path_length_m(pairs: PosePairs) -> float:
     return float(np.linalg.norm(np.diff(pairs.T_true_body.t, axis=0), axis=1).sum())
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from recon4.errors import OutOfRange
 from recon4.evaluation.ate import absolute_error, pair_poses
-from recon4.evaluation.mesh import Mesh, align_to_mesh, distance_to
+from recon4.evaluation.reference_mesh import TriangleMesh, align_to_mesh, distance_to
 from recon4.evaluation.sharpness import thin
 from recon4.evaluation.slices import RelativeError, Slice, relative_error, spread_slices
 from recon4.geometry.se3 import SE3, Array
@@ -52,7 +52,7 @@ class _Points:
 def relative_error_floor(
     frames: Iterable[Multiframe],
     rig: Rig,
-    mesh: Mesh,
+    mesh: TriangleMesh,
     *,
     estimate: Trajectory,
     truth: Trajectory,
@@ -99,7 +99,7 @@ def relative_error_floor(
 
 def map_onto_model(
     chunks: Iterable[Array],
-    mesh: Mesh,
+    mesh: TriangleMesh,
     *,
     start: SE3,
     rng: np.random.Generator,
@@ -120,7 +120,9 @@ def map_onto_model(
     return align_to_mesh(few, mesh, T_model_map=start, rng=rng)
 
 
-def _error(points: _Points, mesh: Mesh, slices: tuple[Slice, ...], *, start: SE3) -> RelativeError:
+def _error(
+    points: _Points, mesh: TriangleMesh, slices: tuple[Slice, ...], *, start: SE3
+) -> RelativeError:
     T_model_map = map_onto_model(points, mesh, start=start, rng=np.random.default_rng(0))
     return relative_error(
         points, slices, T_model_map=T_model_map, distance=distance_to(mesh), alignment="ICP"

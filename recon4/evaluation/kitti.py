@@ -82,11 +82,11 @@ def official_drift(
         lengths_m: Lengths of the pieces [m]; said in the result.
         step: A piece starts every so many frames.
     """
-    way_m = _way(pairs)
+    path_length_m = _way(pairs)
     starts = np.arange(0, len(pairs), step)
     ends = {}
     for length_m in lengths_m:
-        end = np.searchsorted(way_m, way_m[starts] + length_m, side="right")
+        end = np.searchsorted(path_length_m, path_length_m[starts] + length_m, side="right")
         ends[float(length_m)] = np.where(end < len(pairs), end, -1)
     official = tuple(lengths_m) == OFFICIAL_M
     name = f"KITTI, pieces of {lengths_m[0]:g} to {lengths_m[-1]:g} m"
@@ -103,11 +103,11 @@ def _way(pairs: PosePairs) -> Array:
 def _drift(
     pairs: PosePairs, starts: Rows, ends: dict[float, Rows], *, metric: str, unit: str
 ) -> Drift:
-    way_m = _way(pairs)
+    path_length_m = _way(pairs)
     rows, all_translation, all_rotation = [], [], []
     for length, end in ends.items():
         first, last = starts[end >= 0], end[end >= 0]
-        covered_m = way_m[last] - way_m[first]
+        covered_m = path_length_m[last] - path_length_m[first]
         moved = covered_m > _MIN_WAY_M
         first, last, covered_m = first[moved], last[moved], covered_m[moved]
         length_m = covered_m if unit == "frames" else np.full(len(last), length)

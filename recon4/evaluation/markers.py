@@ -23,7 +23,7 @@ MAX_VERTICAL_LIMIT_M = 0.24
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Marker:
+class SurveyMarker:
     """A surveyed point."""
 
     name: str
@@ -72,7 +72,7 @@ class MarkerTable:
         )
 
 
-def compare_markers(measured: dict[str, Array], reference: tuple[Marker, ...]) -> MarkerTable:
+def compare_markers(measured: dict[str, Array], reference: tuple[SurveyMarker, ...]) -> MarkerTable:
     """Coordinates picked in the map against surveyed ones.
 
     Args:
@@ -95,7 +95,7 @@ def compare_markers(measured: dict[str, Array], reference: tuple[Marker, ...]) -
     )
 
 
-def read_markers(path: Path) -> tuple[Marker, ...]:
+def read_markers(path: Path) -> tuple[SurveyMarker, ...]:
     """Read a CSV with a header naming ``name``, ``x_m``, ``y_m``, ``z_m`` and perhaps ``role``.
 
     Raises:
@@ -108,7 +108,7 @@ def read_markers(path: Path) -> tuple[Marker, ...]:
         raise CorruptFile(f"{path.name}: cannot be read as CSV: {error}") from error
 
 
-def _marker(line: dict[str, str | None], where: str) -> Marker:
+def _marker(line: dict[str, str | None], where: str) -> SurveyMarker:
     try:
         xyz_m = np.array([parse_float(line[key] or "") for key in ("x_m", "y_m", "z_m")])
         name, role = line["name"] or "", line.get("role") or "check"
@@ -121,10 +121,10 @@ def _marker(line: dict[str, str | None], where: str) -> Marker:
             f"{where}: expected a name, a role control or check and finite numbers, "
             f"got {str(line)[:200]}"
         )
-    return Marker(name, xyz_m, "control" if role == "control" else "check")
+    return SurveyMarker(name, xyz_m, "control" if role == "control" else "check")
 
 
-def _row(marker: Marker, found_m: Array) -> MarkerRow:
+def _row(marker: SurveyMarker, found_m: Array) -> MarkerRow:
     dx, dy, dz = (float(d) for d in np.asarray(found_m, dtype=np.float64) - marker.xyz_m)
     horizontal = float(np.hypot(dx, dy))
     return MarkerRow(

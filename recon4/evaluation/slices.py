@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.evaluation.mesh import Mesh
+from recon4.evaluation.reference_mesh import TriangleMesh
 from recon4.geometry.se3 import SE3, Array
 
 Distance = Callable[[Array], Array]
@@ -48,9 +48,9 @@ class SliceError:
     """Points farther away: people, mixed pixels, or a map that is wrong."""
     mean_m: float
     """Mean distance to the model [m]; NaN = no points."""
-    share_2cm: float
+    ratio_within_2cm: float
     """Share of the points nearer than 2 cm, 0..1."""
-    share_5cm: float
+    ratio_within_5cm: float
     """Share of the points nearer than 5 cm, 0..1."""
 
 
@@ -72,7 +72,7 @@ class RelativeError:
 
 
 def spread_slices(
-    mesh: Mesh, *, horizontal: int = 4, vertical: int = 4, width_m: float = 0.02
+    mesh: TriangleMesh, *, horizontal: int = 4, vertical: int = 4, width_m: float = 0.02
 ) -> tuple[Slice, ...]:
     """Slices spread evenly through the model: half of the vertical ones across x, half across y.
 
@@ -112,7 +112,7 @@ def relative_error(
         outlier_m: Points farther from the model than this are counted, not averaged [m].
         alignment: How ``T_model_map`` was found, in words.
     """
-    tallies = [_Tally(s, distance, outlier_m) for s in slices]
+    tallies = [_ErrorAccumulator(s, distance, outlier_m) for s in slices]
     for chunk in chunks:
         p_model = T_model_map @ np.asarray(chunk, dtype=np.float64)
         for tally in tallies:
@@ -122,7 +122,7 @@ def relative_error(
     histogram = np.sum([tally.histogram for tally in tallies], axis=0)
     return RelativeError(
         slices=rows,
-        point_weighted=together(rows),
+        point_weighted=merge_slices(rows),
         plain_mean_m=float(np.mean(measured)) if measured else float("nan"),
         outlier_m=outlier_m,
         histogram=histogram,
@@ -130,7 +130,7 @@ def relative_error(
     )
 
 
-class _Tally:
+class _ErrorAccumulator:
     """What was found in one slice so far; distances are taken batch by batch."""
 
     def __init__(self, where: Slice, distance: Distance, outlier_m: float) -> None:
@@ -157,8 +157,8 @@ class _Tally:
             points=points,
             outliers=self.outliers,
             mean_m=_ratio(self.sum_m, points),
-            share_2cm=_ratio(self.within_2cm, points),
-            share_5cm=_ratio(self.within_5cm, points),
+            ratio_within_2cm=_ratio(self.within_2cm, points),
+            ratio_within_5cm=_ratio(self.within_5cm, points),
         )
 
     def _measure(self) -> None:
@@ -176,7 +176,7 @@ class _Tally:
         self.histogram += np.bincount(classes, minlength=len(self.histogram))
 
 
-def together(rows: tuple[SliceError, ...]) -> SliceError:
+def merge_slices(rows: tuple[SliceError, ...]) -> SliceError:
     """All slices thrown together, weighted by points."""
     points = sum(row.points for row in rows)
     used = [row for row in rows if row.points]
@@ -185,8 +185,8 @@ def together(rows: tuple[SliceError, ...]) -> SliceError:
         points=points,
         outliers=sum(row.outliers for row in rows),
         mean_m=_ratio(sum(row.mean_m * row.points for row in used), points),
-        share_2cm=_ratio(sum(row.share_2cm * row.points for row in used), points),
-        share_5cm=_ratio(sum(row.share_5cm * row.points for row in used), points),
+        ratio_within_2cm=_ratio(sum(row.ratio_within_2cm * row.points for row in used), points),
+        ratio_within_5cm=_ratio(sum(row.ratio_within_5cm * row.points for row in used), points),
     )
 
 

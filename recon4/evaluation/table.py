@@ -33,6 +33,6 @@ def number(value: float, digits: int = 2, scale: float = 1.0) -> str:
     return f"{scaled:.{digits}f}" if scaled - scaled == 0 else _MISSING
 
 
-def share(value: float, digits: int = 1) -> str:
+def percentage(value: float, digits: int = 1) -> str:
     """A share 0..1 as per cent."""
     return f"{number(value, digits, 100.0)} %" if value == value else _MISSING

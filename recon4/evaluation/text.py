@@ -10,7 +10,7 @@ from recon4.evaluation.floor import ErrorFloor
 from recon4.evaluation.kitti import Drift
 from recon4.evaluation.markers import MarkerTable
 from recon4.evaluation.slices import RelativeError, SliceError
-from recon4.evaluation.table import number, share, text_table
+from recon4.evaluation.table import number, percentage, text_table
 
 if TYPE_CHECKING:
     from recon4.evaluation.evaluate import Evaluation
@@ -23,8 +23,8 @@ def evaluation_text(found: Evaluation) -> str:
     """All tables of an evaluation."""
     head = (
         f"{found.estimate} against {found.truth}: {found.poses} poses "
-        f"({share(found.covered_share)} covered by the truth), "
-        f"{found.duration_s:.1f} s, {found.way_m:.1f} m"
+        f"({percentage(found.coverage_ratio)} covered by the truth), "
+        f"{found.duration_s:.1f} s, {found.path_length_m:.1f} m"
     )
     parts = [head, ate_text(found), *(drift_text(drift) for drift in found.drift)]
     if found.relative is not None:
@@ -150,6 +150,6 @@ def _slice_row(row: SliceError) -> tuple[str, ...]:
         str(row.points),
         str(row.outliers),
         number(row.mean_m, 2, _CM),
-        share(row.share_2cm),
-        share(row.share_5cm),
+        percentage(row.ratio_within_2cm),
+        percentage(row.ratio_within_5cm),
     )

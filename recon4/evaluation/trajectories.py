@@ -6,7 +6,7 @@ from pathlib import Path
 
 from recon4.errors import UnknownFormat
 from recon4.model.trajectory import Trajectory
-from recon4.recording.poses import read_tum
+from recon4.recording.formats.poses import read_tum
 from recon4.store.arrays import load_trajectory
 
 

@@ -37,7 +37,7 @@ FIELDS = ["intensity", "ring", "sensor", "echo", "frame_id", "t_ns"]
 
 
 @dataclass(slots=True)
-class _Written:
+class _WrittenBounds:
     """What the file must turn out to hold."""
 
     count: int = 0
@@ -143,8 +143,8 @@ def _wkt(crs: str) -> str:
         return str(known.to_wkt())
 
 
-def _write(file: _Watched, header: Any, stream: Iterable[Block]) -> _Written:
-    written = _Written()
+def _write(file: _Watched, header: Any, stream: Iterable[Block]) -> _WrittenBounds:
+    written = _WrittenBounds()
     absolute = header.global_encoding.gps_time_type == laspy.header.GpsTimeType.STANDARD
     with laspy.open(
         file,
@@ -185,7 +185,7 @@ def _points(block: Block, header: Any, *, absolute: bool) -> Any:
     return points
 
 
-def _check(path: Path, written: _Written, header: Any) -> None:
+def _check(path: Path, written: _WrittenBounds, header: Any) -> None:
     """Read back count, bounds, CRS, and the first and last point.
 
     Raises:

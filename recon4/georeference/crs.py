@@ -15,7 +15,7 @@ _ENU_OF_NED = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
 
 
 @dataclass(frozen=True, slots=True)
-class Origin:
+class GeodeticOrigin:
     """Where a local frame (x east, y north, z up) touches the earth: WGS 84, ellipsoidal."""
 
     lat_rad: float
@@ -28,13 +28,13 @@ def enu_of_ned(v: Array) -> Array:
     return v @ _ENU_OF_NED.T
 
 
-def to_enu(origin: Origin, lat_rad: Array, lon_rad: Array, *, height_m: Array) -> Array:
+def to_enu(origin: GeodeticOrigin, lat_rad: Array, lon_rad: Array, *, height_m: Array) -> Array:
     """Geodetic positions in the local frame [m], (N, 3)."""
     east, north, up = _topocentric(origin).transform(lon_rad, lat_rad, height_m, radians=True)
     return np.stack([east, north, up], axis=-1)
 
 
-def to_geodetic(origin: Origin, p_enu: Array) -> tuple[Array, Array, Array]:
+def to_geodetic(origin: GeodeticOrigin, p_enu: Array) -> tuple[Array, Array, Array]:
     """Latitude [rad], longitude [rad] and ellipsoidal height [m] of local positions (N, 3)."""
     lon, lat, height = _topocentric(origin).transform(
         *np.asarray(p_enu, dtype=np.float64).T, direction="INVERSE", radians=True
@@ -42,7 +42,7 @@ def to_geodetic(origin: Origin, p_enu: Array) -> tuple[Array, Array, Array]:
     return lat, lon, height
 
 
-def default_crs(origin: Origin) -> str:
+def default_crs(origin: GeodeticOrigin) -> str:
     """UTM zone of the place on WGS 84; heights stay ellipsoidal."""
     zone = int((np.rad2deg(origin.lon_rad) + 180.0) // 6.0) % 60 + 1
     return f"EPSG:{32600 + zone if origin.lat_rad >= 0.0 else 32700 + zone}"
@@ -55,7 +55,7 @@ class CrsTransform:
     heights follow its quasi-geoid. Easting comes first whatever the system's own order.
     """
 
-    def __init__(self, origin: Origin, crs: str = "") -> None:
+    def __init__(self, origin: GeodeticOrigin, crs: str = "") -> None:
         """Find the best operation at this place.
 
         Args:
@@ -111,7 +111,7 @@ class CrsTransform:
         return p_crs
 
 
-def _topocentric(origin: Origin) -> Any:
+def _topocentric(origin: GeodeticOrigin) -> Any:
     from pyproj import Transformer
 
     return Transformer.from_pipeline(
@@ -136,7 +136,7 @@ def _system(name: str) -> Any:
     return system
 
 
-def _best_transformer(origin: Origin, target: Any, name: str) -> Any:
+def _best_transformer(origin: GeodeticOrigin, target: Any, name: str) -> Any:
     from pyproj.aoi import AreaOfInterest
     from pyproj.transformer import TransformerGroup
 

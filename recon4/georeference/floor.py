@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from recon4.geometry.se3 import Array
-from recon4.georeference.level import NOT_LEVELLED, Levelling, tilt_to
+from recon4.georeference.level import NOT_LEVELED, Leveling, tilt_to
 
 _CELL_M = 0.4
 _MIN_POINTS = 12
@@ -20,7 +20,7 @@ _MIN_PATCHES = 5
 _MAX_CANDIDATES = 500
 
 
-def level_by_floor(p_odom: Array, origin_odom: Array) -> Levelling:
+def level_by_floor(p_odom: Array, origin_odom: Array) -> Leveling:
     """The direction most horizontal patches below the sensor agree on.
 
     Only directions are compared, so storeys, landings and stair treads all help, and ramps are
@@ -38,7 +38,7 @@ def level_by_floor(p_odom: Array, origin_odom: Array) -> Levelling:
     near = (offset[:, 2] < -_BELOW_M) & (np.hypot(offset[:, 0], offset[:, 1]) < _NEAR_M)
     normals = _patch_normals(p_odom[near])
     if len(normals) < _MIN_PATCHES:
-        return NOT_LEVELLED
+        return NOT_LEVELED
     step = max(1, len(normals) // _MAX_CANDIDATES)
     agree = normals[::step] @ normals.T > np.cos(_AGREE_RAD)
     up = normals[::step][np.argmax(agree.sum(1))]
@@ -46,10 +46,10 @@ def level_by_floor(p_odom: Array, origin_odom: Array) -> Levelling:
         kept = normals @ up > np.cos(_AGREE_RAD)
         up = normals[kept].mean(0) / np.linalg.norm(normals[kept].mean(0))
     if kept.sum() < _MIN_PATCHES:
-        return NOT_LEVELLED
+        return NOT_LEVELED
     angles = np.arccos(np.clip(normals[kept] @ up, -1.0, 1.0))
     spread = float(np.sqrt(np.mean(angles**2)))
-    return Levelling(tilt_to(up), "floor", int(kept.sum()), int((~kept).sum()), spread)
+    return Leveling(tilt_to(up), "floor", int(kept.sum()), int((~kept).sum()), spread)
 
 
 def _patch_normals(p_odom: Array) -> Array:

@@ -9,8 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array, align_points
-from recon4.georeference.crs import Origin
-from recon4.georeference.fixes import Fixes, correlated_sd, one_a_node, usable_fixes
+from recon4.georeference.crs import GeodeticOrigin
+from recon4.georeference.gnss_priors import (
+    GnssPriors,
+    correlated_sd,
+    one_prior_per_node,
+    usable_gnss_priors,
+)
 from recon4.model.pose_graph import PoseGraph, Reason, Verdict
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples
@@ -20,7 +25,7 @@ from recon4.pose_graph.solve import PosePriors, PositionPriors, Priors, optimize
 from recon4.settings import GnssSettings
 
 _DRAWS = 400
-_MIN_FIXES = 5
+_MIN_PRIORS = 5
 _OUTLIER_SD = 5.0
 
 
@@ -30,7 +35,7 @@ class GeoreferenceResult:
 
     graph: PoseGraph
     """``T_map_body`` with x east, y north, z up at the origin, if there is one."""
-    origin: Origin | None
+    origin: GeodeticOrigin | None
     """None: the map stays in a local frame of its own and has no place on earth."""
     reason: str
     """Why there is no origin; empty if there is one."""
@@ -110,25 +115,25 @@ def georeference(
     if gnss is None or not settings.enabled:
         why = "no GNSS in the recording" if gnss is None else "switched off (gnss.enabled)"
         return _local(graph, why, samples=0)
-    fixes, origin = usable_fixes(graph, trajectory, gnss, rig, settings=settings)
-    if origin is None or len(fixes) < _MIN_FIXES:
-        return _local(graph, f"{len(fixes)} usable fixes of {len(gnss)}", samples=len(gnss))
-    p_map = graph.T_map_body[fixes.node] @ fixes.p_node_antenna
-    T_enu_map, near = align_heading(p_map, fixes, settings=settings)
+    gnss_priors, origin = usable_gnss_priors(graph, trajectory, gnss, rig, settings=settings)
+    if origin is None or len(gnss_priors) < _MIN_PRIORS:
+        return _local(graph, f"{len(gnss_priors)} usable fixes of {len(gnss)}", samples=len(gnss))
+    p_map = graph.T_map_body[gnss_priors.node] @ gnss_priors.p_node_antenna
+    T_enu_map, near = align_heading(p_map, gnss_priors, settings=settings)
     extent = float(np.linalg.norm(np.ptp(p_map[near, :2], axis=0))) if near.any() else 0.0
-    if near.sum() < _MIN_FIXES or extent < settings.min_extent_m:
+    if near.sum() < _MIN_PRIORS or extent < settings.min_extent_m:
         why = f"{near.sum()} agreeing fixes over {extent:.1f} m"
         return _local(graph, why, samples=len(gnss))
     graph = graph.with_poses(T_enu_map @ graph.T_map_body)
-    rejected = _contradicting(graph, fixes, near, settings=settings)
-    graph, used = _solve(_without(graph, rejected), fixes, near, settings=settings)
+    rejected = _contradicting(graph, gnss_priors, near, settings=settings)
+    graph, used = _solve(_without(graph, rejected), gnss_priors, near, settings=settings)
     return GeoreferenceResult(
         graph=graph,
         origin=origin,
         reason="",
         T_enu_map=T_enu_map,
-        t_ns=fixes.t_ns,
-        residual_m=_residuals(graph, fixes),
+        t_ns=gnss_priors.t_ns,
+        residual_m=_residuals(graph, gnss_priors),
         used=used,
         samples=len(gnss),
         rejected=tuple(rejected),
@@ -136,13 +141,13 @@ def georeference(
 
 
 def align_heading(
-    p_map: Array, fixes: Fixes, *, settings: GnssSettings
+    p_map: Array, gnss_priors: GnssPriors, *, settings: GnssSettings
 ) -> tuple[SE3, NDArray[np.bool_]]:
     """Heading and shift that most fixes agree with.
 
     Args:
         p_map: Antenna in the levelled map at each fix [m], (M, 3).
-        fixes: The same in the local frame on earth.
+        gnss_priors: The same in the local frame on earth.
         settings: Gate and seed.
 
     Returns:
@@ -150,22 +155,26 @@ def align_heading(
     """
     rng = np.random.default_rng(settings.seed)
     steps = np.linalg.norm(np.diff(p_map, axis=0), axis=1)
-    gate = settings.gate_m + settings.gate_relative * steps.sum() + 3.0 * fixes.sd_m[:, :2].max(1)
+    gate = (
+        settings.gate_m
+        + settings.gate_relative * steps.sum()
+        + 3.0 * gnss_priors.sd_m[:, :2].max(1)
+    )
     far_enough = max(settings.min_extent_m, 0.3 * float(np.linalg.norm(np.ptp(p_map, axis=0))))
-    best = (SE3.identity(), np.zeros(len(fixes), dtype=np.bool_))
+    best = (SE3.identity(), np.zeros(len(gnss_priors), dtype=np.bool_))
     for _ in range(_DRAWS):
-        a, b = rng.integers(0, len(fixes), 2)
+        a, b = rng.integers(0, len(gnss_priors), 2)
         if np.linalg.norm(p_map[a, :2] - p_map[b, :2]) < far_enough:
             continue
         pair = [a, b]
-        T_enu_map = _heading_fit(p_map[pair], fixes.p_enu[pair], fixes.sd_m[pair])
-        near = _near(T_enu_map, p_map, fixes, gate)
+        T_enu_map = _heading_fit(p_map[pair], gnss_priors.p_enu[pair], gnss_priors.sd_m[pair])
+        near = _near(T_enu_map, p_map, gnss_priors, gate)
         if near.sum() > best[1].sum():
             best = (T_enu_map, near)
     for _ in range(5 if best[1].any() else 0):
         near = best[1]
-        T_enu_map = _heading_fit(p_map[near], fixes.p_enu[near], fixes.sd_m[near])
-        best = (T_enu_map, _near(T_enu_map, p_map, fixes, gate))
+        T_enu_map = _heading_fit(p_map[near], gnss_priors.p_enu[near], gnss_priors.sd_m[near])
+        best = (T_enu_map, _near(T_enu_map, p_map, gnss_priors, gate))
     return best
 
 
@@ -179,29 +188,29 @@ def _heading_fit(p_map: Array, p_enu: Array, sd_m: Array) -> SE3:
     return SE3(turn.R, shift)
 
 
-def _near(T_enu_map: SE3, p_map: Array, fixes: Fixes, gate: Array) -> NDArray[np.bool_]:
-    off = fixes.p_enu - T_enu_map @ p_map
-    vertical = gate + 3.0 * fixes.sd_m[:, 2]
+def _near(T_enu_map: SE3, p_map: Array, gnss_priors: GnssPriors, gate: Array) -> NDArray[np.bool_]:
+    off = gnss_priors.p_enu - T_enu_map @ p_map
+    vertical = gate + 3.0 * gnss_priors.sd_m[:, 2]
     return (np.hypot(off[:, 0], off[:, 1]) < gate) & (np.abs(off[:, 2]) < vertical)
 
 
 def _solve(
-    graph: PoseGraph, fixes: Fixes, near: NDArray[np.bool_], *, settings: GnssSettings
+    graph: PoseGraph, gnss_priors: GnssPriors, near: NDArray[np.bool_], *, settings: GnssSettings
 ) -> tuple[PoseGraph, NDArray[np.bool_]]:
     """Solve with the fixes near, then once more without those that do not fit."""
     used, tilt = near, _tilt_priors(graph, sd_rad=settings.tilt_sd_rad)
     for _ in range(2):
-        priors = (_positions(fixes.take(used), settings), tilt)
+        priors = (_positions(gnss_priors.take(used), settings), tilt)
         solution = optimize(graph, kernel="cauchy", fixed=(), priors=priors)
         graph = graph.with_poses(solution.T_map_body)
-        off = np.abs(_residuals(graph, fixes)) / fixes.sd_m
+        off = np.abs(_residuals(graph, gnss_priors)) / gnss_priors.sd_m
         scale = np.maximum(1.4826 * np.median(off[used], axis=0), 1.0)
         used = near & np.all(off < _OUTLIER_SD * scale, axis=1)
     return graph, used
 
 
 def _contradicting(
-    graph: PoseGraph, fixes: Fixes, near: NDArray[np.bool_], *, settings: GnssSettings
+    graph: PoseGraph, gnss_priors: GnssPriors, near: NDArray[np.bool_], *, settings: GnssSettings
 ) -> list[int]:
     """Rows of edges that the robust solve turns down once positions hold the map.
 
@@ -211,9 +220,9 @@ def _contradicting(
     if not settings.judge_edges:
         return []
     short = tuple(e for e in graph.edges if e.decided_by != "auto" or abs(e.j - e.i) < LOOP_NODES)
-    walk, used = _solve(graph.with_edges(short), fixes, near, settings=settings)
+    walk, used = _solve(graph.with_edges(short), gnss_priors, near, settings=settings)
     tilt = _tilt_priors(graph, sd_rad=settings.tilt_sd_rad)
-    priors: tuple[Priors, ...] = (_positions(fixes.take(used), settings), tilt)
+    priors: tuple[Priors, ...] = (_positions(gnss_priors.take(used), settings), tilt)
     graph = graph.with_poses(walk.T_map_body)
     weights = optimize_gnc(graph, fixed=(), priors=priors).weights
     return [row for row, edge in enumerate(graph.edges) if edge.in_graph and weights[row] == 0.0]
@@ -226,8 +235,8 @@ def _without(graph: PoseGraph, rows: list[int]) -> PoseGraph:
     return graph.with_edges(tuple(edges))
 
 
-def _positions(fixes: Fixes, settings: GnssSettings) -> PositionPriors:
-    chosen = one_a_node(fixes)
+def _positions(gnss_priors: GnssPriors, settings: GnssSettings) -> PositionPriors:
+    chosen = one_prior_per_node(gnss_priors)
     sd_m = correlated_sd(chosen, correlation_s=settings.correlation_s)
     return PositionPriors(chosen.node, chosen.p_enu, chosen.p_node_antenna, sd_m)
 
@@ -248,8 +257,8 @@ def _tilt_priors(graph: PoseGraph, *, sd_rad: float) -> PosePriors:
     return PosePriors(np.arange(len(graph)), graph.T_map_body, information)
 
 
-def _residuals(graph: PoseGraph, fixes: Fixes) -> Array:
-    return fixes.p_enu - graph.T_map_body[fixes.node] @ fixes.p_node_antenna
+def _residuals(graph: PoseGraph, gnss_priors: GnssPriors) -> Array:
+    return gnss_priors.p_enu - graph.T_map_body[gnss_priors.node] @ gnss_priors.p_node_antenna
 
 
 def _local(graph: PoseGraph, reason: str, *, samples: int) -> GeoreferenceResult:

@@ -25,7 +25,7 @@ _MIN_PAIRS = 3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Levelling:
+class Leveling:
     """How a map has to be tilted to be horizontal."""
 
     T_level_odom: SE3
@@ -58,12 +58,12 @@ class Levelling:
         }
 
 
-NOT_LEVELLED = Levelling(SE3.identity(), "none", 0, 0, float("nan"))
+NOT_LEVELED = Leveling(SE3.identity(), "none", 0, 0, float("nan"))
 
 
 def level(
     trajectory: Trajectory, imu: ImuSamples | None, rig: Rig, *, gnss: GnssSamples | None = None
-) -> Levelling:
+) -> Leveling:
     """Level a map by what the IMU says, or say that it cannot (``source == "none"``).
 
     Attitudes of an INS come first, then the accelerometer. Without either, ask
@@ -83,7 +83,7 @@ def level(
         levelling = level_by_gravity(trajectory, imu, rig)
         if levelling.pairs >= _MIN_PAIRS:
             return levelling
-    return NOT_LEVELLED
+    return NOT_LEVELED
 
 
 def tilt_to(up_odom: Array) -> SE3:
@@ -94,7 +94,7 @@ def tilt_to(up_odom: Array) -> SE3:
     )
 
 
-def level_by_attitude(trajectory: Trajectory, gnss: GnssSamples, rig: Rig) -> Levelling:
+def level_by_attitude(trajectory: Trajectory, gnss: GnssSamples, rig: Rig) -> Leveling:
     """Average roll and pitch of an INS over the walk (V Eq. 2.13-2.16).
 
     The heading is that of the SLAM pose; as it has to be read in the levelled frame, it is taken
@@ -103,7 +103,7 @@ def level_by_attitude(trajectory: Trajectory, gnss: GnssSamples, rig: Rig) -> Le
     t_ns = gnss.t_ns
     rows = _covered(trajectory, t_ns) & np.isfinite(gnss.rpy_ned_rad[:, :2]).all(1)
     if rows.sum() < _MIN_PAIRS:
-        return NOT_LEVELLED
+        return NOT_LEVELED
     R_odom_imu = trajectory.at(t_ns[rows]).R @ rig.T_body_imu.R
     roll, pitch = gnss.rpy_ned_rad[rows, 0], gnss.rpy_ned_rad[rows, 1]
     # Seen with y left and z up, a pitch about y right (nose up) turns the other way.
@@ -121,7 +121,7 @@ def level_by_attitude(trajectory: Trajectory, gnss: GnssSamples, rig: Rig) -> Le
     return _result(T_level_odom, "ins", angles, kept)
 
 
-def level_by_gravity(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> Levelling:
+def level_by_gravity(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> Leveling:
     """Gravity from the accelerometer, freed of the walker's own acceleration.
 
     Over each second the mean specific force, turned into the odometry's frame, is gravity's
@@ -133,7 +133,7 @@ def level_by_gravity(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> Level
     """
     windows = _windows(trajectory, imu, rig)
     if windows is None:
-        return NOT_LEVELLED
+        return NOT_LEVELED
     force, R_mean = windows
     gravity, bias = np.median(force, axis=0), np.zeros(3)
     kept = np.zeros(len(force), dtype=np.bool_)
@@ -207,6 +207,6 @@ def _trimmed(angles: Array) -> Any:
     return angles <= np.maximum(_TRIM * np.median(angles) / 1.1774, 1e-9)
 
 
-def _result(T_level_odom: SE3, source: str, angles: Array, kept: Any) -> Levelling:
+def _result(T_level_odom: SE3, source: str, angles: Array, kept: Any) -> Leveling:
     spread = float(np.sqrt(np.mean(angles[kept] ** 2)))
-    return Levelling(T_level_odom, source, int(kept.sum()), int((~kept).sum()), spread)
+    return Leveling(T_level_odom, source, int(kept.sum()), int((~kept).sum()), spread)

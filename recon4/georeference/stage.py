@@ -10,16 +10,16 @@ import numpy as np
 from recon4.bounded import read_json_object
 from recon4.errors import GeoreferenceError, StoreError
 from recon4.geometry.se3 import Array
-from recon4.georeference.crs import CrsTransform, Origin
+from recon4.georeference.crs import CrsTransform, GeodeticOrigin
 from recon4.georeference.floor import level_by_floor
 from recon4.georeference.gnss import georeference
-from recon4.georeference.level import NOT_LEVELLED, Levelling, level
+from recon4.georeference.level import NOT_LEVELED, Leveling, level
 from recon4.mapping.place import place_with_origins
 from recon4.model.corrections import apply_corrections
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph, save_graph
 from recon4.pose_graph.relations import with_residuals
-from recon4.pose_graph.verification import confirmed_anew
+from recon4.pose_graph.verification import confirmed_again
 from recon4.progress import Progress
 from recon4.settings import Settings
 from recon4.store.arrays import load_trajectory, save_trajectory
@@ -69,7 +69,7 @@ def run_level(
     save_trajectory(out / "trajectory.npz", dense)
     judged = placed.graph
     if placed.rejected:
-        judged = confirmed_anew(judged, settings=settings.verification)
+        judged = confirmed_again(judged, settings=settings.verification)
     save_graph(out, with_residuals(judged))
     told = {"levelling": levelling.to_json(), "georeference": placed.to_json(), "crs": crs}
     write_json(out / "georeference.json", null_for_nan(told))
@@ -83,7 +83,7 @@ def run_level(
     }
 
 
-def find_level(frames: FrameStore, trajectory: Trajectory, *, source: str) -> Levelling:
+def find_level(frames: FrameStore, trajectory: Trajectory, *, source: str) -> Leveling:
     """The levelling that `LevelSettings.source` asks for; the floor is the last resort of ``auto``.
 
     Args:
@@ -91,7 +91,7 @@ def find_level(frames: FrameStore, trajectory: Trajectory, *, source: str) -> Le
         trajectory: ``T_odom_body``, dense.
         source: ``auto``, ``imu``, ``floor`` or ``none``.
     """
-    found = NOT_LEVELLED
+    found = NOT_LEVELED
     if source in {"auto", "imu"}:
         gnss = frames.gnss if source == "auto" else None
         found = level(trajectory, frames.imu, frames.rig, gnss=gnss)
@@ -123,13 +123,13 @@ def read_crs(artifact: Path, crs: str = "") -> CrsTransform | None:
         origin = told["georeference"]["origin"]
         lat_rad, lon_rad = np.deg2rad([origin["lat_deg"], origin["lon_deg"]]).tolist()
         return CrsTransform(
-            Origin(lat_rad, lon_rad, origin["height_m"]), crs or told["crs"]["name"]
+            GeodeticOrigin(lat_rad, lon_rad, origin["height_m"]), crs or told["crs"]["name"]
         )
     except (ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
         raise StoreError(f"{path} cannot be read: {error!r}") from error
 
 
-def _describe_crs(origin: Origin, name: str) -> dict[str, Any]:
+def _describe_crs(origin: GeodeticOrigin, name: str) -> dict[str, Any]:
     crs = CrsTransform(origin, name)
     return {
         "name": crs.crs,

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
-from recon4.intensity.surfaces import Sightings, Surfaces
+from recon4.intensity.surfaces import Observations, Surfaces
 from recon4.intensity.table import IntensityTable
 from recon4.store.arrays import load_record, save_record
 
@@ -76,7 +76,7 @@ def spread(count: Array, curve: Array, *, min_count: int = 1) -> float:
 
 
 def diagnose(
-    table: IntensityTable, sums: Array, surfaces: Surfaces, seen: Sightings
+    table: IntensityTable, sums: Array, surfaces: Surfaces, seen: Observations
 ) -> Diagnostics:
     """Dependency curves of some points under a table.
 
@@ -110,7 +110,9 @@ def diagnose(
     )
 
 
-def _same_surface(table: IntensityTable, surfaces: Surfaces, seen: Sightings) -> dict[str, Array]:
+def _same_surface(
+    table: IntensityTable, surfaces: Surfaces, seen: Observations
+) -> dict[str, Array]:
     """Curves of intensity over brightness, and the points they rest on."""
     brightness = surfaces.brightness_of(seen.cell)
     rows = np.flatnonzero(brightness > 0.0)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.intensity.diagnostics import Diagnostics, diagnose
-from recon4.intensity.surfaces import Sightings, cells_of, learn_surfaces, sightings_of
+from recon4.intensity.surfaces import Observations, cells_of, learn_surfaces, observations_of
 from recon4.intensity.table import IntensityTable
 from recon4.kernels.intensity import accumulate
 from recon4.kernels.voxels import face_sensor
@@ -70,7 +70,7 @@ def learn_intensity(
     windows = sample_windows(len(frames), settings.windows)
     shape = _shape(frames, windows, settings)
     few = settings.surface_points / max(1, sum(map(len, windows)))
-    learned, held_out = (_Pile(shape, few, settings) for _ in range(2))
+    learned, held_out = (_SampleAccumulator(shape, few, settings) for _ in range(2))
     for window in track(windows, progress, what="learn intensities", unit="windows"):
         samples = _sample(frames, trajectory, window, settings)
         for k, sample in enumerate(samples):
@@ -134,7 +134,7 @@ def _shape(
     return len(frames.rig.sensors), 1 + max(beams, default=0), incidences, ranges
 
 
-class _Pile:
+class _SampleAccumulator:
     """What samples add up to, and about ``few`` points of each of them."""
 
     def __init__(
@@ -142,7 +142,7 @@ class _Pile:
     ) -> None:
         self._few, self._settings = few, settings
         self._rng = np.random.default_rng(0)
-        self._seen: list[Sightings] = []
+        self._seen: list[Observations] = []
         self.sums = np.zeros((*shape, 3))
         self.largest = 0.0
 
@@ -153,7 +153,7 @@ class _Pile:
         rows = np.flatnonzero(self._rng.random(len(sample.cell)) * len(sample.cell) < self._few)
         sensors, rings, incidences, ranges, _ = self.sums.shape
         self._seen.append(
-            sightings_of(
+            observations_of(
                 sample.cell[rows],
                 sample.sensor[rows].astype(np.int64) * rings + sample.ring[rows],
                 sample.incidence_rad[rows],
@@ -164,9 +164,9 @@ class _Pile:
             )
         )
 
-    def sightings(self) -> Sightings:
+    def sightings(self) -> Observations:
         """Some points of all multiframes; the same ones in every run."""
-        return Sightings.joined(self._seen)
+        return Observations.joined(self._seen)
 
 
 def _sample(

@@ -29,7 +29,7 @@ GAUGE = 1e-3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Sightings:
+class Observations:
     """Points with the place they lie at and the bins they fall into."""
 
     cell: NDArray[np.int64]
@@ -43,9 +43,9 @@ class Sightings:
         return len(self.cell)
 
     @staticmethod
-    def joined(parts: Sequence[Sightings]) -> Sightings:
+    def joined(parts: Sequence[Observations]) -> Observations:
         """All of some sightings."""
-        return Sightings(
+        return Observations(
             np.concatenate([np.empty(0, np.int64), *(p.cell for p in parts)]),
             np.concatenate([np.empty((0, 3), np.int32), *(p.bins for p in parts)]),
             np.concatenate([np.empty(0, np.float32), *(p.intensity for p in parts)]),
@@ -79,7 +79,7 @@ def cells_of(xyz_m: Array, cell_m: float) -> NDArray[np.int64]:
     return np.asarray(at[:, 0] << 42 | at[:, 1] << 21 | at[:, 2], dtype=np.int64)
 
 
-def sightings_of(
+def observations_of(
     cell: NDArray[np.int64],
     channel: NDArray[np.int64],
     incidence_rad: NDArray[np.float32],
@@ -88,16 +88,16 @@ def sightings_of(
     intensity: NDArray[np.uint16],
     shape: tuple[int, int, int],
     settings: IntensitySettings,
-) -> Sightings:
+) -> Observations:
     """Sort points into bins; ``shape`` counts channels, bins of incidence and of range."""
     bins = np.empty((len(cell), 3), np.int32)
     width_rad = float(np.deg2rad(settings.incidence_bin_deg))
     bins_of(channel, incidence_rad, range_m, width_rad, settings.range_bin_m, shape, bins)
-    return Sightings(cell, bins, intensity.astype(np.float32))
+    return Observations(cell, bins, intensity.astype(np.float32))
 
 
 def learn_surfaces(
-    sightings: Sightings, shape: tuple[int, int, int, int], *, settings: IntensitySettings
+    sightings: Observations, shape: tuple[int, int, int, int], *, settings: IntensitySettings
 ) -> Surfaces:
     """Estimate factors and brightnesses.
 

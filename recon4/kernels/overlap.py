@@ -40,7 +40,7 @@ def nearest_ranges(p: Any, azimuth_bins: int, elevation_bins: int, min_points: i
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def share_inside(buffer: Any, p: Any, R: Any, t: Any, relative: float, absolute_m: float) -> float:
+def inside_ratio(buffer: Any, p: Any, R: Any, t: Any, relative: float, absolute_m: float) -> float:
     """Share of points, moved by (R, t) into the buffer's frame, that its view volume holds."""
     azimuth_bins, elevation_bins = buffer.shape
     inside = 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
-from recon4.live.session import Session
+from recon4.live.session import CaptureSession
 from recon4.model.rig import Rig
 from recon4.sandbox import Confinement, Network, Policy, confine, restart_with_one_thread
 from recon4.sandbox.limits import physical_memory_bytes
@@ -15,7 +15,7 @@ _SHARE_OF_MEMORY = 0.7
 _OPEN_FILES = 1024
 
 
-def confine_recorder(session: Session, rig: Rig) -> Confinement:
+def confine_recorder(session: CaptureSession, rig: Rig) -> Confinement:
     """Let this process write the recording and receive datagrams, and nothing else.
 
     With a serial GNSS receiver it also opens devices, because a receiver that is plugged in again
@@ -33,7 +33,7 @@ def confine_recorder(session: Session, rig: Rig) -> Confinement:
     return confine(policy)
 
 
-def confine_mapper(session: Session) -> Confinement:
+def confine_mapper(session: CaptureSession) -> Confinement:
     """Let this process write its project and talk over Unix sockets, and nothing else."""
     restart_with_one_thread()
     policy = Policy(
@@ -47,18 +47,18 @@ def confine_mapper(session: Session) -> Confinement:
     return confine(policy)
 
 
-def mapper_environment(session: Session) -> dict[str, str]:
+def mapper_environment(session: CaptureSession) -> dict[str, str]:
     """What the mapper needs in its environment besides the usual: its caches, made here."""
     shutil.rmtree(scratch_of(session), ignore_errors=True)  # of a mapper that was killed
     return private_cache(scratch_of(session) / "caches")
 
 
-def scratch_of(session: Session) -> Path:
+def scratch_of(session: CaptureSession) -> Path:
     """Folder of the mapper's temporary files; to be removed when it ends."""
     return session.folder / "scratch"
 
 
-def _sockets(session: Session) -> Path:
+def _sockets(session: CaptureSession) -> Path:
     return session.socket("mapper").parent
 
 

@@ -10,11 +10,11 @@ from contextlib import suppress
 from typing import Any
 
 from recon4.errors import ConfigError
-from recon4.live.link import linked, started
+from recon4.live.ipc.line_client import linked, started
 from recon4.live.project_files import discard
-from recon4.live.session import Session
+from recon4.live.session import CaptureSession
 
-SAY_EVERY_S = 2.0
+REPORT_EVERY_S = 2.0
 _MAPPER_STARTS = 3
 
 Newest = dict[str, dict[str, Any]]
@@ -23,15 +23,15 @@ Newest = dict[str, dict[str, Any]]
 class Headless:
     """Starts both processes, follows what they say, and stops them in good order."""
 
-    def __init__(self, session: Session, *, say: Callable[[Newest, str], None]) -> None:
+    def __init__(self, session: CaptureSession, *, send: Callable[[Newest, str], None]) -> None:
         """Prepare.
 
         Args:
             session: Of a project that was begun.
-            say: Called every `SAY_EVERY_S` with the newest message of each kind and what is wrong
-                with the capture itself.
+            send: Called every `REPORT_EVERY_S` with the newest message of each kind and what is
+                wrong with the capture itself.
         """
-        self._session, self._say = session, say
+        self._session, self._send = session, send
         self._newest: Newest = {}
         self._problem = ""
         self._stopping = asyncio.Event()
@@ -54,8 +54,8 @@ class Headless:
         for sign in (signal.SIGTERM, signal.SIGINT):
             loop.add_signal_handler(sign, self._stopping.set)
         stopping = asyncio.create_task(self._stop_after(seconds, recorder))
-        saying = asyncio.create_task(self._say_now_and_then())
-        hearing = asyncio.create_task(self._hear("recorder"))
+        saying = asyncio.create_task(self._report_periodically())
+        hearing = asyncio.create_task(self._receive_line("recorder"))
         try:
             await self._map()
             await recorder.wait()
@@ -71,7 +71,7 @@ class Headless:
         """Keep a mapper running until it is done."""
         for _ in range(_MAPPER_STARTS):
             mapper = await started(self._session, "mapper")
-            await self._hear("mapper")
+            await self._receive_line("mapper")
             await mapper.wait()
             if "done" in self._newest:
                 return
@@ -87,16 +87,16 @@ class Headless:
             recorder.terminate()
         await recorder.wait()
 
-    async def _hear(self, name: str) -> None:
+    async def _receive_line(self, name: str) -> None:
         with suppress(OSError):
             async with linked(self._session.socket(name)) as link:
-                async for told in link.lines():
-                    self._newest[told["kind"]] = told
+                async for message in link.lines():
+                    self._newest[message["kind"]] = message
 
-    async def _say_now_and_then(self) -> None:
+    async def _report_periodically(self) -> None:
         while True:
-            await asyncio.sleep(SAY_EVERY_S)
-            self._say(self._newest, self._problem)
+            await asyncio.sleep(REPORT_EVERY_S)
+            self._send(self._newest, self._problem)
 
 
 def progress_line(newest: Newest, began_s: float) -> str:

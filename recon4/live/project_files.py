@@ -9,8 +9,8 @@ from typing import Any
 
 from recon4 import stages
 from recon4.errors import StoreError
-from recon4.live.ports import check_sources
-from recon4.live.session import Session
+from recon4.live.recorder.ports import check_sources
+from recon4.live.session import CaptureSession
 from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.progress import Silent
 from recon4.settings import Settings
@@ -21,20 +21,20 @@ from recon4.store.project import Project, is_project
 from recon4.store.stage import Input, StageRunner
 
 
-def begin(project: Path, rig: Rig, **how: Any) -> Session:
+def begin(project: Path, rig: Rig, **how: Any) -> CaptureSession:
     """Make the project of a capture that is about to start.
 
     Args:
         project: Folder that does not exist yet, or is empty.
         rig: What is on the backpack.
-        how: Fields of `Session`.
+        how: Fields of `CaptureSession`.
 
     Raises:
         ConfigError: If the packets of two LiDARs of the rig could not be told apart.
         StoreError: If the folder is a project or something else, or cannot be written.
     """
     check_sources(rig)
-    session = Session(project=project, **how)
+    session = CaptureSession(project=project, **how)
     try:
         taken = is_project(project) and not _never_ran(session)
     except OSError as error:
@@ -49,19 +49,19 @@ def begin(project: Path, rig: Rig, **how: Any) -> Session:
     return session
 
 
-def discard(session: Session) -> None:
+def discard(session: CaptureSession) -> None:
     """Remove a project again whose recorder could not start: nothing was recorded."""
     if _never_ran(session):
         shutil.rmtree(session.project, ignore_errors=True)
 
 
-def _never_ran(session: Session) -> bool:
+def _never_ran(session: CaptureSession) -> bool:
     """Whether this is what `begin` left, and nothing more."""
     left = (session.capture, session.outcome, *(session.project / "artifacts").glob("*"))
     return (session.folder / "session.json").exists() and not any(path.exists() for path in left)
 
 
-def finish(session: Session, frames: Path, settings: Settings) -> int:
+def finish(session: CaptureSession, frames: Path, settings: Settings) -> int:
     """Give the frames made while walking to the project as its stage ``frames``.
 
     `recon4.pipeline.process` finds them there: reading the capture again would give the same.

@@ -23,10 +23,10 @@ from recon4.errors import ConfigError, EmptyRecording
 from recon4.live.session import stretched
 from recon4.model.rig import GNSS_PORT, IMU_PORT
 from recon4.progress import Progress
+from recon4.recording.formats.pcap import address_text, read_pcap
 from recon4.recording.open import pcap_files
-from recon4.recording.pcap import address_text, read_pcap
 from recon4.recording.report import ImportReport
-from recon4.recording.velodyne_models import DATA_SIZE, HOUR_US, POSITION_SIZE
+from recon4.recording.velodyne.models import DATA_SIZE, HOUR_US, POSITION_SIZE
 
 _STAMP_AT = {DATA_SIZE: 1200, POSITION_SIZE: 198}
 """Where a packet of this size has its microseconds past the hour."""
@@ -146,8 +146,8 @@ def moved(shipment: Shipment, shift_ns: int) -> Shipment:
 
 def _later(line: bytes, shift_ns: int) -> bytes:
     try:
-        told = json.loads(line)
-        return json.dumps(told | {"t_ns": told["t_ns"] + shift_ns}).encode()
+        message = json.loads(line)
+        return json.dumps(message | {"t_ns": message["t_ns"] + shift_ns}).encode()
     except (ValueError, TypeError, KeyError):
         return line
 

@@ -25,7 +25,7 @@ MOST_JSON_BYTES = 1 << 20
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Session:
+class CaptureSession:
     """How a capture was started."""
 
     project: Path
@@ -71,8 +71,8 @@ class Session:
     def save(self) -> None:
         """Write ``session.json``."""
         make_folders(self.folder)
-        told = {k: v for k, v in asdict(self).items() if k != "project"}
-        write_json(self.folder / "session.json", told)
+        message = {k: v for k, v in asdict(self).items() if k != "project"}
+        write_json(self.folder / "session.json", message)
 
 
 def stretched(t_ns: int, speed: float) -> int:
@@ -84,7 +84,7 @@ def stretched(t_ns: int, speed: float) -> int:
     return midnight_ns + round((t_ns - midnight_ns) * speed)
 
 
-def load_session(project: Path) -> Session:
+def load_session(project: Path) -> CaptureSession:
     """The session of a project.
 
     Raises:
@@ -92,6 +92,6 @@ def load_session(project: Path) -> Session:
     """
     path = project / "live" / "session.json"
     try:
-        return Session(project=project, **read_object(path, most_bytes=MOST_JSON_BYTES))
+        return CaptureSession(project=project, **read_object(path, most_bytes=MOST_JSON_BYTES))
     except TypeError as error:
         raise StoreError(f"{path} cannot be read: {error}") from error

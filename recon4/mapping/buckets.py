@@ -15,7 +15,7 @@ BURST = 6_000_000
 """Records held in memory before they are thinned and written (192 MB)."""
 
 
-class Buckets:
+class TileBuckets:
     """One file a tile in a folder; holds at most `BURST` records in memory."""
 
     def __init__(self, folder: Path, grid: Grid, *, burst: int = BURST) -> None:

@@ -12,7 +12,7 @@ from typing import TypeVar
 import numpy as np
 
 from recon4.intensity.table import IntensityTable
-from recon4.mapping.buckets import BURST, Buckets
+from recon4.mapping.buckets import BURST, TileBuckets
 from recon4.mapping.frames import Frames
 from recon4.mapping.grid import Grid
 from recon4.mapping.place import place_with_origins
@@ -71,7 +71,7 @@ def build_map(
         ThreadPoolExecutor(WORKERS) as pool,
         TileWriter(out, fields, tile_m=grid.tile_m) as writer,
     ):
-        buckets = Buckets(Path(folder), grid, burst=burst)
+        buckets = TileBuckets(Path(folder), grid, burst=burst)
         _deal_out(frames, trajectory, buckets, settings=settings, pool=pool, progress=progress)
         removed = _finish_tiles(buckets, recipe, writer, pool=pool, progress=progress)
         writer.facts = {
@@ -88,7 +88,7 @@ def build_map(
 def _deal_out(
     frames: Frames,
     trajectory: Trajectory,
-    buckets: Buckets,
+    buckets: TileBuckets,
     *,
     settings: MapSettings,
     pool: ThreadPoolExecutor,
@@ -111,7 +111,7 @@ def _deal_out(
 
 
 def _finish_tiles(
-    buckets: Buckets,
+    buckets: TileBuckets,
     recipe: Recipe,
     writer: TileWriter,
     *,

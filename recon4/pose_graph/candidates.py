@@ -86,14 +86,14 @@ def revisit_pairs(graph: PoseGraph, *, settings: GraphSettings, limit: int) -> l
     walked_m = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(t, axis=0), axis=1))])
     tried = {(e.i, e.j) for e in graph.edges}
     pairs = []
-    reach_m = settings.revisit_radius_m + settings.drift_share * walked_m
+    reach_m = settings.revisit_radius_m + settings.drift_ratio * walked_m
     near = cKDTree(t).query_ball_point(t, r=reach_m)
     for j, found in enumerate(near):
         earlier = np.sort([i for i in found if i < j - settings.neighbors])
         if len(earlier) == 0:
             continue
         distance_m = np.linalg.norm(t[earlier] - t[j], axis=1)
-        allowed_m = settings.revisit_radius_m + settings.drift_share * (
+        allowed_m = settings.revisit_radius_m + settings.drift_ratio * (
             walked_m[j] - walked_m[earlier]
         )
         inside = distance_m < allowed_m

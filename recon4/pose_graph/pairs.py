@@ -13,11 +13,11 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import Edge, EdgeKind, Reason, Verdict
 from recon4.progress import Progress
 from recon4.registration.collar_lines import LineTarget, register_lines
-from recon4.registration.overlap import View, overlap
+from recon4.registration.overlap import RangeImage, overlap
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.planes import register_to_planes
 from recon4.registration.result import Registration
-from recon4.registration.submap import Ends, NodeViews, Submaps, median_range_m
+from recon4.registration.submap import Ends, NodeRangeImages, Submaps, median_range_m
 from recon4.settings import Settings
 
 _CHUNK = 8
@@ -40,7 +40,9 @@ SubmapFactory = Callable[[], Submaps]
 class PairRegistrar:
     """Tries pairs on several threads; the answer does not depend on how many."""
 
-    def __init__(self, make_submaps: SubmapFactory, views: NodeViews, settings: Settings) -> None:
+    def __init__(
+        self, make_submaps: SubmapFactory, views: NodeRangeImages, settings: Settings
+    ) -> None:
         self._make_submaps, self._views, self._settings = make_submaps, views, settings
 
     def prepare(self, nodes: int, progress: Progress) -> None:
@@ -82,21 +84,28 @@ class PairRegistrar:
         for k in group:
             pair = pairs[k]
             ends = self._views.ends(pair.j)
-            share = self._overlap(pair)
-            if share < self._settings.overlap.threshold:
-                out.append((k, _edge(pair, share, Reason.OVERLAP)))
+            overlap_ratio = self._overlap(pair)
+            if overlap_ratio < self._settings.overlap.threshold:
+                out.append((k, _edge(pair, overlap_ratio, Reason.OVERLAP)))
                 continue
             if target is None:
                 target = self._target(submaps.around(pair.i, reach), planes)
-            out.append((k, self._judge(pair, share, self._solve(target, ends, pair, share))))
+            out.append(
+                (
+                    k,
+                    self._judge(
+                        pair, overlap_ratio, self._solve(target, ends, pair, overlap_ratio)
+                    ),
+                )
+            )
         return out
 
     def _overlap(self, pair: Pair) -> float:
         source, target = (self._view(node) for node in (pair.i, pair.j))
         return overlap(source, target, pair.T_i_j, self._settings.overlap)
 
-    def _view(self, node: int) -> View:
-        return View(self._views.ends(node).reshape(-1, 3), self._views.nearest_m(node))
+    def _view(self, node: int) -> RangeImage:
+        return RangeImage(self._views.ends(node).reshape(-1, 3), self._views.nearest_m(node))
 
     def _target(self, ends: Ends, planes: PlaneMap) -> PlaneMap | LineTarget:
         if self._settings.registration.solver != "planes":
@@ -106,20 +115,20 @@ class PairRegistrar:
         return planes
 
     def _solve(
-        self, target: PlaneMap | LineTarget, ends: Ends, pair: Pair, share: float
+        self, target: PlaneMap | LineTarget, ends: Ends, pair: Pair, overlap_ratio: float
     ) -> Registration:
         settings = self._settings.registration
         if isinstance(target, LineTarget):
             source = Lines.through(ends[:, 0], ends[:, 1])
             return register_lines(
-                target, source, guess=pair.T_i_j, portion=share, settings=settings
+                target, source, initial=pair.T_i_j, portion=overlap_ratio, settings=settings
             )
         return register_to_planes(
-            target, ends.reshape(-1, 3), guess=pair.T_i_j, planes=self._settings.planes,
+            target, ends.reshape(-1, 3), initial=pair.T_i_j, planes=self._settings.planes,
             settings=settings,
         )  # fmt: skip
 
-    def _judge(self, pair: Pair, share: float, found: Registration) -> Edge:
+    def _judge(self, pair: Pair, overlap_ratio: float, found: Registration) -> Edge:
         """Accept or reject (V Algorithm 2.1 line 8; A0 no. 12)."""
         g = self._settings.graph
         range_m = median_range_m(self._views.ends(pair.i))
@@ -129,11 +138,11 @@ class PairRegistrar:
             reason = Reason.NOT_CONVERGED
         elif not found.error_m <= limit_m:
             reason = Reason.ERROR
-        elif found.share < g.min_share:
+        elif found.match_ratio < g.min_match_ratio:
             reason = Reason.FEW_MATCHES
         elif found.degeneracy < g.min_degeneracy:
             reason = Reason.DEGENERATE
-        return _edge(pair, share, reason).evolve(
+        return _edge(pair, overlap_ratio, reason).evolve(
             T_i_j=found.T_target_source,
             error_m=found.error_m,
             limit_m=limit_m,
@@ -152,22 +161,22 @@ def edge_facts(edge: Edge) -> dict[str, object]:
         "edge_kind": edge.kind.value,
         "verdict": edge.verdict.value,
         "reason": edge.reason.value,
-        "overlap": _told(edge.overlap),
-        "error_m": _told(edge.error_m),
-        "limit_m": _told(edge.limit_m),
+        "overlap": _or_null(edge.overlap),
+        "error_m": _or_null(edge.error_m),
+        "limit_m": _or_null(edge.limit_m),
     }
 
 
-def _told(figure: float) -> float | None:
+def _or_null(figure: float) -> float | None:
     """A figure for JSON, which has no word for NaN; five digits are enough to look at."""
     return float(f"{figure:.5g}") if np.isfinite(figure) else None
 
 
-def _edge(pair: Pair, share: float, reason: Reason) -> Edge:
+def _edge(pair: Pair, overlap_ratio: float, reason: Reason) -> Edge:
     verdict = Verdict.REJECTED if reason else Verdict.ACCEPTED
     return Edge(
         i=pair.i, j=pair.j, T_i_j=pair.T_i_j, kind=pair.kind, verdict=verdict, reason=reason,
-        overlap=share,
+        overlap=overlap_ratio,
     )  # fmt: skip
 
 

@@ -17,7 +17,7 @@ from scipy.stats import chi2 as chi2_distribution
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import Flags, PoseGraph, Relations
 from recon4.pose_graph.relations import squared_residuals
-from recon4.pose_graph.solve import Priors, Problem, Solution, solved
+from recon4.pose_graph.solve import FactorProblem, Priors, Solution, solved
 
 _STEP = 2.0
 """Growth of GNC's control parameter a round; gtsam takes 1.4."""
@@ -62,7 +62,7 @@ def optimize_gnc(
         GraphError: As `solve.optimize`.
     """
     of = graph.relations
-    problem = Problem.check(graph.T_map_body, of, fixed=fixed, priors=priors)
+    problem = FactorProblem.check(graph.T_map_body, of, fixed=fixed, priors=priors)
     everything = of.in_graph.astype(np.float64)
     T_cauchy, _ = problem.solve(graph.T_map_body, weights=everything, kernel="cauchy")
     chi2 = squared_residuals(T_cauchy, of)
@@ -90,7 +90,9 @@ def outlier_limit(edge_chi2: Array, *, probability: float) -> float:
     return float(chi2_distribution.ppf(probability, 6) * np.clip(ratio, 1.0, _MAX_NOISE))
 
 
-def _starts(problem: Problem, T_map_body: SE3, T_cauchy: SE3, *, limit: float) -> Iterator[SE3]:
+def _starts(
+    problem: FactorProblem, T_map_body: SE3, T_cauchy: SE3, *, limit: float
+) -> Iterator[SE3]:
     of = problem.of
     short = of.in_graph & (of.protected | (np.abs(of.j - of.i) < LOOP_NODES))
     if problem.positions:  # they hold the walk without its loops, so they speak first
@@ -102,7 +104,7 @@ def _starts(problem: Problem, T_map_body: SE3, T_cauchy: SE3, *, limit: float) -
         yield problem.solve(T_map_body, weights=weights)[0]
 
 
-def _graduate(problem: Problem, T_map_body: SE3, *, limit: float) -> SE3:
+def _graduate(problem: FactorProblem, T_map_body: SE3, *, limit: float) -> SE3:
     """Harden the convex problem round by round; each goes on from the one before."""
     of = problem.of
     free, weights, mu = of.in_graph & ~of.protected, of.in_graph.astype(np.float64), 0.0
@@ -124,7 +126,7 @@ def _truncated_weights(chi2: Array, *, limit: float, mu: float) -> Array:
     return np.where(chi2 >= limit * (mu + 1.0) / mu, 0.0, np.clip(certain, 0.0, 1.0))
 
 
-def _settle(problem: Problem, T_map_body: SE3, *, limit: float) -> tuple[SE3, Array, int]:
+def _settle(problem: FactorProblem, T_map_body: SE3, *, limit: float) -> tuple[SE3, Array, int]:
     """Solve with the edges below the limit until they are the same as before."""
     of = problem.of
     weights, iterations = np.zeros(len(of)), 0

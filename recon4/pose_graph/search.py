@@ -21,7 +21,7 @@ from recon4.pose_graph.files import save_graph
 from recon4.pose_graph.pairs import Pair, PairRegistrar
 from recon4.pose_graph.solve import optimize
 from recon4.progress import Progress
-from recon4.registration.submap import NodeViews, Submaps, node_rows
+from recon4.registration.submap import NodeRangeImages, Submaps, node_rows
 from recon4.settings import GraphSettings, Settings
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
@@ -88,7 +88,7 @@ def search(
     edges = odometry_edges(T_odom_body, rows, lost, motion_cov=motion_cov, settings=g)
     graph = PoseGraph(rows.astype(np.int64), t_ns, T_odom_body, edges)
     progress.event("nodes", t_ns=t_ns.tolist(), t_m=np.round(T_odom_body.t, 3).tolist())
-    views = NodeViews(len(rows), settings, scratch)
+    views = NodeRangeImages(len(rows), settings, scratch)
     registrar = PairRegistrar(
         lambda: Submaps(frames, trajectory, rows, settings, skip=lost), views, settings
     )

@@ -95,7 +95,7 @@ def optimize(
         GraphError: If the graph cannot be solved (`checks`), or nothing holds it.
     """
     of = graph.relations
-    problem = Problem.check(graph.T_map_body, of, fixed=fixed, priors=priors)
+    problem = FactorProblem.check(graph.T_map_body, of, fixed=fixed, priors=priors)
     weights = of.in_graph.astype(np.float64)
     T_map_body, iterations = problem.solve(graph.T_map_body, weights=weights, kernel=kernel)
     solution = solved(graph, of, T_map_body, weights=weights, iterations=iterations)
@@ -130,7 +130,7 @@ def initialize(graph: PoseGraph) -> SE3:
         GraphError: If the graph cannot be solved (`checks`).
     """
     of = graph.relations
-    problem = Problem.check(graph.T_map_body, of, fixed=(0,), priors=())
+    problem = FactorProblem.check(graph.T_map_body, of, fixed=(0,), priors=())
     factors = problem.factors(of.in_graph.astype(np.float64), kernel="none")
     # The chordal method wants a prior as its anchor; it is the last factor of the graph.
     values = gtsam.InitializePose3.initialize(factors)
@@ -139,7 +139,7 @@ def initialize(graph: PoseGraph) -> SE3:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Problem:
+class FactorProblem:
     """A checked graph in gtsam's terms; built once, solved with changing weights."""
 
     of: Relations
@@ -154,7 +154,7 @@ class Problem:
     @staticmethod
     def check(
         T_map_body: SE3, of: Relations, *, fixed: Sequence[int], priors: Sequence[Priors]
-    ) -> Problem:
+    ) -> FactorProblem:
         check_relations(T_map_body, of)
         if not len(fixed) and not priors:
             raise GraphError("nothing holds the graph: no fixed node and no prior")
@@ -172,7 +172,7 @@ class Problem:
                 rows = zip(prior.node, prior.p_map, prior.p_body, prior.sd_m, strict=True)
                 positions += [(int(node), *row) for node, *row in rows]
         measured = [_pose(of.T_i_j, row) for row in range(len(of))]
-        return Problem(of, measured, always, positions, len(T_map_body))
+        return FactorProblem(of, measured, always, positions, len(T_map_body))
 
     def solve(
         self,

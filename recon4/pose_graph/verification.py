@@ -47,9 +47,9 @@ class Verification:
         }
         return {
             "edges": counts,
-            "rounds": [[_told(edges[row], row) for row in rows] for rows in self.rounds],
-            "flagged": [_told(edges[row], row) for row in self.flagged],
-            "outliers": [_told(edges[row], row) for row in self.outliers],
+            "rounds": [[_edge_record(edges[row], row) for row in rows] for rows in self.rounds],
+            "flagged": [_edge_record(edges[row], row) for row in self.flagged],
+            "outliers": [_edge_record(edges[row], row) for row in self.outliers],
             "duplicates": [list(pair) for pair in self.duplicates],
             "chi2_before": self.chi2_before,
             "chi2_after": self.chi2_after,
@@ -83,7 +83,7 @@ def verify(
     watcher.advance()
     rounds = reject_worst_first(paths, free=~of.protected, limit_m=settings.limit_m)
     graph = _with_rejected(graph, [row for rows in rounds for row in rows], Reason.VERIFICATION)
-    _tell_verdicts(graph.edges, [row for rows in rounds for row in rows], watcher)
+    _report_verdicts(graph.edges, [row for rows in rounds for row in rows], watcher)
     watcher.advance()
     solution, outliers = _solve(graph, settings)
     graph = _with_rejected(graph.with_poses(solution.T_map_body), outliers, Reason.ROBUST)
@@ -92,7 +92,7 @@ def verify(
     over = of.protected & paths.alive & (paths.median_m > settings.limit_m)
     edges = _with_figures(graph.edges, paths, solution.edge_chi2)
     unconfirmed = [row for row, edge in enumerate(edges) if edge.verdict is Verdict.UNVERIFIED]
-    _tell_verdicts(edges, [*outliers, *unconfirmed], watcher)
+    _report_verdicts(edges, [*outliers, *unconfirmed], watcher)
     return Verification(
         graph=graph.with_edges(edges),
         rounds=tuple(tuple(rows) for rows in rounds),
@@ -104,7 +104,7 @@ def verify(
     )
 
 
-def confirmed_anew(graph: PoseGraph, *, settings: VerificationSettings) -> PoseGraph:
+def confirmed_again(graph: PoseGraph, *, settings: VerificationSettings) -> PoseGraph:
     """A verified graph some edges of which were turned down since: who is still confirmed?
 
     Paths through these edges are gone. An edge whose last path went with them stays in the graph
@@ -180,17 +180,17 @@ def _with_figures(edges: tuple[Edge, ...], paths: PathIndex, edge_chi2: Array) -
     return tuple(out)
 
 
-def _tell_verdicts(edges: tuple[Edge, ...], rows: list[int], watcher: Progress) -> None:
+def _report_verdicts(edges: tuple[Edge, ...], rows: list[int], watcher: Progress) -> None:
     """What became of some edges, for whoever watches them while the job runs."""
     if rows:
-        told = [
+        record = [
             [e.i, e.j, e.kind.value, e.verdict.value, e.reason.value]
             for e in (edges[row] for row in rows)
         ]
-        watcher.event("verdicts", edges=told)
+        watcher.event("verdicts", edges=record)
 
 
-def _told(edge: Edge, row: int) -> dict[str, Any]:
+def _edge_record(edge: Edge, row: int) -> dict[str, Any]:
     return {
         "edge": row,
         "nodes": [edge.i, edge.j],

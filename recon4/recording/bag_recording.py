@@ -15,16 +15,16 @@ from recon4.geometry.se3 import SE3
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times, Trajectory
-from recon4.recording.assemble import moved
-from recon4.recording.bags import CLOUD, FIX, IMU, ODOMETRY, SCAN, Bag, BagMessage, BagTopic
-from recon4.recording.cloud_files import Table
+from recon4.recording.assembly.assembler import moved
+from recon4.recording.assembly.shots import Shots
 from recon4.recording.cloud_points import CloudDecoder, model_of_points
-from recon4.recording.message_limits import MAX_CLOUD_POINTS, require_apart_fields
+from recon4.recording.formats.bags import CLOUD, FIX, IMU, ODOMETRY, SCAN, Bag, BagMessage, BagTopic
+from recon4.recording.formats.cloud_files import Table
+from recon4.recording.formats.message_limits import MAX_CLOUD_POINTS, require_apart_fields
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream, assign_topics, choose_rig
-from recon4.recording.shots import Shots
-from recon4.recording.velodyne import PacketDecoder
-from recon4.recording.velodyne_models import likely_model
+from recon4.recording.velodyne.data_packets import PacketDecoder
+from recon4.recording.velodyne.models import likely_model
 from recon4.settings import IngestSettings
 
 Item = Shots | ImuSamples | GnssSamples | Trajectory

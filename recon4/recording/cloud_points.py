@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, UnknownFormat
 from recon4.model.trajectory import Times
-from recon4.recording.cloud_files import Table
+from recon4.recording.assembly.shots import Shots
+from recon4.recording.formats.cloud_files import Table
 from recon4.recording.report import ImportReport
-from recon4.recording.shots import Shots
-from recon4.recording.velodyne_models import MODELS
+from recon4.recording.velodyne.models import MODELS
 
 TIME_FIELDS = ("t", "time", "timestamp", "time_stamp", "offset_time", "time_offset", "t_us")
 RING_FIELDS = ("ring", "channel", "line", "laser_id", "beam")

@@ -14,11 +14,11 @@ from recon4.errors import CorruptFile, EmptyRecording, RecordingError, UnknownFo
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times
-from recon4.recording.assemble import Gap, drop_invalid
-from recon4.recording.cloud_files import is_cloud_file, read_cloud
+from recon4.recording.assembly.assembler import TimeGap, drop_invalid
+from recon4.recording.assembly.shots import Shots
 from recon4.recording.cloud_points import CloudDecoder
+from recon4.recording.formats.cloud_files import is_cloud_file, read_cloud
 from recon4.recording.report import ImportReport
-from recon4.recording.shots import Shots
 from recon4.settings import IngestSettings
 
 CLOUD_SUFFIXES = (".pcd", ".ply", ".bin")
@@ -116,14 +116,14 @@ def frames_label(frames: FrameFiles) -> str:
     return f"{kind} files, times from {frames.times_from}" if frames.times_from else f"{kind} files"
 
 
-def folder_gaps(frames: FrameFiles, name: str, gap_s: float) -> list[Gap]:
+def folder_gaps(frames: FrameFiles, name: str, gap_s: float) -> list[TimeGap]:
     """Holes between the stamps longer than ``gap_s`` beyond the usual step."""
     if len(frames.t_ns) < 2:
         return []
     steps = np.diff(frames.t_ns)
     usual = int(np.median(steps))
     return [
-        Gap(name, int(frames.t_ns[k]), float(steps[k]) / 1e9)
+        TimeGap(name, int(frames.t_ns[k]), float(steps[k]) / 1e9)
         for k in np.flatnonzero(steps > usual + gap_s * 1e9)
     ]
 

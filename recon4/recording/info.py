@@ -15,29 +15,29 @@ from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
-from recon4.recording.assemble import Gap
+from recon4.recording.assembly.assembler import TimeGap
+from recon4.recording.assembly.rotation import rotation_rate
+from recon4.recording.assembly.shots import Shots
 from recon4.recording.bag_recording import cloud_table, lidar_streams
-from recon4.recording.bags import CLOUD, FIX, IMU, ODOMETRY, Bag, BagTopic
-from recon4.recording.cloud_files import cloud_fields
 from recon4.recording.cloud_points import INTENSITY_FIELDS, RING_FIELDS, TIME_FIELDS, find_field
-from recon4.recording.csv_samples import read_gnss_csv, read_imu_csv
 from recon4.recording.folders import folder_gaps, frames_label, list_frames
+from recon4.recording.formats.bags import CLOUD, FIX, IMU, ODOMETRY, Bag, BagTopic
+from recon4.recording.formats.cloud_files import cloud_fields
+from recon4.recording.formats.poses import pose_format, read_tum
 from recon4.recording.open import (
     RECORDINGS,
-    Kind,
     Recording,
+    RecordingKind,
     bag_paths,
     frames_model,
     open_recording,
     pcap_files,
     recognize,
 )
-from recon4.recording.packet_streams import PacketStream, scan_pcap
-from recon4.recording.poses import pose_format, read_tum
 from recon4.recording.report import ImportReport
-from recon4.recording.rotation import rotation_rate
-from recon4.recording.shots import Shots
-from recon4.recording.velodyne_models import RETURN_MODES
+from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
+from recon4.recording.velodyne.models import RETURN_MODES
+from recon4.recording.velodyne.streams import PacketStream, scan_pcap
 from recon4.settings import IngestSettings
 
 _WHOLE_BYTES = 64 << 20
@@ -88,7 +88,7 @@ class RecordingInfo:
     sensors: tuple[SensorInfo, ...] = ()
     samples: tuple[str, ...] = ()
     """IMU, GNSS and poses, in words with their rates."""
-    gaps: tuple[Gap, ...] = ()
+    gaps: tuple[TimeGap, ...] = ()
     derived: tuple[str, ...] = ()
     """What will be worked out."""
     missing: tuple[str, ...] = ()
@@ -133,9 +133,9 @@ def describe(path: Path, *, settings: IngestSettings | None = None) -> Recording
     if kind not in RECORDINGS:
         return _describe_samples(info, path, kind)
     report = ImportReport()
-    if kind is Kind.PCAP:
+    if kind is RecordingKind.PCAP:
         info = _describe_pcap(info, path)
-    elif kind is Kind.FRAMES:
+    elif kind is RecordingKind.FRAMES:
         info = _describe_frames(info, path, settings)
     else:
         info = _describe_bag(info, path, report)
@@ -251,7 +251,7 @@ def _message_fields(bag: Bag, topic: BagTopic) -> tuple[str, ...]:
     return ()
 
 
-def _bag_gaps(bag: Bag, topics: Sequence[str]) -> tuple[Gap, ...]:
+def _bag_gaps(bag: Bag, topics: Sequence[str]) -> tuple[TimeGap, ...]:
     """Holes between messages, as recorded, of more than twice the usual step."""
     times: dict[str, list[int]] = {topic: [] for topic in topics}
     for message in bag.messages(topics):
@@ -259,12 +259,12 @@ def _bag_gaps(bag: Bag, topics: Sequence[str]) -> tuple[Gap, ...]:
     return tuple(gap for topic, t_ns in times.items() for gap in _gaps(topic, np.array(t_ns)))
 
 
-def _gaps(name: str, t_ns: Times) -> list[Gap]:
+def _gaps(name: str, t_ns: Times) -> list[TimeGap]:
     steps = np.diff(t_ns)
     if not len(steps):
         return []
     wide = np.flatnonzero(steps > 2 * np.median(steps) + 100_000_000)
-    return [Gap(name, int(t_ns[k]), float(steps[k]) / 1e9) for k in wide]
+    return [TimeGap(name, int(t_ns[k]), float(steps[k]) / 1e9) for k in wide]
 
 
 def _topic_line(topic: BagTopic, seconds: float) -> str:
@@ -311,10 +311,10 @@ def _describe_frames(info: RecordingInfo, path: Path, settings: IngestSettings) 
 # -- samples
 
 
-def _describe_samples(info: RecordingInfo, path: Path, kind: Kind) -> RecordingInfo:
-    if kind is Kind.IMU_CSV:
+def _describe_samples(info: RecordingInfo, path: Path, kind: RecordingKind) -> RecordingInfo:
+    if kind is RecordingKind.IMU_CSV:
         t_ns, what = read_imu_csv(path).t_ns, "IMU samples"
-    elif kind is Kind.GNSS_CSV:
+    elif kind is RecordingKind.GNSS_CSV:
         t_ns, what = read_gnss_csv(path).t_ns, "GNSS samples"
     elif pose_format(path) == "tum":
         t_ns, what = read_tum(path).t_ns, "poses (TUM)"

@@ -17,14 +17,14 @@ from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress
-from recon4.recording.assemble import Assembler
-from recon4.recording.csv_samples import read_gnss_csv, read_imu_csv
-from recon4.recording.open import Kind, Recording, open_recording, recognize
-from recon4.recording.pcap import OpenFile, open_plain
-from recon4.recording.poses import write_tum
+from recon4.recording.assembly.assembler import Assembler
+from recon4.recording.assembly.shots import Shots
+from recon4.recording.formats.pcap import OpenFile, open_plain
+from recon4.recording.formats.poses import write_tum
+from recon4.recording.open import Recording, RecordingKind, open_recording, recognize
 from recon4.recording.report import ImportReport
-from recon4.recording.samples import clean_gnss, clean_imu, gather, join
-from recon4.recording.shots import Shots
+from recon4.recording.samples.clean import clean_gnss, clean_imu, gather, join
+from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
 from recon4.settings import IngestSettings
 from recon4.store.frames import FrameWriter
 
@@ -54,7 +54,7 @@ class _Samples:
 
 
 @dataclass(slots=True)
-class _Written:
+class _IngestSpan:
     """What was written of the points."""
 
     t_first_ns: int = 0
@@ -77,7 +77,7 @@ class _Written:
 
 
 @dataclass(frozen=True, slots=True)
-class Live:
+class LiveSource:
     """How a capture that still goes on differs from a finished recording."""
 
     open_file: OpenFile = open_plain
@@ -98,7 +98,7 @@ def ingest(
     gnss: Path | None,
     settings: IngestSettings,
     progress: Progress,
-    live: Live | None = None,
+    live: LiveSource | None = None,
 ) -> None:
     """Read a recording into a frame store.
 
@@ -117,7 +117,7 @@ def ingest(
         ConfigError: If rig, clocks or units are wrong.
         StoreError: If the store cannot be written.
     """
-    live = live or Live()
+    live = live or LiveSource()
     report = live.report
     paths, imu, gnss = _sort_out(recordings, imu, gnss)
     given = _Samples(
@@ -135,7 +135,7 @@ def ingest(
     )
     found = _Samples()
     with FrameWriter(out, recording.rig) as writer:
-        written = _Written()
+        written = _IngestSpan()
         for item in _items(recording, assembler):
             if not isinstance(item, Multiframe):
                 found.keep(item)
@@ -171,9 +171,9 @@ def _sort_out(
     """Recordings, IMU file and GNSS file, whichever way they were given."""
     kinds = {path: recognize(path) for path in recordings}
     for path, kind in kinds.items():
-        if kind is Kind.IMU_CSV and imu is None and len(kinds) > 1:
+        if kind is RecordingKind.IMU_CSV and imu is None and len(kinds) > 1:
             imu = path
-        if kind is Kind.GNSS_CSV and gnss is None and len(kinds) > 1:
+        if kind is RecordingKind.GNSS_CSV and gnss is None and len(kinds) > 1:
             gnss = path
     return [path for path in recordings if path not in (imu, gnss)], imu, gnss
 
@@ -271,7 +271,7 @@ def _write_poses(out: Path, parts: Sequence[Trajectory], report: ImportReport) -
 
 
 def _summary(
-    recording: Recording, assembler: Assembler, written: _Written, report: ImportReport
+    recording: Recording, assembler: Assembler, written: _IngestSpan, report: ImportReport
 ) -> dict[str, Any]:
     gaps = [*recording.gaps, *assembler.gaps]
     return {

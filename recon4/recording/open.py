@@ -13,27 +13,27 @@ from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory
-from recon4.recording.assemble import LONGEST_WAIT_S, Gap
+from recon4.recording.assembly.assembler import LONGEST_WAIT_S, TimeGap
+from recon4.recording.assembly.shots import Shots
 from recon4.recording.bag_recording import BagRecording
-from recon4.recording.bags import STORAGE_SUFFIXES
-from recon4.recording.cloud_files import is_cloud_file, read_cloud
 from recon4.recording.cloud_points import model_of_points
-from recon4.recording.csv_samples import GNSS_HEADER, IMU_HEADER, csv_header
 from recon4.recording.folders import CLOUD_SUFFIXES, folder_gaps, list_frames, natural, read_frames
-from recon4.recording.packet_streams import PacketStream
-from recon4.recording.pcap import OpenFile, is_pcap, open_plain
-from recon4.recording.poses import pose_format
-from recon4.recording.positions import PositionSamples
+from recon4.recording.formats.bags import STORAGE_SUFFIXES
+from recon4.recording.formats.cloud_files import is_cloud_file, read_cloud
+from recon4.recording.formats.pcap import OpenFile, is_pcap, open_plain
+from recon4.recording.formats.poses import pose_format
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream, choose_rig
-from recon4.recording.shots import Shots
-from recon4.recording.velodyne_pcap import WAIT_S, VelodynePcap
+from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER, csv_header
+from recon4.recording.velodyne.capture import WAIT_S, VelodynePcap
+from recon4.recording.velodyne.position_packets import PositionSamples
+from recon4.recording.velodyne.streams import PacketStream
 from recon4.settings import IngestSettings
 
 Item = Shots | Multiframe | ImuSamples | GnssSamples | Trajectory
 
 
-class Kind(StrEnum):
+class RecordingKind(StrEnum):
     """What recon4 reads; the value is shown to people."""
 
     PCAP = "Velodyne pcap"
@@ -45,7 +45,7 @@ class Kind(StrEnum):
     POSES = "poses (TUM or KITTI)"
 
 
-RECORDINGS = (Kind.PCAP, Kind.BAG1, Kind.BAG2, Kind.FRAMES)
+RECORDINGS = (RecordingKind.PCAP, RecordingKind.BAG1, RecordingKind.BAG2, RecordingKind.FRAMES)
 """Kinds that hold points."""
 
 _OTHERS = {
@@ -68,19 +68,19 @@ _OTHERS = {
 class Recording:
     """A recording that can be streamed once."""
 
-    kind: Kind
+    kind: RecordingKind
     rig: Rig
     read: Callable[[], Iterator[Item]]
     """Shots are still to be assembled; multiframes are whole frames of files."""
     seconds: float = 0.0
     """How long it is, roughly [s]; 0 = unknown."""
-    gaps: tuple[Gap, ...] = ()
+    gaps: tuple[TimeGap, ...] = ()
     """Those known before reading."""
     wait_s: float = LONGEST_WAIT_S
     """How far one sensor's shots may come ahead of another's [s], see `Assembler`."""
 
 
-def recognize(path: Path) -> Kind:
+def recognize(path: Path) -> RecordingKind:
     """Guess what a path is.
 
     Raises:
@@ -126,14 +126,14 @@ def open_recording(
     if any(other is not kind for other in kinds):
         names = ", ".join(f"{path.name} ({k})" for path, k in zip(paths, kinds, strict=True))
         raise UnknownFormat(f"recordings of one kind expected, got {names}")
-    if kind is Kind.PCAP:
+    if kind is RecordingKind.PCAP:
         files = [f for path in paths for f in pcap_files(path)]
         if rig is None:
             rig = choose_rig(lidars_of_packets(files, settings, report), report)
         pcap = VelodynePcap(files, rig, settings=settings, report=report, open_file=open_file)
         read = partial(_read_pcap, pcap)
         return Recording(kind, pcap.rig, read, stream_seconds(pcap.streams), wait_s=WAIT_S)
-    if kind is Kind.FRAMES:
+    if kind is RecordingKind.FRAMES:
         return _open_frames(paths, rig, settings, report)
     bag = BagRecording(
         [f for path in paths for f in bag_paths(path)], rig, settings=settings, report=report
@@ -173,44 +173,44 @@ def lidars_of_packets(
     return [Stream(f"{s.address}:{s.port}", s.model, s.address, s.port) for s in found]
 
 
-def _file_kind(path: Path) -> Kind:
+def _file_kind(path: Path) -> RecordingKind:
     with path.open("rb") as file:
         head = file.read(4096)
     if not head:
         raise EmptyRecording(f"{path.name}: the file is empty (0 bytes)")
     if is_pcap(path):
-        return Kind.PCAP
+        return RecordingKind.PCAP
     if head.startswith(b"#ROSBAG V"):
-        return Kind.BAG1
+        return RecordingKind.BAG1
     if head.startswith((b"SQLite format 3\0", b"\x89MCAP")):
-        return Kind.BAG2
+        return RecordingKind.BAG2
     if is_cloud_file(path):
-        return Kind.FRAMES
+        return RecordingKind.FRAMES
     columns = csv_header(path)
     if set(IMU_HEADER[:4]) <= set(columns):
-        return Kind.IMU_CSV
+        return RecordingKind.IMU_CSV
     if set(GNSS_HEADER[:3]) <= set(columns):
-        return Kind.GNSS_CSV
+        return RecordingKind.GNSS_CSV
     if pose_format(path):
-        return Kind.POSES
+        return RecordingKind.POSES
     what = next((text for magic, text in _OTHERS.items() if head.startswith(magic)), "")
     looks = f"looks like {what}" if what else f"first bytes {head[:8].hex(' ')}"
     raise UnknownFormat(f"{path.name}: no reader recognizes it ({looks}); {_known()}")
 
 
-def _folder_kind(path: Path) -> Kind:
+def _folder_kind(path: Path) -> RecordingKind:
     names = sorted(child.name for child in path.iterdir())
     if not names:
         raise EmptyRecording(f"{path.name}: the folder is empty")
     suffixes = {Path(name).suffix.lower() for name in names}
     if "metadata.yaml" in names or suffixes & set(STORAGE_SUFFIXES):
-        return Kind.BAG2
+        return RecordingKind.BAG2
     if suffixes & set(CLOUD_SUFFIXES):
-        return Kind.FRAMES
+        return RecordingKind.FRAMES
     if ".bag" in suffixes:
-        return Kind.BAG1
+        return RecordingKind.BAG1
     if any(is_pcap(child) for child in path.iterdir() if child.is_file()):
-        return Kind.PCAP
+        return RecordingKind.PCAP
     raise UnknownFormat(
         f"{path.name}: no recording in this folder; it has {', '.join(names[:8])}"
         f"{' …' if len(names) > 8 else ''}; {_known()}"
@@ -218,7 +218,7 @@ def _folder_kind(path: Path) -> Kind:
 
 
 def _known() -> str:
-    return f"known: {', '.join(Kind)}"
+    return f"known: {', '.join(RecordingKind)}"
 
 
 def stream_seconds(streams: Sequence[PacketStream]) -> float:
@@ -256,7 +256,7 @@ def _open_frames(
         report.warn(f"{gap.sensor}: {gap.seconds:.3f} s from one frame to the next")
     read = partial(read_frames, frames, rig.sensors[0], settings=settings, report=report)
     seconds = len(frames.files) * frames.period_ns / 1e9
-    return Recording(Kind.FRAMES, rig, read, seconds, tuple(gaps))
+    return Recording(RecordingKind.FRAMES, rig, read, seconds, tuple(gaps))
 
 
 def frames_model(files: Sequence[Path]) -> str:

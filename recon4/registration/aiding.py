@@ -20,7 +20,7 @@ _OUTLIER_SD = 3.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Aid:
+class GnssAiding:
     """Antenna positions and attitudes in a local frame: x east, y north, z up."""
 
     t_ns: Times

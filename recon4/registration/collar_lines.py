@@ -39,23 +39,23 @@ def register_lines(
     target: LineTarget,
     source: Lines,
     *,
-    guess: SE3,
+    initial: SE3,
     portion: float,
     settings: RegistrationSettings,
 ) -> Registration:
-    """Estimate ``T_target_source``, starting at ``guess``.
+    """Estimate ``T_target_source``, starting at ``initial``.
 
     Args:
         target: Lines in the target frame.
         source: Lines in the source frame.
-        guess: First ``T_target_source``.
+        initial: First ``T_target_source``.
         portion: Share of nearest matches that is kept, 0..1 (the overlap, V §2.5).
         settings: Solver and stop rules.
     """
     if len(target.lines) < _MIN_MATCHES or len(source) < _MIN_MATCHES:
-        return _refused(guess)
+        return _refused(initial)
     solve = _svd_step if settings.solver == "svd" else _common_normal_step
-    T_target_source = guess
+    T_target_source = initial
     errors: list[float] = []
     for iteration in range(1, settings.max_iterations + 1):
         moved = source.moved(T_target_source)
@@ -67,11 +67,11 @@ def register_lines(
         errors.append(step.error_m)
         stop = _stop(errors, step, settings)
         if stop is not None or iteration == settings.max_iterations:
-            share = len(rows_source) / len(source)
+            match_ratio = len(rows_source) / len(source)
             spread = float(np.std(errors[-settings.error_window :]))
             return Registration(
                 T_target_source, stop or StopReason.LIMIT, iteration, step.error_m, spread,
-                share, step.information, step.degeneracy,
+                match_ratio, step.information, step.degeneracy,
             )  # fmt: skip
     raise AssertionError("max_iterations is at least 1")
 

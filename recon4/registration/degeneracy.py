@@ -8,7 +8,7 @@ from recon4.geometry.se3 import Array
 from recon4.registration.plane_map import Match
 
 
-def held_directions(match: Match, normal_noise_rad: float) -> tuple[Array, Array]:
+def observable_directions(match: Match, normal_noise_rad: float) -> tuple[Array, Array]:
     """Normal equations without what errors of the planes' normals alone would make of them.
 
     On flat ground every normal should be vertical; that they are a little off holds the body
@@ -29,8 +29,8 @@ def held_directions(match: Match, normal_noise_rad: float) -> tuple[Array, Array
     # Rotations in meters at the typical distance, so that they compare with shifts.
     arm_m = np.sqrt(float(np.trace(H6[:3, :3])) / weight)
     scale = np.repeat([1.0 / max(arm_m, 1e-3), 1.0], 3)
-    share, V = np.linalg.eigh(scale[:, None] * H6 * scale / weight)
-    kept = np.clip(1.0 - normal_noise_rad**2 / np.maximum(share, 1e-12), 0.0, 1.0)
+    normalized, V = np.linalg.eigh(scale[:, None] * H6 * scale / weight)
+    kept = np.clip(1.0 - normal_noise_rad**2 / np.maximum(normalized, 1e-12), 0.0, 1.0)
     root = scale[:, None] * (V * np.sqrt(kept)) @ V.T / scale
     full = scale[:, None] * (V * kept) @ V.T / scale
     both = np.kron(np.eye(2), root)

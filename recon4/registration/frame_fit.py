@@ -8,8 +8,8 @@ import numpy as np
 
 from recon4.geometry.se3 import SE3, Array, proper, so3_exp
 from recon4.kernels.imu import place_points
-from recon4.registration.aiding import Aid
-from recon4.registration.degeneracy import held_directions
+from recon4.registration.aiding import GnssAiding
+from recon4.registration.degeneracy import observable_directions
 from recon4.registration.motion import Prediction
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.segments import Segments
@@ -44,7 +44,7 @@ class FrameFitter:
     converged_step_m: float
     coarse: int
     """Level of cubes to begin with, 0 = the finest: how far off the prediction may be."""
-    aid: Aid | None = None
+    aiding: GnssAiding | None = None
 
     def fit(self, target: PlaneMap, segments: Segments, prediction: Prediction) -> FrameFit:
         """Correct a predicted motion until the segments' ends lie on the planes.
@@ -56,24 +56,24 @@ class FrameFitter:
         center = prediction.T_odom_body.t[-1]
         p_body = np.concatenate([segments.a_body, segments.b_body])
         p_s = np.concatenate([segments.a_s, segments.b_s])
-        share_of_frame = p_s / prediction.t_s[-1]
+        frame_fraction = p_s / prediction.t_s[-1]
         delta = np.zeros(24)
         T_dense = _correct(prediction, delta, center)
         converged, rounds = False, 0
         for rounds in range(1, self.settings.rounds + 1):
             p_odom = place_points(prediction.t_s, T_dense.R, T_dense.t, p_s, p_body)
             match = target.match(
-                p_odom, share_of_frame, center=center,
+                p_odom, frame_fraction, center=center,
                 finest=max(self.coarse + 1 - rounds, 0), gate_m=self._gate_m(rounds),
             )  # fmt: skip
             H_lidar, g_lidar = self._weighted(match)
             H, g = information.copy(), information @ delta
             H[POSES, POSES] += H_lidar
             g[POSES] += g_lidar
-            if self.aid is not None:
-                H_aid, g_aid = self.aid.pull(T_dense[-1], prediction.end.t_ns)
-                H[END_POSE, END_POSE] += H_aid
-                g[END_POSE] += g_aid
+            if self.aiding is not None:
+                H_aiding, g_aiding = self.aiding.pull(T_dense[-1], prediction.end.t_ns)
+                H[END_POSE, END_POSE] += H_aiding
+                g[END_POSE] += g_aiding
             step = -np.linalg.solve(H, g)
             delta = delta + step
             T_dense = _correct(prediction, delta, center)
@@ -86,7 +86,7 @@ class FrameFitter:
         return _GATES_M[min(rounds - 1 + (0 if self.coarse else 1), len(_GATES_M) - 1)]
 
     def _weighted(self, match: Match) -> tuple[Array, Array]:
-        H, g = held_directions(match, self.settings.normal_noise_rad)
+        H, g = observable_directions(match, self.settings.normal_noise_rad)
         return self.settings.information_scale * H, self.settings.information_scale * g
 
 

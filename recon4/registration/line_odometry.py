@@ -16,7 +16,7 @@ from recon4.model.samples import ImuSamples
 from recon4.registration.collar_lines import LineTarget, register_lines
 from recon4.registration.motion import ImuMotion
 from recon4.registration.odometry import OdometryStep
-from recon4.registration.overlap import View, make_view, overlap
+from recon4.registration.overlap import RangeImage, make_range_image, overlap
 from recon4.registration.result import Registration
 from recon4.registration.scan_chain import body_points
 from recon4.registration.segments import Segments, sample_segments
@@ -29,14 +29,14 @@ _PASSES = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Seen:
+class _HistoryFrame:
     """A multiframe that later ones are registered to."""
 
     T_odom_body: SE3
     """Pose at its middle."""
     target: LineTarget
     """Its lines in odom."""
-    view: View
+    view: RangeImage
     """Its points as measured, in the body: for the overlap."""
 
 
@@ -53,14 +53,14 @@ class LineOdometry:
         self._rig, self._settings = rig, settings
         with_imu = imu is not None and len(imu) > 1 and settings.odometry.use_imu
         self._imu = ImuMotion(imu, rig, settings.odometry) if with_imu and imu else None
-        self._history: deque[_Seen] = deque(maxlen=settings.odometry.history)
+        self._history: deque[_HistoryFrame] = deque(maxlen=settings.odometry.history)
         self._motions: deque[SE3] = deque(maxlen=_PREDICTOR)
         self._T_odom_body, self._t_mid_ns = SE3.identity(), 0
 
     def push(self, frame: Multiframe) -> OdometryStep:
         """Register the next multiframe; frames come in the order of their time."""
         segments = sample_segments(frame, self._rig, self._settings.segments)
-        view = make_view(body_points(frame, self._rig), self._settings.overlap)
+        view = make_range_image(body_points(frame, self._rig), self._settings.overlap)
         steps = (frame.t_mid_ns - self._t_mid_ns) / frame.duration_ns if self._history else 1.0
         predicted = motion = self._predicted_motion(frame)
         T_predicted = T_odom_body = self._T_odom_body @ _times(motion, steps)
@@ -71,18 +71,18 @@ class LineOdometry:
                 found = self._register(lines, view, T_odom_body)
                 T_odom_body = found.T_target_source @ T_odom_body
                 motion = _times(self._T_odom_body.inverse() @ T_odom_body, 1.0 / steps)
-        gap_m = float(np.linalg.norm(T_odom_body.t - T_predicted.t))
+        prediction_offset_m = float(np.linalg.norm(T_odom_body.t - T_predicted.t))
         lost = found is not None and self._is_lost(found)
         if lost:
             motion, T_odom_body = predicted, T_predicted
         lines = self._lines(segments, frame, T_odom_body, motion)
         # An empty first frame would leave nothing for any later one to match.
         if not lost and len(lines):
-            self._history.append(_Seen(T_odom_body, LineTarget(lines), view))
+            self._history.append(_HistoryFrame(T_odom_body, LineTarget(lines), view))
         if found is not None:
             self._motions.append(motion)
         self._T_odom_body, self._t_mid_ns = T_odom_body, frame.t_mid_ns
-        return self._step(frame, motion, found, gap_m=gap_m, lost=lost)
+        return self._step(frame, motion, found, prediction_offset_m=prediction_offset_m, lost=lost)
 
     def _predicted_motion(self, frame: Multiframe) -> SE3:
         """Over one multiframe: newest motion heaviest, weights N…1 over their sum."""
@@ -105,33 +105,38 @@ class LineOdometry:
         apart = np.linalg.norm(b - a, axis=1) > 1e-6
         return Lines.through(a[apart], b[apart])
 
-    def _register(self, lines: Lines, view: View, T_odom_body: SE3) -> Registration:
+    def _register(self, lines: Lines, view: RangeImage, T_odom_body: SE3) -> Registration:
         """The whole frame against the history: all of it joined, or the mean over its frames."""
         shares = [
             overlap(
-                seen.view, view, seen.T_odom_body.inverse() @ T_odom_body, self._settings.overlap
+                observed.view,
+                view,
+                observed.T_odom_body.inverse() @ T_odom_body,
+                self._settings.overlap,
             )
-            for seen in self._history
+            for observed in self._history
         ]
         if self._settings.odometry.history_mode == "averaged":
-            targets = [seen.target for seen in self._history]
+            targets = [observed.target for observed in self._history]
             return averaged(
                 [
-                    self._register_to(target, lines, share)
-                    for target, share in zip(targets, shares, strict=True)
+                    self._register_to(target, lines, overlap_ratio)
+                    for target, overlap_ratio in zip(targets, shares, strict=True)
                 ]
             )
         joined = Lines(
-            np.concatenate([seen.target.lines.mid for seen in self._history]),
-            np.concatenate([seen.target.lines.dir for seen in self._history]),
+            np.concatenate([observed.target.lines.mid for observed in self._history]),
+            np.concatenate([observed.target.lines.dir for observed in self._history]),
         )
         return self._register_to(LineTarget(joined), lines, max(shares))
 
-    def _register_to(self, target: LineTarget, lines: Lines, share: float) -> Registration:
+    def _register_to(self, target: LineTarget, lines: Lines, overlap_ratio: float) -> Registration:
         settings = self._settings.registration
         # A scan too sparse to fill the bins of a view volume seems to overlap with nothing.
-        share = max(share, settings.portion)
-        return register_lines(target, lines, guess=SE3.identity(), portion=share, settings=settings)
+        overlap_ratio = max(overlap_ratio, settings.portion)
+        return register_lines(
+            target, lines, initial=SE3.identity(), portion=overlap_ratio, settings=settings
+        )
 
     def _is_lost(self, found: Registration) -> bool:
         return not (found.converged and found.error_m < self._settings.odometry.lost_error_m)
@@ -142,7 +147,7 @@ class LineOdometry:
         motion: SE3,
         found: Registration | None,
         *,
-        gap_m: float,
+        prediction_offset_m: float,
         lost: bool,
     ) -> OdometryStep:
         o = self._settings.odometry
@@ -154,11 +159,11 @@ class LineOdometry:
             np.array(dense_ns, np.int64),
             self._T_odom_body @ SE3.stack(_times(motion, s) for s in (-0.5, 0.0, 0.5)),
             found.error_m if found else float("nan"),
-            found.share if found else 0.0,
+            found.match_ratio if found else 0.0,
             found.iterations if found else 0,
             found.converged if found else True,
             found.degeneracy if found else 0.0,
-            gap_m,
+            prediction_offset_m,
             lost,
             np.diag(np.repeat([o.line_sd_rad, o.line_sd_m], 3) ** 2),
         )

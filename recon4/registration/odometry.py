@@ -13,14 +13,14 @@ from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
-from recon4.registration.aiding import Aid
+from recon4.registration.aiding import GnssAiding
 from recon4.registration.frame_fit import FrameFit, FrameFitter
 from recon4.registration.motion import FreeMotion, ImuMotion, Motion, MotionState, Prediction
 from recon4.registration.plane_map import PlaneMap
-from recon4.registration.rest import hold_still, seems_still
 from recon4.registration.scan_chain import ScanChain, body_points
 from recon4.registration.segments import Segments, sample_segments
 from recon4.registration.state import END, END_POSE, START, STATE, VECTOR
+from recon4.registration.zero_velocity import is_stationary, zero_velocity_update
 from recon4.settings import Settings
 
 
@@ -38,13 +38,13 @@ class OdometryStep:
     """Poses at these times, a batch of K."""
     error_m: float
     """Mean distance of the matched segments from the local map [m]; NaN without a match."""
-    share: float
+    match_ratio: float
     """Matched share of the segments."""
     rounds: int
     converged: bool
     degeneracy: float
     """See `Match.degeneracy`."""
-    gap_m: float
+    prediction_offset_m: float
     """How far the LiDAR moved the prediction [m]."""
     lost: bool
     motion_cov: Array
@@ -67,9 +67,9 @@ class Odometry:
         settings: Settings,
         imu: ImuSamples | None = None,
         *,
-        aid: Aid | None = None,
+        aiding: GnssAiding | None = None,
     ) -> None:
-        self._rig, self._settings, self._aid = rig, settings, aid
+        self._rig, self._settings, self._aiding = rig, settings, aiding
         with_imu = imu is not None and len(imu) > 1 and settings.odometry.use_imu
         self._free = FreeMotion(settings.odometry)
         self._motion: Motion = (
@@ -83,7 +83,7 @@ class Odometry:
             settings.odometry,
             settings.registration.converged_step_m,
             coarse=0 if self._chain is None else settings.planes.levels - 1,
-            aid=aid,
+            aiding=aiding,
         )
         self._map = PlaneMap(settings.planes)
         self._keyframes: deque[Array] = deque()
@@ -105,8 +105,8 @@ class Odometry:
         prediction = self._predict(frame)
         fit = self._fitter.fit(self._map, segments, prediction)
         lost = not first and (not found or self._is_lost(fit))
-        if self._chain and not lost and seems_still(self._chain.located):
-            fit = hold_still(fit, prediction, self._chain.last[0])
+        if self._chain and not lost and is_stationary(self._chain.located):
+            fit = zero_velocity_update(fit, prediction, self._chain.last[0])
         self._count_lost(lost=lost)
         self._state = _updated(prediction, fit, lost=lost, first=first)
         T_dense = prediction.T_odom_body if lost or first else fit.T_dense
@@ -168,18 +168,18 @@ class Odometry:
     def _initial(self, t_ns: int) -> MotionState:
         """Where the aid says, else at the origin."""
         state = self._motion.initial(t_ns)
-        T_enu_body = self._aid.pose(t_ns) if self._aid else None
-        if self._aid is None or T_enu_body is None:
+        T_enu_body = self._aiding.pose(t_ns) if self._aiding else None
+        if self._aiding is None or T_enu_body is None:
             return state
         return state.at_pose(
             T_enu_body,
-            sd_rad=self._aid.attitude_sd_rad,
+            sd_rad=self._aiding.attitude_sd_rad,
             sd_m=self._settings.odometry.gnss_sd_m,
         )
 
     def _is_lost(self, fit: FrameFit) -> bool:
         o = self._settings.odometry
-        bad = fit.match.share < o.lost_share or not fit.match.mean_m < o.lost_error_m
+        bad = fit.match.match_ratio < o.lost_match_ratio or not fit.match.mean_m < o.lost_error_m
         return bad or not np.isfinite(fit.delta).all()
 
     def _extend_map(self, segments: Segments, t_s: Array, T_dense: SE3) -> None:
@@ -224,7 +224,7 @@ def _step(
         t_ns,
         T_dense,
         fit.match.mean_m,
-        fit.match.share,
+        fit.match.match_ratio,
         fit.rounds,
         fit.converged,
         fit.match.degeneracy,

@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array
-from recon4.kernels.overlap import nearest_ranges, share_inside
+from recon4.kernels.overlap import inside_ratio, nearest_ranges
 from recon4.settings import OverlapSettings
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class View:
+class RangeImage:
     """Points of a multiframe (or a few) and the view volume they span around the origin."""
 
     points: Array
@@ -22,15 +22,17 @@ class View:
     """Smallest range in each bin of azimuth and elevation [m]; 0 = empty."""
 
 
-def make_view(points: Array, settings: OverlapSettings) -> View:
+def make_range_image(points: Array, settings: OverlapSettings) -> RangeImage:
     """The spherical z-buffer of points [m], (N, 3), around the origin of their frame."""
     nearest_m = nearest_ranges(
         points, settings.azimuth_bins, settings.elevation_bins, settings.min_points
     )
-    return View(points, nearest_m)
+    return RangeImage(points, nearest_m)
 
 
-def overlap(source: View, target: View, T_source_target: SE3, settings: OverlapSettings) -> float:
+def overlap(
+    source: RangeImage, target: RangeImage, T_source_target: SE3, settings: OverlapSettings
+) -> float:
     """Share of points in the other's view volume, 0..1 (V Eq. 2.6, read as A0 no. 2).
 
     Args:
@@ -50,8 +52,10 @@ def overlap(source: View, target: View, T_source_target: SE3, settings: OverlapS
     return 2.0 * forward * backward / max(forward + backward, 1e-12)
 
 
-def _inside(view: View, other: View, T_view_other: SE3, settings: OverlapSettings) -> float:
-    return share_inside(
+def _inside(
+    view: RangeImage, other: RangeImage, T_view_other: SE3, settings: OverlapSettings
+) -> float:
+    return inside_ratio(
         view.nearest_m,
         other.points,
         T_view_other.R,

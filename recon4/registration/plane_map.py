@@ -32,7 +32,7 @@ class Match:
     """Smallest eigenvalue of the mean of n n^T: 0 = free to slide, 1/3 = held alike all around."""
 
     @property
-    def share(self) -> float:
+    def match_ratio(self) -> float:
         """Matched share of the points."""
         return self.matches / max(len(self.residual_m), 1)
 

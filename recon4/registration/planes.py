@@ -18,7 +18,7 @@ def register_to_planes(
     target: PlaneMap,
     source: Array,
     *,
-    guess: SE3,
+    initial: SE3,
     planes: PlaneSettings,
     settings: RegistrationSettings,
 ) -> Registration:
@@ -27,12 +27,12 @@ def register_to_planes(
     Args:
         target: Planes in the target frame.
         source: Points in the source frame [m], (N, 3): both ends of segments.
-        guess: First ``T_target_source``; large cubes and a wide gate come first, so that it may
+        initial: First ``T_target_source``; large cubes and a wide gate come first, so that it may
             be off by up to a meter.
         planes: How many sizes of cubes there are.
         settings: Stop rules.
     """
-    T_target_source = guess
+    T_target_source = initial
     zero = np.zeros(len(source))
     stop, rounds = StopReason.LIMIT, 0
     match = _empty(len(source))
@@ -51,7 +51,7 @@ def register_to_planes(
         H, g = match.H[:6, :6], match.g[:6]
         step = -np.linalg.solve(H + 1e-6 * np.trace(H) / 6 * np.eye(6), g)
         T_target_source = SE3(so3_exp(step[:3]) @ T_target_source.R, T_target_source.t + step[3:])
-        if not np.isfinite(step).all() or _moved(guess, T_target_source) > settings.max_move_m:
+        if not np.isfinite(step).all() or _moved(initial, T_target_source) > settings.max_move_m:
             stop = StopReason.UNSTABLE
             break
         small = 5.0 * np.linalg.norm(step[:3]) + np.linalg.norm(step[3:])
@@ -60,7 +60,7 @@ def register_to_planes(
             break
     error_m = _error(target, T_target_source, source, zero)
     return Registration(
-        T_target_source, stop, rounds, error_m, 0.0, match.share, match.H[:6, :6],
+        T_target_source, stop, rounds, error_m, 0.0, match.match_ratio, match.H[:6, :6],
         match.degeneracy,
     )  # fmt: skip
 
@@ -77,8 +77,8 @@ def _error(target: PlaneMap, T_target_source: SE3, source: Array, fraction: Arra
     return wide.mean_m
 
 
-def _moved(guess: SE3, T_target_source: SE3) -> float:
-    delta = guess.inverse() @ T_target_source
+def _moved(initial: SE3, T_target_source: SE3) -> float:
+    delta = initial.inverse() @ T_target_source
     return float(np.linalg.norm(delta.t)) + 5.0 * float(delta.angle())
 
 

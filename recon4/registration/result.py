@@ -31,7 +31,7 @@ class Registration:
     """Mean distance of the matches kept, after the last step [m]; NaN without any."""
     error_sd_m: float
     """Standard deviation of that error over the last rounds [m] (0 where it is not kept)."""
-    share: float
+    match_ratio: float
     """Matched share of the source."""
     information: Array
     """Inverse covariance of a left correction in the target (rotation first), (6, 6)."""

@@ -46,7 +46,7 @@ class ScanChain:
         self._now = make_scan(points, self._settings)
         if self._scan is None:
             return None
-        found = search_scans(self._scan, self._now, guess=self._motion, settings=self._settings)
+        found = search_scans(self._scan, self._now, initial=self._motion, settings=self._settings)
         self._located = found.T_target_source
         # Of two skewed scans the matches may go to and fro for ever: what lies in place decides.
         return None if found.stop is StopReason.TOO_FEW else found.T_target_source

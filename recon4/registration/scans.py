@@ -67,24 +67,28 @@ def make_scan(points: Array, settings: ScanSettings) -> Scan:
 
 
 def register_scans(
-    target: Scan, source: Scan, *, guess: SE3, settings: ScanSettings
+    target: Scan, source: Scan, *, initial: SE3, settings: ScanSettings
 ) -> Registration:
     """Estimate ``T_target_source`` from a guess within a meter and some ten degrees.
 
-    Converged means that the steps became small and that at least ``settings.min_share`` of the
+    Converged means that the steps became small and at least ``settings.min_inlier_ratio`` of the
     source lies on the target's surfaces; an end elsewhere is reported as too few matches.
 
     Args:
         target: Scan to register to.
         source: Scan to be moved.
-        guess: First ``T_target_source``.
+        initial: First ``T_target_source``.
         settings: Gate, kernel, bounds.
     """
     rows = _some(source, settings.source_points)
-    return _descend(target, source, rows, guess=guess, rounds=settings.rounds, settings=settings)
+    return _descend(
+        target, source, rows, initial=initial, rounds=settings.rounds, settings=settings
+    )
 
 
-def search_scans(target: Scan, source: Scan, *, guess: SE3, settings: ScanSettings) -> Registration:
+def search_scans(
+    target: Scan, source: Scan, *, initial: SE3, settings: ScanSettings
+) -> Registration:
     """Estimate ``T_target_source`` although the guess may be wrong altogether.
 
     The guess is taken where it leads to a good match. Otherwise it competes with the best
@@ -94,23 +98,23 @@ def search_scans(target: Scan, source: Scan, *, guess: SE3, settings: ScanSettin
     Args:
         target: Scan to register to.
         source: Scan to be moved.
-        guess: First ``T_target_source``.
+        initial: First ``T_target_source``.
         settings: Gate, kernel, bounds.
     """
-    first = register_scans(target, source, guess=guess, settings=settings)
-    if first.converged and first.share >= settings.sure_share:
+    first = register_scans(target, source, initial=initial, settings=settings)
+    if first.converged and first.match_ratio >= settings.confident_inlier_ratio:
         return first
     rows = _some(source, _COARSE_POINTS)
-    starts = overlay_plans(target, source, count=settings.starts, height_m=float(guess.t[2]))
+    starts = overlay_plans(target, source, count=settings.starts, height_m=float(initial.t[2]))
     tries = [
-        _descend(target, source, rows, guess=start, rounds=_COARSE_ROUNDS, settings=settings)
+        _descend(target, source, rows, initial=start, rounds=_COARSE_ROUNDS, settings=settings)
         for start in [first.T_target_source, *starts]
     ]
-    best = max(tries, key=lambda found: found.share)
+    best = max(tries, key=lambda found: found.match_ratio)
     if best is tries[0]:
         return first
-    other = register_scans(target, source, guess=best.T_target_source, settings=settings)
-    return max(first, other, key=lambda found: found.share)
+    other = register_scans(target, source, initial=best.T_target_source, settings=settings)
+    return max(first, other, key=lambda found: found.match_ratio)
 
 
 def overlay_plans(target: Scan, source: Scan, *, count: int, height_m: float) -> list[SE3]:
@@ -148,15 +152,15 @@ def _descend(
     source: Scan,
     rows: NDArray[np.intp],
     *,
-    guess: SE3,
+    initial: SE3,
     rounds: int,
     settings: ScanSettings,
 ) -> Registration:
     """Match and solve until the steps are small, with some rows of the source."""
     if len(target) < _MIN_MATCHES or len(rows) < _MIN_MATCHES:
-        return _refused(guess, 0)
+        return _refused(initial, 0)
     p, n = source.points[rows], source.normals[rows]
-    T, stop, done = guess, StopReason.LIMIT, 0
+    T, stop, done = initial, StopReason.LIMIT, 0
     for done in range(1, rounds + 1):
         reach = settings.gate_m * (_WIDE if done <= 2 else 1.0)
         q = T @ p
@@ -173,12 +177,12 @@ def _descend(
         if done > 2 and _STEP_ARM_M * np.linalg.norm(step[:3]) + np.linalg.norm(step[3:]) < 1e-3:
             stop = StopReason.SMALL_STEP
             break
-    share = right / len(rows)
-    if share < settings.min_share:
+    match_ratio = right / len(rows)
+    if match_ratio < settings.min_inlier_ratio:
         stop = StopReason.TOO_FEW
     variance = max(squares / weight, 1e-4)
     degeneracy = float(np.linalg.eigvalsh(nn / weight)[0])
-    return Registration(T, stop, done, total / weight, 0.0, share, H / variance, degeneracy)
+    return Registration(T, stop, done, total / weight, 0.0, match_ratio, H / variance, degeneracy)
 
 
 def _some(scan: Scan, limit: int) -> NDArray[np.intp]:

@@ -9,10 +9,10 @@ import numpy as np
 from recon4.geometry.se3 import SE3
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, track
-from recon4.registration.aiding import Aid
-from recon4.registration.imu_trial import believable_imu
+from recon4.registration.aiding import GnssAiding
+from recon4.registration.imu_consistency import consistent_imu
+from recon4.registration.make import make_odometry
 from recon4.registration.odometry import OdometryStep
-from recon4.registration.select import make_odometry
 from recon4.settings import Settings
 from recon4.store.arrays import save_trajectory
 from recon4.store.frames import FrameStore
@@ -29,7 +29,7 @@ def run_odometry(
     *,
     settings: Settings,
     progress: Progress,
-    aid: Aid | None = None,
+    aiding: GnssAiding | None = None,
 ) -> dict[str, object]:
     """Register all multiframes in order.
 
@@ -39,12 +39,12 @@ def run_odometry(
             (a row a multiframe).
         settings: Uses segments, planes, registration and odometry.
         progress: Counts multiframes; tracking that is lost and an IMU that is wrong are events.
-        aid: Fixes of a GNSS/INS, outdoors.
+        aiding: Fixes of a GNSS/INS, outdoors.
     """
-    imu, remark = believable_imu(frames, settings)
+    imu, remark = consistent_imu(frames, settings)
     if remark:
         progress.event("warning", text=remark)
-    odometry = make_odometry(frames.rig, settings, imu, aid=aid)
+    odometry = make_odometry(frames.rig, settings, imu, aiding=aiding)
     steps: list[OdometryStep] = []
     for frame in track(frames, progress, what="odometry", unit="multiframe"):
         step = odometry.push(frame)
@@ -52,7 +52,7 @@ def run_odometry(
             progress.event("lost", frame_id=step.frame_id, t_ns=step.t_mid_ns)
         steps.append(step)
         if len(steps) % (_TOLD_EVERY * _TOLD_AT_ONCE) == 0:
-            _tell_poses(steps[-_TOLD_EVERY * _TOLD_AT_ONCE :: _TOLD_EVERY], progress)
+            _report_poses(steps[-_TOLD_EVERY * _TOLD_AT_ONCE :: _TOLD_EVERY], progress)
     save_trajectory(out / "trajectory.npz", dense_trajectory(steps))
     _save_steps(out / "steps.npz", steps)
     lost = sum(step.lost for step in steps)
@@ -61,11 +61,11 @@ def run_odometry(
         "lost": lost,
         "imu": imu is not None,
         "warnings": [remark] if remark else [],
-        "gnss": aid is not None,
+        "gnss": aiding is not None,
     }
 
 
-def _tell_poses(steps: list[OdometryStep], progress: Progress) -> None:
+def _report_poses(steps: list[OdometryStep], progress: Progress) -> None:
     """Some poses, for whoever watches the walk grow."""
     T = SE3.stack(step.T_odom_body for step in steps)
     progress.event(
@@ -99,11 +99,11 @@ def _save_steps(path: Path, steps: list[OdometryStep]) -> None:
         quat_xyzw=T.quat_xyzw(),
         t_m=T.t,
         error_m=np.array([s.error_m for s in steps]),
-        share=np.array([s.share for s in steps]),
+        match_ratio=np.array([s.match_ratio for s in steps]),
         rounds=np.array([s.rounds for s in steps]),
         converged=np.array([s.converged for s in steps]),
         degeneracy=np.array([s.degeneracy for s in steps]),
-        gap_m=np.array([s.gap_m for s in steps]),
+        prediction_offset_m=np.array([s.prediction_offset_m for s in steps]),
         lost=np.array([s.lost for s in steps]),
         motion_cov=np.array([s.motion_cov for s in steps]).reshape(-1, 6, 6),
     )

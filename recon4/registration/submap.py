@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import Array
 from recon4.kernels.imu import place_points
 from recon4.model.trajectory import Times, Trajectory
-from recon4.registration.overlap import make_view
+from recon4.registration.overlap import make_range_image
 from recon4.registration.segments import Segments, sample_segments
 from recon4.settings import Settings
 from recon4.store.frames import FrameStore
@@ -105,7 +105,7 @@ def _covering(trajectory: Trajectory, t_ns: int, duration_ns: int) -> Trajectory
     return trajectory[slice(first, max(int(last) + 1, first + 2))]
 
 
-class NodeViews:
+class NodeRangeImages:
     """What each node brings to a pair: some segments and its view volume, kept on disk.
 
     Args:
@@ -134,7 +134,7 @@ class NodeViews:
             near = _thin(submaps.around(node, g.source_reach), g.source_segments)
             self._size[node] = len(near)
             self._ends[node, : len(near)] = near
-            view = make_view(wide, self._settings.overlap)
+            view = make_range_image(wide, self._settings.overlap)
             self._nearest[node] = view.nearest_m
 
     def ends(self, node: int) -> Ends:

@@ -17,6 +17,7 @@ from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
 from recon4.store.arrays import load_arrays, load_trajectory
+from recon4.store.earlier_names import STEPS, current_names
 
 _MOST_JSON_BYTES = 64 << 20
 
@@ -50,7 +51,7 @@ def read_results(artifacts: Mapping[str, Path]) -> Results:
     return Results(
         imported=_json(artifacts, "frames", "report.json"),
         odometry=_latest_trajectory(artifacts, ("odometry",)),
-        steps=_arrays(artifacts, "odometry", "steps.npz"),
+        steps=current_names(_arrays(artifacts, "odometry", "steps.npz"), STEPS),
         graph=_latest_graph(artifacts, ("level", "review", "verification", "graph")),
         verification=_json(artifacts, "verification", "verification.json"),
         final=_latest_trajectory(artifacts, ("level", "refine")),
@@ -60,7 +61,7 @@ def read_results(artifacts: Mapping[str, Path]) -> Results:
     )
 
 
-def way_m(trajectory: Trajectory) -> Array:
+def path_length_m(trajectory: Trajectory) -> Array:
     """Way covered before each pose [m], (N,), from positions half a second apart or more.
 
     Shorter steps would add the body's sway and the noise of the poses to the way.

@@ -164,8 +164,8 @@ def _tracking_charts(steps: dict[str, NDArray[Any]], time: str) -> Charts:
         series = [("", t_s, 100.0 * steps["error_m"].astype(np.float64), PINK)]
         svg = lines("tracking-error", series, labels=(time, "registration error [cm]"))
         out.append((svg, "Odometry: mean distance of matched segments from the local map."))
-    if "share" in steps:
-        matched = 100.0 * steps["share"].astype(np.float64)
+    if "match_ratio" in steps:
+        matched = 100.0 * steps["match_ratio"].astype(np.float64)
         matched[0] = np.nan  # the first has nothing to match
         series = [("", t_s, matched, GREEN)]
         svg = lines("tracking-share", series, labels=(time, "matched [%]"))

@@ -7,7 +7,7 @@ from enum import IntEnum
 
 import numpy as np
 
-from recon4.evaluation.table import number, share
+from recon4.evaluation.table import number, percentage
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Verdict
 from recon4.report.artifacts import Results
 from recon4.report.drift import DriftClosed
@@ -68,7 +68,7 @@ def _tracking(results: Results) -> list[Finding]:
     where = ""
     if t_ns is not None:
         where = f", first {(t_ns[lost][0] - t_ns[0]) / 1e9:.1f} s after the start"
-    how_many = f"{lost.sum()} of {len(lost)} multiframes ({share(lost.mean())})"
+    how_many = f"{lost.sum()} of {len(lost)} multiframes ({percentage(lost.mean())})"
     return [Finding(Level.BAD, f"Tracking was lost in {how_many}{where}.")]
 
 
@@ -156,8 +156,8 @@ def _accuracy(facts: ReportFacts) -> list[Finding]:
     rmse = found.aligned.position_m.rmse
     level = Level.GOOD if rmse <= _GOAL_M else Level.NOTE
     out.append(Finding(level, f"The trajectory is off by {_cm(rmse)} (RMSE, SVD-aligned)."))
-    if found.covered_share < 0.95:
-        text = f"The truth covers only {share(found.covered_share)} of the poses."
+    if found.coverage_ratio < 0.95:
+        text = f"The truth covers only {percentage(found.coverage_ratio)} of the poses."
         out.append(Finding(Level.WARNING, text))
     return out
 

@@ -10,18 +10,18 @@ from typing import Any
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from recon4.evaluation.table import number, share
+from recon4.evaluation.table import number, percentage
 from recon4.mapping.tiles import TileSet
 from recon4.model.pose_graph import EdgeKind
-from recon4.report import pictures
+from recon4.report import chart_groups as pictures
 from recon4.report.approval import draft_block
-from recon4.report.artifacts import Results, read_results, way_m
+from recon4.report.artifacts import Results, path_length_m, read_results
 from recon4.report.drift import DriftClosed, drift_closed
 from recon4.report.edges import edge_rows
 from recon4.report.facts import ReportFacts
 from recon4.report.findings import find, headline
 from recon4.report.maps import map_chunks, rasterize
-from recon4.report.words import imported_rows, placed_rows
+from recon4.report.rows import imported_rows, placed_rows
 from recon4.settings import Settings, preset
 from recon4.store.atomic import write_text
 
@@ -58,7 +58,7 @@ def render(facts: ReportFacts) -> str:
     )
     environment.filters |= {
         "number": number,
-        "share": share,
+        "percentage": percentage,
         "short": _short,
         "size": _size,
     }
@@ -112,7 +112,7 @@ def _key_figures(
     if walk is not None and len(walk) > 1:
         seconds = (walk.t_ns[-1] - walk.t_ns[0]) / 1e9
         out.append(("duration", _duration(seconds), "min:s"))
-        out.append(("way", number(float(way_m(walk)[-1]), 1), "m"))
+        out.append(("way", number(float(path_length_m(walk)[-1]), 1), "m"))
     if "lost" in results.steps:
         out.append(("multiframes", _grouped(len(results.steps["lost"])), ""))
     if tiles is not None:

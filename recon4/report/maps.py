@@ -34,7 +34,7 @@ class MapChunk:
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class MapProjection:
     """From where the map is looked at."""
 
     name: str
@@ -46,14 +46,14 @@ class View:
     """What the two axes are called."""
 
 
-ABOVE = View("from above", 0, 1, ("x", "y"))
-FRONT = View("from the side, along y", 0, 2, ("x", "z"))
-SIDE = View("from the side, along x", 1, 2, ("y", "z"))
-VIEWS = (ABOVE, FRONT, SIDE)
+ABOVE = MapProjection("from above", 0, 1, ("x", "y"))
+FRONT = MapProjection("from the side, along y", 0, 2, ("x", "z"))
+SIDE = MapProjection("from the side, along x", 1, 2, ("y", "z"))
+PROJECTIONS = (ABOVE, FRONT, SIDE)
 
 
 @dataclass(frozen=True, slots=True)
-class Frame:
+class ImageFrame:
     """Which part of the plane a picture shows."""
 
     left_m: float
@@ -70,8 +70,8 @@ class Frame:
 class Raster:
     """Sums over the points in each pixel; row 0 is the top of the picture."""
 
-    view: View
-    frame: Frame
+    view: MapProjection
+    frame: ImageFrame
     count: Array = field(init=False)
     z_sum: Array = field(init=False)
     intensity_sum: Array = field(init=False)
@@ -118,10 +118,10 @@ class Raster:
 
 def map_chunks(tiles: TileSet, *, points: int = 8_000_000) -> Iterator[MapChunk]:
     """The points of a map, or an even sample of them where there are more than so many."""
-    share = min(1.0, points / max(len(tiles), 1))
+    ratio = min(1.0, points / max(len(tiles), 1))
     normalized = "intensity_normalized" in tiles.fields
     for tile in tiles:
-        limit = int(np.ceil(share * len(tile)))
+        limit = int(np.ceil(ratio * len(tile)))
         fields = ["intensity", "intensity_normalized"] if normalized else ["intensity"]
         columns = tile.read(fields, limit=limit)
         yield MapChunk(
@@ -130,7 +130,7 @@ def map_chunks(tiles: TileSet, *, points: int = 8_000_000) -> Iterator[MapChunk]
 
 
 def rasterize(
-    chunks: Callable[[], Iterable[MapChunk]], views: tuple[View, ...] = VIEWS
+    chunks: Callable[[], Iterable[MapChunk]], views: tuple[MapProjection, ...] = PROJECTIONS
 ) -> list[Raster]:
     """Sum the points of a map into pictures, one a view, all of one scale.
 
@@ -200,9 +200,9 @@ def _bounds(chunks: Iterable[MapChunk]) -> tuple[Array, Array] | None:
 
 def _trimmed(counter: Counter[int]) -> tuple[float, float]:
     keys = np.array(sorted(counter))
-    share = np.cumsum([counter[key] for key in keys]) / counter.total()
-    first = keys[np.searchsorted(share, _TRIM)]
-    last = keys[np.searchsorted(share, 1.0 - _TRIM)]
+    ratio = np.cumsum([counter[key] for key in keys]) / counter.total()
+    first = keys[np.searchsorted(ratio, _TRIM)]
+    last = keys[np.searchsorted(ratio, 1.0 - _TRIM)]
     return float(first - 1) * _BIN_M, float(last + 2) * _BIN_M
 
 
@@ -213,9 +213,9 @@ def _pixel_m(extent_m: float) -> float:
     return float(next(step * power for step in (1, 2, 5, 10) if step * power >= wanted * 0.999))
 
 
-def _frame(view: View, low: Array, high: Array, pixel_m: float) -> Frame:
+def _frame(view: MapProjection, low: Array, high: Array, pixel_m: float) -> ImageFrame:
     size = np.ceil((high - low) / pixel_m).astype(int)
-    return Frame(
+    return ImageFrame(
         float(low[view.right]),
         float(low[view.up]),
         pixel_m,

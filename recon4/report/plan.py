@@ -9,7 +9,7 @@ import numpy as np
 
 from recon4.geometry.se3 import Array
 from recon4.report.figures import thinned
-from recon4.report.maps import Frame, View
+from recon4.report.maps import ImageFrame, MapProjection
 
 _LONGEST = 1000.0
 """Units of the longer side: a tall picture is shown smaller, and its letters must not shrink."""
@@ -28,8 +28,8 @@ class Path:
 
 def plan_svg(
     png: bytes | None,
-    view: View,
-    frame: Frame,
+    view: MapProjection,
+    frame: ImageFrame,
     *,
     paths: tuple[Path, ...] = (),
     css: str = "",
@@ -47,7 +47,7 @@ def plan_svg(
     """
     scale = _LONGEST / (max(frame.width, frame.height) * frame.pixel_m)
     width, height = (scale * n * frame.pixel_m for n in (frame.width, frame.height))
-    place = _Place(view, frame, scale, width, height)
+    place = _PlanTransform(view, frame, scale, width, height)
     out = [
         f'<svg class="plan" role="img" viewBox="-58 -28 {width + 70:.0f} {height + 102:.0f}">',
         f"<title>the map {view.name}</title>",
@@ -67,14 +67,14 @@ def plan_svg(
     return "".join(out)
 
 
-def frame_around(points: Array, view: View) -> Frame:
+def frame_around(points: Array, view: MapProjection) -> ImageFrame:
     """A frame for lines without a map, a tenth larger than they are."""
     p = points[:, [view.right, view.up]]
     low, high = p.min(axis=0), p.max(axis=0)
     margin = 0.1 * float((high - low).max()) + 0.5
     low, size = low - margin, high - low + 2 * margin
     pixel_m = float(size.max()) / 1000.0
-    return Frame(float(low[0]), float(low[1]), pixel_m, *(int(s / pixel_m) for s in size))
+    return ImageFrame(float(low[0]), float(low[1]), pixel_m, *(int(s / pixel_m) for s in size))
 
 
 def nice_step(extent: float, parts: int) -> float:
@@ -85,9 +85,9 @@ def nice_step(extent: float, parts: int) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class _Place:
-    view: View
-    frame: Frame
+class _PlanTransform:
+    view: MapProjection
+    frame: ImageFrame
     scale: float
     width: float
     height: float
@@ -107,7 +107,7 @@ class _Place:
         return "".join(out)
 
 
-def _axes(place: _Place, view: View, frame: Frame) -> str:
+def _axes(place: _PlanTransform, view: MapProjection, frame: ImageFrame) -> str:
     extent = (frame.width * frame.pixel_m, frame.height * frame.pixel_m)
     step = nice_step(max(extent), _TICKS)
     out = [f'<rect class="edge" width="{place.width:.1f}" height="{place.height:.1f}"/>']

@@ -17,7 +17,7 @@ from typing import Any
 
 from recon4.errors import StoreError
 from recon4.review.approved import VERSIONS, Approval, approval_of
-from recon4.review.decisions import Decided, Decision, Kind, fold
+from recon4.review.decisions import Decided, Decision, DecisionKind, fold
 from recon4.review.journal import Row, append, broken, head, read_rows
 from recon4.review.signature import sign
 from recon4.review.source import graph_key
@@ -31,7 +31,16 @@ from recon4.store.seal import changing, check_sealed
 
 FORMAT = 2
 """Of the statement. 2: it names the hash of the manifest of every artifact."""
-_FIGURES = ("points", "way_m", "duration_s", "multiframes", "lost", "edges", "crs", "warnings")
+_FIGURES = (
+    "points",
+    "path_length_m",
+    "duration_s",
+    "multiframes",
+    "lost",
+    "edges",
+    "crs",
+    "warnings",
+)
 
 
 class NotApprovable(StoreError):
@@ -39,7 +48,7 @@ class NotApprovable(StoreError):
 
 
 @dataclass(frozen=True, slots=True)
-class _Asked:
+class _ApprovalRequest:
     """What is to be signed, and by whom."""
 
     summary: dict[str, Any]
@@ -84,10 +93,12 @@ def approve(
         _refuse(root, asked, confirmed=confirmed)
         make_folders(root / VERSIONS)
         sweep(root / VERSIONS)
-        version = 1 + sum(row.kind == Kind.APPROVE for row in asked.rows)
+        version = 1 + sum(row.kind == DecisionKind.APPROVE for row in asked.rows)
         approval = _issue(root, asked, version=version, key_file=key_file)
         facts = {"version": version, "approval": approval.hash, "artifacts": hash_json(asked.keys)}
-        decision = Decision(kind=Kind.APPROVE, who=signer["who"], why=signer["why"], facts=facts)
+        decision = Decision(
+            kind=DecisionKind.APPROVE, who=signer["who"], why=signer["why"], facts=facts
+        )
         append(root, decision, after_seq=len(asked.rows))
         _hand_out(root, approval)
     return approval
@@ -121,7 +132,7 @@ def _hand_out(root: Path, approval: Approval) -> None:
         _link(approval.folder / SUMMARY, root / SUMMARY)
 
 
-def _refuse_again(root: Path, asked: _Asked) -> None:
+def _refuse_again(root: Path, asked: _ApprovalRequest) -> None:
     """Results are signed once; what was cut off after it counted is handed out first.
 
     A version that was changed since is worth nothing: then they may be signed again.
@@ -139,7 +150,7 @@ def _refuse_again(root: Path, asked: _Asked) -> None:
     )
 
 
-def _asked(root: Path, signer: Mapping[str, str]) -> _Asked:
+def _asked(root: Path, signer: Mapping[str, str]) -> _ApprovalRequest:
     summary = read_summary(root)
     if summary is None:
         raise NotApprovable("there is no finished map yet: nothing to approve")
@@ -148,10 +159,10 @@ def _asked(root: Path, signer: Mapping[str, str]) -> _Asked:
     except Altered as error:
         raise NotApprovable(f"{error}: make a new map first") from error
     rows = read_rows(root)
-    if told := broken(rows):
-        raise NotApprovable(f"the journal is not what was written: {told[0]}")
+    if record := broken(rows):
+        raise NotApprovable(f"the journal is not what was written: {record[0]}")
     decided = fold(row.decision() for row in rows)
-    return _Asked(summary, decided, rows, signer, _conflicts(root, summary))
+    return _ApprovalRequest(summary, decided, rows, signer, _conflicts(root, summary))
 
 
 def _conflicts(root: Path, summary: dict[str, Any]) -> int:
@@ -165,7 +176,7 @@ def _conflicts(root: Path, summary: dict[str, Any]) -> int:
         raise StoreError(f"{path} cannot be read: {error}") from error
 
 
-def _refuse(root: Path, asked: _Asked, *, confirmed: bool) -> None:
+def _refuse(root: Path, asked: _ApprovalRequest, *, confirmed: bool) -> None:
     if decisions_in_map(root) != asked.decided.key:
         raise NotApprovable("the map does not know the last decisions: make a new map first")
     if asked.conflicts and not (confirmed and asked.signer["why"].strip()):
@@ -184,7 +195,7 @@ def _refuse(root: Path, asked: _Asked, *, confirmed: bool) -> None:
         raise NotApprovable(f"{error}: make a new map first") from error
 
 
-def _issue(root: Path, asked: _Asked, *, version: int, key_file: Path) -> Approval:
+def _issue(root: Path, asked: _ApprovalRequest, *, version: int, key_file: Path) -> Approval:
     """Write ``versions/<n>/``; it counts once the journal says so."""
     folder = root / VERSIONS / str(version)
     if folder.exists():  # of an approval that was cut off before it counted
@@ -204,12 +215,12 @@ def _issue(root: Path, asked: _Asked, *, version: int, key_file: Path) -> Approv
         _write_summary(made, asked.summary, stamp)
         issued = {path.name: hash_file(path) for path in sorted(made.iterdir())}
         signature = sign({"hash": stamp.hash, "issued": issued}, key_file)
-        told = {"statement": statement, "hash": stamp.hash, "issued": issued}
-        write_json(made / "approval.json", told | {"signature": signature})
+        record = {"statement": statement, "hash": stamp.hash, "issued": issued}
+        write_json(made / "approval.json", record | {"signature": signature})
     return Approval(version, stamp.hash, folder, stamp, asked.keys, statement["manifests"], issued)
 
 
-def _statement(root: Path, asked: _Asked, *, version: int, time: str) -> dict[str, Any]:
+def _statement(root: Path, asked: _ApprovalRequest, *, version: int, time: str) -> dict[str, Any]:
     summary = asked.summary
     figures = {name: summary[name] for name in _FIGURES if name in summary}
     last = {stage["stage"]: stage.get("figures", {}) for stage in summary["stages"]}
@@ -239,9 +250,9 @@ def _statement(root: Path, asked: _Asked, *, version: int, time: str) -> dict[st
 def _write_summary(folder: Path, summary: dict[str, Any], stamp: Stamp) -> None:
     """The summary vouches for the files as they were issued."""
     hashes = {path.name: hash_file(path) for path in sorted(folder.iterdir())}
-    told = dict(summary) | {"approval": json.loads(stamp.words())}
-    told["hashes"] = dict(summary["hashes"]) | {"results": hashes}
-    write_json(folder / "summary.json", told)
+    record = dict(summary) | {"approval": json.loads(stamp.words())}
+    record["hashes"] = dict(summary["hashes"]) | {"results": hashes}
+    write_json(folder / "summary.json", record)
 
 
 def _link(source: Path, target: Path) -> None:

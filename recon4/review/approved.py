@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from recon4.review.decisions import Kind
+from recon4.review.decisions import DecisionKind
 from recon4.review.evidence import Evidence
 from recon4.review.journal import Row, broken, read_rows
 from recon4.review.signature import fingerprint, is_signed
@@ -81,7 +81,7 @@ def approval_of(root: Path, keys: Mapping[str, str]) -> Approval | None:
     wanted = hash_json(dict(keys))
     rows = read_rows(root)
     for row in reversed(rows):
-        if row.kind == Kind.APPROVE and _facts(row).get("artifacts") == wanted:
+        if row.kind == DecisionKind.APPROVE and _facts(row).get("artifacts") == wanted:
             return _counted(root, rows, row)
     return None
 
@@ -95,7 +95,7 @@ def approval_of_map(root: Path, map_key: str) -> Approval | None:
     """
     rows = read_rows(root)
     for row in reversed(rows):
-        if row.kind == Kind.APPROVE:
+        if row.kind == DecisionKind.APPROVE:
             approval = _counted(root, rows, row)
             if approval.artifacts.get("map") == map_key:
                 return approval
@@ -109,7 +109,7 @@ def latest_approval(root: Path, rows: Sequence[Row]) -> dict[str, Any] | None:
         StoreError: If a file is damaged.
     """
     for row in reversed(rows):
-        if row.kind == Kind.APPROVE:
+        if row.kind == DecisionKind.APPROVE:
             facts = _facts(row)
             named = ((read_summary(root) or {}).get("approval") or {}).get("hash")
             return {

@@ -10,7 +10,7 @@ from typing import Any
 
 from recon4.progress import Progress, track
 from recon4.review.approved import VERSIONS, read_approval
-from recon4.review.decisions import Kind
+from recon4.review.decisions import DecisionKind
 from recon4.review.journal import Row, broken, read_rows
 from recon4.store.checked import Altered
 from recon4.store.hashing import hash_file
@@ -37,7 +37,7 @@ def audit_review(root: Path, progress: Progress) -> ReviewAudit:
     rows = read_rows(root)
     damaged = [f"journal: {what}" for what in broken(rows)]
     approvals, counted = [], set()
-    approving = [row for row in rows if row.kind == Kind.APPROVE]
+    approving = [row for row in rows if row.kind == DecisionKind.APPROVE]
     for row in track(approving, progress, what="approvals", unit="versions"):
         facts = json.loads(row.body)["facts"]
         version = int(facts["version"])

@@ -21,7 +21,7 @@ Pair = tuple[int, int]
 """Ids of two multiframes, the earlier one first."""
 
 
-class Kind(StrEnum):
+class DecisionKind(StrEnum):
     """What a row of the journal says."""
 
     ACCEPT = "accept"
@@ -44,9 +44,9 @@ class Kind(StrEnum):
 
 AUTOMATIC = "auto"
 """`Edge.decided_by` of what the program decided; nobody may bear this name."""
-MEASURED = (Kind.REPLACE, Kind.ADD)
+MEASURED = (DecisionKind.REPLACE, DecisionKind.ADD)
 """Kinds that bring a measurement of their own."""
-ABOUT_PAIRS = (Kind.ACCEPT, Kind.REJECT, Kind.RESTORE, *MEASURED)
+ABOUT_PAIRS = (DecisionKind.ACCEPT, DecisionKind.REJECT, DecisionKind.RESTORE, *MEASURED)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,7 +76,7 @@ class Measurement:
 class Decision:
     """One row of the journal before it is written."""
 
-    kind: Kind
+    kind: DecisionKind
     who: str
     why: str = ""
     pair: Pair | None = None
@@ -115,14 +115,14 @@ class Decision:
             StoreError: If that is no decision.
         """
         try:
-            told = body["measurement"]
+            record = body["measurement"]
             return Decision(
-                kind=Kind(kind),
+                kind=DecisionKind(kind),
                 who=who,
                 why=why,
                 pair=pair,
                 T_i_j=tuple(body["T_i_j"]),
-                measurement=_measurement(told) if told else None,
+                measurement=_measurement(record) if record else None,
                 facts=body["facts"],
             )
         except (KeyError, TypeError, ValueError) as error:
@@ -145,8 +145,8 @@ class Standing:
 
     def to_json(self) -> dict[str, Any]:
         """Plain JSON values."""
-        told: dict[str, Any] = _plain(asdict(self))
-        return told
+        record: dict[str, Any] = _plain(asdict(self))
+        return record
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,12 +181,14 @@ def fold(decisions: Iterable[Decision]) -> Decided:
     done: list[Decision] = []
     undone: list[Decision] = []
     for decision in decisions:
-        if decision.kind in (Kind.UNDO, Kind.REDO):
-            source, target = (done, undone) if decision.kind is Kind.UNDO else (undone, done)
+        if decision.kind in (DecisionKind.UNDO, DecisionKind.REDO):
+            source, target = (
+                (done, undone) if decision.kind is DecisionKind.UNDO else (undone, done)
+            )
             if not source:
                 raise StoreError(f"the journal holds a row to {decision.kind} nothing")
             target.append(source.pop())
-        elif decision.kind is not Kind.APPROVE:
+        elif decision.kind is not DecisionKind.APPROVE:
             done.append(decision)
             undone.clear()
     standing: dict[Pair, Standing] = {}
@@ -199,11 +201,11 @@ def fold(decisions: Iterable[Decision]) -> Decided:
 def _stand(standing: dict[Pair, Standing], decision: Decision) -> None:
     assert decision.pair is not None
     before = standing.pop(decision.pair, None)
-    if decision.kind is Kind.RESTORE:
+    if decision.kind is DecisionKind.RESTORE:
         return
     after = Standing(
         pair=decision.pair,
-        accepted=decision.kind is not Kind.REJECT,
+        accepted=decision.kind is not DecisionKind.REJECT,
         who=decision.who,
         why=decision.why,
         T_i_j=decision.T_i_j,
@@ -225,9 +227,9 @@ def numbers_of(T_a_b: SE3) -> tuple[float, ...]:
     return (*map(float, T_a_b.t), *map(float, T_a_b.quat_xyzw()))
 
 
-def _measurement(told: dict[str, Any]) -> Measurement:
-    known: dict[str, Any] = {n: math.nan if v is None else v for n, v in told.items()}
-    known |= {name: tuple(told[name]) for name in ("T_i_j", "information")}
+def _measurement(record: dict[str, Any]) -> Measurement:
+    known: dict[str, Any] = {n: math.nan if v is None else v for n, v in record.items()}
+    known |= {name: tuple(record[name]) for name in ("T_i_j", "information")}
     return Measurement(**known)
 
 

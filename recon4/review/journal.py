@@ -16,7 +16,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from recon4.errors import StoreError
-from recon4.review.decisions import Decided, Decision, Kind, fold
+from recon4.review.decisions import Decided, Decision, DecisionKind, fold
 from recon4.store.atomic import raise_if_full
 from recon4.store.seal import changing
 
@@ -46,11 +46,11 @@ CREATE TRIGGER IF NOT EXISTS no_removal BEFORE DELETE ON journal
 _COLUMNS = "seq, time, who, kind, frame_i, frame_j, body, why, prev_hash, hash"
 
 
-class NothingToTakeBack(StoreError):
+class NothingToUndo(StoreError):
     """Undo or redo with nothing left to undo or redo."""
 
 
-class JournalMoved(StoreError):
+class JournalChanged(StoreError):
     """Somebody else decided something meanwhile."""
 
 
@@ -74,8 +74,8 @@ class Row:
 
     def sealed(self) -> str:
         """The hash this row must have."""
-        told = [self.seq, self.time, self.who, self.kind, self.frame_i, self.frame_j, self.body]
-        text = json.dumps([*told, self.why, self.prev_hash], separators=(",", ":"))
+        problems = [self.seq, self.time, self.who, self.kind, self.frame_i, self.frame_j, self.body]
+        text = json.dumps([*problems, self.why, self.prev_hash], separators=(",", ":"))
         return hashlib.sha256(text.encode()).hexdigest()
 
     def decision(self) -> Decision:
@@ -125,8 +125,8 @@ def append(root: Path, decision: Decision, *, after_seq: int | None = None) -> R
         after_seq: Refuse if the last row is another one; None = any.
 
     Raises:
-        NothingToTakeBack: If it is an undo or redo and there is nothing to take back.
-        JournalMoved: If the last row is not ``after_seq``.
+        NothingToUndo: If it is an undo or redo and there is nothing to take back.
+        JournalChanged: If the last row is not ``after_seq``.
         StoreError: If the file is damaged or cannot be written (`NoSpace`: disk full).
     """
     with changing(root, NAME), _database(root / NAME, write=True) as db:
@@ -145,17 +145,17 @@ def append(root: Path, decision: Decision, *, after_seq: int | None = None) -> R
 
 def broken(rows: Sequence[Row]) -> list[str]:
     """What is wrong with the chain of hashes, in words; empty = as it was written."""
-    told, before = [], START
+    problems, before = [], START
     for place, row in enumerate(rows, start=1):
         if row.seq != place:
-            told.append(f"row {place} is missing")
+            problems.append(f"row {place} is missing")
             break
         if row.prev_hash != before:
-            told.append(f"row {place} does not follow the row before it")
+            problems.append(f"row {place} does not follow the row before it")
         if row.sealed() != row.hash:
-            told.append(f"row {place} ({row.kind} by {row.who}) was changed")
+            problems.append(f"row {place} ({row.kind} by {row.who}) was changed")
         before = row.hash
-    return told
+    return problems
 
 
 def head(rows: Sequence[Row]) -> str:
@@ -165,14 +165,14 @@ def head(rows: Sequence[Row]) -> str:
 
 def _check(rows: Sequence[Row], decision: Decision, after_seq: int | None) -> None:
     if after_seq is not None and after_seq != len(rows):
-        raise JournalMoved(
+        raise JournalChanged(
             f"somebody decided something meanwhile ({len(rows) - after_seq} more rows); look again"
         )
-    if decision.kind in (Kind.UNDO, Kind.REDO):
+    if decision.kind in (DecisionKind.UNDO, DecisionKind.REDO):
         decided = fold(row.decision() for row in rows)
-        left = decided.undoable if decision.kind is Kind.UNDO else decided.redoable
+        left = decided.undoable if decision.kind is DecisionKind.UNDO else decided.redoable
         if not left:
-            raise NothingToTakeBack(f"there is nothing to {decision.kind}")
+            raise NothingToUndo(f"there is nothing to {decision.kind}")
 
 
 def _next(rows: Sequence[Row], decision: Decision) -> Row:

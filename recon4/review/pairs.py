@@ -21,8 +21,8 @@ from recon4.model.pose_graph import EdgeKind, PoseGraph, Reason
 from recon4.pose_graph.pairs import Pair as TriedPair
 from recon4.pose_graph.pairs import PairRegistrar
 from recon4.progress import Silent
-from recon4.registration.overlap import View, overlap
-from recon4.registration.submap import NodeViews, Submaps
+from recon4.registration.overlap import RangeImage, overlap
+from recon4.registration.submap import NodeRangeImages, Submaps
 from recon4.review.apply import is_measured, rows_by_pair
 from recon4.review.decisions import Measurement, Pair, numbers_of, pose_of
 from recon4.review.queue import MOST_PATHS, alternative_paths
@@ -55,8 +55,8 @@ class Alignment:
 
     def to_json(self) -> dict[str, Any]:
         """Plain JSON values."""
-        told: dict[str, Any] = null_for_nan(asdict(self))
-        return told
+        record: dict[str, Any] = null_for_nan(asdict(self))
+        return record
 
 
 def pair_points(source: Source, pair: Pair, reach: int) -> bytes:
@@ -89,7 +89,7 @@ def pair_facts(source: Source, pair: Pair) -> dict[str, Any]:
     measured = edge is not None and is_measured(edge)
     T_i_j = edge.T_i_j if edge is not None and measured else predicted
     paths = alternative_paths(graph, i, j, T_i_j, settings=source.settings)
-    told: dict[str, Any] = null_for_nan(
+    record: dict[str, Any] = null_for_nan(
         {
             "pair": list(pair),
             "t_ns": [int(graph.t_ns[node]) for node in (i, j)],
@@ -103,7 +103,7 @@ def pair_facts(source: Source, pair: Pair) -> dict[str, Any]:
             "path_count": len(paths),
         }
     )
-    return told
+    return record
 
 
 def align(source: Source, pair: Pair, guess: tuple[float, ...]) -> Alignment:
@@ -118,21 +118,21 @@ def align(source: Source, pair: Pair, guess: tuple[float, ...]) -> Alignment:
         ConfigError: If one of them is no node, or the guess is no pose.
         StoreError: If artifacts are missing or damaged.
     """
-    T_guess = _checked(guess)
+    T_predicted = _checked(guess)
     nodes_of(source.verified, pair)
     # What a person points at is tried, however little the two see of each other.
     settings = replace(source.settings, overlap=replace(source.settings.overlap, threshold=0.0))
     lost = _lost(source)
     rows = np.array(pair, dtype=np.intp)
-    views = NodeViews(2, settings, Path(gettempdir()))
+    views = NodeRangeImages(2, settings, Path(gettempdir()))
 
     def submaps() -> Submaps:
         return Submaps(source.frames, source.odometry, rows, settings, skip=lost)
 
     registrar = PairRegistrar(submaps, views, settings)
     registrar.prepare(2, Silent())
-    tried = registrar.register([TriedPair(0, 1, EdgeKind.MANUAL, T_guess)], Silent())[0]
-    ends = [View(views.ends(k).reshape(-1, 3), views.nearest_m(k)) for k in (0, 1)]
+    tried = registrar.register([TriedPair(0, 1, EdgeKind.MANUAL, T_predicted)], Silent())[0]
+    ends = [RangeImage(views.ends(k).reshape(-1, 3), views.nearest_m(k)) for k in (0, 1)]
     found = Measurement(
         T_i_j=numbers_of(tried.T_i_j),
         information=tuple(tried.information.ravel().tolist()),

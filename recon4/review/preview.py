@@ -37,15 +37,15 @@ def preview(source: Source, decided: Decided, before: Decided) -> dict[str, Any]
     began_s = perf_counter()
     source = _known(source)
     earlier, now = _review(source, before).graph, _review(source, decided)
-    told: dict[str, Any] = {
+    record: dict[str, Any] = {
         "key": decided.key,
         "last": difference(earlier, now.graph).to_json(),
         "all": difference(source.verified, now.graph).to_json(),
         "edges": _decided_edges(now.graph),
     }
-    told |= facts_of(now, ())
-    del told["decisions"]
-    return told | {"seconds": round(perf_counter() - began_s, 3)}
+    record |= facts_of(now, ())
+    del record["decisions"]
+    return record | {"seconds": round(perf_counter() - began_s, 3)}
 
 
 def _review(source: Source, decided: Decided) -> Reviewed:

@@ -43,14 +43,14 @@ def queue_json(source: Source) -> bytes:
     """
     graph = source.verified
     rows = queue_rows(graph, settings=source.settings)
-    told = {
+    record = {
         "key": source.key,
         "began_ns": int(graph.t_ns[0]),
         "limit_m": source.settings.verification.limit_m,
         "columns": COLUMNS,
         "rows": rows,
     }
-    return json.dumps(told, separators=(",", ":"), allow_nan=False).encode()
+    return json.dumps(record, separators=(",", ":"), allow_nan=False).encode()
 
 
 def queue_rows(graph: PoseGraph, *, settings: Settings) -> list[list[Any]]:
@@ -145,13 +145,13 @@ def alternative_paths(
                 continue
             T_after = T @ index.T_slot[slot]
             if after == j:
-                found.append(_told(graph, (*nodes, j), T_i_j.inverse() @ T_after))
+                found.append(_path_record(graph, (*nodes, j), T_i_j.inverse() @ T_after))
             elif len(nodes) < index.max_edges:
                 stack.append(((*nodes, after), T_after))
     return sorted(found, key=lambda path: (-path.residual_m, path.frames))
 
 
-def _told(graph: PoseGraph, nodes: tuple[int, ...], apart: SE3) -> AlternativePath:
+def _path_record(graph: PoseGraph, nodes: tuple[int, ...], apart: SE3) -> AlternativePath:
     frames = tuple(int(graph.frame_ids[node]) for node in nodes)
     return AlternativePath(frames, float(np.linalg.norm(apart.t)), float(apart.angle()))
 
@@ -176,7 +176,7 @@ def _row(
     numbers = (
         influence, edge.overlap, edge.error_m, edge.limit_m, edge.degeneracy, median_m,
     )  # fmt: skip
-    told = [float(f"{v:.5g}") if math.isfinite(v) else None for v in numbers]
+    record = [float(f"{v:.5g}") if math.isfinite(v) else None for v in numbers]
     chi2 = float(f"{edge.chi2:.5g}") if math.isfinite(edge.chi2) else None
     words = [str(edge.kind), str(edge.verdict), str(edge.reason), is_measured(edge)]
-    return [frame_i, frame_j, *seconds, *words, *told, paths, chi2]
+    return [frame_i, frame_j, *seconds, *words, *record, paths, chi2]

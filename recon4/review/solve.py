@@ -35,7 +35,7 @@ UNVERIFIED_MODES = ("10", "overlap")
 
 
 @dataclass(frozen=True, slots=True)
-class Conflict:
+class EdgeConflict:
     """An edge a person accepted that does not fit the graph: it counts all the same."""
 
     pair: Pair
@@ -63,7 +63,7 @@ class Reviewed:
     """A graph with the decisions in it, solved."""
 
     graph: PoseGraph
-    conflicts: tuple[Conflict, ...]
+    conflicts: tuple[EdgeConflict, ...]
     """Worst first."""
     missing: tuple[Standing, ...]
     """Decisions without effect: their pair is not in this graph, or was never registered."""
@@ -77,23 +77,23 @@ class Reviewed:
 
     def warnings(self) -> list[str]:
         """What a person should know, in words."""
-        told = []
+        fields = []
         if self.conflicts:
-            told.append(
+            fields.append(
                 f"{len(self.conflicts)} accepted by an operator do not fit the rest of the graph: "
                 + ", ".join(_named(one.pair) for one in self.conflicts[:5])
             )
         if self.missing:
-            told.append(
+            fields.append(
                 f"{len(self.missing)} decisions are about pairs that are not there any more: "
                 + ", ".join(_named(one.pair) for one in self.missing[:5])
             )
         if self.changed:
-            told.append(
+            fields.append(
                 f"{len(self.changed)} decisions are about pairs that now measure something else: "
                 + ", ".join(_named(one.pair) for one in self.changed[:5])
             )
-        return told
+        return fields
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -107,25 +107,25 @@ class Difference:
     edges_after: int
     moves: tuple[Move, ...]
     """The largest, one a place, largest first."""
-    turned_down: tuple[Pair, ...]
+    rejected_automatically: tuple[Pair, ...]
     """Pairs the program dropped of its own accord: they fit no longer."""
-    taken_back: tuple[Pair, ...]
+    accepted_automatically: tuple[Pair, ...]
     """Pairs the program took in again of its own accord."""
 
     def to_json(self) -> dict[str, Any]:
         """Plain JSON values."""
-        told: dict[str, Any] = null_for_nan(
+        fields: dict[str, Any] = null_for_nan(
             {
                 "chi2_before": self.chi2_before,
                 "chi2_after": self.chi2_after,
                 "edges_before": self.edges_before,
                 "edges_after": self.edges_after,
                 "moves": [_fields(move) for move in self.moves],
-                "turned_down": [list(pair) for pair in self.turned_down],
-                "taken_back": [list(pair) for pair in self.taken_back],
+                "rejected_automatically": [list(pair) for pair in self.rejected_automatically],
+                "accepted_automatically": [list(pair) for pair in self.accepted_automatically],
             }
         )
-        return told
+        return fields
 
 
 def run_review(
@@ -148,16 +148,16 @@ def run_review(
     verified = load_graph(graph)
     reviewed = review(verified, decisions, settings=settings, progress=progress)
     save_graph(out, reviewed.graph)
-    told = difference(verified, reviewed.graph).to_json() | facts_of(reviewed, decisions)
-    write_json(out / "review.json", told)
+    fields = difference(verified, reviewed.graph).to_json() | facts_of(reviewed, decisions)
+    write_json(out / "review.json", fields)
     counts = {str(v): sum(e.verdict is v for e in reviewed.graph.edges) for v in Verdict}
     return {
         "edges": counts,
         "decisions": len(decisions),
         "conflicts": len(reviewed.conflicts),
         "missing": len(reviewed.missing),
-        "chi2_before": told["chi2_before"],
-        "chi2_after": told["chi2_after"],
+        "chi2_before": fields["chi2_before"],
+        "chi2_after": fields["chi2_after"],
         "warnings": reviewed.warnings(),
     }
 
@@ -173,7 +173,7 @@ def review(
 
     What a person accepted always counts (it is protected, like odometry); what the program thinks
     of the other pairs is asked anew, because it may have thought so only for a pair that is now
-    rejected. Nothing is dropped in silence: accepted edges that do not fit are `Conflict`.
+    rejected. Nothing is dropped in silence: accepted edges that do not fit are `EdgeConflict`.
 
     Raises:
         GraphError: If the graph cannot be solved.
@@ -191,14 +191,14 @@ def review(
 
 def _solved(graph: PoseGraph) -> PoseGraph:
     solution = optimize(graph, kernel="cauchy")
-    told = [
+    fields = [
         edge.evolve(chi2=float(chi2))
         for edge, chi2 in zip(graph.edges, solution.edge_chi2, strict=True)
     ]
-    return graph.with_poses(solution.T_map_body).with_edges(tuple(told))
+    return graph.with_poses(solution.T_map_body).with_edges(tuple(fields))
 
 
-def conflicts(graph: PoseGraph, *, probability: float) -> tuple[Conflict, ...]:
+def conflicts(graph: PoseGraph, *, probability: float) -> tuple[EdgeConflict, ...]:
     """Edges that people accepted and that do not fit, worst first."""
     of = graph.relations
     chi2 = squared_residuals(graph.T_map_body, of)
@@ -209,7 +209,7 @@ def conflicts(graph: PoseGraph, *, probability: float) -> tuple[Conflict, ...]:
         if edge.in_graph and edge.decided_by != AUTOMATIC and chi2[row] > limit:
             apart = _residual(graph, edge)
             found.append(
-                Conflict(
+                EdgeConflict(
                     pair=pair_of(graph, edge),
                     chi2=float(chi2[row]),
                     limit=limit,
@@ -225,19 +225,21 @@ def difference(before: PoseGraph, after: PoseGraph) -> Difference:
     """What changed from one graph to the other; ``after`` may have more edges at its end."""
     chi2_before, edges_before = chi2_of(before)
     chi2_after, edges_after = chi2_of(after)
-    turned_down: list[Pair] = []
-    taken_back: list[Pair] = []
+    rejected_automatically: list[Pair] = []
+    accepted_automatically: list[Pair] = []
     for old, new in zip(before.edges, after.edges, strict=False):
         if new.decided_by == AUTOMATIC and old.in_graph != new.in_graph:
-            (taken_back if new.in_graph else turned_down).append(pair_of(after, new))
+            (accepted_automatically if new.in_graph else rejected_automatically).append(
+                pair_of(after, new)
+            )
     return Difference(
         chi2_before=chi2_before,
         chi2_after=chi2_after,
         edges_before=edges_before,
         edges_after=edges_after,
         moves=_largest_moves(before, after),
-        turned_down=tuple(turned_down),
-        taken_back=tuple(taken_back),
+        rejected_automatically=tuple(rejected_automatically),
+        accepted_automatically=tuple(accepted_automatically),
     )
 
 
@@ -250,7 +252,7 @@ def chi2_of(graph: PoseGraph) -> tuple[float, int]:
 
 def facts_of(reviewed: Reviewed, decisions: Sequence[Standing]) -> dict[str, Any]:
     """Decisions and what is wrong with them, as JSON values."""
-    told: dict[str, Any] = null_for_nan(
+    fields: dict[str, Any] = null_for_nan(
         {
             "decisions": [one.to_json() for one in decisions],
             "conflicts": [_fields(one) for one in reviewed.conflicts],
@@ -259,7 +261,7 @@ def facts_of(reviewed: Reviewed, decisions: Sequence[Standing]) -> dict[str, Any
             "warnings": reviewed.warnings(),
         }
     )
-    return told
+    return fields
 
 
 def pair_of(graph: PoseGraph, edge: Edge) -> Pair:
@@ -286,9 +288,9 @@ def _residual(graph: PoseGraph, edge: Edge) -> SE3:
     return edge.T_i_j.inverse() @ predicted
 
 
-def _fields(record: Conflict | Move) -> dict[str, Any]:
-    told = {name: getattr(record, name) for name in record.__slots__}
-    return {name: list(v) if isinstance(v, tuple) else v for name, v in told.items()}
+def _fields(record: EdgeConflict | Move) -> dict[str, Any]:
+    fields = {name: getattr(record, name) for name in record.__slots__}
+    return {name: list(v) if isinstance(v, tuple) else v for name, v in fields.items()}
 
 
 def _named(pair: Pair) -> str:

@@ -7,6 +7,7 @@ from typing import Any
 
 from recon4.errors import StoreError
 from recon4.review.decisions import NOTHING_DECIDED
+from recon4.store.earlier_names import SUMMARY, current_names
 from recon4.store.json_files import read_object
 from recon4.store.stage import read_manifest
 
@@ -22,7 +23,7 @@ def read_summary(root: Path) -> dict[str, Any] | None:
     path = root / "summary.json"
     if not path.is_file():
         return None
-    return read_object(path, most_bytes=MOST_SUMMARY_BYTES)
+    return current_names(read_object(path, most_bytes=MOST_SUMMARY_BYTES), SUMMARY)
 
 
 def artifact_keys(summary: dict[str, Any]) -> dict[str, str]:

@@ -46,7 +46,7 @@ class Round:
 
     mean_m: float
     """Mean distance of the matched segments from the planes [m], before the step."""
-    share: float
+    match_ratio: float
     """Matched share."""
     largest_step_m: float
     """Largest shift of a multiframe in this round [m]."""
@@ -115,15 +115,15 @@ def refine_trajectory(
     for _ in range(r.rounds):
         progress.start("refine", len(frames) // r.map_stride + len(frames), "multiframe")
         sweep = _Sweep(frames, trajectory, lost, settings=settings, progress=progress)
-        system, mean_m, share = sweep.match(sweep.build())
-        if share == 0.0:
+        system, mean_m, match_ratio = sweep.match(sweep.build())
+        if match_ratio == 0.0:
             break
         step = solve_knots(system, correction, step_sd=step_sd, total_sd=total_sd)
         correction = correction + step
         trajectory = apply_knots(trajectory, knot_ns, step)
         largest_m = float(np.linalg.norm(step[:, 3:], axis=1).max())
-        rounds.append(Round(mean_m, share, largest_m))
-        progress.event("refine", mean_m=mean_m, share=share, largest_step_m=largest_m)
+        rounds.append(Round(mean_m, match_ratio, largest_m))
+        progress.event("refine", mean_m=mean_m, match_ratio=match_ratio, largest_step_m=largest_m)
         if largest_m < r.converged_step_m:
             break
     return trajectory, rounds
@@ -171,9 +171,9 @@ class _Sweep:
         results = self._in_order(lambda row: self._match_one(planes, row), 1, before=forget)
         for row, found in enumerate(results):
             if found is not None:
-                H[row], g[row], mean_m, share = found
+                H[row], g[row], mean_m, match_ratio = found
                 distances.append(mean_m)
-                shares.append(share)
+                shares.append(match_ratio)
         if not shares:
             return KnotSystem(H, g), float("nan"), 0.0
         return KnotSystem(H, g), float(np.mean(distances)), float(np.mean(shares))
@@ -204,7 +204,7 @@ class _Sweep:
         if found.matches == 0:
             return None
         scale = self._settings.odometry.information_scale
-        return scale * found.H, scale * found.g, found.mean_m, found.share
+        return scale * found.H, scale * found.g, found.mean_m, found.match_ratio
 
     def _gap_rows(self) -> int:
         """Multiframes within the gap; 0 = a multiframe may match its own points."""

@@ -19,6 +19,7 @@ from recon4.settings.registration import (
     RegistrationSettings,
     SegmentSettings,
 )
+from recon4.settings.renamed import current_name
 
 __all__ = [
     "PRESETS",
@@ -38,6 +39,7 @@ __all__ = [
     "Settings",
     "VerificationSettings",
     "canonical",
+    "current_name",
     "override",
     "preset",
     "to_json",

@@ -9,6 +9,7 @@ from typing import Any, get_args, get_type_hints
 
 from recon4.errors import ConfigError, WrongSettings
 from recon4.settings.presets import Settings
+from recon4.settings.renamed import RENAMED
 
 
 def override(settings: Settings, assignments: list[str]) -> Settings:
@@ -44,6 +45,9 @@ def _find(settings: Settings, text: str) -> tuple[str, str, Any]:
     if group_name not in _names(settings):
         raise ConfigError(f"no setting group {group_name!r}; known: {_names(settings)}")
     group = getattr(settings, group_name)
+    if (group_name, name) in RENAMED:
+        fresh = f"{group_name}.{RENAMED[group_name, name]}"
+        raise ConfigError(f"the setting {path} is now called {fresh!r}")
     if name not in _names(group):
         raise ConfigError(f"no setting {path!r}; known in {group_name}: {_names(group)}")
     return group_name, name, get_type_hints(type(group))[name]

@@ -26,8 +26,8 @@ class GraphSettings:
     """At most so many pairs of a node with earlier visits of the same place."""
     revisit_radius_m: float = 4.0
     """Nodes farther apart are not revisits of one place [m] …"""
-    drift_share: float = 0.005
-    """… plus this share of the distance walked in between, for the drift not yet closed."""
+    drift_ratio: float = 0.005
+    """… plus this ratio of the distance walked in between, for the drift not yet closed."""
     retry_rounds: int = 2
     """So many times pairs turned down are tried again from better poses; 0 = never."""
     retry_move_m: float = 0.2
@@ -41,8 +41,8 @@ class GraphSettings:
     """Multiframes before and after the other node that make the target."""
     workers: int = 2
     """Threads that register pairs; the result does not depend on it."""
-    min_share: float = 0.4
-    """A pair of which a smaller share of segments finds a match is rejected."""
+    min_match_ratio: float = 0.4
+    """A pair with a smaller ratio of matched segments is rejected."""
     min_degeneracy: float = 0.005
     """A pair held less than this along one direction is rejected (0 = free, 1/3 = held alike)."""
     error_relative: float = 0.01

@@ -55,8 +55,8 @@ class OdometrySettings:
     """With an IMU: after so many lost multiframes a new local map is begun."""
     lost_error_m: float = 0.1
     """A larger error means lost [m]."""
-    lost_share: float = 0.3
-    """A smaller share of matched segments means lost."""
+    lost_match_ratio: float = 0.3
+    """With a smaller ratio of matched segments tracking is lost."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,9 +77,9 @@ class ScanSettings:
     """Upper bound on match-and-solve rounds."""
     inlier_m: float = 0.1
     """A point this near to its plane lies on it [m]."""
-    min_share: float = 0.3
-    """With a smaller share of points in place the registration has not converged."""
-    sure_share: float = 0.45
-    """With a smaller share other starts are tried."""
+    min_inlier_ratio: float = 0.3
+    """With a smaller ratio of inliers the registration has not converged."""
+    confident_inlier_ratio: float = 0.45
+    """With a smaller ratio of inliers other initial poses are tried."""
     starts: int = 10
     """Overlays of the ground plans that are tried."""

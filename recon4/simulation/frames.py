@@ -14,12 +14,12 @@ from recon4.model.multiframe import COLUMNS, Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.progress import Progress, Silent
-from recon4.recording.poses import write_tum
-from recon4.recording.velodyne_models import MODELS
+from recon4.recording.formats.poses import write_tum
+from recon4.recording.velodyne.models import MODELS
 from recon4.simulation.gnss import simulate_gnss
 from recon4.simulation.imu import simulate_imu
 from recon4.simulation.lidar import Firings
-from recon4.simulation.setup import Models, Setup, prepare
+from recon4.simulation.setup import Models, SimulationSetup, prepare
 from recon4.simulation.truth import true_trajectory
 from recon4.store.frames import FrameWriter
 
@@ -37,7 +37,7 @@ def simulate_frames(
     rig: Rig | None = None,
     models: Models | None = None,
     progress: Progress | None = None,
-) -> Setup:
+) -> SimulationSetup:
     """Write a frame store with ``imu.npz``, and ``truth.tum`` beside its columns.
 
     The points are what an ideal decoder makes of the packets: azimuths are not rounded.
@@ -83,7 +83,7 @@ def _on_rig_clock(
     return imu, gnss
 
 
-def _chunks(setup: Setup) -> Iterator[list[Multiframe]]:
+def _chunks(setup: SimulationSetup) -> Iterator[list[Multiframe]]:
     """Multiframes of one second each; the last incomplete frame is left out."""
     frames = int(setup.walk.seconds * 1e9) // FRAME_NS
     fired = [0] * len(setup.lidars)

@@ -11,7 +11,7 @@ from recon4.model.rig import Rig
 from recon4.model.samples import GnssQuality, GnssSamples
 from recon4.model.trajectory import Times
 from recon4.simulation.walk import Walk
-from recon4.simulation.world import Origin
+from recon4.simulation.world import WorldOrigin
 
 GNSS_RATE_HZ = 10
 
@@ -51,7 +51,7 @@ def simulate_gnss(
     rig: Rig,
     model: GnssModel,
     *,
-    origin: Origin,
+    origin: WorldOrigin,
     epoch_ns: int,
     rng: np.random.Generator,
 ) -> GnssSamples:
@@ -77,7 +77,7 @@ def simulate_gnss(
     )
 
 
-def geodetic(p_enu_m: Array, origin: Origin) -> tuple[Array, Array, Array]:
+def geodetic(p_enu_m: Array, origin: WorldOrigin) -> tuple[Array, Array, Array]:
     """WGS 84 latitude [rad], longitude [rad], ellipsoidal height [m] of points, (N, 3).
 
     Exact: east, north, up at the origin to geocentric to geodetic (EPSG method 9837 inverted).

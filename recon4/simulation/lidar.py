@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.geometry.mesh import GLASS, WorldMesh
+from recon4.geometry.raycast import Scene
 from recon4.geometry.se3 import Array
 from recon4.kernels.simulation import hits_carrier, make_rays, measure
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times
-from recon4.recording.velodyne_models import BLOCKS, MODELS
-from recon4.simulation.mesh import GLASS, Mesh
-from recon4.simulation.raycast import Scene
+from recon4.recording.velodyne.models import BLOCKS, MODELS
 from recon4.simulation.walk import Walk
 
 _VLP16 = MODELS["VLP-16"]
@@ -179,5 +179,5 @@ class Lidar:
 class Surroundings:
     """A mesh and its ray caster."""
 
-    mesh: Mesh
+    mesh: WorldMesh
     scene: Scene

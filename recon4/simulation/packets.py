@@ -8,16 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
-from recon4.recording.velodyne_encode import (
+from recon4.recording.velodyne.encode import (
     PcapWriter,
     encode_position,
     encode_vlp16,
     rmc_sentence,
 )
-from recon4.recording.velodyne_models import BLOCKS, CHANNELS
+from recon4.recording.velodyne.models import BLOCKS, CHANNELS
 from recon4.simulation.gnss import geodetic
 from recon4.simulation.lidar import Firings
-from recon4.simulation.setup import Setup
+from recon4.simulation.setup import SimulationSetup
 
 POSITION_PORT = 8308
 _LATENCY_NS = 100_000
@@ -37,7 +37,9 @@ class Packets:
     """(N, 1206)."""
 
 
-def pack(firings: Firings, row: int, setup: Setup, *, rng: np.random.Generator) -> Packets:
+def pack(
+    firings: Firings, row: int, setup: SimulationSetup, *, rng: np.random.Generator
+) -> Packets:
     """Data packets, which arrive a tenth of a millisecond after their last shot."""
     sensor_epoch_ns = setup.epoch_ns - round(1e9 * setup.rig.sensors[row].time_offset_s)
     count = len(firings.t_ns)
@@ -52,7 +54,7 @@ def pack(firings: Firings, row: int, setup: Setup, *, rng: np.random.Generator) 
     return Packets(row, sensor_epoch_ns + firings.t_ns[:, -1, -1] + delay, payloads)
 
 
-def write_packets(file: PcapWriter, parts: list[Packets], setup: Setup) -> None:
+def write_packets(file: PcapWriter, parts: list[Packets], setup: SimulationSetup) -> None:
     """Append packets of all sensors in order of arrival."""
     t_ns = np.concatenate([part.t_arrival_ns for part in parts])
     owner = np.repeat(np.arange(len(parts)), [len(part.t_arrival_ns) for part in parts])
@@ -68,7 +70,7 @@ def write_packets(file: PcapWriter, parts: list[Packets], setup: Setup) -> None:
         )
 
 
-def write_positions(file: PcapWriter, second: int, setup: Setup) -> None:
+def write_positions(file: PcapWriter, second: int, setup: SimulationSetup) -> None:
     """Append the position packets of a whole second: time always, a position outdoors.
 
     The position is that of a plain receiver, some meters off; RTK is in ``gnss.csv``.

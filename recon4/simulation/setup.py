@@ -7,12 +7,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from recon4.errors import ConfigError
+from recon4.geometry.raycast import Scene
 from recon4.model.rig import Rig, load_rig
 from recon4.simulation.gait import plan_walk
 from recon4.simulation.gnss import GnssModel
 from recon4.simulation.imu import ImuModel
 from recon4.simulation.lidar import Lidar, LidarModel, Surroundings
-from recon4.simulation.raycast import Scene
 from recon4.simulation.walk import Walk
 from recon4.simulation.world import World
 from recon4.simulation.worlds import build_world
@@ -36,7 +36,7 @@ class Models:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Setup:
+class SimulationSetup:
     """A person with a rig in a world."""
 
     world: World
@@ -62,7 +62,7 @@ def prepare(
     rig: Rig | None = None,
     models: Models | None = None,
     epoch_ns: int = EPOCH_NS,
-) -> Setup:
+) -> SimulationSetup:
     """Build a world, plan the walk and mount the sensors.
 
     Args:
@@ -91,7 +91,7 @@ def prepare(
         Lidar.drawn(sensor, errors.lidar, np.random.default_rng([seed, 1, row]))
         for row, sensor in enumerate(used.sensors)
     )
-    return Setup(
+    return SimulationSetup(
         place,
         plan_walk(place, seconds=seconds, rng=np.random.default_rng([seed, 0])),
         used,

@@ -12,20 +12,20 @@ from typing import TypeVar
 import numpy as np
 
 from recon4.errors import StoreError
+from recon4.geometry.mesh import write_ply
 from recon4.model.rig import Rig, format_rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.progress import Progress
-from recon4.recording.poses import write_tum
-from recon4.recording.velodyne_encode import PcapWriter
+from recon4.recording.formats.poses import write_tum
+from recon4.recording.velodyne.encode import PcapWriter
 from recon4.simulation.bag import BagWriter, open_bag
+from recon4.simulation.csv_tables import write_gnss, write_imu, write_markers
 from recon4.simulation.gnss import simulate_gnss
 from recon4.simulation.imu import simulate_imu
 from recon4.simulation.lidar import Firings
-from recon4.simulation.mesh import write_ply
 from recon4.simulation.packets import pack, write_packets, write_positions
 from recon4.simulation.reflectivity import ReflectivityWriter
-from recon4.simulation.setup import EPOCH_NS, Models, Setup, prepare
-from recon4.simulation.tables import write_gnss, write_imu, write_markers
+from recon4.simulation.setup import EPOCH_NS, Models, SimulationSetup, prepare
 from recon4.simulation.truth import true_trajectory
 from recon4.store.atomic import atomic_folder
 
@@ -76,7 +76,7 @@ def simulate(  # noqa: PLR0913 - every part of a recording can be chosen
 class _Recorder:
     """Everything a recording computer would have written, second by second."""
 
-    def __init__(self, folder: Path, setup: Setup, *, bag: bool) -> None:
+    def __init__(self, folder: Path, setup: SimulationSetup, *, bag: bool) -> None:
         self._setup = setup
         self._imu = simulate_imu(
             setup.walk,
@@ -125,7 +125,7 @@ class _Recorder:
                 self._bag.gnss(_during(self._gnss, start_ns))
 
 
-def _seconds(setup: Setup) -> Iterator[list[Firings]]:
+def _seconds(setup: SimulationSetup) -> Iterator[list[Firings]]:
     """What the sensors measure in each second of the walk."""
     fired = [0] * len(setup.lidars)
     for second in range(int(np.ceil(setup.walk.seconds))):
@@ -139,7 +139,7 @@ def _seconds(setup: Setup) -> Iterator[list[Firings]]:
         yield parts
 
 
-def _receive(setup: Setup) -> GnssSamples | None:
+def _receive(setup: SimulationSetup) -> GnssSamples | None:
     if not setup.world.outdoors:
         return None
     return simulate_gnss(
@@ -159,7 +159,7 @@ def _during(samples: Samples, start_ns: int) -> Samples:
     return type(samples)(*columns)
 
 
-def _write_truth(folder: Path, setup: Setup) -> None:
+def _write_truth(folder: Path, setup: SimulationSetup) -> None:
     write_tum(folder / "truth.tum", true_trajectory(setup.walk, epoch_ns=setup.epoch_ns))
     write_ply(folder / "model.ply", setup.world.mesh)
     write_markers(folder / "markers.csv", setup.world)
@@ -167,7 +167,7 @@ def _write_truth(folder: Path, setup: Setup) -> None:
     (folder / "world.json").write_text(text + "\n", "utf-8")
 
 
-def _parameters(setup: Setup) -> dict[str, object]:
+def _parameters(setup: SimulationSetup) -> dict[str, object]:
     """All that was chosen or drawn, so that a result can be judged by it."""
     return {
         "world": setup.world.name,

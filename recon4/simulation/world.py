@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from recon4.simulation.mesh import Mesh
+from recon4.geometry.mesh import WorldMesh
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +26,7 @@ class Waypoint:
 
 
 @dataclass(frozen=True, slots=True)
-class Marker:
+class WorldMarker:
     """A survey marker: a square of retro-reflective paint on a surface."""
 
     name: str
@@ -36,7 +36,7 @@ class Marker:
 
 
 @dataclass(frozen=True, slots=True)
-class Origin:
+class WorldOrigin:
     """Where the map's origin lies on the earth (WGS 84); its axes are east, north and up there."""
 
     lat_deg: float
@@ -44,7 +44,7 @@ class Origin:
     height_m: float
 
 
-BRNO = Origin(lat_deg=49.2265, lon_deg=16.5967, height_m=275.0)
+BRNO = WorldOrigin(lat_deg=49.2265, lon_deg=16.5967, height_m=275.0)
 """Origin of every world: near the faculty where the backpack of the thesis was built."""
 
 Route = Callable[[np.random.Generator, int], list[Waypoint]]
@@ -56,11 +56,11 @@ class World:
     """A place to walk and scan. Its geometry never changes; seeds change walks and noise."""
 
     name: str
-    mesh: Mesh
+    mesh: WorldMesh
     route: Route
     stops: int
     """Most places a round can visit."""
-    markers: tuple[Marker, ...] = ()
+    markers: tuple[WorldMarker, ...] = ()
     outdoors: bool = False
     """GNSS can be received."""
-    origin: Origin = BRNO
+    origin: WorldOrigin = BRNO

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.errors import ConfigError
-from recon4.evaluation.mesh import fit_planes, sample_mesh
+from recon4.evaluation.reference_mesh import fit_planes, sample_mesh
 from recon4.geometry.se3 import SE3, Array, align_points
 from recon4.mapping.tiles import TileSet
 from recon4.slices.reference import Reference
@@ -46,9 +46,9 @@ class IcpFit:
     """An alignment by ICP and what speaks for it."""
 
     T_map_reference: SE3
-    share_near: float
+    near_ratio: float
     """Of the map's points, those within half a metre of the reference, 0..1."""
-    share_on: float
+    inlier_ratio: float
     """Of these, those within 10 cm of its surface, 0..1."""
     mean_m: float
     """Distance of the latter from the surface [m]."""
@@ -57,8 +57,9 @@ class IcpFit:
     def words(self) -> str:
         """For the list of references."""
         return (
-            f"ICP, point to plane: {100.0 * self.share_near:.0f} % of the map near it, of these "
-            f"{100.0 * self.share_on:.0f} % on it, {100.0 * self.mean_m:.1f} cm from it on average"
+            f"ICP, point to plane: {100.0 * self.near_ratio:.0f} % of the map near it, "
+            f"of these {100.0 * self.inlier_ratio:.0f} % on it, "
+            f"{100.0 * self.mean_m:.1f} cm from it on average"
         )
 
 
@@ -78,23 +79,23 @@ def align_by_icp(tiles: TileSet, reference: Reference, *, rng: np.random.Generat
     fit = fit_planes(p_map, q, normals, T_model_map=start, rounds=_ROUNDS, max_distance_m=_NEAR_M)
     near = len(fit.distance_m)
     on = fit.distance_m[fit.distance_m < _ON_M]
-    share_near, share_on = near / max(1, len(p_map)), len(on) / max(1, near)
-    if near < _LEAST_POINTS or share_near < _LEAST_NEAR:
+    near_ratio, inlier_ratio = near / max(1, len(p_map)), len(on) / max(1, near)
+    if near < _LEAST_POINTS or near_ratio < _LEAST_NEAR:
         raise ConfigError(
-            f"the map and the reference do not lie on each other: {100.0 * share_near:.1f} % of "
+            f"the map and the reference do not lie on each other: {100.0 * near_ratio:.1f} % of "
             f"the map is within {100.0 * _NEAR_M:.0f} cm of it; align by pairs"
         )
-    if not fit.converged or share_on < _LEAST_ON:
-        why = f"only {100.0 * share_on:.0f} % of the points near it came to lie on it (10 cm)"
+    if not fit.converged or inlier_ratio < _LEAST_ON:
+        why = f"only {100.0 * inlier_ratio:.0f} % of the points near it came to lie on it (10 cm)"
         if not fit.converged:
             why = f"it still moved after {_ROUNDS} rounds"
         raise ConfigError(f"ICP did not lay the reference onto the map: {why}; align by pairs")
-    return IcpFit(fit.T_model_map.inverse(), share_near, share_on, float(on.mean()))
+    return IcpFit(fit.T_model_map.inverse(), near_ratio, inlier_ratio, float(on.mean()))
 
 
 def _sample_map(tiles: TileSet, rng: np.random.Generator) -> Array:
-    share = min(1.0, _SAMPLES / max(1, len(tiles)))
-    parts = [tile.xyz_m(limit=int(np.ceil(share * len(tile)))) for tile in tiles]
+    ratio = min(1.0, _SAMPLES / max(1, len(tiles)))
+    parts = [tile.xyz_m(limit=int(np.ceil(ratio * len(tile)))) for tile in tiles]
     points = np.concatenate(parts or [np.empty((0, 3))])
     return points[rng.permutation(len(points))[:_SAMPLES]]
 
@@ -103,10 +104,10 @@ def _targets(reference: Reference, rng: np.random.Generator) -> tuple[Array, Arr
     if reference.mesh is not None:
         return sample_mesh(reference.mesh, spacing_m=0.05, rng=rng)
     assert reference.tiles is not None
-    share = min(1.0, _TARGETS / max(1, len(reference.tiles)))
+    ratio = min(1.0, _TARGETS / max(1, len(reference.tiles)))
     points, normals = [np.empty((0, 3))], [np.empty((0, 3))]
     for tile in reference.tiles:
-        limit = int(np.ceil(share * len(tile)))
+        limit = int(np.ceil(ratio * len(tile)))
         columns = tile.read(["normal"], limit=limit)
         known = np.any(columns["normal"] != 0.0, axis=1)
         points.append(tile.xyz_m(limit=limit)[known])

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from recon4.errors import ConfigError
-from recon4.evaluation.slices import RelativeError, Slice, SliceError, relative_error, together
+from recon4.evaluation.slices import RelativeError, Slice, SliceError, merge_slices, relative_error
 from recon4.geometry.se3 import SE3
 from recon4.mapping.tiles import TileSet
 from recon4.slices.cut import ERROR_THICKNESS_M, Cut, horizontal, vertical
@@ -33,7 +33,7 @@ def compare(tiles: TileSet, cuts: Sequence[Cut], reference: Reference) -> Relati
     measured = [row.mean_m for row in rows if row.points]
     return RelativeError(
         slices=rows,
-        point_weighted=together(rows),
+        point_weighted=merge_slices(rows),
         plain_mean_m=float(np.mean(measured)) if measured else float("nan"),
         outlier_m=FAR_M,
         histogram=np.sum([one.histogram for one in found], axis=0),
@@ -100,13 +100,15 @@ def _row(row: SliceError) -> dict[str, object]:
         "points": row.points,
         "outliers": row.outliers,
         "mean_m": row.mean_m,
-        "share_2cm": row.share_2cm,
-        "share_5cm": row.share_5cm,
+        "ratio_within_2cm": row.ratio_within_2cm,
+        "ratio_within_5cm": row.ratio_within_5cm,
     }
 
 
 def _figures(row: SliceError) -> list[str]:
-    return [_number(100.0 * value) for value in (row.mean_m, row.share_2cm, row.share_5cm)]
+    return [
+        _number(100.0 * value) for value in (row.mean_m, row.ratio_within_2cm, row.ratio_within_5cm)
+    ]
 
 
 def _number(value: float) -> str:

@@ -38,7 +38,7 @@ class ControlPoint:
 
 
 @dataclass(frozen=True, slots=True)
-class Preview:
+class ControlPreview:
     """What a file seems to hold, to be looked at before it counts."""
 
     points: tuple[ControlPoint, ...]
@@ -52,7 +52,7 @@ class Preview:
     """Lines left out, with the reason."""
 
 
-def read_control(data: bytes, *, name: str = "file", order: Order | None = None) -> Preview:
+def read_control(data: bytes, *, name: str = "file", order: Order | None = None) -> ControlPreview:
     """Read ``ID,X,Y,Z[,Radius]``, with or without a head line.
 
     A byte order mark, ``;`` or tabs, and decimal commas are understood.
@@ -84,7 +84,7 @@ def read_control(data: bytes, *, name: str = "file", order: Order | None = None)
     known: Order | None = _order_of(head, columns) if named else None
     flip = order == "NE"
     question = "" if order or known else _question(points)
-    return Preview(
+    return ControlPreview(
         points=tuple(_flipped(p) for p in points) if flip else tuple(points),
         delimiter={"\t": "tab"}.get(delimiter, delimiter),
         decimal=decimal,

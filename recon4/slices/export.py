@@ -19,9 +19,9 @@ from recon4.mapping.tile import progressive
 from recon4.mapping.tiles import TileSet, TileWriter
 from recon4.slices.colors import Ground, Span
 from recon4.slices.cut import Cut
-from recon4.slices.frames import Frame, jacobian
-from recon4.slices.picture import Picture
-from recon4.slices.points import Part, Window, points_in
+from recon4.slices.frames import MapFrame, jacobian
+from recon4.slices.points import SliceWindow, TilePart, points_in
+from recon4.slices.slice_image import SliceImage
 from recon4.store.atomic import atomic_file
 
 MOST_DXF_POINTS = 2_000_000
@@ -29,7 +29,12 @@ _DXF_CELL_M = 0.01
 
 
 def write_laz(
-    tiles: TileSet, cuts: Sequence[Cut], path: Path, *, frame: Frame, window: Window | None = None
+    tiles: TileSet,
+    cuts: Sequence[Cut],
+    path: Path,
+    *,
+    frame: MapFrame,
+    window: SliceWindow | None = None,
 ) -> int:
     """The points of slices as LAZ 1.4, with all fields; a point in two slices is there twice.
 
@@ -54,7 +59,12 @@ def write_laz(
 
 
 def write_csv(
-    tiles: TileSet, cuts: Sequence[Cut], path: Path, *, frame: Frame, window: Window | None = None
+    tiles: TileSet,
+    cuts: Sequence[Cut],
+    path: Path,
+    *,
+    frame: MapFrame,
+    window: SliceWindow | None = None,
 ) -> int:
     """A line a point: slice, u, v and distance on the cut, coordinates, fields.
 
@@ -86,8 +96,8 @@ def write_dxf(
     cuts: Sequence[Cut],
     path: Path,
     *,
-    frame: Frame,
-    window: Window | None = None,
+    frame: MapFrame,
+    window: SliceWindow | None = None,
     flat: bool = False,
 ) -> int:
     """Points as DXF R2010 in metres, a layer a slice, one point a square centimetre of the cut.
@@ -148,10 +158,10 @@ def layer_name(number: int, cut: Cut) -> str:
 
 
 def write_geotiff(
-    picture: Picture,
+    picture: SliceImage,
     path: Path,
     *,
-    frame: Frame,
+    frame: MapFrame,
     span: Span,
     ground: Ground = "light",
     words: str = "",
@@ -187,7 +197,7 @@ _FIRST_HANDLE = 0x10000
 _NEXT_HANDLE = 0x1000_0000
 
 
-def _georeference(picture: Picture, frame: Frame) -> dict[int, Any]:
+def _georeference(picture: SliceImage, frame: MapFrame) -> dict[int, Any]:
     """Tags of GeoTIFF 1.1: the transformation from pixels, and keys that name the CRS."""
     cut, paper = picture.cut, picture.paper
     u0, v0 = paper.corner
@@ -215,7 +225,7 @@ def _georeference(picture: Picture, frame: Frame) -> dict[int, Any]:
     return tags
 
 
-def _refuse_bent(picture: Picture, frame: Frame, middle: Array) -> None:
+def _refuse_bent(picture: SliceImage, frame: MapFrame, middle: Array) -> None:
     assert frame.to_crs is not None
     J, place = jacobian(frame.to_crs, middle)
     w = picture.paper.window
@@ -229,7 +239,7 @@ def _refuse_bent(picture: Picture, frame: Frame, middle: Array) -> None:
         )
 
 
-def _epsg(frame: Frame) -> int:
+def _epsg(frame: MapFrame) -> int:
     """Code of the horizontal system."""
     first = frame.crs.removeprefix("EPSG:").split("+")[0]
     if not first.isdigit():
@@ -241,10 +251,10 @@ def _every(
     tiles: TileSet,
     cuts: Sequence[Cut],
     fields: Sequence[str],
-    window: Window | None,
+    window: SliceWindow | None,
     *,
     cell_m: float = 0.0,
-) -> Iterator[tuple[int, Part, Array]]:
+) -> Iterator[tuple[int, TilePart, Array]]:
     """Number of the slice (from 1), points, and their places in the map; thinned if asked for."""
     for number, cut in enumerate(cuts, start=1):
         for part in points_in(tiles, cut, fields, window=window):
@@ -252,12 +262,12 @@ def _every(
             yield number, kept, cut.to_map(kept.uvd)
 
 
-def _thinned(part: Part, cell_m: float) -> Part:
+def _thinned(part: TilePart, cell_m: float) -> TilePart:
     cells = np.floor(part.uvd[:, :2] / cell_m).astype(np.int64)
     _, first = np.unique(cells, axis=0, return_index=True)
     rows = np.sort(first)
     columns = {name: column[rows] for name, column in part.columns.items()}
-    return Part(part.tile, part.rows[rows], part.uvd[rows], columns)
+    return TilePart(part.tile, part.rows[rows], part.uvd[rows], columns)
 
 
 def _dxf_frame(layers: list[str]) -> tuple[str, str, str]:

@@ -20,7 +20,7 @@ _ROUNDS = 4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Frame:
+class MapFrame:
     """What coordinates a project's map can be given in."""
 
     crs: str
@@ -70,7 +70,7 @@ def jacobian(to_crs: ToCrs, p_map: Array) -> tuple[Array, Array]:
     return J, around[6]
 
 
-def read_frame(project: Path) -> Frame:
+def read_frame(project: Path) -> MapFrame:
     """The frame of a project's map; local when the run found no place on earth.
 
     Raises:
@@ -80,7 +80,7 @@ def read_frame(project: Path) -> Frame:
     return frame_of(artifacts)
 
 
-def frame_of(artifacts: dict[str, Path]) -> Frame:
+def frame_of(artifacts: dict[str, Path]) -> MapFrame:
     """As `read_frame`, of the artifacts of a run."""
     if "map" not in artifacts:
         raise StoreError("the project has no map yet")
@@ -88,14 +88,14 @@ def frame_of(artifacts: dict[str, Path]) -> Frame:
     if level is not None and (level / "georeference.json").exists():
         place = read_crs(level)
         if place is not None:
-            return Frame(place.crs, place.wkt, place.to_crs)
+            return MapFrame(place.crs, place.wkt, place.to_crs)
     own = TileSet.open(artifacts["map"]).crs
     if own is not None:
         shift = np.array(own.origin_m)
-        return Frame("its CRS", own.wkt, lambda p: np.asarray(p, dtype=np.float64) + shift)
-    return Frame("", "", None)
+        return MapFrame("its CRS", own.wkt, lambda p: np.asarray(p, dtype=np.float64) + shift)
+    return MapFrame("", "", None)
 
 
-def facts(frame: Frame) -> dict[str, Any]:
+def facts(frame: MapFrame) -> dict[str, Any]:
     """For the page, as plain JSON values."""
     return {"crs": frame.crs, "words": frame.words}

@@ -15,8 +15,8 @@ from recon4.mapping.normals import local_normals
 from recon4.mapping.tile import progressive
 from recon4.mapping.tiles import TileSet, TileWriter
 from recon4.names import visible
-from recon4.slices.clouds import read_points
-from recon4.slices.frames import Frame
+from recon4.recording.formats.reference_clouds import read_points
+from recon4.slices.frames import MapFrame
 from recon4.slices.meshes import is_mesh, load_mesh
 from recon4.slices.reference import read_facts
 from recon4.store.atomic import atomic_folder, write_json
@@ -30,7 +30,7 @@ MOST_TILES = 100_000
 
 
 def import_reference(
-    path: Path, out: Path, *, name: str = "", frame: Frame | None = None
+    path: Path, out: Path, *, name: str = "", frame: MapFrame | None = None
 ) -> dict[str, object]:
     """Make a reference of a cloud or mesh, completely or not at all.
 
@@ -92,14 +92,14 @@ def write_tiles(chunks: Iterable[Array], out: Path) -> TileSet:
     return TileSet.open(out)
 
 
-def _mesh(path: Path, out: Path, frame: Frame | None) -> dict[str, object]:
+def _mesh(path: Path, out: Path, frame: MapFrame | None) -> dict[str, object]:
     mesh = load_mesh(path)
     vertices = frame.from_crs(mesh.vertices_m) if frame else mesh.vertices_m
     np.savez(out / "mesh.npz", vertices_m=vertices, triangles=mesh.triangles)
     return {"kind": "mesh", "triangles": len(mesh.triangles)}
 
 
-def _cloud(path: Path, out: Path, frame: Frame | None) -> dict[str, object]:
+def _cloud(path: Path, out: Path, frame: MapFrame | None) -> dict[str, object]:
     chunks = read_points(path)
     tiles = write_tiles((frame.from_crs(c) for c in chunks) if frame else chunks, out)
     return {"kind": "cloud", "points": len(tiles)}

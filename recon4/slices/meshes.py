@@ -6,8 +6,8 @@ import re
 from pathlib import Path
 
 from recon4.bounded import open_regular
-from recon4.evaluation.mesh import Mesh, read_mesh
-from recon4.recording.cloud_headers import HEADER_BYTES
+from recon4.evaluation.reference_mesh import TriangleMesh, read_mesh
+from recon4.recording.formats.cloud_headers import HEADER_BYTES
 
 _FACES = re.compile(rb"element\s+face\s+(\d{1,18})\b")
 
@@ -22,7 +22,7 @@ def is_mesh(path: Path) -> bool:
     return faces is not None and int(faces[1]) > 0
 
 
-def load_mesh(path: Path) -> Mesh:
+def load_mesh(path: Path) -> TriangleMesh:
     """Read a triangle mesh.
 
     Raises:

@@ -9,7 +9,7 @@ import numpy as np
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
 from recon4.slices.cut import Cut, Vector
-from recon4.slices.points import Window, points_in
+from recon4.slices.points import SliceWindow, points_in
 
 _DESCRIBED = ("intensity", "sensor", "ring", "frame_id", "t_ns")
 _PLANE_M = 0.10
@@ -33,7 +33,7 @@ class Picked:
 def pick(tiles: TileSet, cut: Cut, uv: tuple[float, float], *, radius_m: float) -> Picked | None:
     """The point of a slice nearest to a place on it; None if there is none within the radius."""
     u, v = uv
-    window = Window(u - radius_m, v - radius_m, u + radius_m, v + radius_m)
+    window = SliceWindow(u - radius_m, v - radius_m, u + radius_m, v + radius_m)
     fields = [name for name in _DESCRIBED if name in tiles.fields]
     best: tuple[float, Array, dict[str, float]] | None = None
     for part in points_in(tiles, cut, fields, window=window):

@@ -19,7 +19,7 @@ BLOCK = 2_000_000
 
 
 @dataclass(frozen=True, slots=True)
-class Window:
+class SliceWindow:
     """The part of a cut that is looked at, in its own coordinates [m]."""
 
     left: float
@@ -29,7 +29,7 @@ class Window:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Part:
+class TilePart:
     """Points of one tile inside a cut."""
 
     tile: Tile
@@ -45,8 +45,8 @@ class Part:
 
 
 def points_in(
-    tiles: TileSet, cut: Cut, fields: Sequence[str] = (), *, window: Window | None = None
-) -> Iterator[Part]:
+    tiles: TileSet, cut: Cut, fields: Sequence[str] = (), *, window: SliceWindow | None = None
+) -> Iterator[TilePart]:
     """Points of the map in a cut. Tiles that it misses are not read.
 
     Args:
@@ -71,10 +71,10 @@ def points_in(
             project(xyz, rows, cut.axes, shift, uvd)
             rows += first
             taken = {name: np.take(columns[name], rows, axis=0) for name in fields}
-            yield Part(tile, rows, uvd, taken)
+            yield TilePart(tile, rows, uvd, taken)
 
 
-def box_of(cut: Cut, window: Window | None) -> tuple[Array, Array]:
+def box_of(cut: Cut, window: SliceWindow | None) -> tuple[Array, Array]:
     """Smallest and largest coordinates of a cut on its own axes [m], (3,) each."""
     half = cut.thickness_m / 2.0
     if window is None:
@@ -94,12 +94,12 @@ def may_meet(tile: Tile, cut: Cut, low: Array, high: Array) -> bool:
     return bool(np.all(middle + reach >= low) and np.all(middle - reach <= high))
 
 
-def extent(tiles: TileSet, cut: Cut) -> Window:
+def extent(tiles: TileSet, cut: Cut) -> SliceWindow:
     """What has to be seen to see all of a cut: bounds of the tiles it meets [m]."""
     low, high = box_of(cut, None)
     met = [tile for tile in tiles if may_meet(tile, cut, low, high)]
     if not met:
-        return Window(-1.0, -1.0, 1.0, 1.0)
+        return SliceWindow(-1.0, -1.0, 1.0, 1.0)
     corners = np.array(
         [
             [[t.low_m, t.high_m][i][0], [t.low_m, t.high_m][j][1], [t.low_m, t.high_m][k][2]]
@@ -111,4 +111,4 @@ def extent(tiles: TileSet, cut: Cut) -> Window:
     )
     uv = cut.to_plane(corners)[:, :2]
     (left, bottom), (right, top) = uv.min(axis=0).tolist(), uv.max(axis=0).tolist()
-    return Window(left, bottom, right, top)
+    return SliceWindow(left, bottom, right, top)

@@ -12,12 +12,12 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from recon4.errors import ConfigError, StoreError
-from recon4.evaluation.mesh import Mesh, distance_to
+from recon4.evaluation.reference_mesh import TriangleMesh, distance_to
 from recon4.geometry.se3 import SE3, Array
 from recon4.mapping.tiles import TileSet
 from recon4.names import visible
 from recon4.slices.cut import Cut
-from recon4.slices.points import Window, points_in
+from recon4.slices.points import SliceWindow, points_in
 from recon4.store.arrays import load_arrays
 from recon4.store.json_files import read_object
 
@@ -43,7 +43,7 @@ class Reference:
     folder: Path
     T_map_reference: SE3
     method: Method = "plane"
-    mesh: Mesh | None = None
+    mesh: TriangleMesh | None = None
     tiles: TileSet | None = None
 
     def distance(self, p_map: Array) -> Array:
@@ -54,7 +54,7 @@ class Reference:
             return np.where(found <= FAR_M, found, np.inf)
         return self._to_cloud(p)
 
-    def outline(self, cut: Cut, window: Window, *, step_m: float) -> Iterator[Array]:
+    def outline(self, cut: Cut, window: SliceWindow, *, step_m: float) -> Iterator[Array]:
         """The reference inside a cut, as points u, v, distance from the plane [m], (M, 3) each.
 
         Args:
@@ -144,7 +144,7 @@ def read_facts(folder: Path) -> dict[str, Any]:
     return facts | {"name": visible(str(facts["name"]))}
 
 
-def _mesh(path: Path) -> Mesh:
+def _mesh(path: Path) -> TriangleMesh:
     arrays = load_arrays(path, ["vertices_m", "triangles"])
     vertices, triangles = arrays["vertices_m"], arrays["triangles"]
     fits = vertices.shape[1:] == (3,) and triangles.shape[1:] == (3,) and len(triangles) > 0
@@ -155,7 +155,7 @@ def _mesh(path: Path) -> Mesh:
         )
     if triangles.min() < 0 or triangles.max() >= len(vertices):
         raise StoreError(f"{path.name}: triangles name corners that do not exist")
-    return Mesh(vertices.astype(np.float64), triangles.astype(np.int64))
+    return TriangleMesh(vertices.astype(np.float64), triangles.astype(np.int64))
 
 
 def _matrix(value: Any, name: str) -> Array:
@@ -179,7 +179,7 @@ def moved_cut(cut: Cut, T_b_a: SE3) -> Cut:
     return Cut("free", _triple(origin), _triple(u), _triple(v), cut.thickness_m)
 
 
-def mesh_lines(mesh: Mesh, cut: Cut) -> Array:
+def mesh_lines(mesh: TriangleMesh, cut: Cut) -> Array:
     """Where the middle plane of a cut meets the triangles: segments in u, v [m], (S, 2, 2)."""
     if not len(mesh.triangles):
         raise ConfigError("the mesh has no triangles")
@@ -203,7 +203,7 @@ def mesh_lines(mesh: Mesh, cut: Cut) -> Array:
     return out
 
 
-def _along(lines: Array, window: Window, step_m: float) -> Array:
+def _along(lines: Array, window: SliceWindow, step_m: float) -> Array:
     """Points along segments, u, v and 0, (M, 3); only segments that can meet the window."""
     low, high = lines.min(axis=1), lines.max(axis=1)
     seen = np.all(high >= [window.left, window.bottom], axis=1)

@@ -47,7 +47,7 @@ class Requirement:
 
 
 @dataclass(frozen=True, slots=True)
-class Figures:
+class ResidualStatistics:
     """Residuals of one role taken together."""
 
     role: Role
@@ -74,7 +74,7 @@ class ControlReport:
     """Points without a place in the map yet."""
     outdated: tuple[str, ...]
     """Points that were found in an earlier map only: their places say nothing of this one."""
-    figures: tuple[Figures, ...]
+    figures: tuple[ResidualStatistics, ...]
     """Of check points, then of control points; a role without points is left out."""
     judged_by: Role | None
     """Whose limits decide; None = no point was measured."""
@@ -155,12 +155,12 @@ def _residual(point: ControlPoint, found_m: Array) -> Residual:
     return Residual(point.id, point.role, east, north, up, d2, math.hypot(d2, up))
 
 
-def _figures(rows: list[Residual], points: list[ControlPoint]) -> Figures:
+def _figures(rows: list[Residual], points: list[ControlPoint]) -> ResidualStatistics:
     d = np.array([(row.east_m, row.north_m, row.up_m) for row in rows])
     flat, up = np.hypot(d[:, 0], d[:, 1]), np.abs(d[:, 2])
     relative = _relative(np.array([p.xyz_m for p in points]), d)
     rmse = np.sqrt((d**2).mean(axis=0))
-    return Figures(
+    return ResidualStatistics(
         role=rows[0].role,
         points=len(rows),
         rmse_m=(float(rmse[0]), float(rmse[1]), float(rmse[2])),

@@ -21,8 +21,8 @@ from recon4.slices.colors import (
     table,
 )
 from recon4.slices.cut import Cut
-from recon4.slices.picture import Paper, Picture
-from recon4.slices.points import Window
+from recon4.slices.points import SliceWindow
+from recon4.slices.slice_image import Paper, SliceImage
 from recon4.store.atomic import atomic_file
 
 Size = Literal["a4", "a3", "a2", "a1"]
@@ -55,13 +55,13 @@ class Words:
 
 
 @dataclass(frozen=True, slots=True)
-class Layout:
+class SheetLayout:
     """How a window lies on a sheet."""
 
     size: Size
     scale: int
     """1 : so many."""
-    window: Window
+    window: SliceWindow
     """What is printed: the window asked for, in the middle of what fits [m]."""
 
     @property
@@ -70,7 +70,7 @@ class Layout:
         return Paper(self.window, self.scale * _MM_PER_INCH / 1000.0 / DPI)
 
 
-def lay_out(window: Window, size: Size = "a4", scale: int = 0) -> Layout:
+def lay_out(window: SliceWindow, size: Size = "a4", scale: int = 0) -> SheetLayout:
     """Choose the largest usual scale at which a window fits, or take the one asked for.
 
     Raises:
@@ -86,10 +86,12 @@ def lay_out(window: Window, size: Size = "a4", scale: int = 0) -> Layout:
         raise ConfigError(f"a window {width_m:.0f} m wide does not fit on {size} at 1 : 10 000")
     half_u, half_v = across_mm * chosen / 2000.0, up_mm * chosen / 2000.0
     u, v = (window.left + window.right) / 2.0, (window.bottom + window.top) / 2.0
-    return Layout(size, chosen, Window(u - half_u, v - half_v, u + half_u, v + half_v))
+    return SheetLayout(size, chosen, SliceWindow(u - half_u, v - half_v, u + half_u, v + half_v))
 
 
-def write_sheet(picture: Picture, layout: Layout, path: Path, *, span: Span, words: Words) -> None:
+def write_sheet(
+    picture: SliceImage, layout: SheetLayout, path: Path, *, span: Span, words: Words
+) -> None:
     """Write a sheet as PNG (300 dpi), SVG or PDF; the same picture gives the same bytes.
 
     Raises:
@@ -142,7 +144,7 @@ def _field_mm(size: Size) -> tuple[float, float]:
     return across_mm - _LEFT_MM - _RIGHT_MM, up_mm - _TOP_MM - _BOTTOM_MM
 
 
-def _field(figure: Any, picture: Picture, layout: Layout, span: Span) -> None:
+def _field(figure: Any, picture: SliceImage, layout: SheetLayout, span: Span) -> None:
     across_mm, up_mm = SIZES_MM[layout.size]
     width, height = _field_mm(layout.size)
     axes = figure.add_axes(
@@ -172,7 +174,7 @@ def _field(figure: Any, picture: Picture, layout: Layout, span: Span) -> None:
         spine.set_linewidth(0.6)
 
 
-def _head(figure: Any, picture: Picture, layout: Layout, words: Words) -> None:
+def _head(figure: Any, picture: SliceImage, layout: SheetLayout, words: Words) -> None:
     across_mm, up_mm = SIZES_MM[layout.size]
     x = _LEFT_MM / across_mm
     kind = {"horizontal": "Horizontal slice", "vertical": "Vertical slice", "free": "Slice"}
@@ -191,7 +193,7 @@ def _head(figure: Any, picture: Picture, layout: Layout, words: Words) -> None:
     figure.text(x, 8.0 / up_mm, words.approval, fontsize=6, color=_INK, parse_math=False)
 
 
-def _scale_bar(figure: Any, layout: Layout) -> None:
+def _scale_bar(figure: Any, layout: SheetLayout) -> None:
     across_mm, up_mm = SIZES_MM[layout.size]
     step = grid_step_m(60.0 * layout.scale / 1000.0 * 14.0 / 4.0)
     length_mm = step * 1000.0 / layout.scale
@@ -207,7 +209,7 @@ def _scale_bar(figure: Any, layout: Layout) -> None:
         spine.set_linewidth(0.5)
 
 
-def _legend(figure: Any, picture: Picture, span: Span, words: Words) -> None:
+def _legend(figure: Any, picture: SliceImage, span: Span, words: Words) -> None:
     across_mm, up_mm = SIZES_MM[layout_size(figure)]
     color: ColorBy = picture.color
     right = 1.0 - (_RIGHT_MM + 3.0) / across_mm

@@ -153,7 +153,7 @@ def raise_if_full(error: BaseException, path: Path) -> None:
     """
     cause: BaseException | None = error
     while cause is not None:
-        if _says_full(cause):
+        if _is_no_space(cause):
             raise NoSpace(
                 f"no space left on the disk while writing {path}; "
                 "make room and start again: finished stages are kept"
@@ -161,7 +161,7 @@ def raise_if_full(error: BaseException, path: Path) -> None:
         cause = cause.__cause__ or cause.__context__
 
 
-def _says_full(error: BaseException) -> bool:
+def _is_no_space(error: BaseException) -> bool:
     if isinstance(error, OSError):
         return error.errno in _FULL or bool(_NUMPY_SHORT_WRITE.search(str(error)))
     return isinstance(error, sqlite3.OperationalError) and "full" in str(error)

@@ -7,7 +7,7 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from recon4.settings import Settings
+from recon4.settings import Settings, current_name
 from recon4.store.seal import check_sealed
 from recon4.store.stage import read_manifest
 
@@ -43,5 +43,6 @@ def settings_in(artifacts: Iterable[Path]) -> Settings:
         group = getattr(settings, name, None)
         if group is not None:
             known = {f.name for f in fields(group)}
-            groups[name] = replace(group, **{n: v for n, v in values.items() if n in known})
+            current = {current_name(name, n): value for n, value in values.items()}
+            groups[name] = replace(group, **{n: v for n, v in current.items() if n in known})
     return replace(settings, **groups)

@@ -19,15 +19,15 @@ import numpy as np
 
 from recon4.evaluation.ate import absolute_error, pair_poses
 from recon4.evaluation.floor import ErrorFloor, relative_error_floor
-from recon4.evaluation.mesh import read_mesh
+from recon4.evaluation.reference_mesh import read_mesh
 from recon4.model.rig import Rig, load_rig
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph, save_graph
 from recon4.pose_graph.search import build_graph
 from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
+from recon4.recording.formats.poses import read_tum
 from recon4.recording.ingest import ingest
-from recon4.recording.poses import read_tum
 from recon4.registration.stage import run_odometry
 from recon4.semi_rigid.refine import refine
 from recon4.settings import Settings, override, preset
@@ -80,8 +80,9 @@ def row(name: str, floor: ErrorFloor, ate_m: float, *, lost: int, seconds: float
     e, true = floor.estimated.point_weighted, floor.true.point_weighted
     return (
         f"{name:<22} {slices} | {100 * e.mean_m:5.2f} {100 * floor.estimated.plain_mean_m:5.2f} "
-        f"{100 * e.share_2cm:5.1f} % {100 * e.share_5cm:5.1f} % | true {100 * true.mean_m:5.2f} "
-        f"ratio {floor.ratio:5.3f} | ATE {100 * ate_m:6.2f} cm, {lost} lost, {seconds:5.1f} s"
+        f"{100 * e.ratio_within_2cm:5.1f} % {100 * e.ratio_within_5cm:5.1f} % | "
+        f"true {100 * true.mean_m:5.2f} ratio {floor.ratio:5.3f} | "
+        f"ATE {100 * ate_m:6.2f} cm, {lost} lost, {seconds:5.1f} s"
     )
 
 

@@ -15,8 +15,8 @@ from recon4.mapping.tiles import TileSet
 from recon4.progress import Silent
 from recon4.settings import Settings
 from recon4.slices.cut import horizontal
-from recon4.slices.picture import Paper, draw
 from recon4.slices.points import extent
+from recon4.slices.slice_image import Paper, draw
 from recon4.store.checked import CheckedArtifact
 from recon4.store.project import Project, read_artifacts
 from recon4.store.stage import Input, Stage, StageRunner

@@ -14,10 +14,10 @@ from pathlib import Path
 import numpy as np
 import velodyne_decoder
 
-from recon4.recording.pcap import read_pcap
+from recon4.recording.formats.pcap import read_pcap
 from recon4.recording.report import ImportReport
-from recon4.recording.velodyne import PacketDecoder
-from recon4.recording.velodyne_encode import PcapWriter
+from recon4.recording.velodyne.data_packets import PacketDecoder
+from recon4.recording.velodyne.encode import PcapWriter
 from recon4.settings import IngestSettings
 from tests.unit.recording.packet_builders import sensor, spin
 

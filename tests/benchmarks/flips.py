@@ -17,7 +17,7 @@ from pathlib import Path
 
 from recon4.errors import Recon4Error
 from recon4.progress import Silent
-from recon4.review.decisions import Decision, Kind
+from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append
 from recon4.store.hashing import files_below
 from recon4.store.seal import changing
@@ -40,8 +40,8 @@ def make(root: Path) -> Path:
     """A root with a project that was decided about, approved, and has control points."""
     office = root / "office"
     build_project(office, points=1_000)
-    for kind in (Kind.REJECT, Kind.UNDO):
-        pair = (0, 30) if kind is Kind.REJECT else None
+    for kind in (DecisionKind.REJECT, DecisionKind.UNDO):
+        pair = (0, 30) if kind is DecisionKind.REJECT else None
         append(office, Decision(kind=kind, who="anna", pair=pair))
     approve_project(office, root / ".recon4" / "signing.key", who="anna")
     with changing(office, "slices"):
@@ -107,7 +107,7 @@ def main() -> int:
 
 def make_server_state(root: Path) -> None:
     """What a server leaves: queue, people, an upload that was broken off."""
-    from app.access.door import open_access
+    from app.access.login.login_service import open_access
     from app.jobs.store import JobStore
     from recon4.review.signature import sign
     from recon4.verify import seal_state

@@ -61,9 +61,9 @@ class Phone:
                 if isinstance(data, bytes):
                     self.first_points_s = np.fmin(self.first_points_s, self.bytes[-1][0])
                 else:
-                    self._hear(json.loads(data))
+                    self._receive_line(json.loads(data))
 
-    def _hear(self, told: dict[str, Any]) -> None:
+    def _receive_line(self, told: dict[str, Any]) -> None:
         if "pose" in told:
             self.ages_s.append(time.time() - told["pose"]["t_ns"] / 1e9)
 

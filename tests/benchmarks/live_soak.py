@@ -36,7 +36,7 @@ from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed
 
 from recon4.live.project_files import begin
-from recon4.live.session import Session, stretched
+from recon4.live.session import CaptureSession, stretched
 from recon4.model.rig import load_rig
 from tests.loopback import an_address
 from tests.service.running import server_process
@@ -102,7 +102,7 @@ def processes(project: Path, server: int) -> dict[str, psutil.Process]:
     for process in psutil.process_iter(["cmdline"]):
         words = process.info["cmdline"] or []
         for name in ("recorder", "mapper"):
-            if f"recon4.live.{name}" in words and str(project) in words:
+            if f"recon4.live.{name}.process" in words and str(project) in words:
                 found[name] = process
     return found
 
@@ -126,14 +126,14 @@ def punch(folder: Path) -> None:
 
 
 @contextmanager
-def recording(root: Path, given: argparse.Namespace) -> Iterator[Session]:
+def recording(root: Path, given: argparse.Namespace) -> Iterator[CaptureSession]:
     """A recorder that runs, as an operator without a server would have started it."""
     address = an_address()
     session = begin(
         root / "walk", load_rig(given.rig), address=address, speed=given.speed,
         least_free_bytes=1 << 30,
     )  # fmt: skip
-    command = [sys.executable, "-m", "recon4.live.recorder", str(session.project)]
+    command = [sys.executable, "-m", "recon4.live.recorder.process", str(session.project)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
         try:
@@ -144,7 +144,7 @@ def recording(root: Path, given: argparse.Namespace) -> Iterator[Session]:
 
 
 @contextmanager
-def replaying(session: Session, given: argparse.Namespace) -> Iterator[None]:
+def replaying(session: CaptureSession, given: argparse.Namespace) -> Iterator[None]:
     """The sensors, in a process of their own."""
     command = [sys.executable, "-m", "recon4", "replay", str(given.recording)]
     command += ["--to", session.address, "--speed", str(given.speed), "--times", "100000"]
@@ -158,7 +158,9 @@ def replaying(session: Session, given: argparse.Namespace) -> Iterator[None]:
 class Soak:
     """One run; a row a minute of the walk."""
 
-    def __init__(self, given: argparse.Namespace, session: Session, url: str, server: int) -> None:
+    def __init__(
+        self, given: argparse.Namespace, session: CaptureSession, url: str, server: int
+    ) -> None:
         self.given, self.session, self.url, self.server = given, session, url, server
         self.first, self.second = Heard(given.speed), Heard(given.speed)
         self.rows: list[dict[str, Any]] = []

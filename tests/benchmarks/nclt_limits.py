@@ -20,13 +20,13 @@ from tests.benchmarks.real_sequences import DATA, Align, ours, small_gicp_pairs
 _SIGMA_PER_MAD = 1.4826
 
 
-def chain(align: Align, scans: list[Array], guesses: SE3 | None) -> SE3:
+def chain(align: Align, scans: list[Array], hypotheses: SE3 | None) -> SE3:
     """``T_k_k+1`` of all consecutive pairs, started at guesses or at the motion before."""
     found = [SE3.identity()]
     for k in range(len(scans) - 1):
-        guess = found[-1] if guesses is None else guesses[k]
-        T, converged, _ = align(scans[k], scans[k + 1], guess)
-        found.append(T if converged or guesses is not None else SE3.identity())
+        initial = found[-1] if hypotheses is None else hypotheses[k]
+        T, converged, _ = align(scans[k], scans[k + 1], initial)
+        found.append(T if converged or hypotheses is not None else SE3.identity())
     return SE3.stack(found[1:])
 
 

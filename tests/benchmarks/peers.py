@@ -24,7 +24,7 @@ from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
-from recon4.recording.poses import read_tum
+from recon4.recording.formats.poses import read_tum
 from recon4.store.frames import FrameStore
 
 VOXEL_M = 0.25

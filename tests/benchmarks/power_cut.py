@@ -33,7 +33,7 @@ from recon4.errors import Recon4Error
 from recon4.progress import Silent
 from recon4.review.approval import approve
 from recon4.review.audit import audit_review
-from recon4.review.decisions import Decision, Kind
+from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append, read_rows
 from recon4.simulation.simulate import simulate
 from recon4.store.atomic import make_folders
@@ -86,7 +86,9 @@ def record(top: Path, seconds: float) -> None:
         mark(root, "approved")
         for edge in json.loads((root / "office" / "edges.json").read_text())["edges"][-5:]:
             i, j = edge["frames"]
-            row = append(root / "office", Decision(kind=Kind.REJECT, who="Eva", pair=(i, j)))
+            row = append(
+                root / "office", Decision(kind=DecisionKind.REJECT, who="Eva", pair=(i, j))
+            )
             mark(root, f"decided {row.seq}")
         upload(root)
 

@@ -23,7 +23,7 @@ from recon4.kernels.imu import place_points
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.trajectory import Trajectory
-from recon4.recording.cloud_files import read_cloud
+from recon4.recording.formats.cloud_files import read_cloud
 from recon4.registration.odometry import Odometry
 from recon4.registration.scans import make_scan, search_scans
 from recon4.settings import ScanSettings, Settings
@@ -68,11 +68,11 @@ def corridor(folder: Path) -> list[Multiframe]:
 def ours(settings: ScanSettings) -> Align:
     """`search_scans`: whatever the guess."""
 
-    def align(target: Array, source: Array, guess: SE3) -> tuple[SE3, bool, float]:
+    def align(target: Array, source: Array, initial: SE3) -> tuple[SE3, bool, float]:
         b = make_scan(source, settings)
         start = time.perf_counter()
         a = make_scan(target, settings)
-        found = search_scans(a, b, guess=guess, settings=settings)
+        found = search_scans(a, b, initial=initial, settings=settings)
         return found.T_target_source, found.converged, time.perf_counter() - start
 
     return align
@@ -82,12 +82,12 @@ def small_gicp_pairs(voxel_m: float = 0.25, gate_m: float = 1.0) -> Align:
     """small_gicp's GICP; one of the two scans is prepared beforehand, as in a sequence."""
     import small_gicp
 
-    def align(target: Array, source: Array, guess: SE3) -> tuple[SE3, bool, float]:
+    def align(target: Array, source: Array, initial: SE3) -> tuple[SE3, bool, float]:
         b, _ = small_gicp.preprocess_points(source, voxel_m, num_threads=1)
         start = time.perf_counter()
         a, tree = small_gicp.preprocess_points(target, voxel_m, num_threads=1)
         found = small_gicp.align(
-            a, b, tree, guess.matrix(), max_correspondence_distance=gate_m, num_threads=1
+            a, b, tree, initial.matrix(), max_correspondence_distance=gate_m, num_threads=1
         )
         seconds = time.perf_counter() - start
         return SE3.from_matrix(found.T_target_source), bool(found.converged), seconds
@@ -95,13 +95,13 @@ def small_gicp_pairs(voxel_m: float = 0.25, gate_m: float = 1.0) -> Align:
     return align
 
 
-def pairs(align: Align, scans: Sequence[Array], truth: SE3, *, guess: str, every: int) -> Array:
+def pairs(align: Align, scans: Sequence[Array], truth: SE3, *, initial: str, every: int) -> Array:
     """Error [m], [deg], converged, seconds of every ``every``-th consecutive pair, (K, 4)."""
     rows = []
     motion = SE3.identity()
     for k in range(0, len(scans) - 1, every):
         T_true = truth[k].inverse() @ truth[k + 1]
-        start = {"truth": T_true, "identity": SE3.identity(), "before": motion}[guess]
+        start = {"truth": T_true, "identity": SE3.identity(), "before": motion}[initial]
         T, converged, seconds = align(scans[k], scans[k + 1], start)
         error = T_true.inverse() @ T
         rows.append((np.linalg.norm(error.t), np.rad2deg(float(error.angle())), converged, seconds))
@@ -117,14 +117,14 @@ def nclt_table(every: int) -> str:
     rows = []
     ways = (("ours", ours(ScanSettings()), ("before",)),
             ("small_gicp", small_gicp_pairs(), ("before", "truth")))  # fmt: skip
-    for name, align, guesses in ways:
-        for guess in guesses:
-            found = pairs(align, scans, truth, guess=guess, every=every)
+    for name, align, hypotheses in ways:
+        for initial in hypotheses:
+            found = pairs(align, scans, truth, initial=initial, every=every)
             gross = found[:, 0] > GROSS_M
             silent = int((gross & (found[:, 2] > 0)).sum())
             cells = (100 * np.median(found[:, 0]), np.median(found[:, 1]))
             rows.append(
-                (name, guess, number(cells[0], 2), number(cells[1], 3),
+                (name, initial, number(cells[0], 2), number(cells[1], 3),
                  number(100 * np.quantile(found[:, 0], 0.95), 1),
                  f"{int(gross.sum())} of {len(found)}", str(silent),
                  number(1e3 * np.median(found[:, 3]), 0))

@@ -42,7 +42,7 @@ MAP = "office"
 PATHS = (
     "/", f"/projects/{MAP}/", "/live", "/api/projects", f"/api/projects/{MAP}", "/api/jobs",
     "/api/server", "/api/live", f"/api/projects/{MAP}/picture", f"/api/projects/{MAP}/report",
-    f"/api/projects/{MAP}/files/trajectory.tum", "/web/api.js",
+    f"/api/projects/{MAP}/files/trajectory.tum", "/web/shared/api.js",
 )  # fmt: skip
 THINK_S = 0.5
 """A client waits so long between two requests [s]."""

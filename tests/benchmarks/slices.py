@@ -15,8 +15,8 @@ from pathlib import Path
 from recon4.mapping.tiles import TileSet
 from recon4.slices.cut import Cut, free, horizontal, vertical
 from recon4.slices.doubles import find_double_walls
-from recon4.slices.picture import Paper, draw, png
-from recon4.slices.points import Window, extent
+from recon4.slices.points import SliceWindow, extent
+from recon4.slices.slice_image import Paper, draw, png
 from recon4.store.project import read_artifacts
 
 
@@ -58,7 +58,7 @@ def main(project: Path) -> None:
 def picture(tiles: TileSet, cut: Cut, color: str) -> tuple[float, float, int]:
     """Seconds of a picture, PNG included, those of the processor, and its points."""
     began, used = time.perf_counter(), time.process_time()
-    seen: Window = extent(tiles, cut)
+    seen: SliceWindow = extent(tiles, cut)
     pixel_m = max((seen.right - seen.left) / 1600.0, (seen.top - seen.bottom) / 1200.0)
     made = draw(tiles, cut, Paper(seen, pixel_m), color=color)
     png(made.rgba(made.span, "light"))

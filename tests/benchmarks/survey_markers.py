@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.georeference.crs import Origin, to_enu
+from recon4.georeference.crs import GeodeticOrigin, to_enu
 from recon4.mapping.tiles import TileSet
 from recon4.store.project import read_artifacts
 
@@ -27,7 +27,7 @@ FEWEST = 40
 """A plate with fewer points has no edges to be measured between."""
 
 
-def true_positions(markers: Path, origin: Origin) -> dict[str, np.ndarray]:
+def true_positions(markers: Path, origin: GeodeticOrigin) -> dict[str, np.ndarray]:
     """Markers in the map frame of the result, from their latitudes and longitudes."""
     with markers.open(newline="") as file:
         rows = list(csv.DictReader(file))
@@ -61,7 +61,7 @@ def main(project: Path, recording: Path) -> None:
     artifacts = read_artifacts(project)
     facts = json.loads((artifacts["level"] / "georeference.json").read_text())
     o = facts["georeference"]["origin"]
-    origin = Origin(np.deg2rad(o["lat_deg"]), np.deg2rad(o["lon_deg"]), o["height_m"])
+    origin = GeodeticOrigin(np.deg2rad(o["lat_deg"]), np.deg2rad(o["lon_deg"]), o["height_m"])
     tiles = TileSet.open(artifacts["map"])
     rows = []
     for name, true in true_positions(recording / "markers.csv", origin).items():

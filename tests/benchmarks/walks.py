@@ -18,7 +18,7 @@ from recon4.evaluation.ate import absolute_error, pair_poses
 from recon4.geometry.se3 import SE3
 from recon4.model.rig import load_rig
 from recon4.model.trajectory import Trajectory
-from recon4.recording.poses import read_tum
+from recon4.recording.formats.poses import read_tum
 from recon4.registration.odometry import Odometry
 from recon4.settings import Settings
 from tests.benchmarks.ablation import read_frames

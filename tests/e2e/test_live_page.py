@@ -15,7 +15,7 @@ from urllib.parse import urlsplit
 import pytest
 from playwright.sync_api import expect
 
-from app.live.picture import BYTES_A_POINT
+from app.live.stream_state import BYTES_A_POINT
 from recon4.errors import Cancelled
 from recon4.live.replay import replay
 from recon4.model.rig import format_rig, load_rig
@@ -277,7 +277,7 @@ def test_the_keyboard_does_it_too(server, page):
 
 
 HELD = """async () => {
-  const { Camera } = await import("/web/live_camera.js");
+  const { Camera } = await import("/web/live/camera.js");
   const camera = new Camera();
   const place = [3, -2, 0];
   const before = camera.project(place);
@@ -303,6 +303,6 @@ def test_two_fingers_zoom_and_turn_about_what_they_touch_and_one_touch_turns_it_
         touch.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": fingers})
 
     assert held["off"] < 1e-6 and held["px"] > 40
-    # A click, not a tap: a busy machine holds the tap so long that Chromium takes it for a long press.
+    # A click: a busy machine holds a tap so long that Chromium takes it for a long press.
     page.get_by_role("button", name="Turn the map back").click()
     expect(page.get_by_role("button", name="Turn the map back")).to_be_hidden()

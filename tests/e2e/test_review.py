@@ -6,7 +6,7 @@ import shutil
 import pytest
 from playwright.sync_api import expect
 
-from recon4.review.decisions import Decision, Kind
+from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append, broken, read_rows
 from tests.e2e.conftest import only
 from tests.review_project import make
@@ -419,7 +419,7 @@ def test_what_others_decide_is_seen_without_a_click(opened, root, look):
     only(look, "phone dark")
     page = opened
 
-    append(root, Decision(kind=Kind.REJECT, who="Eva", why="glass", pair=(17, 77)))
+    append(root, Decision(kind=DecisionKind.REJECT, who="Eva", why="glass", pair=(17, 77)))
 
     expect(page.locator("#news")).to_have_text("Meanwhile Eva rejected multiframes 17 and 77")
     expect(page.locator("review-queue")).to_contain_text("1 decided by people")

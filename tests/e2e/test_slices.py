@@ -228,7 +228,7 @@ def test_a_double_wall_belongs_to_the_slices_near_it(server, page):
     opened(page, server)
 
     found = page.evaluate("""async () => {
-      const { distanceFrom, parse } = await import("/web/slices_state.js");
+      const { distanceFrom, parse } = await import("/web/slices/state.js");
       return ["kind=horizontal&z=1.5", "kind=vertical&a=0,1&b=4,1", "kind=free&o=1,2,3&n=2,0,0"]
         .map((query) => distanceFrom(parse(query), [3, 5, 2]));
     }""")

@@ -9,11 +9,12 @@ import psutil
 import pytest
 from playwright.sync_api import expect
 
-from app.viewer.cloud import Cloud
-from app.viewer.scene import Content, bounds
-from app.viewer.show import start_m
+from app.viewer.client.show import start_m
+from app.viewer.cloud.parts import Cloud
+from app.viewer.scene.build import Content, bounds
 from recon4.model.pose_graph import Reason
 from tests.e2e.conftest import only
+from tests.processes import command_of
 from tests.project_builder import add_multiframes, build_project, loop_walk, verified_graph
 from tests.service.running import server_thread
 
@@ -128,7 +129,7 @@ def test_a_viewer_that_is_killed_comes_back_with_camera_and_colors(finished, vie
     process = next(
         one
         for one in psutil.Process().children(recursive=True)
-        if "app.viewer.process" in one.cmdline()
+        if "app.viewer.process" in command_of(one)
     )
     legend = viewer.get_by_text("Points by raw intensity")
     legend.evaluate(

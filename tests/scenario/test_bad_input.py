@@ -11,9 +11,9 @@ import zipfile
 import numpy as np
 import pytest
 
-from recon4.cli import main
-from recon4.recording.csv_samples import GNSS_HEADER, IMU_HEADER
-from recon4.recording.velodyne_encode import PcapWriter
+from recon4.cli.main import main
+from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
+from recon4.recording.velodyne.encode import PcapWriter
 from recon4.store.project import Project
 from tests.builders import (
     T0_NS,
@@ -412,7 +412,7 @@ def test_positions_that_jump_do_not_move_the_map(pcap, process, tmp_path):
 
     assert summary["crs"] == ""
     assert_warned(summary, "positions")
-    assert summary["way_m"] < 0.1
+    assert summary["path_length_m"] < 0.1
 
 
 # -- the place of the results
@@ -441,7 +441,7 @@ def test_a_project_in_use_is_refused(pcap, refuse, tmp_path):
 LIMITED = """
 import resource, sys
 resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[1]), resource.RLIM_INFINITY))
-from recon4.cli import main
+from recon4.cli.main import main
 sys.exit(main(sys.argv[2:]))
 """
 

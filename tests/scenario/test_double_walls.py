@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from recon4.cli import main
+from recon4.cli.main import main
 from recon4.geometry.se3 import SE3
 from recon4.mapping.tiles import TileSet
 from recon4.model.pose_graph import EdgeKind, Verdict
 from recon4.pose_graph.files import load_graph
 from recon4.progress import Silent
-from recon4.review.decisions import Decision, Kind, Measurement
+from recon4.review.decisions import Decision, DecisionKind, Measurement
 from recon4.review.journal import append
 from recon4.simulation.simulate import simulate
 from recon4.slices.doubles import find_double_walls
@@ -60,9 +60,11 @@ def accept_one_loop_off(root):
         pair = (int(graph.frame_ids[edge.i]), int(graph.frame_ids[edge.j]))
         if edge is wrong:
             measured = _off(edge, graph.T_map_body)
-            decision = Decision(kind=Kind.REPLACE, who="Eva", pair=pair, measurement=measured)
+            decision = Decision(
+                kind=DecisionKind.REPLACE, who="Eva", pair=pair, measurement=measured
+            )
         else:
-            decision = Decision(kind=Kind.REJECT, who="Eva", pair=pair)
+            decision = Decision(kind=DecisionKind.REJECT, who="Eva", pair=pair)
         append(root, decision)
     return len(over)
 

@@ -10,11 +10,11 @@ import time
 import numpy as np
 import pytest
 
-from recon4.cli import main
+from recon4.cli.main import main
 from recon4.progress import Silent
-from recon4.recording.pcap import address_text, read_pcap
+from recon4.recording.formats.pcap import address_text, read_pcap
 from recon4.recording.report import ImportReport
-from recon4.recording.velodyne_encode import PcapWriter
+from recon4.recording.velodyne.encode import PcapWriter
 from recon4.simulation.simulate import simulate
 
 SECONDS = 4.0

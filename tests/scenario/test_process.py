@@ -6,7 +6,7 @@ import laspy
 import numpy as np
 import pytest
 
-from recon4.cli import main
+from recon4.cli.main import main
 from recon4.evaluation.evaluate import evaluate
 from recon4.progress import Silent
 from recon4.results import RESULTS
@@ -71,7 +71,7 @@ def test_the_walk_is_tracked_to_a_centimetre(project, walk):
     found = evaluate(project, truth=walk / "truth.tum")
 
     # The last pose is the end of the last revolution, a moment after the end of the truth.
-    assert found.covered_share > 0.98
+    assert found.coverage_ratio > 0.98
     assert found.aligned.position_m.rmse < 0.01
 
 

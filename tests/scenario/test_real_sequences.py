@@ -5,11 +5,11 @@ import dataclasses
 import numpy as np
 import pytest
 
-from recon4.cli import main
+from recon4.cli.main import main
 from recon4.geometry.se3 import SE3
 from recon4.progress import Silent
+from recon4.recording.formats.poses import read_tum
 from recon4.recording.ingest import ingest
-from recon4.recording.poses import read_tum
 from recon4.registration.odometry import Odometry
 from recon4.registration.result import StopReason
 from recon4.registration.scans import make_scan, register_scans, search_scans
@@ -36,9 +36,9 @@ def corridor_frames(data):
     return corridor(data("sequences/vlp16-corridor"))
 
 
-def register(scans, i, j, guess=None):
+def register(scans, i, j, initial=None):
     target, source = make_scan(scans[i], SCANS), make_scan(scans[j], SCANS)
-    return search_scans(target, source, guess=guess or SE3.identity(), settings=SCANS)
+    return search_scans(target, source, initial=initial or SE3.identity(), settings=SCANS)
 
 
 def off(T, T_true):
@@ -74,8 +74,8 @@ def test_a_jump_of_eight_meters_and_half_a_turn_is_found(key_scans):
     T_true = truth[FAR_AND_TURNED].inverse() @ truth[FAR_AND_TURNED + 1]
     target, source = (make_scan(scans[FAR_AND_TURNED + k], SCANS) for k in (0, 1))
 
-    found = search_scans(target, source, guess=SE3.identity(), settings=SCANS)
-    alone = register_scans(target, source, guess=SE3.identity(), settings=SCANS)
+    found = search_scans(target, source, initial=SE3.identity(), settings=SCANS)
+    alone = register_scans(target, source, initial=SE3.identity(), settings=SCANS)
 
     assert off(found.T_target_source, T_true)[0] < 0.3
     assert off(alone.T_target_source, T_true)[0] > 1.0

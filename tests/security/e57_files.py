@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pye57
 
-from recon4.slices.e57_xml import _checksums
+from recon4.recording.formats.e57_xml import _checksums
 
 _HEADER = struct.Struct("<8sIIQQQQ")
 

@@ -26,7 +26,7 @@ from app.jobs.folder import JobFolder
 from app.jobs.limits import prepare_worker, worker_policy
 from app.viewer.process import viewer_policy
 from recon4.live.confinement import confine_mapper, confine_recorder
-from recon4.live.session import Session
+from recon4.live.session import CaptureSession
 from recon4.model.rig import load_rig
 from recon4.sandbox import confine, refuse_new_sockets
 
@@ -148,7 +148,7 @@ def too_many_threads() -> int:
 def confine_as(kind: str, facts: dict[str, Any]) -> None:
     """As the process of that kind does in its ``main``."""
     project, mine = Path(facts["root"]) / "mine", Path(facts["mine"])
-    session = Session(project=project)
+    session = CaptureSession(project=project)
     match kind:
         case "worker":
             folder = JobFolder(mine)

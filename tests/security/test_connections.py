@@ -24,9 +24,8 @@ import numpy as np
 import pytest
 from prometheus_client.parser import text_string_to_metric_families
 
-from app import accept, listen
-from app.access import http_timeouts, slow_readers
-from app.access.connections import open_file_limit, raise_file_limit
+from app.network import accept, http_timeouts, listen, slow_readers
+from app.network.connections import open_file_limit, raise_file_limit
 from tests.project_builder import build_project
 from tests.service.running import ROOT, server_thread, wait_for
 from tests.service.secure import secure_server
@@ -131,7 +130,7 @@ def test_many_mute_connections_to_a_process_with_few_files_grow_no_log(tmp_path)
     (tmp_path / "root").mkdir()
     code = (
         "import resource; resource.setrlimit(resource.RLIMIT_NOFILE, (256, 256));"
-        "from recon4.cli import main; main()"
+        "from recon4.cli.main import main; main()"
     )
     with log.open("wb") as stderr, socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
@@ -164,8 +163,8 @@ def answers(url):
 
 EXHAUSTED = """
 import asyncio, os, resource, socket, sys
-from app.accept import Acceptor
-from app.access.connections import ConnectionLimits, ConnectionTable, Phase
+from app.network.accept import Acceptor
+from app.network.connections import ConnectionLimits, ConnectionTable, Phase
 
 class Greeting(asyncio.Protocol):
     def __init__(self, connection):

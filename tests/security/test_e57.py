@@ -7,7 +7,7 @@ import time
 import pytest
 
 from recon4.errors import CorruptFile
-from recon4.slices.clouds import read_points
+from recon4.recording.formats.reference_clouds import read_points
 from tests.security.e57_files import with_xml, write_sound
 
 LISTENER = """

@@ -18,17 +18,17 @@ import numpy as np
 import pytest
 
 from recon4.evaluation.markers import read_markers
-from recon4.evaluation.mesh import read_mesh
+from recon4.evaluation.reference_mesh import read_mesh
 from recon4.evaluation.trajectories import find_trajectory
 from recon4.georeference.stage import read_crs
 from recon4.mapping.tiles import TileSet
 from recon4.model.rig import load_rig, parse_rig
 from recon4.pose_graph.g2o import read_g2o
-from recon4.recording.cloud_files import read_cloud
-from recon4.recording.csv_samples import IMU_HEADER, read_gnss_csv, read_imu_csv
+from recon4.recording.formats.cloud_files import read_cloud
+from recon4.recording.formats.poses import read_kitti
+from recon4.recording.formats.reference_clouds import read_points
 from recon4.recording.info import describe
-from recon4.recording.poses import read_kitti
-from recon4.slices.clouds import read_points
+from recon4.recording.samples.csv_files import IMU_HEADER, read_gnss_csv, read_imu_csv
 from recon4.slices.control import read_control
 from recon4.slices.imports import import_reference
 from recon4.slices.reference import read_facts

@@ -10,12 +10,12 @@ import shutil
 import httpx
 import pytest
 
-from recon4.cli import main
+from recon4.cli.main import main
 from recon4.pipeline import remake
 from recon4.progress import Silent
 from recon4.review.approval import put_back
 from recon4.review.approved import approval_of
-from recon4.review.decisions import Decision, Kind
+from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append
 from recon4.review.signature import sign
 from recon4.review.source import Source
@@ -232,7 +232,7 @@ def sign_as_before(root, key_file):
     (root / "decisions.sqlite").unlink()
     (root / "seals.json").unlink()
     facts = {"version": 1, "approval": sha256, "artifacts": hash_json(statement["artifacts"])}
-    append(root, Decision(kind=Kind.APPROVE, who="anna", facts=facts))
+    append(root, Decision(kind=DecisionKind.APPROVE, who="anna", facts=facts))
 
 
 def test_every_flipped_bit_of_a_project_and_its_server_is_found(tmp_path):

@@ -11,7 +11,7 @@ import sys
 
 import httpx
 
-from app.access.door import open_access
+from app.access.login.login_service import open_access
 from app.access.people import Role
 from app.metrics_routes import make_metrics_token
 from tests.service.running import ROOT

@@ -10,7 +10,7 @@ import json
 import pytest
 from playwright.sync_api import expect
 
-from recon4.review.decisions import Decision, Kind
+from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append
 from tests.review_project import make
 from tests.service.secure import PASSWORD, secure_server
@@ -44,7 +44,10 @@ def server(tmp_path_factory):
     root = tmp_path_factory.mktemp("projects")
     make(root / "office")
     describe(root / "office")
-    append(root / "office", Decision(kind=Kind.REJECT, who=SHORT, why=PAYLOAD[:500], pair=(17, 77)))
+    append(
+        root / "office",
+        Decision(kind=DecisionKind.REJECT, who=SHORT, why=PAYLOAD[:500], pair=(17, 77)),
+    )
     (root / SHORT.replace("/", "")).mkdir()
     with secure_server(root) as running:
         yield running

@@ -16,6 +16,7 @@ import pytest
 
 from app.viewer.pool import socket_folder
 from recon4.processes import ChildRegister, process_identity
+from tests.processes import command_of
 from tests.project_builder import build_project
 from tests.service.killing import leftover_files
 from tests.service.running import ROOT, server_process, wait_for
@@ -132,7 +133,7 @@ def test_a_viewer_that_was_killed_leaves_no_socket_and_no_record(root):
                 client.send(camera())
                 client.until(lambda c: "/grid" in c.nodes)
                 viewers = psutil.Process(process.pid).children()
-                (viewer,) = [one for one in viewers if "app.viewer.process" in one.cmdline()]
+                (viewer,) = [one for one in viewers if "app.viewer.process" in command_of(one)]
                 viewer.kill()
                 psutil.wait_procs([viewer], timeout=GONE_WITHIN_S)
         with viewing(server.url) as client:

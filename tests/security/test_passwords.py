@@ -11,8 +11,8 @@ import time
 import pytest
 from zxcvbn.frequency_lists import FREQUENCY_LISTS
 
-from app.access import passwords
-from app.access.passwords import check
+from app.access.login import passwords
+from app.access.login.passwords import check
 from app.errors import WeakPassword
 
 NAME = "Anna Kowalska"
@@ -132,7 +132,7 @@ def test_one_estimate_at_a_time_as_the_estimator_keeps_its_words_in_a_global(mon
         locked.append(passwords._estimating.locked())
         return estimate(*args, **options)
 
-    monkeypatch.setattr("app.access.passwords.zxcvbn", watched)
+    monkeypatch.setattr("app.access.login.passwords.zxcvbn", watched)
     check("copper violin under seven hedges", NAME)
 
     assert locked == [True, True]

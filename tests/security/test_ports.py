@@ -29,7 +29,7 @@ from websockets.sync.client import connect
 from app.viewer import unix_socket
 from recon4 import runtime_folder as places
 from recon4.errors import StoreError
-from recon4.live.line_server import LineServer
+from recon4.live.ipc.line_server import LineServer
 from tests.project_builder import build_project
 from tests.service.running import ROOT, server_process
 from tests.service.viser_client import PROTOCOL, camera, viewing
@@ -218,7 +218,7 @@ def test_the_code_of_the_public_tunnel_cannot_be_reached(tmp_path):
 import viser, pytest
 from pathlib import Path
 from viser import _messages
-from app.viewer.show import Viewer
+from app.viewer.client.show import Viewer
 viewer = Viewer(Path({str(tmp_path)!r}) / "s", on_client=print, on_leave=print)
 handlers = viewer._server._websock_server._incoming_handlers
 assert not handlers.get(_messages.ShareUrlRequest)

@@ -14,7 +14,7 @@ from websockets.exceptions import ConnectionClosed
 
 from app.access.people import LOCAL, Person, Role
 from app.errors import TooMany
-from app.streams import StreamLimits, Streams
+from app.network.streams import StreamLimits, Streams
 from tests.service.secure import secure_server
 
 LIMITS = StreamLimits(most=10, per_person=3, per_address=5, reserved=2)

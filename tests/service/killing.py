@@ -22,8 +22,9 @@ import numpy as np
 import psutil
 from websockets.exceptions import ConnectionClosed
 
-from app.jobs.overall import AFTER, BEFORE, SHARES
+from app.jobs.run_progress import AFTER, BEFORE, SHARES
 from app.viewer.pool import socket_folder
+from tests.processes import command_of
 from tests.service.gated_worker import AT_GATE
 from tests.service.running import WITHOUT_TLS, Running, end_workers, server_process, wait_for
 from tests.service.viser_client import camera, viewing
@@ -137,7 +138,7 @@ def _kill_viewer(server: Running, process: subprocess.Popen[str]) -> None:
         client.send(camera())
         client.until(lambda c: "/grid" in c.nodes)
         children = psutil.Process(process.pid).children()
-        (viewer,) = [one for one in children if "app.viewer.process" in one.cmdline()]
+        (viewer,) = [one for one in children if "app.viewer.process" in command_of(one)]
         viewer.kill()
         with contextlib.suppress(ConnectionClosed):
             client.until(lambda c: False)
@@ -160,7 +161,7 @@ def _kill_pool_child(server: Running, process: subprocess.Popen[str]) -> None:
 
     def children() -> list[psutil.Process]:
         below = psutil.Process(process.pid).children(recursive=True)
-        return [one for one in below if "app.compute_pool.child" in one.cmdline()]
+        return [one for one in below if "app.compute_pool.child" in command_of(one)]
 
     with ThreadPoolExecutor(1) as thread:
         answer = thread.submit(ask)

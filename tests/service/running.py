@@ -21,8 +21,14 @@ import httpx
 from fastapi import FastAPI
 
 from app.jobs.folder import JobFolder
-from app.listen import AnnouncingServer, certificate_of, listening, make_state, uvicorn_config
 from app.main import create_app, serve
+from app.network.listen import (
+    AnnouncingServer,
+    certificate_of,
+    listening,
+    make_state,
+    uvicorn_config,
+)
 from app.settings import ServerSettings, recordings_from_environment
 
 ROOT = Path(__file__).parents[2]

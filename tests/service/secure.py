@@ -16,7 +16,7 @@ from anyio.from_thread import BlockingPortal, start_blocking_portal
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
-from app.access.door import open_access
+from app.access.login.login_service import open_access
 from app.access.people import Role
 from tests.service.running import Running, server_thread
 

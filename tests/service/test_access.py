@@ -9,9 +9,9 @@ import httpx
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
-from app.access.door import open_access
+from app.access.login.login_service import open_access
 from app.access.people import Role
-from app.listen import make_state
+from app.network.listen import make_state
 from app.settings import ServerSettings
 from recon4.errors import ConfigError
 from tests.project_builder import build_project
@@ -39,7 +39,7 @@ def test_without_a_session_only_the_login_is_answered(server):
         }
         nothing = client.get("/no/such/page").status_code
         open_ones = [client.get(path).status_code for path in ("/login", "/healthz")]
-        static = client.get("/web/style.css").status_code
+        static = client.get("/web/shared/style.css").status_code
 
     assert set(answers.values()) == {401}
     assert nothing == 401
@@ -385,7 +385,7 @@ def test_the_first_admin_is_made_once_with_the_link_and_never_without(tmp_path):
 
         server = Secure(running)
         access = running.app.state.parts.access
-        token = access.door.open_setup()
+        token = access.logins.open_setup()
         given = {"name": "Anna", "password": PASSWORD}
         with server.client() as client:
             wrong = client.post("/api/setup", json={**given, "token": "x" * 43})

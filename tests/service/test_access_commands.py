@@ -11,7 +11,7 @@ from contextlib import contextmanager
 import httpx
 import pytest
 
-from app.access.door import open_access
+from app.access.login.login_service import open_access
 from tests.service.running import ROOT
 from tests.service.secure import PASSWORD
 

@@ -6,7 +6,7 @@ from urllib.parse import quote, urlsplit
 
 import pytest
 
-from app.access.guard import SAFE_METHODS
+from app.access.middleware.origin import SAFE_METHODS
 from app.access.routes_check import declared
 from app.main import create_app
 from app.settings import ServerSettings

@@ -10,9 +10,9 @@ from fastapi import FastAPI
 from viser import _messages
 from websockets.exceptions import InvalidStatus
 
-from app.access.doorkeeper import OPEN_PATHS
-from app.access.guard import SAFE_METHODS
-from app.access.people import MAY, May, Role
+from app.access.middleware.origin import SAFE_METHODS
+from app.access.middleware.session import OPEN_PATHS
+from app.access.people import MAY, Permission, Role
 from app.access.routes_check import check_declared, declared
 from app.main import create_app
 from app.settings import ServerSettings
@@ -63,7 +63,7 @@ def requests_of(routes):
 
 def test_every_route_says_who_may_use_it(routes):
     assert len(routes) > 20
-    assert [one.path for one in routes if not one.needs and not one.anybody] == []
+    assert [one.path for one in routes if not one.needs and not one.allow_anonymous] == []
 
 
 def test_a_server_with_a_silent_route_does_not_start():
@@ -75,7 +75,7 @@ def test_a_server_with_a_silent_route_does_not_start():
 
 
 def test_what_answers_before_login_is_exactly_what_the_door_lets_through(routes):
-    assert {one.path for one in routes if one.anybody} == OPEN_PATHS
+    assert {one.path for one in routes if one.allow_anonymous} == OPEN_PATHS
 
 
 @pytest.mark.parametrize("name", [*ROLES, None])
@@ -85,7 +85,7 @@ def test_each_role_gets_past_the_door_where_it_may_and_nowhere_else(
     role = ROLES[name] if name else Role.NOBODY
     wrong = []
     for method, route in requests_of(routes):
-        if route.anybody or route.path in ("/api/logout", "/api/events"):
+        if route.allow_anonymous or route.path in ("/api/logout", "/api/events"):
             continue
         status = status_of(server, name, method=method, path=real_path(route.path))
         expected_refusal = 403 if name else 401
@@ -123,10 +123,10 @@ def closed():
 
 def test_the_roles_are_as_documented():
     assert MAY[Role.NOBODY] == frozenset()
-    assert MAY[Role.VIEWER] == {May.LOOK}
-    assert May.REVIEW not in MAY[Role.OPERATOR]
-    assert May.PROCESS in MAY[Role.REVIEWER]
-    assert {role for role in Role if May.ADMINISTER in MAY[role]} == {Role.ADMIN}
+    assert MAY[Role.VIEWER] == {Permission.LOOK}
+    assert Permission.REVIEW not in MAY[Role.OPERATOR]
+    assert Permission.PROCESS in MAY[Role.REVIEWER]
+    assert {role for role in Role if Permission.ADMINISTER in MAY[role]} == {Role.ADMIN}
 
 
 @pytest.mark.parametrize("name", [*ROLES, None])
@@ -202,7 +202,7 @@ def test_asked_too_often_a_session_is_told_when_to_come_back(server):
 
     with server.signed_in("vera") as client, server.signed_in("otto") as other:
         answers = asyncio.run(many(client.cookies))
-        static = client.get("/web/style.css")
+        static = client.get("/web/shared/style.css")
         others = other.get("/api/me")
 
     refused = [one for one in answers if one.status_code == 429]

@@ -1,6 +1,6 @@
 """A backup made while a server runs a job restores to something that goes on from there."""
 
-from recon4.cli import main
+from recon4.cli.main import main
 from recon4.progress import Silent
 from recon4.verify import verify
 from tests.project_builder import approve_project, build_project

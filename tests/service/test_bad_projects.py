@@ -32,8 +32,8 @@ BAD_JSON = {
     "deep": DEEP,
     "deep_object": DEEP_OBJECT,
     "surrogate": '{"format": 1, "name": "a\\ud800b"}',
-    "no_number": '{"format": 1, "way_m": NaN}',
-    "infinite": '{"format": 1, "way_m": 1e999}',
+    "no_number": '{"format": 1, "path_length_m": NaN}',
+    "infinite": '{"format": 1, "path_length_m": 1e999}',
     "long_number": '{"format": 1, "points": ' + "9" * 10_000 + "}",
     "no_utf8": b'{"format": 1, "name": "\xff"}',
     "no_object": "[1]",
@@ -59,7 +59,7 @@ def server(tmp_path_factory):
     odd.mkdir()
     facts = {"format": 1, "name": {"a": [1]}, "rig": ["x"], "preset": 7}
     (odd / "project.json").write_text(json.dumps(facts))
-    (odd / "summary.json").write_text(json.dumps({"way_m": 10**400, "points": True}))
+    (odd / "summary.json").write_text(json.dumps({"path_length_m": 10**400, "points": True}))
     spoil_ledger(root)
     (root / ".recon4" / "trash" / "gone@99999999T999999999999").mkdir(parents=True)
     with server_thread(root) as running:
@@ -96,7 +96,7 @@ def test_a_name_from_the_disk_shows_what_nobody_would_see(server):
     cards = {card["id"]: card for card in server.get("/api/projects").json()}
 
     assert cards["hidden"]["name"] == "plan<U+202E>gnp.exe"
-    assert cards["odd"]["way_m"] is None
+    assert cards["odd"]["path_length_m"] is None
 
 
 def test_the_page_of_a_bad_project_answers(server):

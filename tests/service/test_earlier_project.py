@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from recon4.cli import main
+from recon4.cli.main import main
 from tests.service.running import server_thread
 
 ARCHIVE = Path(__file__).parents[1] / "data" / "project-format1.tar.xz"
@@ -33,7 +33,7 @@ def test_it_is_listed_with_its_figures(server):
     (card,) = server.get("/api/projects").json()
 
     assert card["finished"] and card["problem"] == ""
-    assert card["points"] > 10_000 and card["way_m"] == pytest.approx(9.2, abs=0.2)
+    assert card["points"] > 10_000 and card["path_length_m"] == pytest.approx(9.2, abs=0.2)
 
 
 def test_its_loops_and_decisions_are_there(server):

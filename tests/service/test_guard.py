@@ -86,7 +86,14 @@ def test_a_websocket_of_another_site_is_refused(server, origin):
 
 
 def test_every_answer_carries_the_security_headers(server):
-    paths = ("/", "/projects/office/", "/web/style.css", "/api/projects", "/api/nothing", "/api")
+    paths = (
+        "/",
+        "/projects/office/",
+        "/web/shared/style.css",
+        "/api/projects",
+        "/api/nothing",
+        "/api",
+    )
 
     for path in paths:
         headers = server.get(path).headers

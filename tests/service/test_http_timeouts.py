@@ -9,7 +9,7 @@ import httpx
 import numpy as np
 import pytest
 
-from app.access import http_timeouts
+from app.network import http_timeouts
 from tests.service.running import server_thread
 
 SOON_S = 0.6

@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 
-from app.jobs.overall import PIECES, SHARES
+from app.jobs.run_progress import PIECES, SHARES
 from recon4.progress import Silent
 from recon4.simulation.simulate import simulate
 from tests.service import killing

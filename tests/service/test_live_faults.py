@@ -31,10 +31,10 @@ from recon4.live.replay import Shipment, replay
 from recon4.live.session import load_session
 from recon4.model.rig import load_rig
 from recon4.progress import Silent
+from recon4.recording.formats.pcap import read_pcap
 from recon4.recording.ingest import ingest
-from recon4.recording.pcap import read_pcap
 from recon4.recording.report import ImportReport
-from recon4.recording.velodyne_models import DATA_SIZE, HOUR_US
+from recon4.recording.velodyne.models import DATA_SIZE, HOUR_US
 from recon4.settings import preset
 from recon4.simulation.simulate import simulate
 from recon4.store.frames import FrameStore
@@ -91,7 +91,7 @@ def project(tmp_path):
     project = tmp_path / "projects" / "walk"
     project.parent.mkdir()
     yield project
-    for module in ("recon4.live.recorder", "recon4.live.mapper"):
+    for module in ("recon4.live.recorder.process", "recon4.live.mapper.process"):
         if left := process_of(module, project):
             os.kill(left, signal.SIGKILL)
 
@@ -127,15 +127,15 @@ def test_mapper_server_and_recorder_die_and_nothing_recorded_is_lost(tmp_path, w
         start(server)
         sending.start()
         hear_frame(project, 3)
-        mapper = process_of("recon4.live.mapper", project)
+        mapper = process_of("recon4.live.mapper.process", project)
         os.kill(mapper, signal.SIGKILL)
         hear_frame(project, 20)
-        again = process_of("recon4.live.mapper", project)
+        again = process_of("recon4.live.mapper.process", project)
 
     with serving(root, address) as server:
         assert server.get("/api/live").json()["state"] == "recording"
         hear_frame(project, 40)
-        os.kill(process_of("recon4.live.recorder", project), signal.SIGKILL)
+        os.kill(process_of("recon4.live.recorder.process", project), signal.SIGKILL)
         state = wait_for(
             lambda: (s := server.get("/api/live").json())["state"] == "ready" and s, "not ready"
         )
@@ -260,7 +260,7 @@ def test_a_capture_that_cannot_start_leaves_nothing_and_one_that_ends_by_itself_
         with pytest.raises(StoreError, match="there is a project walk already"):
             await captures.start("walk", "4recon", address=address)
         await capture.leave()
-        for module in ("recon4.live.recorder", "recon4.live.mapper"):
+        for module in ("recon4.live.recorder.process", "recon4.live.mapper.process"):
             await asyncio.to_thread(wait_for, lambda m=module: not process_of(m, project), module)
         await asyncio.sleep(0.1)  # the loop hears of it
         return left, capture.problem

@@ -9,7 +9,7 @@ from prometheus_client.parser import text_string_to_metric_families
 from typer.testing import CliRunner
 from websockets.asyncio.client import connect
 
-from recon4.cli import app as cli
+from recon4.cli.main import app as cli
 from tests.service.running import (
     SLOW,
     open_gate,
@@ -190,9 +190,9 @@ def test_the_state_of_the_server_is_there(server):
 def test_the_packets_of_a_live_capture_are_counted(server):
     """With a capture's messages as its recorder and reader send them."""
     from app.live.capture import Capture
-    from recon4.live.session import Session
+    from recon4.live.session import CaptureSession
 
-    capture = Capture(Session(project=server.root / "walk"))
+    capture = Capture(CaptureSession(project=server.root / "walk"))
     status = {
         "kind": "status", "t_ns": 1, "kernel_drops": 3, "skipped_in_pauses": 4,
         "file": {"dropped": 5, "datagrams": 600},

@@ -5,8 +5,8 @@ import socket
 import httpx
 import pytest
 
-from app.listen import listening
 from app.main import serve
+from app.network.listen import listening
 from app.settings import ServerSettings
 from recon4.errors import StoreError
 from tests.project_builder import build_project
@@ -31,7 +31,7 @@ def test_the_list_shows_every_project_also_a_damaged_one(server):
 
     assert found.keys() == {"office", "half", "broken"}
     assert found["office"]["finished"] and not found["half"]["finished"]
-    assert found["office"]["way_m"] == 58.2 and found["half"]["way_m"] is None
+    assert found["office"]["path_length_m"] == 58.2 and found["half"]["path_length_m"] is None
     assert found["office"]["pictured"] and not found["half"]["pictured"]
 
 
@@ -117,7 +117,7 @@ def test_the_api_description_says_who_may_call_what_and_how_refusals_look(server
     assert "HTTPValidationError" not in str(described)
     records = described["components"]["schemas"]
     assert records["NewJob"]["properties"]["imu"]["description"].startswith("CSV file")
-    assert records["Project"]["properties"]["finished"]["description"] == (
+    assert records["ProjectView"]["properties"]["finished"]["description"] == (
         "Whether a run came to its end."
     )
     assert server.get("/openapi.json").json() == described

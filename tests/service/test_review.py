@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 from app.review.store import Reviews
-from recon4.cli import main
+from recon4.cli.main import main
 from recon4.pipeline import remake
 from recon4.pose_graph.g2o import read_g2o
-from recon4.recording.poses import read_tum
+from recon4.recording.formats.poses import read_tum
 from recon4.results import RESULTS
-from recon4.review.decisions import Decision, Kind, fold
+from recon4.review.decisions import Decision, DecisionKind, fold
 from recon4.review.journal import NAME, append, read_rows
 from recon4.review.source import Source
 from recon4.store.hashing import hash_file
@@ -241,7 +241,7 @@ def test_the_latest_look_wins():
             return {"key": decided.key}
 
     def decided(*frames):
-        return fold(Decision(kind=Kind.REJECT, who="Eva", pair=(1, f)) for f in frames)
+        return fold(Decision(kind=DecisionKind.REJECT, who="Eva", pair=(1, f)) for f in frames)
 
     async def three_at_once():
         pool = SlowPool()
@@ -377,7 +377,7 @@ def test_an_approval_is_not_given_while_a_job_waits(server, root):
 
 
 def test_conflicts_are_confirmed_with_a_reason_or_not_at_all(root, server):
-    append(root, Decision(kind=Kind.ACCEPT, who="Eva", pair=(20, 90)))
+    append(root, Decision(kind=DecisionKind.ACCEPT, who="Eva", pair=(20, 90)))
     make(root)
 
     refused = approve(server)

@@ -168,8 +168,8 @@ def test_a_reference_is_added_compared_aligned_and_removed(server):
 
     assert added["points"] == len(lines) and added["name"] == "Walls"
     assert table["point_weighted"]["mean_m"] == pytest.approx(0.034, abs=0.006)
-    assert table["point_weighted"]["share_2cm"] < 0.1
-    assert table["point_weighted"]["share_5cm"] > 0.7
+    assert table["point_weighted"]["ratio_within_2cm"] < 0.1
+    assert table["point_weighted"]["ratio_within_5cm"] > 0.7
     assert seen.json()["low"] == 0.0 and seen.json()["high"] == 0.1
     assert csv.text.startswith("slice,points,outliers,mean_cm") and "weighted" in csv.text
     assert moved["T_map_reference"][0][3] == pytest.approx(-1.0)

@@ -16,11 +16,12 @@ from websockets.exceptions import ConnectionClosed
 
 from app.jobs.events import EventWriter
 from app.viewer import proxy
-from app.viewer.legend_html import count
+from app.viewer.client.legend_html import count
 from app.viewer.page import SHIMS
 from app.viewer.proxy import Rate, allowed, passes
 from recon4.model.pose_graph import Reason
 from tests.benchmarks.viewer_figures import PEOPLE, own_server
+from tests.processes import command_of
 from tests.project_builder import add_multiframes, build_project, loop_walk, verified_graph
 from tests.service.running import server_thread
 from tests.service.viser_client import camera, viewing
@@ -420,7 +421,8 @@ def viewer_process(root):
     mine = [
         process
         for process in psutil.Process().children(recursive=True)
-        if "app.viewer.process" in process.cmdline() and str(root / "office") in process.cmdline()
+        if "app.viewer.process" in command_of(process)
+        and str(root / "office") in command_of(process)
     ]
     assert len(mine) == 1
     return mine[0]

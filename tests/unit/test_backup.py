@@ -8,7 +8,7 @@ import threading
 import pytest
 
 from recon4.backup import back_up, newest, read_list, restore
-from recon4.cli import main
+from recon4.cli.main import main
 from recon4.errors import ConfigError, StoreError
 from recon4.progress import Silent
 from recon4.store.hashing import files_below, hash_file, hash_json

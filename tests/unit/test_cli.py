@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import recon4
-from recon4.cli import main
+from recon4.cli.main import main
 from recon4.doctor import examine
 from recon4.settings import preset, to_json
 from tests.unit.store.small_pipeline import run_all
@@ -156,13 +156,13 @@ def test_the_doctor_says_what_to_do_about_what_is_missing(tmp_path, monkeypatch)
 
 # A background job of a shell ignores Ctrl-C, and so would this one if the tests are such a job.
 STUCK = """
-import signal, sys, recon4.cli, recon4.store.audit
+import signal, sys, recon4.cli.main, recon4.store.audit
 signal.signal(signal.SIGINT, signal.default_int_handler)
 def wait(*a, **k):
     print("running", flush=True)
     sys.stdin.readline()
 recon4.store.audit.audit = wait
-sys.exit(recon4.cli.main(["verify", "."]))
+sys.exit(recon4.cli.main.main(["verify", "."]))
 """
 
 

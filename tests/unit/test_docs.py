@@ -8,7 +8,7 @@ import pytest
 from rich.text import Text
 from typer.main import get_command
 
-from recon4.cli import app
+from recon4.cli.main import app
 from recon4.model.rig import parse_rig
 
 ROOT = Path(__file__).parents[2]

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { bytes, count, overallWords, progressWords, seconds, stateOf } from "../../web/format.js";
+import { bytes, count, overallWords, progressWords, seconds, stateOf } from "../../web/shared/format.js";
 
 const NARROW = "\u202f";
 

@@ -11,7 +11,7 @@ import {
   times,
   transposed,
   turn,
-} from "../../web/review_math.js";
+} from "../../web/review/math.js";
 
 const HALF = Math.SQRT1_2;
 const QUARTER_TURN = [0, 0, HALF, HALF]; // 90 degrees about z

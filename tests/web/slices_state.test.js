@@ -11,7 +11,7 @@ import {
   normalOf,
   parse,
   roundStep,
-} from "../../web/slices_state.js";
+} from "../../web/slices/state.js";
 
 test("an empty address is the usual horizontal cut", () => {
   const state = parse("");

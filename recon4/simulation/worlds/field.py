@@ -10,9 +10,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
+from recon4.geometry.mesh import MeshBuilder
 from recon4.geometry.se3 import Array
-from recon4.simulation.mesh import MeshBuilder
-from recon4.simulation.world import Marker, Waypoint, World
+from recon4.simulation.world import Waypoint, World, WorldMarker
 from recon4.simulation.worlds.outdoors import (
     CONCRETE,
     GRASS,
@@ -164,7 +164,7 @@ def _distance(p: Array, a: Array, b: Array) -> float:
     return float(np.linalg.norm(p - a - along * (b - a)))
 
 
-def _markers(builder: MeshBuilder) -> tuple[Marker, ...]:
+def _markers(builder: MeshBuilder) -> tuple[WorldMarker, ...]:
     """Plates of half a meter, 1.6 m inside of the path's corners."""
     markers = []
     for k in range(CORNERS):
@@ -183,8 +183,8 @@ def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:
     start = Waypoint(*_corner(0))
     way = [start]
     if stops <= _SHORT_STOPS:
-        share = stops / (_SHORT_STOPS + 1)
-        x, y = _corner(0) + share * (_corner(int(rng.choice([1, -1]))) - _corner(0))
+        fraction = stops / (_SHORT_STOPS + 1)
+        x, y = _corner(0) + fraction * (_corner(int(rng.choice([1, -1]))) - _corner(0))
         way.append(Waypoint(x, y, stop=True, look_deg=90.0))
     for k in order:
         x, y = _corner(k) + rng.uniform(-0.6, 0.6, 2)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from recon4.simulation.mesh import MeshBuilder
+from recon4.geometry.mesh import MeshBuilder
 from recon4.simulation.worlds.walls import DARK, LAMP, PAPER, STEEL, WOOD
 
 Box = tuple[float, float, float, float]

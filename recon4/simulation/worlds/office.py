@@ -15,8 +15,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from recon4.simulation.mesh import MeshBuilder
-from recon4.simulation.world import Marker, Waypoint, World
+from recon4.geometry.mesh import MeshBuilder
+from recon4.simulation.world import Waypoint, World, WorldMarker
 from recon4.simulation.worlds.furniture import corridor_things, furnish, lamp
 from recon4.simulation.worlds.walls import (
     CEILING,
@@ -93,14 +93,14 @@ def _shell(builder: MeshBuilder) -> None:
         lamp(builder, x, CORRIDOR_M / 2, ceiling_m=CORRIDOR_HEIGHT_M, size=(1.2, 0.15))
 
 
-def _markers(builder: MeshBuilder) -> tuple[Marker, ...]:
+def _markers(builder: MeshBuilder) -> tuple[WorldMarker, ...]:
     """Retro-reflective squares on walls of the corridor and rooms."""
     places = [(4.8, 0.002, 1.4), (13.2, CORRIDOR_M - 0.002, 1.5), (22.9, 0.002, 1.6)]
     for x, y, z in places:
         builder.box([x - 0.1, y - 0.002, z - 0.1], [x + 0.1, y + 0.002, z + 0.1], 2.2)
     for x in (2.9, 8.1, 13.3, 18.5, 23.7):
         builder.box([x, -0.002, 1.5], [x + 0.3, 0.002, 1.7], PAPER)
-    return tuple(Marker(f"M{k + 1}", *place) for k, place in enumerate(places))
+    return tuple(WorldMarker(f"M{k + 1}", *place) for k, place in enumerate(places))
 
 
 def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:

@@ -8,9 +8,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
+from recon4.geometry.mesh import MeshBuilder
 from recon4.geometry.se3 import Array
-from recon4.simulation.mesh import MeshBuilder
-from recon4.simulation.world import Marker, Waypoint
+from recon4.simulation.world import Waypoint, WorldMarker
 from recon4.simulation.worlds.walls import DARK, STEEL, WOOD
 
 Ground = Callable[[ArrayLike, ArrayLike], Array]
@@ -96,21 +96,21 @@ def wire(
 ) -> None:
     """A hanging wire: a parabola of 16 pieces."""
     a, b = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
-    share = np.linspace(0.0, 1.0, 17)[:, None]
-    points = a + share * (b - a)
-    points[:, 2:] -= 4.0 * sag_m * share * (1.0 - share)
+    fraction = np.linspace(0.0, 1.0, 17)[:, None]
+    points = a + fraction * (b - a)
+    points[:, 2:] -= 4.0 * sag_m * fraction * (1.0 - fraction)
     for p, q in pairwise(points):
         builder.tube(p, q, radius_m, STEEL, sides=5)
 
 
 def ground_marker(
     builder: MeshBuilder, name: str, place: tuple[float, float], *, ground: Ground, size_m: float
-) -> Marker:
+) -> WorldMarker:
     """A level plate with retro-reflective paint; the marker is the middle of its top."""
     x, y = place
     top = float(ground(x, y)) + 0.04
     builder.block([x, y, top - 0.15], [size_m, size_m, 0.15], RETRO)
-    return Marker(name, x, y, top)
+    return WorldMarker(name, x, y, top)
 
 
 def follow(
@@ -123,11 +123,11 @@ def follow(
         length = float(np.linalg.norm(b - a))
         side = np.array([a[1] - b[1], b[0] - a[0]]) / max(length, 1e-9)
         legs = max(1, round(length / _LEG_M))
-        share = np.arange(1, legs) / legs
+        fraction = np.arange(1, legs) / legs
         # Three waves with random phases, nothing at the ends of the leg.
-        waves = np.arange(1, 4)[:, None] * np.pi * share
+        waves = np.arange(1, 4)[:, None] * np.pi * fraction
         offsets = stray_m * rng.uniform(-1.0, 1.0, 3) @ np.sin(waves)
-        for s, offset in zip(share, offsets, strict=True):
+        for s, offset in zip(fraction, offsets, strict=True):
             x, y = a + s * (b - a) + offset * side
             way.append(_grounded(Waypoint(x, y, pace=end.pace), ground))
         way.append(_grounded(end, ground))

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from recon4.simulation.mesh import MeshBuilder
+from recon4.geometry.mesh import MeshBuilder
 from recon4.simulation.world import Waypoint, World
 from recon4.simulation.worlds.furniture import chair, desk, lamp, radiator, shelf
 from recon4.simulation.worlds.walls import (
@@ -116,9 +116,9 @@ def _rail(builder: MeshBuilder, start: list[float], end: list[float]) -> None:
     a, b = np.array(start), np.array(end)
     up = np.array([0.0, 0.0, 0.9])
     builder.tube(a + up, b + up, 0.025, WOOD)
-    for share in np.linspace(0.0, 1.0, 10):
-        foot = a + share * (b - a)
-        builder.tube(foot, foot + up, 0.03 if share in {0.0, 1.0} else 0.009, STEEL, sides=4)
+    for fraction in np.linspace(0.0, 1.0, 10):
+        foot = a + fraction * (b - a)
+        builder.tube(foot, foot + up, 0.03 if fraction in {0.0, 1.0} else 0.009, STEEL, sides=4)
 
 
 def _top_rail(builder: MeshBuilder) -> None:

@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from recon4.geometry.mesh import MeshBuilder
 from recon4.geometry.se3 import Array
-from recon4.simulation.mesh import MeshBuilder
-from recon4.simulation.world import Marker, Waypoint, World
+from recon4.simulation.world import Waypoint, World, WorldMarker
 from recon4.simulation.worlds.outdoors import (
     ASPHALT,
     CONCRETE,
@@ -234,9 +234,9 @@ def _furnish_side(builder: MeshBuilder, side: int, rng: np.random.Generator) -> 
         sign(builder, x, y, ground=height, along=outward if along < 10 else forward)
 
 
-def _markers(builder: MeshBuilder) -> tuple[Marker, ...]:
+def _markers(builder: MeshBuilder) -> tuple[WorldMarker, ...]:
     places = [
-        _place(side, share * _length(side), 0.55) for side in range(4) for share in (0.3, 0.8)
+        _place(side, fraction * _length(side), 0.55) for side in range(4) for fraction in (0.3, 0.8)
     ]
     return tuple(
         ground_marker(builder, f"M{k + 1}", place, ground=height, size_m=0.3)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from recon4.simulation.mesh import MeshBuilder
+from recon4.geometry.mesh import MeshBuilder
 
 WALL_M = 0.12
 DOOR_M = 0.95

@@ -13,19 +13,19 @@ import numpy as np
 
 from recon4.errors import Recon4Error
 from recon4.evaluation.markers import read_markers
-from recon4.evaluation.mesh import read_mesh
+from recon4.evaluation.reference_mesh import read_mesh
 from recon4.evaluation.trajectories import find_trajectory
 from recon4.mapping.tiles import TileSet
 from recon4.model.rig import load_rig
 from recon4.pose_graph.files import load_graph
 from recon4.pose_graph.g2o import read_g2o
-from recon4.recording.csv_samples import read_gnss_csv, read_imu_csv
 from recon4.recording.folders import list_frames, read_frames
+from recon4.recording.formats.poses import read_kitti, read_tum
+from recon4.recording.formats.reference_clouds import read_points
 from recon4.recording.info import describe
-from recon4.recording.poses import read_kitti, read_tum
 from recon4.recording.report import ImportReport
+from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
 from recon4.settings import IngestSettings
-from recon4.slices.clouds import read_points
 from recon4.slices.control import read_control
 from recon4.slices.meshes import is_mesh, load_mesh
 from recon4.slices.reference import load_reference, read_facts

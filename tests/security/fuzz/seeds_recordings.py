@@ -16,11 +16,11 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.recording.assemble import Assembler
+from recon4.recording.assembly.assembler import Assembler
+from recon4.recording.assembly.shots import Shots
 from recon4.recording.info import describe
 from recon4.recording.open import open_recording
 from recon4.recording.report import ImportReport
-from recon4.recording.shots import Shots
 from recon4.settings import IngestSettings
 from tests.builders import Bag, room_packets, storage_file, write_room_pcap
 

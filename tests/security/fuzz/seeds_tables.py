@@ -18,8 +18,8 @@ from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import save_graph
 from recon4.pose_graph.g2o import write_g2o
-from recon4.recording.csv_samples import GNSS_HEADER, IMU_HEADER
-from recon4.recording.poses import write_kitti, write_tum
+from recon4.recording.formats.poses import write_kitti, write_tum
+from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
 from recon4.slices.imports import write_tiles
 from recon4.store.arrays import save_trajectory
 from recon4.store.frames import FrameWriter

@@ -8,25 +8,25 @@ from dataclasses import asdict
 import pytest
 
 from app.access.audit import link
-from app.access.certificate import made_certificate, own_certificate
-from app.access.door import Caller, Door, open_access
-from app.access.hosts import own_names
+from app.access.login.login_backoff import LoginBackoff, TokenBuckets, network
+from app.access.login.login_service import LoginOrigin, LoginService, open_access
+from app.access.login.sessions import LIVES, form_token
 from app.access.people import LOCAL, Role
-from app.access.sessions import LIVES, form_token
-from app.access.throttle import Buckets, Waits, network
 from app.errors import Conflict, NotFound, Refused, TooMany, WeakPassword, WrongPassword
+from app.network.certificate import made_certificate, own_certificate
+from app.network.hosts import own_names
 from recon4.errors import ConfigError
 
 PASSWORD = "three green owls dance"
-HERE = Caller(address="192.0.2.1", agent="Firefox", browser="")
+HERE = LoginOrigin(address="192.0.2.1", agent="Firefox", browser="")
 
 
 @pytest.fixture
 def access(tmp_path, clock, monkeypatch):
     # One round of little memory: what is tested here is not how dear a hash is.
-    monkeypatch.setattr("app.access.passwords.hashed", lambda password: f"hash of {password}")
+    monkeypatch.setattr("app.access.login.passwords.hashed", lambda password: f"hash of {password}")
     monkeypatch.setattr(
-        "app.access.passwords.fits", lambda password, stored: stored == f"hash of {password}"
+        "app.access.login.passwords.fits", lambda password, stored: stored == f"hash of {password}"
     )
     opened = open_access(tmp_path, login=True, clock=clock)
     yield opened
@@ -34,8 +34,8 @@ def access(tmp_path, clock, monkeypatch):
 
 
 @pytest.fixture
-def door(access, clock):
-    return Door(access.accounts, access.sessions, clock=clock)
+def logins(access, clock):
+    return LoginService(access.accounts, access.sessions, clock=clock)
 
 
 # -- sessions
@@ -52,7 +52,7 @@ def test_a_session_ends_when_it_was_idle_too_long_and_not_before(access, clock, 
 
     assert before is not None and before.person.role is role
     assert access.sessions.find(token) is None
-    assert access.sessions.believed(token) is None
+    assert access.sessions.cached_sessions(token) is None
 
 
 @pytest.mark.parametrize("role", LIVES)
@@ -149,23 +149,23 @@ def test_the_last_admin_stays_and_what_failed_changed_nothing(access):
     assert access.sessions.find(token) is not None
 
 
-def test_who_is_disabled_is_out_at_once_and_cannot_come_back(access, door):
+def test_who_is_disabled_is_out_at_once_and_cannot_come_back(access, logins):
     access.accounts.add("Anna", Role.ADMIN, PASSWORD)
     access.accounts.add("Vera", Role.VIEWER, PASSWORD)
-    token = door.enter("Vera", PASSWORD, HERE).session
+    token = logins.enter("Vera", PASSWORD, HERE).session
 
     access.accounts.set_disabled("Vera", True)
 
     assert access.sessions.find(token) is None
     with pytest.raises(WrongPassword):
-        door.enter("Vera", PASSWORD, HERE)
+        logins.enter("Vera", PASSWORD, HERE)
 
 
 # -- throttling
 
 
 def test_waiting_doubles_up_to_a_quarter_of_an_hour(clock):
-    waits = Waits(clock=clock)
+    waits = LoginBackoff(clock=clock)
     free = [waits.begin("anna") for _ in range(5)]
     waited = []
     for _ in range(14):
@@ -180,7 +180,7 @@ def test_waiting_doubles_up_to_a_quarter_of_an_hour(clock):
 
 
 def test_asking_while_one_waits_does_not_make_it_longer(clock):
-    waits = Waits(clock=clock)
+    waits = LoginBackoff(clock=clock)
     for _ in range(5):
         waits.begin("anna")
 
@@ -188,7 +188,7 @@ def test_asking_while_one_waits_does_not_make_it_longer(clock):
 
 
 def test_parallel_tries_are_counted_before_they_are_judged(clock):
-    waits, passed = Waits(clock=clock), []
+    waits, passed = LoginBackoff(clock=clock), []
     threads = [
         threading.Thread(target=lambda: passed.append(waits.begin("anna") == 0.0))
         for _ in range(50)
@@ -202,7 +202,7 @@ def test_parallel_tries_are_counted_before_they_are_judged(clock):
 
 
 def test_a_bucket_refills(clock):
-    buckets = Buckets(burst=3, per_s=0.5, clock=clock)
+    buckets = TokenBuckets(burst=3, per_s=0.5, clock=clock)
     taken = [buckets.take("a") for _ in range(4)]
     clock.now_s += 2.0
 
@@ -211,41 +211,41 @@ def test_a_bucket_refills(clock):
 
 
 def test_1000_guesses_get_few_tries_and_the_owner_behind_the_same_address_still_gets_in(
-    access, door, clock
+    access, logins, clock
 ):
     access.accounts.add("Anna", Role.ADMIN, PASSWORD)
-    known = door.enter("Anna", PASSWORD, HERE).browser
+    known = logins.enter("Anna", PASSWORD, HERE).browser
     outcomes = []
     for _ in range(1000):
         clock.now_s += 1.0
         with pytest.raises((WrongPassword, TooMany)) as refused:
-            door.enter("Anna", "wrong", HERE)
+            logins.enter("Anna", "wrong", HERE)
         outcomes.append(refused.type)
 
     assert outcomes.count(WrongPassword) < 20
-    owner = Caller(address=HERE.address, agent="", browser=known)
-    assert door.enter("Anna", PASSWORD, owner).account.name == "Anna"
+    owner = LoginOrigin(address=HERE.address, agent="", browser=known)
+    assert logins.enter("Anna", PASSWORD, owner).account.name == "Anna"
     clock.now_s += 900.0  # no ban is for ever
-    assert door.enter("Anna", PASSWORD, HERE).account.name == "Anna"
+    assert logins.enter("Anna", PASSWORD, HERE).account.name == "Anna"
 
 
-def test_many_names_from_one_address_are_throttled_together(access, door, clock):
+def test_many_names_from_one_address_are_throttled_together(access, logins, clock):
     outcomes = []
     for k in range(300):
         with pytest.raises((WrongPassword, TooMany)) as refused:
-            door.enter(f"person {k}", "wrong", HERE)
+            logins.enter(f"person {k}", "wrong", HERE)
         outcomes.append(refused.type)
 
     assert outcomes.count(WrongPassword) == 100
     clock.now_s += 3600.0
     with pytest.raises(WrongPassword):
-        door.enter("somebody", "wrong", HERE)
+        logins.enter("somebody", "wrong", HERE)
 
 
-def test_a_known_browser_is_known_for_its_person_only(access, door):
+def test_a_known_browser_is_known_for_its_person_only(access, logins):
     for name in ("Anna", "Bert"):
         access.accounts.add(name, Role.ADMIN, PASSWORD)
-    annas = door.enter("Anna", PASSWORD, HERE).browser
+    annas = logins.enter("Anna", PASSWORD, HERE).browser
 
     assert access.sessions.knows_browser(annas, "anna")
     assert not access.sessions.knows_browser(annas, "Bert")
@@ -267,13 +267,13 @@ def test_guesses_are_counted_by_household(address, counted_as):
 # -- the first admin
 
 
-def test_the_one_time_token_makes_one_admin_even_when_used_twice_at_once(access, door):
-    token = door.open_setup()
+def test_the_one_time_token_makes_one_admin_even_when_used_twice_at_once(access, logins):
+    token = logins.open_setup()
     made = []
 
     def use(name):
         with contextlib.suppress(Refused):
-            made.append(door.set_up(token, name, password=PASSWORD, caller=HERE).account.name)
+            made.append(logins.set_up(token, name, password=PASSWORD, caller=HERE).account.name)
 
     threads = [threading.Thread(target=use, args=(name,)) for name in ("Anna", "Bert", "Carl")]
     for thread in threads:
@@ -285,18 +285,18 @@ def test_the_one_time_token_makes_one_admin_even_when_used_twice_at_once(access,
     assert len(access.accounts.all()) == 1
 
 
-def test_without_a_setup_opened_no_token_is_right(access, door):
+def test_without_a_setup_opened_no_token_is_right(access, logins):
     for token in ("", "x", "0" * 43):
         with pytest.raises(Refused):
-            door.set_up(token, "Anna", password=PASSWORD, caller=HERE)
+            logins.set_up(token, "Anna", password=PASSWORD, caller=HERE)
 
 
-def test_a_weak_password_does_not_use_up_the_token(access, door):
-    token = door.open_setup()
+def test_a_weak_password_does_not_use_up_the_token(access, logins):
+    token = logins.open_setup()
     with pytest.raises(WeakPassword):
-        door.set_up(token, "Anna", password="password1234", caller=HERE)
+        logins.set_up(token, "Anna", password="password1234", caller=HERE)
 
-    assert door.set_up(token, "Anna", password=PASSWORD, caller=HERE).account.role is Role.ADMIN
+    assert logins.set_up(token, "Anna", password=PASSWORD, caller=HERE).account.role is Role.ADMIN
 
 
 # -- the audit log

@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.access import passwords
+from app.access.login import passwords
 from app.errors import WeakPassword
 
 

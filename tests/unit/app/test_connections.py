@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.access.connections import (
+from app.network.connections import (
     Connection,
     ConnectionLimits,
     ConnectionTable,

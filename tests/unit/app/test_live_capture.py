@@ -4,14 +4,14 @@ import asyncio
 import json
 
 from app.live.capture import Capture, unfinished
-from recon4.live.session import Session
+from recon4.live.session import CaptureSession
 
 POSE = {"kind": "pose", "t_ns": 1, "p": [0.0, 0.0, 0.0], "lost": False}
 DONE = {"kind": "done", "frames": 3, "problem": ""}
 
 
 def test_a_server_the_mapper_let_go_comes_back_to_it_and_starts_no_second_one(tmp_path):
-    session = Session(project=tmp_path / "walk")
+    session = CaptureSession(project=tmp_path / "walk")
     said = iter([[POSE], [POSE], [POSE, DONE]])
     session.folder.mkdir(parents=True)
     session.outcome.write_text('{"why": "stopped"}')
@@ -38,7 +38,10 @@ def test_a_server_the_mapper_let_go_comes_back_to_it_and_starts_no_second_one(tm
 
 
 def test_a_capture_whose_recorder_never_ran_is_not_taken_up(tmp_path):
-    begun, never = Session(project=tmp_path / "begun"), Session(project=tmp_path / "never")
+    begun, never = (
+        CaptureSession(project=tmp_path / "begun"),
+        CaptureSession(project=tmp_path / "never"),
+    )
     for session in (begun, never):
         session.save()
     begun.capture.parent.mkdir()

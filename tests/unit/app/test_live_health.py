@@ -7,11 +7,11 @@ from app.live.health import lidars
 from app.live.power import Battery, Power, battery_words, read_battery
 from app.live.rigs import rig_files, rigs_in, shipped_rigs
 from app.live.store import marks_of
-from recon4.live.notes import Notes
-from recon4.live.session import Session
+from recon4.live.mapper.notes import Notes
+from recon4.live.session import CaptureSession
 from recon4.model.rig import format_rig, load_rig
 from recon4.recording.report import ImportReport
-from recon4.recording.sensor_clock import SensorClock
+from recon4.recording.velodyne.sensor_clock import SensorClock
 
 RIG = load_rig("4recon")
 SECOND_NS = 1_000_000_000
@@ -83,24 +83,24 @@ def test_two_batteries_are_one_and_a_mouse_is_none(supplies):
 
     battery = read_battery(folder)
 
-    assert battery == Battery(share=0.5, left_s=3600.0 * 30 / 20, mains=False)
+    assert battery == Battery(match_ratio=0.5, left_s=3600.0 * 30 / 20, mains=False)
 
 
 def test_a_battery_that_tells_its_share_only_and_one_on_mains(supplies):
     folder, put = supplies
     put("BAT0", type="Battery", status="Charging", capacity=4)
 
-    assert read_battery(folder) == Battery(share=0.04, left_s=None, mains=True)
+    assert read_battery(folder) == Battery(match_ratio=0.04, left_s=None, mains=True)
     assert battery_words(read_battery(folder)) == []
     assert read_battery(folder / "nothing") is None
 
 
 @pytest.mark.parametrize(
-    ("share", "left_s", "level"),
+    ("match_ratio", "left_s", "level"),
     [(0.5, 3000.0, None), (0.12, None, "care"), (0.5, 600.0, "care"), (0.05, 2000.0, "bad")],
 )
-def test_a_battery_that_ends_is_said_in_words(share, left_s, level):
-    said = battery_words(Battery(share, left_s, mains=False))
+def test_a_battery_that_ends_is_said_in_words(match_ratio, left_s, level):
+    said = battery_words(Battery(match_ratio, left_s, mains=False))
 
     assert [word.level for word in said] == ([level] if level else [])
 
@@ -131,7 +131,7 @@ def test_own_rig_files_come_first_and_a_broken_one_says_why(tmp_path):
 
 
 def test_marks_are_read_up_to_the_line_that_was_being_written(tmp_path):
-    session = Session(project=tmp_path)
+    session = CaptureSession(project=tmp_path)
     assert marks_of(session) == []
     session.marks.parent.mkdir()
     session.marks.write_text('{"t_ns": 1, "what": "point"}\n{"t_ns": 2, "wh')

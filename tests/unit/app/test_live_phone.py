@@ -13,7 +13,7 @@ from app.live import phone as phones
 from app.live.capture import Capture
 from app.live.phone import Phone
 from app.live.store import Captures
-from recon4.live.session import Session
+from recon4.live.session import CaptureSession
 from recon4.model.rig import load_rig
 
 POINTS = 400_000
@@ -53,7 +53,10 @@ class Ear:
 @pytest.fixture
 def captures(tmp_path):
     known = Captures(tmp_path)
-    known._capture, known._rig = Capture(Session(project=tmp_path / "walk")), load_rig("4recon")
+    known._capture, known._rig = (
+        Capture(CaptureSession(project=tmp_path / "walk")),
+        load_rig("4recon"),
+    )
     return known
 
 

@@ -4,7 +4,7 @@ import base64
 
 import numpy as np
 
-from app.live.picture import Cursor, Picture
+from app.live.stream_state import Cursor, StreamState
 
 SECOND_NS = 1_000_000_000
 
@@ -33,7 +33,7 @@ def marks_of(picture):
 
 
 def test_a_phone_that_comes_back_gets_only_what_it_lacks():
-    picture = Picture()
+    picture = StreamState()
     picture.take(points(0, 1000))
     cursor = Cursor(generation=0, points=1000)
 
@@ -46,7 +46,7 @@ def test_a_phone_that_comes_back_gets_only_what_it_lacks():
 
 
 def test_a_phone_with_points_of_larger_number_or_other_generation_begins_anew():
-    picture = Picture()
+    picture = StreamState()
     picture.take(points(0, 50, generation=1))
 
     for cursor in (Cursor(generation=0, points=1000), Cursor(generation=1, points=51)):
@@ -54,7 +54,7 @@ def test_a_phone_with_points_of_larger_number_or_other_generation_begins_anew():
 
 
 def test_a_mark_lies_where_one_was_although_the_mapping_is_late():
-    picture = Picture()
+    picture = StreamState()
     picture.take(pose(1.0, 10.0))
     picture.take(mark(3.0, "crack"))
     assert marks_of(picture) == []
@@ -67,7 +67,7 @@ def test_a_mark_lies_where_one_was_although_the_mapping_is_late():
 
 
 def test_a_mark_appears_without_mapping_too_and_a_name_at_once():
-    picture = Picture()
+    picture = StreamState()
     picture.take(mark(3.0, "town hall", what="place"))
     assert [one["text"] for one in marks_of(picture)] == ["town hall"]
     picture.take(mark(3.0, "crack"))
@@ -80,7 +80,7 @@ def test_a_mark_appears_without_mapping_too_and_a_name_at_once():
 
 
 def test_an_hour_of_standing_is_one_place_of_the_way():
-    picture = Picture()
+    picture = StreamState()
     for k in range(1000):
         picture.take(pose(k * 0.1, 0.001 * (k % 2)))
     picture.take(pose(101.0, 5.0))
@@ -89,7 +89,7 @@ def test_an_hour_of_standing_is_one_place_of_the_way():
 
 
 def test_a_mark_lies_where_one_was_when_it_was_touched_not_where_its_note_was_finished():
-    picture = Picture()
+    picture = StreamState()
     for second in range(1, 9):
         picture.take(pose(second, 10.0 * second))
 
@@ -100,7 +100,7 @@ def test_a_mark_lies_where_one_was_when_it_was_touched_not_where_its_note_was_fi
 
 
 def test_marks_of_an_earlier_server_are_not_told_twice_and_later_ones_come():
-    picture = Picture()
+    picture = StreamState()
     picture.recall([mark(1.0, "town hall", what="place"), mark(2.0, "crack")])
     there, new = Cursor(marks=2), Cursor()
     picture.take(pose(3.0, 1.0))
@@ -116,7 +116,7 @@ def test_marks_of_an_earlier_server_are_not_told_twice_and_later_ones_come():
 
 
 def test_a_phone_that_knows_of_more_marks_than_there_are_gets_all():
-    picture = Picture()
+    picture = StreamState()
     picture.recall([mark(1.0, "crack")])
 
     assert picture.lacking(Cursor(marks=3))[0]["marks"]["start"] == 0

@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.live.words import rates, words
+from recon4.live.findings import rates, words
 from recon4.model.rig import load_rig, parse_rig
 
 RIG = load_rig("4recon")
@@ -49,8 +49,8 @@ def said(told=None, *, rig=RIG, problem="", **newest):
     return [(word.level, word.text) for word in found]
 
 
-POSE = {"frame_id": 9, "lost": False, "turn_rad_s": 0.5, "age_s": 0.2, "share": 0.9,
-        "error_m": 0.02, "gap_m": 0.01, "degeneracy": 0.1, "remark": "", "thinned": 0,
+POSE = {"frame_id": 9, "lost": False, "turn_rad_s": 0.5, "age_s": 0.2, "match_ratio": 0.9,
+        "error_m": 0.02, "prediction_offset_m": 0.01, "degeneracy": 0.1, "remark": "", "thinned": 0,
         "lately": {"frames": 100, "thinned": 0}}  # fmt: skip
 
 
@@ -172,8 +172,12 @@ def test_the_recorder_is_heard(told, level, text):
     [
         ({"lost": True}, "bad", "Tracking lost: stop, then go back a few steps"),
         ({"turn_rad_s": 3.5}, "care", "Turn slower"),
-        ({"share": 0.3}, "care", "Tracking is unsure: walk slower, look at more walls"),
-        ({"gap_m": 0.4}, "care", "Tracking is unsure: walk slower, look at more walls"),
+        ({"match_ratio": 0.3}, "care", "Tracking is unsure: walk slower, look at more walls"),
+        (
+            {"prediction_offset_m": 0.4},
+            "care",
+            "Tracking is unsure: walk slower, look at more walls",
+        ),
         ({"degeneracy": 1e-4}, "care", "Tracking is unsure: walk slower, look at more walls"),
         ({"error_m": 0.2}, "care", "Tracking is unsure: walk slower, look at more walls"),
         ({"remark": "the IMU lies"}, "care", "The IMU lies"),

@@ -2,12 +2,12 @@
 
 import pytest
 
-from app.jobs.endings import ending
-from app.jobs.overall import Overall, after, share
+from app.jobs.exit_reasons import ending
+from app.jobs.run_progress import RunProgress, after, stage_weight
 
 
 def fold(*events):
-    overall = Overall()
+    overall = RunProgress()
     for event in events:
         overall = after(overall, event)
     return overall
@@ -32,12 +32,12 @@ def test_a_run_that_has_half_of_its_first_stage_is_half_of_its_share_further():
         piece("frames", 50, 104.0),
     )
 
-    assert overall.fraction == pytest.approx(share("hash") + 0.49 * share("frames"))
+    assert overall.fraction == pytest.approx(stage_weight("hash") + 0.49 * stage_weight("frames"))
 
 
 def test_the_time_left_follows_from_what_was_really_worked():
     """Half of the run was found finished: a tenth in 10 s leaves four tenths for 40 s."""
-    overall = Overall(began_s=0.0, now_s=10.0, past=0.6, reused=0.5)
+    overall = RunProgress(began_s=0.0, now_s=10.0, past=0.6, reused=0.5)
 
     assert overall.eta_s == pytest.approx(40.0)
 
@@ -58,11 +58,11 @@ def test_the_fraction_never_falls_and_ends_at_one():
 
     assert fractions == sorted(fractions)
     assert fractions[-1] < 1.0
-    assert Overall(over=True).fraction == 1.0
+    assert RunProgress(over=True).fraction == 1.0
 
 
 def test_another_worker_begins_anew():
-    assert fold(RUN, stage("map", "running", 101.0), {"kind": "run", "t": 200.0}) == Overall(
+    assert fold(RUN, stage("map", "running", 101.0), {"kind": "run", "t": 200.0}) == RunProgress(
         began_s=200.0, now_s=200.0
     )
 

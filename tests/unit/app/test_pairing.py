@@ -5,7 +5,7 @@ import threading
 
 import pytest
 
-from app.access.pairing import (
+from app.access.pairing.grants import (
     INVITATION_S,
     MOST_OPEN,
     MOST_OPEN_A_NETWORK,
@@ -30,9 +30,9 @@ def pairings(clock):
 def test_an_invitation_lets_one_phone_in_once(pairings):
     token = pairings.invite(OTTO, Role.OPERATOR)
 
-    leave = pairings.redeem(token, "192.0.2.1")
+    grant = pairings.redeem(token, "192.0.2.1")
 
-    assert (leave.person, leave.role) == ("otto", Role.OPERATOR)
+    assert (grant.person, grant.role) == ("otto", Role.OPERATOR)
     assert len(token) >= 22  # 128 bits, six a letter
     with pytest.raises(Refused, match="used already"):
         pairings.redeem(token, "192.0.2.1")
@@ -91,8 +91,8 @@ def test_a_phone_waits_with_its_digits_until_somebody_types_them(pairings):
     found = pairings.approve(asked.code, OTTO, Role.OPERATOR)
 
     assert (found.name, found.address) == ("Otto's phone", "192.0.2.7")
-    leave = pairings.claim(asked.token)
-    assert leave is not None and (leave.person, leave.role) == ("otto", Role.OPERATOR)
+    grant = pairings.claim(asked.token)
+    assert grant is not None and (grant.person, grant.role) == ("otto", Role.OPERATOR)
     with pytest.raises(Refused):
         pairings.claim(asked.token)
     with pytest.raises(NotFound):

@@ -3,13 +3,19 @@
 import numpy as np
 import pytest
 
-from app.viewer.cloud import Cloud
-from app.viewer.layers import EdgeTable, edge_layer, edge_layers
-from app.viewer.legend import legend
-from app.viewer.legend_html import facts_html, legend_html
-from app.viewer.nodes import LinesNode
-from app.viewer.palette import Range, distinct_colors, paint, table, usual_range
-from app.viewer.scene import (
+from app.viewer.client.captions import (
+    Facts,
+    edge_facts,
+    gnss_facts,
+    measurement_facts,
+    measurements_csv,
+)
+from app.viewer.client.legend import legend
+from app.viewer.client.legend_html import facts_html, legend_html
+from app.viewer.client.view import ViewState
+from app.viewer.cloud.palette import Range, distinct_colors, paint, table, usual_range
+from app.viewer.cloud.parts import Cloud
+from app.viewer.scene.build import (
     Content,
     GnssMarks,
     bounds,
@@ -17,9 +23,9 @@ from app.viewer.scene import (
     grid_cell_m,
     measured_words,
 )
-from app.viewer.source import ProjectSource
-from app.viewer.view import View
-from app.viewer.words import Facts, edge_facts, gnss_facts, measurement_facts, measurements_csv
+from app.viewer.scene.layers import EdgeTable, edge_layer, edge_layers
+from app.viewer.scene.nodes import LinesNode
+from app.viewer.scene.source import ProjectSource
 from recon4.mapping.tile import FIELDS
 from recon4.mapping.tiles import TileWriter
 from recon4.model.pose_graph import Verdict
@@ -46,7 +52,7 @@ def cloud_of(folder, p_tile, ijk=(0, 0, 0), tile_m=10.0):
 
 
 def all_on(content, **changes):
-    return View(chosen={layer.key: True for layer in content.layers}, **changes)
+    return ViewState(chosen={layer.key: True for layer in content.layers}, **changes)
 
 
 def test_far_from_the_origin_points_keep_their_millimetres(tmp_path):
@@ -111,15 +117,15 @@ def test_edges_by_error_are_grey_where_no_error_is_known(content):
 
 def test_a_walk_that_grows_changes_its_last_piece_only(content):
     whole = content.trajectory
-    before = {n.path: n for n in describe(Content(trajectory=whole[:590]), View())}
-    after = {n.path: n for n in describe(Content(trajectory=whole), View())}
+    before = {n.path: n for n in describe(Content(trajectory=whole[:590]), ViewState())}
+    after = {n.path: n for n in describe(Content(trajectory=whole), ViewState())}
 
     np.testing.assert_array_equal(before["/trajectory/0"].segments, after["/trajectory/0"].segments)
     assert len(before["/trajectory/1"].segments) < len(after["/trajectory/1"].segments)
 
 
 def test_a_layer_that_is_off_is_invisible_but_there(content):
-    off = View(chosen={layer.key: False for layer in content.layers})
+    off = ViewState(chosen={layer.key: False for layer in content.layers})
 
     shown = {node.path: node.visible for node in describe(content, off)}
 
@@ -137,7 +143,7 @@ def test_positions_of_a_receiver_are_edges_sorted_into_used_and_rejected():
     marks = three_positions()
 
     content = Content(gnss=marks, crs="EPSG:5514")
-    nodes = {node.path: node for node in describe(content, View())}
+    nodes = {node.path: node for node in describe(content, ViewState())}
 
     used, rejected = nodes["/gnss/used"], nodes["/gnss/rejected"]
     assert len(used.segments) == 2 * (3 + 1) and len(rejected.segments) == 3 + 1
@@ -160,14 +166,14 @@ def test_a_position_picked_says_how_far_off_the_walk_it_is():
 
 
 def test_without_a_place_on_earth_there_is_no_north(content):
-    assert not any("north" in node.path for node in describe(content, View()))
+    assert not any("north" in node.path for node in describe(content, ViewState()))
 
 
 def test_nothing_finished_yet_is_an_empty_room_with_a_grid():
-    nodes = [node.path for node in describe(Content(), View()) if node.visible]
+    nodes = [node.path for node in describe(Content(), ViewState()) if node.visible]
 
     assert nodes == ["/grid"]
-    assert legend(Content(), View()).color_by is None
+    assert legend(Content(), ViewState()).color_by is None
 
 
 def test_what_was_seen_far_away_does_not_move_the_camera(tmp_path):
@@ -201,7 +207,7 @@ def test_multiframes_that_follow_each_other_differ_in_color():
 def test_the_legend_and_the_facts_escape_what_people_named(tmp_path, content):
     content = Content(cloud=cloud_of(tmp_path / "map", np.zeros((9, 3))), sensors=content.sensors)
 
-    text = legend_html(legend(content, View(color_by="sensor")))
+    text = legend_html(legend(content, ViewState(color_by="sensor")))
     text += facts_html([Facts("<i>", (("<u>", "<s>"),), ("<q>", '/"><script>'))])
 
     assert "a&lt;b&gt;" in text and "a<b>" not in text

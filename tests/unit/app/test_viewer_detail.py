@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from app.viewer.lod import Camera, TileBoxes, base_step, choose, chunks_of, in_sight
-from app.viewer.pace import FEWEST_POINTS, FIRST_POINTS, Pace
+from app.viewer.client.point_budget import FEWEST_POINTS, FIRST_POINTS, PointBudget
+from app.viewer.cloud.lod import Camera, TileBoxes, base_step, choose, chunks_of, in_sight
 from recon4.mapping.tile import progressive
 
 AHEAD = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
@@ -96,35 +96,35 @@ def test_only_what_is_ahead_is_in_sight(x, seen):
 
 
 def test_a_quick_browser_gets_twice_as_many_until_it_has_all():
-    pace = Pace(3_000_000)
-    given = [pace.points]
-    while not pace.settled:
-        pace.told(0.05)
-        given.append(pace.points)
+    budget = PointBudget(3_000_000)
+    given = [budget.points]
+    while not budget.settled:
+        budget.record(0.05)
+        given.append(budget.points)
 
     assert given[0] == FIRST_POINTS
     assert given[-1] == 3_000_000 and len(given) <= 6
 
 
 def test_a_slow_browser_gets_less_and_stays_there():
-    pace = Pace(3_000_000)
-    pace.told(2.0)
-    pace.told(0.05)
+    budget = PointBudget(3_000_000)
+    budget.record(2.0)
+    budget.record(0.05)
 
-    assert pace.points == FIRST_POINTS // 2 and pace.settled
+    assert budget.points == FIRST_POINTS // 2 and budget.settled
 
 
 def test_a_browser_that_does_not_answer_is_never_given_nothing():
-    pace = Pace(3_000_000)
+    budget = PointBudget(3_000_000)
     for _ in range(9):
-        pace.told(None)
+        budget.record(None)
 
-    assert pace.points == FEWEST_POINTS
+    assert budget.points == FEWEST_POINTS
 
 
 def test_a_long_way_there_and_back_is_not_held_against_a_browser():
-    pace = Pace(3_000_000)
-    pace.began(1.5)
-    pace.told(1.6)
+    budget = PointBudget(3_000_000)
+    budget.began(1.5)
+    budget.record(1.6)
 
-    assert pace.points == 2 * FIRST_POINTS
+    assert budget.points == 2 * FIRST_POINTS

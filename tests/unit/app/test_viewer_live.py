@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from app.jobs.events import EventWriter
-from app.viewer.live import JobWatch, Live
-from app.viewer.source import ProjectSource
+from app.viewer.scene.live import JobWatch, LiveGraph
+from app.viewer.scene.source import ProjectSource
 from recon4.model.pose_graph import EdgeKind, Reason, Verdict
 from recon4.pose_graph.files import load_graph
 from recon4.pose_graph.search import build_graph
@@ -41,7 +41,7 @@ def running(stage):
 
 
 def fed(*events):
-    live = Live()
+    live = LiveGraph()
     for event in events:
         live.take(event)
     return live

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from app.viewer.cloud import Cloud
-from app.viewer.layers import EdgeTable
-from app.viewer.pick import Ray, pick_edge, pick_gnss, pick_point
-from app.viewer.scene import GnssMarks
-from app.viewer.view import View
+from app.viewer.client.view import ViewState
+from app.viewer.cloud.parts import Cloud
+from app.viewer.cloud.pick import Ray, pick_edge, pick_gnss, pick_point
+from app.viewer.scene.build import GnssMarks
+from app.viewer.scene.layers import EdgeTable
 from tests.project_builder import ROOM_M, build_project, loop_walk, verified_graph
 
 
@@ -78,15 +78,15 @@ def test_the_edge_under_the_click_is_found_and_hidden_ones_are_not():
             middle = graph.T_map_body.t[[edge.i, edge.j]].mean(axis=0)
             away = ray(middle + np.array([0.3, 0.2, 9.0]), middle)
 
-            assert table.graph.edges[pick_edge(table, View(), away)] is edge
-            hidden = View(chosen={table.layers[table.layer[row]].key: False})
+            assert table.graph.edges[pick_edge(table, ViewState(), away)] is edge
+            hidden = ViewState(chosen={table.layers[table.layer[row]].key: False})
             assert pick_edge(table, hidden, away) != row
 
 
 def test_a_click_beside_all_edges_finds_none():
     table = EdgeTable.of(verified_graph(loop_walk()))
 
-    assert pick_edge(table, View(), ray((0.0, 0.0, 9.0), (0.0, 0.1, 0.0))) is None
+    assert pick_edge(table, ViewState(), ray((0.0, 0.0, 9.0), (0.0, 0.1, 0.0))) is None
 
 
 def test_a_gnss_position_under_the_click_is_found_when_it_is_shown():
@@ -94,6 +94,6 @@ def test_a_gnss_position_under_the_click_is_found_when_it_is_shown():
     marks = GnssMarks(np.array([1, 2]), p, p - [0.0, 0.0, 1.0], np.array([True, False]))
     ray = Ray(np.array([3.0, 0.0, 0.5]), np.array([0.0, 1.0, 0.0]), 0.001)
 
-    assert pick_gnss(marks, View(chosen={"gnss/rejected": True}), ray) == 1
-    assert pick_gnss(marks, View(chosen={"gnss/used": True}), ray) is None
-    assert pick_gnss(marks, View(), ray) is None
+    assert pick_gnss(marks, ViewState(chosen={"gnss/rejected": True}), ray) == 1
+    assert pick_gnss(marks, ViewState(chosen={"gnss/used": True}), ray) is None
+    assert pick_gnss(marks, ViewState(), ray) is None

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from app.viewer.multiframes import Multiframes
-from app.viewer.palette import paint
-from app.viewer.preview import HEIGHTS, PIECE, Preview
-from app.viewer.source import ProjectSource
+from app.viewer.cloud.multiframes import Multiframes
+from app.viewer.cloud.palette import paint
+from app.viewer.cloud.preview import HEIGHTS, PIECE, JobPreview
+from app.viewer.scene.source import ProjectSource
 from recon4.geometry.se3 import SE3
 from recon4.model.trajectory import Trajectory
 from recon4.store.frames import FrameStore
@@ -24,7 +24,7 @@ def project(tmp_path_factory):
 
 @pytest.fixture
 def preview(project):
-    return Preview(Multiframes(FrameStore.open(read_artifacts(project)["frames"])))
+    return JobPreview(Multiframes(FrameStore.open(read_artifacts(project)["frames"])))
 
 
 def nodes(preview, line, palette="viridis"):

@@ -4,11 +4,11 @@ import json
 
 import pytest
 
-from app.viewer.layers import FINAL
-from app.viewer.palette import Range
-from app.viewer.view import View, view_from_json
+from app.viewer.client.view import ViewState, view_from_json
+from app.viewer.cloud.palette import Range
+from app.viewer.scene.layers import FINAL
 
-VIEW = View(
+VIEW = ViewState(
     color_by="raw intensity",
     palette="turbo",
     ranges={"height": (0.0, 2.5)},
@@ -51,12 +51,12 @@ def test_text_that_is_no_view_is_none(text):
 
 
 def test_what_a_person_did_not_switch_is_as_it_is_at_first():
-    assert View().shows(FINAL)
-    assert not View().with_layer(FINAL.key, on=False).shows(FINAL)
+    assert ViewState().shows(FINAL)
+    assert not ViewState().with_layer(FINAL.key, on=False).shows(FINAL)
 
 
 def test_a_range_belongs_to_what_the_points_are_colored_by():
-    view = View(color_by="height").with_range(Range(1.0, 2.0))
+    view = ViewState(color_by="height").with_range(Range(1.0, 2.0))
 
     assert view.range_of("height") == Range(1.0, 2.0)
     assert view.range_of("time") is None

@@ -118,7 +118,7 @@ def test_poses_outside_the_truth_are_left_out_and_counted() -> None:
 
     pairs = pair_poses(truth, half)
 
-    assert pairs.covered_share == pytest.approx(0.5)
+    assert pairs.coverage_ratio == pytest.approx(0.5)
     assert pairs.t_ns.max() <= 10 * S
 
 
@@ -129,7 +129,7 @@ def test_poses_in_a_hole_of_the_truth_are_left_out() -> None:
     pairs = pair_poses(truth, holed)
 
     assert not np.any((pairs.t_ns > 5 * S) & (pairs.t_ns < 8 * S))
-    assert pairs.covered_share == pytest.approx(0.85, abs=0.01)
+    assert pairs.coverage_ratio == pytest.approx(0.85, abs=0.01)
 
 
 def test_no_common_time_is_refused_naming_both_spans() -> None:

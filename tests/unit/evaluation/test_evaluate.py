@@ -9,11 +9,11 @@ import trimesh
 
 from recon4.errors import CorruptFile, EmptyRecording, UnknownFormat
 from recon4.evaluation.evaluate import at_frames, evaluate
-from recon4.evaluation.mesh import Mesh, sample_mesh
+from recon4.evaluation.reference_mesh import TriangleMesh, sample_mesh
 from recon4.evaluation.trajectories import find_trajectory
 from recon4.geometry.se3 import SE3
 from recon4.model.trajectory import Trajectory
-from recon4.recording.poses import read_tum
+from recon4.recording.formats.poses import read_tum
 from recon4.store.arrays import save_trajectory
 
 START_NS = 1_750_000_000_123_456_789
@@ -38,9 +38,9 @@ def write_tum(path: Path, trajectory: Trajectory) -> None:
     path.write_text("# t x y z qx qy qz qw\n" + "\n".join(lines) + "\n")
 
 
-def box() -> Mesh:
+def box() -> TriangleMesh:
     mesh = trimesh.creation.box((12.0, 10.0, 3.0))
-    return Mesh(
+    return TriangleMesh(
         np.asarray(mesh.vertices) + np.array([0, 0, 1.5]), np.asarray(mesh.faces, dtype=np.int64)
     )
 
@@ -112,7 +112,7 @@ def test_a_scaled_walk_has_the_errors_worked_out_on_paper(tmp_path: Path) -> Non
 
     found = evaluate(tmp_path / "estimate.tum", truth=tmp_path / "truth.tum")
 
-    assert found.covered_share == 1.0
+    assert found.coverage_ratio == 1.0
     assert found.duration_s == pytest.approx(120.0)
     assert found.unaligned.position_m.maximum == pytest.approx(0.01 * np.hypot(4, 1.5), abs=1e-4)
     assert found.first_pose.position_m.maximum == pytest.approx(0.08, abs=1e-3)

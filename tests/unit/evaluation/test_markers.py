@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from recon4.errors import CorruptFile
-from recon4.evaluation.markers import Marker, compare_markers, read_markers
+from recon4.evaluation.markers import SurveyMarker, compare_markers, read_markers
 from recon4.evaluation.text import marker_text
 
 
 def test_the_first_row_of_the_thesis_table() -> None:
-    reference = (Marker("pt1", np.array([100.0, 200.0, 300.0])),)
+    reference = (SurveyMarker("pt1", np.array([100.0, 200.0, 300.0])),)
 
     table = compare_markers({"pt1": np.array([99.941, 199.988, 299.848])}, reference)
 
@@ -24,7 +24,7 @@ def test_the_first_row_of_the_thesis_table() -> None:
 
 
 def test_both_points_of_the_thesis_are_within_its_limits() -> None:
-    reference = (Marker("pt1", np.zeros(3)), Marker("pt2", np.zeros(3)))
+    reference = (SurveyMarker("pt1", np.zeros(3)), SurveyMarker("pt2", np.zeros(3)))
     measured = {
         "pt1": np.array([-0.059, -0.012, -0.152]),
         "pt2": np.array([-0.056, 0.005, -0.047]),
@@ -39,7 +39,7 @@ def test_both_points_of_the_thesis_are_within_its_limits() -> None:
 
 
 def test_control_points_do_not_judge_when_there_are_check_points() -> None:
-    reference = (Marker("a", np.zeros(3), "control"), Marker("b", np.zeros(3), "check"))
+    reference = (SurveyMarker("a", np.zeros(3), "control"), SurveyMarker("b", np.zeros(3), "check"))
 
     table = compare_markers({"a": np.zeros(3), "b": np.array([0.3, 0, 0])}, reference)
 
@@ -48,7 +48,7 @@ def test_control_points_do_not_judge_when_there_are_check_points() -> None:
 
 
 def test_a_marker_not_found_is_named_and_none_found_is_not_within_limits() -> None:
-    table = compare_markers({}, (Marker("lost", np.zeros(3)),))
+    table = compare_markers({}, (SurveyMarker("lost", np.zeros(3)),))
 
     assert table.missing == ("lost",)
     assert not table.within_limits

@@ -7,7 +7,13 @@ import pytest
 
 from recon4.errors import CorruptFile, OutOfRange, RecordingError
 from recon4.evaluation.floor import map_onto_model, relative_error_floor
-from recon4.evaluation.mesh import Mesh, align_to_mesh, distance_to, read_mesh, sample_mesh
+from recon4.evaluation.reference_mesh import (
+    TriangleMesh,
+    align_to_mesh,
+    distance_to,
+    read_mesh,
+    sample_mesh,
+)
 from recon4.evaluation.slices import Slice, relative_error, spread_slices
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.multiframe import Multiframe
@@ -17,12 +23,12 @@ from recon4.model.trajectory import Trajectory
 SIZE = np.array([8.0, 6.0, 3.0])
 
 
-def room() -> Mesh:
+def room() -> TriangleMesh:
     """The inside of an 8 x 6 x 3 m box with its corner at the origin."""
     corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * SIZE
     quads = [(0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5)]
     triangles = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
-    return Mesh(corners, np.array(triangles))
+    return TriangleMesh(corners, np.array(triangles))
 
 
 def on_walls(n: int = 60_000, *, noise_m: float = 0.0) -> Array:
@@ -48,7 +54,7 @@ def test_a_slice_row_worked_out_on_paper() -> None:
     row = found.slices[0]
     assert (row.points, row.outliers) == (4, 1)
     assert row.mean_m == pytest.approx(0.03)
-    assert (row.share_2cm, row.share_5cm) == pytest.approx((0.5, 0.75))
+    assert (row.ratio_within_2cm, row.ratio_within_5cm) == pytest.approx((0.5, 0.75))
     assert found.histogram.sum() == 4
     assert found.histogram[30] == 1
 
@@ -157,7 +163,7 @@ def test_a_mesh_survives_the_way_through_a_file(tmp_path: Path) -> None:
 
 
 def test_the_simulators_model_is_read(tmp_path: Path) -> None:
-    from recon4.simulation.mesh import MeshBuilder, write_ply
+    from recon4.geometry.mesh import MeshBuilder, write_ply
 
     builder = MeshBuilder()
     builder.box([0, 0, 0], [1, 2, 3], 0.5)

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from recon4.errors import GeoreferenceError
-from recon4.georeference.crs import CrsTransform, Origin, enu_of_ned, to_enu, to_geodetic
+from recon4.georeference.crs import CrsTransform, GeodeticOrigin, enu_of_ned, to_enu, to_geodetic
 
-BRNO = Origin(np.deg2rad(49.2), np.deg2rad(16.6), 250.0)
+BRNO = GeodeticOrigin(np.deg2rad(49.2), np.deg2rad(16.6), 250.0)
 
 
 def test_ned_one_two_three_is_enu_two_one_minus_three() -> None:
@@ -39,11 +39,13 @@ def test_geodetic_and_local_are_inverse() -> None:
 
 def test_without_a_choice_the_utm_zone_of_the_place_is_taken() -> None:
     assert CrsTransform(BRNO).crs == "EPSG:32633"
-    assert CrsTransform(Origin(np.deg2rad(-33.9), np.deg2rad(18.4), 0.0)).crs == "EPSG:32734"
+    assert (
+        CrsTransform(GeodeticOrigin(np.deg2rad(-33.9), np.deg2rad(18.4), 0.0)).crs == "EPSG:32734"
+    )
 
 
 def test_the_central_meridian_of_utm_is_500_km_and_its_scale_0_9996() -> None:
-    on_meridian = Origin(np.deg2rad(49.0), np.deg2rad(15.0), 0.0)
+    on_meridian = GeodeticOrigin(np.deg2rad(49.0), np.deg2rad(15.0), 0.0)
     p = np.array([[0.0, 0, 0], [100.0, 0, 0], [0, 0, 12.0]])
 
     q = CrsTransform(on_meridian).to_crs(p)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3
-from recon4.georeference.crs import Origin, to_enu, to_geodetic
+from recon4.georeference.crs import GeodeticOrigin, to_enu, to_geodetic
 from recon4.georeference.gnss import GeoreferenceResult, georeference
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
 from recon4.model.rig import load_rig
@@ -13,7 +13,7 @@ from recon4.model.trajectory import Trajectory
 from recon4.settings import GnssSettings
 
 LOOPS = 25
-PLACE = Origin(np.deg2rad(49.2), np.deg2rad(16.6), 250.0)
+PLACE = GeodeticOrigin(np.deg2rad(49.2), np.deg2rad(16.6), 250.0)
 RIG = replace(load_rig("4recon"), p_body_antenna=np.array([-0.3, 0.1, 0.8]))
 START = SE3.from_rpy(0.0, 0.0, 2.2, [40.0, -15.0, 3.0])
 """T_odom_enu: the map's own frame is level, but turned and shifted."""

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from recon4.intensity.surfaces import Sightings, Surfaces, cells_of, learn_surfaces
+from recon4.intensity.surfaces import Observations, Surfaces, cells_of, learn_surfaces
 from recon4.kernels.intensity import surface_equations
 from recon4.settings import IntensitySettings
 
@@ -31,7 +31,7 @@ def made_up(points=40_000, cells=300, *, seed=3, interaction=None):
         axis=1,
     )
     x = rng.poisson(bright[cell] * factor[tuple(bins.T)])
-    return Sightings(cell.astype(np.int64), bins.astype(np.int32), x.astype(np.float32)), factor
+    return Observations(cell.astype(np.int64), bins.astype(np.int32), x.astype(np.float32)), factor
 
 
 def shape_of(factor):
@@ -77,7 +77,7 @@ def test_few_points_do_not_move_a_bin_off_the_product_of_its_factors():
 def test_bins_nobody_saw_are_as_their_neighbors():
     seen, _ = made_up()
     near = seen.bins[:, 2] < 4
-    few = Sightings(seen.cell[near], seen.bins[near], seen.intensity[near])
+    few = Observations(seen.cell[near], seen.bins[near], seen.intensity[near])
 
     found = learn_surfaces(few, SHAPE, settings=SETTINGS)
 
@@ -88,7 +88,7 @@ def test_bins_nobody_saw_are_as_their_neighbors():
 @pytest.mark.parametrize("value", [None, 0.0])
 def test_nothing_seen_and_only_zeros_change_nothing(value):
     count = 0 if value is None else 10
-    seen = Sightings(
+    seen = Observations(
         np.zeros(count, np.int64), np.zeros((count, 3), np.int32), np.zeros(count, np.float32)
     )
 

@@ -3,7 +3,7 @@ import pytest
 
 from recon4.geometry.se3 import SE3
 from recon4.kernels.overlap import nearest_ranges
-from recon4.registration.overlap import View, make_view, overlap
+from recon4.registration.overlap import RangeImage, make_range_image, overlap
 from recon4.settings import OverlapSettings
 
 SETTINGS = OverlapSettings()
@@ -42,13 +42,16 @@ def test_points_at_the_origin_have_no_direction():
 
 
 def test_a_view_overlaps_itself():
-    view = make_view(sphere(5.0), SETTINGS)
+    view = make_range_image(sphere(5.0), SETTINGS)
 
     assert overlap(view, view, SE3.identity(), SETTINGS) > 0.95  # the bins at the poles are small
 
 
 def test_what_is_behind_the_wall_does_not_overlap():
-    inside, outside = make_view(sphere(5.0), SETTINGS), make_view(sphere(12.0), SETTINGS)
+    inside, outside = (
+        make_range_image(sphere(5.0), SETTINGS),
+        make_range_image(sphere(12.0), SETTINGS),
+    )
 
     assert overlap(inside, outside, SE3.identity(), SETTINGS) == 0.0
     assert (
@@ -59,23 +62,23 @@ def test_what_is_behind_the_wall_does_not_overlap():
 @pytest.mark.parametrize(("range_m", "inside"), [(4.69, 1.0), (4.71, 0.0)])
 def test_the_tolerance_is_a_tenth_and_thirty_centimeters(range_m, inside):
     # 4 m * (1 + 0.1) + 0.3 m = 4.70 m (Eq. 2.6 read as A0 no. 2)
-    source = make_view(ring_of(0, 4.0), SETTINGS)
-    target = make_view(ring_of(0, range_m), SETTINGS)
+    source = make_range_image(ring_of(0, 4.0), SETTINGS)
+    target = make_range_image(ring_of(0, range_m), SETTINGS)
 
     assert overlap(source, target, SE3.identity(), SETTINGS) == inside
 
 
 def test_points_in_empty_bins_do_not_overlap():
-    source = make_view(ring_of(0, 4.0), SETTINGS)
-    target = make_view(np.concatenate([ring_of(0, 4.0), ring_of(90, 4.0)]), SETTINGS)
+    source = make_range_image(ring_of(0, 4.0), SETTINGS)
+    target = make_range_image(np.concatenate([ring_of(0, 4.0), ring_of(90, 4.0)]), SETTINGS)
 
     assert overlap(source, target, SE3.identity(), SETTINGS) == 0.5
 
 
 def test_the_four_modes():
     # The source sees all four places, the target one of them.
-    source = make_view(ring_of([0, 40, 80, 120], 4.0), SETTINGS)
-    target = make_view(ring_of(0, 4.0), SETTINGS)
+    source = make_range_image(ring_of([0, 40, 80, 120], 4.0), SETTINGS)
+    target = make_range_image(ring_of(0, 4.0), SETTINGS)
 
     found = {
         mode: overlap(source, target, SE3.identity(), OverlapSettings(mode=mode))
@@ -86,9 +89,9 @@ def test_the_four_modes():
 
 
 def test_the_target_is_moved_into_the_source():
-    source = make_view(ring_of(0, 4.0), SETTINGS)
+    source = make_range_image(ring_of(0, 4.0), SETTINGS)
     T_source_target = SE3.from_rpy(0, 0, np.pi / 2, [0.3, 0.0, 0.0])
-    target = make_view(T_source_target.inverse() @ ring_of(0, 4.0), SETTINGS)
+    target = make_range_image(T_source_target.inverse() @ ring_of(0, 4.0), SETTINGS)
 
     assert overlap(source, target, T_source_target, SETTINGS) == 1.0
     assert overlap(source, target, T_source_target.inverse(), SETTINGS) == 0.0
@@ -97,8 +100,8 @@ def test_the_target_is_moved_into_the_source():
 
 
 def test_without_points_nothing_overlaps():
-    empty = make_view(np.empty((0, 3)), SETTINGS)
-    view = View(ring_of(0, 4.0), make_view(ring_of(0, 4.0), SETTINGS).nearest_m)
+    empty = make_range_image(np.empty((0, 3)), SETTINGS)
+    view = RangeImage(ring_of(0, 4.0), make_range_image(ring_of(0, 4.0), SETTINGS).nearest_m)
 
     assert overlap(view, empty, SE3.identity(), SETTINGS) == 0.0
     assert overlap(empty, view, SE3.identity(), SETTINGS) == 0.0

@@ -4,7 +4,7 @@ import signal
 import subprocess
 import sys
 
-from recon4.recording.velodyne_encode import PcapWriter
+from recon4.recording.velodyne.encode import PcapWriter
 from recon4.store.project import read_artifacts
 from tests.loopback import an_address
 from tests.unit.recording.packet_builders import spin
@@ -45,7 +45,7 @@ def test_wrong_rigs_and_recordings_are_named(tmp_path):
     with recon4("record", tmp_path / "walk", "--rig", "none") as record:
         said = record.communicate(timeout=60)[1]
     with recon4("replay", tmp_path / "nothing.pcap") as replay:
-        told = replay.communicate(timeout=60)[1]
+        message = replay.communicate(timeout=60)[1]
 
     t_ns, payloads = spin(10)
     with PcapWriter(tmp_path / "source.pcap") as file:
@@ -56,5 +56,5 @@ def test_wrong_rigs_and_recordings_are_named(tmp_path):
     assert (record.returncode, replay.returncode, astray.returncode) == (1, 1, 1)
     assert "cannot send to nobody.invalid" in lost
     assert "no rig named 'none'" in said
-    assert "nothing.pcap" in told
+    assert "nothing.pcap" in message
     assert not (tmp_path / "walk").exists()

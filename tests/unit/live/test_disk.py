@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from recon4.live.disk import DiskWatch
+from recon4.live.recorder.disk import DiskWatch
 
 
 def watch(*free_bytes, least=1000, every_s=1.0):
@@ -10,13 +10,13 @@ def watch(*free_bytes, least=1000, every_s=1.0):
     disk = DiskWatch(Path("x"), least_free_bytes=least, free_bytes=lambda folder: next(left))
     for k in range(len(free_bytes)):
         disk.look(k * every_s)
-    return disk.told()
+    return disk.message()
 
 
 def test_everything_that_fills_the_disk_counts():
-    told = watch(*(100_000_000 - 12_000_000 * k for k in range(8)), least=4_000_000)
+    message = watch(*(100_000_000 - 12_000_000 * k for k in range(8)), least=4_000_000)
 
-    assert told == {"free_bytes": 16_000_000, "left_s": 1, "enough": True}
+    assert message == {"free_bytes": 16_000_000, "left_s": 1, "enough": True}
 
 
 def test_a_disk_that_nobody_fills_lasts():
@@ -46,4 +46,4 @@ def test_a_disk_that_was_pulled_out_stops_nothing():
     disk = DiskWatch(Path("x"), least_free_bytes=1000, free_bytes=gone)
     disk.look(0.0)
 
-    assert disk.told() == {"free_bytes": None, "left_s": None, "enough": True}
+    assert disk.message() == {"free_bytes": None, "left_s": None, "enough": True}

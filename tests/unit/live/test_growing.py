@@ -7,11 +7,11 @@ import time
 import numpy as np
 import pytest
 
-from recon4.live.growing import GrowingFile, Growth
+from recon4.live.mapper.tail_file import TailFile, WriteProgress
 from recon4.model.multiframe import COLUMNS
 from recon4.model.rig import load_rig
 from recon4.progress import Silent
-from recon4.recording.ingest import Live, ingest
+from recon4.recording.ingest import LiveSource, ingest
 from recon4.settings import preset
 from recon4.store.frames import FrameStore
 from tests.unit.recording.packet_builders import spin
@@ -75,7 +75,7 @@ def bad_walk(path):
 def test_a_growing_capture_gives_the_frames_of_the_finished_file(tmp_path, make):
     whole = make(tmp_path / "whole.pcap")
     growing = shutil.copy(whole, tmp_path / "growing.pcap")
-    growth = Growth()
+    growth = WriteProgress()
     size = whole.stat().st_size
     cuts = np.sort(np.random.default_rng(5).integers(0, size, 300)).tolist()
 
@@ -87,7 +87,7 @@ def test_a_growing_capture_gives_the_frames_of_the_finished_file(tmp_path, make)
 
     writer = threading.Timer(0.05, write)
     writer.start()
-    live = frames_of(growing, tmp_path / "live", Live(lambda path: GrowingFile(path, growth)))
+    live = frames_of(growing, tmp_path / "live", LiveSource(lambda path: TailFile(path, growth)))
     writer.join()
     later = frames_of(whole, tmp_path / "later")
 
@@ -107,14 +107,14 @@ def test_a_growing_capture_gives_the_frames_of_the_finished_file(tmp_path, make)
 
 def test_a_sensor_that_is_silent_from_the_start_holds_the_other_up_for_a_second(tmp_path):
     path = capture(tmp_path / "one.pcap", (FIRST, 2368, spin(5000)))  # 6.6 s
-    growth, shown, enough = Growth(), [], threading.Event()
+    growth, shown, enough = WriteProgress(), [], threading.Event()
 
     def watch(frame):
         shown.append(frame)
         if len(shown) == 48:
             enough.set()
 
-    live = Live(lambda path: GrowingFile(path, growth), watch)
+    live = LiveSource(lambda path: TailFile(path, growth), watch)
     reading = threading.Thread(target=frames_of, args=(path, tmp_path / "out", live))
     reading.start()
     growth.reached(path.stat().st_size)
@@ -129,10 +129,10 @@ def test_a_sensor_that_is_silent_from_the_start_holds_the_other_up_for_a_second(
 def test_reading_waits_until_there_is_something(tmp_path):
     path = tmp_path / "file"
     path.write_bytes(b"abcdef")
-    growth = Growth()
+    growth = WriteProgress()
     threading.Timer(0.05, lambda: growth.reached(3)).start()
 
-    file = GrowingFile(path, growth)
+    file = TailFile(path, growth)
 
     assert file.read(10) == b"abc"
     growth.complete()

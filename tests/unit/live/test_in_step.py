@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from recon4.live.in_step import InStep
+from recon4.live.mapper.imu_synchronization import ImuSynchronization
 from recon4.model.multiframe import COLUMNS, Multiframe
 
 TENTH_NS = 100_000_000
@@ -21,13 +21,13 @@ def ids(frames):
 
 
 def test_without_an_imu_nothing_waits():
-    in_step = InStep()
+    in_step = ImuSynchronization()
 
     assert [ids(in_step.came(frame(k))) for k in range(3)] == [[0], [1], [2]]
 
 
 def test_a_frame_waits_for_the_samples_of_its_end():
-    in_step = InStep()
+    in_step = ImuSynchronization()
     in_step.heard(0)
 
     early = ids(in_step.came(frame(0))), ids(in_step.heard(TENTH_NS // 2))
@@ -37,14 +37,14 @@ def test_a_frame_waits_for_the_samples_of_its_end():
 
 
 def test_samples_that_are_there_already_hold_nothing_up():
-    in_step = InStep()
+    in_step = ImuSynchronization()
     in_step.heard(3 * TENTH_NS)
 
     assert [ids(in_step.came(frame(k))) for k in range(4)] == [[0], [1], [2], []]
 
 
 def test_an_imu_that_falls_silent_is_waited_for_three_frames():
-    in_step = InStep()
+    in_step = ImuSynchronization()
     in_step.heard(0)
 
     came = [ids(in_step.came(frame(k))) for k in range(6)]

@@ -2,9 +2,9 @@
 
 import pytest
 
-from recon4.live.lateness import LATE_NS, Lateness
+from recon4.live.mapper.latency import LATE_NS, Latency
 from recon4.recording.report import ImportReport
-from recon4.recording.sensor_clock import SECOND_NS, SensorClock
+from recon4.recording.velodyne.sensor_clock import SECOND_NS, SensorClock
 from tests.unit.recording.test_packets_clock import PACKET_NS, packets
 
 
@@ -25,7 +25,7 @@ def test_gps_drives_the_sensors_and_the_laptop_is_wrong(wrong_s):
     sensor.push(arrival - offset_ns, stamps)
     end_ns = int(t_ns[-1])
     clock = Clock(end_ns - offset_ns + 300_000_000)
-    lateness = Lateness(report, clock)
+    lateness = Latency(report, clock)
 
     age_s = lateness.age_s(lateness.on_our_clock(end_ns))
     soon = [lateness.leave_out(end_ns) for _ in range(4)]

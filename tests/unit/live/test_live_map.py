@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import so3_exp
-from recon4.live.live_map import LiveMap
+from recon4.live.mapper.live_map import LiveMap
 from recon4.model.multiframe import COLUMNS, Multiframe
 from recon4.model.rig import load_rig
 from recon4.model.samples import ImuSamples
 from recon4.progress import Silent
+from recon4.recording.formats.poses import read_tum
 from recon4.recording.ingest import ingest
-from recon4.recording.poses import read_tum
 from recon4.settings import preset
 from recon4.simulation.simulate import simulate
 from recon4.store.frames import FrameStore
@@ -93,13 +93,13 @@ def test_who_is_lost_and_carried_elsewhere_is_found_again(walk):
         pose, _ = follower.push(row, noise=True)
     points_lost = follower.map.snapshot().messages()[1]["count"]
     back = walk.store[142].t_ns - walk.store[60].t_ns
-    told = [follower.push(row, back) for row in range(60, 142)]
+    message = [follower.push(row, back) for row in range(60, 142)]
 
     assert max(errors) < 0.08
     assert pose["lost"]
     assert points_lost == points_before
-    found = [error for pose, error in told if not pose["lost"]]
-    assert told[-1][0]["relocated"] == 1
+    found = [error for pose, error in message if not pose["lost"]]
+    assert message[-1][0]["relocated"] == 1
     assert len(found) > 10
     assert max(found) < 0.10
 
@@ -107,21 +107,21 @@ def test_who_is_lost_and_carried_elsewhere_is_found_again(walk):
 def test_an_imu_upside_down_is_said_and_mapping_goes_on_without_it(walk):
     follower = Follower(walk, imu_axes=[1.0, -1.0, -1.0])
 
-    told = [follower.push(row) for row in range(60)]
+    message = [follower.push(row) for row in range(60)]
 
-    assert not any(pose["imu"] or pose["lost"] for pose, _ in told)
-    assert "upside down" in told[0][0]["remark"]
-    assert max(error for _, error in told) < 0.15
+    assert not any(pose["imu"] or pose["lost"] for pose, _ in message)
+    assert "upside down" in message[0][0]["remark"]
+    assert max(error for _, error in message) < 0.15
 
 
 def test_an_imu_that_turns_the_wrong_way_is_found_out_and_the_map_begins_anew(walk):
     follower = Follower(walk, gyro_axes=[1.0, 1.0, -1.0])
 
-    told = [follower.push(row)[0] for row in range(65)]
+    message = [follower.push(row)[0] for row in range(65)]
 
-    begun = next(k for k, pose in enumerate(told) if pose["remark"])
-    assert (told[0]["imu"], told[-1]["imu"]) == (True, False)
-    assert not any(pose["lost"] for pose in told[begun:])
+    begun = next(k for k, pose in enumerate(message) if pose["remark"])
+    assert (message[0]["imu"], message[-1]["imu"]) == (True, False)
+    assert not any(pose["lost"] for pose in message[begun:])
     path, points = follower.map.snapshot().messages()[:2]
     assert points["generation"] == 1
     walked_m = np.linalg.norm(np.diff(path["points"], axis=0), axis=1).sum()

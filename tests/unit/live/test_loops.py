@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3, so3_exp
-from recon4.live.loops import LoopGate
+from recon4.live.mapper.loops import LoopGate
 from recon4.registration.result import Registration, StopReason
 
 HERE = SE3(so3_exp([0.0, 0.0, 2.0]), np.array([30.0, -20.0, 1.0]))
 
 
-def found(x_m=0.0, yaw_rad=0.0, *, share=0.8, degeneracy=0.1):
+def found(x_m=0.0, yaw_rad=0.0, *, match_ratio=0.8, degeneracy=0.1):
     """Registration to an old place: the body is off by that much, seen from itself."""
     off = SE3(so3_exp([0.0, 0.0, yaw_rad]), np.array([x_m, 0.0, 0.0]))
     return Registration(
@@ -19,7 +19,7 @@ def found(x_m=0.0, yaw_rad=0.0, *, share=0.8, degeneracy=0.1):
         iterations=3,
         error_m=0.01,
         error_sd_m=0.0,
-        share=share,
+        match_ratio=match_ratio,
         information=np.eye(6),
         degeneracy=degeneracy,
     )
@@ -44,7 +44,13 @@ def test_the_noise_of_a_registration_is_left_alone_but_the_loop_is_closed(x_m, y
 
 @pytest.mark.parametrize(
     "other",
-    [found(-0.30), found(0.30, 0.05), None, found(0.3, share=0.4), found(0.3, degeneracy=0.001)],
+    [
+        found(-0.30),
+        found(0.30, 0.05),
+        None,
+        found(0.3, match_ratio=0.4),
+        found(0.3, degeneracy=0.001),
+    ],
 )
 def test_two_that_contradict_each_other_are_not_believed(other):
     gate = LoopGate()
@@ -55,6 +61,6 @@ def test_two_that_contradict_each_other_are_not_believed(other):
 def test_nothing_is_closed_by_a_view_that_does_not_fit():
     gate = LoopGate()
 
-    gate.judge(found(share=0.3), HERE)
+    gate.judge(found(match_ratio=0.3), HERE)
 
     assert not gate.closed

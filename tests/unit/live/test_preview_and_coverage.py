@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from recon4.live.coverage import CELL_M, Coverage, Seen
-from recon4.live.floors import Floors
-from recon4.live.preview import Preview
-from recon4.live.tiles import TILE, WINDOW, Tiles
+from recon4.live.preview.cloud import PreviewCloud
+from recon4.live.preview.coverage import CELL_M, Coverage, CoverageClass
+from recon4.live.preview.floors import Floors
+from recon4.live.preview.tiles import TILE, WINDOW, Tiles
 
 
 def values(count):
@@ -14,7 +14,7 @@ def values(count):
 
 
 def test_only_voxels_that_were_not_there_are_new():
-    preview = Preview(voxel_m=0.1)
+    preview = PreviewCloud(voxel_m=0.1)
 
     first = preview.add(
         np.array([[0.01, 0.02, 0.03], [0.05, 0.05, 0.05], [-0.01, 0, 0]]), values(3)
@@ -29,7 +29,7 @@ def test_only_voxels_that_were_not_there_are_new():
 
 def test_growing_forgets_nothing():
     p = np.random.default_rng(1).uniform(-20, 20, (200_000, 3))
-    preview = Preview(voxel_m=0.5, most=10**6)
+    preview = PreviewCloud(voxel_m=0.5, most=10**6)
 
     for part in np.array_split(p, 37):
         preview.add(part, values(len(part)))
@@ -42,7 +42,7 @@ def test_growing_forgets_nothing():
 
 def test_too_many_points_double_the_voxels_and_everything_is_sent_again():
     p = np.random.default_rng(2).uniform(-10, 10, (20_000, 3))
-    preview = Preview(voxel_m=0.1, most=5000)
+    preview = PreviewCloud(voxel_m=0.1, most=5000)
 
     chunk = preview.add(p, values(len(p)))
 
@@ -53,7 +53,7 @@ def test_too_many_points_double_the_voxels_and_everything_is_sent_again():
 
 
 def test_larger_voxels_keep_the_value_that_was_there_first():
-    preview = Preview(voxel_m=0.1, most=2)
+    preview = PreviewCloud(voxel_m=0.1, most=2)
 
     chunk = preview.add(
         np.array([[0.01, 0, 0], [0.11, 0, 0], [5.01, 0, 0]]), np.array([7, 8, 9], np.uint8)
@@ -64,7 +64,7 @@ def test_larger_voxels_keep_the_value_that_was_there_first():
 
 
 def test_points_beyond_the_reach_of_the_numbers_are_left_out():
-    preview = Preview(voxel_m=0.1)
+    preview = PreviewCloud(voxel_m=0.1)
 
     chunk = preview.add(np.array([[4000.0, 0, 0], [1.0, 0, 0]]), values(2))
 
@@ -103,7 +103,7 @@ def test_a_closed_room_has_no_gap_and_its_walls_are_seen_well():
     look(coverage, (0.0, 0.0), room(-3, 3, -2, 2))
 
     assert coverage.gaps() == []
-    assert coverage.share_well() > 0.95
+    assert coverage.well_seen_ratio() > 0.95
 
 
 def test_an_open_door_is_a_gap_until_somebody_goes_in():
@@ -127,7 +127,7 @@ def test_a_wall_far_away_is_seen_poorly():
 
     look(coverage, (0.0, 0.0), wall)
 
-    assert seen_at(coverage, 20.1, 0.1) == Seen.POOR
+    assert seen_at(coverage, 20.1, 0.1) == CoverageClass.POOR
 
 
 def test_the_floor_and_the_ceiling_stand_in_nobodys_way():
@@ -136,8 +136,8 @@ def test_the_floor_and_the_ceiling_stand_in_nobodys_way():
 
     look(coverage, (0.0, 0.0), floor)
 
-    assert seen_at(coverage, 2.1, 0.1) == Seen.FREE
-    assert not (coverage.seen()[1] >= Seen.POOR).any()
+    assert seen_at(coverage, 2.1, 0.1) == CoverageClass.FREE
+    assert not (coverage.seen()[1] >= CoverageClass.POOR).any()
 
 
 def test_the_plan_grows_where_the_walk_goes():
@@ -149,7 +149,7 @@ def test_the_plan_grows_where_the_walk_goes():
 
     _, seen = coverage.seen()
     assert seen.sum() == pytest.approx(2 * before, rel=0.05)
-    assert seen_at(coverage, 2.9, 0.1) == seen_at(coverage, -57.1, 45.1) == Seen.FREE
+    assert seen_at(coverage, 2.9, 0.1) == seen_at(coverage, -57.1, 45.1) == CoverageClass.FREE
 
 
 def test_a_wall_is_seen_well_after_twelve_rays():
@@ -159,7 +159,7 @@ def test_a_wall_is_seen_well_after_twelve_rays():
     before = seen_at(coverage, 3.1, 0.1)
     look(coverage, (0.0, 0.0), wall, times=1)
 
-    assert (before, seen_at(coverage, 3.1, 0.1)) == (Seen.POOR, Seen.WELL)
+    assert (before, seen_at(coverage, 3.1, 0.1)) == (CoverageClass.POOR, CoverageClass.WELL)
 
 
 def test_somebody_who_stood_there_for_a_moment_is_no_wall():
@@ -168,7 +168,7 @@ def test_somebody_who_stood_there_for_a_moment_is_no_wall():
     look(coverage, (0.0, 0.1), np.array([[2.1, 0.1, 0.0]]), times=3)
     look(coverage, (0.0, 0.1), np.array([[6.1, 0.1, 0.0]]), times=40)
 
-    assert seen_at(coverage, 2.1, 0.1) == Seen.FREE
+    assert seen_at(coverage, 2.1, 0.1) == CoverageClass.FREE
 
 
 def test_an_open_door_far_from_the_way_is_no_gap():
@@ -207,8 +207,8 @@ def test_only_surfaces_near_the_way_count_as_seen_well():
     look(coverage, (0.0, 0.0), np.array([[3.1, 0.1, 0.0]]), times=5)
     look(coverage, (0.0, 0.0), np.array([[0.1, 10.1, 0.0]]), times=20)
 
-    assert seen_at(coverage, 0.1, 10.1) == Seen.WELL
-    assert coverage.share_well() == 0.0
+    assert seen_at(coverage, 0.1, 10.1) == CoverageClass.WELL
+    assert coverage.well_seen_ratio() == 0.0
 
 
 def test_cells_between_two_rays_are_no_gap():
@@ -233,7 +233,7 @@ def test_gaps_far_behind_are_kept_and_filled_when_somebody_goes_back():
     assert len(before) >= 1
     assert far_away == before
     assert coverage.gaps() == []
-    assert seen_at(coverage, 1.1, 1.1) == Seen.FREE
+    assert seen_at(coverage, 1.1, 1.1) == CoverageClass.FREE
 
 
 def test_a_gap_across_the_border_of_two_tiles_is_one():
@@ -274,8 +274,8 @@ def test_rays_are_followed_for_thirty_meters():
 
     look(coverage, (0.0, 0.0), np.array([[80.0, 0.1, 0.0]]))
 
-    assert seen_at(coverage, 29.0, 0.1) == Seen.FREE
-    assert not (coverage.seen()[1] >= Seen.POOR).any()
+    assert seen_at(coverage, 29.0, 0.1) == CoverageClass.FREE
+    assert not (coverage.seen()[1] >= CoverageClass.POOR).any()
 
 
 def climbed(floors, *heights_m, seconds=30):

@@ -14,18 +14,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.live.words import words
 from recon4.errors import ConfigError
-from recon4.live.capture_file import CaptureFile, Datagram
-from recon4.live.ports import check_sources, open_ports
+from recon4.live.findings import words
+from recon4.live.recorder.capture_file import CaptureFile, Datagram
+from recon4.live.recorder.ports import check_sources, open_ports
+from recon4.live.recorder.serial_line import parse_device
 from recon4.live.replay import Shipment, moved, replay
-from recon4.live.serial_line import parse_device
-from recon4.live.session import Session
+from recon4.live.session import CaptureSession
 from recon4.model.rig import load_rig, parse_rig
 from recon4.progress import Silent
-from recon4.recording.pcap import read_pcap
+from recon4.recording.formats.pcap import read_pcap
 from recon4.recording.report import ImportReport
-from recon4.recording.velodyne_encode import PcapWriter
+from recon4.recording.velodyne.encode import PcapWriter
 from tests.loopback import an_address
 from tests.unit.recording.packet_builders import spin
 
@@ -33,7 +33,7 @@ from tests.unit.recording.packet_builders import spin
 @pytest.fixture
 def session(tmp_path):
     address = an_address()
-    session = Session(project=tmp_path / "walk", address=address, least_free_bytes=0)
+    session = CaptureSession(project=tmp_path / "walk", address=address, least_free_bytes=0)
     session.capture.parent.mkdir(parents=True)
     session.save()
     session.rig.write_text('name = "test"\n[[sensor]]\nname = "lidar"\n')
@@ -43,7 +43,7 @@ def session(tmp_path):
 @contextmanager
 def recording(session):
     process = subprocess.Popen(
-        [sys.executable, "-m", "recon4.live.recorder", str(session.project)],
+        [sys.executable, "-m", "recon4.live.recorder.process", str(session.project)],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -73,14 +73,14 @@ class Talk:
         self.lines.close()
         self.socket.close()
 
-    def say(self, **told):
-        self.socket.sendall(json.dumps(told).encode() + b"\n")
+    def send(self, **message):
+        self.socket.sendall(json.dumps(message).encode() + b"\n")
 
-    def hear(self, kind, met=lambda told: True):
+    def hear(self, kind, met=lambda message: True):
         for line in self.lines:
-            told = json.loads(line)
-            if told["kind"] == kind and met(told):
-                return told
+            message = json.loads(line)
+            if message["kind"] == kind and met(message):
+                return message
         raise AssertionError(f"never heard {kind}")
 
 
@@ -111,11 +111,11 @@ def test_datagrams_from_an_unexpected_address_are_no_silence(session):
         while True:
             send(session, 50, start=sent)
             sent += 50
-            told = talk.hear("status")
-            if told["seconds"] > 3.0 and any(one["per_s"] for one in told["senders"]):
+            message = talk.hear("status")
+            if message["seconds"] > 3.0 and any(one["per_s"] for one in message["senders"]):
                 break
-        found = [word.text for word in words(rig, {"status": told}, "")]
-        talk.say(do="stop")
+        found = [word.text for word in words(rig, {"status": message}, "")]
+        talk.send(do="stop")
         process.wait(20.0)
 
     assert any(
@@ -130,8 +130,8 @@ def test_every_datagram_is_in_the_file_with_sender_port_and_time(session):
     before_ns = time.time_ns()
     with recording(session) as (process, talk):
         send(session, 500)
-        talk.hear("status", lambda told: told["file"]["datagrams"] == 500)
-        talk.say(do="stop")
+        talk.hear("status", lambda message: message["file"]["datagrams"] == 500)
+        talk.send(do="stop")
         stopped = talk.hear("stopped")
         assert process.wait(20) == 0
 
@@ -148,11 +148,11 @@ def test_every_datagram_is_in_the_file_with_sender_port_and_time(session):
 def test_what_was_synced_survives_a_kill_and_opens_with_the_normal_reader(session):
     with recording(session) as (process, talk):
         send(session, 300)
-        told = talk.hear("status", lambda told: told["file"]["synced_bytes"] > 300 * 1206)
+        message = talk.hear("status", lambda message: message["file"]["synced_bytes"] > 300 * 1206)
         process.send_signal(signal.SIGKILL)
         process.wait(20)
 
-    assert session.capture.stat().st_size >= told["file"]["synced_bytes"]
+    assert session.capture.stat().st_size >= message["file"]["synced_bytes"]
     assert numbers(session.capture)[0] == list(range(300))
     assert not session.outcome.exists()
 
@@ -160,16 +160,16 @@ def test_what_was_synced_survives_a_kill_and_opens_with_the_normal_reader(sessio
 def test_a_pause_leaves_out_what_comes_and_says_how_much(session):
     with recording(session) as (process, talk):
         send(session, 10)
-        talk.hear("status", lambda told: told["file"]["datagrams"] == 10)
-        talk.say(do="pause")
-        talk.hear("mark", lambda told: told["what"] == "pause")
+        talk.hear("status", lambda message: message["file"]["datagrams"] == 10)
+        talk.send(do="pause")
+        talk.hear("mark", lambda message: message["what"] == "pause")
         send(session, 20, start=10)
-        talk.hear("status", lambda told: told["skipped_in_pauses"] == 20)
-        talk.say(do="resume")
-        talk.hear("mark", lambda told: told["what"] == "resume")
+        talk.hear("status", lambda message: message["skipped_in_pauses"] == 20)
+        talk.send(do="resume")
+        talk.hear("mark", lambda message: message["what"] == "resume")
         send(session, 5, start=30)
-        talk.hear("status", lambda told: told["file"]["datagrams"] == 15)
-        talk.say(do="stop")
+        talk.hear("status", lambda message: message["file"]["datagrams"] == 15)
+        talk.send(do="stop")
         process.wait(20)
 
     assert numbers(session.capture)[0] == [*range(10), *range(30, 35)]
@@ -178,7 +178,7 @@ def test_a_pause_leaves_out_what_comes_and_says_how_much(session):
 def test_a_mark_is_on_the_disk_before_it_is_confirmed(session):
     with recording(session) as (process, talk):
         said = {"what": "point", "text": "crack in the wall, 2. Stock", "who": "Eva"}
-        talk.say(do="mark", **said, ago_s=20.0)  # touched then, its note took so long
+        talk.send(do="mark", **said, ago_s=20.0)  # touched then, its note took so long
         talk.hear("mark")
         process.kill()
         process.wait(20)
@@ -192,7 +192,7 @@ def test_nonsense_on_the_socket_does_no_harm(session):
     with recording(session) as (process, talk):
         talk.socket.sendall(b'\xff\x00{"do": }\n[1, 2]\n{"do": "dance"}\n')
         send(session, 3)
-        talk.hear("status", lambda told: told["file"]["datagrams"] == 3)
+        talk.hear("status", lambda message: message["file"]["datagrams"] == 3)
         with Talk(session) as other:
             other.socket.sendall(b"x" * 100_000)  # no line end: let go, nobody else notices
         talk.hear("status")
@@ -202,7 +202,7 @@ def test_nonsense_on_the_socket_does_no_harm(session):
 def test_a_port_in_use_is_named_with_what_it_is_for(session):
     taken = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     taken.bind((session.address, 2368))
-    command = [sys.executable, "-m", "recon4.live.recorder", str(session.project)]
+    command = [sys.executable, "-m", "recon4.live.recorder.process", str(session.project)]
 
     done = subprocess.run(command, capture_output=True, text=True, timeout=60)
     taken.close()
@@ -215,7 +215,7 @@ def test_a_full_disk_stops_the_file_at_a_whole_record_and_is_said(tmp_path):
     code = """
 import resource, signal, sys, time
 from pathlib import Path
-from recon4.live.capture_file import CaptureFile, Datagram
+from recon4.live.recorder.capture_file import CaptureFile, Datagram
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
 file = CaptureFile(Path(sys.argv[1]), on_written=lambda size: None)
@@ -240,7 +240,7 @@ print(state.datagrams, state.dropped, state.problem)
 
 
 def test_too_much_waiting_for_the_disk_is_dropped_and_counted(tmp_path, monkeypatch):
-    monkeypatch.setattr("recon4.live.capture_file.MOST_WAITING_BYTES", 10_000)
+    monkeypatch.setattr("recon4.live.recorder.capture_file.MOST_WAITING_BYTES", 10_000)
     file = CaptureFile(tmp_path / "walk.pcap", on_written=lambda size: None)
 
     for _ in range(30):
@@ -276,7 +276,7 @@ def test_a_replay_comes_in_at_the_speed_it_was_recorded_with_its_samples(session
         began_s = time.monotonic()
         assert replay(source, progress=Silent(), target=session.address) == 700
         took_s = time.monotonic() - began_s
-        talk.say(do="stop")
+        talk.send(do="stop")
         process.wait(20)
 
     (batch,) = read_pcap(session.capture, ImportReport())
@@ -311,26 +311,26 @@ def test_a_kill_at_any_moment_loses_at_most_the_last_second(session, seed):
 def test_what_the_kernel_drops_is_counted(session):
     with recording(session) as (process, talk):
         send(session, 10)
-        talk.hear("status", lambda told: told["file"]["datagrams"] == 10)
+        talk.hear("status", lambda message: message["file"]["datagrams"] == 10)
         process.send_signal(signal.SIGSTOP)
         sent = 60_000
         send(session, sent, size=1206, start=10)
         process.send_signal(signal.SIGCONT)
-        talk.hear("status", lambda told: told["file"]["datagrams"] > 1000)
+        talk.hear("status", lambda message: message["file"]["datagrams"] > 1000)
         send(session, 5, start=10 + sent)  # the kernel tells with the next one
-        told = talk.hear("status", lambda told: told["kernel_drops"] > 0)
-        talk.say(do="stop")
-        told = talk.hear("stopped")
+        message = talk.hear("status", lambda message: message["kernel_drops"] > 0)
+        talk.send(do="stop")
+        message = talk.hear("stopped")
 
-    assert told["file"]["datagrams"] + told["kernel_drops"] == 10 + sent + 5
-    assert told["kernel_drops"] > 100
+    assert message["file"]["datagrams"] + message["kernel_drops"] == 10 + sent + 5
+    assert message["kernel_drops"] > 100
 
 
 def test_after_a_full_disk_recording_goes_on(tmp_path):
     code = """
 import resource, signal, sys, time
 from pathlib import Path
-from recon4.live.capture_file import CaptureFile, Datagram
+from recon4.live.recorder.capture_file import CaptureFile, Datagram
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 unlimited = resource.getrlimit(resource.RLIMIT_FSIZE)[1]
 file = CaptureFile(Path(sys.argv[1]), on_written=lambda size: None)
@@ -357,25 +357,25 @@ print(file.state().dropped, problems[5], "/", problems[15], "/", problems[-1])
 def test_on_a_full_disk_neither_marks_nor_pauses_end_the_recording(session):
     with recording(session) as (process, talk):
         send(session, 50)
-        talk.hear("status", lambda told: told["file"]["datagrams"] == 50)
+        talk.hear("status", lambda message: message["file"]["datagrams"] == 50)
         resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (10, resource.RLIM_INFINITY))
         send(session, 50, start=50)
-        full = talk.hear("status", lambda told: told["file"]["problem"])
-        talk.say(do="pause")
-        told = talk.hear("status", lambda told: told["notes"])
-        talk.say(do="resume")
-        talk.hear("status", lambda told: not told["paused"])
+        full = talk.hear("status", lambda message: message["file"]["problem"])
+        talk.send(do="pause")
+        message = talk.hear("status", lambda message: message["notes"])
+        talk.send(do="resume")
+        talk.hear("status", lambda message: not message["paused"])
         unlimited = (resource.RLIM_INFINITY, resource.RLIM_INFINITY)
         resource.prlimit(process.pid, resource.RLIMIT_FSIZE, unlimited)
         send(session, 5, start=100)
-        talk.hear("status", lambda told: told["file"]["datagrams"] == 55)
-        talk.say(do="mark", what="point", text="door")
-        talk.hear("mark", lambda told: told["text"] == "door")
-        talk.say(do="stop")
+        talk.hear("status", lambda message: message["file"]["datagrams"] == 55)
+        talk.send(do="mark", what="point", text="door")
+        talk.hear("mark", lambda message: message["text"] == "door")
+        talk.send(do="stop")
         stopped = talk.hear("stopped")
 
     rig = load_rig(session.rig)
-    said = {word.text for one in (full, told) for word in words(rig, {"status": one}, "")}
+    said = {word.text for one in (full, message) for word in words(rig, {"status": one}, "")}
     assert "Nothing is recorded: the disk is full" in said
     assert any(text.startswith("A mark could not be noted: ") for text in said)
     assert (stopped["file"]["dropped"], stopped["notes"]) == (50, "")
@@ -404,14 +404,14 @@ def test_sentences_of_a_serial_receiver_are_in_the_capture(session):
     )
     sentence = b"$GPGGA,120000.00,4912.0,N,01636.0,E,4,12,0.8,250.0,M,44.0,M,1.0,0001*7B"
     with recording(session) as (process, talk):
-        talk.hear("status", lambda told: told["serial"] == "")
+        talk.hear("status", lambda message: message["serial"] == "")
         os.write(ours, sentence[:30])
         os.write(ours, sentence[30:] + b"\r\n" + sentence + b"\r\n")
-        talk.hear("status", lambda told: told["file"]["datagrams"] == 2)
+        talk.hear("status", lambda message: message["file"]["datagrams"] == 2)
         os.close(ours)  # pulled out
         os.close(theirs)
-        talk.hear("status", lambda told: name in told["serial"])
-        talk.say(do="stop")
+        talk.hear("status", lambda message: name in message["serial"])
+        talk.send(do="stop")
         process.wait(20)
 
     (batch,) = read_pcap(session.capture, ImportReport())

@@ -10,8 +10,8 @@ from recon4.model.pose_graph import EdgeKind, Reason, Verdict
 from recon4.pose_graph.pairs import Pair, PairRegistrar
 from recon4.progress import Silent
 from recon4.registration.collar_lines import register_lines
-from recon4.registration.overlap import View, overlap
-from recon4.registration.submap import NodeViews, Submaps, median_range_m, node_rows
+from recon4.registration.overlap import RangeImage, overlap
+from recon4.registration.submap import NodeRangeImages, Submaps, median_range_m, node_rows
 from recon4.settings import Settings, override
 from tests.scanned_room import strolling, walk
 
@@ -26,7 +26,7 @@ def stroll():
 def registrar(stroll, *assignments, lost=NOTHING_LOST, trajectory=None):
     settings = override(Settings(), ["graph.workers=1", *assignments])
     rows = node_rows(stroll.t_mid_ns, settings.graph.node_stride, lost)
-    views = NodeViews(len(rows), settings, Path(gettempdir()))
+    views = NodeRangeImages(len(rows), settings, Path(gettempdir()))
     made = PairRegistrar(
         lambda: Submaps(stroll, trajectory or stroll.truth, rows, settings, skip=lost),
         views,
@@ -82,7 +82,7 @@ def test_the_limit_is_a_hundredth_of_the_median_range_and_five_centimeters(strol
     (["overlap.threshold=1.01"], None, Reason.OVERLAP),
     (["registration.max_iterations=2"], None, Reason.NOT_CONVERGED),
     (["graph.error_relative=0.0", "graph.error_absolute_m=0.001"], None, Reason.ERROR),
-    (["graph.min_share=1.01"], None, Reason.FEW_MATCHES),
+    (["graph.min_match_ratio=1.01"], None, Reason.FEW_MATCHES),
     (["graph.min_degeneracy=0.34"], None, Reason.DEGENERATE),
 ])  # fmt: skip
 def test_each_reason_to_turn_a_pair_down(stroll, assignments, wrong, reason):
@@ -112,9 +112,9 @@ def test_the_mode_of_overlap_counts(stroll):
     }
 
     submaps = Submaps(stroll, stroll.truth, np.array([2, 17]), Settings(), skip=NOTHING_LOST)
-    views = NodeViews(2, Settings(), Path(gettempdir()))
+    views = NodeRangeImages(2, Settings(), Path(gettempdir()))
     views.fill(submaps, [0, 1])
-    first, second = (View(views.ends(k).reshape(-1, 3), views.nearest_m(k)) for k in (0, 1))
+    first, second = (RangeImage(views.ends(k).reshape(-1, 3), views.nearest_m(k)) for k in (0, 1))
     asked = true_motion(stroll, 0, 3) @ wrong
     assert found["target"] == overlap(first, second, asked, Settings().overlap)
     assert found["target"] != found["source"]
@@ -276,7 +276,7 @@ def test_a_submap_at_the_start_takes_what_there_is(stroll):
 
 def test_nodes_keep_at_most_so_many_segments_spread_over_all(stroll, tmp_path):
     settings = override(Settings(), ["graph.source_segments=500"])
-    views = NodeViews(1, settings, tmp_path)
+    views = NodeRangeImages(1, settings, tmp_path)
     views.fill(Submaps(stroll, stroll.truth, np.array([10]), settings, skip=NOTHING_LOST), [0])
 
     ends = views.ends(0)

@@ -22,7 +22,7 @@ from recon4.pose_graph.search import build_graph, odometry_edges, search
 from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
 from recon4.registration.stage import run_odometry
-from recon4.registration.submap import NodeViews, node_rows
+from recon4.registration.submap import NodeRangeImages, node_rows
 from recon4.semi_rigid.refine import refine
 from recon4.settings import (
     GraphSettings,
@@ -176,7 +176,7 @@ def test_revisits_are_near_in_space_but_not_in_time():
         assert pair.kind is EdgeKind.LOOP
         assert pair.j - pair.i > settings.neighbors
         distance_m = np.linalg.norm(graph.T_map_body.t[pair.i] - graph.T_map_body.t[pair.j])
-        assert distance_m <= settings.revisit_radius_m + settings.drift_share * 63 * 2
+        assert distance_m <= settings.revisit_radius_m + settings.drift_ratio * 63 * 2
     assert (0, 40) in ends(pairs)
 
 
@@ -232,7 +232,7 @@ def test_drift_not_yet_closed_is_allowed_for():
     t_m[400:, 1] = np.linspace(0, 7, 400)
 
     tolerant = revisit_pairs(graph_at(t_m), settings=GraphSettings(), limit=2)
-    strict = revisit_pairs(graph_at(t_m), settings=GraphSettings(drift_share=0.0), limit=2)
+    strict = revisit_pairs(graph_at(t_m), settings=GraphSettings(drift_ratio=0.0), limit=2)
 
     assert 799 in [j for _, j in ends(tolerant)]
     assert 799 not in [j for _, j in ends(strict)]
@@ -493,7 +493,7 @@ def test_a_full_disk_is_told_before_the_search_begins(tmp_path):
     resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, before[1]))
     try:
         with pytest.raises(OSError, match=r"too large|No space") as caught:
-            NodeViews(50, Settings(), tmp_path)
+            NodeRangeImages(50, Settings(), tmp_path)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
 

@@ -7,7 +7,7 @@ from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict, relations_of
 from recon4.pose_graph.paths import PathIndex
 from recon4.pose_graph.solve import optimize
-from recon4.pose_graph.verification import confirmed_anew, verify
+from recon4.pose_graph.verification import confirmed_again, verify
 from recon4.settings import VerificationSettings
 from tests.benchmarks.false_loops import inject_random, inject_shifted, office_graph
 
@@ -258,11 +258,11 @@ def test_who_lost_the_last_path_that_confirmed_it_is_unverified() -> None:
     edges = list(graph.edges)
     edges[6] = edges[6].evolve(verdict=Verdict.REJECTED, reason=Reason.ROBUST)
 
-    one_gone = confirmed_anew(graph.with_edges(tuple(edges)), settings=PATHS_ONLY).edges
+    one_gone = confirmed_again(graph.with_edges(tuple(edges)), settings=PATHS_ONLY).edges
     edges[7] = edges[7].evolve(verdict=Verdict.REJECTED, reason=Reason.ROBUST)
-    both_gone = confirmed_anew(graph.with_edges(tuple(edges)), settings=PATHS_ONLY).edges
+    both_gone = confirmed_again(graph.with_edges(tuple(edges)), settings=PATHS_ONLY).edges
     edges[5] = edges[5].evolve(decided_by="Ada")
-    decided = confirmed_anew(graph.with_edges(tuple(edges)), settings=PATHS_ONLY).edges
+    decided = confirmed_again(graph.with_edges(tuple(edges)), settings=PATHS_ONLY).edges
 
     # (0, 4) is confirmed by (0, 2, 4), (0, 1, 2, 4) and (0, 2, 3, 4).
     assert (graph.edges[5].paths, one_gone[5].paths, both_gone[5].paths) == (3, 1, 0)

@@ -8,10 +8,10 @@ import pytest
 
 from recon4.errors import ConfigError
 from recon4.model.rig import load_rig
-from recon4.recording.assemble import Assembler, drop_invalid, moved
+from recon4.recording.assembly.assembler import Assembler, drop_invalid, moved
+from recon4.recording.assembly.rotation import nominal, rotation_rate
+from recon4.recording.assembly.shots import Shots
 from recon4.recording.report import ImportReport
-from recon4.recording.rotation import nominal, rotation_rate
-from recon4.recording.shots import Shots
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, spin
 

@@ -13,11 +13,11 @@ from rosbags.rosbag1 import Reader as Reader1
 from rosbags.rosbag2 import Reader as Reader2
 
 from recon4.errors import CorruptFile, NoSpace
-from recon4.recording import scratch
-from recon4.recording.bags import Bag
-from recon4.recording.chunks import ChunkMessages, ChunkRef, ChunkStream, Directory, Topic
+from recon4.recording.formats import scratch
+from recon4.recording.formats.bags import Bag
+from recon4.recording.formats.chunks import ChunkMessages, ChunkRef, ChunkStream, Directory, Topic
+from recon4.recording.formats.limits import decompress
 from recon4.recording.info import describe
-from recon4.recording.limits import decompress
 from recon4.recording.report import MAX_TEXTS, ImportReport
 from tests.builders import bag_path, storage_file, write_room_bag
 from tests.security.fuzz.seeds_recordings import SEEDS
@@ -181,7 +181,7 @@ def test_a_killed_readers_copy_is_swept_by_the_next_and_a_living_ones_is_kept(tm
     path, plain = compressed_bag(tmp_path)
     script = (
         "import sys, tempfile; from pathlib import Path; tempfile.tempdir = sys.argv[2]\n"
-        "from recon4.recording.bags import Bag\n"
+        "from recon4.recording.formats.bags import Bag\n"
         "from recon4.recording.report import ImportReport\n"
         "with Bag([Path(sys.argv[1])], ImportReport()):\n"
         "    print('open', flush=True); sys.stdin.read()\n"

@@ -9,10 +9,10 @@ from recon4.errors import ConfigError, CorruptFile, EmptyRecording, RecordingErr
 from recon4.model.rig import load_rig
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory
+from recon4.recording.assembly.shots import Shots
 from recon4.recording.bag_recording import BagRecording
-from recon4.recording.bags import CLOUD, SCAN, Bag
+from recon4.recording.formats.bags import CLOUD, SCAN, Bag
 from recon4.recording.report import ImportReport
-from recon4.recording.shots import Shots
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, bag_path, room_cloud, room_packets, storage_file, write_room_bag
 from tests.builders import Bag as BagFile

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from recon4.errors import CorruptFile, RecordingError, UnknownFormat
 from recon4.kernels.lzf import lzf_decompress
-from recon4.recording.cloud_files import cloud_fields, is_cloud_file, read_cloud
+from recon4.recording.formats.cloud_files import cloud_fields, is_cloud_file, read_cloud
 from tests.builders import room_cloud, write_bin, write_pcd, write_ply
 
 WRITERS = {

@@ -6,8 +6,8 @@ from operator import xor
 import numpy as np
 import pytest
 
-from recon4.recording.datagram_samples import SampleDecoder
 from recon4.recording.report import ImportReport
+from recon4.recording.samples.datagrams import SampleDecoder
 
 NOON_NS = 1_790_000_000_000_000_000 // 86_400_000_000_000 * 86_400_000_000_000 + 43_200 * 10**9
 _GGA = b"GPGGA,120000.00,4912.0,N,01636.0,E,4,12,0.8,250.0,M,44.0,M,1.0,0001"

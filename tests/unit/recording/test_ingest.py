@@ -10,12 +10,12 @@ from hypothesis import strategies as st
 from recon4.errors import ConfigError, CorruptFile, EmptyRecording, RecordingError, UnknownFormat
 from recon4.model.rig import load_rig
 from recon4.progress import Silent
-from recon4.recording.csv_samples import GNSS_HEADER, IMU_HEADER
 from recon4.recording.folders import name_time_ns, natural
+from recon4.recording.formats.poses import read_tum
 from recon4.recording.info import describe
 from recon4.recording.ingest import ingest
-from recon4.recording.open import Kind, recognize
-from recon4.recording.poses import read_tum
+from recon4.recording.open import RecordingKind, recognize
+from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
 from recon4.settings import IngestSettings
 from recon4.store.frames import FrameStore
 from tests.builders import (
@@ -379,7 +379,7 @@ def test_info_of_frames_names_fields(tmp_path):
 def test_info_of_samples(tmp_path):
     info = describe(imu_csv(tmp_path / "imu.csv"))
 
-    assert info.kind == Kind.IMU_CSV
+    assert info.kind == RecordingKind.IMU_CSV
     assert info.samples == ("100 IMU samples, 100.0 a second",)
 
 
@@ -387,7 +387,7 @@ def test_poses_are_recognized_and_are_no_recording(tmp_path):
     path = tmp_path / "t.txt"
     path.write_text("1.0 0 0 0 0 0 0 1\n")
 
-    assert recognize(path) is Kind.POSES
+    assert recognize(path) is RecordingKind.POSES
     with pytest.raises(UnknownFormat, match="alone is no recording"):
         run(path, out=tmp_path / "o")
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from recon4.errors import EmptyRecording, UnknownFormat
-from recon4.recording.pcap import address_text, is_pcap, read_pcap
+from recon4.recording.formats.pcap import address_text, is_pcap, read_pcap
 from recon4.recording.report import ImportReport
-from recon4.recording.velodyne_encode import PcapWriter
+from recon4.recording.velodyne.encode import PcapWriter
 from tests.unit.recording.packet_builders import spin
 
 SECONDS, NANOSECONDS = 1_700_000_000, 123_456_789

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from recon4.errors import ConfigError, EmptyRecording
-from recon4.recording.packet_streams import scan_pcap
+from recon4.recording.assembly.shots import Shots
 from recon4.recording.report import ImportReport
-from recon4.recording.shots import Shots
-from recon4.recording.velodyne_encode import PcapWriter, encode_position, rmc_sentence
-from recon4.recording.velodyne_pcap import VelodynePcap
+from recon4.recording.velodyne.capture import VelodynePcap
+from recon4.recording.velodyne.encode import PcapWriter, encode_position, rmc_sentence
+from recon4.recording.velodyne.streams import scan_pcap
 from tests.unit.recording.packet_builders import LATENCY_NS, T0_NS, WIDE, rig, sensor, spin
 
 FIRST, SECOND = "192.168.1.201", "192.168.1.202"

@@ -7,10 +7,10 @@ from recon4.errors import ConfigError, CorruptFile, EmptyRecording, UnknownForma
 from recon4.geometry.se3 import SE3
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory
-from recon4.recording.csv_samples import GNSS_HEADER, IMU_HEADER, read_gnss_csv, read_imu_csv
-from recon4.recording.poses import pose_format, read_kitti, read_tum, write_kitti, write_tum
+from recon4.recording.formats.poses import pose_format, read_kitti, read_tum, write_kitti, write_tum
 from recon4.recording.report import ImportReport
-from recon4.recording.samples import clean_gnss, clean_imu, gather, join
+from recon4.recording.samples.clean import clean_gnss, clean_imu, gather, join
+from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER, read_gnss_csv, read_imu_csv
 
 T0 = 1_700_000_000_123_456_789
 HEADER = ",".join(IMU_HEADER)

@@ -5,9 +5,9 @@ import pytest
 
 from recon4.errors import ConfigError
 from recon4.recording.report import ImportReport
-from recon4.recording.velodyne import PacketDecoder, decode_packets
-from recon4.recording.velodyne_encode import encode_packets, encode_vlp16
-from recon4.recording.velodyne_models import DUAL, MODELS, STRONGEST
+from recon4.recording.velodyne.data_packets import PacketDecoder, decode_packets
+from recon4.recording.velodyne.encode import encode_packets, encode_vlp16
+from recon4.recording.velodyne.models import DUAL, MODELS, STRONGEST
 from recon4.settings import IngestSettings
 from tests.unit.recording.packet_builders import LATENCY_NS, T0_NS, WIDE, decode_all, sensor, spin
 

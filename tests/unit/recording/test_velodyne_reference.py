@@ -22,14 +22,14 @@ from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from scipy.spatial import cKDTree
 
-from recon4.recording.packets import as_packets
-from recon4.recording.pcap import read_pcap
+from recon4.recording.assembly.shots import Shots
+from recon4.recording.formats.pcap import read_pcap
 from recon4.recording.report import ImportReport
-from recon4.recording.samples import join
-from recon4.recording.shots import Shots
-from recon4.recording.velodyne import PacketDecoder, decode_packets
-from recon4.recording.velodyne_models import DATA_SIZE, DUAL, MODELS, velodyne_model
-from recon4.recording.velodyne_pcap import VelodynePcap
+from recon4.recording.samples.clean import join
+from recon4.recording.velodyne.capture import VelodynePcap
+from recon4.recording.velodyne.data_packets import PacketDecoder, decode_packets
+from recon4.recording.velodyne.models import DATA_SIZE, DUAL, MODELS, velodyne_model
+from recon4.recording.velodyne.packet_filter import as_packets
 from tests.unit.recording.packet_builders import WIDE, rig, sensor
 
 PCD_VLP16 = np.dtype(

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from recon4.registration.degeneracy import held_directions
+from recon4.registration.degeneracy import observable_directions
 from recon4.registration.plane_map import Match
 
 NOISE_RAD = 0.05
@@ -29,7 +29,7 @@ def around(directions, *, off_rad=0.0, seed=2):
 def test_flat_ground_with_noisy_normals_holds_nothing_sideways():
     found = match_of(around([[0, 0, 1]], off_rad=0.02))
 
-    H, _ = held_directions(found, NOISE_RAD)
+    H, _ = observable_directions(found, NOISE_RAD)
 
     assert found.H[3, 3] > 0.1
     np.testing.assert_allclose(H[[3, 4], [3, 4]], 0.0, atol=0.02 * found.H[3, 3])
@@ -39,7 +39,7 @@ def test_flat_ground_with_noisy_normals_holds_nothing_sideways():
 def test_a_room_is_left_nearly_as_it_is():
     found = match_of(around(np.eye(3)))
 
-    H, g = held_directions(found, NOISE_RAD)
+    H, g = observable_directions(found, NOISE_RAD)
 
     np.testing.assert_allclose(np.diag(H), np.diag(found.H), rtol=0.02)
     np.testing.assert_allclose(g, found.g, atol=0.02 * np.abs(found.g).max())
@@ -48,7 +48,7 @@ def test_a_room_is_left_nearly_as_it_is():
 def test_a_direction_held_in_part_keeps_its_step_with_less_weight():
     found = match_of(around([[0, 0, 1], [0, 1, 0], [0.1, 0, 1]], off_rad=0.01))
 
-    H, g = held_directions(found, 0.02)
+    H, g = observable_directions(found, 0.02)
 
     assert H[3, 3] < 0.97 * found.H[3, 3]
     np.testing.assert_allclose(
@@ -59,7 +59,7 @@ def test_a_direction_held_in_part_keeps_its_step_with_less_weight():
 def test_without_a_match_nothing_is_taken_away():
     nothing = match_of(np.empty((0, 3)))
 
-    H, g = held_directions(nothing, NOISE_RAD)
+    H, g = observable_directions(nothing, NOISE_RAD)
 
     assert not H.any()
     assert not g.any()

@@ -8,7 +8,7 @@ import pytest
 from recon4.model.samples import ImuSamples
 from recon4.progress import Silent
 from recon4.recording.ingest import ingest
-from recon4.registration.imu_trial import believable_imu
+from recon4.registration.imu_consistency import consistent_imu
 from recon4.settings import OdometrySettings, preset
 from recon4.simulation.simulate import simulate
 from recon4.store.frames import FrameStore
@@ -48,7 +48,7 @@ def altered(frames, turn=lambda gyro: gyro, late_ns=0, force=1.0):
 
 
 def test_an_imu_that_agrees_is_taken_as_it_is(frames):
-    imu, remark = believable_imu(frames, SETTINGS)
+    imu, remark = consistent_imu(frames, SETTINGS)
 
     assert imu is frames.imu
     assert remark == ""
@@ -58,7 +58,7 @@ def test_the_zero_of_a_gyroscope_is_taken_off(frames):
     zero_rad_s = np.deg2rad([20.0, -5.0, -30.0])
     walk = Walk(frames, altered(frames, lambda gyro: gyro + zero_rad_s))
 
-    imu, remark = believable_imu(walk, SETTINGS)
+    imu, remark = consistent_imu(walk, SETTINGS)
 
     assert np.allclose(imu.gyro_rad_s, frames.imu.gyro_rad_s, atol=np.deg2rad(1.0))
     assert "zero" in remark
@@ -75,7 +75,7 @@ def test_the_zero_of_a_gyroscope_is_taken_off(frames):
     ids=["an axis the wrong way", "a wrong unit", "a late clock", "forces upside down"],
 )
 def test_an_imu_that_contradicts_the_lidars_is_not_used(frames, fault):
-    imu, remark = believable_imu(Walk(frames, altered(frames, **fault)), SETTINGS)
+    imu, remark = consistent_imu(Walk(frames, altered(frames, **fault)), SETTINGS)
 
     assert imu is None
     assert "contradicts the LiDARs" in remark
@@ -84,8 +84,8 @@ def test_an_imu_that_contradicts_the_lidars_is_not_used(frames, fault):
 def test_without_an_imu_or_the_wish_to_use_it_nothing_is_tried(frames):
     never = replace(SETTINGS, odometry=OdometrySettings(use_imu=False))
 
-    assert believable_imu(Walk(frames, None), SETTINGS) == (None, "")
-    assert believable_imu(frames, never) == (frames.imu, "")
+    assert consistent_imu(Walk(frames, None), SETTINGS) == (None, "")
+    assert consistent_imu(frames, never) == (frames.imu, "")
 
 
 def test_one_multiframe_is_enough(frames):
@@ -93,7 +93,7 @@ def test_one_multiframe_is_enough(frames):
         def __len__(self):
             return 1
 
-    imu, remark = believable_imu(Single(frames, frames.imu), SETTINGS)
+    imu, remark = consistent_imu(Single(frames, frames.imu), SETTINGS)
 
     assert imu is frames.imu
     assert remark == ""

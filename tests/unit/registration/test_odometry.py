@@ -6,11 +6,11 @@ import pytest
 from recon4.geometry.se3 import SE3, align_points
 from recon4.model.samples import ImuSamples
 from recon4.progress import Silent
-from recon4.recording.poses import read_tum
+from recon4.recording.formats.poses import read_tum
 from recon4.registration.line_odometry import LineOdometry, averaged
+from recon4.registration.make import make_odometry
 from recon4.registration.odometry import Odometry
 from recon4.registration.result import Registration, StopReason
-from recon4.registration.select import make_odometry
 from recon4.registration.stage import dense_trajectory, run_odometry
 from recon4.settings import Settings, override, preset
 from recon4.store.arrays import load_arrays, load_trajectory
@@ -18,8 +18,8 @@ from tests.room_walks import FRAME_NS, T0_NS
 from tests.scanned_room import RIG, noise_frame, scan, standing, strolling, walk, without_points
 
 STEPS = (
-    "frame_id", "t_mid_ns", "quat_xyzw", "t_m", "error_m", "share", "rounds", "converged",
-    "degeneracy", "gap_m", "lost",
+    "frame_id", "t_mid_ns", "quat_xyzw", "t_m", "error_m", "match_ratio", "rounds", "converged",
+    "degeneracy", "prediction_offset_m", "lost",
 )  # fmt: skip
 
 
@@ -127,8 +127,8 @@ def test_with_an_imu_a_new_map_is_begun_in_an_unknown_place(stroll):
     steps = push_all(Odometry(stroll.rig, settings, stroll.imu), frames)
 
     assert [k for k, step in enumerate(steps) if step.lost] == [4, 5, 6]
-    assert steps[7].share == 0.0  # held against an empty map
-    assert steps[8].share > 0.4
+    assert steps[7].match_ratio == 0.0  # held against an empty map
+    assert steps[8].match_ratio > 0.4
 
 
 def test_frames_one_by_one_and_the_stage_are_one_code(stroll, tmp_path):
@@ -174,7 +174,7 @@ def test_an_empty_frame_is_lost_and_tracking_goes_on(stroll):
 
     assert [k for k, step in enumerate(steps) if step.lost] == [7]
     assert np.isnan(steps[7].error_m)
-    assert steps[7].share == 0.0
+    assert steps[7].match_ratio == 0.0
     assert worst_from_start(poses(steps), stroll.true_poses()) < 0.03
 
 
@@ -210,7 +210,7 @@ def test_how_far_the_points_moved_the_prediction_is_told(stroll):
     good = push_all(Odometry(stroll.rig, Settings(), stroll.imu), stroll)
     bad = push_all(Odometry(stroll.rig, Settings(), biased), stroll)
 
-    assert bad[2].gap_m >= 0.0
+    assert bad[2].prediction_offset_m >= 0.0
     assert worst_from_start(poses(bad), stroll.true_poses()) < 0.03
     assert all(step.degeneracy > 0.05 for step in good[1:])
 
@@ -256,7 +256,7 @@ def test_lines_bridge_a_gap_at_the_speed_they_had():
     steps = push_all(LineOdometry(recording.rig, settings), [*recording[:5], *recording[7:]])
 
     # Three times as far as in a frame before, and no farther than that in the next one.
-    assert max(step.gap_m for step in steps[4:]) < 0.01
+    assert max(step.prediction_offset_m for step in steps[4:]) < 0.01
     assert not any(step.lost for step in steps)
 
 
@@ -267,7 +267,7 @@ def test_lines_keep_the_matches_that_overlap_and_not_a_fixed_half():
     steps = push_all(LineOdometry(RIG, settings), frames)
 
     # What is left out of the view volume lies in bins with fewer than five points.
-    assert 0.6 < steps[1].share < 1.0
+    assert 0.6 < steps[1].match_ratio < 1.0
 
 
 def test_the_poses_against_a_history_are_averaged_over_those_that_converged():
@@ -305,7 +305,7 @@ def test_an_empty_first_frame_does_not_blind_the_lines():
     steps = push_all(LineOdometry(RIG, settings), frames)
 
     assert not any(step.lost for step in steps)
-    assert steps[3].share > 0.3
+    assert steps[3].match_ratio > 0.3
 
 
 def test_an_empty_frame_is_lost_to_the_lines_too():
@@ -364,7 +364,7 @@ def test_a_hole_of_the_imu_is_no_free_fall(stroll):
     steps = push_all(Odometry(stroll.rig, Settings(), imu), stroll)
 
     # How fast the body moves at first is not known with or without a hole.
-    assert max(step.gap_m for step in steps[2:]) < 0.03
+    assert max(step.prediction_offset_m for step in steps[2:]) < 0.03
     assert worst_from_start(poses(steps), stroll.true_poses()) < 0.03
 
 

@@ -48,7 +48,7 @@ def test_distance_from_an_exact_plane(normal):
     assert found.mean() > 0.9
     np.testing.assert_allclose(np.abs(match.residual_m[found]), 0.03, atol=1e-6)
     assert match.mean_m == pytest.approx(0.03, abs=1e-6)
-    assert match.share == found.mean()
+    assert match.match_ratio == found.mean()
 
 
 def test_the_normal_equations_move_the_points_onto_the_plane():
@@ -136,8 +136,8 @@ def test_growing_keeps_everything():
     one, other = hold(all_at_once, asked), hold(few, asked)
 
     # What was there before the tables grew is still there.
-    assert hold(all_at_once, early).share > 0.9
-    assert one.share > 0.99
+    assert hold(all_at_once, early).match_ratio > 0.9
+    assert one.match_ratio > 0.99
     np.testing.assert_array_equal(one.residual_m, other.residual_m)
     np.testing.assert_allclose(one.residual_m[np.isfinite(one.residual_m)], 0.02, atol=1e-6)
 
@@ -149,7 +149,7 @@ def test_a_cube_with_one_point_outlives_the_growing_of_the_tables():
 
     planes = made_of(few[:1], floor, few[1:])
 
-    assert hold(planes, few).share == 1.0
+    assert hold(planes, few).match_ratio == 1.0
 
 
 def test_a_map_that_moves_along_for_long_does_not_fill_up():
@@ -187,7 +187,7 @@ def test_points_beyond_the_gate_do_not_match():
     planes = made_of(patch((0, 0, 1), 0.05))
     asked = patch((0, 0, 1), 0.15, count=300, extent_m=1.0, seed=2)
 
-    assert hold(planes, asked, gate_m=0.11).share > 0.9
+    assert hold(planes, asked, gate_m=0.11).match_ratio > 0.9
     assert hold(planes, asked, gate_m=0.09).matches == 0
 
 
@@ -255,5 +255,5 @@ def test_a_map_of_a_moved_world_says_nearly_the_same():
 
     moved = hold(made_of(T @ points), T @ asked, center=T.t)
 
-    assert moved.share > 0.8
+    assert moved.match_ratio > 0.8
     assert moved.mean_m == pytest.approx(0.03, abs=1e-6)

@@ -49,24 +49,24 @@ def source_ends():
     return ends_of(T_TRUE, first_id=20, frames=2)
 
 
-def register(solver, target, source, guess, **changes):
+def register(solver, target, source, initial, **changes):
     settings = settings_of(solver, **changes)
     if solver == "planes":
         planes = PlaneMap(PLANES)
         planes.add(np.ascontiguousarray(target.reshape(-1, 3)))
         return register_to_planes(
-            planes, source.reshape(-1, 3), guess=guess, planes=PLANES, settings=settings
+            planes, source.reshape(-1, 3), initial=initial, planes=PLANES, settings=settings
         )
     return register_lines(
         LineTarget(Lines.through(target[:, 0], target[:, 1])),
         Lines.through(source[:, 0], source[:, 1]),
-        guess=guess,
+        initial=initial,
         portion=0.7,
         settings=settings,
     )
 
 
-def gap_m(T_a_b, T_other):
+def prediction_offset_m(T_a_b, T_other):
     """How far apart two poses put a point 5 m away."""
     delta = T_a_b.inverse() @ T_other
     return np.linalg.norm(delta.t) + 5 * delta.angle()
@@ -77,8 +77,8 @@ def test_a_known_motion_is_recovered(solver, target_ends, source_ends):
     found = register(solver, target_ends, source_ends, SE3.identity())
 
     assert found.converged, found.stop
-    assert gap_m(found.T_target_source, T_TRUE) < 2 * TOLERANCE_M[solver]
-    assert found.share > 0.6
+    assert prediction_offset_m(found.T_target_source, T_TRUE) < 2 * TOLERANCE_M[solver]
+    assert found.match_ratio > 0.6
     assert found.degeneracy > 0.02
 
 
@@ -88,7 +88,7 @@ def test_forward_and_backward_are_inverse(solver, target_ends, source_ends):
     backward = register(solver, source_ends, target_ends, SE3.identity())
 
     around = forward.T_target_source @ backward.T_target_source
-    assert gap_m(around, SE3.identity()) < 4 * TOLERANCE_M[solver]
+    assert prediction_offset_m(around, SE3.identity()) < 4 * TOLERANCE_M[solver]
 
 
 @pytest.mark.parametrize("solver", ["common_normal", "svd"])
@@ -101,7 +101,7 @@ def test_registration_of_lines_does_not_depend_on_where_the_world_is(
     here = register(solver, target_ends, source_ends, SE3.identity())
     there = register(solver, moved_ends, source_ends, W)
 
-    assert gap_m(W.inverse() @ there.T_target_source, here.T_target_source) < 1e-3
+    assert prediction_offset_m(W.inverse() @ there.T_target_source, here.T_target_source) < 1e-3
 
 
 def test_registration_to_planes_hardly_depends_on_where_the_world_is(target_ends, source_ends):
@@ -111,7 +111,9 @@ def test_registration_to_planes_hardly_depends_on_where_the_world_is(target_ends
 
     there = register("planes", moved_ends, source_ends, W)
 
-    assert gap_m(W.inverse() @ there.T_target_source, T_TRUE) < 4 * TOLERANCE_M["planes"]
+    assert (
+        prediction_offset_m(W.inverse() @ there.T_target_source, T_TRUE) < 4 * TOLERANCE_M["planes"]
+    )
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
@@ -123,7 +125,10 @@ def test_a_shifted_source_gives_the_shifted_motion(solver, target_ends, source_e
     moved = register(solver, target_ends, shifted, S)
 
     # Rotation is about another point then, so the steps are not the same bit for bit.
-    assert gap_m(moved.T_target_source @ S.inverse(), plain.T_target_source) < TOLERANCE_M[solver]
+    assert (
+        prediction_offset_m(moved.T_target_source @ S.inverse(), plain.T_target_source)
+        < TOLERANCE_M[solver]
+    )
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
@@ -147,7 +152,7 @@ def test_the_limit_of_rounds_is_not_convergence(solver, target_ends, source_ends
         found = register_to_planes(
             planes,
             source_ends.reshape(-1, 3),
-            guess=SE3.identity(),
+            initial=SE3.identity(),
             planes=PLANES,
             settings=settings,
         )
@@ -156,7 +161,7 @@ def test_the_limit_of_rounds_is_not_convergence(solver, target_ends, source_ends
         found = register_lines(
             LineTarget(lines),
             Lines.through(source_ends[:, 0], source_ends[:, 1]),
-            guess=SE3.identity(),
+            initial=SE3.identity(),
             portion=0.7,
             settings=settings,
         )
@@ -184,7 +189,7 @@ def test_large_cubes_and_a_wide_gate_come_first_and_the_narrow_gate_has_its_turn
     planes.add(np.ascontiguousarray(target_ends.reshape(-1, 3)))
 
     found = register_to_planes(
-        planes, target_ends.reshape(-1, 3), guess=SE3.identity(), planes=PLANES,
+        planes, target_ends.reshape(-1, 3), initial=SE3.identity(), planes=PLANES,
         settings=settings_of("planes"),
     )  # fmt: skip
 
@@ -215,11 +220,11 @@ def test_the_error_counts_what_lies_too_far_off_to_register_but_not_what_is_else
     )
 
     found = register_to_planes(
-        planes, np.concatenate([there, before, elsewhere]), guess=SE3.identity(), planes=PLANES,
+        planes, np.concatenate([there, before, elsewhere]), initial=SE3.identity(), planes=PLANES,
         settings=settings_of("planes"),
     )  # fmt: skip
 
-    assert gap_m(found.T_target_source, SE3.identity()) < 0.02
+    assert prediction_offset_m(found.T_target_source, SE3.identity()) < 0.02
     # A third of what counts lies 0.3 m off; the tenth that lies 0.9 m off would make it 0.18.
     assert found.error_m == pytest.approx(0.1, abs=0.03)
 
@@ -243,11 +248,11 @@ def test_parallel_lines_only_give_no_motion():
     target = LineTarget(lines)
 
     found = register_lines(
-        target, lines, guess=SE3.identity(), portion=1.0, settings=settings_of("svd")
+        target, lines, initial=SE3.identity(), portion=1.0, settings=settings_of("svd")
     )
 
     assert not found.converged
-    assert gap_m(found.T_target_source, SE3.identity()) == 0.0
+    assert prediction_offset_m(found.T_target_source, SE3.identity()) == 0.0
 
 
 def test_things_that_moved_hardly_count_along_common_normals(target_ends, source_ends):
@@ -258,8 +263,8 @@ def test_things_that_moved_hardly_count_along_common_normals(target_ends, source
     plain = register("common_normal", target_ends, moved, T_TRUE, kernel_m=100.0)
 
     assert found.converged
-    assert gap_m(found.T_target_source, T_TRUE) < 0.04
-    assert gap_m(plain.T_target_source, T_TRUE) > 0.08
+    assert prediction_offset_m(found.T_target_source, T_TRUE) < 0.04
+    assert prediction_offset_m(plain.T_target_source, T_TRUE) > 0.08
 
 
 def test_portion_is_the_share_of_lines_kept(target_ends, source_ends):
@@ -267,10 +272,10 @@ def test_portion_is_the_share_of_lines_kept(target_ends, source_ends):
     target = LineTarget(Lines.through(target_ends[:, 0], target_ends[:, 1]))
 
     found = register_lines(
-        target, lines, guess=T_TRUE, portion=0.3, settings=settings_of("svd", error_window=1)
+        target, lines, initial=T_TRUE, portion=0.3, settings=settings_of("svd", error_window=1)
     )
 
-    assert found.share == pytest.approx(0.3, abs=1e-3)
+    assert found.match_ratio == pytest.approx(0.3, abs=1e-3)
 
 
 # -- segments in a moving frame

@@ -83,7 +83,7 @@ def test_normal_equations_of_one_match_worked_out_by_hand():
 def test_another_sampling_of_the_room_is_brought_onto_it():
     T_true = SE3.from_rpy(0.02, -0.03, 0.15, [0.4, -0.2, 0.1])
 
-    found = register_scans(scan(), scan(T_true, seed=2), guess=SE3.identity(), settings=SCANS)
+    found = register_scans(scan(), scan(T_true, seed=2), initial=SE3.identity(), settings=SCANS)
 
     assert found.converged
     assert apart(found.T_target_source, T_true) < 0.03
@@ -93,8 +93,8 @@ def test_exchanging_the_scans_gives_the_inverse():
     T_true = SE3.from_rpy(0.0, 0.02, 0.1, [0.3, 0.1, 0.0])
     a, b = scan(), scan(T_true, seed=2)
 
-    there = register_scans(a, b, guess=SE3.identity(), settings=SCANS)
-    back = register_scans(b, a, guess=SE3.identity(), settings=SCANS)
+    there = register_scans(a, b, initial=SE3.identity(), settings=SCANS)
+    back = register_scans(b, a, initial=SE3.identity(), settings=SCANS)
 
     assert apart(back.T_target_source, there.T_target_source.inverse()) < 0.02
 
@@ -104,10 +104,10 @@ def test_a_turn_no_descent_bridges_is_found_from_above():
     a, b = scan(), scan(T_true, seed=2)
 
     # A room is nearly its own mirror image: without this the wrong half turn would pass as good.
-    doubtful = dataclasses.replace(SCANS, sure_share=0.99)
+    doubtful = dataclasses.replace(SCANS, confident_inlier_ratio=0.99)
 
     starts = overlay_plans(a, b, count=3, height_m=0.0)
-    found = search_scans(a, b, guess=SE3.identity(), settings=doubtful)
+    found = search_scans(a, b, initial=SE3.identity(), settings=doubtful)
 
     assert min(apart(start, T_true) for start in starts) < 1.0
     assert found.converged
@@ -118,7 +118,7 @@ def test_a_flat_floor_alone_lets_slide():
     floor = np.column_stack([np.random.default_rng(5).uniform(-5, 5, (6000, 2)), np.zeros(6000)])
 
     found = register_scans(
-        make_scan(floor, SCANS), make_scan(floor, SCANS), guess=SE3.identity(), settings=SCANS
+        make_scan(floor, SCANS), make_scan(floor, SCANS), initial=SE3.identity(), settings=SCANS
     )
 
     assert found.degeneracy < 1e-3
@@ -128,7 +128,7 @@ def test_a_flat_floor_alone_lets_slide():
 def test_too_few_points_are_an_outcome(count):
     few = make_scan(room()[:count], SCANS)
 
-    found = search_scans(scan(), few, guess=SE3.identity(), settings=SCANS)
+    found = search_scans(scan(), few, initial=SE3.identity(), settings=SCANS)
 
     assert found.stop == StopReason.TOO_FEW
     assert not found.converged
@@ -143,9 +143,9 @@ def test_points_that_are_not_numbers_are_left_out():
 
 
 def test_a_match_below_the_least_share_has_not_converged():
-    strict = dataclasses.replace(SCANS, min_share=1.01)
+    strict = dataclasses.replace(SCANS, min_inlier_ratio=1.01)
 
-    found = register_scans(scan(), scan(seed=2), guess=SE3.identity(), settings=strict)
+    found = register_scans(scan(), scan(seed=2), initial=SE3.identity(), settings=strict)
 
     assert found.stop == StopReason.TOO_FEW
 

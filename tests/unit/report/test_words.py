@@ -9,7 +9,7 @@ from recon4.report.artifacts import Results
 from recon4.report.figures import broken_at_holes
 from recon4.report.findings import Level, find
 from recon4.report.html import render
-from recon4.report.words import imported_rows, placed_rows, quantity
+from recon4.report.rows import imported_rows, placed_rows, quantity
 from tests.unit.report.test_report import facts  # noqa: F401
 
 MOMENT = ("t first", "2014-11-04 02:46:49.554 (sensor's clock, UTC)")

@@ -13,8 +13,8 @@ from recon4.review import approval
 from recon4.review.approval import NotApprovable, approve, make_read_only
 from recon4.review.approved import approval_of_map, latest_approval
 from recon4.review.audit import audit_review
-from recon4.review.decisions import Decision, Kind
-from recon4.review.journal import NAME, JournalMoved, append, read_rows
+from recon4.review.decisions import Decision, DecisionKind
+from recon4.review.journal import NAME, JournalChanged, append, read_rows
 from recon4.review.signature import is_signed, sign
 from recon4.store.atomic import write_json
 from recon4.store.hashing import FileDigest, hash_file
@@ -72,11 +72,11 @@ def key(tmp_path):
 
 
 def reject(j=7, who="Eva"):
-    return Decision(kind=Kind.REJECT, who=who, pair=(2, j))
+    return Decision(kind=DecisionKind.REJECT, who=who, pair=(2, j))
 
 
 def undo():
-    return Decision(kind=Kind.UNDO, who="Eva")
+    return Decision(kind=DecisionKind.UNDO, who="Eva")
 
 
 def damage(root):
@@ -153,7 +153,7 @@ def test_a_decision_made_while_it_was_signed_is_not_signed_over(root, key, monke
         return sign(value, key_file)
 
     monkeypatch.setattr(approval, "sign", decide_meanwhile)
-    with pytest.raises(JournalMoved):
+    with pytest.raises(JournalChanged):
         approve(root, key, SIGNER, False)
     monkeypatch.undo()
     append(root, undo())

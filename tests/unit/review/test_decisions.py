@@ -11,7 +11,7 @@ from recon4.errors import StoreError
 from recon4.review.decisions import (
     NOTHING_DECIDED,
     Decision,
-    Kind,
+    DecisionKind,
     Measurement,
     fold,
     numbers_of,
@@ -31,29 +31,31 @@ MEASURED = Measurement(
 
 
 def decide(kind, pair=(2, 7), who="Eva", **more):
-    if kind in (Kind.UNDO, Kind.REDO, Kind.APPROVE):
+    if kind in (DecisionKind.UNDO, DecisionKind.REDO, DecisionKind.APPROVE):
         return Decision(kind=kind, who=who, **more)
-    if kind in (Kind.REPLACE, Kind.ADD):
+    if kind in (DecisionKind.REPLACE, DecisionKind.ADD):
         more.setdefault("measurement", MEASURED)
     return Decision(kind=kind, who=who, pair=pair, **more)
 
 
 def test_the_last_decision_about_a_pair_stands():
-    decided = fold([decide(Kind.ACCEPT), decide(Kind.REJECT, who="Jan", why="wrong floor")])
+    decided = fold(
+        [decide(DecisionKind.ACCEPT), decide(DecisionKind.REJECT, who="Jan", why="wrong floor")]
+    )
 
     (one,) = decided.standing
     assert (one.accepted, one.who, one.why) == (False, "Jan", "wrong floor")
 
 
 def test_restore_leaves_the_pair_to_the_program():
-    assert not fold([decide(Kind.REJECT), decide(Kind.RESTORE)])
+    assert not fold([decide(DecisionKind.REJECT), decide(DecisionKind.RESTORE)])
 
 
 def test_undo_and_redo_go_back_and_forth():
-    rows = [decide(Kind.REJECT), decide(Kind.ACCEPT, pair=(3, 9))]
+    rows = [decide(DecisionKind.REJECT), decide(DecisionKind.ACCEPT, pair=(3, 9))]
 
-    undone = fold([*rows, decide(Kind.UNDO)])
-    redone = fold([*rows, decide(Kind.UNDO), decide(Kind.REDO)])
+    undone = fold([*rows, decide(DecisionKind.UNDO)])
+    redone = fold([*rows, decide(DecisionKind.UNDO), decide(DecisionKind.REDO)])
 
     assert [one.pair for one in undone.standing] == [(2, 7)]
     assert (undone.undoable, undone.redoable) == (1, 1)
@@ -61,57 +63,71 @@ def test_undo_and_redo_go_back_and_forth():
 
 
 def test_a_new_decision_forgets_what_could_be_redone():
-    decided = fold([decide(Kind.REJECT), decide(Kind.UNDO), decide(Kind.ACCEPT)])
+    decided = fold(
+        [decide(DecisionKind.REJECT), decide(DecisionKind.UNDO), decide(DecisionKind.ACCEPT)]
+    )
 
     assert (decided.undoable, decided.redoable) == (1, 0)
 
 
 def test_undoing_a_replacement_brings_back_the_decision_before_it():
-    decided = fold([decide(Kind.REJECT), decide(Kind.REPLACE), decide(Kind.UNDO)])
+    decided = fold(
+        [decide(DecisionKind.REJECT), decide(DecisionKind.REPLACE), decide(DecisionKind.UNDO)]
+    )
 
-    assert decided == fold([decide(Kind.REJECT), decide(Kind.REPLACE), decide(Kind.UNDO)])
+    assert decided == fold(
+        [decide(DecisionKind.REJECT), decide(DecisionKind.REPLACE), decide(DecisionKind.UNDO)]
+    )
     assert decided.standing[0].measurement is None
     assert not decided.standing[0].accepted
 
 
 def test_a_measurement_stays_when_its_pair_is_rejected_and_accepted_again():
-    decided = fold([decide(Kind.ADD), decide(Kind.REJECT), decide(Kind.ACCEPT)])
+    decided = fold(
+        [decide(DecisionKind.ADD), decide(DecisionKind.REJECT), decide(DecisionKind.ACCEPT)]
+    )
 
     assert decided.standing[0].measurement == MEASURED
 
 
 def test_an_approval_changes_nothing_and_is_not_undone():
     facts = {"version": 1, "approval": "ab"}
-    rows = [decide(Kind.REJECT), decide(Kind.APPROVE, facts=facts)]
+    rows = [decide(DecisionKind.REJECT), decide(DecisionKind.APPROVE, facts=facts)]
 
-    assert fold([*rows, decide(Kind.UNDO)]) == fold([decide(Kind.REJECT), decide(Kind.UNDO)])
+    assert fold([*rows, decide(DecisionKind.UNDO)]) == fold(
+        [decide(DecisionKind.REJECT), decide(DecisionKind.UNDO)]
+    )
     with pytest.raises(StoreError, match="undo nothing"):
-        fold([decide(Kind.APPROVE, facts=facts), decide(Kind.UNDO)])
+        fold([decide(DecisionKind.APPROVE, facts=facts), decide(DecisionKind.UNDO)])
 
 
 def test_the_key_depends_on_what_stands_and_not_on_how_it_came_about():
-    short = fold([decide(Kind.REJECT, pair=(3, 9)), decide(Kind.ACCEPT)])
+    short = fold([decide(DecisionKind.REJECT, pair=(3, 9)), decide(DecisionKind.ACCEPT)])
     long = fold(
-        [decide(Kind.ACCEPT), decide(Kind.ACCEPT, pair=(3, 9)), decide(Kind.REJECT, pair=(3, 9))]
+        [
+            decide(DecisionKind.ACCEPT),
+            decide(DecisionKind.ACCEPT, pair=(3, 9)),
+            decide(DecisionKind.REJECT, pair=(3, 9)),
+        ]
     )
 
     assert short.key == long.key
-    assert short.key != fold([decide(Kind.ACCEPT)]).key
+    assert short.key != fold([decide(DecisionKind.ACCEPT)]).key
 
 
 def test_the_key_tells_apart_measurements_and_people():
     other = Measurement(**{**_fields(MEASURED), "T_i_j": (0.1 + 1e-15, *HERE[1:])})
     keys = {
-        fold([decide(Kind.REPLACE)]).key,
-        fold([decide(Kind.REPLACE, measurement=other)]).key,
-        fold([decide(Kind.REPLACE, who="Jan")]).key,
+        fold([decide(DecisionKind.REPLACE)]).key,
+        fold([decide(DecisionKind.REPLACE, measurement=other)]).key,
+        fold([decide(DecisionKind.REPLACE, who="Jan")]).key,
     }
 
     assert len(keys) == 3
 
 
 def test_a_decision_survives_the_journal_bit_for_bit():
-    before = decide(Kind.ADD, why="čtvrté patro")
+    before = decide(DecisionKind.ADD, why="čtvrté patro")
 
     after = Decision.of("add", before.who, before.why, pair=before.pair, body=before.body())
 
@@ -123,12 +139,12 @@ def test_a_decision_survives_the_journal_bit_for_bit():
 @pytest.mark.parametrize(
     "wrong",
     [
-        {"kind": Kind.ACCEPT, "who": "Eva"},
-        {"kind": Kind.UNDO, "who": "Eva", "pair": (1, 2)},
-        {"kind": Kind.ACCEPT, "who": "Eva", "pair": (7, 2)},
-        {"kind": Kind.ACCEPT, "who": "auto", "pair": (2, 7)},
-        {"kind": Kind.ADD, "who": "Eva", "pair": (2, 7)},
-        {"kind": Kind.ACCEPT, "who": "Eva", "pair": (2, 7), "measurement": MEASURED},
+        {"kind": DecisionKind.ACCEPT, "who": "Eva"},
+        {"kind": DecisionKind.UNDO, "who": "Eva", "pair": (1, 2)},
+        {"kind": DecisionKind.ACCEPT, "who": "Eva", "pair": (7, 2)},
+        {"kind": DecisionKind.ACCEPT, "who": "auto", "pair": (2, 7)},
+        {"kind": DecisionKind.ADD, "who": "Eva", "pair": (2, 7)},
+        {"kind": DecisionKind.ACCEPT, "who": "Eva", "pair": (2, 7), "measurement": MEASURED},
     ],
 )
 def test_a_decision_that_makes_no_sense_is_refused(wrong):
@@ -138,7 +154,7 @@ def test_a_decision_that_makes_no_sense_is_refused(wrong):
 
 def test_a_row_of_another_program_is_refused():
     with pytest.raises(StoreError, match="no decision"):
-        Decision.of("bless", "Eva", "", pair=(2, 7), body=decide(Kind.ACCEPT).body())
+        Decision.of("bless", "Eva", "", pair=(2, 7), body=decide(DecisionKind.ACCEPT).body())
 
 
 def test_a_pose_as_numbers_reads_back():
@@ -154,22 +170,26 @@ def test_a_thousand_operations_and_undoing_all_of_them_is_the_beginning(seed):
     rows = []
     undoable = redoable = 0
     for _ in range(1000):
-        kind = list(Kind)[rng.integers(len(Kind))]
-        if (kind is Kind.UNDO and not undoable) or (kind is Kind.REDO and not redoable):
+        kind = list(DecisionKind)[rng.integers(len(DecisionKind))]
+        if (kind is DecisionKind.UNDO and not undoable) or (
+            kind is DecisionKind.REDO and not redoable
+        ):
             continue
         pair = (int(rng.integers(5)), 5 + int(rng.integers(5)))
         rows.append(decide(kind, pair=pair, who=f"p{rng.integers(3)}"))
-        if kind is Kind.UNDO:
+        if kind is DecisionKind.UNDO:
             undoable, redoable = undoable - 1, redoable + 1
-        elif kind is Kind.REDO:
+        elif kind is DecisionKind.REDO:
             undoable, redoable = undoable + 1, redoable - 1
-        elif kind is not Kind.APPROVE:
+        elif kind is not DecisionKind.APPROVE:
             undoable, redoable = undoable + 1, 0
     decided = fold(rows)
     assert (decided.undoable, decided.redoable) == (undoable, redoable)
 
-    before = fold([*rows, *[decide(Kind.UNDO)] * undoable])
-    again = fold([*rows, *[decide(Kind.UNDO)] * undoable, *[decide(Kind.REDO)] * undoable])
+    before = fold([*rows, *[decide(DecisionKind.UNDO)] * undoable])
+    again = fold(
+        [*rows, *[decide(DecisionKind.UNDO)] * undoable, *[decide(DecisionKind.REDO)] * undoable]
+    )
 
     assert before.key == NOTHING_DECIDED.key
     assert again.key == decided.key

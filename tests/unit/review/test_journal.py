@@ -10,11 +10,11 @@ from threading import Barrier
 import pytest
 
 from recon4.errors import StoreError
-from recon4.review.decisions import Decision, Kind
+from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import (
     NAME,
-    JournalMoved,
-    NothingToTakeBack,
+    JournalChanged,
+    NothingToUndo,
     append,
     broken,
     head,
@@ -24,11 +24,11 @@ from recon4.review.journal import (
 
 
 def reject(j, who="Eva", why=""):
-    return Decision(kind=Kind.REJECT, who=who, why=why, pair=(2, j))
+    return Decision(kind=DecisionKind.REJECT, who=who, why=why, pair=(2, j))
 
 
 def undo(who="Eva"):
-    return Decision(kind=Kind.UNDO, who=who)
+    return Decision(kind=DecisionKind.UNDO, who=who)
 
 
 def test_a_project_nobody_decided_about_has_an_empty_journal_and_no_file(tmp_path):
@@ -53,7 +53,7 @@ def test_undo_of_nothing_is_refused_and_leaves_no_row(tmp_path):
     append(tmp_path, reject(7))
     append(tmp_path, undo())
 
-    with pytest.raises(NothingToTakeBack, match="nothing to undo"):
+    with pytest.raises(NothingToUndo, match="nothing to undo"):
         append(tmp_path, undo())
     assert len(read_rows(tmp_path)) == 2
 
@@ -62,7 +62,7 @@ def test_who_did_not_see_the_last_decision_is_told(tmp_path):
     append(tmp_path, reject(7))
     append(tmp_path, reject(9, who="Jan"))
 
-    with pytest.raises(JournalMoved, match="1 more rows"):
+    with pytest.raises(JournalChanged, match="1 more rows"):
         append(tmp_path, undo(), after_seq=1)
     assert append(tmp_path, undo(), after_seq=2).seq == 3
 

@@ -6,7 +6,7 @@ import pytest
 from recon4.model.pose_graph import EdgeKind, Reason, Verdict
 from recon4.pose_graph.verification import verify
 from recon4.review.apply import CHANGED_M, apply_decisions, rows_by_pair
-from recon4.review.decisions import Decision, Kind, Measurement, fold, numbers_of
+from recon4.review.decisions import Decision, DecisionKind, Measurement, fold, numbers_of
 from recon4.review.solve import difference, review
 from recon4.settings import GraphSettings, Settings, VerificationSettings
 from tests.unit.review.graphs import LOOP, truth, two_rounds
@@ -21,14 +21,14 @@ def standing(*decisions):
 
 
 def accept(i, j, **more):
-    return Decision(kind=Kind.ACCEPT, who="Eva", pair=frames(i, j), **more)
+    return Decision(kind=DecisionKind.ACCEPT, who="Eva", pair=frames(i, j), **more)
 
 
 def reject(i, j, **more):
-    return Decision(kind=Kind.REJECT, who="Eva", pair=frames(i, j), **more)
+    return Decision(kind=DecisionKind.REJECT, who="Eva", pair=frames(i, j), **more)
 
 
-def measured(i, j, *, kind=Kind.ADD, off_m=(0.0, 0.0, 0.0)):
+def measured(i, j, *, kind=DecisionKind.ADD, off_m=(0.0, 0.0, 0.0)):
     T = truth()
     T_i_j = numbers_of(T[i].inverse() @ T[j])
     T_i_j = (*(a + b for a, b in zip(T_i_j[:3], off_m, strict=True)), *T_i_j[3:])
@@ -129,7 +129,7 @@ def test_what_the_program_dropped_only_for_a_wrong_edge_comes_back():
 
 def test_a_replaced_measurement_is_what_counts(verified):
     found = review(
-        verified, standing(measured(3, 32, kind=Kind.REPLACE, off_m=(0.02, 0.0, 0.0))),
+        verified, standing(measured(3, 32, kind=DecisionKind.REPLACE, off_m=(0.02, 0.0, 0.0))),
         settings=Settings(),
     )  # fmt: skip
 
@@ -154,7 +154,7 @@ def test_an_added_loop_is_manual_and_pulls(verified):
 
 def test_decisions_about_pairs_that_are_gone_are_counted_and_named(verified):
     gone = [reject(0, 20), accept(9, 55)]
-    elsewhere = Decision(kind=Kind.REJECT, who="Eva", pair=(2, 999_999))
+    elsewhere = Decision(kind=DecisionKind.REJECT, who="Eva", pair=(2, 999_999))
 
     found = review(verified, standing(*gone, elsewhere), settings=Settings())
 

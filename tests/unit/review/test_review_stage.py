@@ -11,7 +11,7 @@ from recon4.model.pose_graph import Reason, Verdict
 from recon4.pose_graph.files import load_graph, save_graph
 from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
-from recon4.review.decisions import Decision, Kind
+from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append, read_decided
 from recon4.review.preview import preview
 from recon4.review.queue import COLUMNS, alternative_paths, queue_json, queue_rows
@@ -54,14 +54,14 @@ def run(tmp_path):
 
 
 def reject(i, j):
-    return Decision(kind=Kind.REJECT, who="Eva", pair=(5 * i + 2, 5 * j + 2))
+    return Decision(kind=DecisionKind.REJECT, who="Eva", pair=(5 * i + 2, 5 * j + 2))
 
 
 def test_decisions_make_a_graph_of_their_own_and_undoing_them_finds_the_old_one(run):
     before = run()
     append(run.root, reject(3, 32))
     with_decision = run()
-    append(run.root, Decision(kind=Kind.UNDO, who="Eva"))
+    append(run.root, Decision(kind=DecisionKind.UNDO, who="Eva"))
 
     after = run()
 
@@ -76,7 +76,7 @@ def test_the_same_decisions_again_find_the_same_artifact(run):
     run()
     append(run.root, reject(3, 32))
     first = run()["review"]
-    append(run.root, Decision(kind=Kind.UNDO, who="Eva"))
+    append(run.root, Decision(kind=DecisionKind.UNDO, who="Eva"))
     append(run.root, reject(3, 32))
 
     again = run()["review"]
@@ -87,7 +87,7 @@ def test_the_same_decisions_again_find_the_same_artifact(run):
 
 def test_review_json_names_what_happened(run):
     run()
-    append(run.root, Decision(kind=Kind.ACCEPT, who="Eva", why="seen", pair=(52, 202)))
+    append(run.root, Decision(kind=DecisionKind.ACCEPT, who="Eva", why="seen", pair=(52, 202)))
     append(run.root, reject(0, 20))
 
     found = run()["review"]
@@ -105,7 +105,7 @@ def test_review_json_names_what_happened(run):
 def test_the_quick_look_says_what_the_stage_will_say(run):
     run()
     before = read_decided(run.root)
-    append(run.root, Decision(kind=Kind.ACCEPT, who="Eva", pair=(52, 202)))
+    append(run.root, Decision(kind=DecisionKind.ACCEPT, who="Eva", pair=(52, 202)))
     decided = read_decided(run.root)
 
     quick = preview(Source.of(run.root), decided, before)
@@ -140,7 +140,7 @@ def test_pairs_without_a_registration_that_holds_come_last():
     far, weak = (0.0, 90.0, 0.0), (0.0, 5.0, 0.0)
     loop = graph.edges[-1]
 
-    def turned_down(i, j, reason, overlap, off_m):
+    def rejected_pair(i, j, reason, overlap, off_m):
         T = SE3(loop.T_i_j.R, loop.T_i_j.t + off_m)
         return loop.evolve(
             i=i, j=j, T_i_j=T, verdict=Verdict.REJECTED, reason=reason, overlap=overlap,
@@ -148,10 +148,10 @@ def test_pairs_without_a_registration_that_holds_come_last():
         )  # fmt: skip
 
     more = (
-        turned_down(1, 50, Reason.NOT_CONVERGED, 0.6, far),
-        turned_down(2, 50, Reason.OVERLAP, 0.4, far),
-        turned_down(3, 50, Reason.NOT_CONVERGED, 0.7, far),
-        turned_down(4, 50, Reason.ERROR, 0.8, weak),
+        rejected_pair(1, 50, Reason.NOT_CONVERGED, 0.6, far),
+        rejected_pair(2, 50, Reason.OVERLAP, 0.4, far),
+        rejected_pair(3, 50, Reason.NOT_CONVERGED, 0.7, far),
+        rejected_pair(4, 50, Reason.ERROR, 0.8, weak),
     )
 
     rows = queue_rows(graph.with_edges(graph.edges + more), settings=Settings())

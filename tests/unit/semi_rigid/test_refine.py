@@ -65,7 +65,7 @@ def test_the_truth_stays_where_it_is(stroll):
     result, rounds = refined(stroll, stroll.truth)
 
     assert off_m(result, stroll.truth) < 0.002
-    assert rounds[0].share > 0.5
+    assert rounds[0].match_ratio > 0.5
 
 
 def test_refinement_stops_once_nothing_moves(stroll):

@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from recon4.geometry.mesh import MeshBuilder
+from recon4.geometry.raycast import Scene
 from recon4.model.rig import load_rig
 from recon4.simulation.lidar import Lidar, LidarModel, Surroundings
-from recon4.simulation.mesh import MeshBuilder
-from recon4.simulation.raycast import Scene
 from recon4.simulation.walk import KNOT_S, Walk
 
 SENSOR = load_rig("single-vlp16").sensors[0]

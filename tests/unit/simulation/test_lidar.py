@@ -3,10 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from recon4.geometry.mesh import GLASS, MeshBuilder
 from recon4.model.rig import load_rig
-from recon4.recording.velodyne_models import MODELS
+from recon4.recording.velodyne.models import MODELS
 from recon4.simulation.lidar import LidarModel
-from recon4.simulation.mesh import GLASS, MeshBuilder
 from tests.unit.simulation.rooms import PERFECT, SENSOR, around, fire, still, straight, walls
 
 TABLES = MODELS["VLP-16"]

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from recon4.errors import Cancelled, ConfigError, StoreError
+from recon4.geometry.raycast import Scene
 from recon4.model.rig import load_rig
 from recon4.progress import Silent
+from recon4.recording.formats.poses import read_tum
 from recon4.recording.ingest import ingest
-from recon4.recording.poses import read_tum
 from recon4.settings import IngestSettings
 from recon4.simulation.frames import simulate_frames
-from recon4.simulation.raycast import Scene
 from recon4.simulation.setup import EPOCH_NS, Models
 from recon4.simulation.simulate import simulate
 from recon4.simulation.worlds import build_world

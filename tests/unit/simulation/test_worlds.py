@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 from recon4.errors import ConfigError
+from recon4.geometry.mesh import MeshBuilder, write_ply
+from recon4.geometry.raycast import Scene, distance_to_mesh
 from recon4.simulation.gait import plan_walk
-from recon4.simulation.mesh import MeshBuilder, write_ply
-from recon4.simulation.raycast import Scene, distance_to_mesh
 from recon4.simulation.walk import BODY_HEIGHT_M
 from recon4.simulation.worlds import WORLDS, build_world
 

@@ -4,7 +4,7 @@ import pytest
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3
 from recon4.slices.cut import Cut, free, horizontal, vertical, vertical_at
-from recon4.slices.points import Window, extent, points_in
+from recon4.slices.points import SliceWindow, extent, points_in
 from recon4.slices.reference import moved_cut
 from tests.unit.slices.room_map import write_map
 
@@ -65,7 +65,7 @@ def test_a_vertical_cut_shows_the_way_from_its_first_point_and_the_height():
 
 def test_a_window_leaves_out_what_lies_beside_it(tiles):
     cut = CUTS[1]
-    window = Window(1.0, -1.0, 3.0, 1.0)
+    window = SliceWindow(1.0, -1.0, 3.0, 1.0)
 
     uvd = np.concatenate([part.uvd for part in points_in(tiles, cut, window=window)])
 

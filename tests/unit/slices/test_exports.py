@@ -9,24 +9,24 @@ import rasterio
 import rasterio.transform
 
 from recon4.errors import ConfigError, CorruptFile, GeoreferenceError
-from recon4.georeference.crs import CrsTransform, Origin
+from recon4.georeference.crs import CrsTransform, GeodeticOrigin
 from recon4.slices.acceptance import SheetWords, render_acceptance
 from recon4.slices.control import ControlPoint, read_control
 from recon4.slices.cut import horizontal, vertical
 from recon4.slices.export import write_csv, write_dxf, write_geotiff, write_laz
-from recon4.slices.frames import Frame, frame_of
+from recon4.slices.frames import MapFrame, frame_of
 from recon4.slices.pick import nearest_surface, pick
-from recon4.slices.picture import Paper, draw
-from recon4.slices.points import Window, points_in
+from recon4.slices.points import SliceWindow, points_in
 from recon4.slices.residuals import residual_csv, residuals
 from recon4.slices.sheet import Words, approval_words, grid_step_m, lay_out, write_sheet
+from recon4.slices.slice_image import Paper, draw
 from tests.unit.slices.room_map import wall, write_map
 
 BRNO = CrsTransform(
-    Origin(lat_rad=math.radians(49.2265), lon_rad=math.radians(16.5967), height_m=275.0)
+    GeodeticOrigin(lat_rad=math.radians(49.2265), lon_rad=math.radians(16.5967), height_m=275.0)
 )
-LOCAL = Frame("", "", None)
-PLACED = Frame(BRNO.crs, BRNO.wkt, BRNO.to_crs)
+LOCAL = MapFrame("", "", None)
+PLACED = MapFrame(BRNO.crs, BRNO.wkt, BRNO.to_crs)
 CUT = horizontal(0.5, thickness_m=0.2)
 
 
@@ -97,7 +97,7 @@ def test_a_csv_holds_every_point_with_place_and_coordinates(tiles, tmp_path):
 
 
 def test_a_geotiff_lies_where_the_crs_says(tiles, tmp_path):
-    picture = draw(tiles, CUT, Paper(Window(0.0, -1.0, 3.0, 5.0), 0.02), color="intensity")
+    picture = draw(tiles, CUT, Paper(SliceWindow(0.0, -1.0, 3.0, 5.0), 0.02), color="intensity")
 
     write_geotiff(picture, tmp_path / "s.tif", frame=PLACED, span=picture.span)
 
@@ -115,7 +115,7 @@ def test_a_geotiff_lies_where_the_crs_says(tiles, tmp_path):
 
 def test_a_geotiff_of_a_section_has_its_own_metres(tiles, tmp_path):
     cut = vertical((0.0, 1.0), (4.0, 1.0), thickness_m=0.5)
-    picture = draw(tiles, cut, Paper(Window(0.0, -1.0, 4.0, 3.0), 0.01))
+    picture = draw(tiles, cut, Paper(SliceWindow(0.0, -1.0, 4.0, 3.0), 0.01))
 
     write_geotiff(picture, tmp_path / "s.tif", frame=PLACED, span=picture.span)
 
@@ -126,8 +126,8 @@ def test_a_geotiff_of_a_section_has_its_own_metres(tiles, tmp_path):
 
 
 def test_a_picture_too_large_for_one_transformation_is_refused(tiles, tmp_path):
-    picture = draw(tiles, CUT, Paper(Window(-40e3, -40e3, 40e3, 40e3), 100.0))
-    small = draw(tiles, CUT, Paper(Window(-40e3, -40e3, 40e3, 40e3), 100.0))
+    picture = draw(tiles, CUT, Paper(SliceWindow(-40e3, -40e3, 40e3, 40e3), 100.0))
+    small = draw(tiles, CUT, Paper(SliceWindow(-40e3, -40e3, 40e3, 40e3), 100.0))
     object.__setattr__(small.paper, "pixel_m", 0.01)
 
     with pytest.raises(GeoreferenceError, match="smaller window"):
@@ -136,7 +136,7 @@ def test_a_picture_too_large_for_one_transformation_is_refused(tiles, tmp_path):
 
 @pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
 def test_a_sheet_is_the_same_file_each_time(tiles, tmp_path, ending):
-    layout = lay_out(Window(0.0, -1.0, 3.0, 5.0))
+    layout = lay_out(SliceWindow(0.0, -1.0, 3.0, 5.0))
     picture = draw(tiles, CUT, layout.paper)
     words = Words("office", LOCAL.words, "recon4", approval_words(None))
 
@@ -148,7 +148,7 @@ def test_a_sheet_is_the_same_file_each_time(tiles, tmp_path, ending):
 
 
 def test_a_sheet_has_a_usual_scale_at_which_all_fits():
-    layout = lay_out(Window(0.0, 0.0, 40.0, 10.0), "a4")
+    layout = lay_out(SliceWindow(0.0, 0.0, 40.0, 10.0), "a4")
 
     window = layout.window
     assert layout.scale == 200
@@ -159,7 +159,7 @@ def test_a_sheet_has_a_usual_scale_at_which_all_fits():
 
 def test_an_unusual_scale_is_refused():
     with pytest.raises(ConfigError, match="one of"):
-        lay_out(Window(0, 0, 1, 1), scale=37)
+        lay_out(SliceWindow(0, 0, 1, 1), scale=37)
 
 
 def test_grid_lines_are_at_round_numbers():

@@ -8,13 +8,13 @@ from recon4.errors import ConfigError
 from recon4.slices.colors import DISTANCE_RANGE_M, REFERENCE_COLOR, Span, paint, table
 from recon4.slices.cut import horizontal
 from recon4.slices.imports import import_reference
-from recon4.slices.picture import Paper, draw, png
-from recon4.slices.points import Window
+from recon4.slices.points import SliceWindow
 from recon4.slices.reference import load_reference
+from recon4.slices.slice_image import Paper, draw, png
 from tests.unit.slices.room_map import T0_NS, write_map
 
 CUT = horizontal(1.0, thickness_m=0.2)
-PAPER = Paper(Window(0.0, 0.0, 4.0, 2.0), 0.1)
+PAPER = Paper(SliceWindow(0.0, 0.0, 4.0, 2.0), 0.1)
 POINTS = np.array(
     [[0.05, 1.95, 1.0], [0.07, 1.93, 1.05], [3.95, 0.05, 0.95], [2.05, 1.05, 2.0], [5.0, 1.0, 1.0]]
 )
@@ -57,7 +57,7 @@ def test_time_counts_from_the_start_and_height_is_that_of_the_map(tiles):
 
 
 def test_points_grow_when_pixels_become_smaller_than_the_grid_of_the_map(tiles):
-    paper = Paper(Window(3.9, 0.0, 4.0, 0.1), 0.001)
+    paper = Paper(SliceWindow(3.9, 0.0, 4.0, 0.1), 0.001)
 
     picture = draw(tiles, CUT, paper, color="height")
 
@@ -99,7 +99,7 @@ def test_a_picture_is_a_png_transparent_where_nothing_is(tiles):
 
 def test_an_enormous_picture_is_refused_before_it_is_made():
     with pytest.raises(ConfigError, match="larger pixels"):
-        Paper(Window(0.0, 0.0, 1000.0, 1000.0), 0.001)
+        Paper(SliceWindow(0.0, 0.0, 1000.0, 1000.0), 0.001)
 
 
 def test_what_the_map_lacks_is_said(tiles):

@@ -8,21 +8,21 @@ import pye57
 import pytest
 
 from recon4.errors import ConfigError, CorruptFile, RecordingError
-from recon4.evaluation.mesh import Mesh
+from recon4.evaluation.reference_mesh import TriangleMesh
 from recon4.geometry.se3 import SE3
+from recon4.recording.formats.reference_clouds import read_points
 from recon4.slices.align import align_by_icp, align_by_pairs
-from recon4.slices.clouds import read_points
 from recon4.slices.compare import compare, to_csv, usual_cuts
 from recon4.slices.cut import free, horizontal
 from recon4.slices.imports import import_reference, set_alignment
 from recon4.slices.meshes import is_mesh, load_mesh
-from recon4.slices.points import Window
+from recon4.slices.points import SliceWindow
 from recon4.slices.reference import load_reference, mesh_lines
 from tests.unit.slices.room_map import wall, write_map
 
 P = np.random.default_rng(4).uniform(-3.0, 3.0, (500, 3)).round(3)
 BOX_TRIANGLES = "013 032 475 467 051 045 237 276 026 064 157 173"
-BOX = Mesh(
+BOX = TriangleMesh(
     np.array([[x, y, z] for x in (0, 4.0) for y in (0, 3.0) for z in (0, 2.0)]),
     np.array([[int(c) for c in row] for row in BOX_TRIANGLES.split()]),
 )
@@ -111,7 +111,7 @@ def test_a_chunk_table_that_lies_ends_the_child_not_us(tmp_path):
         resource.setrlimit(resource.RLIMIT_AS, (6 << 30, 6 << 30))
         from pathlib import Path
         from recon4.errors import CorruptFile
-        from recon4.slices.clouds import read_points
+        from recon4.recording.formats.reference_clouds import read_points
         try:
             list(read_points(Path({str(path)!r})))
         except CorruptFile:
@@ -221,7 +221,7 @@ def test_an_alignment_moves_the_reference_and_its_outline(tmp_path):
     set_alignment(tmp_path / "reference", T, words="test")
     moved = load_reference(tmp_path / "reference")
     outline = np.concatenate(
-        list(moved.outline(horizontal(1.0), Window(-9, -9, 9, 9), step_m=0.01))
+        list(moved.outline(horizontal(1.0), SliceWindow(-9, -9, 9, 9), step_m=0.01))
     )
 
     assert moved.distance(np.array([[2.0, 0.05, 1.0]]))[0] == pytest.approx(0.05, abs=1e-6)
@@ -236,7 +236,7 @@ def test_the_table_says_how_far_the_map_is_off(tmp_path):
     found = compare(tiles, [horizontal(0.5, thickness_m=0.2), horizontal(9.0)], reference)
 
     assert found.slices[0].mean_m == pytest.approx(0.03, abs=1e-4)
-    assert (found.slices[0].share_2cm, found.slices[0].share_5cm) == (0.0, 1.0)
+    assert (found.slices[0].ratio_within_2cm, found.slices[0].ratio_within_5cm) == (0.0, 1.0)
     assert np.isnan(found.slices[1].mean_m)
     assert found.point_weighted.mean_m == pytest.approx(found.plain_mean_m)
     rows = to_csv(found).splitlines()
@@ -292,7 +292,7 @@ def test_icp_finds_a_small_offset_and_says_what_remains(tmp_path, box_reference)
     found = align_by_icp(tiles, box_reference, rng=rng)
 
     assert np.abs(found.T_map_reference.matrix() - T.matrix()).max() < 2e-3
-    assert found.share_near == pytest.approx(0.5, abs=0.02) and found.share_on > 0.99
+    assert found.near_ratio == pytest.approx(0.5, abs=0.02) and found.inlier_ratio > 0.99
     assert found.mean_m == pytest.approx(0.01 * np.sqrt(2.0 / np.pi), abs=0.001)
     assert "0.8 cm from it on average" in found.words
 

@@ -1,0 +1,158 @@
+"""The people who may sign in."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import Any
+
+import sqlalchemy as sa
+from sqlalchemy.exc import IntegrityError
+
+from app.access.database import BROWSERS, PEOPLE, SESSIONS, writing
+from app.access.login import passwords
+from app.access.people import Role
+from app.errors import Conflict, NotFound, Refused
+
+NAME = re.compile(r"[^\W_](?:[\w .'@+-]{0,62}[\w.])?")
+"""Letters and digits of any script, and what occurs in names and addresses."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Account:
+    """A person who may sign in, without the password."""
+
+    name: str
+    role: Role
+    disabled: bool
+    created: str
+    """UTC, ISO 8601."""
+
+
+class Accounts:
+    """Reads and changes the people. Whatever changes a role or a password ends the sessions."""
+
+    def __init__(self, engine: sa.Engine) -> None:
+        self._engine = engine
+
+    def all(self) -> list[Account]:
+        """Everybody, by name."""
+        with self._engine.connect() as connection:
+            rows = connection.execute(PEOPLE.select().order_by(PEOPLE.c.key)).mappings()
+            return [_account(row) for row in rows]
+
+    def get(self, name: str) -> Account:
+        """One person.
+
+        Raises:
+            NotFound: If there is nobody of that name.
+        """
+        with self._engine.connect() as connection:
+            row = connection.execute(_of(name)).mappings().one_or_none()
+        if row is None:
+            raise NotFound(f"nobody is called {name[:64]!r} here")
+        return _account(row)
+
+    def password_hash(self, name: str) -> str | None:
+        """The hash of a person's password; None if there is nobody, or who is there is disabled."""
+        query = sa.select(PEOPLE.c.password).where(PEOPLE.c.key == key(name), ~PEOPLE.c.disabled)
+        with self._engine.connect() as connection:
+            return connection.execute(query).scalar_one_or_none()
+
+    def has_admin(self) -> bool:
+        """Whether anybody could let the others in."""
+        with self._engine.connect() as connection:
+            return connection.execute(_admins()).scalar_one() > 0
+
+    def add(self, name: str, role: Role, password: str) -> Account:
+        """Add a person.
+
+        Raises:
+            Refused: If the name or the role is unfit.
+            Conflict: If somebody has that name.
+            WeakPassword: If the password is guessed first.
+        """
+        name = unicodedata.normalize("NFKC", name)
+        if not NAME.fullmatch(name) or key(name) in ("local", "nobody"):
+            raise Refused("a name has 1 to 64 letters, digits, spaces and . ' @ + -")
+        _assignable(role)
+        passwords.check(password, name)
+        created = datetime.now(UTC).isoformat(timespec="seconds")
+        row = dict(name=name, role=role, disabled=False, created=created)
+        hashed = passwords.hashed(password)
+        try:
+            with writing(self._engine) as connection:
+                values = {**row, "key": key(name), "password": hashed}
+                connection.execute(PEOPLE.insert().values(**values))
+        except IntegrityError as error:
+            raise Conflict(f"{name} is here already") from error
+        return self.get(name)
+
+    def set_role(self, name: str, role: Role) -> Account:
+        """Give another role.
+
+        Raises:
+            NotFound: If there is nobody of that name.
+            Conflict: If this was the last admin.
+        """
+        return self._change(name, role=_assignable(role))
+
+    def set_disabled(self, name: str, disabled: bool) -> Account:
+        """Lock a person out, or let in again; nobody is ever deleted, as the log names them.
+
+        Raises:
+            NotFound: If there is nobody of that name.
+            Conflict: If this was the last admin.
+        """
+        return self._change(name, disabled=disabled)
+
+    def set_password(self, name: str, password: str) -> Account:
+        """Set a password.
+
+        Raises:
+            NotFound: If there is nobody of that name.
+            WeakPassword: If the password is guessed first.
+        """
+        passwords.check(password, self.get(name).name)
+        return self._change(name, password=passwords.hashed(password))
+
+    def _change(self, name: str, **values: Any) -> Account:
+        before = self.get(name)
+        with writing(self._engine) as connection:
+            connection.execute(PEOPLE.update().where(PEOPLE.c.key == key(name)).values(**values))
+            if before.role is Role.ADMIN and connection.execute(_admins()).scalar_one() == 0:
+                raise Conflict(f"{before.name} is the last admin; make somebody else admin first")
+            for table in (SESSIONS, BROWSERS):
+                connection.execute(table.delete().where(table.c.person == key(name)))
+        return self.get(name)
+
+
+def key(name: str) -> str:
+    """A name as it is looked up: one for all spellings of the same letters."""
+    return unicodedata.normalize("NFKC", name).casefold()
+
+
+def _of(name: str) -> sa.Select[Any]:
+    return PEOPLE.select().where(PEOPLE.c.key == key(name))
+
+
+def _admins() -> sa.Select[int]:
+    may_sign_in = (PEOPLE.c.role == Role.ADMIN) & ~PEOPLE.c.disabled
+    return sa.select(sa.func.count()).select_from(PEOPLE).where(may_sign_in)
+
+
+def _assignable(role: Role) -> Role:
+    if role is Role.NOBODY:
+        raise Refused("nobody is no role; disable the person instead")
+    return role
+
+
+def _account(row: sa.RowMapping) -> Account:
+    return Account(
+        name=row["name"],
+        role=Role(row["role"]),
+        disabled=bool(row["disabled"]),
+        created=row["created"],
+    )

@@ -1,0 +1,102 @@
+"""How often may somebody try: waiting that grows with failures, and buckets that refill.
+
+Kept in memory: a restart forgets it, which guessing passwords across the network cannot cause.
+"""
+
+from __future__ import annotations
+
+import ipaddress
+import threading
+import time
+from collections import OrderedDict
+from collections.abc import Callable, Hashable
+
+MOST_KEYS = 20_000
+"""The longest unused are forgotten beyond that."""
+
+
+class LoginBackoff:
+    """After some failures each further try has to wait twice as long as the one before."""
+
+    def __init__(
+        self,
+        *,
+        free: int = 5,
+        longest_s: float = 900.0,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._free, self._longest_s, self._clock = free, longest_s, clock
+        self._failures: OrderedDict[Hashable, tuple[int, float]] = OrderedDict()
+        self._lock = threading.Lock()
+
+    def begin(self, key: Hashable) -> float:
+        """Ask to try; the try counts as a failure until `succeed` says otherwise.
+
+        Returns:
+            0 if it may be tried now, else the seconds to wait; then nothing is counted.
+        """
+        with self._lock:
+            count, last_s = self._failures.get(key, (0, 0.0))
+            over = count - self._free
+            wait_s = min(2.0 ** min(over, 30), self._longest_s) if over >= 0 else 0.0
+            left_s = last_s + wait_s - self._clock()
+            if left_s > 0:
+                return left_s
+            self._failures[key] = (count + 1, self._clock())
+            self._failures.move_to_end(key)
+            while len(self._failures) > MOST_KEYS:
+                self._failures.popitem(last=False)
+            return 0.0
+
+    def succeed(self, key: Hashable) -> None:
+        """Forget the failures."""
+        with self._lock:
+            self._failures.pop(key, None)
+
+
+class TokenBuckets:
+    """So many at once, so many a second after that, for each key."""
+
+    def __init__(
+        self, *, burst: int, per_s: float, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._burst, self._per_s, self._clock = burst, per_s, clock
+        self._left: OrderedDict[Hashable, tuple[float, float]] = OrderedDict()
+        self._lock = threading.Lock()
+
+    def take(self, key: Hashable) -> float:
+        """Take one.
+
+        Returns:
+            0 if there was one, else the seconds until there is.
+        """
+        with self._lock:
+            now_s = self._clock()
+            left, then_s = self._left.get(key, (float(self._burst), now_s))
+            left = min(float(self._burst), left + (now_s - then_s) * self._per_s)
+            taken = left >= 1.0
+            self._left[key] = (left - taken, now_s)
+            self._left.move_to_end(key)
+            while len(self._left) > MOST_KEYS:
+                self._left.popitem(last=False)
+            return 0.0 if taken else (1.0 - left) / self._per_s
+
+    def give_back(self, key: Hashable) -> None:
+        """One that was taken was not used after all."""
+        with self._lock:
+            if key in self._left:
+                left, then_s = self._left[key]
+                self._left[key] = (min(float(self._burst), left + 1.0), then_s)
+
+
+def network(address: str) -> str:
+    """An address as guesses are counted: one household has 2^64 of IPv6."""
+    try:
+        parsed = ipaddress.ip_address(address)
+    except ValueError:
+        return address
+    if isinstance(parsed, ipaddress.IPv6Address):
+        if parsed.ipv4_mapped is not None:
+            return str(parsed.ipv4_mapped)
+        return str(ipaddress.ip_network((parsed, 64), strict=False))
+    return str(parsed)

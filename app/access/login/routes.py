@@ -1,0 +1,267 @@
+"""HTTP face of the login and of one's own account: parse, delegate, answer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Request, Response
+from pydantic import BaseModel, ConfigDict, Field
+
+from app.access.audit import address, audit
+from app.access.login.login_service import Access, LoginOrigin, LoginResult
+from app.access.login.sessions import BROWSER_KNOWN_S, LIVES, PHONE_LIFE, Session, form_token
+from app.access.middleware.session import BROWSER_COOKIE, COOKIE, cookie
+from app.access.pairing.grants import PairingGrant
+from app.access.people import (
+    LOCAL,
+    MAY,
+    Permission,
+    Role,
+    Who,
+    allow_anonymous,
+    interactive_login,
+    needs,
+)
+from app.deps import Server
+from app.errors import AppError, Conflict, ProblemDetail, TooMany
+
+router = APIRouter(
+    prefix="/api",
+    tags=["access"],
+    responses={
+        401: {"model": ProblemDetail},
+        403: {"model": ProblemDetail},
+        429: {"model": ProblemDetail},
+    },
+)
+ALLOW_ANONYMOUS = Depends(allow_anonymous)
+SIGNED_IN = Depends(needs(Permission.LOOK))
+"""Whoever is signed in may look."""
+INTERACTIVE = Depends(interactive_login)
+"""Not for a phone somebody let in."""
+
+Text = Annotated[str, Field(max_length=1000)]
+
+
+class Wire(BaseModel):
+    """What a browser sends; nothing unknown is taken."""
+
+    model_config = ConfigDict(extra="forbid")
+
+
+class Credentials(Wire):
+    """Name and password."""
+
+    name: Text
+    password: Text
+
+
+class FirstAdmin(Credentials):
+    """The first admin."""
+
+    token: Text
+    """From the link the server showed at its start."""
+
+
+class PasswordConfirmation(Wire):
+    """The password once more."""
+
+    password: Text
+
+
+class NewPassword(Wire):
+    """The old password and the new."""
+
+    old: Text
+    new: Text
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Me:
+    """Who asks."""
+
+    name: str
+    role: Role
+    may: tuple[Permission, ...]
+    """What the role allows."""
+    login: bool
+    """Whether people sign in to this server."""
+    token: str
+    """Goes into the header ``X-Recon4-Token`` of every request that changes something."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SessionView:
+    """A session, for people."""
+
+    session: Session
+    current: bool
+    """Whether it is the one that asks."""
+
+
+@router.post("/login", dependencies=[ALLOW_ANONYMOUS])
+def login(given: Credentials, request: Request, response: Response, server: Server) -> Me:
+    """Sign in; the answer sets the cookie of the session."""
+    access = _with_login(server.access)
+    try:
+        entered = access.logins.enter(given.name, given.password, _caller(request))
+    except AppError as error:
+        _note_failure(access, request, given.name, error)
+        raise
+    return _welcome(access, request, response, entered=entered)
+
+
+@router.post("/setup", dependencies=[ALLOW_ANONYMOUS])
+def set_up(given: FirstAdmin, request: Request, response: Response, server: Server) -> Me:
+    """Make the first admin, with the one-time token the server showed at its start."""
+    access = _with_login(server.access)
+    entered = access.logins.set_up(
+        given.token, given.name, password=given.password, caller=_caller(request)
+    )
+    name = entered.account.name
+    access.log.add(name, address(request), action="set up", what=f"{name}, admin")
+    return _welcome(access, request, response, entered=entered)
+
+
+@router.post("/login/again", dependencies=[SIGNED_IN, INTERACTIVE])
+def login_again(
+    given: PasswordConfirmation, request: Request, response: Response, server: Server
+) -> Me:
+    """Give the password again, as approval asks for; the cookie changes."""
+    access = _with_login(server.access)
+    session: Session = request.scope["state"]["session"]
+    try:
+        access.logins.prove(session.person, given.password, _caller(request))
+    except AppError as error:
+        _note_failure(access, request, session.person, error)
+        raise
+    token = access.sessions.prove(session.id)
+    _set_cookie(response, token, LIVES[session.role].whole_s)
+    audit(request, "sign in again", session.id)
+    return _me(access, session.person, role=session.role, token=token)
+
+
+@router.post("/logout", status_code=204, dependencies=[SIGNED_IN])
+def logout(request: Request, response: Response, server: Server) -> None:
+    """End this session; whatever it has open closes."""
+    access = _with_login(server.access)
+    session: Session = request.scope["state"]["session"]
+    access.sessions.end(session.id)
+    audit(request, "sign out", session.id)
+    response.delete_cookie(COOKIE, path="/", secure=True, httponly=True, samesite="strict")
+    response.headers["Clear-Site-Data"] = '"cache", "storage"'
+
+
+@router.get("/me", dependencies=[SIGNED_IN])
+def read_me(request: Request, who: Who, server: Server) -> Me:
+    """Who asks, what that person may, and the token for changes."""
+    token = cookie(request.scope, COOKIE) if server.access.login else ""
+    return _me(server.access, who.name, role=who.role, token=token)
+
+
+@router.post("/me/password", dependencies=[SIGNED_IN, INTERACTIVE])
+def change_password(given: NewPassword, request: Request, response: Response, server: Server) -> Me:
+    """Change one's own password; all other sessions end."""
+    access = _with_login(server.access)
+    name = request.scope["state"]["session"].person
+    caller = _caller(request)
+    access.logins.prove(name, given.old, caller)
+    access.accounts.set_password(name, given.new)
+    access.sessions.forget_cached()
+    audit(request, "change password", name)
+    entered = access.logins.enter(name, given.new, caller)
+    return _welcome(access, request, response, entered=entered)
+
+
+@router.get("/me/sessions", dependencies=[SIGNED_IN, INTERACTIVE])
+def list_my_sessions(request: Request, who: Who, server: Server) -> list[SessionView]:
+    """One's own sessions."""
+    return views(request, server.access.sessions.all(person=who.name))
+
+
+@router.delete("/me/sessions/{session_id}", status_code=204, dependencies=[SIGNED_IN, INTERACTIVE])
+def end_my_session(session_id: str, request: Request, who: Who, server: Server) -> None:
+    """End one of one's own sessions."""
+    server.access.sessions.end(session_id, person=who.name)
+    audit(request, "end session", f"{session_id} of {who.name}")
+
+
+def views(request: Request, sessions: list[Session]) -> list[SessionView]:
+    """Sessions as they are shown."""
+    mine: Session | None = request.scope["state"].get("session")
+    return [SessionView(session=one, current=bool(mine and mine.id == one.id)) for one in sessions]
+
+
+def enter_paired(
+    access: Access, request: Request, response: Response, *, grant: PairingGrant
+) -> Me:
+    """Begin the session of a phone somebody let in, and hand over its cookie."""
+    caller = _caller(request)
+    token = access.sessions.begin(
+        grant.person, address=caller.address, agent=caller.agent, phone_role=grant.role
+    )
+    access.log.add(grant.person, caller.address, action="pair phone", what=grant.role)
+    _set_cookie(response, token, PHONE_LIFE.whole_s)
+    return _me(access, grant.person, role=grant.role, token=token)
+
+
+def _with_login(access: Access) -> Access:
+    if not access.login:
+        raise Conflict(f"there is no login here: whoever sits at this computer is {LOCAL.name}")
+    return access
+
+
+def _caller(request: Request) -> LoginOrigin:
+    return LoginOrigin(
+        address=address(request),
+        agent=request.headers.get("user-agent", ""),
+        browser=cookie(request.scope, BROWSER_COOKIE)[:100],
+    )
+
+
+def _welcome(access: Access, request: Request, response: Response, *, entered: LoginResult) -> Me:
+    """Hand over the cookies; the session this browser had before ends."""
+    name, role = entered.account.name, entered.account.role
+    before: Session | None = request.scope["state"].get("session")
+    if before is not None and access.sessions.alive(before.id):
+        access.sessions.end(before.id)
+    access.log.add(name, address(request), action="sign in", what=role)
+    _set_cookie(response, entered.session, LIVES[role].whole_s)
+    response.set_cookie(
+        BROWSER_COOKIE,
+        entered.browser,
+        max_age=int(BROWSER_KNOWN_S),
+        path="/",
+        secure=True,
+        httponly=True,
+        samesite="strict",
+    )
+    return _me(access, name, role=role, token=entered.session)
+
+
+def _set_cookie(response: Response, token: str, lasts_s: float) -> None:
+    response.set_cookie(
+        COOKIE,
+        token,
+        max_age=int(lasts_s),
+        path="/",
+        secure=True,
+        httponly=True,
+        samesite="strict",
+    )
+
+
+def _me(access: Access, name: str, *, role: Role, token: str) -> Me:
+    may = tuple(what for what in Permission if what in MAY[role])
+    given = form_token(token) if access.login else ""
+    return Me(name=name, role=role, may=may, login=access.login, token=given)
+
+
+def _note_failure(access: Access, request: Request, name: str, error: AppError) -> None:
+    """A name nobody has is not written: people type their password there by mistake."""
+    known = access.accounts.password_hash(name) is not None
+    outcome = "refused" if isinstance(error, TooMany) else "failed"
+    who = access.accounts.get(name).name if known else "nobody"
+    what = str(error) if known else f"a name nobody has: {error}"
+    access.log.add(who, address(request), action="sign in", what=what, outcome=outcome)

@@ -1,0 +1,149 @@
+"""Who may talk to the server: host names, origins, sessions, headers. Pure ASGI, before all else.
+
+A page of another site open in somebody's browser can send requests here and open WebSockets; a
+name that points to this computer can even make them look same-site (DNS rebinding). So the host
+must be one of ours, whatever changes something must come from our own page, and where there is
+a login, nothing but the login itself is answered without a session.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from urllib.parse import urlsplit
+
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from app.access.middleware.rejection import Rejection, answer, note
+from app.access.middleware.session import SessionMiddleware
+from app.access.people import LOCAL
+
+SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+
+PAGE_POLICY = (
+    "default-src 'self'; img-src 'self' data: blob:; object-src 'none'; base-uri 'none'; "
+    "form-action 'self'; frame-ancestors 'self'"
+)
+"""Content security policy of whatever does not bring its own."""
+
+HEADERS = {
+    "Content-Security-Policy": PAGE_POLICY,
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Permissions-Policy": "camera=(), microphone=(), geolocation=()",
+    "Cache-Control": "no-cache",
+}
+PRIVATE = {"Cache-Control": "no-store"}
+"""Answers of the API are kept by no browser where people sign in."""
+PINNED = {"Strict-Transport-Security": "max-age=31536000"}
+"""Only with a certificate browsers trust: with another they would lock people out."""
+
+
+@dataclass(frozen=True, slots=True)
+class Hosts:
+    """Which ``Host`` headers are answered."""
+
+    names: frozenset[str]
+    """Host names and addresses, lower case, without port."""
+    by_address: bool = False
+    """Also the very address a connection came to, which no foreign name can be."""
+
+    def answer(self, name: str, scope: Scope) -> bool:
+        """Whether a request for this name is answered."""
+        came_to = (scope.get("server") or ("",))[0]
+        return name in self.names or (self.by_address and bool(name) and name == came_to)
+
+
+class OriginMiddleware:
+    """Turns away foreign hosts and origins and whoever is not signed in; adds the headers."""
+
+    def __init__(self, app: ASGIApp, *, hosts: Hosts, login: bool, pinned: bool = False) -> None:
+        self._app = SessionMiddleware(app) if login else app
+        self._hosts = hosts
+        self._login = login
+        self._headers = HEADERS | (PINNED if pinned else {})
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] not in ("http", "websocket"):
+            await self._app(scope, receive, send)
+            return
+        send = self._with_headers(scope, send)
+        scope.setdefault("state", {}).update(person=LOCAL, signed_in_s=0.0)
+        if (refusal := judge(scope, self._hosts)) is None:
+            await self._app(scope, receive, send)
+        else:
+            await note(scope, refusal)
+            await answer(refusal, scope, receive, send)
+
+    def _with_headers(self, scope: Scope, send: Send) -> Send:
+        private = self._login and scope["path"].startswith("/api/")
+        wanted = self._headers | (PRIVATE if private else {})
+
+        async def send_with_headers(message: Message) -> None:
+            if message["type"] in ("http.response.start", "websocket.http.response.start"):
+                headers = MutableHeaders(scope=message)
+                for name, value in wanted.items():
+                    headers.setdefault(name, value)
+            await send(message)
+
+        return send_with_headers
+
+
+def judge(scope: Scope, hosts: Hosts) -> Rejection | None:
+    """The refusal of a request, None if it may pass.
+
+    Args:
+        scope: The ASGI scope of a request or WebSocket.
+        hosts: The host names the server answers to.
+    """
+    headers = Headers(scope=scope)
+    named = headers.getlist("host")
+    if len(named) != 1 or not hosts.answer(hostname(named[0]), scope):
+        return Rejection(400, "Refused", "this server does not answer to that host name")
+    origins = headers.getlist("origin")
+    secure = scope["scheme"] in ("https", "wss")
+    if scope["type"] == "websocket" or origins:
+        allowed = len(origins) == 1 and same_origin(origins[0], named[0], secure=secure)
+    else:
+        # Browsers always send Origin or Sec-Fetch-Site with these; scripts send neither.
+        allowed = headers.get("sec-fetch-site", "same-origin") == "same-origin"
+    if scope["type"] == "http" and scope["method"] in SAFE_METHODS:
+        allowed = allowed or _is_visit(scope, headers)
+    if allowed:
+        return None
+    return Rejection(403, "Refused", "requests from other sites are not accepted")
+
+
+def _is_visit(scope: Scope, headers: Headers) -> bool:
+    """Whether a request that another site caused may pass: a person who follows a link to a page.
+
+    A page of another site may not make the server compute: an image, a frame, a download or a
+    redirect to ``/api/`` would start an export, and cookies are not even needed on loopback.
+    Browsers without Sec-Fetch-Site (before 2023) send neither header; nor do scripts.
+    """
+    site = headers.get("sec-fetch-site")
+    if site is None:
+        return not headers.getlist("origin")
+    if site in ("same-origin", "none"):
+        return True
+    link = headers.get("sec-fetch-mode") == "navigate"
+    page = headers.get("sec-fetch-dest") == "document"
+    return link and page and not scope["path"].startswith("/api/")
+
+
+def hostname(host: str) -> str:
+    """The name in a ``Host`` header, in lower case, without its port; empty if malformed."""
+    try:
+        parts = urlsplit(f"//{host}")
+        _ = parts.port
+    except ValueError:
+        return ""
+    malformed = parts.username is not None or parts.path or parts.query or parts.fragment
+    return "" if malformed else parts.hostname or ""
+
+
+def same_origin(origin: str, host: str, *, secure: bool) -> bool:
+    """Whether a page of this origin was served under this ``Host`` header, by this protocol."""
+    return origin.lower() == f"{'https' if secure else 'http'}://{host.lower()}"

@@ -1,0 +1,173 @@
+"""Sessions at the door: lets through who is signed in, and ends what outlives its session."""
+
+from __future__ import annotations
+
+import asyncio
+import hmac
+import re
+from urllib.parse import quote
+
+from starlette.datastructures import Headers
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from app.access.login.login_backoff import TokenBuckets
+from app.access.login.login_service import Access
+from app.access.login.sessions import AuthenticatedSession, Session, form_token
+from app.access.middleware.rejection import Rejection, answer, note
+from app.access.people import NOBODY
+
+COOKIE = "__Host-sid"
+"""Browsers take a cookie of such a name only over TLS, for this very host and the whole of it."""
+BROWSER_COOKIE = "__Host-browser"
+FORM_HEADER = "X-Recon4-Token"
+
+PAIRING = frozenset({"/pair", "/api/pairing/redeem", "/api/pairing/requests", "/api/pairing/claim"})
+OPEN_PATHS = PAIRING | {"/login", "/api/login", "/api/setup", "/healthz", "/metrics"}
+"""What is answered without a session, besides the files of `OPEN_FOLDER`; tested."""
+OPEN_FOLDER = "/web/"
+SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+
+LOOK_AGAIN_S = 2.0
+"""An open WebSocket or stream ends at most this long after its session [s]."""
+TOKEN = re.compile(r"[A-Za-z0-9_-]{43}")
+
+
+class SessionMiddleware:
+    """Finds the session of each request; in front of the application where there is a login."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+        self._requests = TokenBuckets(burst=60, per_s=20.0)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] not in ("http", "websocket"):
+            await self._app(scope, receive, send)
+            return
+        access: Access = scope["app"].state.parts.access
+        token = cookie(scope, COOKIE)
+        visit = await find(access, token)
+        state = scope["state"]
+        state.update(person=NOBODY, signed_in_s=float("inf"), session=None)
+        if visit is not None:
+            session = visit.session
+            signed_in_s = access.sessions.age_s(session)
+            state.update(person=visit.person, signed_in_s=signed_in_s, session=session)
+            state["form_token"] = form_token(token)
+        if (refusal := self._judge(scope, visit)) is not None:
+            if refusal.status == 403:
+                await note(scope, refusal)
+            await answer(refusal, scope, receive, send)
+        elif visit is None:
+            await self._app(scope, receive, send)
+        else:
+            if access.sessions.unnoted(visit.session):
+                await asyncio.to_thread(access.sessions.note, visit.session)
+            await SessionMonitor(access, visit.session, scope).run(self._app, receive, send)
+
+    def _judge(self, scope: Scope, visit: AuthenticatedSession | None) -> Rejection | None:
+        path = scope["path"]
+        if path.startswith(OPEN_FOLDER) or (visit is None and path in OPEN_PATHS):
+            return None
+        if visit is None:
+            return sign_in_first(scope)
+        if wait_s := self._requests.take(visit.session.id):
+            retry = {"Retry-After": str(int(wait_s) + 1)}
+            return Rejection(429, "TooMany", "too many requests at a time", retry)
+        if scope["type"] == "http" and scope["method"] not in SAFE_METHODS:
+            given = Headers(scope=scope).get(FORM_HEADER, "")
+            if not hmac.compare_digest(given.encode(), scope["state"]["form_token"].encode()):
+                detail = f"the header {FORM_HEADER} must carry the token of /api/me"
+                return Rejection(403, "StaleToken", detail)
+        return None
+
+
+class SessionMonitor:
+    """Runs the application for one request, and ends it if it outlives its session."""
+
+    def __init__(self, access: Access, session: Session, scope: Scope) -> None:
+        self._access, self._session, self._scope = access, session, scope
+        self._begun = self._ended = self._sized = False
+        self._active = False
+
+    async def run(self, app: ASGIApp, receive: Receive, send: Send) -> None:
+        """Until the application is done, or the session is over."""
+
+        async def hear() -> Message:
+            message = await receive()
+            self._active |= message["type"] == "websocket.receive"
+            return message
+
+        async def tell(message: Message) -> None:
+            self._notice(message)
+            await send(message)
+
+        running = asyncio.ensure_future(app(self._scope, hear, tell))
+        try:
+            while not (await asyncio.wait({running}, timeout=LOOK_AGAIN_S))[0]:
+                if self._begun and not await asyncio.to_thread(self._still):
+                    running.cancel()
+                    await asyncio.wait({running})
+                    await self._end(send)
+                    return
+        finally:
+            running.cancel()
+        await running
+
+    def _still(self) -> bool:
+        """Whether the session goes on; messages of a browser keep it from going idle."""
+        session = self._access.sessions.alive(self._session.id)
+        if session is not None and self._active and self._access.sessions.unnoted(session):
+            self._active = False
+            self._access.sessions.note(session)
+        return session is not None
+
+    def _notice(self, message: Message) -> None:
+        kind = message["type"]
+        if kind == "http.response.start":
+            names = {name.lower() for name, _ in message.get("headers", [])}
+            self._begun, self._sized = True, b"content-length" in names
+        elif kind == "websocket.accept":
+            self._begun = True
+        elif kind == "websocket.close" or (
+            kind == "http.response.body" and not message.get("more_body", False)
+        ):
+            self._ended = True
+
+    async def _end(self, send: Send) -> None:
+        if self._ended:
+            return
+        if self._scope["type"] == "websocket":
+            await send({"type": "websocket.close", "code": 1008, "reason": "signed out"})
+        elif not self._sized:  # else the server cuts the connection: the file is not whole
+            await send({"type": "http.response.body", "body": b"", "more_body": False})
+
+
+async def find(access: Access, token: str) -> AuthenticatedSession | None:
+    """The session of a token; the database is asked in a thread."""
+    if not TOKEN.fullmatch(token):
+        return None
+    return access.sessions.cached_sessions(token) or await asyncio.to_thread(
+        access.sessions.find, token
+    )
+
+
+def cookie(scope: Scope, name: str) -> str:
+    """The value of a cookie; empty if there is none, or more than one."""
+    pairs = (
+        pair.strip().partition("=")
+        for line in Headers(scope=scope).getlist("cookie")
+        for pair in line.split(";")
+    )
+    values = [value for key, _, value in pairs if key == name]
+    return values[0] if len(values) == 1 else ""
+
+
+def sign_in_first(scope: Scope) -> Rejection:
+    """Lead a person to the login, tell a program."""
+    accept = Headers(scope=scope).get("accept", "")
+    page = scope["type"] == "http" and scope["method"] == "GET" and "text/html" in accept
+    if not page:
+        return Rejection(401, "Unknown", "sign in first: POST /api/login")
+    # A paired phone knows no password: the page of pairing has both ways in.
+    there = "/pair" if scope["path"] == "/live" else f"/login#next={quote(scope['path'])}"
+    return Rejection(303, "Unknown", "sign in first", {"Location": there})

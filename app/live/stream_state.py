@@ -1,0 +1,188 @@
+"""What is known of a running capture, as the phones are shown it; and what each of them lacks."""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+import math
+import time
+from bisect import bisect_left
+from collections import deque
+from dataclasses import dataclass, field
+from typing import Any
+
+Message = dict[str, Any]
+
+POINTS_AT_ONCE = 20_000
+"""Points in one message: 140 kB, so that a slow phone sees the map grow."""
+BYTES_A_POINT = 7
+_KEPT = ("status", "notes", "fix", "plan", "gaps", "loop")
+"""Kinds of which only the newest counts."""
+_PLACED_WITHIN_NS = 10_000_000_000
+"""A mark appears without a place if the mapping does not come to its moment."""
+_PATH_STEP_M = 0.25
+"""The way is kept a point every so far: an hour's walk is a few thousand."""
+_TRACK = 6000
+"""Poses kept to place marks: ten minutes, more than anybody types a note."""
+
+
+@dataclass(slots=True)
+class Cursor:
+    """What one phone has already."""
+
+    generation: int = -1
+    points: int = 0
+    path: int = 0
+    marks: int = 0
+    versions: dict[str, int] = field(default_factory=dict)
+
+
+class StreamState:
+    """Takes messages of recorder and mapper in; gives every phone what it lacks.
+
+    Memory is bounded by the preview (400 k points) and the way, however many phones there are:
+    a phone that does not listen has a cursor that stays behind, nothing more.
+    """
+
+    def __init__(self) -> None:
+        self._changed = asyncio.Event()
+        self.version = 0
+        self.newest: dict[str, Message] = {}
+        """Kind -> its last message."""
+        self._versions: dict[str, int] = {}
+        self._generation, self._voxel_m = 0, 0.0
+        self._voxels, self._values = bytearray(), bytearray()
+        self._path: list[list[float]] = []
+        self._marks: list[Message] = []
+        self._unplaced: list[Message] = []
+        """Marks of moments the mapping has not come to."""
+        self._track: deque[tuple[int, list[float]]] = deque(maxlen=_TRACK)
+        """The newest moments [ns] and where the walk was."""
+
+    @property
+    def points(self) -> int:
+        """Points known."""
+        return len(self._values)
+
+    def take(self, message: Message) -> None:
+        """Take a message in."""
+        match message.get("kind"):
+            case "points":
+                self._take_points(message)
+            case "path":
+                self._path = []
+                for place in message["points"]:
+                    self._go_to(place)
+            case "pose":
+                self.newest["pose"] = message
+                self._bump("pose")
+                self._track.append((message["t_ns"], message["p"]))
+                if not message["lost"]:
+                    self._go_to(message["p"])
+                self._place_marks(message["t_ns"])
+            case "mark":
+                self._take_mark(message)
+            case "done":
+                self._place_marks(None)
+            case kind if kind in _KEPT:
+                self._keep(kind, message)
+            case _:
+                return
+        self.version += 1
+        self._changed.set()
+        self._changed = asyncio.Event()
+
+    def recall(self, marks: list[Message]) -> None:
+        """Know marks an earlier server was told of; where they lie it knew alone."""
+        self._marks = [mark | {"p": None} for mark in marks]
+
+    async def news(self, version: int, *, timeout_s: float) -> None:
+        """Return when something is newer than a version, or after a while."""
+        if self.version != version:
+            return
+        try:
+            await asyncio.wait_for(self._changed.wait(), timeout_s)
+        except TimeoutError:
+            return
+
+    def lacking(self, cursor: Cursor, *, most: int = POINTS_AT_ONCE) -> tuple[Message, bytes]:
+        """What a phone with this cursor lacks, at most so many points; moves the cursor.
+
+        Returns:
+            A message of JSON values, and the points it announces under ``points``: int16 x, y, z
+            of each, then a uint8 value of each.
+        """
+        message: Message = {"t": time.time()}
+        for kind, version in self._versions.items():
+            if cursor.versions.get(kind) != version:
+                message[kind] = self.newest[kind]
+                cursor.versions[kind] = version
+        if cursor.path > len(self._path):
+            cursor.path = 0
+        if cursor.path < len(self._path):
+            message["path"] = {"start": cursor.path, "points": self._path[cursor.path :]}
+            cursor.path = len(self._path)
+        if cursor.marks > len(self._marks):
+            cursor.marks = 0
+        if cursor.marks < len(self._marks):
+            message["marks"] = {"start": cursor.marks, "marks": self._marks[cursor.marks :]}
+            cursor.marks = len(self._marks)
+        return message, self._lacking_points(cursor, message, min(most, POINTS_AT_ONCE))
+
+    def complete(self, cursor: Cursor) -> bool:
+        """Whether a phone has all points."""
+        return cursor.generation == self._generation and cursor.points >= self.points
+
+    def _lacking_points(self, cursor: Cursor, message: Message, most: int) -> bytes:
+        if cursor.generation != self._generation or cursor.points > self.points:
+            cursor.generation, cursor.points = self._generation, 0
+        start, end = cursor.points, min(cursor.points + most, self.points)
+        if start == end:
+            return b""
+        message["points"] = {
+            "generation": self._generation, "start": start, "count": end - start,
+            "voxel_m": self._voxel_m, "total": self.points,
+        }  # fmt: skip
+        cursor.points = end
+        return bytes(self._voxels[6 * start : 6 * end] + self._values[start:end])
+
+    def _go_to(self, place: list[float]) -> None:
+        if not self._path or math.dist(self._path[-1], place) >= _PATH_STEP_M:
+            self._path.append([round(value, 2) for value in place])
+
+    def _keep(self, kind: str, message: Message) -> None:
+        self.newest[kind] = message
+        self._bump(kind)
+        if kind == "status":
+            self._place_marks(message["t_ns"] - _PLACED_WITHIN_NS)
+
+    def _take_mark(self, message: Message) -> None:
+        self._unplaced.append(message)
+        if message.get("what") != "point":
+            self._place_marks(message["t_ns"])
+
+    def _place_marks(self, until_ns: int | None) -> None:
+        """Put marks to where the walk was at their moment, those until a moment or all of them."""
+        due = [m for m in self._unplaced if until_ns is None or m["t_ns"] <= until_ns]
+        self._unplaced = [mark for mark in self._unplaced if mark not in due]
+        self._marks += [mark | {"p": self._place_at(mark["t_ns"])} for mark in due]
+
+    def _place_at(self, t_ns: int) -> list[float] | None:
+        """Where the walk was; where it is, if the mapping has not come to that moment."""
+        if not self._track:
+            return None
+        row = bisect_left(self._track, t_ns, key=lambda one: one[0])
+        return self._track[min(row, len(self._track) - 1)][1]
+
+    def _take_points(self, message: Message) -> None:
+        if message["generation"] != self._generation or message["start"] == 0:
+            self._generation, self._voxel_m = message["generation"], message["voxel_m"]
+            self._voxels.clear()
+            self._values.clear()
+        if message["start"] != self.points:
+            return  # told twice around a new connection
+        self._voxels += base64.b64decode(message["voxels"])
+        self._values += base64.b64decode(message["values"])
+
+    def _bump(self, kind: str) -> None:
+        self._versions[kind] = self._versions.get(kind, 0) + 1

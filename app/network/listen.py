@@ -1,0 +1,202 @@
+"""Where the server listens: the socket, the certificate, the HTTP protocol."""
+
+from __future__ import annotations
+
+import asyncio
+import fcntl
+import os
+import socket
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import uvicorn
+from fastapi import FastAPI
+
+from app.access.middleware.origin import Hosts
+from app.network.accept import Acceptor
+from app.network.certificate import Certificate, made_certificate, own_certificate
+from app.network.connections import (
+    Connection,
+    ConnectionLimits,
+    ConnectionTable,
+    open_file_limit,
+)
+from app.network.hosts import LOOPBACK, own_names
+from app.network.http_timeouts import KEEP_ALIVE_S, HttpTimeoutsProtocol
+from app.settings import ServerSettings
+from recon4.errors import StoreError
+from recon4.store.atomic import make_folders
+
+PING_INTERVAL_S = 20.0
+PING_TIMEOUT_S = 20.0
+"""A WebSocket is pinged that often; one that does not answer in time is closed [s]."""
+
+
+class AnnouncingServer(uvicorn.Server):
+    """uvicorn with our accept loop; says when it listens."""
+
+    def __init__(self, config: uvicorn.Config, ready: Callable[[], None]) -> None:
+        super().__init__(config)
+        self._ready = ready
+        self._table = connections_of(config)
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Start, accept connections, then say so."""
+        await self.lifespan.startup()
+        if self.lifespan.should_exit:
+            sys.exit(uvicorn.config.STARTUP_FAILURE)
+        self.servers = []
+        for listener in sockets or ():
+            acceptor = Acceptor(
+                listener, self._table, protocol=self._protocol, context=self.config.ssl
+            )
+            acceptor.start()
+            self.servers.append(acceptor)  # type: ignore[arg-type]  # closed and waited for
+        self.started = True
+        self._ready()
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """End; connections that are still open after the graceful time are aborted."""
+        await super().shutdown(sockets)
+        for connection in self._table:
+            connection.abort()
+        await asyncio.sleep(0)  # the sockets close on the loop's next round
+
+    def _protocol(self, connection: Connection) -> asyncio.Protocol:
+        return HttpTimeoutsProtocol(
+            self.config,
+            self.server_state,
+            self.lifespan.state,
+            connection=connection,
+            table=self._table,
+        )
+
+
+def connections_of(config: uvicorn.Config) -> ConnectionTable:
+    """The connection table that `create_app` made; of another application a table of its own."""
+    if isinstance(config.app, FastAPI):
+        table: ConnectionTable = config.app.state.connections
+        return table
+    return ConnectionTable(ConnectionLimits.within(1024, per_address=256, files=open_file_limit()))
+
+
+def uvicorn_config(app: FastAPI, certificate: Certificate | None = None) -> uvicorn.Config:
+    """How the application is run, in tests too; with a certificate only TLS is spoken."""
+    context = certificate.context() if certificate is not None else None
+    return uvicorn.Config(
+        app,
+        http=HttpTimeoutsProtocol,
+        log_level="warning",
+        log_config=None,  # `app.logs` writes what uvicorn logs, too
+        access_log=False,
+        proxy_headers=False,  # nobody stands in between: such headers are made up
+        ws_max_size=1 << 20,
+        ws_ping_interval=PING_INTERVAL_S,
+        ws_ping_timeout=PING_TIMEOUT_S,
+        ws_per_message_deflate=False,  # costs 0.3 s of processor time a million points
+        timeout_keep_alive=KEEP_ALIVE_S,
+        timeout_graceful_shutdown=2,  # event streams never end by themselves
+        server_header=False,
+        ssl_context_factory=(lambda config, default: context) if context is not None else None,
+    )
+
+
+def hosts_of(settings: ServerSettings) -> Hosts:
+    """Host names the server answers to."""
+    if not settings.lan:
+        return Hosts(LOOPBACK)
+    names = {name.lower() for name in settings.names}
+    return Hosts(own_names() | names, by_address=True)
+
+
+def certificate_of(settings: ServerSettings) -> Certificate | None:
+    """The certificate to listen with; None = without TLS.
+
+    Raises:
+        ConfigError: If the user's own is none.
+    """
+    if not settings.lan:
+        return None
+    if settings.tls_certificate is not None and settings.tls_key is not None:
+        return own_certificate(settings.tls_certificate, settings.tls_key)
+    return made_certificate(settings.state / "tls", hosts_of(settings).names)
+
+
+def presented_fingerprint(settings: ServerSettings) -> str | None:
+    """SHA-256 of the certificate this server shows; None = it speaks no TLS."""
+    if not settings.lan:
+        return None
+    chain = settings.tls_certificate or settings.state / "tls" / "certificate.pem"
+    return Certificate(chain, chain, own=False).fingerprint()
+
+
+@contextmanager
+def only_one(settings: ServerSettings) -> Iterator[None]:
+    """Hold the folder: two servers would start every job twice.
+
+    Raises:
+        StoreError: If another server holds it.
+    """
+    make_state(settings)
+    lock = os.open(settings.state / "server.lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+    try:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            raise StoreError(f"another server runs on {settings.root}; use that one") from error
+        yield
+    finally:
+        os.close(lock)
+
+
+def make_state(settings: ServerSettings) -> None:
+    """The folder of the server's own files, for nobody but its user."""
+    make_folders(settings.state, 0o700)
+    settings.state.chmod(0o700)
+
+
+@contextmanager
+def private_files(wanted: bool) -> Iterator[None]:
+    """Files made meanwhile, those of workers too, are for nobody but the server's user."""
+    before = os.umask(0o077) if wanted else None
+    try:
+        yield
+    finally:
+        if before is not None:
+            os.umask(before)
+
+
+@contextmanager
+def listening(settings: ServerSettings) -> Iterator[socket.socket]:
+    """The socket to listen on.
+
+    Raises:
+        StoreError: If it cannot listen there.
+    """
+    family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
+    # asyncio turns Nagle's delay (40 ms an answer) off only where the protocol is named
+    with socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP) as listener:
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            listener.bind((settings.host, settings.port))
+        except OSError as error:
+            raise StoreError(
+                f"port {settings.port} is in use ({error.strerror}); choose another with --port"
+            ) from error
+        yield listener
+
+
+def urls(settings: ServerSettings, listener: socket.socket) -> list[str]:
+    """Where browsers find the server, the best first."""
+    name, port = listener.getsockname()[:2]
+    scheme = "https" if settings.lan else "http"
+    names = [name]
+    if name in ("0.0.0.0", "::"):
+        own = own_names() - LOOPBACK
+        addresses = sorted(one for one in own if one[0].isdigit() or ":" in one)
+        names = [*addresses, socket.gethostname().lower(), "localhost"]
+    return [
+        f"{scheme}://[{one}]:{port}/" if ":" in one else f"{scheme}://{one}:{port}/"
+        for one in names
+    ]

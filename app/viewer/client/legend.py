@@ -1,0 +1,85 @@
+"""What the colors of a view mean."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.viewer.client.view import UNITS, ColorBy, EdgeColor, ViewState
+from app.viewer.cloud.palette import Palette, Range, Rgb
+from app.viewer.cloud.parts import sensor_names
+from app.viewer.scene.build import CHI2_RANGE, ERROR_RANGE, Content, bounds, grid_cell_m
+from app.viewer.scene.layers import Layer
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Legend:
+    """What the colors mean."""
+
+    color_by: ColorBy | None
+    """None = there are no points."""
+    palette: Palette
+    span: Range
+    unit: str
+    sensors: tuple[tuple[str, Rgb], ...] = ()
+    layers: tuple[Layer, ...] = ()
+    points: int = 0
+    """Shown just now."""
+    points_in_map: int = 0
+    grid_cell_m: float = 0.0
+    edge_color: EdgeColor = "verdict"
+    edge_span: Range = ERROR_RANGE
+    multiframes: str = ""
+    """Which of them are on screen; empty = none."""
+    preview: bool = False
+    """Whether the points on screen are those of the walk so far, by height."""
+
+
+def legend(content: Content, view: ViewState, *, points: int = 0) -> Legend:
+    """Say what the colors of a view mean.
+
+    Args:
+        content: What there is.
+        view: What a person chose.
+        points: How many points of the map are on screen.
+    """
+    shown = content.cloud is not None and view.color_by in content.colors
+    return Legend(
+        color_by=view.color_by if shown else None,
+        palette=view.palette,
+        span=span_of(content, view) if shown else Range(0.0, 1.0),
+        unit=UNITS[view.color_by],
+        sensors=sensor_names(content.sensors),
+        layers=tuple(layer for layer in content.layers if view.shows(layer)),
+        points=points,
+        points_in_map=len(content.cloud) if content.cloud else 0,
+        grid_cell_m=grid_cell_m(bounds(content)),
+        edge_color=view.edge_color,
+        edge_span=CHI2_RANGE if view.edge_color == "chi²" else ERROR_RANGE,
+        multiframes=multiframe_words(content, view),
+        preview=shows_preview(content, view),
+    )
+
+
+def shows_preview(content: Content, view: ViewState) -> bool:
+    """Whether the points of the walk so far stand in for the map that is not there yet."""
+    there = content.preview is not None and content.trajectory is not None
+    return there and view.points != "multiframe"
+
+
+def multiframe_words(content: Content, view: ViewState) -> str:
+    """Which multiframes are on screen, and when they were measured."""
+    frames = content.multiframes
+    if frames is None or view.points == "map":
+        return ""
+    rows = frames.window(view.moment, view.window_s)
+    begin_s = (frames.t_mid_ns[rows[0]] - frames.t_mid_ns[0]) * 1e-9
+    named = f"Multiframe {rows[0]}" if len(rows) == 1 else f"Multiframes {rows[0]} to {rows[-1]}"
+    return f"{named} of {len(frames)}, at {begin_s:.1f} s"
+
+
+def span_of(content: Content, view: ViewState) -> Range:
+    """Ends of the palette: a person's, else those of the map."""
+    mine = view.range_of(view.color_by)
+    if mine is not None or content.cloud is None:
+        return mine or Range(0.0, 1.0)
+    return content.cloud.span(view.color_by)

@@ -1,0 +1,161 @@
+"""What a person does with the pointer: pick edges and points, measure."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from app.viewer.client.captions import (
+    Facts,
+    edge_facts,
+    gnss_facts,
+    measurement_facts,
+    measurements_csv,
+    point_facts,
+)
+from app.viewer.client.panels import Panel, Update
+from app.viewer.client.show import Screen
+from app.viewer.client.view import MOST_MEASUREMENTS, Position, ViewState
+from app.viewer.cloud.pick import PickedPoint, Ray, pick_edge, pick_gnss, pick_point
+from app.viewer.scene.build import MEASURED_COLOR, as_position, crosses
+from app.viewer.scene.nodes import LinesNode, Node
+from app.viewer.scene.source import ProjectSource
+from recon4.geometry.se3 import Array
+
+PICKED_COLOR = (255, 255, 255)
+
+
+class PointerTools:
+    """Picking and measuring of one client. Clicks come from viser's threads, one at a time here."""
+
+    def __init__(
+        self,
+        source: ProjectSource,
+        screen: Screen,
+        panel: Panel,
+        *,
+        project: str,
+        change: Callable[[Update], None],
+    ) -> None:
+        self._source, self._screen, self._panel = source, screen, panel
+        self._project, self._change = project, change
+        self._one = threading.Lock()
+        self._measuring = False
+        self._first: Position | None = None
+        self._last: Position | None = None
+        self._edge: Array | None = None
+        self._news = False
+
+    def news(self) -> bool:
+        """Whether there is something to draw since the last time this was asked."""
+        news, self._news = self._news, False
+        return news
+
+    def nodes(self) -> list[Node]:
+        """The edge picked, and the point a measurement begins at."""
+        nodes: list[Node] = []
+        if self._edge is not None:
+            nodes.append(_mark("/picked/edge", self._edge[None], PICKED_COLOR))
+        if self._last is not None:
+            nodes.append(_mark("/picked/point", crosses(np.array([self._last])), PICKED_COLOR))
+        if self._first is not None:
+            nodes.append(_mark("/picked/first", crosses(np.array([self._first])), MEASURED_COLOR))
+        return nodes
+
+    def report(self, view: ViewState) -> None:
+        """List the measurements of a view."""
+        facts = [measurement_facts(n, points) for n, points in enumerate(view.measurements, 1)]
+        self._panel.tell_measured(facts, measuring=self._measuring)
+
+    def click(self, ray: Ray, view: ViewState) -> None:
+        """A click or tap on the scene."""
+        with self._one:
+            ray = replace(ray, point_m=view.point_size_m)
+            if self._measuring:
+                self._measure(ray)
+            elif not (self._picked_edge(ray, view) or self._picked_gnss(ray, view)):
+                self._pick_point(ray)
+            self._news = True
+        self._change(lambda view: view)
+
+    def command(self, name: str, view: ViewState) -> None:
+        """A button or a key."""
+        match name:
+            case "measure":
+                self._measuring, self._first = not self._measuring, None
+            case "keep point" if self._last is not None:
+                self._keep((self._last,))
+            case "undo measure":
+                self._change(lambda view: replace(view, measurements=view.measurements[:-1]))
+            case "csv":
+                self._screen.download("measurements.csv", measurements_csv(view.measurements))
+        self._news = True
+
+    def _measure(self, ray: Ray) -> None:
+        point = self._pick_point(ray)
+        if point is None:
+            return
+        if self._first is None:
+            self._first = point.p_map
+        else:
+            self._keep((self._first, point.p_map))
+            self._first = None
+
+    def _keep(self, points: tuple[Position, ...]) -> None:
+        self._change(
+            lambda view: replace(
+                view, measurements=(*view.measurements, points)[-MOST_MEASUREMENTS:]
+            )
+        )
+
+    def _picked_edge(self, ray: Ray, view: ViewState) -> bool:
+        table = self._source.content.edges
+        row = None if table is None else pick_edge(table, view, ray)
+        if table is None or row is None:
+            self._edge = None
+            return False
+        self._edge, self._last = table.graph.T_map_body.t[table.ends[row]], None
+        self._tell(edge_facts(table, row, self._project))
+        return True
+
+    def _picked_gnss(self, ray: Ray, view: ViewState) -> bool:
+        content = self._source.content
+        row = None if content.gnss is None else pick_gnss(content.gnss, view, ray)
+        if content.gnss is None or row is None:
+            return False
+        self._last = as_position(content.gnss.p_map[row])
+        began_ns = 0 if content.trajectory is None else int(content.trajectory.t_ns[0])
+        self._tell(gnss_facts(content.gnss, row, began_ns=began_ns))
+        return True
+
+    def _pick_point(self, ray: Ray) -> PickedPoint | None:
+        content = self._source.content
+        point = None if content.cloud is None else pick_point(content.cloud, ray)
+        self._last = None if point is None else point.p_map
+        if point is None or content.cloud is None:
+            self._panel.tell_picked(None)
+            return None
+        facts = point_facts(
+            point,
+            sensors=content.sensors,
+            began_ns=content.cloud.began_ns,
+            crs=self._source.crs_coordinates(np.array([point.p_map])),
+        )
+        self._tell(facts)
+        return point
+
+    def _tell(self, facts: Facts) -> None:
+        """Say it in the panel; on a phone, where that is folded, over the map too."""
+        self._panel.tell_picked(facts)
+        if self._screen.phone:
+            words = "; ".join(f"{name}: {value}" for name, value in facts.rows)
+            self._screen.tell(facts.title, words)
+
+
+def _mark(path: str, segments_m: Array, rgb: tuple[int, int, int]) -> LinesNode:
+    origin = segments_m[0, 0]
+    segments = (segments_m - origin).astype(np.float32)
+    return LinesNode(path=path, position_m=origin, segments=segments, rgb=rgb, width_px=5.0)

@@ -1,0 +1,137 @@
+"""What a person chose to see: one immutable value, kept in the person's browser as JSON."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
+from typing import Any, Literal, get_args
+
+from app.viewer.cloud.palette import Palette, Range
+from app.viewer.scene.layers import Layer
+
+ColorBy = Literal[
+    "normalized intensity", "raw intensity", "height", "time", "sensor", "ring", "multiframe",
+    "distance",
+]  # fmt: skip
+COLOR_BY: tuple[ColorBy, ...] = get_args(ColorBy)
+CATEGORIES: frozenset[ColorBy] = frozenset({"sensor", "multiframe"})
+"""Colored by a list of colors, not along a palette."""
+
+UNITS: dict[ColorBy, str] = {
+    "normalized intensity": "",
+    "raw intensity": "as the sensor gave it",
+    "height": "m above the origin",
+    "time": "s since the start",
+    "sensor": "",
+    "ring": "0 = lowest beam",
+    "multiframe": "neighbors differ",
+    "distance": "m from the sensor",
+}
+
+Points = Literal["map", "map and multiframe", "multiframe"]
+EdgeColor = Literal["verdict", "error / limit", "chi²"]
+
+Position = tuple[float, float, float]
+MOST_MEASUREMENTS = 200
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ViewState:
+    """What a person chose to see."""
+
+    color_by: ColorBy = "normalized intensity"
+    palette: Palette = "viridis"
+    ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    """Ends of the palette where a person set them, by what the points are colored by."""
+    point_size_m: float = 0.02
+    chosen: Mapping[str, bool] = field(default_factory=dict)
+    """Layers a person switched, by key; the others are as they are at first."""
+    points: Points = "map"
+    moment: int = 0
+    """Multiframe under the scrubber."""
+    window_s: float = 0.0
+    """Multiframes so long after it are shown with it [s]."""
+    edge_color: EdgeColor = "verdict"
+    detail: int = 0
+    """At most so many points; 0 = what the server allows."""
+    adapt: bool = True
+    """Whether fewer are shown where the browser is slow."""
+    measurements: tuple[tuple[Position, ...], ...] = ()
+    """One point each, or two, in the map [m]."""
+
+    def shows(self, layer: Layer) -> bool:
+        """Whether a layer is on."""
+        return self.chosen.get(layer.key, layer.shown)
+
+    def with_layer(self, key: str, *, on: bool) -> ViewState:
+        """The view with a layer switched."""
+        return replace(self, chosen={**self.chosen, key: on})
+
+    def with_range(self, span: Range | None) -> ViewState:
+        """The view with other ends of the palette for its color; None = those of the map."""
+        others = {name: ends for name, ends in self.ranges.items() if name != self.color_by}
+        if span is not None:
+            others[self.color_by] = (span.low, span.high)
+        return replace(self, ranges=others)
+
+    def range_of(self, color_by: ColorBy) -> Range | None:
+        """The ends a person set."""
+        return Range(*self.ranges[color_by]) if color_by in self.ranges else None
+
+    def to_json(self) -> str:
+        """As text."""
+        return json.dumps(asdict(self))
+
+
+def view_from_json(text: str | None) -> ViewState | None:
+    """The view a browser kept; None if there is none or it is not one of ours.
+
+    The text comes from outside: whatever does not fit is as good as nothing.
+    """
+    try:
+        record = json.loads(text or "")
+        return _view(record)
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
+        return None
+
+
+def _view(record: dict[str, Any]) -> ViewState:
+    return ViewState(
+        color_by=_one_of(record["color_by"], COLOR_BY),
+        palette=_one_of(record["palette"], get_args(Palette)),
+        ranges={
+            _one_of(name, COLOR_BY): (_number(low), _number(high))
+            for name, (low, high) in record["ranges"].items()
+        },
+        point_size_m=min(max(_number(record["point_size_m"]), 0.001), 1.0),
+        chosen={str(key)[:80]: on is True for key, on in list(record["chosen"].items())[:200]},
+        points=_one_of(record["points"], get_args(Points)),
+        moment=max(int(record["moment"]), 0),
+        window_s=min(max(_number(record["window_s"]), 0.0), 60.0),
+        edge_color=_one_of(record["edge_color"], get_args(EdgeColor)),
+        detail=max(int(record["detail"]), 0),
+        adapt=record["adapt"] is True,
+        measurements=tuple(_measurement(m) for m in record["measurements"][:MOST_MEASUREMENTS]),
+    )
+
+
+def _measurement(record: list[list[float]]) -> tuple[Position, ...]:
+    points = tuple((_number(x), _number(y), _number(z)) for x, y, z in record)
+    if len(points) not in (1, 2):
+        raise ValueError(f"a measurement has one or two points, got {len(points)}")
+    return points
+
+
+def _one_of(value: Any, known: tuple[Any, ...]) -> Any:
+    if value not in known:
+        raise ValueError(f"expected one of {known}, got {value!r}")
+    return value
+
+
+def _number(value: Any) -> float:
+    number = float(value)
+    if not math.isfinite(number):
+        raise ValueError("not a finite number")
+    return number

@@ -1,0 +1,358 @@
+"""What is to be seen beside the points: a project and a view in, nodes out. Knows no viser.
+
+Coordinates are those of the map frame. Whatever becomes float32 is first moved to the origin of
+its node, which stays float64: far from zero float32 steps by centimetres.
+
+Long lines are cut into pieces, so that a walk that grows resends its last piece only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.viewer.client.view import ColorBy, Position, ViewState
+from app.viewer.cloud.multiframes import Multiframes
+from app.viewer.cloud.palette import Range, Rgb, paint
+from app.viewer.cloud.parts import Cloud
+from app.viewer.cloud.preview import JobPreview
+from app.viewer.scene.layers import (
+    FINAL,
+    FRAMES,
+    GNSS_REJECTED,
+    GNSS_USED,
+    GRAVITY,
+    GRID,
+    LIDARS,
+    NORTH,
+    ODOMETRY,
+    EdgeTable,
+    Layer,
+)
+from app.viewer.scene.nodes import AxesNode, GridNode, LabelNode, LinesNode, Node
+from recon4.geometry.se3 import SE3, Array
+from recon4.model.trajectory import Times, Trajectory
+
+CLOSED_M = 2.0
+"""Start and end nearer than this share a label [m]."""
+MOST_FRAMES = 1000
+"""More body frames than this are thinned out."""
+MOST_POSES = 20_000
+"""A trajectory of more poses is thinned out for drawing."""
+PIECE = 500
+"""Segments of a line, or edges, that are sent together."""
+MARK_M = 0.12
+"""Half the size of the crosses at GNSS positions and measured points [m]."""
+MEASURED_COLOR: Rgb = (255, 235, 59)
+ERROR_RANGE = Range(0.0, 1.0)
+CHI2_RANGE = Range(0.0, 20.0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GnssMarks:
+    """Where a receiver said the antenna was: edges from the walk to a position on earth."""
+
+    t_ns: Times
+    """(M,)"""
+    p_map: Array
+    """As the receiver said [m], (M, 3)."""
+    p_antenna: Array
+    """As the walk has it at that time [m], (M, 3)."""
+    used: NDArray[np.bool_]
+    """False = rejected as an outlier, (M,)."""
+
+    @property
+    def layers(self) -> tuple[Layer, Layer]:
+        """Used and rejected ones with their counts."""
+        used = int(self.used.sum())
+        rejected = len(self.used) - used
+        return replace(GNSS_USED, count=used), replace(GNSS_REJECTED, count=rejected)
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Content:
+    """What a project has to show so far."""
+
+    cloud: Cloud | None = None
+    trajectory: Trajectory | None = None
+    """``T_map_body`` of the last finished stage, or as far as the running one has come."""
+    odometry: Trajectory | None = None
+    """``T_odom_body``, before the graph."""
+    edges: EdgeTable | None = None
+    multiframes: Multiframes | None = None
+    preview: JobPreview | None = None
+    """The points of the walk until there is a map."""
+    sensors: tuple[str, ...] = ()
+    """Names of the LiDARs."""
+    gnss: GnssMarks | None = None
+    crs: str = ""
+    """Name of the CRS the map lies in; empty = nowhere on earth."""
+
+    @property
+    def colors(self) -> tuple[ColorBy, ...]:
+        """What the points can be colored by."""
+        return self.cloud.colors if self.cloud else ()
+
+    @property
+    def layers(self) -> tuple[Layer, ...]:
+        """What can be switched on and off."""
+        own = [
+            (FINAL, self.trajectory is not None),
+            (ODOMETRY, self.odometry is not None),
+            (FRAMES, self.edges is not None),
+            (LIDARS, self.multiframes is not None),
+        ]
+        edges = self.edges.layers if self.edges else ()
+        gnss = self.gnss.layers if self.gnss else ()
+        rest = (NORTH, GRAVITY, GRID) if self.crs else (GRAVITY, GRID)
+        return (*(layer for layer, there in own if there), *edges, *gnss, *rest)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Bounds:
+    """A box around everything."""
+
+    low_m: Array = field(default_factory=lambda: np.full(3, -5.0))
+    high_m: Array = field(default_factory=lambda: np.full(3, 5.0))
+
+    @property
+    def center_m(self) -> Array:
+        """Middle of the box [m], (3,)."""
+        return (self.low_m + self.high_m) / 2.0
+
+    @property
+    def size_m(self) -> float:
+        """Its longest horizontal side [m]."""
+        return float(np.max((self.high_m - self.low_m)[:2]))
+
+
+def describe(content: Content, view: ViewState) -> list[Node]:
+    """List what is on screen. A layer that is off is there and invisible: showing it is instant."""
+    box = bounds(content)
+    nodes: list[Node] = []
+    for layer, line in ((FINAL, content.trajectory), (ODOMETRY, content.odometry)):
+        if line is not None and len(line) > 1:
+            nodes += _path(layer, line, view.shows(layer))
+    if content.trajectory is not None and len(content.trajectory) > 1:
+        nodes += _ends(content.trajectory, view.shows(FINAL))
+    if content.edges is not None:
+        nodes += [*_edges(content.edges, view), _frames(content.edges, view)]
+    if content.multiframes is not None and content.trajectory is not None:
+        nodes += _lidars(content.multiframes, content.trajectory, view)
+    if content.gnss is not None:
+        nodes += _gnss(content.gnss, view)
+    nodes += [*_directions(content, box, view), _grid(box, view.shows(GRID))]
+    return [*nodes, *_measurements(view)]
+
+
+def bounds(content: Content) -> Bounds:
+    """The box around nearly all points and the trajectory; a room's when there is neither.
+
+    A hundredth of the points may lie outside: what was seen far away through doors and panes.
+    """
+    corners: list[Array] = []
+    if content.cloud is not None and len(content.cloud.base):
+        base = content.cloud.base
+        step = max(1, len(base) // 50_000)
+        corners += [*(base.origin_m + np.percentile(base.p_part[::step], [1.0, 99.0], axis=0))]
+    for line in (content.trajectory, content.odometry):
+        if line is not None and len(line):
+            corners += [line.T_a_b.t.min(axis=0), line.T_a_b.t.max(axis=0)]
+            break
+    if not corners:
+        return Bounds()
+    return Bounds(np.min(corners, axis=0), np.max(corners, axis=0))
+
+
+def grid_cell_m(box: Bounds) -> float:
+    """A round length that divides the picture into 10 to 50 cells [m]."""
+    for cell_m in (1.0, 5.0, 10.0, 50.0):
+        if box.size_m <= 50.0 * cell_m:
+            return cell_m
+    return 100.0
+
+
+def _path(layer: Layer, line: Trajectory, visible: bool) -> Iterator[LinesNode]:
+    t = line.T_a_b.t[:: max(1, -(-len(line) // MOST_POSES))]
+    for piece, begin in enumerate(range(0, len(t) - 1, PIECE)):
+        p = t[begin : begin + PIECE + 1]
+        yield _lines(
+            f"/{layer.key}/{piece}",
+            np.stack([p[:-1], p[1:]], axis=1),
+            layer.rgb,
+            width_px=2.5,
+            visible=visible,
+        )
+
+
+def _lines(
+    path: str,
+    segments_m: Array,
+    rgb: Rgb | NDArray[np.uint8],
+    *,
+    width_px: float,
+    visible: bool,
+) -> LinesNode:
+    origin = segments_m[0, 0] if len(segments_m) else np.zeros(3)
+    return LinesNode(
+        path=path,
+        position_m=origin,
+        segments=(segments_m - origin).astype(np.float32),
+        rgb=rgb,
+        width_px=width_px,
+        visible=visible,
+    )
+
+
+def _ends(line: Trajectory, visible: bool) -> Iterator[LabelNode]:
+    first_m, last_m = line.T_a_b.t[0], line.T_a_b.t[-1]
+    apart = np.linalg.norm(last_m - first_m) > CLOSED_M
+    yield _label("start" if apart else "start and end", first_m, visible)
+    if apart:
+        yield _label("end", last_m, visible)
+
+
+def _label(text: str, p_map: Array, visible: bool, *, key: str = "") -> LabelNode:
+    path = f"/labels/{key or text.replace(' ', '-')}"
+    return LabelNode(path=path, position_m=p_map, text=text, visible=visible)
+
+
+def _edges(table: EdgeTable, view: ViewState) -> Iterator[LinesNode]:
+    t = table.graph.T_map_body.t
+    for row, layer in enumerate(table.layers):
+        mine = np.flatnonzero(table.layer == row)
+        rgb = _edge_colors(table, mine, layer, view)
+        for piece, begin in enumerate(range(0, len(mine), PIECE)):
+            part = slice(begin, begin + PIECE)
+            yield _lines(
+                f"/edges/{layer.key}/{piece}",
+                t[table.ends[mine[part]]],
+                layer.rgb if rgb is None else rgb[part],
+                width_px=layer.width_px,
+                visible=view.shows(layer),
+            )
+
+
+def _edge_colors(
+    table: EdgeTable, rows: NDArray[np.intp], layer: Layer, view: ViewState
+) -> NDArray[np.uint8] | None:
+    """Colors by a figure, grey where it is not known; None = the layer's own."""
+    if view.edge_color == "verdict":
+        return None
+    by_error = view.edge_color == "error / limit"
+    values = (table.error_share if by_error else table.chi2)[rows]
+    rgb = paint(values, ERROR_RANGE if by_error else CHI2_RANGE, "turbo")
+    rgb[~np.isfinite(values)] = 110
+    return rgb
+
+
+def _frames(table: EdgeTable, view: ViewState) -> AxesNode:
+    T = table.graph.T_map_body
+    T = T[slice(None, None, max(1, -(-len(T.t) // MOST_FRAMES)))]
+    return _axes("/frames", T, length_m=0.4, visible=view.shows(FRAMES))
+
+
+def _lidars(multiframes: Multiframes, line: Trajectory, view: ViewState) -> Iterator[Node]:
+    """Axes of each LiDAR, and of the body, where they were at the multiframe under the scrubber."""
+    T_map_body = multiframes.pose(view.moment, line)
+    if T_map_body is None:
+        return
+    visible = view.shows(LIDARS)
+    T_map_sensor = SE3(T_map_body.R[None], T_map_body.t[None]) @ multiframes.T_body_sensor
+    yield _axes("/lidars/sensors", T_map_sensor, length_m=0.3, visible=visible)
+    yield _axes(
+        "/lidars/body", SE3(T_map_body.R[None], T_map_body.t[None]), length_m=0.6, visible=visible
+    )
+    for name, t in zip(multiframes.sensors, T_map_sensor.t, strict=True):
+        yield _label(name, t, visible, key=f"lidar-{name}")
+
+
+def _axes(path: str, T: SE3, *, length_m: float, visible: bool) -> AxesNode:
+    origin = T.t[0] if len(T.t) else np.zeros(3)
+    return AxesNode(
+        path=path,
+        position_m=origin,
+        p_node=(T.t - origin).astype(np.float32),
+        quat_wxyz=np.roll(T.quat_xyzw(), 1, axis=-1),
+        length_m=length_m,
+        visible=visible,
+    )
+
+
+def _gnss(marks: GnssMarks, view: ViewState) -> Iterator[LinesNode]:
+    for layer, rows in ((GNSS_USED, marks.used), (GNSS_REJECTED, ~marks.used)):
+        step = max(1, int(rows.sum()) // MOST_POSES)
+        p, p_antenna = marks.p_map[rows][::step], marks.p_antenna[rows][::step]
+        lines = np.concatenate([crosses(p), np.stack([p_antenna, p], axis=1)])
+        yield _lines(f"/{layer.key}", lines, layer.rgb, width_px=1.5, visible=view.shows(layer))
+
+
+def crosses(p: Array) -> Array:
+    """Three short lines through each point, (N, 3) -> (3 N, 2, 3)."""
+    arms = np.eye(3) * MARK_M
+    both = np.stack([p[:, None] - arms, p[:, None] + arms], axis=2)
+    return np.asarray(both.reshape(-1, 2, 3))
+
+
+def _directions(content: Content, box: Bounds, view: ViewState) -> Iterator[Node]:
+    """Down, the axes of the map, and north, at the lower south-west corner of the box."""
+    corner, length_m = box.low_m, max(0.08 * box.size_m, 1.0)
+    down = np.stack([corner, corner - [0.0, 0.0, length_m]])[None]
+    on = view.shows(GRAVITY)
+    yield _lines("/gravity", down, GRAVITY.rgb, width_px=3.0, visible=on)
+    yield _axes("/map-axes", SE3(np.eye(3)[None], corner[None]), length_m=length_m, visible=on)
+    yield _label("down", down[0, 1], on)
+    if not content.crs:
+        return
+    north = corner + np.array([0.0, 2.0 * length_m, 0.0])
+    wings = 0.3 * length_m * np.array([[1.0, -1.0, 0.0], [-1.0, -1.0, 0.0]])
+    arrow = np.array([[corner, north], *([north, north + wing] for wing in wings)])
+    on = view.shows(NORTH)
+    yield _lines("/north", arrow, NORTH.rgb, width_px=3.0, visible=on)
+    yield _label("N", north, on, key="north")
+
+
+def _grid(box: Bounds, visible: bool) -> GridNode:
+    cell_m = grid_cell_m(box)
+    floor = np.array([*np.round(box.center_m[:2] / cell_m) * cell_m, box.low_m[2]])
+    width_m = (np.ceil(box.size_m / cell_m) + 4.0) * cell_m
+    return GridNode(
+        path="/grid",
+        position_m=floor,
+        width_m=float(width_m),
+        cell_m=cell_m,
+        rgb=GRID.rgb,
+        visible=visible,
+    )
+
+
+def _measurements(view: ViewState) -> Iterator[Node]:
+    for number, points in enumerate(view.measurements, start=1):
+        p = np.array(points)
+        lines = [crosses(p), *([p[None]] if len(p) == 2 else [])]
+        yield _lines(
+            f"/measured/{number}",
+            np.concatenate(lines),
+            MEASURED_COLOR,
+            width_px=2.5,
+            visible=True,
+        )
+        yield _label(measured_words(number, points), p.mean(axis=0), True, key=f"m{number}")
+
+
+def measured_words(number: int, points: tuple[Position, ...]) -> str:
+    """What a label says of a measurement."""
+    if len(points) == 1:
+        x, y, z = points[0]
+        return f"{number}: {x:.3f} {y:.3f} {z:.3f}"
+    return f"{number}: {np.linalg.norm(np.subtract(points[0], points[1])):.3f} m"
+
+
+def as_position(p: NDArray[Any]) -> Position:
+    """A point as plain numbers."""
+    x, y, z = (float(value) for value in p)
+    return x, y, z

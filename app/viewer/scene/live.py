@@ -1,0 +1,174 @@
+"""What a running job has found so far: a fold over the lines its worker writes.
+
+A stage that is finished leaves an artifact, which then takes the place of all of this.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from app.jobs.events import read_events
+from recon4.geometry.se3 import SE3
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.model.trajectory import Trajectory
+
+SILENT_S = 30.0
+"""A job whose worker has not stirred for so long is not followed [s]."""
+
+ODOMETRY_EDGE = {"edge_kind": "odometry", "verdict": "accepted", "reason": ""}
+"""Nodes that follow each other always have one; nobody tells of it."""
+
+Pair = tuple[int, int, str]
+
+
+class LiveGraph:
+    """The state of one run, fed with its events."""
+
+    def __init__(self) -> None:
+        self._clear()
+
+    def _clear(self) -> None:
+        self.stage = ""
+        """The stage that runs; empty = none."""
+        self._poses: list[tuple[int, list[float], list[float]]] = []
+        self._nodes_ns: list[int] = []
+        self._nodes_m: list[list[float]] = []
+        self._edges: dict[Pair, Edge] = {}
+
+    def take(self, event: dict[str, Any]) -> None:
+        """Add one event; what is of no use here, or malformed, changes nothing."""
+        with contextlib.suppress(KeyError, ValueError, TypeError):
+            self._take(event)
+
+    def _take(self, event: dict[str, Any]) -> None:
+        match event["kind"]:
+            case "run":
+                self._clear()
+            case "stage":
+                self._turn_to(str(event["stage"]), running=event["state"] == "running")
+            case "poses":
+                self._poses += zip(event["t_ns"], event["t_m"], event["quat_xyzw"], strict=True)
+            case "nodes":
+                self._nodes_m = event["t_m"]
+                if event.get("t_ns"):
+                    self._nodes_ns = event["t_ns"]
+                    for k in range(len(self._nodes_ns) - 1):
+                        self._add({"i": k, "j": k + 1, **ODOMETRY_EDGE})
+            case "edge":
+                self._add(event)
+            case "verdicts":
+                for i, j, kind, verdict, reason in event["edges"]:
+                    self._judge((i, j, kind), Verdict(verdict), Reason(reason))
+
+    def _turn_to(self, stage: str, *, running: bool) -> None:
+        if running:
+            self.stage = stage
+            if stage == "odometry":
+                self._poses = []
+            if stage == "graph":
+                self._nodes_ns, self._nodes_m, self._edges = [], [], {}
+        elif self.stage == stage:
+            self.stage = ""
+
+    def _add(self, event: dict[str, Any]) -> None:
+        edge = _edge(event)
+        self._edges[edge.i, edge.j, edge.kind.value] = edge
+
+    def _judge(self, pair: Pair, verdict: Verdict, reason: Reason) -> None:
+        if pair in self._edges:
+            self._edges[pair] = self._edges[pair].evolve(verdict=verdict, reason=reason)
+
+    @property
+    def trajectory(self) -> Trajectory | None:
+        """``T_odom_body`` as far as odometry has come."""
+        if len(self._poses) < 2:
+            return None
+        t_ns = np.array([row[0] for row in self._poses], dtype=np.int64)
+        keep = np.diff(t_ns, prepend=t_ns[0] - 1) > 0
+        T = SE3.from_quat(
+            np.array([row[2] for row in self._poses]), np.array([row[1] for row in self._poses])
+        )
+        return Trajectory(t_ns[keep], T[keep])
+
+    @property
+    def graph(self) -> PoseGraph | None:
+        """Nodes where they are believed to be by now (without their rotations), and all edges."""
+        n = min(len(self._nodes_m), len(self._nodes_ns))
+        if n == 0:
+            return None
+        t_m = np.array(self._nodes_m[:n], dtype=np.float64).reshape(-1, 3)
+        T = SE3(np.tile(np.eye(3), (n, 1, 1)), t_m)
+        edges = tuple(edge for edge in self._edges.values() if max(edge.i, edge.j) < n)
+        t_ns = np.array(self._nodes_ns[:n], dtype=np.int64)
+        return PoseGraph(np.arange(n), t_ns, T, edges)
+
+
+class JobWatch:
+    """Finds and follows the events of the job that works on a project."""
+
+    def __init__(self, project: Path, jobs: Path) -> None:
+        self._project, self._jobs = str(project), jobs
+        self._of: dict[Path, str] = {}
+        self._followed: tuple[Path | None, int] = (None, 0)
+        self.live = LiveGraph()
+
+    def changed(self) -> bool:
+        """Read on; whether there was anything new."""
+        job = self._running()
+        path, _ = self._followed
+        if job != path:
+            self.live = LiveGraph()
+            self._followed = (job, 0)
+        if job is None:
+            return job != path
+        events, after = read_events(job / "events.jsonl", self._followed[1])
+        self._followed = (job, after)
+        for event in events:
+            self.live.take(event)
+        return job != path or any(event.get("kind") != "progress" for event in events)
+
+    def _running(self) -> Path | None:
+        """The project's job with the latest heartbeat, while it has no outcome."""
+        found = [(beat, path) for path in self._jobs.glob("*") if (beat := self._beat(path))]
+        return max(found)[1] if found else None
+
+    def _beat(self, job: Path) -> float | None:
+        try:
+            beat = (job / "heartbeat").stat().st_mtime
+        except OSError:
+            return None
+        over = time.time() - beat > SILENT_S or (job / "outcome.json").exists()
+        return None if over or self._project_of(job) != self._project else beat
+
+    def _project_of(self, job: Path) -> str:
+        if job not in self._of:
+            try:
+                request = json.loads((job / "request.json").read_text("utf-8"))
+                self._of[job] = str(request["project"])
+            except (OSError, ValueError, KeyError, TypeError):
+                return ""
+        return self._of[job]
+
+
+def _edge(event: dict[str, Any]) -> Edge:
+    def number(name: str) -> float:
+        value = event.get(name)
+        return float("nan") if value is None else float(value)
+
+    return Edge(
+        i=int(event["i"]),
+        j=int(event["j"]),
+        T_i_j=SE3.identity(),
+        kind=EdgeKind(event["edge_kind"]),
+        verdict=Verdict(event["verdict"]),
+        reason=Reason(event["reason"]),
+        overlap=number("overlap"),
+        error_m=number("error_m"),
+        limit_m=number("limit_m"),
+    )

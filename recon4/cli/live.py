@@ -1,0 +1,106 @@
+"""The commands ``recon4 record`` and ``recon4 replay``: live capture without a server."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+live = typer.Typer()
+
+AddressOption = Annotated[
+    str, typer.Option(help="Listen on the network card with this address; default: all.")
+]
+SpeedOption = Annotated[
+    float,
+    typer.Option(
+        min=0.1, max=100.0, help="So many times as fast, for trials; record and replay alike."
+    ),
+]
+
+
+@live.command()
+def replay(
+    recording: Annotated[Path, typer.Argument(help="pcap file, or folder of `recon4 simulate`.")],
+    *,
+    to: Annotated[str, typer.Option(help="Address the recorder listens on.")] = "127.0.0.1",
+    speed: SpeedOption = 1.0,
+    times: Annotated[
+        int,
+        typer.Option(min=1, help="So often, for walks that end where they began; time goes on."),
+    ] = 1,
+) -> None:
+    """Send a recording to the ports of a recorder as its sensors did."""
+    from recon4.live.replay import replay as run
+    from recon4.terminal import watcher
+
+    with watcher() as progress:
+        sent = run(recording, progress=progress, target=to, speed=speed, times=times)
+    _write(f"{sent} datagrams sent")
+
+
+@live.command()
+def record(
+    out: Annotated[Path, typer.Argument(help="New project folder.")],
+    *,
+    rig: Annotated[str, typer.Option(help="Rig preset or .toml: sensors, ports, addresses.")],
+    preset: Annotated[
+        str, typer.Option(help="Start from: indoor, staircase, outdoor, thesis.")
+    ] = "indoor",
+    seconds: Annotated[
+        float | None, typer.Option(min=1.0, help="Stop after so long; default: at Ctrl-C.")
+    ] = None,
+    address: AddressOption = "0.0.0.0",
+    speed: SpeedOption = 1.0,
+) -> None:
+    """Record sensors and map while they walk; the recording is a project from its first moment."""
+    import asyncio
+    import time
+
+    from recon4.live.findings import words
+    from recon4.live.headless import Headless, Newest, progress_line
+    from recon4.live.project_files import begin
+    from recon4.model.rig import load_rig
+    from recon4.settings import preset as preset_named
+
+    loaded = load_rig(rig)
+    preset_named(preset)
+    session = begin(out, loaded, preset=preset, address=address, speed=speed)
+    _write(f"recording to {session.capture} (Ctrl-C stops)")
+    began_s, reported = time.monotonic(), set[str]()
+
+    def send(newest: Newest, problem: str) -> None:
+        _write(progress_line(newest, began_s))
+        found = {word.text for word in words(loaded, newest, problem)}
+        for text in sorted(found - reported):
+            _write(f"  ! {text}")
+        reported.clear()
+        reported.update(found)
+
+    async def run() -> Newest:
+        return await Headless(session, send=send).run(seconds)
+
+    ended = asyncio.run(run())
+    _write(_outcome(ended))
+    if ended.get("stopped", {}).get("why", "stopped") != "stopped":
+        _write(f"recording ended by itself: {ended['stopped']['why']}")
+    recordings = session.capture.parent
+    _write(f"next: recon4 process {session.capture} --rig {recordings / 'rig.toml'} --out {out}")
+    if ended.get("done", {}).get("problem", "mapper died"):
+        raise typer.Exit(1)
+
+
+def _outcome(ended: dict[str, dict[str, Any]]) -> str:
+    done, stopped = ended.get("done", {}), ended.get("stopped", {})
+    file = stopped.get("file", {})
+    lost = stopped.get("kernel_drops", 0) + file.get("dropped", 0)
+    parts = [f"{file.get('datagrams', 0)} datagrams recorded, {lost} lost"]
+    parts.append(done.get("problem") or f"{done.get('frames', 0)} multiframes are ready")
+    return "; ".join(parts)
+
+
+def _write(text: str) -> None:
+    sys.stdout.write(text + "\n")
+    sys.stdout.flush()

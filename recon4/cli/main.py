@@ -1,0 +1,383 @@
+"""The command line: ``recon4 COMMAND --help``.
+
+Exit codes: 0 done, 1 a known error (said in one line), 2 wrong usage, 128 + n stopped by signal n
+(130 Ctrl-C, 143 SIGTERM).
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+import recon4
+from app.cli.serve import server
+from app.cli.users import users
+from recon4.cli.backup import backups
+from recon4.cli.live import live
+from recon4.cli.slices import slices
+from recon4.errors import Cancelled, Recon4Error
+from recon4.stopping import StopSignals
+from recon4.terminal import write
+
+if TYPE_CHECKING:
+    from recon4.geometry.se3 import Array
+    from recon4.settings import Settings
+
+app = typer.Typer(
+    name="recon4",
+    help="From the recording of a LiDAR backpack to a verified, levelled, georeferenced map.",
+    invoke_without_command=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+app.add_typer(users, name="users")
+app.add_typer(server)
+app.add_typer(live)
+app.add_typer(slices)
+app.add_typer(backups)
+
+_INTERRUPTED = 130
+"""What shells report for a program that Ctrl-C ended."""
+_RESUMABLE = {"process", "demo"}
+"""Commands that keep finished stages."""
+
+PresetOption = Annotated[
+    str, typer.Option("--preset", help="Start from: indoor, staircase, outdoor, thesis.")
+]
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="GROUP.NAME=VALUE", help="Change one setting; repeatable."),
+]
+JsonOption = Annotated[bool, typer.Option("--json", help="Write JSON for programs.")]
+
+
+@app.command()
+def info(
+    recording: Annotated[Path, typer.Argument(help="pcap, bag, folder of clouds or CSV.")],
+    as_json: JsonOption = False,
+) -> None:
+    """Say what a recording holds, what will be derived and what is missing."""
+    from dataclasses import asdict
+
+    from recon4.recording.info import describe
+
+    found = describe(recording)
+    if as_json:
+        _write_json(asdict(found))
+    else:
+        write("\n".join(found.lines()))
+
+
+@app.command()
+def process(
+    recordings: Annotated[list[Path], typer.Argument(help="pcap, bag or folder of clouds.")],
+    *,
+    out: Annotated[Path, typer.Option(help="Project folder; the results end up in it.")],
+    rig: Annotated[str, typer.Option(help="Rig preset or .toml; default: worked out.")] = "",
+    imu: Annotated[Path | None, typer.Option(help="IMU samples as CSV.")] = None,
+    gnss: Annotated[Path | None, typer.Option(help="GNSS/INS samples as CSV.")] = None,
+    preset: PresetOption = "indoor",
+    assignments: SetOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Make a map of a recording; started again, it goes on where it stopped."""
+    chosen = _settings(preset, assignments)
+
+    from recon4.model.rig import load_rig
+    from recon4.pipeline import process as run
+    from recon4.terminal import describe_summary, watcher
+
+    with watcher() as progress:
+        summary = run(
+            recordings,
+            out,
+            rig=load_rig(rig) if rig else None,
+            imu=imu,
+            gnss=gnss,
+            settings=chosen,
+            preset=preset,
+            progress=progress,
+        )
+    if as_json:
+        _write_json(summary.to_json())
+    else:
+        write(describe_summary(summary.to_json(), out))
+
+
+@app.command()
+def simulate(
+    world: Annotated[str, typer.Argument(help="office, staircase, street or field.")],
+    out: Annotated[Path, typer.Argument(help="New folder for the recording and its truth.")],
+    *,
+    seconds: Annotated[float, typer.Option(help="Length of the walk in seconds.")] = 60.0,
+    seed: Annotated[int, typer.Option(help="Draws the walk and the noise.")] = 1,
+    rig: Annotated[str, typer.Option(help="Rig preset or .toml file.")] = "4recon",
+    bag: Annotated[bool, typer.Option(help="Also write a rosbag2.")] = True,
+) -> None:
+    """Simulate a walk: packets, IMU, GNSS, and the truth they can be judged by."""
+    from recon4.model.rig import load_rig
+    from recon4.simulation.simulate import simulate as run
+    from recon4.terminal import watcher
+
+    with watcher() as progress:
+        run(world, out, seconds=seconds, seed=seed, rig=load_rig(rig), bag=bag, progress=progress)
+    write(f"{out}")
+
+
+@app.command()
+def evaluate(
+    result: Annotated[Path, typer.Argument(help="Project folder, .tum or .npz trajectory.")],
+    *,
+    truth: Annotated[Path, typer.Option(help="True trajectory, .tum or .npz.")],
+    model: Annotated[Path | None, typer.Option(help="True model, .ply; gives e_r.")] = None,
+    floor: Annotated[
+        bool, typer.Option("--floor", help="Also e_r of the same points with the true poses.")
+    ] = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Judge a result by the truth: ATE, KITTI drift, e_r in slices, density."""
+    from recon4.evaluation.evaluate import evaluate as judge
+    from recon4.store.project import is_project, read_artifacts
+
+    given: dict[str, Any] = {}
+    artifacts = read_artifacts(result) if is_project(result) else {}
+    if "map" in artifacts:
+        given["chunks"] = _map_chunks(artifacts["map"])
+    if floor:
+        if "frames" not in artifacts:
+            raise typer.BadParameter(f"--floor needs a project with its frames, got {result}")
+        from recon4.store.frames import FrameStore
+
+        frames = FrameStore.open(artifacts["frames"])
+        given |= {"frames": frames, "rig": frames.rig}
+    found = judge(result, truth=truth, model=model, **given)
+    if as_json:
+        _write_json(found.to_json())
+    else:
+        write(found.table())
+
+
+@app.command()
+def export(
+    project: Annotated[Path, typer.Argument(help="Folder that `recon4 process --out` made.")],
+    file: Annotated[Path, typer.Argument(help="File to write; its ending says what: .laz, .ply.")],
+    crs: Annotated[str, typer.Option(help="As EPSG:5514+8357; default: the map's.")] = "",
+) -> None:
+    """Write the map of a project to a file, in any CRS when it is georeferenced."""
+    from recon4.results import export_map
+    from recon4.terminal import watcher
+
+    with watcher() as progress:
+        points = export_map(project, file, crs=crs, progress=progress)
+    write(f"{points} points in {file}")
+
+
+@app.command()
+def settings(
+    preset: PresetOption = "indoor",
+    assignments: SetOption = None,
+    as_json: JsonOption = False,
+    markdown: Annotated[bool, typer.Option("--markdown", help="Write docs/settings.md.")] = False,
+) -> None:
+    """Show every setting in force, with its meaning."""
+    from recon4.settings import to_json
+    from recon4.settings_help import markdown as settings_page
+
+    chosen = _settings(preset, assignments)
+    if markdown:
+        write(settings_page(), end="")
+    elif as_json:
+        _write_json(to_json(chosen))
+    else:
+        _show_settings(chosen)
+
+
+@app.command()
+def verify(
+    folder: Annotated[Path, typer.Argument(help="A project, or the folder of a server.")],
+    *,
+    accept: Annotated[
+        bool, typer.Option("--accept", help="Seal the files as they are now; approvals stay.")
+    ] = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Read every byte again; compare hashes, seals, the journal's chain and signatures."""
+    from dataclasses import asdict
+
+    from recon4.terminal import watcher
+    from recon4.verify import accept as seal_again
+    from recon4.verify import verify as read_again
+
+    if accept:
+        seal_again(folder)
+    with watcher() as progress:
+        found = read_again(folder, progress)
+    if as_json:
+        _write_json(asdict(found))
+    else:
+        for name in found.unknown:
+            write(f"not of recon4, left alone: artifacts/{name}")
+        for what in found.notes:
+            write(f"note: {what}")
+        for what in found.damaged:
+            write(f"damaged: {what}")
+        for what in found.approvals:
+            write(what)
+        write(f"{found.checked} checked, {len(found.damaged)} damaged")
+    if found.damaged:
+        raise typer.Exit(1)
+
+
+@app.command()
+def doctor(
+    folder: Annotated[Path, typer.Argument(help="Where projects are kept.")] = Path(),
+    as_json: JsonOption = False,
+) -> None:
+    """Look at versions, cores, memory, disk and threads of this machine."""
+    from dataclasses import asdict
+
+    from recon4.doctor import examine
+
+    checks = examine(folder)
+    if as_json:
+        _write_json([asdict(check) for check in checks])
+    else:
+        for check in checks:
+            mark = "ok " if check.ok else "NO "
+            write(f"{mark} {check.what:<20} {check.found:<18} {check.advice}".rstrip())
+    if not all(check.ok for check in checks):
+        raise typer.Exit(1)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        write(f"recon4 {recon4.__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _every_command(
+    context: typer.Context,
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_version, is_eager=True, help="Show the version."),
+    ] = False,
+) -> None:
+    if context.invoked_subcommand is None:
+        write(context.get_help())
+        raise typer.Exit(2)
+    _sweep()
+
+
+def _sweep() -> None:
+    """Remove temporary copies that killed commands left behind."""
+    from recon4.recording.formats.scratch import sweep_scratch
+
+    # A folder that is not ours is a matter of the command that needs it.
+    with suppress(Recon4Error, OSError):
+        sweep_scratch()
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command and say how it ended.
+
+    Args:
+        arguments: Those behind ``recon4``; None = those of this process.
+
+    Returns:
+        The exit code.
+    """
+    with StopSignals() as stop:
+        return run(list(sys.argv[1:] if arguments is None else arguments), stop)
+
+
+def run(arguments: list[str], stop: StopSignals) -> int:
+    """Run one command while signals are caught.
+
+    Args:
+        arguments: Those behind ``recon4``.
+        stop: Open.
+
+    Returns:
+        The exit code.
+    """
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(
+            name, "1"
+        )  # small matrices: more threads only get in each other's way
+    try:
+        code, complaint = _run(arguments)
+    except BaseException:
+        if stop.received is None:
+            raise
+    if stop.received is not None:  # whatever else was raised comes from that
+        stop.say("; the same command goes on after the last finished stage" * _resumes(arguments))
+        return stop.exit_code
+    if complaint:
+        _complain(complaint)
+    return code
+
+
+def _run(arguments: list[str]) -> tuple[int, str]:
+    """Exit code and what to complain of."""
+    try:
+        return int(app(args=arguments, prog_name="recon4", standalone_mode=False) or 0), ""
+    except typer.Abort:
+        return _INTERRUPTED, ""
+    except Cancelled as stop:
+        return _INTERRUPTED, str(stop)
+    except Recon4Error as error:
+        return 1, str(error)
+    except typer.TyperException as error:
+        context = getattr(error, "ctx", None)
+        command = context.command_path if context else "recon4"
+        return 2, f"{error.format_message()}\n{command} --help says what it takes"
+
+
+def _resumes(arguments: list[str]) -> bool:
+    return bool(arguments) and arguments[0] in _RESUMABLE
+
+
+def _settings(preset_name: str, assignments: list[str] | None) -> Settings:
+    from recon4.settings import override, preset
+
+    try:
+        return override(preset(preset_name), assignments or [])
+    except Recon4Error as error:
+        raise typer.BadParameter(str(error)) from error
+
+
+def _map_chunks(folder: Path) -> Callable[[], Iterator[Array]]:
+    from recon4.mapping.tiles import TileSet
+
+    return lambda: (tile.xyz_m() for tile in TileSet.open(folder))
+
+
+def _show_settings(chosen: Settings) -> None:
+    from recon4.settings_help import describe_settings, differences
+
+    changed = differences(chosen)
+    for group in describe_settings():
+        write(f"\n{group.name}: {group.text}")
+        for setting in group.settings:
+            value = getattr(getattr(chosen, group.name), setting.name)
+            mark = "*" if setting.path in changed else " "
+            write(f" {mark} {setting.path:<36} {value!s:<14} {setting.text}".rstrip())
+
+
+def _write_json(value: Any) -> None:
+    from recon4.store.atomic import null_for_nan
+
+    write(json.dumps(null_for_nan(value), indent=1, ensure_ascii=False))
+
+
+def _complain(text: str) -> None:
+    sys.stderr.write(f"recon4: {text}\n")

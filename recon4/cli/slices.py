@@ -1,0 +1,154 @@
+"""The command ``recon4 slice``: cuts of a finished map as files, and the check for double walls."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from recon4.errors import ConfigError
+
+if TYPE_CHECKING:
+    from recon4.mapping.tiles import TileSet
+    from recon4.slices.cut import Cut
+    from recon4.slices.frames import MapFrame
+
+slices = typer.Typer()
+
+ProjectArgument = Annotated[Path, typer.Argument(help="Folder that `recon4 process --out` made.")]
+
+
+@slices.command("slice")
+def cut_map(  # noqa: PLR0913 - options of a command
+    project: ProjectArgument,
+    file: Annotated[Path, typer.Argument(help="File to write: .png .svg .pdf .tif .dxf .laz .csv")],
+    *,
+    z: Annotated[float | None, typer.Option(help="Horizontal, at this height in m.")] = None,
+    line: Annotated[str, typer.Option(help="Vertical, through two points: X1,Y1,X2,Y2 in m.")] = "",
+    plane: Annotated[str, typer.Option(help="Free: X,Y,Z,NX,NY,NZ (point and normal).")] = "",
+    thickness: Annotated[float, typer.Option(help="Thickness in m.")] = 0.10,
+    count: Annotated[int, typer.Option(help="So many slices behind each other.")] = 1,
+    spacing: Annotated[float, typer.Option(help="Between repeated slices, in m.")] = 0.5,
+    color: Annotated[
+        str, typer.Option(help="height, intensity, normalized, time or sensor.")
+    ] = "height",
+) -> None:
+    """Cut a map and write the slice, at full resolution. It carries the map's approval."""
+    from recon4.mapping.tiles import TileSet
+    from recon4.review.approved import approval_of
+    from recon4.slices.frames import frame_of
+    from recon4.store.project import read_artifacts
+
+    cuts = _cut(z, line, plane, thickness).repeated(count, spacing_m=spacing)
+    artifacts = read_artifacts(project)
+    approval = approval_of(project, {stage: folder.name for stage, folder in artifacts.items()})
+    if approval:
+        approval.evidence.check_frame(artifacts)
+    frame = frame_of(artifacts)
+    tiles = (
+        approval.evidence.open_map(artifacts["map"]) if approval else TileSet.open(artifacts["map"])
+    )
+    about = {"color": color, "name": project.name, "stamp": approval.stamp if approval else None}
+    points = _write(tiles, cuts, file, frame, about=about)
+    sys.stdout.write(f"{points} points in {file}\n")
+
+
+@slices.command("doubles")
+def double_walls(project: ProjectArgument) -> None:
+    """Look for walls that two visits put at two places; exit code 1 if there are any."""
+    from recon4.mapping.tiles import TileSet
+    from recon4.slices.doubles import find_double_walls
+    from recon4.slices.frames import frame_of
+    from recon4.store.project import read_artifacts
+    from recon4.terminal import watcher
+
+    artifacts = read_artifacts(project)
+    frame_of(artifacts)
+    with watcher() as progress:
+        found = find_double_walls(TileSet.open(artifacts["map"]), progress=progress)
+    for wall in found.walls:
+        x, y, z = wall.middle_m
+        (a0, a1), (b0, b1) = wall.spans_s
+        sys.stdout.write(
+            f"{x:9.2f} {y:9.2f} {z:7.2f}  {100 * wall.separation_m:5.1f} cm apart "
+            f"(limit {100 * wall.limit_m:.1f}), {a0:.0f}-{a1:.0f} s and {b0:.0f}-{b1:.0f} s\n"
+        )
+    sys.stdout.write(f"{len(found.walls)} double walls in {found.patches} patches seen twice\n")
+    if found.walls:
+        raise typer.Exit(1)
+
+
+def _cut(z: float | None, line: str, plane: str, thickness_m: float) -> Cut:
+    from recon4.slices.cut import free, horizontal, vertical
+
+    if (z is not None) + bool(line) + bool(plane) != 1:
+        raise ConfigError("say where to cut: one of --z, --line, --plane")
+    if z is not None:
+        return horizontal(z, thickness_m=thickness_m)
+    if line:
+        x1, y1, x2, y2 = _numbers(line, 4)
+        return vertical((x1, y1), (x2, y2), thickness_m=thickness_m)
+    px, py, pz, nx, ny, nz = _numbers(plane, 6)
+    return free((px, py, pz), (nx, ny, nz), thickness_m=thickness_m)
+
+
+def _numbers(text: str, count: int) -> list[float]:
+    try:
+        values = [float(word) for word in text.split(",")]
+    except ValueError as error:
+        raise ConfigError(f"expected {count} numbers with commas, got {text!r}") from error
+    if len(values) != count:
+        raise ConfigError(f"expected {count} numbers with commas, got {text!r}")
+    return values
+
+
+def _write(
+    tiles: TileSet, cuts: tuple[Cut, ...], file: Path, frame: MapFrame, *, about: dict[str, Any]
+) -> int:
+    from recon4.review.stamp import stamp_file
+    from recon4.slices.export import write_csv, write_dxf, write_laz
+    from recon4.store.atomic import atomic_file
+
+    ending = file.suffix.lower()
+    writers = {".laz": write_laz, ".csv": write_csv, ".dxf": write_dxf}
+    if ending in writers:
+        with atomic_file(file) as temporary:
+            points = writers[ending](tiles, cuts, temporary, frame=frame)
+            if about["stamp"]:
+                stamp_file(temporary, temporary, about["stamp"])
+        return points
+    if ending not in {".png", ".svg", ".pdf", ".tif"}:
+        raise ConfigError(f"a slice is written as png svg pdf tif dxf laz csv, got {file.name}")
+    if len(cuts) > 1:
+        raise ConfigError("a picture holds one slice; take .dxf, .laz or .csv for several")
+    return _write_picture(tiles, cuts[0], file, frame, about=about)
+
+
+def _write_picture(
+    tiles: TileSet, cut: Cut, file: Path, frame: MapFrame, *, about: dict[str, Any]
+) -> int:
+    from recon4.slices.colors import WORDS
+    from recon4.slices.export import write_geotiff
+    from recon4.slices.points import extent
+    from recon4.slices.sheet import Words, approval_words, lay_out, source_words, write_sheet
+    from recon4.slices.slice_image import Paper, draw
+
+    if about["color"] not in WORDS:
+        raise ConfigError(f"colors are {', '.join(WORDS)}; got {about['color']!r}")
+    approval = approval_words(asdict(about["stamp"]) if about["stamp"] else None)
+    window = extent(tiles, cut)
+    if file.suffix.lower() == ".tif":
+        side_m = max(window.right - window.left, window.top - window.bottom)
+        made = draw(tiles, cut, Paper(window, max(0.005, side_m / 6000)), color=about["color"])
+        title = f"{about['name']}: {approval}"
+        write_geotiff(made, file, frame=frame, span=made.span, words=title)
+        return made.points
+    layout = lay_out(window)
+    made = draw(tiles, cut, layout.paper, color=about["color"])
+    key = tiles.tiles[0].folder.parent.name if tiles.tiles else ""
+    words = Words(about["name"], frame.words, source_words(key), approval)
+    write_sheet(made, layout, file, span=made.span, words=words)
+    return made.points

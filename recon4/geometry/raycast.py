@@ -1,0 +1,71 @@
+"""Rays against triangles: the one place that knows Open3D."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.mesh import WorldMesh
+from recon4.geometry.se3 import Array
+
+_NEAREST_BATCH = 1_000_000
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Hits:
+    """What each ray meets first."""
+
+    range_m: NDArray[np.float32]
+    """Distance along the unit direction [m], inf = nothing, (N,)."""
+    triangle: NDArray[np.uint32]
+    """Row of the triangle; meaningless without a hit, (N,)."""
+    normal: NDArray[np.float32]
+    """Unit normal of that triangle, of either sign, (N, 3)."""
+
+
+class Scene:
+    """A mesh made ready for rays."""
+
+    def __init__(self, mesh: WorldMesh) -> None:
+        self._scene = _scene(mesh)
+
+    def cast(self, rays: NDArray[np.float32]) -> Hits:
+        """First hits of rays, origin and unit direction in the map (N, 6)."""
+        import open3d as o3d
+
+        answer = self._scene.cast_rays(o3d.core.Tensor.from_numpy(rays))
+        return Hits(
+            answer["t_hit"].numpy(),
+            answer["primitive_ids"].numpy(),
+            answer["primitive_normals"].numpy(),
+        )
+
+    def distance(self, points: Array) -> Array:
+        """Distance of points to the nearest triangle [m], (N, 3) -> (N,)."""
+        import open3d as o3d
+
+        out = np.empty(len(points))
+        for start in range(0, len(points), _NEAREST_BATCH):
+            part = np.ascontiguousarray(points[start : start + _NEAREST_BATCH], dtype=np.float32)
+            distances = self._scene.compute_distance(o3d.core.Tensor.from_numpy(part))
+            out[start : start + _NEAREST_BATCH] = distances.numpy()
+        return out
+
+
+def distance_to_mesh(mesh: WorldMesh, points: Array) -> Array:
+    """Distance of points in the map to the nearest triangle [m], (N, 3) -> (N,)."""
+    return Scene(mesh).distance(points)
+
+
+def _scene(mesh: WorldMesh) -> Any:
+    import open3d as o3d
+
+    scene = o3d.t.geometry.RaycastingScene()
+    scene.add_triangles(
+        o3d.core.Tensor.from_numpy(np.ascontiguousarray(mesh.vertices_m)),
+        o3d.core.Tensor.from_numpy(np.ascontiguousarray(mesh.triangles)),
+    )
+    return scene

@@ -1,0 +1,51 @@
+"""Fixes of a GNSS/INS made ready to aid odometry."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from recon4.geometry.se3 import so3_exp
+from recon4.georeference.crs import GeodeticOrigin, to_enu
+from recon4.model.rig import Rig
+from recon4.model.samples import GnssQuality, GnssSamples
+from recon4.registration.aiding import GnssAiding
+from recon4.settings import OdometrySettings
+
+_R_ENU_NED = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
+_R_DOWN_UP = np.diag([1.0, -1.0, -1.0])
+"""A body with x forward and z down, from one with z up."""
+
+
+def make_gnss_aiding(
+    gnss: GnssSamples | None, rig: Rig, settings: OdometrySettings
+) -> GnssAiding | None:
+    """RTK fixes that carry a heading; None if there are fewer than two.
+
+    Args:
+        gnss: Positions and attitudes of the INS.
+        rig: Lever arm and time offset.
+        settings: Smallest standard deviations; whether GNSS is used at all.
+    """
+    if gnss is None or not settings.use_gnss:
+        return None
+    measured = np.column_stack([gnss.height_m, gnss.rpy_ned_rad])
+    good = np.isfinite(measured).all(axis=1) & (gnss.quality == GnssQuality.RTK_FIXED)
+    if good.sum() < 2:
+        return None
+    first = int(np.flatnonzero(good)[0])
+    origin = GeodeticOrigin(gnss.lat_rad[first], gnss.lon_rad[first], gnss.height_m[first])
+    p_enu = to_enu(origin, gnss.lat_rad[good], gnss.lon_rad[good], height_m=gnss.height_m[good])
+    roll, pitch, heading = gnss.rpy_ned_rad[good].T
+    x, y, z = np.eye(3)
+    R_ned_down = (
+        so3_exp(heading[:, None] * z) @ so3_exp(pitch[:, None] * y) @ so3_exp(roll[:, None] * x)
+    )
+    sd_m = np.fmax(np.nan_to_num(gnss.sd_enu_m[good], nan=0.0), settings.gnss_sd_m)
+    return GnssAiding(
+        t_ns=gnss.t_ns[good],
+        p_enu=p_enu,
+        sd_m=sd_m,
+        R_enu_body=_R_ENU_NED @ R_ned_down @ _R_DOWN_UP,
+        attitude_sd_rad=settings.heading_sd_rad,
+        p_body_antenna=rig.p_body_antenna,
+    )

@@ -1,0 +1,159 @@
+"""GNSS fixes made ready: which are usable, how good they are, where on the track they belong."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import Array
+from recon4.georeference.crs import GeodeticOrigin, to_enu
+from recon4.model.pose_graph import PoseGraph, Rows
+from recon4.model.rig import Rig
+from recon4.model.samples import GnssQuality, GnssSamples
+from recon4.model.trajectory import Times, Trajectory
+from recon4.settings import GnssSettings
+
+_RANKS: dict[int, int] = {
+    GnssQuality.SINGLE: 1,
+    GnssQuality.DIFFERENTIAL: 2,
+    GnssQuality.RTK_FLOAT: 3,
+    GnssQuality.RTK_FIXED: 4,
+}
+"""How good a quality is; what is missing here (invalid, dead reckoning) is never used."""
+_ASKED = {"single": 1, "differential": 2, "float": 3, "fixed": 4}
+_DEFAULT_SD_M = np.array(
+    [[np.nan] * 3, [3.0, 3.0, 6.0], [1.0, 1.0, 2.0], [0.3, 0.3, 0.6], [0.02, 0.02, 0.03]]
+)
+"""Standard deviations where the receiver gives none, by rank."""
+_FROZEN_M = 0.5
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GnssPriors:
+    """Usable fixes, each tied to a node of the graph."""
+
+    t_ns: Times
+    """Time in the rig's clock [ns], (M,)."""
+    row: Rows
+    """Row in the `GnssSamples`, (M,)."""
+    p_enu: Array
+    """Position of the antenna [m], (M, 3)."""
+    sd_m: Array
+    """Standard deviation of one fix, east, north, up [m], (M, 3)."""
+    node: Rows
+    """Nearest node in time, (M,)."""
+    p_node_antenna: Array
+    """Where the antenna was at that time, in the body frame of that node [m], (M, 3)."""
+
+    def __len__(self) -> int:
+        return len(self.t_ns)
+
+    def take(self, rows: Any) -> GnssPriors:
+        """Some of them."""
+        return GnssPriors(*(getattr(self, name)[rows] for name in GnssPriors.__slots__))
+
+
+def usable_gnss_priors(
+    graph: PoseGraph, trajectory: Trajectory, gnss: GnssSamples, rig: Rig, *, settings: GnssSettings
+) -> tuple[GnssPriors, GeodeticOrigin | None]:
+    """Fixes with a position, of the quality asked for, inside the walk, not frozen.
+
+    Args:
+        graph: Its nodes' times say which node a fix belongs to.
+        trajectory: Dense poses of the body; only motion between a fix and its node is read.
+        gnss: What the receiver gave.
+        rig: Lever arm and time offset.
+        settings: What is good enough.
+
+    Returns:
+        The fixes and the origin of their local frame: the first of the best ones. None of them
+        and no origin if there is no usable fix.
+    """
+    t_ns = gnss.t_ns
+    rank = np.array([_RANKS.get(int(quality), 0) for quality in gnss.quality], dtype=np.intp)
+    good = (rank >= _ASKED[settings.min_quality]) & _positioned(gnss)
+    good &= (t_ns >= trajectory.t_ns[0]) & (t_ns <= trajectory.t_ns[-1])
+    rows = np.flatnonzero(good)
+    p_antenna = trajectory.at(t_ns[rows]) @ np.broadcast_to(rig.p_body_antenna, (len(rows), 3))
+    moving = ~_frozen(gnss, rows, p_antenna)
+    rows, p_antenna = rows[moving], p_antenna[moving]
+    if len(rows) == 0:
+        return GnssPriors(*_nothing()), None
+    first = rows[np.argmax(rank[rows])]
+    origin = GeodeticOrigin(
+        float(gnss.lat_rad[first]), float(gnss.lon_rad[first]), float(gnss.height_m[first])
+    )
+    node = _nearest(graph.t_ns, t_ns[rows])
+    T_odom_node = trajectory.at(np.clip(graph.t_ns, trajectory.t_ns[0], trajectory.t_ns[-1]))[node]
+    sd_m = np.where(
+        np.isfinite(gnss.sd_enu_m[rows]), gnss.sd_enu_m[rows], _DEFAULT_SD_M[rank[rows]]
+    )
+    return (
+        GnssPriors(
+            t_ns=t_ns[rows],
+            row=rows,
+            p_enu=to_enu(
+                origin, gnss.lat_rad[rows], gnss.lon_rad[rows], height_m=gnss.height_m[rows]
+            ),
+            sd_m=np.maximum(sd_m, settings.min_sd_m),
+            node=node,
+            p_node_antenna=T_odom_node.inverse() @ p_antenna,
+        ),
+        origin,
+    )
+
+
+def one_prior_per_node(gnss_priors: GnssPriors) -> GnssPriors:
+    """The best fix of each node: more would only say the same again."""
+    order = np.lexsort((gnss_priors.t_ns, gnss_priors.sd_m.sum(1), gnss_priors.node))
+    first = np.r_[True, np.diff(gnss_priors.node[order]) > 0] if len(order) else order
+    return gnss_priors.take(np.sort(order[first]))
+
+
+def correlated_sd(gnss_priors: GnssPriors, *, correlation_s: float) -> Array:
+    """Standard deviations for fixes that err alike [m], (M, 3).
+
+    ``n`` fixes within the correlation time know no more than one; each gets ``sqrt(n)`` times its
+    standard deviation, so that from one to the next SLAM decides.
+    """
+    half = correlation_s * 0.5e9
+    left = np.searchsorted(gnss_priors.t_ns, gnss_priors.t_ns - half, side="left")
+    right = np.searchsorted(gnss_priors.t_ns, gnss_priors.t_ns + half, side="right")
+    return gnss_priors.sd_m * np.sqrt(np.maximum(right - left, 1))[:, None]
+
+
+def _positioned(gnss: GnssSamples) -> NDArray[np.bool_]:
+    finite = np.isfinite(gnss.lat_rad) & np.isfinite(gnss.lon_rad) & np.isfinite(gnss.height_m)
+    possible = (np.abs(gnss.lat_rad) <= np.pi / 2) & (np.abs(gnss.lon_rad) <= 2 * np.pi)
+    # Receivers without a fix write 0, 0.
+    return finite & possible & ((gnss.lat_rad != 0.0) | (gnss.lon_rad != 0.0))
+
+
+def _frozen(gnss: GnssSamples, rows: Rows, p_antenna: Array) -> NDArray[np.bool_]:
+    """Fixes that repeat one before to the last digit although the walk went on."""
+    frozen = np.zeros(len(rows), dtype=np.bool_)
+    since = 0
+    for k in range(1, len(rows)):
+        a, b = rows[since], rows[k]
+        same = gnss.lat_rad[a] == gnss.lat_rad[b] and gnss.lon_rad[a] == gnss.lon_rad[b]
+        if not same:
+            since = k
+        elif np.linalg.norm(p_antenna[k] - p_antenna[since]) > _FROZEN_M:
+            frozen[k] = True
+    return frozen
+
+
+def _nearest(t_nodes_ns: Times, t_ns: Times) -> Rows:
+    right = np.clip(np.searchsorted(t_nodes_ns, t_ns), 1, max(len(t_nodes_ns) - 1, 1))
+    right = np.minimum(right, len(t_nodes_ns) - 1)
+    left = np.maximum(right - 1, 0)
+    closer_left = t_ns - t_nodes_ns[left] <= t_nodes_ns[right] - t_ns
+    return np.where(closer_left, left, right)
+
+
+def _nothing() -> tuple[Any, ...]:
+    none, vectors = np.zeros(0, dtype=np.intp), np.zeros((0, 3))
+    return none.astype(np.int64), none, vectors, vectors, none, vectors

@@ -1,0 +1,102 @@
+"""Recorder and mapper seen from outside: how they are started, the other end of their sockets."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import sys
+from collections.abc import AsyncIterator, Mapping
+from contextlib import asynccontextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+from recon4.errors import ConfigError
+from recon4.live.confinement import mapper_environment
+from recon4.live.session import CaptureSession
+from recon4.sandbox import ONE_THREAD, allowed_environment
+
+STARTS_WITHIN_S = 60.0
+
+_LONGEST_LINE = 32 << 20
+"""A whole preview of 400 k points is 4 MB."""
+
+
+class LineClient:
+    """JSON lines to and from one process."""
+
+    def __init__(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        self._reader, self._writer = reader, writer
+
+    async def lines(self) -> AsyncIterator[dict[str, Any]]:
+        """What is said, until the other side ends."""
+        try:
+            while line := await self._reader.readline():
+                yield json.loads(line)
+        except ConnectionError:
+            return
+
+    async def send(self, message: dict[str, Any]) -> None:
+        """Tell the other side."""
+        self._writer.write(json.dumps(message).encode() + b"\n")
+        await self._writer.drain()
+
+
+@asynccontextmanager
+async def linked(path: Path) -> AsyncIterator[LineClient]:
+    """A connection to the process that listens on a path.
+
+    Raises:
+        OSError: If none does.
+    """
+    reader, writer = await asyncio.open_unix_connection(path, limit=_LONGEST_LINE)
+    try:
+        yield LineClient(reader, writer)
+    finally:
+        writer.close()
+
+
+async def listens(path: Path) -> bool:
+    """Whether a process listens on a path."""
+    try:
+        async with linked(path):
+            return True
+    except OSError:
+        return False
+
+
+async def started(
+    session: CaptureSession, name: str, *, env: Mapping[str, str] | None = None
+) -> asyncio.subprocess.Process:
+    """Start the ``recorder`` or the ``mapper`` of a capture; it outlives whoever started it.
+
+    Args:
+        session: Of a project that was begun.
+        name: Of the module.
+        env: Environment of the process; None = what it may have of ours.
+
+    Raises:
+        ConfigError: If it does not get ready, in its own last words.
+    """
+    env = {**allowed_environment(os.environ), **ONE_THREAD} if env is None else dict(env)
+    if name == "mapper":
+        env |= mapper_environment(session)
+    log_path = session.folder / f"{name}.txt"
+    with log_path.open("ab") as log_file:
+        process = await asyncio.create_subprocess_exec(
+            *(sys.executable, "-m", f"recon4.live.{name}.process", str(session.project)),
+            stdin=asyncio.subprocess.DEVNULL,
+            stdout=asyncio.subprocess.PIPE,
+            stderr=log_file,
+            start_new_session=True,  # Ctrl-C is not for it
+            env=env,
+        )
+    assert process.stdout is not None
+    with suppress(TimeoutError):
+        if await asyncio.wait_for(process.stdout.readline(), STARTS_WITHIN_S) == b"ready\n":
+            return process
+    with suppress(ProcessLookupError):
+        process.kill()
+    await process.wait()
+    lines = log_path.read_text("utf-8", "replace").splitlines()
+    raise ConfigError(lines[-1] if lines else f"the {name} did not start")

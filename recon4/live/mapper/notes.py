@@ -1,0 +1,44 @@
+"""What the reader of a capture repaired or warns of, as far as it is news."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import Any
+
+from recon4.recording.report import ImportReport
+
+RECENT_S = 10.0
+FRESH_S = 120.0
+"""A warning is told for so long; those about clocks as long as the capture runs."""
+_MOST = 20
+
+
+class Notes:
+    """Follows an import report while it grows."""
+
+    def __init__(self, report: ImportReport) -> None:
+        self._report = report
+        self._seen_s: list[float] = []
+        self._counts: deque[tuple[float, dict[str, int]]] = deque()
+
+    def message(self, now_s: float) -> dict[str, Any]:
+        """The message ``notes`` of ``docs/live.md``.
+
+        Args:
+            now_s: A monotonic time [s].
+        """
+        warnings = self._report.warnings
+        self._seen_s += [now_s] * (len(warnings) - len(self._seen_s))
+        message = [
+            text
+            for text, seen_s in zip(warnings, self._seen_s, strict=False)
+            if now_s - seen_s < FRESH_S or "clock" in text
+        ]
+        counts = dict(self._report.counts)
+        self._counts.append((now_s, counts))
+        while now_s - self._counts[0][0] > RECENT_S:
+            self._counts.popleft()
+        before = self._counts[0][1]
+        recent = {name: count - before.get(name, 0) for name, count in counts.items()}
+        recent = {name: count for name, count in recent.items() if count}
+        return {"kind": "notes", "warnings": message[-_MOST:], "counts": counts, "recent": recent}

@@ -1,0 +1,70 @@
+"""Where in plan a view may lie on a map, whatever its heading: two plans of walls correlated."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from recon4.geometry.se3 import Array
+
+CELL_M = 0.25
+_CELLS = 128
+_REACH_M = 10.0
+"""Of the view; map and shift stay within 16 m then, and nothing wraps around."""
+_SHIFT_M = 5.0
+_YAW_STEP_RAD = np.deg2rad(4.0)
+_APART_M, _APART_RAD = 1.0, 0.25
+
+
+def plan_hypotheses(target_m: Array, source_m: Array, *, most: int) -> list[tuple[float, Array]]:
+    """Turns and shifts that lay most walls of a view on walls of the map, the best first.
+
+    The share of the view's points that fall on walls is, for one turn and all shifts at once, the
+    cross-correlation of the two plans, taken by FFT.
+
+    Args:
+        target_m: Points on walls of the map in plan around the place searched [m], (N, 2).
+        source_m: Points on walls of the view around its sensor [m], (M, 2).
+        most: So many guesses.
+
+    Returns:
+        Yaw [rad] and shift [m] (2,) that map the view onto the map, up to 5 m away.
+    """
+    source_m = source_m[np.linalg.norm(source_m, axis=1) < _REACH_M]
+    if not len(source_m) or not len(target_m):
+        return []
+    walls = ndimage.gaussian_filter(np.minimum(_raster(target_m), 1.0), 1.0)
+    spectrum = np.fft.rfft2(walls)
+    yaws = np.arange(0.0, 2 * np.pi, _YAW_STEP_RAD)
+    reach = round(_SHIFT_M / CELL_M)
+    shifts = np.arange(-reach, reach + 1)
+    scores = np.stack([_scores(spectrum, source_m, yaw)[np.ix_(shifts, shifts)] for yaw in yaws])
+    found = []
+    for _ in range(most):
+        k, i, j = np.unravel_index(int(np.argmax(scores)), scores.shape)
+        found.append((float(yaws[k]), np.array([shifts[i], shifts[j]]) * CELL_M))
+        _forget(scores, (int(k), int(i), int(j)))
+    return found
+
+
+def _scores(spectrum: NDArray[np.complex128], source_m: Array, yaw: float) -> Array:
+    c, s = np.cos(yaw), np.sin(yaw)
+    plan = np.minimum(_raster(source_m @ np.array([[c, s], [-s, c]])), 3.0)
+    scores: Array = np.fft.irfft2(spectrum * np.conj(np.fft.rfft2(plan)), s=plan.shape)
+    return scores
+
+
+def _raster(p_m: Array) -> Array:
+    cells = np.floor(p_m / CELL_M + 0.5).astype(np.int64) + _CELLS // 2
+    cells = cells[((cells >= 0) & (cells < _CELLS)).all(axis=1)]
+    counts = np.bincount(cells[:, 0] * _CELLS + cells[:, 1], minlength=_CELLS**2)
+    return counts.reshape(_CELLS, _CELLS).astype(np.float64)
+
+
+def _forget(scores: Array, at: tuple[int, int, int]) -> None:
+    """Leave out what is so near that it is the same guess."""
+    turn, near = round(_APART_RAD / _YAW_STEP_RAD), round(_APART_M / CELL_M)
+    rows = np.arange(at[0] - turn, at[0] + turn + 1) % len(scores)
+    a, b = max(at[1] - near, 0), max(at[2] - near, 0)
+    scores[rows, a : at[1] + near + 1, b : at[2] + near + 1] = -np.inf

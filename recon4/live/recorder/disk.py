@@ -1,0 +1,71 @@
+"""How much longer the disk lasts: everything that fills it counts, not the recording alone."""
+
+from __future__ import annotations
+
+import shutil
+from collections import deque
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+_TREND_S = 60.0
+"""Of so much of the past the use of the disk is told."""
+_SURE_AFTER_S = 5.0
+_LEAST_PER_S = 1000.0
+"""Bytes; less than that fills no disk."""
+
+
+class DiskWatch:
+    """Looks at the free space now and then.
+
+    The multiframes the mapper keeps take several times the space of the recording.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        *,
+        least_free_bytes: int,
+        free_bytes: Callable[[Path], int] = lambda folder: shutil.disk_usage(folder).free,
+    ) -> None:
+        """Prepare.
+
+        Args:
+            folder: On the disk.
+            least_free_bytes: With less than that the disk is full.
+            free_bytes: How much is free.
+        """
+        self._folder, self._least, self._free_bytes = folder, least_free_bytes, free_bytes
+        self._seen: deque[tuple[float, int]] = deque()
+        self._state: dict[str, Any] = {"free_bytes": None, "left_s": None, "enough": True}
+
+    def look(self, now_s: float) -> None:
+        """Look again.
+
+        Args:
+            now_s: A monotonic time [s].
+        """
+        try:
+            free = self._free_bytes(self._folder)
+        except OSError:  # unplugged: writing says so
+            self._state = {"free_bytes": None, "left_s": None, "enough": True}
+            return
+        self._seen.append((now_s, free))
+        while now_s - self._seen[0][0] > _TREND_S:
+            self._seen.popleft()
+        since_s, before = self._seen[0]
+        left_s = None
+        if now_s - since_s >= _SURE_AFTER_S:
+            per_s = (before - free) / (now_s - since_s)
+            left_s = (free - self._least) / per_s if per_s > _LEAST_PER_S else None
+        self._state = {
+            "free_bytes": free,
+            "left_s": None if left_s is None else round(left_s),
+            "enough": free > self._least,
+        }
+
+    def message(self) -> dict[str, Any]:
+        """``free_bytes``, ``left_s`` until it is full (None = not known, or it is not filling)
+        and whether there is ``enough`` to go on, when it was last looked at.
+        """
+        return self._state

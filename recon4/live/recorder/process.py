@@ -1,0 +1,261 @@
+"""The recorder: a process that puts every datagram on the disk and does nothing else.
+
+``python -m recon4.live.recorder.process PROJECT`` listens on the ports of the rig until it
+receives ``stop`` or SIGTERM. It talks JSON lines on a Unix socket (`CaptureSession.socket`):
+
+    said   {"kind": "written", "bytes": n}                the capture file can be read up to there
+           {"kind": "status", …}                          twice a second, see `Recorder.status`
+           {"kind": "mark", "t_ns": …, "text": …, …}
+           {"kind": "stopped", …}                         the file is complete
+    heard  {"do": "stop"} {"do": "pause"} {"do": "resume"}
+           {"do": "mark", "what": "point" | "place", "text": …, "who": …}
+"""
+
+from __future__ import annotations
+
+import asyncio
+import errno
+import json
+import os
+import signal
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+from recon4.errors import Recon4Error, StoreError
+from recon4.live.confinement import confine_recorder
+from recon4.live.ipc.line_server import LineServer
+from recon4.live.recorder.capture_file import CaptureFile, Datagram
+from recon4.live.recorder.disk import DiskWatch
+from recon4.live.recorder.ports import Port, open_ports
+from recon4.live.recorder.serial_line import SerialLine
+from recon4.live.session import CaptureSession, load_session, stretched
+from recon4.model.rig import Rig, load_rig
+from recon4.recording.velodyne.models import DATA_SIZE
+from recon4.sandbox import refuse_new_sockets
+from recon4.store.atomic import write_json
+
+STATUS_EVERY_S = 0.5
+_MOST_SENDERS = 64
+"""Told apart; a flood of strangers is counted together."""
+_AT_ONCE = 256
+"""Datagrams fetched from a port before the others have their turn."""
+
+
+class Recorder:
+    """Sockets in, file out, status to whoever listens. Lives in one event loop."""
+
+    def __init__(self, session: CaptureSession, rig: Rig) -> None:
+        """Open ports and file.
+
+        Raises:
+            ConfigError: If a port cannot be opened.
+            OSError: If the capture file exists or cannot be made.
+        """
+        self._session, self._rig = session, rig
+        self._loop = asyncio.get_running_loop()
+        self._lines = LineServer(initial_messages=self._initial_messages, hear=self._receive_line)
+        self._ports = open_ports(rig, address=session.address)
+        self._file = CaptureFile(session.capture, on_written=self._written)
+        self._serial = self._open_serial(rig)
+        self._counts: Counter[tuple[str, int]] = Counter()
+        self._counted: Counter[tuple[str, int]] = Counter()
+        self._data: Counter[tuple[str, int]] = Counter()
+        """Those of the size of a LiDAR's data packets."""
+        self._data_counted: Counter[tuple[str, int]] = Counter()
+        self._heard_s: dict[tuple[str, int], float] = {}
+        """When each sender was last heard."""
+        self._counted_s = self._began_s = time.monotonic()
+        self._began_ns = time.time_ns()
+        self._paused = False
+        self._skipped = 0
+        self._disk = DiskWatch(session.project, least_free_bytes=session.least_free_bytes)
+        self._disk.look(self._began_s)
+        self._notes_problem = ""
+        """Why a mark is not on the disk; empty = all are."""
+        self._rates: list[dict[str, Any]] = []
+        self._over = asyncio.Event()
+        self._why = "stopped"
+
+    def _open_serial(self, rig: Rig) -> SerialLine | None:
+        if not rig.gnss_serial:
+            return None
+
+        def take(datagram: Datagram) -> None:
+            self._loop.call_soon_threadsafe(self._take, datagram)
+
+        return SerialLine(rig.gnss_serial, rig.gnss_port, take=take)
+
+    async def run(self, on_ready: Callable[[], None]) -> None:
+        """Record until told to stop."""
+        for sign in (signal.SIGTERM, signal.SIGINT):
+            self._loop.add_signal_handler(sign, self._over.set)
+        await self._lines.listen(self._session.socket("recorder"))
+        for port in self._ports:
+            self._loop.add_reader(port.socket, self._receive, port)
+        on_ready()
+        while not self._over.is_set():
+            try:
+                await asyncio.wait_for(self._over.wait(), STATUS_EVERY_S)
+            except TimeoutError:
+                self._report_status()
+        await self._finish()
+
+    async def _finish(self) -> None:
+        for port in self._ports:
+            self._receive(port)
+            self._loop.remove_reader(port.socket)
+            port.socket.close()
+        if self._serial is not None:
+            await asyncio.to_thread(self._serial.close)
+            await asyncio.sleep(0)  # its last sentences are taken
+        await asyncio.to_thread(self._file.close)
+        outcome = {"why": self._why, **self.status()}
+        with suppress(StoreError):  # on a full disk; whoever listens hears it all the same
+            write_json(self._session.outcome, outcome)
+        self._lines.send({"kind": "stopped", **outcome})
+        await self._lines.close()
+
+    def _receive(self, port: Port) -> None:
+        for _ in range(_AT_ONCE):
+            datagram = port.receive()
+            if datagram is None:
+                return
+            self._take(datagram)
+
+    def _take(self, datagram: Datagram) -> None:
+        sender = datagram.source[0], datagram.port
+        if sender not in self._counts and len(self._counts) >= _MOST_SENDERS:
+            sender = "others", datagram.port
+        self._counts[sender] += 1
+        self._data[sender] += len(datagram.payload) == DATA_SIZE
+        self._heard_s[sender] = time.monotonic()
+        if self._paused:
+            self._skipped += 1
+        else:
+            t_ns = stretched(datagram.t_ns, self._session.speed)
+            self._file.add(replace(datagram, t_ns=t_ns))
+
+    def _written(self, size: int) -> None:
+        message = {"kind": "written", "bytes": size}
+        self._loop.call_soon_threadsafe(self._lines.send, message)
+
+    def _report_status(self) -> None:
+        now_s = time.monotonic()
+        seconds = now_s - self._counted_s
+        fresh, data = self._counts - self._counted, self._data - self._data_counted
+        self._rates = [
+            {
+                "source": sender[0],
+                "port": sender[1],
+                "per_s": round(fresh[sender] / seconds, 1),
+                "data_per_s": round(data[sender] / seconds, 1),
+                "silent_s": round(now_s - self._heard_s[sender], 1),
+            }
+            for sender in sorted(self._counts)
+        ]
+        self._counted, self._counted_s = Counter(self._counts), now_s
+        self._data_counted = Counter(self._data)
+        self._disk.look(now_s)
+        self._lines.send({"kind": "status", **self.status()})
+        if not self._disk.message()["enough"]:
+            self._why = "the disk is nearly full"
+            self._over.set()
+
+    def status(self) -> dict[str, Any]:
+        """What a person may want to know; see ``docs/live.md``."""
+        return {
+            "t_ns": stretched(time.time_ns(), self._session.speed),
+            "began_ns": self._began_ns,
+            "seconds": round(time.monotonic() - self._began_s, 1),
+            "paused": self._paused,
+            "skipped_in_pauses": self._skipped,
+            "senders": self._rates,
+            "ports": {str(port.number): port.words for port in self._ports},
+            "kernel_drops": sum(port.kernel_drops for port in self._ports),
+            "serial": None if self._serial is None else self._serial.problem,
+            "file": asdict(self._file.state()),
+            "disk": self._disk.message(),
+            "notes": self._notes_problem,
+        }
+
+    def _initial_messages(self) -> list[dict[str, Any]]:
+        size = self._file.state().written_bytes
+        return [{"kind": "written", "bytes": size}, {"kind": "status", **self.status()}]
+
+    def _receive_line(self, message: dict[str, Any]) -> None:
+        match message.get("do"):
+            case "stop":
+                self._over.set()
+            case "pause":
+                self._paused = True
+                self._mark({"what": "pause"})
+            case "resume":
+                self._paused = False
+                self._mark({"what": "resume"})
+            case "mark":
+                facts = {name: message.get(name) for name in ("what", "text", "who")}
+                self._mark(facts, ago_s=message.get("ago_s", 0.0))
+            case _:
+                pass  # a newer server may know more
+
+    def _mark(self, facts: dict[str, Any], *, ago_s: float = 0.0) -> None:
+        t_ns = time.time_ns() - round(1e9 * ago_s)
+        mark = {"t_ns": stretched(t_ns, self._session.speed), **facts}
+        try:
+            _append(self._session.marks, json.dumps(mark, ensure_ascii=False) + "\n")
+        except OSError as error:
+            self._notes_problem = error.strerror or str(error)
+        else:
+            self._notes_problem = ""
+            self._lines.send({"kind": "mark", **mark})
+        self._report_status()
+
+
+def _append(path: Path, line: str) -> None:
+    """Add a line to a file, on the disk when this returns; all of it or nothing.
+
+    Raises:
+        OSError: If it cannot be written.
+    """
+    file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC, 0o644)
+    try:
+        before = os.fstat(file).st_size
+        data = line.encode()
+        if os.write(file, data) < len(data):
+            os.ftruncate(file, before)
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        os.fsync(file)
+    finally:
+        os.close(file)
+
+
+def main(project: Path) -> int:
+    """Record a session that was prepared; says ``ready`` on its output once it listens."""
+
+    def report_ready() -> None:
+        refuse_new_sockets()  # before a stranger's datagram is looked at
+        sys.stdout.write("ready\n")
+        sys.stdout.flush()
+
+    async def run() -> None:
+        await Recorder(session, rig).run(report_ready)
+
+    session = load_session(project)
+    try:
+        rig = load_rig(session.rig)
+        confine_recorder(session, rig)
+        asyncio.run(run())
+    except (Recon4Error, OSError) as error:
+        sys.stderr.write(f"{error}\n")
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1])))

@@ -1,0 +1,356 @@
+"""Shots of all LiDARs, as they come, to multiframes: cut by time on the rig's clock."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import ConfigError
+from recon4.model.multiframe import COLUMNS, Multiframe
+from recon4.model.rig import Rig
+from recon4.recording.assembly.rotation import nominal, rotation_rate
+from recon4.recording.assembly.shots import Shots
+from recon4.recording.report import ImportReport
+from recon4.settings import IngestSettings
+
+_HEAD_NS = 1_000_000_000
+"""So much of every sensor is looked at before the first cut."""
+_SLACK_NS = 20_000_000
+"""A sensor has passed a time once it is so far beyond: messages of one sensor may overlap."""
+_CLOCKS_NS = 10_000_000_000
+_KEPT_SHARE = 0.2
+"""A first or last revolution with fewer than this share of the usual points is left out."""
+_FALLBACK_HZ = 10.0
+LONGEST_WAIT_S = 10.0
+"""Readers may hand on several seconds of one sensor at a time."""
+
+
+@dataclass(frozen=True, slots=True)
+class TimeGap:
+    """A hole or a jump in the times of one sensor."""
+
+    sensor: str
+    t_ns: int
+    """Where it begins [ns]."""
+    seconds: float
+    """How long it is [s]; negative = the clock went back."""
+
+
+@dataclass(slots=True)
+class _Stream:
+    """What waits of one sensor."""
+
+    name: str
+    waiting: list[Shots] = field(default_factory=list)
+    last_ns: int | None = None
+    first_ns: int | None = None
+    shift_ns: int = 0
+    """Added to its times since its clock last went back."""
+    points: int = 0
+    late: int = 0
+
+
+class Assembler:
+    """Takes shots, gives multiframes, each as soon as all sensors have passed its end.
+
+    Times that go back by more than ``gap_s`` are carried on after the last good one (counted, and a
+    `TimeGap`); jumps forward stay and are a `TimeGap`; frames without any point are left out.
+    """
+
+    def __init__(
+        self,
+        rig: Rig,
+        *,
+        settings: IngestSettings,
+        report: ImportReport,
+        wait_s: float = LONGEST_WAIT_S,
+        on_cut: Callable[[Multiframe], None] = lambda frame: None,
+    ) -> None:
+        """Start empty.
+
+        Args:
+            rig: Its sensors are the rows that shots name.
+            settings: Rate, range limits and what a gap is.
+            report: Told of everything that is dropped.
+            wait_s: A sensor that is silent for so long while another delivers no longer holds the
+                frames up [s].
+            on_cut: Told of each multiframe at once: it is given out only when the next one is done,
+                as the very last may be a scrap.
+        """
+        self._on_cut, self._begun = on_cut, False
+        self._settings, self._report = settings, report
+        self._wait_ns = int(wait_s * 1e9)
+        self._streams = [_Stream(sensor.name) for sensor in rig.sensors]
+        self._start_ns: int | None = None
+        self._next = 0
+        """Frames since the start, empty ones counted."""
+        self._held: Multiframe | None = None
+        self._usual = 0.0
+        self.duration_ns = 0
+        """Length of a frame [ns]; 0 until it is known."""
+        self.rotation_hz: dict[str, float] = {}
+        """Measured revolutions per second of each sensor that was seen."""
+        self.gaps: list[TimeGap] = []
+
+    def push(self, shots: Shots) -> list[Multiframe]:
+        """Take shots of one sensor.
+
+        Raises:
+            ConfigError: If the clocks of the sensors have nothing to do with each other.
+        """
+        kept = drop_invalid(shots, settings=self._settings, report=self._report)
+        for part in _runs(kept, round(self._settings.gap_s * 1e9)):
+            self._take(part)
+        if self._start_ns is None and not self._head_complete():
+            return []
+        return self._cut(final=False)
+
+    def flush(self) -> list[Multiframe]:
+        """Give out what is left; call once, at the end."""
+        frames = self._cut(final=True)
+        for stream in self._streams:
+            self._report.count("points_late", stream.late)
+            if stream.late > 0.05 * stream.points:
+                self._report.warn(
+                    f"{stream.name}: {stream.late} of {stream.points} points came after their "
+                    "frame was done and are left out: are the clocks of the sensors the same?"
+                )
+        held, self._held = self._held, None
+        return frames if held is None or self._too_small(held) else [*frames, held]
+
+    # -- taking in
+
+    def _take(self, shots: Shots) -> None:
+        stream = self._streams[shots.sensor]
+        first, last = int(shots.t_ns[0]) + stream.shift_ns, int(shots.t_ns.max()) + stream.shift_ns
+        gap_ns = int(self._settings.gap_s * 1e9)
+        if stream.last_ns is not None and first - stream.last_ns > gap_ns:
+            self._note_gap(stream, first - stream.last_ns)
+        if stream.last_ns is not None and last < stream.last_ns - gap_ns:
+            step = self._shift_for(stream, stream.last_ns - first)
+            stream.shift_ns += step
+            last += step
+        if stream.shift_ns:
+            shots = moved(shots, stream.shift_ns)
+        self._note_inner_gaps(stream, shots, gap_ns)
+        stream.first_ns = int(shots.t_ns[0]) if stream.first_ns is None else stream.first_ns
+        stream.last_ns = last if stream.last_ns is None else max(last, stream.last_ns)
+        stream.points += len(shots)
+        stream.waiting.append(shots)
+
+    def _shift_for(self, stream: _Stream, back_ns: int) -> int:
+        """What to add after a jump back; sensors that jump together keep their common time."""
+        self._report.count("clock_jumps_back")
+        self._note_gap(stream, -back_ns)
+        others = [o.shift_ns - stream.shift_ns for o in self._streams if o is not stream]
+        together = [shift for shift in others if abs(shift - back_ns) < _HEAD_NS]
+        return together[0] if together else back_ns
+
+    def _note_gap(self, stream: _Stream, length_ns: int) -> None:
+        assert stream.last_ns is not None
+        gap = TimeGap(stream.name, stream.last_ns, length_ns / 1e9)
+        self.gaps.append(gap)
+        self._report.count("gaps")
+        if len(self.gaps) <= 20:
+            since_s = (stream.last_ns - (self._start_ns or stream.first_ns or 0)) / 1e9
+            what = "nothing" if length_ns > 0 else "the clock goes back"
+            self._report.warn(
+                f"{gap.sensor}: {what} for {abs(gap.seconds):.3f} s at {since_s:.1f} s"
+            )
+
+    def _note_inner_gaps(self, stream: _Stream, shots: Shots, gap_ns: int) -> None:
+        steps = np.diff(shots.t_ns)
+        for row in np.flatnonzero(steps > gap_ns):
+            stream.last_ns = int(shots.t_ns[row])
+            self._note_gap(stream, int(steps[row]))
+
+    # -- the first cut
+
+    def _head_complete(self) -> bool:
+        ends = [s.last_ns - s.first_ns for s in self._streams if s.last_ns and s.first_ns]
+        everyone = len(ends) == len(self._streams) and min(ends, default=0) >= _HEAD_NS
+        return everyone or max(ends, default=0) >= _HEAD_NS + self._wait_ns
+
+    def _begin(self) -> None:
+        seen = [stream for stream in self._streams if stream.waiting]
+        starts = [stream.first_ns for stream in seen if stream.first_ns is not None]
+        if max(starts) - min(starts) > _CLOCKS_NS:
+            raise ConfigError(
+                f"the clocks of {', '.join(s.name for s in seen)} differ by "
+                f"{(max(starts) - min(starts)) / 1e9:.3f} s; give time_offset_s in the rig file"
+            )
+        for stream in seen:
+            t_ns = np.concatenate([shots.t_ns for shots in stream.waiting])
+            xyz = np.concatenate([shots.xyz for shots in stream.waiting])
+            head = t_ns <= t_ns[0] + _HEAD_NS
+            self.rotation_hz[stream.name] = rotation_rate(t_ns[head], xyz[head])
+        self._start_ns = min(starts)
+        self.duration_ns = round(1e9 / self._rate_hz())
+
+    def _rate_hz(self) -> float:
+        measured = [rate for rate in self.rotation_hz.values() if np.isfinite(rate)]
+        asked = self._settings.rate_hz
+        if not asked and not measured:
+            self._report.derive(f"no rotation found, cut into frames at {_FALLBACK_HZ:g} Hz")
+            return _FALLBACK_HZ
+        slowest = nominal(min(measured)) if measured else asked
+        if not asked:
+            self._report.derive(f"frames at {slowest:.6g} Hz: one revolution of the slowest LiDAR")
+            return slowest
+        if abs(slowest / asked - round(slowest / asked)) > 0.03 or slowest < 0.97 * asked:
+            self._report.warn(
+                f"rate_hz = {asked:g} does not fit the rotation of {slowest:.6g} Hz: "
+                "frames are no whole revolutions"
+            )
+        return asked
+
+    # -- cutting
+
+    def _cut(self, *, final: bool) -> list[Multiframe]:
+        if not any(stream.waiting for stream in self._streams):
+            return []
+        if self._start_ns is None:
+            self._begin()
+        assert self._start_ns is not None
+        frames: list[Multiframe] = []
+        while any(stream.waiting for stream in self._streams):
+            self._skip_empty()
+            end_ns = self._start_ns + (self._next + 1) * self.duration_ns
+            if not final and not self._passed(end_ns):
+                break
+            frames += self._emit(end_ns)
+        return frames
+
+    def _passed(self, end_ns: int) -> bool:
+        """Whether no sensor can still bring points before ``end_ns``, or one is overdue."""
+        reached = [s.last_ns for s in self._streams if s.last_ns is not None]
+        everyone = len(reached) == len(self._streams) and min(reached) >= end_ns + _SLACK_NS
+        return everyone or max(reached) >= end_ns + self._wait_ns
+
+    def _skip_empty(self) -> None:
+        assert self._start_ns is not None
+        earliest = min(int(shots.t_ns[0]) for s in self._streams for shots in s.waiting)
+        target = (earliest - self._start_ns) // self.duration_ns
+        if target > self._next:
+            self._report.count("frames_empty", target - self._next)
+            self._next = target
+
+    def _emit(self, end_ns: int) -> list[Multiframe]:
+        start_ns = end_ns - self.duration_ns
+        parts = [part for s in self._streams for part in self._take_out(s, start_ns, end_ns)]
+        self._next += 1
+        if not parts:
+            return []
+        frame_id = self._held.frame_id + 1 if self._held else 0
+        frame = _multiframe(parts, frame_id, start_ns, self.duration_ns)
+        for row, stream in enumerate(self._streams):
+            if not np.any(frame.sensor == row):
+                self._report.count(f"frames_without_{stream.name}")
+        before, self._held = self._held, frame
+        if self._begun:
+            self._on_cut(frame)
+        return self._release(before, frame) if before else []
+
+    def _release(self, before: Multiframe, frame: Multiframe) -> list[Multiframe]:
+        """Give out the frame held back, unless it is a scrap at the very start."""
+        if before.frame_id == 0 and len(before) < _KEPT_SHARE * len(frame):
+            self._report.count("frames_incomplete_dropped")
+            self._report.count("points_of_incomplete_frames", len(before))
+            self._held = _renumbered(frame, 0)
+            return []
+        if not self._begun:
+            self._begun = True
+            self._on_cut(before)
+            self._on_cut(frame)
+        self._usual += 0.1 * (len(before) - self._usual) if self._usual else len(before)
+        return [before]
+
+    def _too_small(self, frame: Multiframe) -> bool:
+        if len(frame) >= _KEPT_SHARE * self._usual:
+            return False
+        self._report.count("frames_incomplete_dropped")
+        self._report.count("points_of_incomplete_frames", len(frame))
+        return True
+
+    def _take_out(self, stream: _Stream, start_ns: int, end_ns: int) -> list[Shots]:
+        taken, left = [], []
+        for shots in stream.waiting:
+            # Slices, not masks: a reader may hand on many frames at a time.
+            start, end = np.searchsorted(shots.t_ns, [start_ns, end_ns]).tolist()
+            stream.late += start
+            if end > start:
+                taken.append(_rows(shots, slice(start, end)))
+            if end < len(shots):
+                left.append(_rows(shots, slice(end, None)))
+        stream.waiting = left
+        return taken
+
+
+def drop_invalid(shots: Shots, *, settings: IngestSettings, report: ImportReport) -> Shots:
+    """Without points that are not finite, at the origin, too near or too far; counted."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        square = np.einsum("ni,ni->n", shots.xyz, shots.xyz)
+    bad = ~np.isfinite(square) | (square == 0.0)
+    near = ~bad & (square < settings.min_range_m**2)
+    far = ~bad & (square > settings.max_range_m**2)
+    report.count("points_invalid", int(np.count_nonzero(bad)))
+    report.count("points_near", int(np.count_nonzero(near)))
+    report.count("points_far", int(np.count_nonzero(far)))
+    drop = bad | near | far
+    return _rows(shots, ~drop) if drop.any() else shots
+
+
+def _runs(shots: Shots, gap_ns: int) -> list[Shots]:
+    """The shots, cut where the clock goes back."""
+    if not len(shots):
+        return []
+    back = (np.flatnonzero(np.diff(shots.t_ns) < -gap_ns) + 1).tolist()
+    ends = zip([0, *back], [*back, len(shots)], strict=True)
+    return [_rows(shots, slice(start, end)) for start, end in ends] if back else [shots]
+
+
+def _rows(shots: Shots, rows: NDArray[np.bool_] | slice) -> Shots:
+    return Shots(
+        shots.sensor,
+        shots.t_ns[rows],
+        shots.xyz[rows],
+        shots.intensity[rows],
+        shots.ring[rows],
+        shots.echo[rows],
+    )
+
+
+def moved(shots: Shots, shift_ns: int) -> Shots:
+    """The same shots at later times."""
+    return Shots(
+        shots.sensor,
+        shots.t_ns + shift_ns,
+        shots.xyz,
+        shots.intensity,
+        shots.ring,
+        shots.echo,
+    )
+
+
+def _multiframe(parts: list[Shots], frame_id: int, t_ns: int, duration_ns: int) -> Multiframe:
+    columns = {
+        "xyz": np.concatenate([p.xyz for p in parts]),
+        "intensity": np.concatenate([p.intensity for p in parts]),
+        "ring": np.concatenate([p.ring for p in parts]),
+        "sensor": np.concatenate([np.full(len(p), p.sensor, np.uint8) for p in parts]),
+        "echo": np.concatenate([p.echo for p in parts]),
+        "dt_ns": np.concatenate([p.t_ns - t_ns for p in parts]).astype(np.int32),
+    }
+    frame = Multiframe(frame_id, t_ns, duration_ns, **columns)
+    if all(a.sensor != b.sensor or a.t_ns[-1] <= b.t_ns[0] for a, b in pairwise(parts)):
+        return frame
+    return frame.take(np.lexsort((frame.dt_ns, frame.sensor)))
+
+
+def _renumbered(frame: Multiframe, frame_id: int) -> Multiframe:
+    columns = {name: getattr(frame, name) for name in COLUMNS}
+    return Multiframe(frame_id, frame.t_ns, frame.duration_ns, **columns)

@@ -1,0 +1,302 @@
+"""ROS bags of every kind as one stream of messages; damaged files are salvaged.
+
+Only the message types below are decoded, with definitions from here: code is never generated from
+definitions found inside a bag. What a file may ask for is in `recon4.recording.formats.limits`.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Protocol, Self
+
+from recon4.errors import CorruptFile, EmptyRecording
+from recon4.recording.folders import natural
+from recon4.recording.formats import db3
+from recon4.recording.formats.bag1 import Bag1, is_bag1
+from recon4.recording.formats.bag_folder import BagMetadata, read_metadata
+from recon4.recording.formats.chunks import Directory, Row
+from recon4.recording.formats.limits import (
+    MAX_MESSAGE_BYTES,
+    MAX_RATIO,
+    RATIO_FLOOR_BYTES,
+    RecordFile,
+    decompress_partly,
+)
+from recon4.recording.formats.mcap_file import Mcap
+from recon4.recording.formats.message_limits import check_message
+from recon4.recording.formats.scratch import scratch_folder
+from recon4.recording.formats.zstd_file import decompress_file
+from recon4.recording.report import ImportReport
+
+SCAN = "velodyne_msgs/msg/VelodyneScan"
+CLOUD = "sensor_msgs/msg/PointCloud2"
+IMU = "sensor_msgs/msg/Imu"
+FIX = "sensor_msgs/msg/NavSatFix"
+ODOMETRY = "nav_msgs/msg/Odometry"
+
+_DEFINITIONS = {
+    "velodyne_msgs/msg/VelodynePacket": "builtin_interfaces/Time stamp\nuint8[1206] data\n",
+    SCAN: "std_msgs/Header header\nvelodyne_msgs/VelodynePacket[] packets\n",
+}
+STORAGE_SUFFIXES = (".db3", ".mcap")
+
+
+@dataclass(frozen=True, slots=True)
+class BagTopic:
+    """One topic of a recording."""
+
+    name: str
+    type: str
+    """ROS 2 spelling, as ``sensor_msgs/msg/Imu``."""
+    messages: int
+
+
+@dataclass(frozen=True, slots=True)
+class BagMessage:
+    """One message, not decoded."""
+
+    topic: str
+    type: str
+    t_ns: int
+    """When it was recorded [ns]."""
+    data: bytes
+
+
+class StorageFile(Protocol):
+    """One storage file."""
+
+    ros1: bool
+    directory: Directory
+    report: ImportReport
+
+    def messages(self, topics: set[str]) -> Iterator[Row]:
+        """Messages of some topics in order of time."""
+        ...
+
+
+class Bag:
+    """One or several bag files read as one; use as a context manager."""
+
+    def __init__(self, paths: Sequence[Path], report: ImportReport) -> None:
+        """Nothing is opened yet.
+
+        Args:
+            paths: rosbag1 files, rosbag2 folders, ``.db3`` or ``.mcap`` files; not mixed.
+            report: Receives what had to be salvaged.
+        """
+        self._paths = paths
+        self.report = report
+        """Receives what is damaged; may be replaced once the bag is open."""
+        self._stack = ExitStack()
+        self._sources: list[StorageFile] = []
+        self._compressed_messages = False
+        self.ros1 = False
+        self.topics: tuple[BagTopic, ...] = ()
+        self.t_first_ns, self.t_last_ns = 0, 0
+
+    def __enter__(self) -> Self:
+        """Open all files.
+
+        Raises:
+            CorruptFile: If a file is no bag, or not a message of it is left.
+            EmptyRecording: If there are no messages.
+        """
+        try:
+            for path in self._paths:
+                self._open(path)
+            self._summarize()
+        except BaseException:
+            self._stack.close()
+            raise
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None
+    ) -> None:
+        self._stack.close()
+
+    @property
+    def seconds(self) -> float:
+        """From the first message to the last [s]."""
+        return (self.t_last_ns - self.t_first_ns) / 1e9
+
+    def messages(self, topics: Collection[str]) -> Iterator[BagMessage]:
+        """Messages of some topics in order of recording, as a stream.
+
+        Raises:
+            CorruptFile: If not one chunk of a file can be read.
+        """
+        streams = [self._of_source(source, set(topics)) for source in self._sources]
+        yield from heapq.merge(*streams, key=lambda message: message.t_ns)
+
+    def decode(self, message: BagMessage) -> Any | None:
+        """The message as an object with its fields; None (counted) when its bytes are damaged."""
+        store = _typestore(self.ros1)
+        try:
+            check_message(message.type, message.data, ros1=self.ros1)
+            if self.ros1:
+                return store.deserialize_ros1(message.data, message.type)
+            return store.deserialize_cdr(message.data, message.type)
+        except CorruptFile as error:
+            self._left_out(f"{message.topic}: left out: {error}")
+        except Exception:  # damaged bytes raise errors of many kinds in generated code
+            self._left_out(f"{message.topic}: messages that cannot be decoded are left out")
+        return None
+
+    def _left_out(self, why: str) -> None:
+        self.report.count("messages_corrupt")
+        self.report.outcome = "lossy"
+        self.report.warn(why)
+
+    # -- opening
+
+    def _open(self, path: Path) -> None:
+        if path.is_dir():
+            self._open_folder(path)
+        else:
+            self._open_file(path)
+
+    def _open_folder(self, path: Path) -> None:
+        """The files that the description lists; without one, all storage files."""
+        try:
+            metadata = read_metadata(path)
+        except CorruptFile as error:
+            self.report.warn(f"{path.name}: {error}; its files are read one by one")
+            metadata = BagMetadata(_storage_files(path, error), "", 0)
+        missing = [file.name for file in metadata.files if not file.is_file()]
+        if missing:
+            self.report.outcome = "lossy"
+            self.report.count("files_missing", len(missing))
+            self.report.warn(
+                f"{path.name}: {len(missing)} files of metadata.yaml are missing: "
+                f"{', '.join(missing[:5])}; the others are read"
+            )
+            absent = CorruptFile(f"no file of metadata.yaml is there: {', '.join(missing[:5])}")
+            there = tuple(file for file in metadata.files if file.is_file())
+            metadata = replace(metadata, files=there or _storage_files(path, absent))
+        self._compressed_messages = metadata.compression == "message"
+        files = metadata.files
+        if metadata.compression == "file":
+            files = self._decompressed(files)
+        for file in files:
+            try:
+                self._open_file(file)
+            except (CorruptFile, EmptyRecording) as error:
+                if len(files) == 1:
+                    raise
+                self.report.outcome = "lossy"
+                self.report.count("files_damaged")
+                self.report.warn(f"{path.name}: a file is left out: {error}")
+        self._compare(path, metadata.messages)
+
+    def _compare(self, path: Path, expected: int) -> None:
+        found = sum(source.directory.message_count for source in self._sources)
+        if found < expected:
+            self.report.outcome = "lossy"
+            self.report.count("messages_missing", expected - found)
+            self.report.warn(
+                f"{path.name}: expected {expected} messages as metadata.yaml says, got {found}"
+            )
+
+    def _decompressed(self, files: Sequence[Path]) -> tuple[Path, ...]:
+        """Copies of files that are compressed as a whole, for as long as the bag is open."""
+        needed = sum(file.stat().st_size for file in files)
+        folder = self._stack.enter_context(scratch_folder(needed))
+        return tuple(decompress_file(file, folder) for file in files)
+
+    def _open_file(self, path: Path) -> None:
+        if is_bag1(path):
+            self.ros1 = True
+            file = self._stack.enter_context(RecordFile(path))
+            self._sources.append(self._bag1(file))
+        elif _is_sqlite(path):
+            database = db3.Db3(path, self.report)
+            self._stack.callback(database.close)
+            self._sources.append(database)
+        else:
+            self._sources.append(self._mcap(self._stack.enter_context(RecordFile(path))))
+
+    def _bag1(self, file: RecordFile) -> StorageFile:
+        try:
+            return Bag1(file, self.report)
+        except CorruptFile as error:
+            self.report.warn(f"{error}; salvaging what is left")
+        source = Bag1.scan(file, self.report)
+        self._salvaged(source, file.name)
+        return source
+
+    def _mcap(self, file: RecordFile) -> StorageFile:
+        reason = ""
+        try:
+            return Mcap(file, self.report)
+        except CorruptFile as error:
+            reason = f"{error}; salvaging what is left"
+        source, whole = Mcap.scan(file, self.report)
+        if not whole:
+            self.report.warn(reason)
+            self._salvaged(source, file.name)
+        return source
+
+    def _salvaged(self, source: StorageFile, name: str) -> None:
+        count = source.directory.message_count
+        if not count:
+            self.report.outcome = "nothing"
+            raise CorruptFile(f"{name}: damaged or cut off, not one message is left")
+        self.report.outcome = "lossy"
+        self.report.count("files_cut")
+        self.report.count("messages_salvaged", count)
+        self.report.warn(f"{name}: cut off or damaged; {count} messages were salvaged")
+
+    def _summarize(self) -> None:
+        counts: dict[tuple[str, str], int] = {}
+        for source in self._sources:
+            for topic in source.directory.topics.values():
+                key = (topic.topic, topic.msgtype)
+                counts[key] = counts.get(key, 0) + topic.msgcount
+        self.topics = tuple(BagTopic(n, t, c) for (n, t), c in sorted(counts.items()))
+        filled = [s.directory for s in self._sources if s.directory.message_count]
+        if not filled:
+            names = ", ".join(path.name for path in self._paths)
+            raise EmptyRecording(f"{names}: a bag without messages")
+        self.t_first_ns = min(directory.start_time for directory in filled)
+        self.t_last_ns = max(directory.end_time for directory in filled) - 1
+
+    # -- reading
+
+    def _of_source(self, source: StorageFile, topics: set[str]) -> Iterator[BagMessage]:
+        source.report = self.report
+        for topic, kind, t_ns, data in source.messages(topics):
+            if not self._compressed_messages:
+                yield BagMessage(topic, kind, t_ns, data)
+                continue
+            most = min(MAX_MESSAGE_BYTES, max(RATIO_FLOOR_BYTES, MAX_RATIO * len(data)))
+            plain = decompress_partly("zstd", data, most=most, where=topic)
+            yield BagMessage(topic, kind, t_ns, plain)
+
+
+@cache
+def _typestore(ros1: bool) -> Any:
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+    store = get_typestore(Stores.ROS1_NOETIC if ros1 else Stores.ROS2_HUMBLE)
+    for name, text in _DEFINITIONS.items():
+        store.register(get_types_from_msg(text, name))
+    return store
+
+
+def _is_sqlite(path: Path) -> bool:
+    with path.open("rb") as file:
+        return file.read(16) == db3.MAGIC
+
+
+def _storage_files(folder: Path, error: CorruptFile) -> tuple[Path, ...]:
+    files = sorted((f for f in folder.iterdir() if f.suffix in STORAGE_SUFFIXES), key=natural)
+    if not files:
+        raise CorruptFile(f"{folder.name}: no readable rosbag2: {error}") from error
+    return tuple(files)

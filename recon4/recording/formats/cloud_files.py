@@ -1,0 +1,280 @@
+"""Point cloud files, PCD, PLY and KITTI BIN, as tables of named columns.
+
+Every length is checked against the size of the file before anything is allocated: a cut file is
+refused, never padded, and a large one is read piece by piece.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.bounded import MOST_LINE_BYTES, open_regular
+from recon4.errors import CorruptFile, UnknownFormat
+from recon4.kernels.lzf import lzf_decompress
+from recon4.recording.formats.cloud_headers import (
+    HEADER_BYTES,
+    CloudLayout,
+    Field,
+    is_pcd,
+    is_ply,
+    pcd_layout,
+    ply_layout,
+)
+
+Table = dict[str, NDArray[Any]]
+"""Column name -> values, (N,) each."""
+
+MOST_FRAME_BYTES = 256 << 20
+"""The points of a file that is read as a whole (one revolution, or a compressed block)."""
+_CHUNK_BYTES = 32 << 20
+_LZF_MOST = 100
+"""LZF cannot expand by more than 88: a larger claim is damage, not data."""
+
+
+def is_cloud_file(path: Path) -> bool:
+    """Whether the content is that of a PCD or PLY file, or plausibly of a KITTI BIN file."""
+    with path.open("rb") as file:
+        head = file.read(HEADER_BYTES)
+    if is_ply(head) or is_pcd(head):
+        return True
+    return path.suffix.lower() == ".bin" and _is_bin(head, path.stat().st_size)
+
+
+def read_cloud(path: Path) -> Table:
+    """Read a PCD, PLY or BIN file of at most `MOST_FRAME_BYTES` as a whole.
+
+    Raises:
+        CorruptFile: If the bytes do not match what the header promises, or there are too many.
+        UnknownFormat: If it is none of the three.
+    """
+    with open_regular(path) as file:
+        layout = _layout(file, path)
+        _check_size(file, layout, path.name)
+        size = layout.rows * layout.row_bytes
+        if size > MOST_FRAME_BYTES:
+            raise CorruptFile(
+                f"{path.name}: expected at most {MOST_FRAME_BYTES} bytes of points in one frame, "
+                f"got {layout.rows} points of {layout.row_bytes} bytes"
+            )
+        parts = list(_chunks(file, layout, path.name))
+    if len(parts) == 1:
+        return parts[0]
+    return {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
+
+
+def cloud_chunks(path: Path) -> Iterator[Table]:
+    """Read a PCD, PLY or BIN file of any size, some rows at a time.
+
+    Raises:
+        CorruptFile, UnknownFormat: As `read_cloud`.
+    """
+    with open_regular(path) as file:
+        layout = _layout(file, path)
+        _check_size(file, layout, path.name)
+        yield from _chunks(file, layout, path.name)
+
+
+def cloud_rows(path: Path) -> int:
+    """How many points the header promises.
+
+    Raises:
+        CorruptFile, UnknownFormat: As `read_cloud`.
+    """
+    with open_regular(path) as file:
+        return _layout(file, path).rows
+
+
+def cloud_fields(path: Path) -> list[str]:
+    """Names of the fields, from the header alone.
+
+    Raises:
+        CorruptFile, UnknownFormat: As `read_cloud`.
+    """
+    with open_regular(path) as file:
+        return list(_layout(file, path).named())
+
+
+def _layout(file: BinaryIO, path: Path) -> CloudLayout:
+    head = file.read(HEADER_BYTES)
+    if is_ply(head):
+        return ply_layout(head, path.name)
+    if is_pcd(head):
+        return pcd_layout(head, path.name)
+    if path.suffix.lower() == ".bin":
+        return _bin_layout(_size(file), path.name)
+    raise UnknownFormat(f"{path.name}: expected a PCD, PLY or KITTI BIN file")
+
+
+def _check_size(file: BinaryIO, layout: CloudLayout, name: str) -> None:
+    """Refuse more points than the bytes behind the header can be."""
+    left = _size(file) - layout.data_at
+    least = {"ascii": 2 * len(layout.fields), "binary": layout.row_bytes}
+    needed = layout.rows * least.get(layout.encoding, 0)
+    # The last line of a text may have no end.
+    if left + (layout.encoding == "ascii") < needed:
+        raise CorruptFile(
+            f"{name}: cut: {layout.rows} points of {layout.row_bytes} bytes need {needed} bytes "
+            f"behind the header, got {left}"
+        )
+
+
+def _chunks(file: BinaryIO, layout: CloudLayout, name: str) -> Iterator[Table]:
+    if layout.encoding == "ascii":
+        return _ascii(file, layout, name)
+    if layout.encoding == "binary_compressed":
+        return _compressed(file, layout, name)
+    return _binary(file, layout, name)
+
+
+# -- KITTI BIN
+
+
+def _is_bin(head: bytes, size: int) -> bool:
+    if size % 16 and len(head) < 1600:
+        return False
+    values = np.frombuffer(head[: min(len(head), 1600) // 16 * 16], "<f4")
+    return bool(np.all(np.isfinite(values)) and np.all(np.abs(values) < 1e5))
+
+
+def _bin_layout(size: int, name: str) -> CloudLayout:
+    if size % 16:
+        raise CorruptFile(
+            f"{name}: a KITTI BIN file has 16 bytes a point (x y z intensity as float32), "
+            f"got {size} bytes, {size % 16} too many"
+        )
+    fields = tuple(Field(key, "<f4") for key in ("x", "y", "z", "intensity"))
+    return CloudLayout(fields, size // 16, "binary", 0)
+
+
+# -- rows
+
+
+def _binary(file: BinaryIO, layout: CloudLayout, name: str) -> Iterator[Table]:
+    dtype, named = layout.row_dtype(), layout.named()
+    step = max(1, _CHUNK_BYTES // layout.row_bytes)
+    file.seek(layout.data_at)
+    for first in range(0, max(1, layout.rows), step):
+        count = min(step, layout.rows - first)
+        table = np.frombuffer(_read(file, count * layout.row_bytes, name), dtype, count)
+        yield {column: _native(table[f"f{k}"][:, 0]) for column, k in named.items()}
+
+
+def _ascii(file: BinaryIO, layout: CloudLayout, name: str) -> Iterator[Table]:
+    """As many lines as there are rows; what follows them is not looked at (PLY has faces there)."""
+    file.seek(layout.data_at)
+    done = 0
+    while True:
+        lines = _some_lines(file, layout.rows - done, name)
+        if not lines and done < layout.rows:
+            raise CorruptFile(f"{name}: cut: {layout.rows} points promised, got {done} lines")
+        yield _columns(lines, layout, f"{name}: behind point {done}")
+        done += len(lines)
+        if done == layout.rows:
+            return
+
+
+def _some_lines(file: BinaryIO, most: int, name: str) -> list[str]:
+    """Lines with something in them, at most `_CHUNK_BYTES` of them."""
+    lines: list[str] = []
+    size = 0
+    while len(lines) < most and size < _CHUNK_BYTES:
+        line = file.readline(MOST_LINE_BYTES + 1)
+        if not line:
+            break
+        if len(line) > MOST_LINE_BYTES:
+            raise CorruptFile(
+                f"{name}: expected lines of at most {MOST_LINE_BYTES} bytes, got a longer one"
+            )
+        size += len(line)
+        # Files of old Macs end their lines with \r alone.
+        lines += [part for part in line.decode("latin1").splitlines() if part.strip()]
+    return lines[:most]
+
+
+def _columns(lines: list[str], layout: CloudLayout, where: str) -> Table:
+    width = sum(field.count for field in layout.fields)
+    values = np.empty((0, width))
+    if lines:
+        try:
+            text = io.StringIO("\n".join(lines))
+            values = np.loadtxt(text, np.float64, ndmin=2, comments=None)
+        except ValueError as error:
+            raise CorruptFile(f"{where}: not a table of numbers: {error}") from error
+    if values.shape != (len(lines), width):
+        raise CorruptFile(f"{where}: {width} numbers a line expected, got {values.shape[1]}")
+    starts = np.cumsum([0] + [field.count for field in layout.fields])
+    fields = layout.fields
+    return {
+        column: _cast(values[:, starts[k]], fields[k].dtype, f"{where}: {column}")
+        for column, k in layout.named().items()
+    }
+
+
+def _cast(values: NDArray[np.float64], dtype: str, where: str) -> NDArray[Any]:
+    """Numbers as the type of their field; an integer field cannot hold just any number."""
+    kind = np.dtype(dtype).newbyteorder("=")
+    if kind.kind == "f":
+        with np.errstate(over="ignore"):
+            return values.astype(kind)
+    limits = np.iinfo(kind)
+    fits = (values >= limits.min) & (values <= limits.max)
+    if kind.itemsize == 8:  # the limits of 64 bits are no float64
+        fits &= np.abs(values) < 2.0**63
+    if not np.all(fits):
+        bad = values[~fits][0]
+        raise CorruptFile(f"{where}: expected {limits.min} to {limits.max}, got {bad:g}")
+    return values.astype(kind)
+
+
+def _compressed(file: BinaryIO, layout: CloudLayout, name: str) -> Iterator[Table]:
+    """Columns one behind the other, compressed as one block."""
+    expected = layout.rows * layout.row_bytes
+    file.seek(layout.data_at)
+    packed, unpacked = (int(v) for v in np.frombuffer(_read(file, 8, name), "<u4", 2))
+    if unpacked != expected or unpacked > packed * _LZF_MOST:
+        raise CorruptFile(
+            f"{name}: {layout.rows} points are {expected} bytes, "
+            f"the compressed block of {packed} bytes says {unpacked}"
+        )
+    if max(unpacked, packed) > MOST_FRAME_BYTES + (MOST_FRAME_BYTES >> 4):
+        raise CorruptFile(
+            f"{name}: expected a compressed block of at most {MOST_FRAME_BYTES} bytes, "
+            f"got {packed} bytes that unpack to {unpacked}"
+        )
+    out = np.zeros(unpacked, np.uint8)
+    body = np.frombuffer(_read(file, packed, name), np.uint8)
+    if lzf_decompress(body, out) != unpacked:
+        raise CorruptFile(f"{name}: the compressed block is damaged")
+    starts = np.cumsum([0] + [layout.rows * field.row_bytes for field in layout.fields])
+    table = {}
+    for column, k in layout.named().items():
+        field = layout.fields[k]
+        values = np.frombuffer(out.data, field.dtype, layout.rows * field.count, int(starts[k]))
+        table[column] = _native(values.reshape(layout.rows, field.count)[:, 0])
+    yield table
+
+
+def _native(column: NDArray[Any]) -> NDArray[Any]:
+    return np.array(column, dtype=column.dtype.newbyteorder("="))
+
+
+def _read(file: BinaryIO, count: int, name: str) -> bytes:
+    """Exactly so many bytes; the file's size is known to suffice, or ``count`` is small."""
+    left = _size(file) - file.tell()
+    if left < count:
+        raise CorruptFile(f"{name}: cut: {count} bytes promised, got {left}")
+    data = file.read(count)
+    if len(data) < count:
+        raise CorruptFile(f"{name}: cut: {count} bytes promised, got {len(data)}")
+    return data
+
+
+def _size(file: BinaryIO) -> int:
+    return os.fstat(file.fileno()).st_size

@@ -1,0 +1,198 @@
+"""Headers of PCD and PLY files: fields, rows and encoding, checked before any row is read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from recon4.errors import CorruptFile
+
+HEADER_BYTES = 64 * 1024
+"""A header ends within these."""
+MOST_FIELDS = 256
+MOST_ROW_BYTES = 64 * 1024
+_MOST_COUNT = 4096
+"""Values of one field: the longest descriptors of PCL have 1960."""
+_PCD_TYPES = {
+    **{("F", "4"): "f4", ("F", "8"): "f8"},
+    **{(kind, str(size)): f"{kind.lower()}{size}" for kind in "IU" for size in (1, 2, 4, 8)},
+}
+_PLY_TYPES = {
+    **{"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4"},
+    **{"int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4"},
+    **{"float": "f4", "float32": "f4", "double": "f8", "float64": "f8"},
+}
+_PLY_ORDER = {"ascii": "<", "binary_little_endian": "<", "binary_big_endian": ">"}
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """One field of a row."""
+
+    name: str
+    """In lower case; empty = padding."""
+    dtype: str
+    """Of one value, with its byte order."""
+    count: int = 1
+    """Values of the field in a row; only the first is used."""
+
+    @property
+    def row_bytes(self) -> int:
+        """Bytes of the field in a binary row."""
+        return np.dtype(self.dtype).itemsize * self.count
+
+
+@dataclass(frozen=True, slots=True)
+class CloudLayout:
+    """What a header says about the rows behind it."""
+
+    fields: tuple[Field, ...]
+    rows: int
+    encoding: str
+    """``ascii``, ``binary`` or ``binary_compressed``."""
+    data_at: int
+    """Offset of the first row [bytes]."""
+
+    @property
+    def row_bytes(self) -> int:
+        """Bytes of a binary row."""
+        return sum(field.row_bytes for field in self.fields)
+
+    def row_dtype(self) -> np.dtype[np.void]:
+        """Record of one binary row; field ``k`` is ``fk``."""
+        return np.dtype([(f"f{k}", f.dtype, (f.count,)) for k, f in enumerate(self.fields)])
+
+    def named(self) -> dict[str, int]:
+        """Name -> row in ``fields``; the first of those with the same name."""
+        out: dict[str, int] = {}
+        for k, field in enumerate(self.fields):
+            if field.name:
+                out.setdefault(field.name, k)
+        return out
+
+
+def is_ply(head: bytes) -> bool:
+    """Whether the first bytes are those of a PLY file."""
+    return head[:4] in (b"ply\n", b"ply\r")
+
+
+def is_pcd(head: bytes) -> bool:
+    """Whether the first `HEADER_BYTES` bytes are those of a PCD file."""
+    return head[:1] in (b"#", b"V", b"F") and b"\nDATA " in head and b"FIELDS " in head
+
+
+def pcd_layout(head: bytes, name: str) -> CloudLayout:
+    """Read the header of a PCD file.
+
+    Raises:
+        CorruptFile: If it is damaged; says what was expected and what was found.
+    """
+    words, at = _pcd_words(head, name)
+    try:
+        names, sizes, kinds = words["FIELDS"], words["SIZE"], words["TYPE"]
+        counts = words.get("COUNT", ["1"] * len(names))
+        fields = tuple(
+            Field("" if f == "_" else f.lower(), "<" + _PCD_TYPES[k, s], whole(c))
+            for f, s, k, c in zip(names, sizes, kinds, counts, strict=True)
+        )
+        grid = whole(words["WIDTH"][0]) * whole(words.get("HEIGHT", ["1"])[0])
+        rows = whole(words.get("POINTS", [str(grid)])[0])
+        encoding = words["DATA"][0]
+    except (KeyError, ValueError, IndexError) as error:
+        raise CorruptFile(f"{name}: the PCD header makes no sense: {error!r}") from error
+    if rows != grid:
+        raise CorruptFile(f"{name}: PCD header: WIDTH x HEIGHT is {grid}, POINTS is {rows}")
+    if encoding not in ("ascii", "binary", "binary_compressed"):
+        raise CorruptFile(
+            f"{name}: PCD DATA: expected ascii, binary or binary_compressed, got {encoding[:40]!r}"
+        )
+    return _checked(CloudLayout(fields, rows, encoding, at), name)
+
+
+def _pcd_words(head: bytes, name: str) -> tuple[dict[str, list[str]], int]:
+    """Words of the lines up to DATA, and where the next line starts."""
+    words: dict[str, list[str]] = {}
+    at = 0
+    while "DATA" not in words:
+        end = head.find(b"\n", at)
+        if end < 0:
+            raise CorruptFile(f"{name}: the PCD header ends before its DATA line")
+        line = head[at:end].decode("latin1").split("#")[0].split()
+        if line and line[0] in words:
+            raise CorruptFile(f"{name}: PCD header: expected one line {line[0][:40]}, got two")
+        if line:
+            words[line[0]] = line[1:]
+        at = end + 1
+    return words, at
+
+
+def ply_layout(head: bytes, name: str) -> CloudLayout:
+    """Read the header of a PLY file up to the rows of its vertices.
+
+    Raises:
+        CorruptFile: If it is damaged; says what was expected and what was found.
+    """
+    end = head.find(b"end_header")
+    line_end = head.find(b"\n", end)
+    if end < 0 or line_end < 0:
+        raise CorruptFile(f"{name}: the PLY header does not end")
+    fields: list[Field] = []
+    counts: dict[str, int] = {}
+    element, encoding = "", ""
+    try:
+        for words in filter(None, map(str.split, head[:end].decode("latin1").splitlines())):
+            if words[0] == "format":
+                encoding = words[1]
+            elif words[0] == "element":
+                element = _ply_element(words, counts, name)
+            elif words[0] == "property" and element == "vertex":
+                fields.append(_ply_field(words, encoding, name))
+    except (KeyError, ValueError, IndexError) as error:
+        raise CorruptFile(f"{name}: the PLY header makes no sense: {error!r}") from error
+    if "vertex" not in counts or not fields or encoding not in _PLY_ORDER:
+        raise CorruptFile(f"{name}: a PLY header needs a format and an element vertex")
+    kind = "ascii" if encoding == "ascii" else "binary"
+    return _checked(CloudLayout(tuple(fields), counts["vertex"], kind, line_end + 1), name)
+
+
+def _ply_element(words: list[str], counts: dict[str, int], name: str) -> str:
+    element = words[1]
+    if not counts and element != "vertex":
+        raise CorruptFile(f"{name}: the first PLY element must be vertex: {element[:40]!r}")
+    if element in counts:
+        raise CorruptFile(f"{name}: PLY header: expected one element {element[:40]}, got two")
+    counts[element] = whole(words[2])
+    return element
+
+
+def _ply_field(words: list[str], encoding: str, name: str) -> Field:
+    if words[1] == "list":
+        raise CorruptFile(
+            f"{name}: PLY header: expected vertices with single values, "
+            f"got the list {words[-1][:40]!r}"
+        )
+    return Field(words[2].lower(), _PLY_ORDER[encoding] + _PLY_TYPES[words[1]])
+
+
+def whole(text: str) -> int:
+    """A count in decimal digits.
+
+    Raises:
+        ValueError: If it is something else, or has more than 18 digits.
+    """
+    if not (text.isascii() and text.isdigit() and len(text) <= 18):
+        raise ValueError(f"expected a count, got {text[:40]!r}")
+    return int(text)
+
+
+def _checked(layout: CloudLayout, name: str) -> CloudLayout:
+    if not 1 <= len(layout.fields) <= MOST_FIELDS:
+        raise CorruptFile(f"{name}: expected 1 to {MOST_FIELDS} fields, got {len(layout.fields)}")
+    counts = [field.count for field in layout.fields]
+    if min(counts) < 1 or max(counts) > _MOST_COUNT or layout.row_bytes > MOST_ROW_BYTES:
+        raise CorruptFile(
+            f"{name}: expected 1 to {_MOST_COUNT} values a field and at most "
+            f"{MOST_ROW_BYTES} bytes a point, got {max(counts)} and {layout.row_bytes}"
+        )
+    return layout

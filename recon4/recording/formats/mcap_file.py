@@ -1,0 +1,353 @@
+"""MCAP files: the summary at the end of the file, or a scan of all records without it."""
+
+from __future__ import annotations
+
+import io
+import struct
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any, TypeVar
+from zlib import crc32
+
+from recon4.errors import CorruptFile
+from recon4.recording.formats.chunks import (
+    ChunkMessages,
+    ChunkRef,
+    ChunkStream,
+    Directory,
+    Row,
+    Topic,
+    require_apart,
+    survey,
+)
+from recon4.recording.formats.limits import (
+    MAX_CHUNK_BYTES,
+    MAX_MESSAGE_BYTES,
+    MAX_TOPICS,
+    RATIO_FLOOR_BYTES,
+    RecordFile,
+    clean_name,
+    decompress,
+    decompress_partly,
+)
+from recon4.recording.report import ImportReport
+
+MAGIC = b"\x89MCAP0\r\n"
+_FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK = 2, 3, 4, 5, 6
+_CHUNK_INDEX, _STATISTICS, _DATA_END = 8, 11, 15
+_RECORD = struct.Struct("<BQ")
+_MESSAGE_HEAD = struct.Struct("<HIQQ")
+_CHUNK_HEAD = struct.Struct("<QQQI")
+_FOOTER_BYTES = _RECORD.size + 20 + len(MAGIC)
+_MAX_SUMMARY_BYTES = 64 << 20
+_MAX_TIME_NS = 2**62
+"""Later times are damage."""
+_RUN_BYTES = 8 << 20
+"""Messages outside of chunks are read in runs of at most this size."""
+
+_T = TypeVar("_T")
+
+
+class Mcap:
+    """One MCAP file that is open."""
+
+    ros1 = False
+
+    def __init__(self, file: RecordFile, report: ImportReport) -> None:
+        """Read the summary.
+
+        Raises:
+            CorruptFile: If it is damaged or not complete, see `scan`.
+        """
+        self._file, self.report = file, report
+        self.directory = _summary(file)
+
+    @classmethod
+    def scan(cls, file: RecordFile, report: ImportReport) -> tuple[Mcap, bool]:
+        """Read a file without a complete summary, record by record; and whether it is whole."""
+        mcap = cls.__new__(cls)
+        mcap._file, mcap.report = file, report
+        topics = _Topics()
+        file.restart_budget()
+        found, whole = _found_chunks(file, topics)
+        chunks = survey(found, lambda chunk: _load(file, chunk, topics))
+        whole = whole and len(chunks) == len(found)
+        for chunk in chunks:
+            for number, count in chunk.counts.items():
+                if number in topics.channels:
+                    topics.channels[number].msgcount += count
+        mcap.directory = Directory.of_chunks(topics.channels, chunks)
+        return mcap, whole
+
+    def messages(self, topics: set[str]) -> Iterator[Row]:
+        """Messages of some topics in order of time."""
+        known = _Topics()
+        known.channels = self.directory.topics
+
+        def load(chunk: ChunkRef) -> ChunkMessages:
+            return _load(self._file, chunk, known)
+
+        self._file.restart_budget()
+        stream = ChunkStream(self._file.name, self.directory, load, self.report)
+        return stream.messages(topics)
+
+
+class _Topics:
+    """Schemas and channels as they are found."""
+
+    def __init__(self) -> None:
+        self.types: dict[int, str] = {}
+        self.channels: dict[int, Topic] = {}
+
+    def add(self, op: int, body: bytes, where: str) -> None:
+        """Remember a schema or a channel; definitions are not read."""
+        from mcap.data_stream import ReadDataStream
+        from mcap.records import Channel, Schema
+
+        def read(kind: Any) -> Any:
+            return kind.read(ReadDataStream(io.BytesIO(body)))
+
+        if op == _SCHEMA:
+            schema = _parsed(lambda: read(Schema), where)
+            self.types[schema.id] = clean_name(schema.name)
+        elif op == _CHANNEL and len(self.channels) < MAX_TOPICS:
+            channel = _parsed(lambda: read(Channel), where)
+            kind = self.types.get(channel.schema_id, "")
+            self.channels.setdefault(channel.id, Topic(clean_name(channel.topic), kind))
+
+
+def _parsed(read: Callable[[], _T], where: str) -> _T:
+    """What the library reads from a record's bytes.
+
+    Raises:
+        CorruptFile: If it cannot be read.
+    """
+    try:
+        return read()
+    except Exception as error:  # EndOfFile, struct.error, UnicodeDecodeError, MemoryError …
+        raise CorruptFile(f"{where}: a record that cannot be read ({error!r})") from error
+
+
+# -- summary
+
+
+def _summary(file: RecordFile) -> Directory:
+    start = _start_of_summary(file)
+    file.seek(start)
+    body = io.BytesIO(file.take(file.size - _FOOTER_BYTES - start, "summary"))
+    topics = _Topics()
+    chunks: list[ChunkRef] = []
+    counts: dict[int, int] | None = None
+    where = f"{file.name}: summary at byte {start}"
+    while head := body.read(_RECORD.size):
+        op, record = _summary_record(head, body, where)
+        if op in {_SCHEMA, _CHANNEL}:
+            topics.add(op, record, where)
+        elif op == _CHUNK_INDEX:
+            chunks.append(_parsed(partial(_chunk_index, record), where))
+        elif op == _STATISTICS:
+            counts = _parsed(partial(_channel_counts, record), where)
+    if counts is None or not chunks or not topics.types:
+        raise CorruptFile(f"{where}: expected schemas, chunks and statistics, not all are there")
+    require_apart(chunks, file.name, start)
+    found = [_checked(file, chunk, start) for chunk in chunks]
+    require_apart(found, file.name, start)
+    _require_counts(topics, counts, where)
+    return Directory.of_chunks(topics.channels, found)
+
+
+def _require_counts(topics: _Topics, counts: dict[int, int], where: str) -> None:
+    for number, count in counts.items():
+        if number not in topics.channels:
+            raise CorruptFile(f"{where}: statistics of a channel {number} that is not there")
+        topics.channels[number].msgcount = count
+
+
+def _start_of_summary(file: RecordFile) -> int:
+    """Offset of the summary, from the footer."""
+    file.seek(0)
+    magic = file.take(min(len(MAGIC), file.left), "magic")
+    if magic != MAGIC:
+        raise CorruptFile(f"{file.name}: expected {MAGIC!r}, got {magic!r}")
+    file.seek(max(0, file.size - _FOOTER_BYTES))
+    footer_at = file.at
+    footer = file.take(file.left, "footer")
+    op, length = _RECORD.unpack_from(footer.ljust(_RECORD.size))
+    if len(footer) < _FOOTER_BYTES or footer[-8:] != MAGIC or (op, length) != (_FOOTER, 20):
+        raise CorruptFile(f"{file.name}: expected a footer at byte {footer_at}, it is cut off")
+    start = int.from_bytes(footer[_RECORD.size : _RECORD.size + 8], "little")
+    if not len(MAGIC) < start <= footer_at or footer_at - start > _MAX_SUMMARY_BYTES:
+        raise CorruptFile(
+            f"{file.name}: expected a summary of at most {_MAX_SUMMARY_BYTES} bytes before byte "
+            f"{footer_at}, got one from byte {start}"
+        )
+    return start
+
+
+def _summary_record(head: bytes, body: io.BytesIO, where: str) -> tuple[int, bytes]:
+    if len(head) < _RECORD.size:
+        raise CorruptFile(f"{where}: it ends inside a record")
+    op, length = _RECORD.unpack(head)
+    left = len(body.getbuffer()) - body.tell()
+    if length > left:
+        raise CorruptFile(f"{where}: expected a record of at most {left} bytes, got {length}")
+    return op, body.read(length)
+
+
+def _chunk_index(record: bytes) -> ChunkRef:
+    """A chunk as the summary describes it: offset and length are those of the whole record."""
+    t_first, t_last, offset, length = struct.unpack_from("<QQQQ", record)
+    (offsets,) = struct.unpack_from("<I", record, 32)
+    at = 36 + offsets
+    numbers = [number for number, _ in struct.iter_unpack("<HQ", record[36:at])]
+    (name,) = struct.unpack_from("<I", record, at + 8)
+    compression = record[at + 12 : at + 12 + name].decode("latin1")
+    _, size = struct.unpack_from("<QQ", record, at + 12 + name)
+    known = frozenset(numbers) if numbers else None
+    return ChunkRef(offset, length, size, compression, t_first, t_last, {}, known)
+
+
+def _channel_counts(record: bytes) -> dict[int, int]:
+    (length,) = struct.unpack_from("<I", record, 42)
+    return dict(struct.iter_unpack("<HQ", record[46 : 46 + length]))
+
+
+def _checked(file: RecordFile, listed: ChunkRef, end: int) -> ChunkRef:
+    """The chunk at the place that the summary lists, by its own header."""
+    file.seek(listed.offset)
+    op, length = _RECORD.unpack(file.take(_RECORD.size, "chunk"))
+    if op != _CHUNK or listed.length != _RECORD.size + length:
+        raise CorruptFile(
+            f"{file.name}: expected a chunk of {listed.length} bytes at byte {listed.offset}, "
+            f"got a record of kind {op} of {length} bytes"
+        )
+    found = _chunk_head(file, length)
+    if (found.t_first_ns, found.size) != (listed.t_first_ns, listed.size):
+        raise CorruptFile(
+            f"{file.name}: chunk at byte {listed.offset}: expected {listed.size} bytes from "
+            f"{listed.t_first_ns} ns on as in the summary, got {found.size} from {found.t_first_ns}"
+        )
+    if found.t_last_ns > _MAX_TIME_NS or found.offset > end:
+        raise CorruptFile(f"{file.name}: chunk at byte {listed.offset}: its times make no sense")
+    return ChunkRef(
+        found.offset,
+        found.length,
+        found.size,
+        found.compression,
+        found.t_first_ns,
+        found.t_last_ns,
+        {},
+        listed.connections,
+        found.crc,
+    )
+
+
+def _chunk_head(file: RecordFile, length: int) -> ChunkRef:
+    """Header of a chunk record whose body starts here; the file may end before the body does."""
+    end = file.at + length
+    t_first, t_last, size, crc = _CHUNK_HEAD.unpack(file.take(_CHUNK_HEAD.size, "chunk header"))
+    name = file.take(file.uint(4, "compression"), "compression", most=32).decode("latin1")
+    data = file.uint(8, "chunk")
+    if file.at + data != end:
+        raise CorruptFile(
+            f"{file.name}: chunk at byte {file.at}: expected {end - file.at} bytes, got {data}"
+        )
+    here = min(data, file.left)
+    return ChunkRef(file.at, here, size, name, t_first, t_last, crc=crc, partial=here < data)
+
+
+# -- without a summary
+
+
+def _found_chunks(file: RecordFile, topics: _Topics) -> tuple[list[ChunkRef], bool]:
+    """Chunks and runs of messages up to the footer or the damage; whether the footer is there."""
+    found: list[ChunkRef] = []
+    file.seek(min(len(MAGIC), file.size))
+    try:
+        while file.left:
+            at = file.at
+            op, length = _RECORD.unpack(file.take(_RECORD.size, "record"))
+            end = file.at + length
+            if op == _FOOTER:
+                return found, end + len(MAGIC) == file.size
+            if op == _CHUNK:
+                found.append(_chunk_head(file, length))
+            elif op in {_SCHEMA, _CHANNEL}:
+                topics.add(op, file.take(length, "record"), f"{file.name}: record at byte {at}")
+            elif op == _MESSAGE:
+                _extend_run(found, at, end, file)
+            elif not op:
+                break  # an opcode of 0 is not allowed: holes of a sparse file
+            if end > file.size:
+                break
+            file.seek(end)
+    except CorruptFile:
+        pass
+    return found, False
+
+
+def _extend_run(found: list[ChunkRef], at: int, end: int, file: RecordFile) -> None:
+    """Add a message outside of a chunk to the run before it, or begin a new one."""
+    if end > file.size:
+        return
+    last = found[-1] if found else None
+    follows = last is not None and last.compression == _RUN and last.offset + last.length == at
+    if last is not None and follows and end - last.offset <= _RUN_BYTES:
+        size = end - last.offset
+        found[-1] = ChunkRef(last.offset, size, size, _RUN, 0, 0)
+        return
+    found.append(ChunkRef(at, end - at, end - at, _RUN, 0, 0))
+
+
+_RUN = "none"
+"""Compression of a run of records; that of a chunk is empty, lz4 or zstd."""
+
+# -- chunks
+
+
+def _load(file: RecordFile, chunk: ChunkRef, topics: _Topics) -> ChunkMessages:
+    where = f"{file.name}: chunk at byte {chunk.offset}"
+    file.charge(chunk.size, where)
+    file.seek(chunk.offset)
+    data = file.take(chunk.length, "chunk", most=MAX_CHUNK_BYTES)
+    if chunk.partial:
+        most = min(MAX_CHUNK_BYTES, max(RATIO_FLOOR_BYTES, chunk.size))
+        raw = decompress_partly(chunk.compression, data, most=most, where=where)
+    else:
+        raw = decompress(chunk.compression, data, expected=chunk.size, where=where)
+    if chunk.crc and not chunk.partial and crc32(raw) != chunk.crc:
+        raise CorruptFile(
+            f"{where}: expected checksum {chunk.crc:08x}, got {crc32(raw):08x}: its bytes changed"
+        )
+    messages = ChunkMessages(raw)
+    at = _read_records(messages, topics, where)
+    if at < len(raw) and not chunk.partial:
+        raise CorruptFile(f"{where}: expected records up to its end at {len(raw)}, got {at} bytes")
+    return messages
+
+
+def _read_records(messages: ChunkMessages, topics: _Topics, where: str) -> int:
+    """Note the messages of a chunk; gives the end of the last whole record."""
+    raw, at = messages.data, 0
+    while at + _RECORD.size <= len(raw):
+        op, length = _RECORD.unpack_from(raw, at)
+        start, stop = at + _RECORD.size, at + _RECORD.size + length
+        if stop > len(raw):
+            break
+        if op == _MESSAGE:
+            _add_message(messages, start, stop)
+        elif op in {_SCHEMA, _CHANNEL}:
+            topics.add(op, raw[start:stop], where)
+        at = stop
+    return at
+
+
+def _add_message(messages: ChunkMessages, start: int, stop: int) -> None:
+    if not _MESSAGE_HEAD.size <= stop - start <= MAX_MESSAGE_BYTES:
+        messages.rejected += 1
+        return
+    number, _, t_ns, _ = _MESSAGE_HEAD.unpack_from(messages.data, start)
+    if t_ns > _MAX_TIME_NS:
+        messages.rejected += 1
+        return
+    messages.add(t_ns, number, start + _MESSAGE_HEAD.size, stop)

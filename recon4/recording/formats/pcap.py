@@ -1,0 +1,290 @@
+"""UDP datagrams of a capture file, streamed in batches; a cut file is read up to the cut."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import IO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import CorruptFile, EmptyRecording, UnknownFormat
+from recon4.model.trajectory import Times
+from recon4.recording.formats.pcapng import MAGIC as PCAPNG
+from recon4.recording.formats.pcapng import MAX_PACKET_BYTES, Packet, read_packets
+from recon4.recording.report import ImportReport
+
+_CLASSIC = {
+    b"\xd4\xc3\xb2\xa1": ("<", 1000),
+    b"\xa1\xb2\xc3\xd4": (">", 1000),
+    b"\x4d\x3c\xb2\xa1": ("<", 1),
+    b"\xa1\xb2\x3c\x4d": (">", 1),
+}
+"""First four bytes to byte order and nanoseconds a unit of the stamps."""
+_ETHERTYPE_AT = {1: 12, 113: 14, 276: 0}
+"""Link type (Ethernet, Linux cooked 1 and 2) to the place of the ethertype in a packet."""
+_IP_AT = {1: 14, 113: 16, 276: 20, 101: 0, 228: 0, 0: 4, 108: 4}
+"""Link type to the place of the IP header; without an ethertype the packet is IP anyway."""
+_LINK_TYPES = np.array(sorted(_IP_AT))
+_IP_STARTS = np.array([_IP_AT[link] for link in sorted(_IP_AT)])
+_ETHERTYPES = np.array([_ETHERTYPE_AT.get(link, -1) for link in sorted(_IP_AT)])
+"""The two tables as columns; -1 = no ethertype."""
+_RECORD_HEADER = 16
+_CHUNK = 4 << 20
+_MARGIN = 2048
+"""Zeros behind the buffer, so that a short payload at its end can be viewed at full size."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Datagrams:
+    """Some UDP datagrams in the order of the file."""
+
+    t_ns: Times
+    """Times of capture [ns], (N,)."""
+    source: NDArray[np.uint32]
+    """IPv4 address of the sender, `address_text` spells it, (N,)."""
+    port: NDArray[np.uint16]
+    """Destination port, (N,)."""
+    length: NDArray[np.int64]
+    """Bytes of payload, (N,)."""
+    start: NDArray[np.int64]
+    """Where each payload starts in ``buffer``, (N,)."""
+    buffer: NDArray[np.uint8]
+    """Bytes of the file around the payloads, with zeros behind, (B,)."""
+
+    def __len__(self) -> int:
+        return len(self.t_ns)
+
+    def payloads(self, rows: NDArray[np.integer], size: int) -> NDArray[np.uint8]:
+        """First ``size`` (at most 2048) bytes from the start of the payloads of some rows.
+
+        Rows are expected to be at least that long: what follows a shorter payload is not blanked.
+
+        Returns:
+            A copy, (M, size).
+        """
+        windows = np.lib.stride_tricks.sliding_window_view(self.buffer, size)
+        return windows[self.start[rows]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Records:
+    """Captured packets as they lie in a buffer."""
+
+    t_ns: Times
+    start: NDArray[np.int64]
+    length: NDArray[np.int64]
+    buffer: NDArray[np.uint8]
+    link_type: NDArray[np.int64]
+    """Of the interface of each, (N,)."""
+
+
+def address_text(source: int) -> str:
+    """``192.168.1.201`` for 0xC0A801C9."""
+    return ".".join(str((int(source) >> shift) & 255) for shift in (24, 16, 8, 0))
+
+
+OpenFile = Callable[[Path], IO[bytes]]
+"""Opens a file for reading bytes; its ``read(n)`` may give fewer, and none only at the end."""
+
+
+def open_plain(path: Path) -> IO[bytes]:
+    """A finished file."""
+    return path.open("rb")
+
+
+def read_pcap(
+    path: Path, report: ImportReport, open_file: OpenFile = open_plain
+) -> Iterator[Datagrams]:
+    """Stream the UDP datagrams of a pcap (µs or ns, either byte order) or pcapng file.
+
+    Counts ``records`` and, of them, those that are no datagrams for us: ``records_not_udp``,
+    ``records_fragment`` (an IP fragment), ``records_cut`` (longer than what was captured). A file
+    that ends inside a record yields all before it, and ``report.outcome`` becomes ``lossy``.
+
+    Raises:
+        UnknownFormat: If the file is not a capture of Ethernet, Linux cooked or raw IP packets.
+        EmptyRecording: If it holds no packet at all.
+    """
+    found, damaged = 0, report.counts["files_cut"]
+    with open_file(path) as file:
+        for records in _records(file, path.name, report):
+            found += len(records.t_ns)
+            report.count("records", len(records.t_ns))
+            yield _datagrams(records, report)
+    if not found:
+        why = f" ({report.warnings[-1]})" if report.counts["files_cut"] > damaged else ""
+        raise EmptyRecording(f"{path.name}: a capture file without any packet{why}")
+
+
+def is_pcap(path: Path) -> bool:
+    """Whether the first bytes are those of a pcap or pcapng file."""
+    with path.open("rb") as file:
+        magic = file.read(4)
+    return magic in _CLASSIC or magic == PCAPNG
+
+
+def _records(file: IO[bytes], name: str, report: ImportReport) -> Iterator[_Records]:
+    magic = file.read(4)
+    if not magic:
+        raise EmptyRecording(f"{name}: the file is empty (0 bytes)")
+    if magic == PCAPNG:
+        file.seek(0)
+        yield from _next_generation(file, name, report)
+    elif magic in _CLASSIC:
+        yield from _classic(file, name, _CLASSIC[magic], report)
+    else:
+        raise UnknownFormat(
+            f"{name}: expected a capture file (pcap or pcapng), got first bytes {magic.hex(' ')}"
+        )
+
+
+def _classic(
+    file: IO[bytes], name: str, kind: tuple[str, int], report: ImportReport
+) -> Iterator[_Records]:
+    order, unit_ns = kind
+    header = file.read(20)
+    if len(header) < 20:
+        raise EmptyRecording(f"{name}: cut inside the file header, no packet is left")
+    link_type = struct.unpack(f"{order}I", header[16:])[0] & 0x0FFF_FFFF
+    _require_link_type(link_type, name)
+    rest, at = b"", 24
+    while chunk := file.read(_CHUNK):
+        data = rest + chunk
+        stamps, end, broken = _walk(data, order)
+        if stamps:
+            yield _batch(stamps, data, unit_ns, link_type)
+        rest, at = data[end:], at + end
+        if broken:
+            captured = struct.unpack_from(f"{order}I", rest, 8)[0]
+            _salvaged(
+                report,
+                name,
+                f"packet at byte {at}: expected a length of 1 to {MAX_PACKET_BYTES} bytes, "
+                f"got {captured}; what follows is not read",
+            )
+            return
+    if rest:
+        _salvaged(report, name, f"it ends inside a packet; the last {len(rest)} bytes are dropped")
+
+
+def _walk(data: bytes, order: str) -> tuple[list[tuple[int, int, int, int]], int, bool]:
+    """Whole records in ``data``: (seconds, fraction, captured length, start), end, broken."""
+    unpack = struct.Struct(f"{order}III").unpack_from
+    rows: list[tuple[int, int, int, int]] = []
+    at, size = 0, len(data)
+    while at + _RECORD_HEADER <= size:
+        seconds, fraction, captured = unpack(data, at)
+        if not 0 < captured <= MAX_PACKET_BYTES:  # 0: holes of a sparse file
+            return rows, at, True
+        start = at + _RECORD_HEADER
+        if start + captured > size:
+            break
+        rows.append((seconds, fraction, captured, start))
+        at = start + captured
+    return rows, at, False
+
+
+def _batch(
+    rows: list[tuple[int, int, int, int]], data: bytes, unit_ns: int, link_type: int
+) -> _Records:
+    seconds, fraction, length, start = np.array(rows, dtype=np.int64).T
+    t_ns = seconds * 1_000_000_000 + fraction * unit_ns
+    return _Records(t_ns, start, length, _with_margin(data), np.full(len(rows), link_type))
+
+
+def _next_generation(file: IO[bytes], name: str, report: ImportReport) -> Iterator[_Records]:
+    packets = _until_damaged(read_packets(file, report.count), name, report)
+    supported = False
+    while batch := list(islice(packets, 2048)):
+        supported = supported or any(packet.link_type in _IP_AT for packet in batch)
+        if not supported:
+            _require_link_type(batch[0].link_type, name)
+        yield _joined(batch)
+
+
+def _until_damaged(packets: Iterator[Packet], name: str, report: ImportReport) -> Iterator[Packet]:
+    try:
+        yield from packets
+    except CorruptFile as error:
+        _salvaged(report, name, f"{error}; what follows is not read")
+
+
+def _joined(packets: list[Packet]) -> _Records:
+    length = np.array([len(packet.data) for packet in packets], dtype=np.int64)
+    t_ns = np.array([packet.t_ns for packet in packets], dtype=np.int64)
+    link_type = np.array([packet.link_type for packet in packets], dtype=np.int64)
+    buffer = _with_margin(b"".join(packet.data for packet in packets))
+    return _Records(t_ns, np.cumsum(length) - length, length, buffer, link_type)
+
+
+def _with_margin(data: bytes) -> NDArray[np.uint8]:
+    buffer = np.zeros(len(data) + _MARGIN, dtype=np.uint8)
+    buffer[: len(data)] = np.frombuffer(data, dtype=np.uint8)
+    return buffer
+
+
+def _require_link_type(link_type: int, name: str) -> None:
+    if link_type not in _IP_AT:
+        raise UnknownFormat(
+            f"{name}: expected a capture of Ethernet, Linux cooked or raw IP packets, "
+            f"got link type {link_type}"
+        )
+
+
+def _salvaged(report: ImportReport, name: str, why: str) -> None:
+    report.outcome = "lossy"
+    report.count("files_cut")
+    report.warn(f"{name}: salvaged: {why}")
+
+
+def _datagrams(records: _Records, report: ImportReport) -> Datagrams:
+    """The UDP datagrams among the records; the others are counted."""
+    at, is_ip = _ip_header(records)
+    end = records.start + records.length
+    fits = is_ip & (at + 28 <= end)
+    is_udp = fits & (_byte(records, at) >> 4 == 4) & (_byte(records, at + 9) == 17)
+    whole = (_word(records, at + 6) & 0x3FFF) == 0
+    udp = at + 4 * (_byte(records, at) & 15)
+    length = _word(records, udp + 4) - 8
+    inside = (length >= 0) & (udp + 8 + length <= end)
+    report.count("records_not_udp", int(np.count_nonzero(~is_udp)))
+    report.count("records_fragment", int(np.count_nonzero(is_udp & ~whole)))
+    report.count("records_cut", int(np.count_nonzero(is_udp & whole & ~inside)))
+    kept = np.flatnonzero(is_udp & whole & inside)
+    at, udp = at[kept], udp[kept]
+    source = (_word(records, at + 12) << 16) | _word(records, at + 14)
+    return Datagrams(
+        t_ns=records.t_ns[kept],
+        source=source.astype(np.uint32),
+        port=_word(records, udp + 2).astype(np.uint16),
+        length=length[kept],
+        start=udp + 8,
+        buffer=records.buffer,
+    )
+
+
+def _ip_header(records: _Records) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+    """Where the IP header of each record would start, and whether there is one."""
+    kind = np.minimum(np.searchsorted(_LINK_TYPES, records.link_type), len(_LINK_TYPES) - 1)
+    known = _LINK_TYPES[kind] == records.link_type
+    at = records.start + _IP_STARTS[kind]
+    plain = _ETHERTYPES[kind] < 0
+    ethertype = np.where(plain, 0x0800, _word(records, records.start + _ETHERTYPES[kind]))
+    for _ in range(2):
+        tagged = ~plain & ((ethertype == 0x8100) | (ethertype == 0x88A8))
+        ethertype = np.where(tagged, _word(records, at + 2), ethertype)
+        at = at + 4 * tagged
+    return at, known & (ethertype == 0x0800)
+
+
+def _byte(records: _Records, at: NDArray[np.int64]) -> NDArray[np.int64]:
+    return records.buffer[np.clip(at, 0, len(records.buffer) - 1)].astype(np.int64)
+
+
+def _word(records: _Records, at: NDArray[np.int64]) -> NDArray[np.int64]:
+    return (_byte(records, at) << 8) | _byte(records, at + 1)

@@ -1,0 +1,140 @@
+"""IMU and GNSS samples in UDP datagrams: NMEA sentences, or JSON with the names of the CSV columns.
+
+    {"t_ns": 1790000000000000000, "gx_rad_s": 0.01, "gy_rad_s": 0.0, "gz_rad_s": -0.2,
+     "ax_m_s2": 0.1, "ay_m_s2": 0.0, "az_m_s2": 9.8}
+    {"t_ns": …, "lat_deg": 49.2, "lon_deg": 16.6, "height_m": 250.1, "sd_e_m": 0.02, "quality": 4}
+
+One object a line, one or more lines a datagram. ``t_ns`` is absolute; without it the time of
+arrival counts: in UTC, whatever the recorder's clock says, where GPS drives a LiDAR. What is
+missing is not measured.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from recon4.model.samples import GnssSamples, ImuSamples
+from recon4.recording.report import ImportReport
+from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
+from recon4.recording.velodyne.position_packets import parse_fix
+from recon4.recording.velodyne.sensor_clock import SECOND_NS
+
+_UTC_WITHIN_NS = 5 * SECOND_NS // 2
+"""An NMEA time is believed if its arrival agrees with it as well as that."""
+_GST_LASTS_NS = 3 * SECOND_NS
+
+
+@dataclass(slots=True)
+class SampleDecoder:
+    """Datagrams of one recording to samples; each kind in order of time, the rest is counted."""
+
+    report: ImportReport
+    _last_ns: dict[str, int] = field(default_factory=dict)
+    _sd: tuple[int, list[float]] = (0, [math.nan] * 3)
+    """Time of arrival [ns] of the last GST sentence, and its standard deviations e, n, u [m]."""
+
+    def push(
+        self, t_arrival_ns: list[int], texts: list[bytes]
+    ) -> tuple[ImuSamples | None, GnssSamples | None]:
+        """Samples of some datagrams.
+
+        Counts ``imu_samples``, ``gnss_samples``, ``samples_damaged``, ``samples_out_of_order``,
+        ``nmea_damaged`` and ``nmea_no_fix``.
+
+        Args:
+            t_arrival_ns: Times of arrival [ns].
+            texts: The payloads.
+        """
+        rows: dict[str, list[list[float]]] = {"imu": [], "gnss": []}
+        times: dict[str, list[int]] = {"imu": [], "gnss": []}
+        ahead_ns = self.report.utc_ahead_ns
+        for arrival_ns, text in zip(t_arrival_ns, texts, strict=True):
+            for kind, t_ns, values in self._lines(arrival_ns + ahead_ns, text):
+                if t_ns <= self._last_ns.get(kind, -1):
+                    self.report.count("samples_out_of_order")
+                    continue
+                self._last_ns[kind] = t_ns
+                times[kind].append(t_ns)
+                rows[kind].append(values)
+        for kind in rows:
+            self.report.count(f"{kind}_samples", len(rows[kind]))
+        return _imu(times["imu"], rows["imu"]), _gnss(times["gnss"], rows["gnss"])
+
+    def _lines(self, arrival_ns: int, text: bytes) -> Iterator[tuple[str, int, list[float]]]:
+        for line in text.splitlines():
+            line = line.strip(b"\0 \t")
+            if line.startswith(b"$"):
+                yield from self._nmea(arrival_ns, line)
+            elif line:
+                yield from self._json(arrival_ns, line)
+
+    def _json(self, arrival_ns: int, line: bytes) -> Iterator[tuple[str, int, list[float]]]:
+        try:
+            record = json.loads(line)
+            t_ns = int(record.get("t_ns", arrival_ns))
+            kind, names = ("imu", IMU_HEADER) if IMU_HEADER[1] in record else ("gnss", GNSS_HEADER)
+            values = [float(record.get(name, math.nan)) for name in names[1:]]
+        except (ValueError, TypeError, AttributeError, OverflowError, RecursionError):
+            self.report.count("samples_damaged")
+            return
+        needed = values[:3] if kind == "imu" else values[:2]
+        if not all(map(math.isfinite, needed)) or not 0 < t_ns < 1 << 62:
+            self.report.count("samples_damaged")
+            return
+        yield kind, t_ns, values
+
+    def _nmea(self, arrival_ns: int, line: bytes) -> Iterator[tuple[str, int, list[float]]]:
+        if line[3:6] == b"GST":
+            self._sd = arrival_ns, _gst(line)
+            return
+        if line[3:6] not in (b"GGA", b"RMC"):
+            return
+        fix = parse_fix(line, arrival_ns, self.report)
+        if fix is None:
+            return
+        t_ns = fix.utc_ns
+        if abs(t_ns - arrival_ns) > _UTC_WITHIN_NS:
+            t_ns = arrival_ns
+            self.report.derive("NMEA: timed by arrival, its UTC is not the points' clock")
+        fresh = arrival_ns - self._sd[0] < _GST_LASTS_NS
+        sd = self._sd[1] if fresh else [math.nan] * 3
+        place = [fix.lat_deg, fix.lon_deg, fix.height_m]
+        yield "gnss", t_ns, [*place, *sd, float(fix.quality), *([math.nan] * 3)]
+
+
+def _gst(line: bytes) -> list[float]:
+    """Standard deviations east, north, up [m] of a GST sentence; NaN where it has none."""
+    cells = line.split(b"*")[0].split(b",")[6:9]
+    try:
+        north, east, up = (float(cell) for cell in cells)
+    except ValueError:
+        return [math.nan] * 3
+    return [east, north, up]
+
+
+def _imu(t_ns: list[int], rows: list[list[float]]) -> ImuSamples | None:
+    if not rows:
+        return None
+    table = np.array(rows)
+    return ImuSamples(np.array(t_ns, dtype=np.int64), table[:, :3], table[:, 3:])
+
+
+def _gnss(t_ns: list[int], rows: list[list[float]]) -> GnssSamples | None:
+    if not rows:
+        return None
+    table = np.array(rows)
+    quality = np.nan_to_num(table[:, 6], nan=1.0).clip(0, 255).astype(np.uint8)
+    return GnssSamples(
+        t_ns=np.array(t_ns, dtype=np.int64),
+        lat_rad=np.deg2rad(table[:, 0]),
+        lon_rad=np.deg2rad(table[:, 1]),
+        height_m=table[:, 2],
+        sd_enu_m=table[:, 3:6],
+        quality=quality,
+        rpy_ned_rad=np.deg2rad(table[:, 7:10]),
+    )

@@ -1,0 +1,275 @@
+"""Pcap files of Velodyne sensors: which streams are inside, and their shots."""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from recon4.errors import EmptyRecording
+from recon4.geometry.se3 import SE3
+from recon4.model.rig import Rig, Sensor
+from recon4.recording.assembly.shots import Shots
+from recon4.recording.formats.pcap import Datagrams, OpenFile, open_plain, read_pcap
+from recon4.recording.report import ImportReport
+from recon4.recording.samples.datagrams import SampleDecoder
+from recon4.recording.velodyne.data_packets import PacketDecoder
+from recon4.recording.velodyne.models import DATA_SIZE, POSITION_SIZE, velodyne_model
+from recon4.recording.velodyne.position_packets import PositionDecoder, PositionSamples
+from recon4.recording.velodyne.sensor_clock import SensorClock
+from recon4.recording.velodyne.slots import in_slots
+from recon4.recording.velodyne.streams import (
+    PacketStream,
+    address_number,
+    fits,
+    late_stream,
+    scan_pcap,
+)
+from recon4.settings import IngestSettings
+
+WAIT_S = 1.0
+"""A sensor silent for so long holds the others' frames up no longer: datagrams are read in the
+order in which they came, a slot at a time (`in_slots`)."""
+_STREAMS_NAMED = 10
+_FOREIGN_SHARE = 0.2
+"""A stream with fewer packets than this share of the largest one's is of no sensor of the rig
+unless its port (and address) says so."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Channel:
+    """One sensor of the rig and where its packets are."""
+
+    sensor: Sensor
+    streams: tuple[PacketStream, ...]
+    """Its data streams: one, or one a file if the recording was cut into files."""
+    data: PacketDecoder
+    positions: PositionDecoder
+
+
+class VelodynePcap:
+    """The recording in one or several capture files, all sensors on one clock.
+
+    ``rig`` is the one given; without one, a rig with one sensor a data stream, all mounted at the
+    origin. Streams go to the sensors of a given rig by address and port, but no trickle when a full
+    stream fits too; a sensor left over gets a stream left over, in order, and the report says so.
+    A sensor that is not in the heads of the files is read from when it first sends.
+    """
+
+    def __init__(
+        self,
+        paths: Sequence[Path],
+        rig: Rig | None,
+        *,
+        settings: IngestSettings,
+        report: ImportReport,
+        open_file: OpenFile = open_plain,
+    ) -> None:
+        """Scan the heads of the files and assign streams to sensors.
+
+        Args:
+            paths: Capture files; the same stream in files that follow each other is one sensor,
+                in files of the same time it is two.
+            rig: The rig, or None to make one of what is found.
+            settings: Range limits and reorder window.
+            report: Takes counts, warnings and what was derived.
+            open_file: How to open the files for reading; a live capture's file still grows.
+
+        Raises:
+            UnknownFormat: If a file is not a capture file.
+            EmptyRecording: If there is no Velodyne data packet in the heads of the files and no
+                rig that says where to look for later ones.
+            ConfigError: If the model of a sensor is not decoded from packets.
+        """
+        self._report = report
+        self.streams = [s for path in paths for s in scan_pcap(path, open_file=open_file)]
+        groups = _sensors_of(self.streams)
+        if not groups and rig is None:
+            named = self.streams[:_STREAMS_NAMED]
+            seen = ", ".join(f"{s.packets} packets to port {s.port}" for s in named)
+            seen += f" and {len(self.streams) - len(named)} other streams" * (
+                len(self.streams) > len(named)
+            )
+            raise EmptyRecording(
+                f"{paths[0].name}: no Velodyne data packets (1206 bytes of UDP payload); "
+                f"found: {seen or 'no UDP datagrams'}"
+            )
+        for stream in self.streams:
+            for remark in stream.remarks if rig is None else ():
+                report.warn(f"{stream.label}: {remark}")
+        self.rig = rig or _rig_of(groups)
+        self._settings = settings
+        self._channels = self._assign(groups)
+        self._claimed = {(s.source, s.port) for s in self.streams if s.kind == "data"}
+        self._samples = SampleDecoder(report)
+        self._paths = list(paths)
+        self._open = open_file
+
+    def read(self) -> Iterator[Shots | PositionSamples]:
+        """Stream the whole recording once; the shots of one sensor come in order of time."""
+        batches = (self._batches(path) for path in self._paths)
+        for path, datagrams in heapq.merge(*batches, key=lambda batch: int(batch[1].t_ns[0])):
+            yield from self._decode_samples(datagrams)  # first: points are mapped with them
+            self._find_late(datagrams)
+            for channel in self._channels:
+                yield from self._decode(channel, path, datagrams)
+        for channel in self._channels:
+            yield channel.data.flush()
+        fragments = self._report.counts["records_fragment"]
+        if fragments:
+            self._report.warn(
+                f"{fragments} IP fragments: they are not put together, their packets are lost"
+            )
+
+    @property
+    def rotation_hz(self) -> dict[str, float]:
+        """Measured rotation rate by the name of the sensor [Hz]; complete after reading."""
+        return {channel.sensor.name: channel.data.rotation_hz for channel in self._channels}
+
+    def _batches(self, path: Path) -> Iterator[tuple[Path, Datagrams]]:
+        return ((path, slot) for slot in in_slots(read_pcap(path, self._report, self._open)))
+
+    def _find_late(self, datagrams: Datagrams) -> None:
+        """Read from now on sensors that were silent in the heads of the files."""
+        if len(self._channels) == len(self.rig.sensors):
+            return
+        there = {channel.sensor.name for channel in self._channels}
+        for row, sensor in enumerate(self.rig.sensors):
+            if sensor.name in there:
+                continue
+            stream = late_stream(self._paths[0], datagrams, sensor, claimed=self._claimed)
+            if stream is not None:
+                self._claimed.add((stream.source, stream.port))
+                streams = tuple(replace(stream, file=path) for path in self._paths)
+                self._channels.append(self._channel(row, streams))
+                self._report.derive(f"{sensor.name}: sends only later, from {stream.label}")
+
+    def _decode(
+        self, channel: _Channel, path: Path, datagrams: Datagrams
+    ) -> Iterator[Shots | PositionSamples]:
+        stream = next((s for s in channel.streams if s.file == path), None)
+        if stream is None:
+            return
+        from_sensor = datagrams.source == address_number(stream.source)
+        to_data = from_sensor & (datagrams.port == stream.port)
+        whole = to_data & (datagrams.length == DATA_SIZE)
+        self._report.count("packets_wrong_length", int((to_data & ~whole).sum()))
+        for size, chosen in (  # data first: they tell the clock best
+            (DATA_SIZE, whole),
+            (POSITION_SIZE, from_sensor & ~to_data & (datagrams.length == POSITION_SIZE)),
+        ):
+            rows = np.flatnonzero(chosen)
+            if len(rows):
+                decoder = channel.positions if size == POSITION_SIZE else channel.data
+                yield decoder.push(datagrams.t_ns[rows], datagrams.payloads(rows, size))
+
+    def _decode_samples(self, datagrams: Datagrams) -> Iterator[PositionSamples]:
+        """Samples of an IMU or a GNSS receiver with ports of their own."""
+        ports = {port for port in (self.rig.imu_port, self.rig.gnss_port) if port}
+        rows = np.flatnonzero(np.isin(datagrams.port, list(ports)))
+        if not len(rows):
+            return
+        ends = (datagrams.start + datagrams.length)[rows].tolist()
+        starts = datagrams.start[rows].tolist()
+        texts = [datagrams.buffer[a:b].tobytes() for a, b in zip(starts, ends, strict=True)]
+        yield PositionSamples(*self._samples.push(datagrams.t_ns[rows].tolist(), texts))
+
+    def _assign(self, groups: list[tuple[PacketStream, ...]]) -> list[_Channel]:
+        chosen = _match(self.rig.sensors, groups, self._report)
+        channels = []
+        for row, sensor in enumerate(self.rig.sensors):
+            if row not in chosen:
+                self._report.warn(
+                    f"{sensor.name}: no packets from {sensor.address or 'any address'} "
+                    f"to port {sensor.port}"
+                )
+                continue
+            channels.append(self._channel(row, chosen[row]))
+        return channels
+
+    def _channel(self, row: int, streams: tuple[PacketStream, ...]) -> _Channel:
+        sensor = self.rig.sensors[row]
+        clock = SensorClock(
+            sensor.name,
+            packet_s=velodyne_model(sensor.model).packet_s(streams[0].return_mode),
+            report=self._report,
+            utc_offset_ns=streams[0].utc_offset_ns,
+        )
+        data = PacketDecoder(row, sensor, settings=self._settings, report=self._report, clock=clock)
+        positions = PositionDecoder(sensor, clock=clock, report=self._report)
+        return _Channel(sensor, streams, data, positions)
+
+
+def _sensors_of(streams: list[PacketStream]) -> list[tuple[PacketStream, ...]]:
+    """Data streams of one sensor together: same sender and port, files that do not overlap."""
+    groups: list[list[PacketStream]] = []
+    for stream in sorted((s for s in streams if s.kind == "data"), key=lambda s: s.t_first_ns):
+        for group in groups:
+            same = (group[-1].source, group[-1].port) == (stream.source, stream.port)
+            if same and stream.t_first_ns >= group[-1].t_end_ns:
+                group.append(stream)
+                break
+        else:
+            groups.append([stream])
+    order = {id(stream): place for place, stream in enumerate(streams)}
+    return sorted((tuple(group) for group in groups), key=lambda group: order[id(group[0])])
+
+
+def _rig_of(groups: list[tuple[PacketStream, ...]]) -> Rig:
+    sensors = tuple(
+        Sensor(
+            name=f"lidar{number}",
+            model=streams[0].model or "generic",
+            T_body_sensor=SE3.identity(),
+            address=streams[0].source,
+            port=streams[0].port,
+        )
+        for number, streams in enumerate(groups)
+    )
+    return Rig(
+        name="found in the recording",
+        sensors=sensors,
+        T_body_imu=SE3.identity(),
+        imu_time_offset_s=0.0,
+        p_body_antenna=np.zeros(3),
+        gnss_time_offset_s=0.0,
+    )
+
+
+def _match(
+    sensors: Sequence[Sensor], groups: list[tuple[PacketStream, ...]], report: ImportReport
+) -> dict[int, tuple[PacketStream, ...]]:
+    """Row of the sensor to its streams."""
+    chosen: dict[int, tuple[PacketStream, ...]] = {}
+    left = list(groups)
+    for row in sorted(range(len(sensors)), key=lambda row: not sensors[row].address):
+        fitting = [s for s in left if fits(sensors[row], s[0].source, s[0].port)]
+        if fitting:
+            chosen[row] = _full(fitting, fitting)[0]
+            left.remove(chosen[row])
+    likely = _full(left, groups)
+    for row in (row for row in range(len(sensors)) if row not in chosen):
+        if not likely:
+            break
+        streams = min(likely, key=lambda streams: streams[0].port != sensors[row].port)
+        chosen[row] = streams
+        left.remove(streams)
+        likely.remove(streams)
+        report.derive(
+            f"{sensors[row].name}: taken from {streams[0].label}, the rig expects "
+            f"{sensors[row].address or 'any address'} to port {sensors[row].port}"
+        )
+    for streams in left:
+        report.warn(f"{streams[0].label}: the rig has no sensor for these packets; not read")
+    return chosen
+
+
+def _full(
+    some: list[tuple[PacketStream, ...]], all_of: list[tuple[PacketStream, ...]]
+) -> list[tuple[PacketStream, ...]]:
+    """Those that are no trickle beside the largest of others."""
+    most = max((sum(s.packets for s in streams) for streams in all_of), default=0)
+    return [k for k in some if sum(s.packets for s in k) >= _FOREIGN_SHARE * most]

@@ -1,0 +1,160 @@
+"""The packet filter: which data packets of a sensor are decoded, and in which order."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.model.trajectory import Times
+from recon4.recording.report import ImportReport
+from recon4.recording.velodyne.models import (
+    BLOCK_FLAG,
+    DATA_PACKET,
+    DATA_SIZE,
+    HOUR_US,
+    LOWER_BLOCK_FLAG,
+)
+
+Payloads = NDArray[np.uint8]
+
+_SET_BACK_NS = 1_000_000_000
+"""Packets so far behind the ones before are not late: the clocks were set back together."""
+_STRAGGLERS = 8
+"""Fewer packets in a row are late all the same."""
+
+
+def as_packets(payloads: Payloads) -> NDArray[np.void]:
+    """Payloads seen as `DATA_PACKET` records, (N,)."""
+    return np.ascontiguousarray(payloads).view(DATA_PACKET)[:, 0]
+
+
+def sound_packets(payloads: Payloads, report: ImportReport) -> NDArray[np.bool_]:
+    """Which of the payloads are data packets, (N,).
+
+    Counts ``packets`` and what is dropped: ``packets_wrong_length`` (not 1206 bytes),
+    ``packets_hdl64`` (blocks of the lower lasers of an HDL-64E), ``packets_wrong_flag`` (any of
+    the 12 blocks without 0xEEFF), ``packets_wrong_azimuth`` (above 360°, which itself is sent now
+    and then for 0°) and ``packets_wrong_time`` (past the end of the hour).
+    """
+    report.count("packets", len(payloads))
+    if payloads.ndim != 2 or payloads.shape[1] != DATA_SIZE:
+        report.count("packets_wrong_length", len(payloads))
+        return np.zeros(len(payloads), dtype=np.bool_)
+    packets = as_packets(payloads)
+    flags = packets["blocks"]["flag"]
+    flagged = (flags == BLOCK_FLAG).all(axis=1)
+    turned = (packets["blocks"]["azimuth_cdeg"] <= 36000).all(axis=1)
+    timed = packets["time_us"] < HOUR_US
+    sound = flagged & turned & timed
+    if sound.all():
+        return sound
+    known = (flags == BLOCK_FLAG) | (flags == LOWER_BLOCK_FLAG)
+    lower = ~flagged & known.all(axis=1)
+    report.count("packets_hdl64", int(lower.sum()))
+    report.count("packets_wrong_flag", int((~flagged & ~lower).sum()))
+    report.count("packets_wrong_azimuth", int((flagged & ~turned).sum()))
+    report.count("packets_wrong_time", int((flagged & turned & ~timed).sum()))
+    return sound
+
+
+@dataclass(slots=True, eq=False)
+class PacketOrder:
+    """Puts packets in order of time, each once.
+
+    Packets that follow each other without a hole are given at once: none can still come between.
+    """
+
+    window_ns: int
+    """Packets that are late by at most this are put in their place [ns]."""
+    report: ImportReport
+    _t_ns: Times = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    _payloads: Payloads = field(default_factory=lambda: np.zeros((0, DATA_SIZE), dtype=np.uint8))
+    _given: Times = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    _behind: int = 0
+    step_ns: int = 0
+    """Usual time from one packet to the next [ns]; 0 = not known, then all wait."""
+
+    def push(self, t_ns: Times, payloads: Payloads) -> tuple[Times, Payloads]:
+        """Take packets, give those that are older than the window or whose place is sure.
+
+        Counts ``packets_out_of_order`` (repaired), ``packets_duplicate`` (a packet with the same
+        time was there) and ``packets_late`` (its place has been passed).
+        """
+        if not len(t_ns):
+            return self._give(self._t_ns, self._payloads, 0)
+        newest = max(
+            (int(times[-1]) for times in (self._t_ns, self._given) if len(times)), default=0
+        )
+        jump = self._jump(t_ns, newest)
+        if jump is not None:
+            return self._over_a_jump(t_ns, payloads, jump)
+        tidy = t_ns[0] > newest and np.all(t_ns[1:] > t_ns[:-1])
+        t_ns = np.concatenate([self._t_ns, t_ns])
+        payloads = np.concatenate([self._payloads, payloads])
+        if not tidy:
+            t_ns, payloads = self._sorted(t_ns, payloads)
+        ready = int(np.searchsorted(t_ns, t_ns[-1:] - self.window_ns)[0]) if len(t_ns) else 0
+        return self._give(t_ns, payloads, max(ready, self._joined(t_ns)))
+
+    def _joined(self, t_ns: Times) -> int:
+        """How many sorted packets follow the last one given without a hole."""
+        if not self.step_ns or not len(self._given):
+            return 0
+        steps = np.diff(t_ns, prepend=self._given[-1])
+        holes = np.flatnonzero(steps > 1.5 * self.step_ns)
+        return int(holes[0]) if len(holes) else len(t_ns)
+
+    def _jump(self, t_ns: Times, newest: int) -> int | None:
+        """The row from which most packets are far behind, if these are no stragglers."""
+        latest = np.maximum.accumulate(np.append(newest, t_ns[:-1]))
+        rows = np.flatnonzero(t_ns < latest - _SET_BACK_NS)
+        if not len(rows) or 2 * len(rows) <= len(t_ns) - rows[0]:
+            self._behind = 0
+            return None
+        self._behind += len(rows)
+        if self._behind < _STRAGGLERS:
+            return None
+        self._behind = 0
+        return int(rows[0])
+
+    def _over_a_jump(self, t_ns: Times, payloads: Payloads, row: int) -> tuple[Times, Payloads]:
+        """All before a clock was set back at a row, then the rest in an order of its own."""
+        parts = [self.push(t_ns[:row], payloads[:row]), self.flush()]
+        self._given = self._given[:0]
+        parts.append(self.push(t_ns[row:], payloads[row:]))
+        times, packets = zip(*parts, strict=True)
+        return np.concatenate(times), np.concatenate(packets)
+
+    def _sorted(self, t_ns: Times, payloads: Payloads) -> tuple[Times, Payloads]:
+        backward = np.diff(t_ns, prepend=t_ns[0]) < 0
+        order = np.argsort(t_ns, kind="stable")
+        t_ns, payloads = t_ns[order], payloads[order]
+        kept = self._new(t_ns)
+        self.report.count("packets_out_of_order", int((backward & kept[np.argsort(order)]).sum()))
+        return t_ns[kept], payloads[kept]
+
+    def flush(self) -> tuple[Times, Payloads]:
+        """Give the rest."""
+        return self._give(self._t_ns, self._payloads, len(self._t_ns))
+
+    def _give(self, t_ns: Times, payloads: Payloads, ready: int) -> tuple[Times, Payloads]:
+        self._t_ns, self._payloads = t_ns[ready:], payloads[ready:]
+        given = np.concatenate([self._given, t_ns[:ready]])
+        keep_from = np.searchsorted(given, given[-1] - 20 * self.window_ns) if len(given) else 0
+        self._given = given[keep_from:]
+        return t_ns[:ready], payloads[:ready]
+
+    def _new(self, t_ns: Times) -> NDArray[np.bool_]:
+        """Which of the sorted times were not seen before and are not behind what was given."""
+        repeated = np.zeros(len(t_ns), dtype=np.bool_)
+        repeated[1:] = t_ns[1:] == t_ns[:-1]
+        if len(self._given):
+            repeated |= np.isin(t_ns, self._given)
+            late = ~repeated & (t_ns < self._given[-1])
+        else:
+            late = np.zeros_like(repeated)
+        self.report.count("packets_duplicate", int(repeated.sum()))
+        self.report.count("packets_late", int(late.sum()))
+        return ~(repeated | late)

@@ -1,0 +1,227 @@
+"""Velodyne position packets: NMEA sentences of the GPS receiver and the HDL-32E's inertial unit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.model.rig import Sensor
+from recon4.model.samples import STANDARD_GRAVITY_M_S2, GnssQuality, GnssSamples, ImuSamples
+from recon4.model.trajectory import Times
+from recon4.recording.report import ImportReport
+from recon4.recording.velodyne.models import HOUR_US, POSITION_SIZE
+from recon4.recording.velodyne.sensor_clock import SECOND_NS, SensorClock, nearest_hour
+
+_DAY_NS = 24 * 3600 * SECOND_NS
+_LONGEST_AGE_NS = 5 * SECOND_NS // 2
+"""A sentence tells the last full second and stays in the packets until the next one comes."""
+
+_GYRO_RAD_S = np.deg2rad(0.09766)
+_ACCEL_M_S2 = 0.001221 * STANDARD_GRAVITY_M_S2
+
+
+@dataclass(frozen=True, slots=True)
+class Fix:
+    """What one NMEA sentence says."""
+
+    utc_ns: int
+    lat_deg: float
+    lon_deg: float
+    height_m: float
+    """Ellipsoidal height; NaN = not given."""
+    quality: GnssQuality
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PositionSamples:
+    """What some position packets said; None where they said nothing."""
+
+    imu: ImuSamples | None
+    gnss: GnssSamples | None
+
+
+def nmea_text(payload: NDArray[np.uint8]) -> bytes:
+    """The sentence in a position packet, up to its line end; empty if there is none."""
+    return payload[206:].tobytes().split(b"\0")[0].split(b"\r")[0].strip()
+
+
+def parse_fix(sentence: bytes, near_ns: int, report: ImportReport) -> Fix | None:
+    """Read an RMC or GGA sentence; None if it has no valid position.
+
+    Counts ``nmea_no_fix`` and ``nmea_damaged`` (checksum or fields).
+
+    Args:
+        sentence: From ``$`` to the checksum.
+        near_ns: A time within half a day [ns]: GGA tells the time of day only.
+        report: Takes the counts.
+    """
+    import pynmeagps
+
+    try:
+        message: Any = pynmeagps.NMEAReader.parse(sentence + b"\r\n")
+        fix = _fix(message, near_ns)
+    except (
+        pynmeagps.NMEAMessageError,
+        pynmeagps.NMEAParseError,
+        pynmeagps.NMEATypeError,
+        AttributeError,
+        TypeError,
+        ValueError,
+    ):
+        report.count("nmea_damaged")
+        return None
+    report.count("nmea_no_fix", int(fix is None))
+    return fix
+
+
+def _fix(message: Any, near_ns: int) -> Fix | None:
+    if message.msgID == "RMC":
+        if message.status != "A":
+            return None
+        moment = datetime.combine(message.date, message.time, tzinfo=UTC)
+        differential = getattr(message, "posMode", "A") == "D"
+        quality = GnssQuality.DIFFERENTIAL if differential else GnssQuality.SINGLE
+        return Fix(_ns(moment), float(message.lat), float(message.lon), float("nan"), quality)
+    if message.msgID != "GGA" or message.quality == 0:
+        return None
+    of_day = _ns(datetime.combine(datetime(1970, 1, 1), message.time, tzinfo=UTC))
+    utc_ns = of_day + round((near_ns - of_day) / _DAY_NS) * _DAY_NS
+    height_m = float(message.alt) + float(message.sep)
+    known = int(message.quality) in set(GnssQuality)
+    quality = GnssQuality(message.quality) if known else GnssQuality.SINGLE
+    return Fix(utc_ns, float(message.lat), float(message.lon), height_m, quality)
+
+
+def _ns(moment: datetime) -> int:
+    since = moment - datetime(1970, 1, 1, tzinfo=UTC)
+    return (since.days * 86400 + since.seconds) * SECOND_NS + since.microseconds * 1000
+
+
+def utc_offset_ns(t_arrival_ns: Times, payloads: NDArray[np.uint8]) -> int | None:
+    """UTC minus time of arrival [ns] if GPS drives the sensor's clock, else None.
+
+    It does if a valid sentence is no older than its packet's stamp allows: the stamp, taken in the
+    hour of the sentence, lies 0 to 2.5 s after it. Old firmware has no PPS flag to ask.
+
+    Args:
+        t_arrival_ns: Times of arrival of position packets [ns], (N,).
+        payloads: The packets, (N, 512).
+    """
+    for row in np.flatnonzero(_stamps(payloads) < HOUR_US):
+        sentence = nmea_text(payloads[row])
+        arrival = int(t_arrival_ns[row])
+        fix = parse_fix(sentence, arrival, ImportReport()) if sentence else None
+        if fix is not None:
+            stamp = int(nearest_hour(_stamps(payloads[row : row + 1]), fix.utc_ns)[0])
+            return stamp - arrival if 0 <= stamp - fix.utc_ns < _LONGEST_AGE_NS else None
+    return None
+
+
+def _stamps(payloads: NDArray[np.uint8]) -> NDArray[np.uint32]:
+    return np.ascontiguousarray(payloads[:, 198:202]).view("<u4")[:, 0]
+
+
+class PositionDecoder:
+    """Turns the position packets of one sensor into samples; one object a sensor."""
+
+    def __init__(self, sensor: Sensor, *, clock: SensorClock, report: ImportReport) -> None:
+        """Start with nothing seen.
+
+        Args:
+            sensor: Its time offset is added to inertial samples.
+            clock: The clock of its data packets.
+            report: Takes counts and remarks.
+        """
+        self._clock, self._report = clock, report
+        self._name = sensor.name
+        self._offset_ns = round(sensor.time_offset_s * SECOND_NS)
+        self._sentence = b""
+        self._imu_ns = self._gnss_ns = np.iinfo(np.int64).min
+
+    def push(self, t_arrival_ns: Times, payloads: NDArray[np.uint8]) -> PositionSamples:
+        """Samples of position packets, in order; a repeated sentence counts once.
+
+        Counts ``positions``, ``positions_wrong_time``, ``positions_out_of_order``, ``imu_samples``,
+        ``gnss_samples``, ``nmea_damaged`` and ``nmea_no_fix``.
+
+        Args:
+            t_arrival_ns: Times of arrival [ns], (N,).
+            payloads: The packets, (N, 512).
+        """
+        assert payloads.shape[1:] == (POSITION_SIZE,)
+        self._report.count("positions", len(payloads))
+        timed = _stamps(payloads) < HOUR_US
+        self._report.count("positions_wrong_time", int((~timed).sum()))
+        payloads = payloads[timed]
+        t_ns = self._clock.at(np.asarray(t_arrival_ns)[timed], _stamps(payloads))
+        return PositionSamples(self._imu(t_ns, payloads), self._gnss(t_ns, payloads))
+
+    def _imu(self, t_ns: Times, payloads: NDArray[np.uint8]) -> ImuSamples | None:
+        """Inertial samples: three chips, each a gyroscope and two accelerometers.
+
+        Words are 12 bit two's complement: gyroscope, temperature, accelerometers X and Y of chips
+        1 to 3 from byte 14. Gyroscopes 1, 2, 3 turn about +x, +y, +z of the sensor; X1 and X2 point
+        along +z, Y1 and -X3 along +y, -Y2 and -Y3 along +x (found by comparing them with the motion
+        and the vibration of a car that the lasers see; the manual shows it in a picture only).
+        """
+        words = np.ascontiguousarray(payloads[:, 14:38]).view("<u2").reshape(-1, 3, 4)
+        later = t_ns > np.maximum.accumulate(np.concatenate([[self._imu_ns], t_ns[:-1]]))
+        kept = later & words.any(axis=(1, 2))
+        self._report.count("positions_out_of_order", int((~later).sum()))
+        if not kept.any():
+            return None
+        value = ((words[kept].astype(np.int64) & 0xFFF) + 2048) % 4096 - 2048
+        x, y = value[:, :, 2], value[:, :, 3]
+        accel = np.column_stack([-y[:, 1] - y[:, 2], y[:, 0] - x[:, 2], x[:, 0] + x[:, 1]]) / 2
+        self._imu_ns = int(t_ns[kept][-1])
+        self._report.count("imu_samples", int(kept.sum()))
+        self._report.derive(
+            f"{self._name}: gyroscope and accelerometer from its position packets, in its own "
+            "frame; the zero of these gyroscopes is not calibrated (tens of degrees a second)"
+        )
+        return ImuSamples(
+            t_ns=t_ns[kept] + self._offset_ns,
+            gyro_rad_s=value[:, :, 0] * _GYRO_RAD_S,
+            accel_m_s2=accel * _ACCEL_M_S2,
+        )
+
+    def _gnss(self, t_ns: Times, payloads: NDArray[np.uint8]) -> GnssSamples | None:
+        fixes: list[tuple[int, Fix]] = []
+        for row, payload in enumerate(payloads):
+            sentence = nmea_text(payload)
+            if not sentence or sentence == self._sentence:
+                continue
+            self._sentence = sentence
+            fix = parse_fix(sentence, int(t_ns[row]), self._report)
+            if fix is None:
+                continue
+            sample_ns = fix.utc_ns if self._clock.is_utc else int(t_ns[row])
+            if sample_ns > self._gnss_ns:
+                self._gnss_ns = sample_ns
+                fixes.append((sample_ns, fix))
+        if not fixes:
+            return None
+        self._report.count("gnss_samples", len(fixes))
+        if not self._clock.is_utc:
+            self._report.derive(
+                f"{self._name}: positions are timed by when their packet came (up to 1 s late): "
+                "GPS does not drive its clock"
+            )
+        return _samples(fixes)
+
+
+def _samples(fixes: list[tuple[int, Fix]]) -> GnssSamples:
+    count = len(fixes)
+    return GnssSamples(
+        t_ns=np.array([t for t, _ in fixes], dtype=np.int64),
+        lat_rad=np.deg2rad([fix.lat_deg for _, fix in fixes]),
+        lon_rad=np.deg2rad([fix.lon_deg for _, fix in fixes]),
+        height_m=np.array([fix.height_m for _, fix in fixes]),
+        sd_enu_m=np.full((count, 3), np.nan),
+        quality=np.array([fix.quality for _, fix in fixes], dtype=np.uint8),
+        rpy_ned_rad=np.full((count, 3), np.nan),
+    )

@@ -1,0 +1,260 @@
+"""The clock of a Velodyne: microseconds past the hour, made absolute."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.model.trajectory import Times
+from recon4.recording.report import ImportReport
+
+SECOND_NS = 1_000_000_000
+HOUR_NS = 3600 * SECOND_NS
+
+_SAME_CLOCK_NS = SECOND_NS // 2
+"""A sensor that is this near to the recorder's clock is synchronized with it."""
+_JUMP_NS = SECOND_NS
+"""Clocks that move against each other by more than this have jumped."""
+_FIRST = 500
+"""Packets of the first batch that tell how far the two clocks are apart."""
+_CONFIRM = 8
+"""So many packets must agree on a jump; fewer are damaged packets and are dropped."""
+_BLOCK = 64
+"""The clocks are compared after every so many packets, however they come in."""
+_PAUSE_NS = 60 * SECOND_NS
+_TRACK_NS = 10 * SECOND_NS
+_MAX_RATE = 2e-4
+"""Two free-running quartz clocks differ by less than this."""
+
+
+def nearest_hour(t_us: NDArray[np.integer], near_ns: Times | int) -> Times:
+    """Absolute times [ns] that are ``t_us`` past an hour and nearest to given times."""
+    past_ns = np.asarray(t_us, dtype=np.int64) * 1000
+    near = np.asarray(near_ns, dtype=np.int64)
+    return past_ns + (near - past_ns + HOUR_NS // 2) // HOUR_NS * HOUR_NS
+
+
+class SensorClock:
+    """Makes the stamps of one sensor absolute with the help of the times of arrival.
+
+    The stamp tells the time within the hour, the time of arrival tells the hour. Then
+
+    - a sensor that is synchronized by GPS (its position packets prove it) or that agrees with
+      the recorder's clock within half a second keeps its own time;
+    - any other sensor runs freely, its stamps count from when it was switched on: they are
+      shifted to the recorder's clock, by the packet that traveled fastest, and the shift follows
+      the drift of the two clocks from one 10 s to the next. The report says so. Where GPS drives
+      another sensor, the recorder's clock counts as corrected by it.
+
+    A jump of either clock (GPS lock won, recorder's clock set) leaves the output continuous, is
+    counted (``clock_jumps``) and warned of. Single packets off by more than a second are dropped.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        packet_s: float,
+        report: ImportReport,
+        utc_offset_ns: int | None = None,
+    ) -> None:
+        """Start without any time.
+
+        Args:
+            name: Of the sensor, for messages.
+            packet_s: Time from the first shot of a packet to when it is sent [s].
+            report: Where jumps and derived times are noted.
+            utc_offset_ns: UTC minus time of arrival [ns] when GPS is known to drive the sensor.
+        """
+        self.utc_offset_ns = utc_offset_ns
+        self._name = name
+        self._report = report
+        self._packet_ns = round(packet_s * SECOND_NS)
+        self._offset_ns: int | None = None
+        self._shift_ns = 0
+        self._base_ns = 0
+        """UTC minus the recorder's clock, if GPS drives another sensor and not this one."""
+        self._rate = 0.0
+        self._since_ns = 0
+        self._window: list[int] = []
+        self._block: list[Times] = []
+        """Arrival minus expected and minus sensor's time, (2, n), of the block being filled."""
+        self._filled = 0
+        self._host_jump_ns = 0
+        self._free_running = False
+        self._last = (0, 0)
+        self._run, self._run_ns = 0, 0
+        if utc_offset_ns is not None:
+            report.utc_ahead_ns = utc_offset_ns
+
+    @property
+    def is_utc(self) -> bool:
+        """Whether GPS drives the sensor, so that its time is UTC."""
+        return self.utc_offset_ns is not None
+
+    def push(
+        self, t_arrival_ns: Times, t_us: NDArray[np.integer]
+    ) -> tuple[Times, NDArray[np.bool_]]:
+        """Absolute times of data packets, and which of them can be trusted.
+
+        Args:
+            t_arrival_ns: Times of arrival [ns], (N,).
+            t_us: Stamps [µs past the hour], (N,).
+
+        Returns:
+            Times [ns], (N,), and a mask, (N,); the others are counted as ``packets_wrong_clock``.
+        """
+        if not len(t_us):
+            return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.bool_)
+        if self._offset_ns is None:
+            self._start(t_arrival_ns, t_us)
+        parts = []
+        start = 0
+        while start < len(t_us):
+            rows = slice(start, start + _BLOCK - self._filled)
+            parts.append(self._push_part(t_arrival_ns[rows], t_us[rows]))
+            start = rows.stop
+        return np.concatenate([t for t, _ in parts]), np.concatenate([kept for _, kept in parts])
+
+    def _push_part(
+        self, t_arrival_ns: Times, t_us: NDArray[np.integer]
+    ) -> tuple[Times, NDArray[np.bool_]]:
+        """Packets of one block: within it the relation of the clocks does not change."""
+        assert self._offset_ns is not None
+        expected = t_arrival_ns + self._offset_ns
+        t_sensor = nearest_hour(t_us, expected)
+        if np.any(self._odd(t_us, t_sensor, t_sensor - expected)):
+            return self._push_one_by_one(t_arrival_ns, t_us)
+        t_ns = t_sensor + self._shift(t_sensor)
+        self._follow(t_arrival_ns, t_sensor, t_sensor - expected)
+        return t_ns, np.ones(len(t_us), dtype=np.bool_)
+
+    def at(self, t_arrival_ns: Times, t_us: NDArray[np.integer]) -> Times:
+        """Absolute times of other packets of the sensor [ns], (N,); learns nothing from them."""
+        if not len(t_us):
+            return np.zeros(0, dtype=np.int64)
+        offset = self._offset_ns if self._offset_ns is not None else self._start(t_arrival_ns, t_us)
+        t_sensor = nearest_hour(t_us, t_arrival_ns + offset)
+        return t_sensor + self._shift(t_sensor)
+
+    def _start(self, t_arrival_ns: Times, t_us: NDArray[np.integer]) -> int:
+        t_arrival_ns, t_us = t_arrival_ns[:_FIRST], t_us[:_FIRST]
+        ahead = nearest_hour(t_us, t_arrival_ns) - t_arrival_ns
+        around = (ahead - ahead[0] + HOUR_NS // 2) % HOUR_NS - HOUR_NS // 2
+        # One that was measured: between two clocks, before and after a jump, lies none.
+        usual = int(np.sort(around)[len(around) // 2])
+        offset = int(ahead[0]) + usual
+        known = self._report.utc_ahead_ns if self.utc_offset_ns is None else self.utc_offset_ns
+        offset += round((known - offset) / HOUR_NS) * HOUR_NS
+        if self.utc_offset_ns is not None:
+            self._report.derive(
+                f"{self._name}: the hour is from its GPS; the recorder's clock is "
+                f"{-offset / SECOND_NS:+.3f} s off UTC"
+            )
+        elif abs(offset - known) > _SAME_CLOCK_NS:
+            self._free_running, self._base_ns = True, known
+            behind = usual - offset - around[np.abs(around - usual) < _JUMP_NS]
+            self._shift_ns = int(np.min(behind)) - self._packet_ns + known
+            self._report.warn(
+                f"{self._name}: its clock is {offset / SECOND_NS:+.3f} s off the recorder's and no "
+                "GPS drives it: its times are shifted to the recorder's clock"
+            )
+        self._offset_ns = offset
+        first = int(nearest_hour(t_us[:1], t_arrival_ns[:1] + offset)[0])
+        self._since_ns, self._last = first, (int(t_arrival_ns[0]), first)
+        self._report_ahead()
+        return offset
+
+    def _odd(
+        self, t_us: NDArray[np.integer], t_sensor: Times, deviation: Times
+    ) -> NDArray[np.bool_]:
+        """Packets at which one of the clocks seems to have jumped, also by whole hours."""
+        going_on = nearest_hour(t_us, self._last[1])
+        by_hours = (going_on != t_sensor) & (np.abs(going_on - self._last[1]) < _PAUSE_NS)
+        return (np.abs(deviation) > _JUMP_NS) | by_hours
+
+    def _follow(self, t_arrival_ns: Times, t_sensor: Times, deviation: Times) -> None:
+        """Let the offset drift with the clocks, and the shift of a free-running sensor too."""
+        self._last = (int(t_arrival_ns[-1]), int(t_sensor[-1]))
+        self._block.append(np.stack([deviation, t_arrival_ns - t_sensor]))
+        self._filled += len(t_sensor)
+        if self._filled < _BLOCK:
+            return
+        block = np.concatenate(self._block, axis=1)
+        self._block, self._filled = [], 0
+        assert self._offset_ns is not None
+        self._offset_ns += int(0.1 * np.median(block[0]))
+        self._report_ahead()
+        if not self._free_running:
+            return
+        self._window.append(int(np.min(block[1])))
+        now = int(t_sensor[-1])
+        if now - self._since_ns >= _TRACK_NS:
+            self._shift_ns = int(self._shift(now))
+            usual = min(self._window) - self._host_jump_ns - self._packet_ns + self._base_ns
+            error = usual - self._shift_ns
+            self._rate = float(np.clip(error / _TRACK_NS, -_MAX_RATE, _MAX_RATE))
+            self._since_ns, self._window = now, []
+
+    def _shift(self, t_sensor: Times | int) -> Times:
+        drift = self._rate * (np.asarray(t_sensor) - self._since_ns)
+        return self._shift_ns + np.rint(drift).astype(np.int64)
+
+    def _push_one_by_one(
+        self, t_arrival_ns: Times, t_us: NDArray[np.integer]
+    ) -> tuple[Times, NDArray[np.bool_]]:
+        t_ns = np.zeros(len(t_us), dtype=np.int64)
+        kept = np.zeros(len(t_us), dtype=np.bool_)
+        for row, arrival in enumerate(t_arrival_ns.tolist()):
+            stamp = t_us[row : row + 1]
+            kept[row] = self._accept(arrival, stamp)
+            assert self._offset_ns is not None
+            t_sensor = nearest_hour(stamp, arrival + self._offset_ns)
+            t_ns[row] = (t_sensor + self._shift(t_sensor))[0]
+            if kept[row]:
+                self._last = (arrival, int(t_sensor[0]))
+        self._report.count("packets_wrong_clock", int((~kept).sum()))
+        return t_ns, kept
+
+    def _accept(self, arrival: int, stamp: NDArray[np.integer]) -> bool:
+        assert self._offset_ns is not None
+        t_sensor = nearest_hour(stamp, arrival + self._offset_ns)
+        deviation = t_sensor - (arrival + self._offset_ns)
+        if not self._odd(stamp, t_sensor, deviation)[0]:
+            self._run = 0
+            return True
+        off = int(deviation[0])
+        self._run = self._run + 1 if self._run and abs(off - self._run_ns) < _JUMP_NS else 1
+        self._run_ns = off
+        if self._run < _CONFIRM:
+            return False
+        self._jump(arrival, stamp, off)
+        return True
+
+    def _jump(self, arrival: int, stamp: NDArray[np.integer], off_ns: int) -> None:
+        """Take the new relation of the two clocks; whichever went on evenly is believed."""
+        assert self._offset_ns is not None
+        going_on = int(nearest_hour(stamp, self._last[1])[0])
+        if abs(going_on - self._last[1]) < _JUMP_NS:
+            jump_ns = (arrival - self._last[0]) - (going_on - self._last[1])
+            self._offset_ns = going_on - arrival
+            self._host_jump_ns += jump_ns
+            self._report_jump("the recorder's clock", jump_ns)
+        else:
+            self._offset_ns += off_ns
+            self._shift_ns = int(self._shift(going_on)) - off_ns
+            self._rate = 0.0
+            self._report_jump("its clock", off_ns)
+        self._since_ns, self._window, self._run = going_on, [], 0
+        self._block, self._filled = [], 0
+        self._report_ahead()
+
+    def _report_ahead(self) -> None:
+        assert self._offset_ns is not None
+        self._report.ahead_ns[self._name] = self._offset_ns + self._shift_ns
+
+    def _report_jump(self, whose: str, jump_ns: int) -> None:
+        self._report.count("clock_jumps")
+        self._report.warn(
+            f"{self._name}: {whose} jumped by {jump_ns / SECOND_NS:+.3f} s; times go on without it"
+        )

@@ -1,0 +1,119 @@
+"""Whether the IMU and the LiDARs tell of the same motion; if not, how to make them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from recon4.model.samples import ImuSamples
+from recon4.registration.odometry import Odometry
+from recon4.settings import Settings
+from recon4.store.frames import FrameStore
+
+_FRAMES = 10
+"""Multiframes of one trial."""
+_REST_NS = 500_000_000
+"""The zero of a gyroscope is its mean over so long from the start, if the body stands then."""
+_ZERO_RAD_S = 0.06
+"""A smaller offset is found by the odometry itself (its prior is a third of this)."""
+_CLEARLY = 0.75
+"""Another way must bring the error below this share to be taken."""
+_CLEARLY_M = 0.002
+"""… and gain at least this [m]."""
+_TYPICAL = 0.8
+"""Share of the frames whose error counts: one bad frame must not decide."""
+_NEVER_M = 1.0
+"""The error of a trial that found no match [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """What some multiframes said of one way of using the IMU."""
+
+    lost: int
+    error_m: float
+    """Distance of the matched segments from the local map that most frames stay below [m]."""
+
+    def clearly_better(self, other: Trial) -> bool:
+        """Whether no more frames are lost and the error is much smaller."""
+        if self.lost < other.lost:
+            return self.error_m < other.error_m
+        gain_m = other.error_m - self.error_m
+        return self.lost == other.lost and gain_m > max(
+            (1.0 - _CLEARLY) * other.error_m, _CLEARLY_M
+        )
+
+
+def consistent_imu(frames: FrameStore, settings: Settings) -> tuple[ImuSamples | None, str]:
+    """The IMU as recorded, with the zero of its gyroscope taken off, or none.
+
+    The LiDARs decide: the first multiframes and those of the fastest turn are registered in each
+    way, and another way than the recorded one is taken if it fits clearly better. A gyroscope may
+    have a zero of tens of degrees a second (HDL-32E), its axes may be named wrongly, its clock may
+    be off.
+
+    Args:
+        frames: The multiframes with their rig and IMU.
+        settings: Of the odometry to come.
+
+    Returns:
+        The samples to use, and what a person should know about them (empty = nothing).
+    """
+    imu = frames.imu
+    planes = settings.registration.solver == "planes"
+    if imu is None or len(imu) < 2 or not settings.odometry.use_imu or not planes:
+        return imu, ""
+    chosen: tuple[ImuSamples | None, str] = imu, ""
+    best = _try(frames, imu, settings)
+    zero_rad_s = _zero(imu, frames)
+    if np.linalg.norm(zero_rad_s) > _ZERO_RAD_S:
+        zeroed = ImuSamples(imu.t_ns, imu.gyro_rad_s - zero_rad_s, imu.accel_m_s2)
+        found = _try(frames, zeroed, settings)
+        if found.clearly_better(best):
+            text = ", ".join(f"{value:.1f}" for value in np.rad2deg(zero_rad_s))
+            best = found
+            chosen = zeroed, f"gyroscope: its zero at the start ({text} deg/s) was taken off"
+    found = _try(frames, None, settings)
+    if found.clearly_better(best):
+        chosen = (
+            None,
+            (
+                "the IMU contradicts the LiDARs and is not used for the motion: "
+                f"segments lie {100 * best.error_m:.1f} cm off with it, "
+                f"{100 * found.error_m:.1f} cm without; "
+                "check its axes, units and clock"
+            ),
+        )
+    return chosen
+
+
+def _try(frames: FrameStore, imu: ImuSamples | None, settings: Settings) -> Trial:
+    lost, errors = 0, []
+    for first in _starts(frames):
+        odometry = Odometry(frames.rig, settings, imu)
+        steps = [odometry.push(frames[k]) for k in range(first, min(first + _FRAMES, len(frames)))]
+        lost += sum(step.lost for step in steps)
+        errors += [step.error_m for step in steps[1:]]
+    known = np.nan_to_num(np.array(errors), nan=_NEVER_M)
+    return Trial(lost, float(np.quantile(known, _TYPICAL)) if len(known) else 0.0)
+
+
+def _starts(frames: FrameStore) -> list[int]:
+    """The first multiframe, and the one from which the IMU turns most."""
+    imu = frames.imu
+    last = len(frames) - _FRAMES
+    if imu is None or last <= _FRAMES:
+        return [0]
+    off = imu.gyro_rad_s - np.median(imu.gyro_rad_s, axis=0)
+    turned_rad = np.cumsum(np.linalg.norm(off, axis=1) * np.gradient(imu.t_ns * 1e-9))
+    at = np.interp(
+        (frames.t_mid_ns - imu.t_ns[0]) * 1e-9, (imu.t_ns - imu.t_ns[0]) * 1e-9, turned_rad
+    )
+    return [0, int(np.argmax(at[_FRAMES:] - at[:-_FRAMES]))]
+
+
+def _zero(imu: ImuSamples, frames: FrameStore) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    start_ns = max(int(imu.t_ns[0]), int(frames[0].t_ns))
+    rows = (imu.t_ns >= start_ns) & (imu.t_ns < start_ns + _REST_NS)
+    return np.asarray(imu.gyro_rad_s[rows].mean(axis=0)) if rows.any() else np.zeros(3)

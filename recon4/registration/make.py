@@ -1,0 +1,19 @@
+"""Which odometry the settings ask for."""
+
+from __future__ import annotations
+
+from recon4.model.rig import Rig
+from recon4.model.samples import ImuSamples
+from recon4.registration.aiding import GnssAiding
+from recon4.registration.line_odometry import LineOdometry
+from recon4.registration.odometry import Odometry
+from recon4.settings import Settings
+
+
+def make_odometry(
+    rig: Rig, settings: Settings, imu: ImuSamples | None, *, aiding: GnssAiding | None = None
+) -> Odometry | LineOdometry:
+    """An object with ``push(multiframe)``: planes (ours), or lines (the documents')."""
+    if settings.registration.solver == "planes":
+        return Odometry(rig, settings, imu, aiding=aiding)
+    return LineOdometry(rig, settings, imu)

@@ -1,0 +1,130 @@
+"""The pictures of the report, section by section."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+from recon4.report import charts
+from recon4.report.artifacts import Results
+from recon4.report.drift import DriftClosed
+from recon4.report.edges import edge_paths
+from recon4.report.facts import ReportFacts
+from recon4.report.intensity import dependencies
+from recon4.report.maps import ABOVE, FRONT, Raster, height_png, ink_png, intensity_png
+from recon4.report.plan import Path, frame_around, plan_svg
+
+
+@dataclass(frozen=True, slots=True)
+class ChartFigure:
+    """A figure with what is to be seen in it."""
+
+    svg: Markup
+    caption: str
+    legend: tuple[tuple[str, str], ...] = ()
+    """Class of the line in the style sheet, and what it means."""
+    scale: tuple[str, str, str] = ("", "", "")
+    """Class of the color bar, and the numbers at its ends."""
+
+
+def maps_pictures(rasters: list[Raster]) -> list[ChartFigure]:
+    """The map from above and from the sides."""
+    out: list[ChartFigure] = []
+    for raster in rasters:
+        words = f"The map {raster.view.name}. Pixel {raster.frame.pixel_m * 100:g} cm."
+        if raster.view is ABOVE:
+            ink = plan_svg(ink_png(raster), raster.view, raster.frame, css="ink")
+            out.append(ChartFigure(Markup(ink), f"{words} Dark: many points, so walls are lines."))
+        png, (low, high) = height_png(raster)
+        svg = plan_svg(png, raster.view, raster.frame)
+        bar = ("viridis", f"{low:.1f} m", f"{high:.1f} m")
+        out.append(ChartFigure(Markup(svg), f"{words} Color: mean height.", scale=bar))
+    return out
+
+
+def walk_pictures(
+    results: Results, drift: DriftClosed | None, rasters: list[Raster]
+) -> list[ChartFigure]:
+    """The walk over the map, and what happened along it."""
+    final = results.final or results.odometry
+    out: list[ChartFigure] = []
+    if final is None or len(final) < 2:
+        return out
+    curves = [Path("line-final", (final.T_a_b.t,))]
+    legend = [("line-final", "final trajectory"), ("mark-start", "start"), ("mark-end", "end")]
+    if drift is not None and results.odometry is not None:
+        moved = drift.T_map_odom @ results.odometry.T_a_b
+        curves.insert(0, Path("line-odometry", (moved.t,)))
+        legend.insert(1, ("line-odometry", "odometry before the loops were closed"))
+    marks = (("mark-start", final.T_a_b.t[0]), ("mark-end", final.T_a_b.t[-1]))
+    shown = [raster for raster in rasters if raster.view in {ABOVE, FRONT}]
+    for raster in shown:
+        svg = plan_svg(
+            ink_png(raster),
+            raster.view,
+            raster.frame,
+            paths=tuple(curves),
+            css="ink faint",
+            marks=marks,
+        )
+        out.append(ChartFigure(Markup(svg), f"The walk {raster.view.name}.", tuple(legend)))
+    if not shown:
+        svg = plan_svg(
+            None, ABOVE, frame_around(final.T_a_b.t, ABOVE), paths=tuple(curves), marks=marks
+        )
+        out.append(ChartFigure(Markup(svg), "The walk from above.", tuple(legend)))
+    return out + _framed(charts.walk_charts(final, results.steps, drift))
+
+
+def edges_pictures(results: Results, rasters: list[Raster]) -> list[ChartFigure]:
+    """Every pair that was tried, and how good it is."""
+    graph = results.graph
+    if graph is None or not len(graph):
+        return []
+    above = next((raster for raster in rasters if raster.view is ABOVE), None)
+    frame = above.frame if above is not None else frame_around(graph.T_map_body.t, ABOVE)
+    paths = (Path("line-nodes", (graph.T_map_body.t,)), *edge_paths(graph))
+    png = ink_png(above) if above is not None else None
+    legend = (
+        ("edge-accepted", "accepted"),
+        ("edge-unverified", "unverified: no alternative path"),
+        ("edge-rejected", "rejected by overlap, error or convergence"),
+        ("edge-verification", "rejected by verification or the robust solution"),
+    )
+    svg = plan_svg(png, ABOVE, frame, paths=paths, css="ink faint")
+    words = (
+        "Every pair that was tried, from above. Where there are very many, an even sample is drawn."
+    )
+    out = [ChartFigure(Markup(svg), words, legend)]
+    return out + _framed(charts.edge_charts(graph))
+
+
+def accuracy_pictures(facts: ReportFacts) -> list[ChartFigure]:
+    """Errors against the truth."""
+    if facts.evaluation is None:
+        return []
+    return _framed(charts.accuracy_charts(facts.evaluation))
+
+
+def intensity_pictures(results: Results, rasters: list[Raster]) -> list[ChartFigure]:
+    """Intensity before and after normalization."""
+    out: list[ChartFigure] = []
+    for after in (False, True):
+        above = rasters[0] if rasters else None
+        if above is None or (after and not above.normalized_sum.any()):
+            continue
+        png, (low, high) = intensity_png(above, normalized=after)
+        svg = plan_svg(png, above.view, above.frame)
+        words = "Mean intensity a pixel, " + ("after normalization." if after else "as measured.")
+        out.append(ChartFigure(Markup(svg), words, scale=("greys", f"{low:.0f}", f"{high:.0f}")))
+    return out + _framed(charts.intensity_charts(dependencies(results.intensity)))
+
+
+def georeference_pictures(results: Results) -> list[ChartFigure]:
+    """Residuals at the GNSS positions."""
+    return _framed(charts.gnss_charts(results.georeference))
+
+
+def _framed(drawn: charts.Charts) -> list[ChartFigure]:
+    return [ChartFigure(Markup(svg), words) for svg, words in drawn]

@@ -1,0 +1,22 @@
+"""Names in files of format 1, and what they are called now.
+
+Since format 2 of ``summary.json`` every name is that of ``docs/glossary.md``. Files of format 1 are
+never rewritten: their readers translate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TypeVar
+
+SUMMARY = {"way_m": "path_length_m"}
+"""Keys of ``summary.json`` and of the figures in an ``approval.json``."""
+STEPS = {"share": "match_ratio", "gap_m": "prediction_offset_m"}
+"""Columns of ``steps.npz``."""
+
+Value = TypeVar("Value")
+
+
+def current_names(record: Mapping[str, Value], renamed: Mapping[str, str]) -> dict[str, Value]:
+    """The same values under today's names."""
+    return {renamed.get(name, name): value for name, value in record.items()}

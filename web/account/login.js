@@ -1,0 +1,50 @@
+// The login, and the first admin of a server nobody can sign in to yet.
+
+import { isSignedIn, setUp, signIn } from "../shared/api.js";
+
+const byId = (id) => document.getElementById(id);
+const form = byId("login");
+const given = new URLSearchParams(location.hash.slice(1));
+const setup = given.get("setup");
+history.replaceState(null, "", location.pathname); // the one-time link stays in no history
+
+/** Where to go after the login: a page of this server and nothing else. */
+function next() {
+  const path = given.get("next") ?? "/";
+  const inside = new URL(path, location.origin);
+  return path.startsWith("/") && inside.origin === location.origin ? inside.pathname : "/";
+}
+
+function offerSetup() {
+  document.title = "First admin · recon4";
+  byId("title").textContent = "Make the first admin";
+  byId("words").textContent = "Nobody can sign in to this server yet. This link works once";
+  byId("go").textContent = "Make admin and sign in";
+  byId("words").hidden = byId("hint").hidden = false;
+  form.elements.password.autocomplete = "new-password";
+  form.elements.password.minLength = 12;
+}
+
+async function submit(event) {
+  event.preventDefault();
+  const message = byId("message");
+  message.textContent = "";
+  byId("go").disabled = true;
+  try {
+    const [name, password] = [form.elements.name.value, form.elements.password.value];
+    await (setup ? setUp(setup, name, password) : signIn(name, password));
+    location.replace(next());
+  } catch (error) {
+    message.textContent = error.message;
+    byId("go").disabled = false;
+    form.elements.password.select();
+  }
+}
+
+form.addEventListener("submit", submit);
+byId("show").addEventListener("change", (event) => {
+  form.elements.password.type = event.target.checked ? "text" : "password";
+});
+if (setup) offerSetup();
+else if (await isSignedIn()) location.replace(next());
+form.elements.name.focus();

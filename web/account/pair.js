@@ -1,0 +1,56 @@
+// The phone's side of pairing: uses the one-time link, or shows six digits and waits to be let in.
+
+import { askToPair, claimPairing, isSignedIn, liveUrl, redeemInvitation } from "../shared/api.js";
+import { attempt } from "../shared/dom.js";
+
+const CLAIM_EVERY_MS = 2000;
+const byId = (id) => document.getElementById(id);
+const AGAIN = "again"; // the session has ended
+const token = location.hash.slice(1);
+history.replaceState(null, "", location.pathname); // the one-time link stays in no history
+
+async function useInvitation() {
+  byId("ask").hidden = true;
+  byId("words").textContent = "One moment";
+  if (await attempt(byId("message"), () => redeemInvitation(token))) return location.replace(liveUrl);
+  byId("words").textContent = "Make a new QR code on the laptop, or ask to be let in with a code";
+  byId("ask").hidden = false;
+}
+
+async function ask(event) {
+  event.preventDefault();
+  const asked = await attempt(byId("message"), () => askToPair(event.target.elements.phone.value));
+  if (!asked) return;
+  byId("ask").hidden = byId("else").hidden = true;
+  byId("words").textContent = "Somebody who is signed in types this code on the page Phone";
+  byId("digits").textContent = `${asked.code.slice(0, 3)} ${asked.code.slice(3)}`;
+  byId("digits").hidden = byId("left").hidden = false;
+  await wait(asked, performance.now() + 1000 * asked.seconds);
+}
+
+async function wait(asked, untilMs) {
+  const left = Math.max(0, Math.round((untilMs - performance.now()) / 1000));
+  byId("left").textContent = `Waiting, ${Math.floor(left / 60)}:${String(left % 60).padStart(2, "0")} left`;
+  try {
+    if (await claimPairing(asked.token)) return location.replace(liveUrl);
+  } catch (error) {
+    if (error.status !== 0) return over(error.message); // without a link: try again
+  }
+  setTimeout(wait, CLAIM_EVERY_MS, asked, untilMs);
+}
+
+function over(words) {
+  byId("digits").hidden = byId("left").hidden = true;
+  byId("words").textContent = "";
+  byId("message").textContent = words;
+  byId("ask").hidden = byId("else").hidden = false;
+}
+
+/** Whether this browser is in already; without a link it is not known, and the page can be used. */
+const isIn = () => isSignedIn().catch(() => false);
+
+byId("ask").addEventListener("submit", ask);
+const ended = token === AGAIN ? "The session of this phone has ended; what runs goes on. " : "";
+if (await isIn()) location.replace(liveUrl);
+else if (token && !ended) await useInvitation();
+else byId("words").textContent = `${ended}Scan the QR code on the laptop (page Phone), or ask to be let in with a code`;

@@ -1,0 +1,82 @@
+// The laptop's side of pairing: a QR code for one phone, or the digits a phone shows.
+
+import { approvePhone, invitePhone, readPairing } from "../shared/api.js";
+import { attempt, make } from "../shared/dom.js";
+import "../shared/page_head.js";
+
+const MAY = { operator: "look, and start, mark and stop", viewer: "look only" };
+const byId = (id) => document.getElementById(id);
+let timer = null;
+
+const role = () => document.querySelector("input[name=role]:checked").value;
+
+function showRoles(roles) {
+  const one = (value, k) => {
+    const radio = make("input", { type: "radio", name: "role", value, checked: k === 0, onchange: chose });
+    return make("label", { className: "check" }, radio, make("span", {}, make("b", {}, value), `: ${MAY[value]}`));
+  };
+  byId("roles").append(...roles.map(one));
+  chose();
+}
+
+/** A code that is shown is for the role that was chosen then. */
+function chose() {
+  hideCode();
+  byId("let-in").textContent = `Let it in as ${role()}`;
+}
+
+async function invite() {
+  const invitation = await attempt(byId("message"), () => invitePhone(role()));
+  if (!invitation) return;
+  const show = () => {
+    const link = invitation.links[byId("host").selectedIndex];
+    byId("qr").src = link.qr;
+    byId("pair-url").textContent = link.url.split("#")[0];
+  };
+  byId("host").replaceChildren(...invitation.links.map(({ host }) => make("option", {}, host)));
+  byId("host").onchange = show;
+  byId("address").hidden = invitation.links.length < 2;
+  byId("shown").hidden = false;
+  byId("invite").textContent = "Show another";
+  show();
+  countDown(performance.now() + 1000 * invitation.seconds, invitation.role);
+}
+
+function countDown(untilMs, given) {
+  clearInterval(timer);
+  const tick = () => {
+    const left = Math.round((untilMs - performance.now()) / 1000);
+    byId("left").textContent = `For one phone, as ${given}, ${left} s left`;
+    if (left <= 0) hideCode();
+  };
+  timer = setInterval(tick, 1000);
+  tick();
+}
+
+function hideCode() {
+  clearInterval(timer);
+  byId("shown").hidden = true;
+  byId("qr").removeAttribute("src");
+  byId("invite").textContent = "Show QR code";
+}
+
+async function approve(event) {
+  event.preventDefault();
+  byId("approved").textContent = "";
+  const code = event.target.elements.code.value.replace(/\s/g, "");
+  const phone = await attempt(byId("approve-message"), () => approvePhone(code, role()));
+  if (!phone) return;
+  event.target.reset();
+  byId("approved").textContent = `✓ ${phone.name} at ${phone.address} is in as ${role()}`;
+}
+
+byId("invite").addEventListener("click", invite);
+byId("approve").addEventListener("submit", approve);
+const pairing = await attempt(byId("message"), readPairing);
+if (pairing) {
+  byId("without").hidden = pairing.login;
+  byId("ways").hidden = !pairing.login;
+  byId("fingerprint").textContent = pairing.fingerprint;
+  byId("pair-url").textContent = `${location.origin}/pair`;
+  showRoles(pairing.roles);
+}

@@ -1,0 +1,109 @@
+// The buttons of the operator's page and the dialogs they open: start, mark, pause, stop, make the map.
+
+import { markHere, projectUrl, readCaptureChoices, startCapture, steerCapture } from "../shared/api.js";
+import { attempt, make } from "../shared/dom.js";
+
+const byId = (id) => document.getElementById(id);
+
+const LONGEST_NOTE_S = 600;
+
+/** A dialog whose form asks for something; it closes once `act(form)` went well. */
+function dialog(id, act) {
+  const element = byId(id);
+  const form = element.querySelector("form");
+  const message = element.querySelector(".error");
+  form.querySelector(".cancel")?.addEventListener("click", () => element.close());
+  form.addEventListener("submit", async (event) => {
+    if (event.submitter?.value === "cancel") return;
+    event.preventDefault();
+    if (event.submitter) event.submitter.disabled = true;
+    const done = await attempt(message, () => act(form));
+    if (event.submitter) event.submitter.disabled = false;
+    if (done !== undefined) element.close();
+  });
+  return () => {
+    message.textContent = "";
+    if (!element.open) element.showModal();
+  };
+}
+
+const showStart = dialog("begin", ({ project, rig, preset, place }) => {
+  keep({ rig: rig.value, preset: preset.value });
+  return startCapture({ project: project.value, rig: rig.value, preset: preset.value, place: place.value });
+});
+const showMark = dialog("note", (form) => {
+  const ago = Math.max(0, (performance.now() - touched) / 1000);
+  return markHere({ text: form.text.value, ago_s: Math.min(ago, LONGEST_NOTE_S) });
+});
+const showName = dialog("naming", (form) => markHere({ what: "place", text: form.text.value }));
+const showEnd = dialog("ending", () => steerCapture("stop"));
+
+let touched = 0; // when Mark was; one walks on while the note is typed
+
+const LAST = "recon4.live.last";
+
+/** What was chosen the last time, on this phone. */
+const keep = (chosen) => localStorage.setItem(LAST, JSON.stringify(chosen));
+const kept = () => JSON.parse(localStorage.getItem(LAST) ?? "{}");
+
+/** Fills a select; what was chosen the last time is chosen again. */
+function offer(select, options, last) {
+  select.replaceChildren(...options);
+  const usable = options.filter((option) => !option.disabled);
+  select.value = (usable.find((option) => option.value === last) ?? usable[0]).value;
+}
+
+async function begin() {
+  const form = byId("begin").querySelector("form");
+  const choices = await attempt(byId("message"), readCaptureChoices);
+  if (!choices) return;
+  const rig = ({ rig: value, name, sensors, problem }) =>
+    make("option", { value, disabled: problem !== "" }, `${name}: ${problem || sensors.join(", ")}`);
+  offer(form.rig, choices.rigs.map(rig), kept().rig);
+  offer(form.preset, choices.presets.map((name) => make("option", { value: name }, name)), kept().preset);
+  const now = new Date(Date.now() - 60_000 * new Date().getTimezoneOffset()).toISOString();
+  form.project.value = `walk-${now.slice(0, 16).replace(/[:T]/g, "-")}`;
+  showStart();
+}
+
+export function mark() {
+  if (!byId("note").open) touched = performance.now();
+  byId("note").querySelector("form").reset();
+  showMark();
+}
+
+export const nameThePlace = () => (byId("more").close(), showName());
+
+function stop(words) {
+  byId("ending-words").textContent = words;
+  showEnd();
+}
+
+async function makeMap() {
+  const view = await attempt(byId("message"), () => steerCapture("process"));
+  if (view) location.assign(projectUrl(view.job.project));
+}
+
+let shown = "";
+
+/** Shows what can be done in a state; nothing to who only looks on. */
+export function drawActions({ state, project, mayCapture, linked, loop }) {
+  const key = `${state}/${mayCapture}/${project}/${linked}`;
+  if (key === shown) return;
+  shown = key;
+  const button = (words, className, onclick) => make("button", { type: "button", className, onclick, disabled: !linked }, words);
+  const steer = (what) => () => attempt(byId("message"), () => steerCapture(what));
+  const atStart = () => (loop()?.closed ? "The loop is closed." : "The loop is not closed yet: the map is better if you return to the start first.");
+  const end = button("Stop", "stop", () => stop(atStart()));
+  const rows = {
+    none: () => [button("Start…", "primary", begin)],
+    recording: () => [button("Mark", "", mark), button("Pause", "", steer("pause")), end],
+    paused: () => [button("Resume", "primary", steer("resume")), end],
+    ready: () => [
+      make("a", { className: "button", href: projectUrl(project) }, "Project"),
+      button("Make the map", "primary", makeMap),
+      button("New…", "", begin),
+    ],
+  };
+  byId("actions").replaceChildren(...(mayCapture ? (rows[state]?.() ?? []) : []));
+}

@@ -1,0 +1,256 @@
+// The operator's page: is everything captured?
+
+import { readMe } from "../shared/api.js";
+import { CloudCanvas } from "../shared/cloud_canvas.js";
+import { attempt } from "../shared/dom.js";
+import { drawActions, mark, nameThePlace } from "./actions.js";
+import { Camera, moveByPointer } from "./camera.js";
+import { drawHealth, showHealth } from "./health.js";
+import { drawOverlay, planPicture } from "./overlay.js";
+import { LiveScene } from "./scene.js";
+import { clock, coverageWords, hint, listens, stateWords } from "./captions.js";
+
+const HEAD_M = 0.5;
+const LEAST_FREE_PX = 80;
+const COLORS = ["path", "gap", "me", "ink", "sky", "accent", "well", "poor"];
+const SUN = "recon4.live.sun";
+const byId = (id) => document.getElementById(id);
+const cloud = new CloudCanvas(byId("points"));
+const camera = new Camera();
+const overlay = byId("overlay").getContext("2d");
+const dark = matchMedia("(prefers-color-scheme: dark)");
+let [follow, byHeight, ceiling, linked, due] = [true, false, false, true, false];
+let chosen = -1; // of the gaps
+let me = null; // who looks
+let battery = null;
+let whole = ""; // project whose end was shown as a whole
+let fitted = false; // the whole map is shown, and nobody moved it since
+
+const scene = new LiveScene(cloud, {
+  news: () => (drawWords(), redraw()),
+  link: (yes, reason = "") => {
+    if (reason) byId("message").textContent = reason;
+    if (yes === linked) return;
+    linked = yes;
+    if (yes) byId("message").textContent = ""; // what could not be asked for without a link
+    drawWords();
+    if (yes && !me) readMe(true).then((found) => ((me = found), drawWords()), () => {});
+  },
+  plan: paintPlan,
+});
+
+async function paintPlan(plan) {
+  const { poor, well } = styles();
+  const painted = await planPicture(plan, [poor, well]);
+  if (plan !== scene.newest.plan) return painted.bitmap.close();
+  scene.plan?.bitmap.close();
+  scene.plan = painted;
+  redraw();
+}
+
+/** The colors are others now. */
+function repaint() {
+  if (scene.plan) paintPlan(scene.newest.plan);
+  redraw();
+}
+
+function styles() {
+  const style = getComputedStyle(document.body);
+  return Object.fromEntries(COLORS.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
+}
+
+function redraw() {
+  if (!due) requestAnimationFrame(draw);
+  due = true;
+}
+
+/** What no bar covers of the map, {left, top, right, bottom}, and its middle, in pixels of the map. */
+function space() {
+  const [map, top, bottom, views] = [byId("map"), document.querySelector(".top"), byId("bottom"), document.querySelector(".views")].map((one) => one.getBoundingClientRect());
+  const beside = top.right <= map.left + 1; // bars beside the map, not over it
+  const free = {
+    left: 0,
+    right: beside ? views.left - map.left : map.width,
+    top: beside ? 0 : top.bottom - map.top,
+    bottom: beside ? map.height : bottom.top - map.top,
+  };
+  if (free.bottom - free.top < LEAST_FREE_PX) [free.top, free.bottom] = [0, map.height];
+  return { map, free, middle: [(free.left + free.right) / 2, (free.top + free.bottom) / 2] };
+}
+
+function showWhole() {
+  const boxes = [scene.plan?.box, ...scene.path.map((place) => [place, place])].filter(Boolean);
+  if (!boxes.length) return;
+  const pick = (best, corner, axis) => best(...boxes.map((box) => box[corner][axis]));
+  const { map, free } = space();
+  const right = document.querySelector(".views").getBoundingClientRect().left - map.left;
+  const box = [[pick(Math.min, 0, 0), pick(Math.min, 0, 1)], [pick(Math.max, 1, 0), pick(Math.max, 1, 1)]];
+  camera.fit(box, { width: right - free.left, height: free.bottom - free.top });
+  camera.pan((right - free.right) / 2, 0);
+  press("follow", (follow = false));
+  fitted = true;
+}
+
+function draw() {
+  due = false;
+  if (["finishing", "ready"].includes(scene.state) && scene.plan && whole !== scene.project) (whole = scene.project), showWhole();
+  const ratio = Math.min(devicePixelRatio || 1, 2);
+  const { map: { width, height }, free, middle } = space();
+  for (const canvas of [byId("points"), byId("overlay")])
+    if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio))
+      [canvas.width, canvas.height] = [Math.round(width * ratio), Math.round(height * ratio)];
+  if (follow && scene.me) camera.target = [...scene.me.p];
+  const z = scene.me?.p[2] ?? 0;
+  cloud.heights = [z - 1.6, z + (ceiling ? 1.8 : HEAD_M)];
+  cloud.draw({
+    turn: camera.turn,
+    target: camera.target,
+    scale: [(2 * camera.pxPerM) / width, (2 * camera.pxPerM) / height],
+    shift: [(2 * middle[0]) / width - 1, 1 - (2 * middle[1]) / height],
+    size: Math.max(1.5, cloud.voxelM * camera.pxPerM * ratio),
+    top: ceiling || !scene.me ? 1e6 : z + HEAD_M,
+    byHeight,
+    ink: document.body.classList.contains("sun") || !dark.matches,
+  });
+  const marks = scene.marks.filter((one) => one.what === "point" && one.p);
+  drawOverlay(overlay, { width, height, ratio, middle, free }, camera, { ...scene, marks, chosen }, styles());
+  byId("upright").hidden = Math.abs(Math.sin(camera.yaw / 2)) < 0.01;
+  byId("needle").style.transform = `rotate(${camera.yaw}rad)`;
+}
+
+/** A text is set only if it is another one: whoever listens to the page hears it once. */
+function write(id, text) {
+  if (byId(id).textContent !== text) byId(id).textContent = text;
+}
+
+function drawWords() {
+  if (scene.renewed && !document.querySelector("dialog[open]")) location.reload();
+  const { state, newest } = scene;
+  document.body.classList.toggle("walking", listens(state));
+  const { words, look } = stateWords(state, linked);
+  write("state", words);
+  byId("state").className = look;
+  const place = scene.marks.findLast((one) => one.what === "place")?.text;
+  write("place", !state || state === "none" ? "" : place ?? scene.project);
+  const walked = newest.loop?.walked_m ? ` · ${Math.round(newest.loop.walked_m)} m` : "";
+  write("time", newest.status && state !== "none" ? clock(newest.status.seconds) + walked : "");
+  drawHealth({ scene, linked, battery, drawsPoints: cloud.works });
+  drawCoverage();
+  const mayCapture = me?.may.includes("capture") ?? null;
+  drawActions({ state, project: scene.project, mayCapture, linked, loop: () => scene.newest.loop });
+}
+
+function drawCoverage() {
+  byId("map").dataset.points = cloud.count;
+  const { newest, state } = scene;
+  byId("coverage").hidden = !newest.gaps || newest.gaps.well === null || state === "none";
+  if (chosen >= (newest.gaps?.gaps.length ?? 0)) chosen = -1;
+  const { well, poor, words, count, all, one } = coverageWords(newest.gaps, chosen);
+  write("well", well);
+  write("poor", poor);
+  write("gap-words", words);
+  byId("gap").disabled = count === 0;
+  byId("gap").ariaLabel = all;
+  write("hint", one || (state ? hint(state, newest, { mayCapture: me?.may.includes("capture") ?? null, mapped: cloud.count > 0 }) : ""));
+}
+
+const press = (id, yes) => byId(id).setAttribute("aria-pressed", String(yes));
+
+function nextGap() {
+  if (!scene.gaps.length) return;
+  chosen = (chosen + 1) % scene.gaps.length;
+  byHand(() => (camera.target = [...scene.gaps[chosen].p, scene.me?.p[2] ?? 0]));
+  if (!scene.showPlan) views.plan();
+  drawCoverage();
+}
+
+function byHand(act) {
+  press("follow", (follow = fitted = false));
+  act();
+}
+
+function toggleFollow() {
+  chosen = -1;
+  const off = follow;
+  if (off) showWhole();
+  press("follow", (follow = !off));
+  fitted &&= off;
+  drawCoverage();
+}
+
+function setSun(yes) {
+  press("sun", document.body.classList.toggle("sun", yes));
+  localStorage.setItem(SUN, yes ? "1" : "");
+  repaint();
+}
+
+const views = {
+  upright: () => (camera.yaw = 0),
+  tilt: () => (camera.tilt(), press("tilt", !camera.above)),
+  follow: toggleFollow,
+  color: () => press("color", (byHeight = !byHeight)),
+  plan: () => press("plan", (scene.showPlan = !scene.showPlan)),
+  sun: () => setSun(!document.body.classList.contains("sun")),
+  gap: nextGap,
+};
+for (const [id, act] of Object.entries(views)) byId(id).addEventListener("click", () => (act(), redraw()));
+
+function showAll(yes) {
+  byId("ceiling").checked = ceiling = yes;
+  redraw();
+}
+
+function help() {
+  byId("about").textContent = me ? `${me.login ? `Signed in as ${me.name}, ${me.role}. ` : ""}${scene.total.toLocaleString("en")} points on this phone.` : "";
+  byId("name-it").hidden = !me?.may.includes("capture") || !listens(scene.state);
+  byId("more").showModal();
+}
+
+const sensors = () => listens(scene.state) && showHealth({ scene, battery });
+
+byId("help").addEventListener("click", help);
+byId("sensors").addEventListener("click", sensors);
+byId("name-it").addEventListener("click", nameThePlace);
+byId("ceiling").addEventListener("change", (event) => showAll(event.target.checked));
+
+const KEYS = {
+  t: views.tilt, f: views.follow, c: views.color, g: views.plan, s: views.sun, n: nextGap, u: views.upright, v: sensors, "?": help,
+  h: () => showAll(!ceiling),
+  m: () => scene.state === "recording" && me?.may.includes("capture") && mark(),
+  q: () => camera.rotate(-0.2), e: () => camera.rotate(0.2),
+  "+": () => camera.zoom(1.25), "-": () => camera.zoom(0.8),
+  ArrowLeft: () => byHand(() => camera.pan(60, 0)), ArrowRight: () => byHand(() => camera.pan(-60, 0)),
+  ArrowUp: () => byHand(() => camera.pan(0, 60)), ArrowDown: () => byHand(() => camera.pan(0, -60)),
+};
+addEventListener("keydown", (event) => {
+  const typing = event.target.closest?.("input, select, dialog");
+  const act = KEYS[event.key] ?? KEYS[event.key.toLowerCase()];
+  if (!act || typing || event.ctrlKey || event.metaKey || event.altKey) return;
+  event.preventDefault();
+  act();
+  redraw();
+});
+
+moveByPointer(byId("overlay"), camera, {
+  onMove: () => ((fitted = false), redraw()),
+  onPan: () => follow && press("follow", (follow = false)),
+  following: () => follow && scene.me !== null,
+  middle: () => {
+    const { map, middle } = space();
+    return [map.left + middle[0], map.top + middle[1]];
+  },
+});
+
+/** A dark phone shows no warnings; where this is not possible the phone darkens as it always does. */
+const stayAwake = () => document.hidden || navigator.wakeLock?.request("screen").catch(() => {});
+stayAwake();
+document.addEventListener("visibilitychange", stayAwake);
+navigator.getBattery?.().then((found) => (battery = found), () => {});
+for (const bar of [byId("bottom"), document.querySelector(".top")]) new ResizeObserver(redraw).observe(bar);
+new ResizeObserver(() => (fitted && showWhole(), redraw())).observe(byId("map"));
+dark.addEventListener("change", repaint);
+setInterval(() => linked || drawWords(), 1000); // for how long there is no link
+if (localStorage.getItem(SUN)) setSun(true);
+
+me = (await attempt(byId("message"), readMe)) ?? null;
+drawWords();

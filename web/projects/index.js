@@ -1,0 +1,117 @@
+// The list of projects, with the jobs that run.
+
+import { listProjects, listTrash, pictureUrl, projectUrl, readMe, readServer, removeProject, restoreProject, watchJobs } from "../shared/api.js";
+import { attempt, fill, make } from "../shared/dom.js";
+import { stateOf, when } from "../shared/format.js";
+import { headline } from "../shared/figures.js";
+import { badge } from "./job_status.js";
+import "./new_job.js";
+import "../shared/page_head.js";
+
+const MANY = 12;
+const byId = (id) => document.getElementById(id);
+const cards = new Map();
+const jobs = new Map();
+let projects = [];
+let asked = null;
+
+function card(id) {
+  if (!cards.has(id)) {
+    const facts = make("div", { className: "facts" });
+    const status = make("job-status");
+    cards.set(id, { root: make("li", { className: "card" }, facts, status), facts, status });
+  }
+  return cards.get(id);
+}
+
+function draw(id, project = projects.find((one) => one.id === id)) {
+  const view = jobs.get(id);
+  const { root, facts, status } = card(id);
+  const open = view && view.job.state !== "succeeded";
+  const picture = project?.pictured
+    ? make("img", { src: pictureUrl(id, project.updated), alt: "", loading: "lazy", width: 320, height: 180 })
+    : make("div", { className: "no-picture", ariaHidden: "true" }, "No map yet");
+  const words = project
+    ? [...headline(project), when(project.updated)]
+    : [view ? view.job.inputs.recordings.map((path) => path.split("/").at(-1)).join(", ") : ""];
+  fill(
+    facts,
+    make("a", { href: projectUrl(id), className: "cover" }, picture, make("strong", {}, project?.name ?? id)),
+    open ? null : badge(stateOf(project, view)),
+    make("p", { className: "quiet" }, words.join(" · ")),
+    project?.problem ? make("p", { className: "error" }, `Damaged: ${project.problem}`) : null,
+  );
+  status.hidden = !open;
+  if (view) status.view = view;
+  return root;
+}
+
+function drawAll() {
+  const known = new Set(projects.map((one) => one.id));
+  const waiting = [...jobs.keys()].filter((id) => !known.has(id) && !jobs.get(id).job.finished);
+  const wanted = byId("find").value.trim().toLowerCase();
+  const fits = (project) => `${project.name} ${project.id}`.toLowerCase().includes(wanted);
+  const roots = [...waiting.map((id) => draw(id)), ...projects.filter(fits).map((one) => draw(one.id, one))];
+  const list = byId("projects");
+  if (roots.some((root, k) => list.children[k] !== root) || list.children.length !== roots.length) list.replaceChildren(...roots);
+  byId("empty").hidden = projects.length + waiting.length > 0;
+  byId("none").hidden = roots.length > 0 || !wanted;
+  byId("find").closest("label").hidden = projects.length <= MANY;
+}
+
+async function reload() {
+  projects = (await attempt(byId("message"), listProjects)) ?? projects;
+  drawAll();
+}
+
+/** Several jobs may change at once: one request is enough. */
+function reloadSoon() {
+  asked ??= setTimeout(() => {
+    asked = null;
+    reload();
+  }, 100);
+}
+
+async function showTrash() {
+  const deleted = (await attempt(byId("message"), listTrash)) ?? [];
+  const act = (action) => async () => {
+    await attempt(byId("message"), action);
+    await showTrash();
+    reloadSoon();
+  };
+  const row = ({ id, project, goes }) =>
+    make(
+      "li", {},
+      make("div", {}, make("strong", {}, project), make("small", {}, ` goes for good on ${when(goes)}`)),
+      make("button", { type: "button", onclick: act(() => restoreProject(id)), ariaLabel: `Bring back ${project}` }, "Bring back"),
+      make("button", { type: "button", onclick: act(() => removeProject(id)), ariaLabel: `Remove ${project} for good` }, "Remove now"),
+    );
+  byId("trash").hidden = deleted.length === 0;
+  byId("trash").querySelector("ul").replaceChildren(...deleted.map(row));
+}
+
+async function begin() {
+  const { may } = await readMe();
+  const processes = may.includes("process");
+  byId("new").hidden = byId("to-new").hidden = !processes;
+  document.querySelector("main").classList.toggle("alone", !processes);
+  const server = await attempt(byId("message"), readServer);
+  byId("notices").replaceChildren(...(server?.notices ?? []).map((words) => make("p", { className: "notice" }, `▲ ${words}`)));
+  if (processes) await showTrash();
+}
+
+watchJobs(
+  (view) => {
+    const id = view.job.project;
+    const before = jobs.get(id);
+    jobs.set(id, view);
+    if (before?.job.state !== view.job.state) reloadSoon();
+    else draw(id);
+  },
+  (linked) => {
+    document.querySelector("page-head").linked = linked;
+  },
+);
+byId("find").addEventListener("input", drawAll);
+begin();
+reload();

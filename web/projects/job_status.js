@@ -1,0 +1,54 @@
+// <job-status>: state, progress, reason and buttons of one job.
+
+import { cancelJob, readMe, retryJob } from "../shared/api.js";
+import { attempt, fill, make } from "../shared/dom.js";
+import { STATES, overallWords, progressWords } from "../shared/format.js";
+
+export function badge(state) {
+  const { mark, word } = STATES[state];
+  return make("span", { className: `badge ${state}` }, make("span", { ariaHidden: "true" }, mark), ` ${word}`);
+}
+
+class JobStatus extends HTMLElement {
+  #view;
+  #line = make("div", { className: "job-line" });
+  #bar = make("progress", { max: 1, ariaLabel: "Progress of the whole run" });
+  #words = make("p", { className: "job-words", role: "status" });
+  #piece = make("p", { className: "job-words" });
+  #buttons = make("div", { className: "buttons" });
+  #message = make("p", { className: "error", role: "alert" });
+
+  connectedCallback() {
+    this.replaceChildren(this.#line, this.#bar, this.#words, this.#piece, this.#buttons, this.#message);
+  }
+
+  set view(view) {
+    const before = this.#view?.job;
+    this.#view = view;
+    const { job, status } = view;
+    const running = job.state === "running";
+    fill(this.#line, badge(job.state), running && status.what ? make("strong", {}, status.what) : null);
+    this.#bar.hidden = !running;
+    this.#bar.value = view.overall;
+    this.#words.textContent = running ? overallWords(view) : job.note;
+    this.#words.hidden = !this.#words.textContent;
+    this.#piece.hidden = !running || !status.what;
+    this.#piece.textContent = this.#piece.hidden ? "" : progressWords(view);
+    if (before?.state !== job.state || before?.id !== job.id) this.#offer(job);
+  }
+
+  async #offer(job) {
+    const button = (words, action) =>
+      make("button", { type: "button", onclick: () => attempt(this.#message, () => action(job.id)) }, words);
+    const open = job.state === "queued" || job.state === "running";
+    const again = job.state === "failed" || job.state === "cancelled";
+    const { may } = await readMe();
+    if (this.#view.job.state !== job.state || !may.includes("process")) return;
+    this.#buttons.replaceChildren(
+      ...(open ? [button("Cancel", cancelJob)] : []),
+      ...(again ? [button("Resume", retryJob)] : []),
+    );
+  }
+}
+
+customElements.define("job-status", JobStatus);

@@ -1,0 +1,153 @@
+// <new-job>: the form that starts a job: a recording, a name, a preset, settings.
+// With `again` it starts one like another: in the same project, or as a new one that keeps finished stages.
+
+import { addJob, listProjects, projectUrl, readChoices } from "../shared/api.js";
+import { attempt, make } from "../shared/dom.js";
+import "./folder_browser.js";
+import "./recording_summary.js";
+import "./setting_editor.js";
+import "./upload_box.js";
+
+const field = (words, control, hint) =>
+  make("label", {}, make("span", {}, words), control, hint ? make("small", {}, hint) : null);
+
+const slug = (path) =>
+  path.split("/").at(-1).replace(/\.[^.]*$/, "").replace(/[^A-Za-z0-9._-]+/g, "-").replace(/^[^A-Za-z0-9]+/, "").slice(0, 64);
+
+const text = (name, more = {}) => make("input", { name, autocomplete: "off", spellcheck: false, ...more });
+
+class NewJob extends HTMLElement {
+  #recording = text("recording", { required: true, onchange: () => this.#look() });
+  #browser = make("folder-browser", { onpick: (event) => this.#choose(event.detail) });
+  #found = make("recording-look");
+  #project = text("project", {
+    required: true, pattern: "[A-Za-z0-9][A-Za-z0-9._\\-]{0,63}", title: "Letters, digits, dot, dash and underscore",
+    oninput: () => this.#touched.add("project"),
+  });
+  #preset = make("select", { name: "preset", onchange: () => { this.#touched.add("preset"); this.#editor.show(this.#preset.value); } });
+  #rig = make("select", { name: "rig", onchange: () => this.#touched.add("rig") }, make("option", { value: "" }, "Guess from the recording"));
+  #imu = text("imu", { oninput: () => this.#touched.add("imu") });
+  #gnss = text("gnss", { oninput: () => this.#touched.add("gnss") });
+  #editor = make("setting-editor");
+  #settings = make("details", {}, make("summary", {}, "All settings"), this.#editor);
+  #message = make("p", { className: "error", role: "alert" });
+  #touched = new Set(); // fields a person filled in: no suggestion overwrites them
+  #taken = new Set(); // names of the projects there are: a new one gets another
+  #others = []; // recordings of the job that is done again, beside the first
+  #again = null;
+
+  async connectedCallback() {
+    this.replaceChildren(
+      make(
+        "form", { onsubmit: (event) => this.#submit(event) },
+        ...(this.#again ? [] : [make("upload-box", { onrecording: (event) => this.#choose(event.detail), onchosen: (event) => this.#suggest({ project: slug(event.detail).toLowerCase() }) })]),
+        field(this.#again ? "Recording" : "Or a recording on the server", this.#recording, "File or folder: pcap, bag, mcap, frames"),
+        make("button", { type: "button", onclick: () => this.#browser.toggle() }, "Browse…"),
+        this.#browser,
+        this.#found,
+        field("Project name", this.#project, this.#again ? "The same name: run again in this project. Another: a new project. Finished stages that the change does not touch are kept." : ""),
+        field("Preset", this.#preset),
+        field("Rig", this.#rig),
+        make(
+          "details", {}, make("summary", {}, "IMU and GNSS files"),
+          field("IMU, CSV", this.#imu, "Empty: what the recording has"),
+          field("GNSS, CSV", this.#gnss, "Empty: what the recording has"),
+        ),
+        this.#settings,
+        make("button", { className: "primary" }, "Start"),
+        this.#message,
+      ),
+    );
+    this.#settings.addEventListener("toggle", () => this.#settings.open && this.#editor.show(this.#preset.value));
+    const [choices, projects] = (await attempt(this.#message, () => Promise.all([readChoices(), this.#again ? [] : listProjects()]))) ?? [];
+    this.#taken = new Set(projects?.map((one) => one.id));
+    const option = (name) => make("option", { value: name }, name);
+    this.#preset.append(...(choices?.presets ?? []).map(option));
+    this.#rig.append(...(choices?.rigs ?? []).map(option));
+    if (this.#again) this.#fill(this.#again);
+  }
+
+  /** A job to do again; set before the form is shown. */
+  set again(job) {
+    this.#again = job;
+  }
+
+  #fill({ project, inputs }) {
+    const [first = "", ...others] = inputs.recordings;
+    this.#others = others;
+    this.#recording.value = first;
+    this.#suggest({ project, ...inputs });
+    for (const name of ["project", "preset", "rig", "imu", "gnss"]) this.#touched.add(name);
+    this.#editor.set(inputs.settings);
+    if (inputs.settings.length) this.#settings.open = true;
+  }
+
+  #choose(path) {
+    this.#recording.value = path;
+    this.#others = [];
+    this.#look();
+  }
+
+  async #look() {
+    const path = this.#recording.value.trim();
+    this.#suggest({ project: slug(path) });
+    const found = await this.#found.look(path);
+    if (found) this.#suggest(found);
+  }
+
+  /** Puts values into the fields no person has filled in. */
+  #suggest({ project, preset, rig, imu, gnss }) {
+    const put = (name, input, value) => {
+      if (value === undefined || this.#touched.has(name)) return;
+      if (name === "rig" && value && ![...input.options].some((one) => one.value === value)) {
+        input.append(make("option", { value }, value.split("/").at(-1)));
+      }
+      input.value = value;
+    };
+    put("project", this.#project, this.#again ? project : project && this.#free(project));
+    put("preset", this.#preset, preset);
+    put("rig", this.#rig, rig);
+    put("imu", this.#imu, imu);
+    put("gnss", this.#gnss, gnss);
+    if (preset !== undefined && this.#settings.open) this.#editor.show(this.#preset.value);
+  }
+
+  /** The name, with a number if there is a project of that name. */
+  #free(project) {
+    let found = project;
+    for (let n = 2; this.#taken.has(found); n += 1) found = `${project.slice(0, 60)}-${n}`;
+    return found;
+  }
+
+  async #submit(event) {
+    event.preventDefault();
+    const job = {
+      project: this.#project.value,
+      recordings: [this.#recording.value.trim(), ...this.#others],
+      preset: this.#preset.value,
+      rig: this.#rig.value,
+      imu: this.#imu.value,
+      gnss: this.#gnss.value,
+      settings: this.#editor.texts(),
+      only_new: !this.#again,
+      clone_of: this.#again && this.#again.project !== this.#project.value ? this.#again.project : "",
+    };
+    const added = await attempt(this.#message, () => this.#add(job));
+    if (added) location.assign(projectUrl(added.job.project));
+  }
+
+  async #add(job) {
+    try {
+      return await addJob(job);
+    } catch (error) {
+      if (Object.keys(error.problems).length) {
+        this.#settings.open = true;
+        await this.#editor.show(this.#preset.value);
+        if (this.#editor.complain(error.problems)) throw new Error("Some settings are wrong, see above");
+      }
+      throw error;
+    }
+  }
+}
+
+customElements.define("new-job", NewJob);

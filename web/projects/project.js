@@ -1,0 +1,131 @@
+// One project: the map, the figures, the results, the job.
+
+import { ApiError, fileUrl, listJobsOf, readProject, reportUrl, viewerUrl, watchJobs } from "../shared/api.js";
+import { fill, make } from "../shared/dom.js";
+import { figures } from "../shared/figures.js";
+import { bytes, seconds, stateOf, when } from "../shared/format.js";
+import { badge } from "./job_status.js";
+import "../shared/page_head.js";
+import "./project_tools.js";
+
+const id = decodeURIComponent(location.pathname.split("/")[2]);
+const byId = (name) => document.getElementById(name);
+const status = document.querySelector("job-status");
+const log = document.querySelector("job-log");
+const STAGE_WORDS = { done: "✓ Done", reused: "✓ Kept from before", running: "▶ Running" };
+let project = null;
+let view = null;
+let lacking = null;
+
+function draw() {
+  const name = project?.name ?? id;
+  document.title = `${name} · recon4`;
+  document.querySelector("page-head").name = name;
+  byId("title").textContent = name;
+  document.querySelector("project-tools").name = name;
+  const facts = project
+    ? [project.preset && `preset ${project.preset}`, project.rig && `rig ${project.rig}`, bytes(project.bytes), when(project.updated)]
+    : [];
+  status.hidden = !view || view.job.state === "succeeded";
+  fill(byId("state"), status.hidden ? badge(stateOf(project, view)) : null, make("p", { className: "quiet" }, facts.filter(Boolean).join(" · ")));
+  if (view) status.view = view;
+  drawMessage();
+  drawFigures();
+  drawFiles();
+  drawStages();
+  showMap();
+}
+
+function drawFigures() {
+  const rows = figures(project?.summary ?? {});
+  byId("figures").hidden = rows.length === 0;
+  fill(byId("figures").querySelector("dl"), ...rows.map(([words, value]) => make("div", {}, make("dt", {}, words), make("dd", {}, value))));
+}
+
+function drawFiles() {
+  const files = project?.files ?? [];
+  byId("files").hidden = files.length === 0;
+  const row = (file) => {
+    const report = file.name === "report.html";
+    const link = report
+      ? make("a", { href: reportUrl(id), target: "_blank", rel: "noopener" }, file.words)
+      : make("a", { href: fileUrl(id, file.name), download: "" }, file.words);
+    return make("li", {}, link, make("small", {}, `${file.name}, ${bytes(file.bytes)}`));
+  };
+  fill(byId("files").querySelector("ul"), ...files.map(row));
+}
+
+function drawStages() {
+  const done = new Map((project?.stages ?? []).map((row) => [row.stage, row]));
+  const live = view?.job.state === "running" ? view.status.stages : [];
+  const rows = live.length
+    ? live.map((row) => [row.stage, STAGE_WORDS[row.state] ?? row.state, row.seconds, done.get(row.stage)?.peak_bytes])
+    : [...done.values()].map((row) => [row.stage, STAGE_WORDS.done, row.seconds, row.peak_bytes]);
+  byId("stages").hidden = rows.length === 0;
+  const cells = ([stage, state, time, memory]) =>
+    make(
+      "tr", {},
+      make("th", { scope: "row" }, stage),
+      make("td", {}, state),
+      make("td", { className: "number" }, typeof time === "number" ? seconds(time) : ""),
+      make("td", { className: "number" }, memory ? bytes(memory) : ""),
+    );
+  fill(byId("stages").querySelector("tbody"), ...rows.map(cells));
+}
+
+function showMap() {
+  const walking = view?.job.state === "running" && view.status.stages.some((row) => row.stage === "odometry");
+  if (!(project?.viewable || walking) || byId("viewer").querySelector("iframe")) return;
+  byId("viewer").replaceChildren(make("iframe", { src: viewerUrl(id), title: "Map in 3-D" }));
+}
+
+function drawLog() {
+  if (view) log.job = view.job.id;
+  log.read();
+}
+
+async function reload() {
+  try {
+    project = await readProject(id);
+    lacking = null;
+  } catch (error) {
+    lacking = error;
+  }
+  draw();
+}
+
+/** Why there is no project; that of a job which waits, or ended before it made one, has no folder. */
+function drawMessage() {
+  const expected = lacking instanceof ApiError && lacking.status === 404 && view;
+  const damage = project?.problem ? `Damaged: ${project.problem}` : "";
+  byId("message").textContent = lacking && !expected ? lacking.message : damage;
+}
+
+function onJob(fresh) {
+  if (fresh.job.project !== id) return;
+  const before = view;
+  view = fresh;
+  const stagesDone = (one) => one?.status.stages.filter((row) => row.state !== "running").length;
+  if (before?.job.state !== view.job.state || stagesDone(before) !== stagesDone(view)) reload();
+  else draw();
+  drawLog();
+}
+
+document.querySelector("project-tools").addEventListener("renamed", (event) => {
+  project = event.detail;
+  draw();
+});
+/** The newest job, with its log, also when it succeeded: the stream tells of the others only. */
+async function findJob() {
+  const [newest] = await listJobsOf(id);
+  if (newest && !view) onJob(newest);
+}
+
+watchJobs(onJob, (linked) => {
+  document.querySelector("page-head").linked = linked;
+});
+reload();
+findJob().catch((error) => {
+  lacking ??= error;
+  draw();
+});

@@ -1,0 +1,59 @@
+// <recording-look>: what is inside a recording, in words.
+
+import { lookAt } from "../shared/api.js";
+import { make } from "../shared/dom.js";
+import { bytes, count, seconds } from "../shared/format.js";
+
+class RecordingLook extends HTMLElement {
+  #asked = 0;
+
+  connectedCallback() {
+    this.setAttribute("role", "status");
+    this.hidden = true;
+  }
+
+  /** Looks at a recording; gives what was found, null if it cannot be read or another was asked for. */
+  async look(path) {
+    const mine = (this.#asked += 1);
+    this.hidden = !path;
+    if (!path) return null;
+    this.replaceChildren(make("p", { className: "quiet" }, "Looking into it…"));
+    try {
+      const found = await lookAt(path);
+      if (mine !== this.#asked) return null;
+      this.#show(found);
+      return found;
+    } catch (error) {
+      if (mine === this.#asked) this.replaceChildren(make("p", { className: "error" }, error.message));
+      return null;
+    }
+  }
+
+  #show(found) {
+    const about = found.estimated ? "about " : "";
+    const facts = [found.kind, bytes(found.bytes), ...(found.seconds > 0 ? [`${about}${seconds(found.seconds)}`] : [])];
+    const sensor = (one) => {
+      const rate = one.rate_hz === null ? "" : `, ${one.rate_hz.toFixed(1)} a second`;
+      return ["LiDAR", `${one.model} (${one.label}): ${about}${count(one.count)} ${one.content}${rate}`];
+    };
+    const rows = [
+      ...found.sensors.map(sensor),
+      ...found.samples.map((text) => ["Samples", text]),
+      ...(found.rig ? [["Rig", `${file(found.rig)}, beside it`]] : []),
+      ...(found.imu ? [["IMU", `${file(found.imu)}, beside it`]] : []),
+      ...(found.gnss ? [["GNSS", `${file(found.gnss)}, beside it`]] : []),
+      ...found.derived.map((text) => ["Derived", text]),
+      ...found.missing.map((text) => ["Missing", text]),
+    ];
+    const warnings = found.warnings.map((text) => make("li", {}, text));
+    this.replaceChildren(
+      make("p", {}, make("strong", {}, facts.join(" · "))),
+      make("dl", { className: "found" }, ...rows.flatMap(([term, text]) => [make("dt", {}, term), make("dd", {}, text)])),
+      ...(warnings.length ? [make("p", { className: "warn" }, "▲ Warnings"), make("ul", {}, ...warnings)] : []),
+    );
+  }
+}
+
+const file = (path) => path.split("/").at(-1);
+
+customElements.define("recording-look", RecordingLook);

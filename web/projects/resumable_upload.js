@@ -1,0 +1,186 @@
+// Sends the files of one recording, goes on after any break, and says how far it is. No DOM.
+
+import { beginUpload, createFile, listUploadFiles, listUploads, readOffset, readUpload, removeUpload, sendBytes } from "../shared/api.js";
+
+export const CHUNK = 8 << 20;
+const SMALLEST_CHUNK = 512 << 10;
+const AT_ONCE = 3;
+const RATE_OVER_S = 10;
+const LONGEST_WAIT_S = 30;
+const FOR_NOBODY = new Set(["Thumbs.db", "desktop.ini"]);
+
+/** Of picked or dropped {file, name} the name of the whole, the files with names below it, and how many were left out. */
+export function sorted(picked) {
+  const meant = picked.filter(({ name }) => name.split("/").every((part) => !part.startsWith(".") && !FOR_NOBODY.has(part)));
+  const tops = new Set(meant.map(({ name }) => name.split("/")[0]));
+  const folder = tops.size === 1 && meant.every(({ name }) => name.includes("/"));
+  const files = meant
+    .map(({ file, name }) => ({ file, name: folder ? name.slice(name.indexOf("/") + 1) : name }))
+    .sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
+  const name = folder ? [...tops][0] : files.length === 1 ? files[0].name : "recording";
+  return { name, files, leftOut: picked.length - meant.length };
+}
+
+/** What the same files are recognized by after a break. */
+export async function fingerprint(files) {
+  const words = JSON.stringify(files.map(({ file, name }) => [name, file.size, file.lastModified]));
+  const digest = await crypto.subtle?.digest("SHA-256", new TextEncoder().encode(words));
+  if (!digest) return words.slice(0, 200);
+  return [...new Uint8Array(digest)].map((one) => one.toString(16).padStart(2, "0")).join("");
+}
+
+export class Sending extends EventTarget {
+  state = "waiting"; // sending, paused, trying, failed, done, removed
+  words = "";
+  sent = 0;
+  recording = "";
+  #upload = null;
+  #known = new Map(); // name -> {url, offset}
+  #samples = [];
+  #chunk = CHUNK;
+  #stop = null;
+  #run = Promise.resolve(); // one at a time
+
+  constructor({ name, files }) {
+    super();
+    this.name = name;
+    this.files = files;
+    this.total = files.reduce((sum, { file }) => sum + file.size, 0);
+  }
+
+  /** Bytes a second lately; 0 = not known. */
+  get rate() {
+    const [first, last] = [this.#samples[0], this.#samples.at(-1)];
+    return last && last.t > first.t ? (last.sent - first.sent) / (last.t - first.t) : 0;
+  }
+
+  get eta() {
+    return this.rate > 0 ? (this.total - this.sent) / this.rate : null;
+  }
+
+  /** Sends what is not there yet. */
+  start() {
+    const stop = new AbortController();
+    const before = this.#run;
+    this.#stop = stop;
+    this.#tell("sending", "");
+    this.#run = before.then(() => this.#go(stop));
+    return this.#run;
+  }
+
+  async #go(stop) {
+    this.#samples = [];
+    try {
+      await this.#find(stop.signal);
+      if (!this.#upload.finished) await this.#sendAll(stop.signal);
+      this.recording = (await this.#again(stop.signal, () => readUpload(this.#upload.id))).recording;
+      this.#tell("done", "");
+    } catch (error) {
+      if (!stop.signal.aborted) this.#tell("failed", error.message);
+      stop.abort();
+    }
+  }
+
+  pause() {
+    this.#tell("paused", "");
+    this.#stop?.abort();
+  }
+
+  async remove() {
+    this.pause();
+    if (this.#upload) await removeUpload(this.#upload.id);
+    this.#tell("removed", "");
+  }
+
+  /** The upload of these files: one begun before, or a new one. */
+  async #find(signal) {
+    const mark = await fingerprint(this.files);
+    const uploads = await this.#again(signal, listUploads);
+    const same = (one) => one.fingerprint === mark && one.bytes === this.total && one.files === this.files.length;
+    this.#upload = uploads.find(same) ?? (await beginUpload({ name: this.name, files: this.files.length, bytes: this.total, fingerprint: mark }));
+    if (this.#upload.finished) return;
+    const rows = await this.#again(signal, () => listUploadFiles(this.#upload.id));
+    this.#known = new Map(rows.map((row) => [row.name, row]));
+    this.#count();
+  }
+
+  async #sendAll(signal) {
+    const waiting = this.files.filter(({ file, name }) => this.#known.get(name)?.offset !== file.size || !this.#known.has(name));
+    const lane = async () => {
+      for (let next = waiting.shift(); next; next = waiting.shift()) await this.#sendFile(next, signal);
+    };
+    await Promise.all(Array.from({ length: AT_ONCE }, lane));
+  }
+
+  async #sendFile({ file, name }, signal) {
+    do {
+      await this.#again(signal, async (again) => {
+        const row = this.#known.get(name);
+        if (row && again) row.offset = await readOffset(row.url);
+        if (row && row.offset === file.size) return;
+        const from = row?.offset ?? 0;
+        const began = performance.now();
+        const bytes = await readBytes(file.slice(from, from + this.#chunk), name);
+        if (row) row.offset = await sendBytes(row.url, from, bytes, signal);
+        else this.#known.set(name, await createFile(this.#upload.id, name, file.size, bytes, signal));
+        this.#suit((performance.now() - began) / 1000);
+        this.#count();
+      });
+    } while (this.#known.get(name).offset < file.size);
+  }
+
+  /** Chunks take about a second or more, so that a slow line shows progress and a fast one is used. */
+  #suit(tookS) {
+    if (tookS > 4) this.#chunk = Math.max(this.#chunk / 2, SMALLEST_CHUNK);
+    else if (tookS < 1) this.#chunk = Math.min(this.#chunk * 2, CHUNK);
+  }
+
+  /** Tries until it goes, as long as another try can help. */
+  async #again(signal, action) {
+    for (let wait = 1, again = false; ; wait = Math.min(wait * 2, LONGEST_WAIT_S), again = true) {
+      if (signal.aborted) throw new Error("stopped");
+      try {
+        const result = await action(again);
+        if (this.state === "trying") this.#tell("sending", "");
+        return result;
+      } catch (error) {
+        const helps = [0, 409, 423, 429, 460, 502, 503, 504].includes(error.status);
+        if (!helps || signal.aborted) throw error;
+        this.#tell("trying", `${error.message}; trying again in ${wait} s`);
+        await pauseFor(wait, signal);
+      }
+    }
+  }
+
+  #count() {
+    this.sent = [...this.#known.values()].reduce((sum, row) => sum + row.offset, 0);
+    const t = performance.now() / 1000;
+    this.#samples.push({ t, sent: this.sent });
+    while (this.#samples.length > 2 && t - this.#samples[0].t > RATE_OVER_S) this.#samples.shift();
+    this.#tell(this.state === "trying" ? "sending" : this.state, "");
+  }
+
+  #tell(state, words) {
+    this.state = state;
+    this.words = words;
+    this.dispatchEvent(new Event("change"));
+  }
+}
+
+async function readBytes(blob, name) {
+  try {
+    return await blob.arrayBuffer();
+  } catch {
+    throw new Error(`${name} cannot be read any more; choose it again`);
+  }
+}
+
+function pauseFor(seconds, signal) {
+  return new Promise((resolve, reject) => {
+    const timer = setTimeout(resolve, seconds * 1000);
+    signal.addEventListener("abort", () => {
+      clearTimeout(timer);
+      reject(new Error("stopped"));
+    });
+  });
+}

@@ -1,0 +1,25 @@
+// The keys of the page of slices.
+
+import { make } from "../shared/dom.js";
+
+const KEYS = [
+  ["[ or Page down", "One step back"],
+  ["] or Page up", "One step on"],
+  ["H V F", "Horizontal, vertical, free plane"],
+  ["+ −", "Twice as thick, half as thick"],
+  ["C", "Next color"],
+  ["M", "Measure: two points"],
+  ["0", "All of the slice"],
+  ["Arrows", "Move the picture, when it has the focus"],
+  ["Enter", "Pick the middle of the picture"],
+  ["Esc", "End measuring"],
+];
+
+export function help(dialog) {
+  dialog.replaceChildren(
+    make("h2", { id: "help-title" }, "Keys"),
+    make("dl", { className: "keys" }, ...KEYS.map(([key, words]) => make("div", {}, make("dt", {}, key), make("dd", {}, words)))),
+    make("p", {}, "On the map from above: drag for a vertical cut, drag its line or its ends A and B. The arrow points where the picture looks."),
+    make("form", { method: "dialog" }, make("button", { className: "primary" }, "Close")),
+  );
+}

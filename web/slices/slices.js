@@ -1,0 +1,296 @@
+// The page of slices: where is cut, how it is shown, what is found. The address is the state.
+
+import { aboveUrl, ApiError, pickOnSlice, readAboveWindow, readProject, readSlice, readSliceFacts } from "../shared/api.js";
+import { fill, make } from "../shared/dom.js";
+import { count } from "../shared/format.js";
+import { controls } from "./controls.js";
+import { findings } from "./findings.js";
+import { legend } from "./legend.js";
+import { help } from "./help.js";
+import { COLORS, cutOf, format, moved, normalFrom, parse, unframed } from "./state.js";
+import "../shared/page_head.js";
+import "./above.js";
+import "./view.js";
+
+const id = decodeURIComponent(location.pathname.split("/")[2]);
+const byId = (name) => document.getElementById(name);
+const dark = matchMedia("(prefers-color-scheme: dark)");
+const above = make("slice-above");
+const first = make("slice-view");
+const second = make("slice-view", { className: "second" });
+const swipe = make("input", { type: "range", min: 0, max: 100, value: 50, ariaLabel: "Swipe between the two slices", className: "swipe" });
+const captions = [make("p", { className: "caption" }), make("p", { className: "caption second" })];
+const reading = make("p", { className: "readout", role: "status" });
+const facing = make("div", { className: "facing" });
+let facts = null;
+let state = parse(location.search);
+let measuring = false;
+let measured = [];
+let picked = null;
+let shown = null;
+let turn = 0;
+
+/** Changes the state, the address, and what depends on them. */
+function change(next, { keep = false } = {}) {
+  const before = state;
+  state = { ...state, ...next };
+  const elsewhere = format({ ...before, color: "", t: 0 }) !== format({ ...state, color: "", t: 0 });
+  if (!keep && elsewhere) clearMeasure();
+  if (state.u === null) first.frame = second.frame = null;
+  else if (next.m) first.frame = second.frame = { u: state.u, v: state.v, m: state.m };
+  history.replaceState(null, "", `?${format(state)}`);
+  above.state = state;
+  panel.show(state);
+  found.show(state);
+  layOut();
+  load();
+}
+
+const step = (times) => change(moved(state, times * state.step));
+const toKind = (kind) => kind !== state.kind && change(unframed({ ...state, ...start(kind) }));
+
+/** A plane of another kind near the middle of the map, or where the present one is. */
+function start(kind) {
+  const [low, high] = facts.bounds_m;
+  const middle = low.map((x, k) => (x + high[k]) / 2);
+  const at = shown && state.kind === "horizontal" && first.frame ? [first.frame.u, first.frame.v] : middle;
+  if (kind === "horizontal") return { kind, z: state.given ? state.z : low[2] + Math.min(1.2, (high[2] - low[2]) / 2) };
+  if (kind === "vertical") {
+    const wide = high[0] - low[0] >= high[1] - low[1];
+    return wide ? { kind, a: [low[0], at[1]], b: [high[0], at[1]] } : { kind, a: [at[0], low[1]], b: [at[0], high[1]] };
+  }
+  return { kind, o: [...at.slice(0, 2), middle[2]], n: normalFrom({ azimuth: 0, tilt: 45 }) };
+}
+
+// -- pictures
+
+const ask = (view, more) => ({
+  cut: cutOf(state),
+  color: state.color,
+  low: state.lo,
+  high: state.hi,
+  reference: state.ref,
+  method: state.method,
+  source: state.source,
+  ground: dark.matches ? "dark" : "light",
+  ...view.wanted,
+  ...more,
+});
+
+async function load() {
+  const mine = ++turn;
+  const page = `${tab}1`;
+  document.body.classList.add("drawing");
+  try {
+    const told = await readSlice(id, ask(first, { page, turn: mine }));
+    if (mine !== turn) return;
+    await first.show(told);
+    shown = told;
+    if (state.beside || state.besideColor) await loadSecond(mine);
+    byId("message").textContent = "";
+    describe();
+  } catch (error) {
+    if (mine !== turn || error.name === "Superseded") return;
+    byId("message").textContent = error.message;
+    if (error instanceof ApiError && error.status === 422) first.clear();
+  } finally {
+    if (mine === turn) document.body.classList.remove("drawing");
+  }
+}
+
+async function loadSecond(mine) {
+  second.frame = first.frame;
+  const color = state.besideColor || state.color;
+  const range = color === state.color ? {} : { low: null, high: null };
+  const told = await readSlice(id, ask(second, { page: `${tab}2`, turn: mine, color, source: state.beside, ...range }));
+  if (mine !== turn) return;
+  await second.show(told);
+  captions[1].textContent = `${sourceWords(state.beside)} · ${COLORS[color]} · ${count(told.points)} points`;
+}
+
+const sourceWords = (source) => (source ? facts.sources.find((one) => one.id === source)?.words ?? source : "This map");
+
+function describe() {
+  const [name, points] = [shown.name, count(shown.points)];
+  captions[0].textContent = `${sourceWords(state.source)} · ${COLORS[state.color]} · ${points} points`;
+  first.label = `Slice ${name}, ${points} points, colored by ${COLORS[state.color]}`;
+  second.label = captions[1].textContent;
+  fill(facing,
+    make("strong", {}, `${{ horizontal: "Horizontal", vertical: "Vertical", free: "Free plane" }[state.kind]} ${name}`),
+    make("span", {}, `${Number((state.t * 100).toFixed(1))} cm thick`),
+    make("span", {}, `${points} points`),
+    make("span", { className: "frame" }, facts.frame),
+    make("span", {}, facts.approval),
+  );
+  legend(byId("legend"), { state, shown, facts, onRange: (lo, hi) => change({ lo, hi }, { keep: true }) });
+  mark();
+}
+
+// -- reading points
+
+async function place({ u, v, reach }) {
+  const answer = await pickOnSlice(id, { cut: cutOf(state), uv: [u, v], radius_m: Math.min(5, Math.max(0.005, reach)), source: state.source });
+  if (!answer.found) {
+    reading.textContent = "No point of the map here";
+    return;
+  }
+  picked = answer;
+  if (measuring) measured = measured.length >= 2 ? [answer] : [...measured, answer];
+  found.picked(answer);
+  mark();
+  reading.textContent = measured.length === 2 ? distanceWords(...measured) : pointWords(answer);
+}
+
+const fixed = (xs) => xs.map((x) => x.toFixed(3)).join("  ");
+
+function pointWords({ p_map, p_crs, about }) {
+  const parts = [`x y z  ${fixed(p_map)} m`];
+  if (p_crs) parts.push(`${facts.crs}  E N H  ${fixed(p_crs)} m`);
+  if (about.intensity !== undefined) parts.push(`intensity ${about.intensity}`);
+  if (facts.sensors.length) parts.push(facts.sensors[about.sensor] ?? `sensor ${about.sensor}`);
+  if (about.time_s !== undefined) parts.push(`${about.time_s.toFixed(1)} s, multiframe ${about.frame_id}`);
+  return parts.join(" · ");
+}
+
+function lengths(a, b) {
+  const d = b.p_map.map((x, k) => x - a.p_map[k]);
+  return { all: Math.hypot(...d), flat: Math.hypot(d[0], d[1]), up: d[2] };
+}
+
+function distanceWords(a, b) {
+  const { all, flat, up } = lengths(a, b);
+  return `Distance ${all.toFixed(3)} m · horizontal ${flat.toFixed(3)} m · vertical ${up.toFixed(3)} m · from ${fixed(a.p_map)} to ${fixed(b.p_map)}`;
+}
+
+function mark() {
+  const line = measured.length === 2 ? `${lengths(...measured).all.toFixed(3)} m` : "";
+  const marks = measuring || measured.length ? [{ points: measured.map((one) => one.uv), words: line }] : picked ? [{ points: [picked.uv] }] : [];
+  first.marks = marks;
+  second.marks = marks;
+}
+
+function clearMeasure() {
+  measured = [];
+  picked = null;
+  reading.textContent = measuring ? "Click two points" : "";
+}
+
+function measure(on = !measuring) {
+  measuring = on;
+  clearMeasure();
+  byId("measure").setAttribute("aria-pressed", String(measuring));
+  mark();
+}
+
+// -- two slices
+
+function layOut() {
+  const two = Boolean(state.beside || state.besideColor);
+  const views = byId("views");
+  views.classList.toggle("two", two);
+  views.classList.toggle("swiping", two && views.dataset.mode === "swipe");
+  second.hidden = captions[1].hidden = !two;
+  swipe.hidden = !(two && views.dataset.mode === "swipe");
+  second.style.clipPath = swipe.hidden ? "" : `inset(0 0 0 ${swipe.value}%)`;
+}
+
+function follow(from, to) {
+  from.addEventListener("moving", () => {
+    to.frame = from.frame;
+  });
+  from.addEventListener("frame", () => {
+    to.frame = from.frame;
+    change(from.frame, { keep: true });
+  });
+  from.addEventListener("place", (event) => place(event.detail).catch((error) => (byId("message").textContent = error.message)));
+}
+
+// -- keys
+
+const KEYS = {
+  "[": () => step(-1), PageDown: () => step(-1), "]": () => step(1), PageUp: () => step(1),
+  h: () => toKind("horizontal"), v: () => toKind("vertical"), f: () => toKind("free"),
+  "+": () => thicker(2), "=": () => thicker(2), "-": () => thicker(0.5),
+  c: () => nextColor(), m: () => measure(), 0: () => change(unframed(state), { keep: true }),
+  Escape: () => measure(false), "?": () => byId("help").showModal(),
+};
+
+const thicker = (times) => change({ t: Number(Math.min(100, Math.max(0.001, state.t * times)).toPrecision(6)) }, { keep: true });
+
+function nextColor() {
+  const able = Object.keys(COLORS).filter((color) => (color !== "distance" || state.ref) && (color !== "normalized" || facts.fields.includes("intensity_normalized")));
+  change({ color: able[(able.indexOf(state.color) + 1) % able.length], lo: null, hi: null }, { keep: true });
+}
+
+addEventListener("keydown", (event) => {
+  const typing = event.target.closest?.("input:not([type=range]), select, textarea, dialog");
+  if (typing || event.ctrlKey || event.metaKey || event.altKey || !facts) return;
+  const action = KEYS[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+  if (!action) return;
+  event.preventDefault();
+  action();
+});
+
+// -- begin
+
+const tab = Math.random().toString(36).slice(2, 12);
+const panel = controls(byId("controls"), { change, step, toKind, unframed });
+const found = findings(byId("findings"), { id, change, state: () => state, ask: () => ask(first), point: (p) => (above.place = p), reload, measured: () => picked });
+
+function tools() {
+  const button = (words, action, more = {}) => make("button", { type: "button", onclick: action, ...more }, words);
+  const mode = (words, value) => button(words, () => {
+    byId("views").dataset.mode = value;
+    layOut();
+  }, { id: `mode-${value}` });
+  byId("tools").replaceChildren(
+    make("span", { className: "moves" },
+      button("◂ Step", () => step(-1), { title: "One step back  [", ariaLabel: "Step back" }),
+      button("Step ▸", () => step(1), { title: "One step on  ]", ariaLabel: "Step on" }),
+      button("−", () => first.zoom(1.5), { title: "Farther away", ariaLabel: "Zoom out" }),
+      button("+", () => first.zoom(1 / 1.5), { title: "Closer", ariaLabel: "Zoom in" }),
+      button("All", () => change(unframed(state), { keep: true }), { title: "All of the slice  0" }),
+      button("Measure", () => measure(), { id: "measure", ariaPressed: "false", title: "Distance of two points  M" }),
+    ),
+    make("span", { className: "beside" }, ...panel.beside, mode("Split", "split"), mode("Swipe", "swipe")),
+    button("?", () => byId("help").showModal(), { ariaLabel: "Help", title: "Keys  ?" }),
+  );
+  byId("views").dataset.mode = "split";
+  byId("views").replaceChildren(
+    make("div", { className: "one" }, first, captions[0]),
+    make("div", { className: "one other" }, second, captions[1]),
+    swipe,
+  );
+  byId("under").replaceChildren(make("div", { id: "legend" }), facing, reading);
+  swipe.addEventListener("input", layOut);
+}
+
+async function reload() {
+  facts = await readSliceFacts(id, state.source);
+  panel.facts(facts);
+  found.facts(facts);
+}
+
+async function begin() {
+  byId("above").append(above);
+  tools();
+  help(byId("help"));
+  follow(first, second);
+  follow(second, first);
+  above.addEventListener("cut", ({ detail }) => change(state.kind === "vertical" ? detail : unframed({ ...state, kind: "vertical", ...detail })));
+  dark.addEventListener("change", load);
+  try {
+    const [project] = await Promise.all([readProject(id), reload()]);
+    document.querySelector("page-head").name = project.name;
+    document.title = `Slices · ${project.name} · recon4`;
+    if (!state.given) state = { ...state, ...start("horizontal"), given: true };
+    if (state.u !== null && state.v !== null && state.m !== null) first.frame = { u: state.u, v: state.v, m: state.m };
+    change({});
+    above.show(aboveUrl(id, facts.key), await readAboveWindow(id));
+  } catch (error) {
+    byId("message").textContent = error.message;
+  }
+}
+
+addEventListener("popstate", () => change(parse(location.search)));
+begin();

@@ -1,0 +1,335 @@
+// <slice-view>: a slice with grid, coordinates, scale bar; pan, zoom, pick. Says what it shows, asks nobody.
+//
+// Events: "frame" (the view rests elsewhere), "moving" (it moves), "place" (a click, detail {u, v, reach}).
+
+import { make } from "../shared/dom.js";
+import { roundStep } from "./state.js";
+
+const EDGE = { left: 56, bottom: 26 };
+const FINEST_M = 0.0002;
+const COARSEST_M = 50;
+
+class SliceView extends HTMLElement {
+  #canvas = make("canvas", { tabIndex: 0 });
+  #center = null;
+  #metersPerPx = 0.01;
+  #image = null;
+  #window = null;
+  #axes = ["", ""];
+  #marks = [];
+  #pointers = new Map();
+  #pinch = null;
+  #moved = 0;
+  #rest = 0;
+  #shown = 0;
+  #hover = make("output", { className: "cursor", ariaLive: "off" });
+
+  connectedCallback() {
+    this.replaceChildren(this.#canvas, this.#hover);
+    this.#canvas.setAttribute("role", "img");
+    const canvas = this.#canvas;
+    canvas.addEventListener("pointerdown", (event) => this.#down(event));
+    canvas.addEventListener("pointermove", (event) => this.#move(event));
+    canvas.addEventListener("pointerup", (event) => this.#up(event));
+    canvas.addEventListener("pointercancel", (event) => this.#up(event));
+    canvas.addEventListener("pointerleave", () => (this.#hover.value = ""));
+    canvas.addEventListener("wheel", (event) => this.#wheel(event), { passive: false });
+    canvas.addEventListener("keydown", (event) => this.#key(event));
+    new ResizeObserver(() => (this.#center ? this.#changed() : this.draw())).observe(this);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
+  }
+
+  /** Words for those who do not see the picture. */
+  set label(words) {
+    this.#canvas.setAttribute("aria-label", words);
+  }
+
+  /** Middle [m] and meters a pixel; null before the first picture. */
+  get frame() {
+    return this.#center && { u: this.#center[0], v: this.#center[1], m: this.#metersPerPx };
+  }
+
+  set frame(frame) {
+    this.#center = frame && [frame.u, frame.v];
+    if (frame) this.#metersPerPx = Math.min(COARSEST_M, Math.max(FINEST_M, frame.m));
+    this.draw();
+  }
+
+  /** What the server is asked for: pixels of the screen, and the window if one is chosen. */
+  get wanted() {
+    const { width, height } = this.#size();
+    const ratio = Math.min(2, devicePixelRatio || 1);
+    const ask = { width: Math.max(16, Math.round(width * ratio)), height: Math.max(16, Math.round(height * ratio)) };
+    if (!this.#center) return ask;
+    const [u, v] = this.#center;
+    const [du, dv] = [(width * this.#metersPerPx) / 2, (height * this.#metersPerPx) / 2];
+    return { ...ask, window: { left: u - du, bottom: v - dv, right: u + du, top: v + dv } };
+  }
+
+  /** A picture of the server, with what it shows. */
+  async show({ png, window, axes }) {
+    const bytes = Uint8Array.from(atob(png), (one) => one.charCodeAt(0));
+    const mine = (this.#shown += 1);
+    const image = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+    if (mine !== this.#shown) return image.close(); // a newer one is there already
+    this.#image?.close();
+    [this.#image, this.#window, this.#axes] = [image, window, axes];
+    if (!this.#center) this.#fit(window);
+    else this.draw();
+  }
+
+  /** All of a window between the edges with the coordinates. */
+  #fit(window) {
+    const { width, height } = this.#size();
+    const m = Math.max((window.right - window.left) / (width - EDGE.left), (window.top - window.bottom) / (height - EDGE.bottom));
+    const [u, v] = [(window.left + window.right) / 2, (window.bottom + window.top) / 2];
+    this.#center = [u - (m * EDGE.left) / 2, v - (m * EDGE.bottom) / 2];
+    this.#metersPerPx = m;
+    this.#changed();
+  }
+
+  clear() {
+    this.#image = this.#window = null;
+    this.draw();
+  }
+
+  /** Points and lines to mark: [{points: [[u, v], …], words}]. */
+  set marks(marks) {
+    this.#marks = marks;
+    this.draw();
+  }
+
+  #size() {
+    const { width, height } = this.getBoundingClientRect();
+    return { width: Math.max(16, width), height: Math.max(16, height) };
+  }
+
+  #toPx([u, v]) {
+    const { width, height } = this.#size();
+    return [width / 2 + (u - this.#center[0]) / this.#metersPerPx, height / 2 - (v - this.#center[1]) / this.#metersPerPx];
+  }
+
+  #toPlane([x, y]) {
+    const { width, height } = this.#size();
+    return [this.#center[0] + (x - width / 2) * this.#metersPerPx, this.#center[1] - (y - height / 2) * this.#metersPerPx];
+  }
+
+  draw() {
+    const { width, height } = this.#size();
+    const ratio = devicePixelRatio || 1;
+    const canvas = this.#canvas;
+    [canvas.width, canvas.height] = [Math.round(width * ratio), Math.round(height * ratio)];
+    const pen = canvas.getContext("2d");
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    const style = getComputedStyle(this);
+    const color = (name) => style.getPropertyValue(name).trim();
+    pen.fillStyle = color("--paper");
+    pen.fillRect(0, 0, width, height);
+    if (!this.#center) return;
+    const step = roundStep(this.#metersPerPx * 84);
+    this.#grid(pen, step, color("--grid"));
+    if (this.#image) {
+      const [x0, y0] = this.#toPx([this.#window.left, this.#window.top]);
+      const [x1, y1] = this.#toPx([this.#window.right, this.#window.bottom]);
+      pen.imageSmoothingEnabled = x1 - x0 < this.#image.width * 1.2;
+      pen.drawImage(this.#image, x0, y0, x1 - x0, y1 - y0);
+    }
+    this.#labels(pen, step, color);
+    this.#bar(pen, color);
+    for (const mark of this.#marks) this.#mark(pen, mark, color);
+  }
+
+  #lines(step, axis) {
+    const { width, height } = this.#size();
+    const reach = ((axis ? height : width) * this.#metersPerPx) / 2;
+    const first = Math.ceil((this.#center[axis] - reach) / step);
+    const last = Math.floor((this.#center[axis] + reach) / step);
+    return Array.from({ length: Math.max(0, last - first + 1) }, (_, k) => (first + k) * step);
+  }
+
+  #grid(pen, step, color) {
+    const { width, height } = this.#size();
+    pen.strokeStyle = color;
+    pen.lineWidth = 1;
+    pen.beginPath();
+    for (const u of this.#lines(step, 0)) {
+      const x = Math.round(this.#toPx([u, 0])[0]) + 0.5;
+      pen.moveTo(x, 0);
+      pen.lineTo(x, height);
+    }
+    for (const v of this.#lines(step, 1)) {
+      const y = Math.round(this.#toPx([0, v])[1]) + 0.5;
+      pen.moveTo(0, y);
+      pen.lineTo(width, y);
+    }
+    pen.stroke();
+  }
+
+  #labels(pen, step, color) {
+    const { width, height } = this.#size();
+    const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+    const words = (x) => (Math.abs(x) < step / 2 ? 0 : x).toFixed(digits).replace("-", "−");
+    pen.fillStyle = color("--paper-edge");
+    pen.fillRect(0, height - EDGE.bottom, width, EDGE.bottom);
+    pen.fillRect(0, 0, EDGE.left, height);
+    pen.fillStyle = color("--quiet");
+    pen.font = "12px system-ui, sans-serif";
+    pen.textAlign = "center";
+    pen.textBaseline = "middle";
+    const across = this.#axes[0].replace("along the section", "section");
+    const free = width - pen.measureText(across).width - 32;
+    for (const u of this.#lines(step, 0)) {
+      const x = this.#toPx([u, 0])[0];
+      if (x > EDGE.left + 16 && x < free) pen.fillText(words(u), x, height - EDGE.bottom / 2);
+    }
+    pen.textAlign = "right";
+    for (const v of this.#lines(step, 1)) {
+      const y = this.#toPx([0, v])[1];
+      if (y > 26 && y < height - EDGE.bottom - 10) pen.fillText(words(v), EDGE.left - 8, y);
+    }
+    pen.fillStyle = color("--ink");
+    pen.fillText(across, width - 8, height - EDGE.bottom / 2);
+    pen.textAlign = "left";
+    pen.fillText(this.#axes[1].replace("height ", ""), 8, 12);
+    pen.strokeStyle = color("--line");
+    pen.strokeRect(EDGE.left + 0.5, -1, width, height - EDGE.bottom + 0.5);
+  }
+
+  #bar(pen, color) {
+    const { width, height } = this.#size();
+    const length = roundStep(this.#metersPerPx * 60);
+    const px = length / this.#metersPerPx;
+    const [x, y] = [width - px - 16, height - EDGE.bottom - 16];
+    pen.fillStyle = color("--paper");
+    pen.globalAlpha = 0.85;
+    pen.fillRect(x - 8, y - 22, px + 16, 32);
+    pen.globalAlpha = 1;
+    pen.fillStyle = color("--ink");
+    pen.fillRect(x, y, px, 4);
+    pen.fillStyle = color("--paper");
+    pen.fillRect(x + px / 2, y + 1, px / 2 - 1, 2);
+    pen.fillStyle = color("--ink");
+    pen.textAlign = "center";
+    pen.fillText(length >= 1 ? `${length} m` : `${Number((length * 100).toPrecision(2))} cm`, x + px / 2, y - 9);
+  }
+
+  #mark(pen, { points, words, tone }, color) {
+    if (!points.length) return;
+    const places = points.map((point) => this.#toPx(point));
+    for (const [stroke, width] of [[color("--paper"), 5], [color(tone ?? "--mark"), 2]]) {
+      pen.strokeStyle = stroke;
+      pen.lineWidth = width;
+      pen.beginPath();
+      places.forEach(([x, y], k) => (k ? pen.lineTo(x, y) : pen.moveTo(x, y)));
+      for (const [x, y] of places) {
+        pen.moveTo(x + 6, y);
+        pen.arc(x, y, 6, 0, 2 * Math.PI);
+      }
+      pen.stroke();
+    }
+    if (!words) return;
+    const [x, y] = places.at(-1);
+    pen.font = "600 13px system-ui, sans-serif";
+    pen.textAlign = "left";
+    const wide = pen.measureText(words).width;
+    const left = Math.min(x + 12, this.#size().width - wide - 12);
+    pen.fillStyle = color("--paper");
+    pen.fillRect(left - 4, y - 30, wide + 8, 22);
+    pen.fillStyle = color("--ink");
+    pen.fillText(words, left, y - 19);
+  }
+
+  // -- pointers
+
+  #place(event) {
+    const box = this.getBoundingClientRect();
+    return [event.clientX - box.left, event.clientY - box.top];
+  }
+
+  #down(event) {
+    this.#canvas.setPointerCapture(event.pointerId);
+    this.#pointers.set(event.pointerId, this.#place(event));
+    if (this.#pointers.size === 1) this.#moved = 0;
+    this.#pinch = null;
+  }
+
+  #move(event) {
+    const place = this.#place(event);
+    if (this.#center && event.pointerType === "mouse") {
+      const digits = this.#metersPerPx < 0.005 ? 3 : 2;
+      this.#hover.value = this.#toPlane(place).map((x, k) => `${["u", "v"][k]} ${x.toFixed(digits)}`).join("  ");
+    }
+    const before = this.#pointers.get(event.pointerId);
+    if (!before || !this.#center) return;
+    this.#pointers.set(event.pointerId, place);
+    const [dx, dy] = [place[0] - before[0], place[1] - before[1]];
+    this.#moved += Math.hypot(dx, dy);
+    if (this.#pointers.size === 2) this.#pinched();
+    else if (this.#moved > 5) this.#shift(dx, dy);
+  }
+
+  #pinched() {
+    const [a, b] = [...this.#pointers.values()];
+    const apart = Math.hypot(a[0] - b[0], a[1] - b[1]);
+    const middle = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
+    if (this.#pinch) {
+      this.#shift(middle[0] - this.#pinch.middle[0], middle[1] - this.#pinch.middle[1]);
+      this.zoom(this.#pinch.apart / Math.max(apart, 1), middle);
+    }
+    this.#pinch = { apart, middle };
+    this.#moved = 99;
+  }
+
+  #up(event) {
+    const click = this.#pointers.size === 1 && this.#moved <= 5 && event.type === "pointerup";
+    this.#pointers.delete(event.pointerId);
+    this.#pinch = null;
+    if (!click || !this.#center) return;
+    const [u, v] = this.#toPlane(this.#place(event));
+    const reach = (event.pointerType === "mouse" ? 8 : 18) * this.#metersPerPx;
+    this.dispatchEvent(new CustomEvent("place", { detail: { u, v, reach } }));
+  }
+
+  #wheel(event) {
+    if (!this.#center) return;
+    event.preventDefault();
+    this.zoom(Math.exp(Math.max(-120, Math.min(120, event.deltaY)) * 0.0022), this.#place(event));
+  }
+
+  #key(event) {
+    const shifts = { ArrowLeft: [80, 0], ArrowRight: [-80, 0], ArrowUp: [0, 80], ArrowDown: [0, -80] };
+    if (event.key in shifts) this.#shift(...shifts[event.key]);
+    else if (event.key === "Enter" && this.#center) {
+      const [u, v] = this.#center;
+      this.dispatchEvent(new CustomEvent("place", { detail: { u, v, reach: 16 * this.#metersPerPx } }));
+    } else return;
+    event.preventDefault();
+  }
+
+  #shift(dx, dy) {
+    this.#center = [this.#center[0] - dx * this.#metersPerPx, this.#center[1] + dy * this.#metersPerPx];
+    this.#changed();
+  }
+
+  /** Closer by a factor below 1, about a place of the view or its middle. */
+  zoom(factor, at) {
+    if (!this.#center) return;
+    const { width, height } = this.#size();
+    const place = at ?? [width / 2, height / 2];
+    const [u, v] = this.#toPlane(place);
+    const next = Math.min(COARSEST_M, Math.max(FINEST_M, this.#metersPerPx * factor));
+    const scale = next / this.#metersPerPx;
+    this.#center = [u + (this.#center[0] - u) * scale, v + (this.#center[1] - v) * scale];
+    this.#metersPerPx = next;
+    this.#changed();
+  }
+
+  #changed() {
+    this.draw();
+    this.dispatchEvent(new Event("moving"));
+    clearTimeout(this.#rest);
+    this.#rest = setTimeout(() => this.dispatchEvent(new Event("frame")), 140);
+  }
+}
+
+customElements.define("slice-view", SliceView);
