@@ -32,7 +32,7 @@ class Parts:
     settings: ServerSettings
     access: Access
     projects: ProjectStore
-    pictures: Thumbnails
+    thumbnails: Thumbnails
     trash: Trash
     uploads: UploadStore
     jobs: JobStore

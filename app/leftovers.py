@@ -30,7 +30,7 @@ def sweep_leftovers(settings: ServerSettings) -> None:
     shutil.rmtree(socket_folder(settings.state), ignore_errors=True)
     removed = [
         name
-        for folder in (settings.state, settings.state / "pictures")
+        for folder in (settings.state, settings.state / "thumbnails")
         if folder.is_dir()
         for name in sweep(folder)
     ]

@@ -192,7 +192,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
         settings=settings,
         access=access,
         projects=projects,
-        pictures=Thumbnails(pool, settings.state / "pictures"),
+        thumbnails=Thumbnails(pool, settings.state / "thumbnails"),
         trash=trash,
         uploads=uploads,
         jobs=jobs,

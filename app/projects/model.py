@@ -72,7 +72,7 @@ class ProjectView:
     stages: tuple[StageView, ...]
     viewable: bool
     """Whether there is something to show in 3-D."""
-    pictured: bool
+    has_map: bool
     """Whether there is a map to draw a picture of."""
     summary: dict[str, Any]
     """``summary.json`` as the run wrote it; empty before."""
@@ -91,7 +91,7 @@ class ProjectCard:
     """When its newest stage or result came, UTC, ISO 8601."""
     preset: str
     rig: str
-    pictured: bool
+    has_map: bool
     """Whether there is a map to draw a picture of."""
     path_length_m: float | None
     """Length of the way [m]; None before the first run ended."""

@@ -117,11 +117,11 @@ def report(project_id: str, server: Server) -> FileResponse:
     return FileResponse(path, media_type="text/html; charset=utf-8", headers=policy)
 
 
-@router.get("/projects/{project_id}/picture", response_class=FileResponse, summary="Picture")
-async def picture(project_id: str, server: Server, caller: CalledBy) -> FileResponse:
+@router.get("/projects/{project_id}/thumbnail", response_class=FileResponse, summary="Thumbnail")
+async def thumbnail(project_id: str, server: Server, caller: CalledBy) -> FileResponse:
     """The map from above, PNG; drawn when it is asked for the first time."""
     artifact = await run_in_threadpool(server.projects.map_artifact, project_id)
-    return FileResponse(await caller.wait(server.pictures.of(artifact, person=caller.name)))
+    return FileResponse(await caller.wait(server.thumbnails.of(artifact, person=caller.name)))
 
 
 @router.get(

@@ -190,7 +190,7 @@ class ProjectStore:
             files=tuple(_results(folder)),
             stages=stages,
             viewable=any(stage.stage in ("odometry", "map") for stage in stages),
-            pictured=any(stage.stage == "map" for stage in stages),
+            has_map=any(stage.stage == "map" for stage in stages),
             summary=summary,
             problem="; ".join(filter(None, (problems, more, most))),
         )
@@ -221,7 +221,7 @@ def _read_card(folder: Path, stamp: Stamp) -> ProjectCard:
         updated=_iso(max(t_ns for t_ns in stamp if t_ns is not None) / 1e9),
         preset=visible(str(facts.get("preset") or "")),
         rig=_name_of(facts.get("rig")),
-        pictured=finished and "points" in summary,
+        has_map=finished and "points" in summary,
         path_length_m=_number(summary.get("path_length_m")),
         points=_whole(summary.get("points")),
         problem="; ".join(filter(None, (problem, more))),

@@ -74,8 +74,8 @@ async def read_facts(
     return await caller.wait(slices.draw(terms, work.facts, artifacts, context))
 
 
-@router.post("/picture", summary="A picture of a slice")
-async def picture(
+@router.post("/image", summary="An image of a slice")
+async def slice_image(
     project_id: str, ask: SliceImageRequest, server: Server, caller: CalledBy
 ) -> SliceImageView:
     """All points of the map in the window, at full resolution.
@@ -90,7 +90,7 @@ async def picture(
     terms = slices.terms(project_id, caller.name, ask.source)
     asking = Asking(ask.page, ask.turn)
     return await caller.wait(
-        slices.newest(asking, terms, work.picture, artifacts["map"], reference, ask, evidence)
+        slices.newest(asking, terms, work.slice_image, artifacts["map"], reference, ask, evidence)
     )
 
 

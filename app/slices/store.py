@@ -115,7 +115,7 @@ class Slices:
         others = [
             {"id": f"project:{card.id}", "words": f"Project {card.name}"}
             for card in self._projects.all()
-            if card.pictured and card.id != project_id
+            if card.has_map and card.id != project_id
         ]
         return earlier[:20] + others[:200]
 

@@ -121,7 +121,7 @@ def facts(artifacts: Artifacts, context: dict[str, Any]) -> SliceFacts:
     )
 
 
-def picture(
+def slice_image(
     map_folder: str, reference: str, ask: SliceImageRequest, evidence: Evidence | None = None
 ) -> SliceImageView:
     """A picture of a slice for the screen; of an approved map, of approved points only."""

@@ -41,7 +41,7 @@ from tests.service.viser_client import PROTOCOL, camera
 MAP = "office"
 PATHS = (
     "/", f"/projects/{MAP}/", "/live", "/api/projects", f"/api/projects/{MAP}", "/api/jobs",
-    "/api/server", "/api/live", f"/api/projects/{MAP}/picture", f"/api/projects/{MAP}/report",
+    "/api/server", "/api/live", f"/api/projects/{MAP}/thumbnail", f"/api/projects/{MAP}/report",
     f"/api/projects/{MAP}/files/trajectory.tum", "/web/shared/api.js",
 )  # fmt: skip
 THINK_S = 0.5

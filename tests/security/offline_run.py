@@ -50,7 +50,7 @@ def serve(root: Path, recording: str) -> None:
     url = next(word for line in server.stdout for word in line.split() if "http://" in word)
     for path in (
         *("", "api/projects", "projects/office/", "projects/office/viewer/"),
-        *("projects/office/slices/", "api/projects/office/picture", "api/live/choices"),
+        *("projects/office/slices/", "api/projects/office/thumbnail", "api/live/choices"),
         *("api/projects/office/report", "api/server", f"api/look?path={recording}"),
         *("api/projects/office/review", "api/projects/office/slices/overview"),
     ):

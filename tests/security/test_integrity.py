@@ -191,10 +191,10 @@ def test_a_picture_of_altered_points_beside_an_approval_is_refused(office):
     base = "/api/projects/office/slices"
     asked = {"cut": CUT, "width": 64, "height": 64}
     with server_thread(office.parent) as server:
-        whole = server.post(f"{base}/picture", json=asked)
+        whole = server.post(f"{base}/image", json=asked)
         checked = server.get("/api/projects/office/review").json()["approval"]["check"]
         move_points(office)
-        altered = server.post(f"{base}/picture", json=asked)
+        altered = server.post(f"{base}/image", json=asked)
 
     assert (whole.status_code, checked, altered.status_code) == (200, "checked", 422)
     assert "tile (0, 0, 0) of the map was changed" in altered.json()["detail"]

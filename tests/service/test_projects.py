@@ -32,7 +32,7 @@ def test_the_list_shows_every_project_also_a_damaged_one(server):
     assert found.keys() == {"office", "half", "broken"}
     assert found["office"]["finished"] and not found["half"]["finished"]
     assert found["office"]["path_length_m"] == 58.2 and found["half"]["path_length_m"] is None
-    assert found["office"]["pictured"] and not found["half"]["pictured"]
+    assert found["office"]["has_map"] and not found["half"]["has_map"]
 
 
 def test_a_project_tells_its_stages_also_a_damaged_one(server):
@@ -46,7 +46,7 @@ def test_a_project_tells_its_stages_also_a_damaged_one(server):
         "level",
         "map",
     ]
-    assert found["half"]["viewable"] and not found["half"]["pictured"]
+    assert found["half"]["viewable"] and not found["half"]["has_map"]
     assert not found["broken"]["viewable"]
 
 
@@ -59,10 +59,10 @@ def test_a_result_is_downloaded_as_an_attachment(server):
 
 
 def test_the_picture_shows_the_map_and_a_project_without_one_has_none(server):
-    picture = server.get("/api/projects/office/picture")
+    picture = server.get("/api/projects/office/thumbnail")
 
     assert picture.content.startswith(b"\x89PNG")
-    assert server.get("/api/projects/half/picture").status_code == 404
+    assert server.get("/api/projects/half/thumbnail").status_code == 404
 
 
 def test_errors_are_told_in_words(server):

@@ -62,7 +62,7 @@ def test_the_page_is_told_what_can_be_cut(server):
 
 
 def test_a_picture_shows_the_room_from_all_its_points(server):
-    told = sent(server, "/picture", ask(color="sensor")).json()
+    told = sent(server, "/image", ask(color="sensor")).json()
 
     image = Image.open(io.BytesIO(base64.b64decode(told["png"])))
     assert image.size == (400, 300)
@@ -76,7 +76,7 @@ def test_a_picture_shows_the_room_from_all_its_points(server):
 def test_a_window_is_kept_to_and_only_widened_to_the_shape(server):
     window = {"left": 2.0, "bottom": 1.0, "right": 6.0, "top": 2.0}
 
-    told = sent(server, "/picture", ask(window=window)).json()
+    told = sent(server, "/image", ask(window=window)).json()
 
     assert told["window"]["left"] == 2.0 and told["window"]["right"] == 6.0
     assert told["window"]["bottom"] == pytest.approx(0.0)
@@ -87,7 +87,7 @@ def test_of_several_pictures_a_page_asks_for_the_latest_is_answered(server):
 
     def one(k):
         body = ask(page="p1", cut=Z1 | {"z_m": 1.0 + k / 10})
-        answers[k] = httpx.post(f"{server.url}{BASE}/picture", json=body, timeout=60.0)
+        answers[k] = httpx.post(f"{server.url}{BASE}/image", json=body, timeout=60.0)
 
     threads = [threading.Thread(target=one, args=(k,)) for k in range(8)]
     for thread in threads:
@@ -102,7 +102,7 @@ def test_of_several_pictures_a_page_asks_for_the_latest_is_answered(server):
 
 def test_pictures_asked_for_in_another_order_than_they_arrive(server):
     def one(turn):
-        return httpx.post(f"{server.url}{BASE}/picture", json=ask(page="p2", turn=turn), timeout=60)
+        return httpx.post(f"{server.url}{BASE}/image", json=ask(page="p2", turn=turn), timeout=60)
 
     late, early, later = one(7), one(6), one(8)
 
@@ -113,10 +113,10 @@ def test_pictures_asked_for_in_another_order_than_they_arrive(server):
 def test_a_cut_that_begins_far_away_is_drawn(server):
     far = {"kind": "vertical", "a_m": [0.0, 1e8], "b_m": [1.0, 0.0]}
 
-    told = sent(server, "/picture", ask(cut=far)).json()
+    told = sent(server, "/image", ask(cut=far)).json()
 
     assert told["points"] > 0 and max(map(abs, told["window"].values())) > 99_999_900.0
-    assert sent(server, "/picture", ask(cut=far, window=told["window"])).status_code == 200
+    assert sent(server, "/image", ask(cut=far, window=told["window"])).status_code == 200
 
 
 def test_a_picked_point_is_one_of_the_map(server):
@@ -153,7 +153,7 @@ def test_a_reference_is_added_compared_aligned_and_removed(server):
     cut = {"kind": "free", "origin_m": [0, 5, 1], "normal": [1, 0, 0], "thickness_m": 0.04}
     table = sent(server, "/compare", {"reference": added["id"], "cuts": [cut]}).json()
     seen = sent(
-        server, "/picture", ask(color="distance", reference=added["id"], width=160, height=100)
+        server, "/image", ask(color="distance", reference=added["id"], width=160, height=100)
     )
     csv = server.get(
         f"{BASE}/compare.csv",
@@ -341,8 +341,8 @@ def test_a_point_found_in_an_earlier_map_does_not_count_in_this_one(server):
 
 
 def test_another_project_can_be_set_beside(server):
-    here = sent(server, "/picture", ask()).json()
-    there = sent(server, "/picture", ask(source="project:other")).json()
+    here = sent(server, "/image", ask()).json()
+    there = sent(server, "/image", ask(source="project:other")).json()
 
     assert there["points"] < here["points"] / 3
 
@@ -363,7 +363,7 @@ def test_another_project_can_be_set_beside(server):
     ],
 )
 def test_a_request_without_meaning_is_refused(server, changes, status):
-    answer = sent(server, "/picture", ask(**changes))
+    answer = sent(server, "/image", ask(**changes))
 
     assert answer.status_code == status
     assert answer.json()["detail"]

@@ -1,6 +1,6 @@
 // The list of projects, with the jobs that run.
 
-import { listProjects, listTrash, pictureUrl, projectUrl, readMe, readServer, removeProject, restoreProject, watchJobs } from "../shared/api.js";
+import { listProjects, listTrash, thumbnailUrl, projectUrl, readMe, readServer, removeProject, restoreProject, watchJobs } from "../shared/api.js";
 import { attempt, fill, make } from "../shared/dom.js";
 import { stateOf, when } from "../shared/format.js";
 import { headline } from "../shared/figures.js";
@@ -28,9 +28,9 @@ function draw(id, project = projects.find((one) => one.id === id)) {
   const view = jobs.get(id);
   const { root, facts, status } = card(id);
   const open = view && view.job.state !== "succeeded";
-  const picture = project?.pictured
-    ? make("img", { src: pictureUrl(id, project.updated), alt: "", loading: "lazy", width: 320, height: 180 })
-    : make("div", { className: "no-picture", ariaHidden: "true" }, "No map yet");
+  const picture = project?.has_map
+    ? make("img", { src: thumbnailUrl(id, project.updated), alt: "", loading: "lazy", width: 320, height: 180 })
+    : make("div", { className: "no-thumbnail", ariaHidden: "true" }, "No map yet");
   const words = project
     ? [...headline(project), when(project.updated)]
     : [view ? view.job.inputs.recordings.map((path) => path.split("/").at(-1)).join(", ") : ""];

@@ -161,7 +161,7 @@ export const readOffset = async (url) => Number((await tus("HEAD", url)).headers
 export const projectUrl = (id) => `/projects/${name(id)}/`;
 export const viewerUrl = (id) => `/projects/${name(id)}/viewer/`;
 export const reportUrl = (id) => `/api/projects/${name(id)}/report`;
-export const pictureUrl = (id, version) => `/api/projects/${name(id)}/picture?v=${name(version)}`;
+export const thumbnailUrl = (id, version) => `/api/projects/${name(id)}/thumbnail?v=${name(version)}`;
 export const fileUrl = (id, file) => `/api/projects/${name(id)}/files/${name(file)}`;
 
 const ANEW_MS = 3000;
@@ -276,7 +276,7 @@ const slices = (id) => `/api/projects/${name(id)}/slices`;
 const asked = (ask) => name(JSON.stringify(ask));
 
 export const readSliceFacts = (id, source = "") => request("GET", `${slices(id)}?source=${name(source)}`);
-export const readSlice = (id, ask) => request("POST", `${slices(id)}/picture`, ask);
+export const readSlice = (id, ask) => request("POST", `${slices(id)}/image`, ask);
 export const aboveUrl = (id, version) => `${slices(id)}/overview?v=${name(version)}`;
 export const readAboveWindow = (id) => request("GET", `${slices(id)}/overview/window`);
 export const pickOnSlice = (id, ask) => request("POST", `${slices(id)}/pick`, ask);

@@ -1,0 +1,75 @@
+"""Words the project does not use, and what to use instead: ``python -m tests.language [PATH…]``.
+
+`docs/glossary.md` is the list for people; this is what a test can check.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+SUFFIXES = {".py", ".js", ".html", ".css", ".md", ".jinja", ".toml"}
+ALLOWED = {
+    "tests/language.py",
+    "docs/glossary.md",
+    "recon4/settings/renamed.py",
+    "recon4/store/earlier_names.py",
+}
+"""Files that have to name what was retired."""
+
+RETIRED = {
+    r"\btold\b|_told\b": "given, reported, message, record",
+    r"\banew\b": "again, from scratch",
+    r"\bso (?:many|often)\b": "n, how many, this many, count",
+    r"\bturn(?:s|ed|ing)? down\b|\bturned_down\b": "reject(ed)",
+    r"\bt(?:ake|akes|aken|aking|ook) (?:it |them )?back\b|\btaken_back\b": "undo, revert",
+    r"\bwild\b": "outlier, gross error",
+    r"\bshares? of\b|\b(?:a|an|the|this|that|which|matched|smaller|larger|same) share\b"
+    r"|_shares?\b|\bshare_(?!button|tunnel)": "ratio, fraction",
+    r"\bdesks?\b|\bdoorkeeper\b|\bpatience\b|\bseats?\b": "the glossary's web terms",
+    r"\bguess(?:es|ed|ing)?\b|_guess(?:es)?\b|\bguess_": "prediction, hypothesis, detect",
+    r"\bbeliev\w*|\bunbeliev\w*": "consistent, plausible, accepted, trusted",
+    r"\blet(?:s|ting)? (?:somebody |them |it |him |in )?in\b": "sign in, admit, accept",
+    r"\bpictures?\b|_pictures?\b|\bpictures?_|\w+Picture\b": "preview, thumbnail, image, chart",
+    r"\blevell\w*|\bmetres?\b|\b\w*metres\b|\bcolour\w*|\bnormalis\w*|\bgrey\w*|\bcentre\w*"
+    r"|\bneighbour\w*|\bbehaviour\w*|\banalys(?:e|ed|es|ing)\b": "American spelling",
+    r"\bway_m\b|\bthe way\b(?! (?:to|it|they|that|a|in which)\b)|\bof way\b": "path, path length",
+    r"\bwhoever\b": "the person who, anyone who",
+    r"\b(?:so-manieth|seems_still|hold_still|gap_m)\b": "the glossary's terms",
+}
+IN_FOLDER = {r"\bdoors?\b": ("app/", "web/"), r"\bhear[ds]?\b": ("app/", "recon4/live/")}
+"""Words with a meaning of their own elsewhere."""
+
+
+def lines_with(paths: list[str]) -> Iterator[tuple[str, int, str, str]]:
+    """File, line number, the word found and what to use instead."""
+    listed = subprocess.run(
+        ["git", "ls-files", *paths], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout.splitlines()
+    everywhere = [(re.compile(word, re.IGNORECASE), fix) for word, fix in RETIRED.items()]
+    local = [(re.compile(word, re.IGNORECASE), places) for word, places in IN_FOLDER.items()]
+    for name in listed:
+        if name in ALLOWED or Path(name).suffix not in SUFFIXES:
+            continue
+        rules = everywhere + [(rx, "a plain verb") for rx, at in local if name.startswith(at)]
+        for number, line in enumerate((ROOT / name).read_text("utf-8").splitlines(), 1):
+            for rx, fix in rules:
+                for found in rx.finditer(line):
+                    yield name, number, found.group(), fix
+
+
+def main() -> None:
+    """Print what is left; exit code 1 if there is any."""
+    found = list(lines_with(sys.argv[1:]))
+    for name, number, word, fix in found:
+        print(f"{name}:{number}: {word!r} -> {fix}")
+    print(f"{len(found)} retired words")
+    sys.exit(bool(found))
+
+
+if __name__ == "__main__":
+    main()
