@@ -1,7 +1,14 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { bytes, count, overallWords, progressWords, seconds, stateOf } from "../../web/shared/format.js";
+import {
+  bytes,
+  count,
+  overallWords,
+  progressWords,
+  seconds,
+  stateOf,
+} from "../../web/shared/format.js";
 
 const NARROW = "\u202f";
 
@@ -58,7 +65,10 @@ test("the time left is given once it is known", () => {
 
 test("progress names how far, how fast and how long", () => {
   const status = { done: 1200, unit: "pairs", rate_per_s: 8.26, eta_s: 30 };
-  assert.equal(progressWords({ status, fraction: 0.4 }), "This part 40 % · 8.3 pairs/s · 30 s left");
+  assert.equal(
+    progressWords({ status, fraction: 0.4 }),
+    "This part 40 % · 8.3 pairs/s · 30 s left",
+  );
   assert.equal(
     progressWords({ status: { ...status, rate_per_s: 0, eta_s: null }, fraction: null }),
     `This part 1${NARROW}200 pairs`,

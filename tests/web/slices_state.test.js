@@ -50,7 +50,11 @@ test("a vertical cut looks along its unit normal", () => {
 });
 
 test("moving a cut along its normal moves it by that distance", () => {
-  for (const query of ["kind=horizontal&z=1", "kind=vertical&a=0,1&b=2,5", "kind=free&o=1,1,1&n=1,2,2"]) {
+  for (const query of [
+    "kind=horizontal&z=1",
+    "kind=vertical&a=0,1&b=2,5",
+    "kind=free&o=1,1,1&n=1,2,2",
+  ]) {
     const state = parse(query);
     const point = { horizontal: [0, 0, 1], vertical: [0, 1, 0], free: [1, 1, 1] }[state.kind];
     assert.ok(Math.abs(distanceFrom(moved(state, 0.75), point) - 0.75) < 1e-12, query);

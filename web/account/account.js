@@ -18,7 +18,8 @@ form.addEventListener("submit", async (event) => {
   event.preventDefault();
   byId("password-done").textContent = "";
   const { old, fresh } = form.elements;
-  if (!(await attempt(byId("password-message"), () => changePassword(old.value, fresh.value)))) return;
+  if (!(await attempt(byId("password-message"), () => changePassword(old.value, fresh.value))))
+    return;
   form.reset();
   byId("password-done").textContent = "The password is changed; your other sessions have ended";
   list.reload();

@@ -12,7 +12,8 @@ history.replaceState(null, "", location.pathname); // the one-time link stays in
 async function useInvitation() {
   byId("ask").hidden = true;
   byId("words").textContent = "One moment";
-  if (await attempt(byId("message"), () => redeemInvitation(token))) return location.replace(liveUrl);
+  if (await attempt(byId("message"), () => redeemInvitation(token)))
+    return location.replace(liveUrl);
   byId("words").textContent = "Make a new QR code on the laptop, or ask to be let in with a code";
   byId("ask").hidden = false;
 }
@@ -30,7 +31,8 @@ async function ask(event) {
 
 async function wait(asked, untilMs) {
   const left = Math.max(0, Math.round((untilMs - performance.now()) / 1000));
-  byId("left").textContent = `Waiting, ${Math.floor(left / 60)}:${String(left % 60).padStart(2, "0")} left`;
+  byId("left").textContent =
+    `Waiting, ${Math.floor(left / 60)}:${String(left % 60).padStart(2, "0")} left`;
   try {
     if (await claimPairing(asked.token)) return location.replace(liveUrl);
   } catch (error) {
@@ -53,4 +55,6 @@ byId("ask").addEventListener("submit", ask);
 const ended = token === AGAIN ? "The session of this phone has ended; what runs goes on. " : "";
 if (await isIn()) location.replace(liveUrl);
 else if (token && !ended) await useInvitation();
-else byId("words").textContent = `${ended}Scan the QR code on the laptop (page Phone), or ask to be let in with a code`;
+else
+  byId("words").textContent =
+    `${ended}Scan the QR code on the laptop (page Phone), or ask to be let in with a code`;

@@ -1,6 +1,14 @@
 // For admins: people, everybody's sessions, the audit log.
 
-import { addPerson, changePerson, endSession, listPeople, listSessions, readAudit, readMe } from "../shared/api.js";
+import {
+  addPerson,
+  changePerson,
+  endSession,
+  listPeople,
+  listSessions,
+  readAudit,
+  readMe,
+} from "../shared/api.js";
 import { attempt, make } from "../shared/dom.js";
 import { when } from "../shared/format.js";
 import "../shared/page_head.js";
@@ -18,14 +26,30 @@ const OUTCOMES = { done: "✓ Done", refused: "✕ Refused", failed: "✕ Failed
 let oldest;
 
 function person({ name, role, disabled, created }) {
-  const choice = make("select", { ariaLabel: `Role of ${name}`, onchange: () => change(name, { role: choice.value }) },
-    ...Object.keys(ROLES).map((one) => make("option", { value: one, selected: one === role }, one)));
-  const lock = make("button", { type: "button", ariaLabel: `${disabled ? "Enable" : "Disable"} ${name}`, onclick: () => change(name, { disabled: !disabled }) }, disabled ? "Enable" : "Disable");
+  const choice = make(
+    "select",
+    { ariaLabel: `Role of ${name}`, onchange: () => change(name, { role: choice.value }) },
+    ...Object.keys(ROLES).map((one) => make("option", { value: one, selected: one === role }, one)),
+  );
+  const lock = make(
+    "button",
+    {
+      type: "button",
+      ariaLabel: `${disabled ? "Enable" : "Disable"} ${name}`,
+      onclick: () => change(name, { disabled: !disabled }),
+    },
+    disabled ? "Enable" : "Disable",
+  );
   return make(
-    "tr", {},
+    "tr",
+    {},
     make("th", { scope: "row" }, name),
     make("td", { "data-label": "Role" }, choice),
-    make("td", { "data-label": "State", className: disabled ? "bad" : "good" }, disabled ? "✕ Disabled" : "✓ May sign in"),
+    make(
+      "td",
+      { "data-label": "State", className: disabled ? "bad" : "good" },
+      disabled ? "✕ Disabled" : "✓ May sign in",
+    ),
     make("td", { "data-label": "Since" }, make("time", {}, when(created))),
     make("td", {}, make("div", { className: "actions" }, lock)),
   );
@@ -46,12 +70,21 @@ async function reload() {
 
 function entry({ time, person: who, address, action, object, outcome }) {
   return make(
-    "tr", {},
+    "tr",
+    {},
     make("th", { scope: "row" }, make("time", { dateTime: time }, when(time))),
     make("td", { "data-label": "Who" }, who),
     make("td", { "data-label": "From" }, address),
-    make("td", { "data-label": "What" }, make("span", {}, make("b", {}, action), " ", make("code", {}, object))),
-    make("td", { "data-label": "Outcome", className: outcome === "done" ? "" : "bad" }, OUTCOMES[outcome] ?? outcome),
+    make(
+      "td",
+      { "data-label": "What" },
+      make("span", {}, make("b", {}, action), " ", make("code", {}, object)),
+    ),
+    make(
+      "td",
+      { "data-label": "Outcome", className: outcome === "done" ? "" : "bad" },
+      OUTCOMES[outcome] ?? outcome,
+    ),
   );
 }
 
@@ -65,7 +98,11 @@ async function readLog(before) {
   const { entries, broken_at: broken, newest } = log.chain;
   byId("chain").replaceChildren(
     broken
-      ? make("b", { className: "bad" }, `✕ Entry ${broken} does not follow from the one before: tampered with`)
+      ? make(
+          "b",
+          { className: "bad" },
+          `✕ Entry ${broken} does not follow from the one before: tampered with`,
+        )
       : make("b", { className: "good" }, `✓ ${entries} entries, chain whole`),
     make("code", {}, newest),
   );
@@ -73,7 +110,9 @@ async function readLog(before) {
 
 const sessions = document.querySelector("session-list");
 const form = byId("add");
-form.elements.role.append(...Object.entries(ROLES).map(([value, words]) => make("option", { value }, words)));
+form.elements.role.append(
+  ...Object.entries(ROLES).map(([value, words]) => make("option", { value }, words)),
+);
 form.addEventListener("submit", async (event) => {
   event.preventDefault();
   const { who, role, password } = form.elements;

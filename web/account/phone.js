@@ -12,8 +12,19 @@ const role = () => document.querySelector("input[name=role]:checked").value;
 
 function showRoles(roles) {
   const one = (value, k) => {
-    const radio = make("input", { type: "radio", name: "role", value, checked: k === 0, onchange: chose });
-    return make("label", { className: "check" }, radio, make("span", {}, make("b", {}, value), `: ${MAY[value]}`));
+    const radio = make("input", {
+      type: "radio",
+      name: "role",
+      value,
+      checked: k === 0,
+      onchange: chose,
+    });
+    return make(
+      "label",
+      { className: "check" },
+      radio,
+      make("span", {}, make("b", {}, value), `: ${MAY[value]}`),
+    );
   };
   byId("roles").append(...roles.map(one));
   chose();

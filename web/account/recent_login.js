@@ -8,23 +8,39 @@ export async function withPassword(action) {
   try {
     return await action();
   } catch (error) {
-    if (!(error instanceof ApiError) || error.name !== "SignInAgain" || !(await askPassword())) throw error;
+    if (!(error instanceof ApiError) || error.name !== "SignInAgain" || !(await askPassword()))
+      throw error;
     return action();
   }
 }
 
 /** Whether the right password was given; false if the person cancelled. */
 function askPassword() {
-  const password = make("input", { type: "password", autocomplete: "current-password", required: true, maxLength: 256 });
+  const password = make("input", {
+    type: "password",
+    autocomplete: "current-password",
+    required: true,
+    maxLength: 256,
+  });
   const message = make("p", { className: "error", role: "alert" });
   const cancel = make("button", { type: "button", onclick: () => dialog.close() }, "Cancel");
   const form = make(
-    "form", {},
+    "form",
+    {},
     make("h2", { id: "again-title" }, "Your password again"),
-    make("p", { className: "quiet" }, "This is signed with your name, and you signed in a while ago"),
+    make(
+      "p",
+      { className: "quiet" },
+      "This is signed with your name, and you signed in a while ago",
+    ),
     make("label", {}, make("span", {}, "Password"), password),
     message,
-    make("div", { className: "buttons" }, cancel, make("button", { className: "primary" }, "Confirm")),
+    make(
+      "div",
+      { className: "buttons" },
+      cancel,
+      make("button", { className: "primary" }, "Confirm"),
+    ),
   );
   const dialog = make("dialog", { "aria-labelledby": "again-title" }, form);
   document.body.append(dialog);

@@ -8,8 +8,12 @@ const moment = (time_s) => when(new Date(time_s * 1000).toISOString());
 /** The browser and system in a user agent, as far as people care. */
 export function device(agent) {
   const browser = ["Edg", "Firefox", "Chrome", "Safari"].find((one) => agent.includes(`${one}/`));
-  const system = ["Android", "iPhone", "iPad", "Windows", "Mac OS", "Linux"].find((one) => agent.includes(one));
-  return browser && system ? `${browser === "Edg" ? "Edge" : browser} on ${system}` : agent.slice(0, 40) || "Unknown program";
+  const system = ["Android", "iPhone", "iPad", "Windows", "Mac OS", "Linux"].find((one) =>
+    agent.includes(one),
+  );
+  return browser && system
+    ? `${browser === "Edg" ? "Edge" : browser} on ${system}`
+    : agent.slice(0, 40) || "Unknown program";
 }
 
 class SessionList extends HTMLElement {
@@ -20,7 +24,10 @@ class SessionList extends HTMLElement {
   connectedCallback() {
     const titles = ["Person", "Device", "From", "Signed in", "Last seen", ""];
     const head = make("tr", {}, ...titles.map((words) => make("th", { scope: "col" }, words)));
-    this.replaceChildren(this.#message, make("table", { className: "rows" }, make("thead", {}, head), this.#body));
+    this.replaceChildren(
+      this.#message,
+      make("table", { className: "rows" }, make("thead", {}, head), this.#body),
+    );
   }
 
   /** {read, end}: where the sessions come from, and how one is ended. */
@@ -35,15 +42,32 @@ class SessionList extends HTMLElement {
   }
 
   #row({ session, current }) {
-    const end = make("button", { type: "button", ariaLabel: `End session of ${session.person}, ${device(session.agent)}`, onclick: () => this.#end(session.id) }, "End");
+    const end = make(
+      "button",
+      {
+        type: "button",
+        ariaLabel: `End session of ${session.person}, ${device(session.agent)}`,
+        onclick: () => this.#end(session.id),
+      },
+      "End",
+    );
     return make(
-      "tr", {},
+      "tr",
+      {},
       make("th", { scope: "row" }, session.person),
       make("td", { title: session.agent, "data-label": "Device" }, device(session.agent)),
       make("td", { "data-label": "From" }, session.address),
       make("td", { "data-label": "Signed in" }, make("time", {}, moment(session.began_s))),
       make("td", { "data-label": "Last seen" }, make("time", {}, moment(session.seen_s))),
-      make("td", {}, make("div", { className: "actions" }, current ? make("span", { className: "here" }, "✓ This one") : end)),
+      make(
+        "td",
+        {},
+        make(
+          "div",
+          { className: "actions" },
+          current ? make("span", { className: "here" }, "✓ This one") : end,
+        ),
+      ),
     );
   }
 

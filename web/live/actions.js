@@ -1,6 +1,12 @@
 // The buttons of the operator's page and the dialogs they open: start, mark, pause, stop, make the map.
 
-import { markHere, projectUrl, readCaptureChoices, startCapture, steerCapture } from "../shared/api.js";
+import {
+  markHere,
+  projectUrl,
+  readCaptureChoices,
+  startCapture,
+  steerCapture,
+} from "../shared/api.js";
 import { attempt, make } from "../shared/dom.js";
 
 const byId = (id) => document.getElementById(id);
@@ -29,7 +35,12 @@ function dialog(id, act) {
 
 const showStart = dialog("begin", ({ project, rig, preset, place }) => {
   keep({ rig: rig.value, preset: preset.value });
-  return startCapture({ project: project.value, rig: rig.value, preset: preset.value, place: place.value });
+  return startCapture({
+    project: project.value,
+    rig: rig.value,
+    preset: preset.value,
+    place: place.value,
+  });
 });
 const showMark = dialog("note", (form) => {
   const ago = Math.max(0, (performance.now() - touched) / 1000);
@@ -58,9 +69,17 @@ async function begin() {
   const choices = await attempt(byId("message"), readCaptureChoices);
   if (!choices) return;
   const rig = ({ rig: value, name, sensors, problem }) =>
-    make("option", { value, disabled: problem !== "" }, `${name}: ${problem || sensors.join(", ")}`);
+    make(
+      "option",
+      { value, disabled: problem !== "" },
+      `${name}: ${problem || sensors.join(", ")}`,
+    );
   offer(form.rig, choices.rigs.map(rig), kept().rig);
-  offer(form.preset, choices.presets.map((name) => make("option", { value: name }, name)), kept().preset);
+  offer(
+    form.preset,
+    choices.presets.map((name) => make("option", { value: name }, name)),
+    kept().preset,
+  );
   const now = new Date(Date.now() - 60_000 * new Date().getTimezoneOffset()).toISOString();
   form.project.value = `walk-${now.slice(0, 16).replace(/[:T]/g, "-")}`;
   showStart();
@@ -91,9 +110,13 @@ export function drawActions({ state, project, mayCapture, linked, loop }) {
   const key = `${state}/${mayCapture}/${project}/${linked}`;
   if (key === shown) return;
   shown = key;
-  const button = (words, className, onclick) => make("button", { type: "button", className, onclick, disabled: !linked }, words);
+  const button = (words, className, onclick) =>
+    make("button", { type: "button", className, onclick, disabled: !linked }, words);
   const steer = (what) => () => attempt(byId("message"), () => steerCapture(what));
-  const atStart = () => (loop()?.closed ? "The loop is closed." : "The loop is not closed yet: the map is better if you return to the start first.");
+  const atStart = () =>
+    loop()?.closed
+      ? "The loop is closed."
+      : "The loop is not closed yet: the map is better if you return to the start first.";
   const end = button("Stop", "stop", () => stop(atStart()));
   const rows = {
     none: () => [button("Start…", "primary", begin)],

@@ -21,7 +21,12 @@ export class Camera {
 
   /** Rotation into the picture (right, up, toward the eye), by columns. */
   get turn() {
-    const [c, s, u, f] = [Math.cos(this.yaw), Math.sin(this.yaw), Math.sin(this.pitch), Math.cos(this.pitch)];
+    const [c, s, u, f] = [
+      Math.cos(this.yaw),
+      Math.sin(this.yaw),
+      Math.sin(this.pitch),
+      Math.cos(this.pitch),
+    ];
     return [c, -s * u, s * f, s, c * u, -c * f, 0, f, u];
   }
 
@@ -29,7 +34,10 @@ export class Camera {
   project([x, y, z]) {
     const t = this.turn;
     const [a, b, c] = [x - this.target[0], y - this.target[1], z - this.target[2]];
-    return [(t[0] * a + t[3] * b + t[6] * c) * this.pxPerM, -(t[1] * a + t[4] * b + t[7] * c) * this.pxPerM];
+    return [
+      (t[0] * a + t[3] * b + t[6] * c) * this.pxPerM,
+      -(t[1] * a + t[4] * b + t[7] * c) * this.pxPerM,
+    ];
   }
 
   pan(dx, dy) {
@@ -64,8 +72,15 @@ export class Camera {
   fit([[x0, y0], [x1, y1]], { width, height }) {
     this.target = [(x0 + x1) / 2, (y0 + y1) / 2, this.target[2]];
     this.pxPerM = 1;
-    const corners = [[x0, y0], [x0, y1], [x1, y0], [x1, y1]].map(([x, y]) => this.project([x, y, this.target[2]]));
-    const [wide, high] = [0, 1].map((axis) => 2 * Math.max(1, ...corners.map((corner) => Math.abs(corner[axis]))));
+    const corners = [
+      [x0, y0],
+      [x0, y1],
+      [x1, y0],
+      [x1, y1],
+    ].map(([x, y]) => this.project([x, y, this.target[2]]));
+    const [wide, high] = [0, 1].map(
+      (axis) => 2 * Math.max(1, ...corners.map((corner) => Math.abs(corner[axis]))),
+    );
     this.zoom(FIT * Math.min(width / wide, height / high));
   }
 }
@@ -84,12 +99,20 @@ export function moveByPointer(element, camera, { onMove, onPan, middle, followin
   const pair = () => {
     const [a, b] = [...held.values()];
     const [dx, dy] = [b.x - a.x, b.y - a.y];
-    return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, wide: Math.hypot(dx, dy), angle: Math.atan2(dy, dx) };
+    return {
+      x: (a.x + b.x) / 2,
+      y: (a.y + b.y) / 2,
+      wide: Math.hypot(dx, dy),
+      angle: Math.atan2(dy, dx),
+    };
   };
 
   function movePair(before, after) {
     camera.zoom(after.wide / Math.max(before.wide, 1), about(after));
-    const turn = Math.atan2(Math.sin(after.angle - before.angle), Math.cos(after.angle - before.angle));
+    const turn = Math.atan2(
+      Math.sin(after.angle - before.angle),
+      Math.cos(after.angle - before.angle),
+    );
     turned += turn;
     if (Math.abs(turned) > MEANT_TURN) camera.rotate(turn, about(after));
     if (!following()) camera.pan(after.x - before.x, after.y - before.y);
@@ -112,13 +135,19 @@ export function moveByPointer(element, camera, { onMove, onPan, middle, followin
     const both = held.size === 2 ? pair() : null;
     held.set(event.pointerId, { x: event.clientX, y: event.clientY });
     if (both) movePair(both, pair());
-    else if (held.size === 1) moveOne(event.clientX - before.x, event.clientY - before.y, event.shiftKey);
+    else if (held.size === 1)
+      moveOne(event.clientX - before.x, event.clientY - before.y, event.shiftKey);
     onMove();
   });
-  for (const end of ["pointerup", "pointercancel"]) element.addEventListener(end, (event) => held.delete(event.pointerId));
-  element.addEventListener("wheel", (event) => {
-    event.preventDefault();
-    camera.zoom(Math.exp(-event.deltaY * 0.0015), about({ x: event.clientX, y: event.clientY }));
-    onMove();
-  }, { passive: false });
+  for (const end of ["pointerup", "pointercancel"])
+    element.addEventListener(end, (event) => held.delete(event.pointerId));
+  element.addEventListener(
+    "wheel",
+    (event) => {
+      event.preventDefault();
+      camera.zoom(Math.exp(-event.deltaY * 0.0015), about({ x: event.clientX, y: event.clientY }));
+      onMove();
+    },
+    { passive: false },
+  );
 }

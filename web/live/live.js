@@ -34,7 +34,11 @@ const scene = new LiveScene(cloud, {
     linked = yes;
     if (yes) byId("message").textContent = ""; // what could not be asked for without a link
     drawWords();
-    if (yes && !me) readMe(true).then((found) => ((me = found), drawWords()), () => {});
+    if (yes && !me)
+      readMe(true).then(
+        (found) => ((me = found), drawWords()),
+        () => {},
+      );
   },
   plan: paintPlan,
 });
@@ -56,7 +60,9 @@ function repaint() {
 
 function styles() {
   const style = getComputedStyle(document.body);
-  return Object.fromEntries(COLORS.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
+  return Object.fromEntries(
+    COLORS.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]),
+  );
 }
 
 function redraw() {
@@ -66,7 +72,12 @@ function redraw() {
 
 /** What no bar covers of the map, {left, top, right, bottom}, and its middle, in pixels of the map. */
 function space() {
-  const [map, top, bottom, views] = [byId("map"), document.querySelector(".top"), byId("bottom"), document.querySelector(".views")].map((one) => one.getBoundingClientRect());
+  const [map, top, bottom, views] = [
+    byId("map"),
+    document.querySelector(".top"),
+    byId("bottom"),
+    document.querySelector(".views"),
+  ].map((one) => one.getBoundingClientRect());
   const beside = top.right <= map.left + 1; // bars beside the map, not over it
   const free = {
     left: 0,
@@ -84,7 +95,10 @@ function showWhole() {
   const pick = (best, corner, axis) => best(...boxes.map((box) => box[corner][axis]));
   const { map, free } = space();
   const right = document.querySelector(".views").getBoundingClientRect().left - map.left;
-  const box = [[pick(Math.min, 0, 0), pick(Math.min, 0, 1)], [pick(Math.max, 1, 0), pick(Math.max, 1, 1)]];
+  const box = [
+    [pick(Math.min, 0, 0), pick(Math.min, 0, 1)],
+    [pick(Math.max, 1, 0), pick(Math.max, 1, 1)],
+  ];
   camera.fit(box, { width: right - free.left, height: free.bottom - free.top });
   camera.pan((right - free.right) / 2, 0);
   press("follow", (follow = false));
@@ -93,9 +107,14 @@ function showWhole() {
 
 function draw() {
   due = false;
-  if (["finishing", "ready"].includes(scene.state) && scene.plan && whole !== scene.project) (whole = scene.project), showWhole();
+  if (["finishing", "ready"].includes(scene.state) && scene.plan && whole !== scene.project)
+    ((whole = scene.project), showWhole());
   const ratio = Math.min(devicePixelRatio || 1, 2);
-  const { map: { width, height }, free, middle } = space();
+  const {
+    map: { width, height },
+    free,
+    middle,
+  } = space();
   for (const canvas of [byId("points"), byId("overlay")])
     if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio))
       [canvas.width, canvas.height] = [Math.round(width * ratio), Math.round(height * ratio)];
@@ -113,7 +132,13 @@ function draw() {
     ink: document.body.classList.contains("sun") || !dark.matches,
   });
   const marks = scene.marks.filter((one) => one.what === "point" && one.p);
-  drawOverlay(overlay, { width, height, ratio, middle, free }, camera, { ...scene, marks, chosen }, styles());
+  drawOverlay(
+    overlay,
+    { width, height, ratio, middle, free },
+    camera,
+    { ...scene, marks, chosen },
+    styles(),
+  );
   byId("upright").hidden = Math.abs(Math.sin(camera.yaw / 2)) < 0.01;
   byId("needle").style.transform = `rotate(${camera.yaw}rad)`;
 }
@@ -131,7 +156,7 @@ function drawWords() {
   write("state", words);
   byId("state").className = look;
   const place = scene.marks.findLast((one) => one.what === "place")?.text;
-  write("place", !state || state === "none" ? "" : place ?? scene.project);
+  write("place", !state || state === "none" ? "" : (place ?? scene.project));
   const walked = newest.loop?.walked_m ? ` · ${Math.round(newest.loop.walked_m)} m` : "";
   write("time", newest.status && state !== "none" ? clock(newest.status.seconds) + walked : "");
   drawHealth({ scene, linked, battery, drawsPoints: cloud.works });
@@ -151,7 +176,16 @@ function drawCoverage() {
   write("gap-words", words);
   byId("gap").disabled = count === 0;
   byId("gap").ariaLabel = all;
-  write("hint", one || (state ? hint(state, newest, { mayCapture: me?.may.includes("capture") ?? null, mapped: cloud.count > 0 }) : ""));
+  write(
+    "hint",
+    one ||
+      (state
+        ? hint(state, newest, {
+            mayCapture: me?.may.includes("capture") ?? null,
+            mapped: cloud.count > 0,
+          })
+        : ""),
+  );
 }
 
 const press = (id, yes) => byId(id).setAttribute("aria-pressed", String(yes));
@@ -193,7 +227,8 @@ const views = {
   sun: () => setSun(!document.body.classList.contains("sun")),
   gap: nextGap,
 };
-for (const [id, act] of Object.entries(views)) byId(id).addEventListener("click", () => (act(), redraw()));
+for (const [id, act] of Object.entries(views))
+  byId(id).addEventListener("click", () => (act(), redraw()));
 
 function showAll(yes) {
   byId("ceiling").checked = ceiling = yes;
@@ -201,7 +236,9 @@ function showAll(yes) {
 }
 
 function help() {
-  byId("about").textContent = me ? `${me.login ? `Signed in as ${me.name}, ${me.role}. ` : ""}${scene.total.toLocaleString("en")} points on this phone.` : "";
+  byId("about").textContent = me
+    ? `${me.login ? `Signed in as ${me.name}, ${me.role}. ` : ""}${scene.total.toLocaleString("en")} points on this phone.`
+    : "";
   byId("name-it").hidden = !me?.may.includes("capture") || !listens(scene.state);
   byId("more").showModal();
 }
@@ -214,13 +251,25 @@ byId("name-it").addEventListener("click", nameThePlace);
 byId("ceiling").addEventListener("change", (event) => showAll(event.target.checked));
 
 const KEYS = {
-  t: views.tilt, f: views.follow, c: views.color, g: views.plan, s: views.sun, n: nextGap, u: views.upright, v: sensors, "?": help,
+  t: views.tilt,
+  f: views.follow,
+  c: views.color,
+  g: views.plan,
+  s: views.sun,
+  n: nextGap,
+  u: views.upright,
+  v: sensors,
+  "?": help,
   h: () => showAll(!ceiling),
   m: () => scene.state === "recording" && me?.may.includes("capture") && mark(),
-  q: () => camera.rotate(-0.2), e: () => camera.rotate(0.2),
-  "+": () => camera.zoom(1.25), "-": () => camera.zoom(0.8),
-  ArrowLeft: () => byHand(() => camera.pan(60, 0)), ArrowRight: () => byHand(() => camera.pan(-60, 0)),
-  ArrowUp: () => byHand(() => camera.pan(0, 60)), ArrowDown: () => byHand(() => camera.pan(0, -60)),
+  q: () => camera.rotate(-0.2),
+  e: () => camera.rotate(0.2),
+  "+": () => camera.zoom(1.25),
+  "-": () => camera.zoom(0.8),
+  ArrowLeft: () => byHand(() => camera.pan(60, 0)),
+  ArrowRight: () => byHand(() => camera.pan(-60, 0)),
+  ArrowUp: () => byHand(() => camera.pan(0, 60)),
+  ArrowDown: () => byHand(() => camera.pan(0, -60)),
 };
 addEventListener("keydown", (event) => {
   const typing = event.target.closest?.("input, select, dialog");
@@ -245,8 +294,12 @@ moveByPointer(byId("overlay"), camera, {
 const stayAwake = () => document.hidden || navigator.wakeLock?.request("screen").catch(() => {});
 stayAwake();
 document.addEventListener("visibilitychange", stayAwake);
-navigator.getBattery?.().then((found) => (battery = found), () => {});
-for (const bar of [byId("bottom"), document.querySelector(".top")]) new ResizeObserver(redraw).observe(bar);
+navigator.getBattery?.().then(
+  (found) => (battery = found),
+  () => {},
+);
+for (const bar of [byId("bottom"), document.querySelector(".top")])
+  new ResizeObserver(redraw).observe(bar);
 new ResizeObserver(() => (fitted && showWhole(), redraw())).observe(byId("map"));
 dark.addEventListener("change", repaint);
 setInterval(() => linked || drawWords(), 1000); // for how long there is no link

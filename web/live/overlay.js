@@ -3,7 +3,11 @@
 const SEEN = { FREE: 1, POOR: 2, WELL: 3 };
 
 const PX = 4;
-const INKS = { [SEEN.FREE]: () => 0.12, [SEEN.POOR]: (x, y) => ((x + y) % PX < 2 ? 0.95 : 0.3), [SEEN.WELL]: () => 0.4 };
+const INKS = {
+  [SEEN.FREE]: () => 0.12,
+  [SEEN.POOR]: (x, y) => ((x + y) % PX < 2 ? 0.95 : 0.3),
+  [SEEN.WELL]: () => 0.4,
+};
 const LONGEST_NOTE = 24;
 
 /**
@@ -17,14 +21,19 @@ export async function planPicture(plan, [poor, well]) {
   const [along, across] = plan.shape;
   const picture = new ImageData(PX * along, PX * across);
   const pixels = new Uint32Array(picture.data.buffer);
-  const stamps = { [SEEN.FREE]: stamp(well, INKS[SEEN.FREE]), [SEEN.POOR]: stamp(poor, INKS[SEEN.POOR]), [SEEN.WELL]: stamp(well, INKS[SEEN.WELL]) };
+  const stamps = {
+    [SEEN.FREE]: stamp(well, INKS[SEEN.FREE]),
+    [SEEN.POOR]: stamp(poor, INKS[SEEN.POOR]),
+    [SEEN.WELL]: stamp(well, INKS[SEEN.WELL]),
+  };
   const cells = { from: [Infinity, Infinity], to: [-Infinity, -Infinity] };
   for (let i = 0; i < along; i++)
     for (let j = 0; j < across; j++) {
       const kind = seen[i * across + j];
       if (!kind) continue;
       const first = PX * ((across - 1 - j) * PX * along + i);
-      for (let y = 0; y < PX; y++) pixels.set(stamps[kind].subarray(PX * y, PX * (y + 1)), first + y * PX * along);
+      for (let y = 0; y < PX; y++)
+        pixels.set(stamps[kind].subarray(PX * y, PX * (y + 1)), first + y * PX * along);
       if (kind === SEEN.WELL) widen(cells, i, j);
     }
   return { ...plan, bitmap: await createImageBitmap(picture), box: boxOf(plan, cells) };
@@ -33,7 +42,8 @@ export async function planPicture(plan, [poor, well]) {
 /** The pixels of one cell. */
 function stamp(color, ink) {
   const bytes = new Uint8ClampedArray(4 * PX * PX);
-  for (let y = 0; y < PX; y++) for (let x = 0; x < PX; x++) bytes.set([...rgb(color), 255 * ink(x, y)], 4 * (PX * y + x));
+  for (let y = 0; y < PX; y++)
+    for (let x = 0; x < PX; x++) bytes.set([...rgb(color), 255 * ink(x, y)], 4 * (PX * y + x));
   return new Uint32Array(bytes.buffer);
 }
 
@@ -46,21 +56,38 @@ function widen({ from, to }, i, j) {
 
 function boxOf({ first_cell: first, cell_m: size }, { from, to }) {
   if (to[0] < from[0]) return null;
-  return [from.map((k, axis) => (k + first[axis]) * size), to.map((k, axis) => (k + 1 + first[axis]) * size)];
+  return [
+    from.map((k, axis) => (k + first[axis]) * size),
+    to.map((k, axis) => (k + 1 + first[axis]) * size),
+  ];
 }
 
 const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
 
 /** Draws; `middle` is where the target is, `free` what no bar covers: {left, top, right, bottom}, in pixels. */
-export function drawOverlay(context, { width, height, ratio, middle, free }, camera, scene, styles) {
+export function drawOverlay(
+  context,
+  { width, height, ratio, middle, free },
+  camera,
+  scene,
+  styles,
+) {
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.clearRect(0, 0, width, height);
   context.translate(...middle);
   const floor = scene.me?.p[2] ?? 0;
-  const inside = { left: free.left - middle[0], right: free.right - middle[0], top: free.top - middle[1], bottom: free.bottom - middle[1] };
+  const inside = {
+    left: free.left - middle[0],
+    right: free.right - middle[0],
+    top: free.top - middle[1],
+    bottom: free.bottom - middle[1],
+  };
   if (scene.showPlan && scene.plan && camera.above) drawPlan(context, camera, scene.plan);
   drawPath(context, camera, scene.path, styles);
-  if (scene.showPlan) scene.gaps.forEach((gap, k) => drawGap(context, camera, [...gap.p, floor], gap, styles, k === scene.chosen));
+  if (scene.showPlan)
+    scene.gaps.forEach((gap, k) =>
+      drawGap(context, camera, [...gap.p, floor], gap, styles, k === scene.chosen),
+    );
   if (scene.path.length) drawStart(context, camera, scene.path[0], inside, styles);
   for (const mark of scene.marks) drawMark(context, camera, mark, styles);
   if (scene.me) drawMe(context, camera, scene.me, styles);
@@ -76,7 +103,13 @@ function drawPlan(context, camera, plan) {
   const below = camera.project([i * plan.cell_m, j * plan.cell_m, z]);
   const [w, h] = [plan.bitmap.width, plan.bitmap.height];
   context.save();
-  context.transform((right[0] - corner[0]) / w, (right[1] - corner[1]) / w, (below[0] - corner[0]) / h, (below[1] - corner[1]) / h, ...corner);
+  context.transform(
+    (right[0] - corner[0]) / w,
+    (right[1] - corner[1]) / w,
+    (below[0] - corner[0]) / h,
+    (below[1] - corner[1]) / h,
+    ...corner,
+  );
   context.imageSmoothingEnabled = false;
   context.drawImage(plan.bitmap, 0, 0);
   context.restore();
@@ -87,7 +120,10 @@ function drawPath(context, camera, path, styles) {
   context.beginPath();
   for (const place of path) context.lineTo(...camera.project(place));
   context.lineJoin = "round";
-  for (const [width, color] of [[6, styles.sky], [3, styles.path]]) {
+  for (const [width, color] of [
+    [6, styles.sky],
+    [3, styles.path],
+  ]) {
     context.lineWidth = width;
     context.strokeStyle = color;
     context.stroke();
@@ -97,7 +133,10 @@ function drawPath(context, camera, path, styles) {
 /** A ring where the walk began; when that is out of sight an arrow at the edge shows the way there. */
 function drawStart(context, camera, place, inside, styles) {
   const [x, y] = camera.project(place);
-  const at = [Math.min(Math.max(x, inside.left + 40), inside.right - 40), Math.min(Math.max(y, inside.top + 40), inside.bottom - 50)];
+  const at = [
+    Math.min(Math.max(x, inside.left + 40), inside.right - 40),
+    Math.min(Math.max(y, inside.top + 40), inside.bottom - 50),
+  ];
   if (Math.hypot(at[0] - x, at[1] - y) < 20) {
     circle(context, x, y, 6, styles.sky, styles.path);
     label(context, "start", x, y + 18, styles.path, styles.sky);
@@ -106,7 +145,16 @@ function drawStart(context, camera, place, inside, styles) {
   context.save();
   context.translate(...at);
   context.rotate(Math.atan2(y - at[1], x - at[0]));
-  polygon(context, [[36, 0], [24, 8], [24, -8]], styles.path, styles.sky);
+  polygon(
+    context,
+    [
+      [36, 0],
+      [24, 8],
+      [24, -8],
+    ],
+    styles.path,
+    styles.sky,
+  );
   context.restore();
   label(context, "start", ...at, styles.path, styles.sky);
 }
@@ -127,17 +175,32 @@ function drawGap(context, camera, place, gap, styles, chosen) {
 function drawMark(context, camera, mark, styles) {
   const [x, y] = camera.project(mark.p);
   circle(context, x, y, 6, styles.accent, styles.sky);
-  const text = mark.text.length > LONGEST_NOTE ? `${mark.text.slice(0, LONGEST_NOTE - 1)}…` : mark.text;
+  const text =
+    mark.text.length > LONGEST_NOTE ? `${mark.text.slice(0, LONGEST_NOTE - 1)}…` : mark.text;
   if (text) label(context, text, x + 11, y, styles.ink, styles.sky, "left");
 }
 
 function drawMe(context, camera, me, styles) {
   const [x, y] = camera.project(me.p);
-  const [fx, fy] = camera.project([me.p[0] + Math.cos(me.yaw), me.p[1] + Math.sin(me.yaw), me.p[2]]);
+  const [fx, fy] = camera.project([
+    me.p[0] + Math.cos(me.yaw),
+    me.p[1] + Math.sin(me.yaw),
+    me.p[2],
+  ]);
   context.save();
   context.translate(x, y);
   context.rotate(Math.atan2(fy - y, fx - x));
-  polygon(context, [[18, 0], [-11, 11], [-5, 0], [-11, -11]], me.lost ? styles.gap : styles.me, styles.sky);
+  polygon(
+    context,
+    [
+      [18, 0],
+      [-11, 11],
+      [-5, 0],
+      [-11, -11],
+    ],
+    me.lost ? styles.gap : styles.me,
+    styles.sky,
+  );
   context.restore();
 }
 
@@ -148,7 +211,10 @@ function drawScale(context, camera, { x, y }, styles) {
   context.lineTo(x, y);
   context.lineTo(x + meters * camera.pxPerM, y);
   context.lineTo(x + meters * camera.pxPerM, y - 5);
-  for (const [width, color] of [[5, styles.sky], [2, styles.ink]]) {
+  for (const [width, color] of [
+    [5, styles.sky],
+    [2, styles.ink],
+  ]) {
     context.lineWidth = width;
     context.strokeStyle = color;
     context.stroke();

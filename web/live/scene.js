@@ -22,7 +22,14 @@ export class LiveScene {
   total = 0;
   server = "";
   renewed = false; // the server is another version than this page was made for
-  #cloud; #on; #socket; #heard = 0; #heardLast = performance.now(); #coming = null; #generation = -1; #open = false;
+  #cloud;
+  #on;
+  #socket;
+  #heard = 0;
+  #heardLast = performance.now();
+  #coming = null;
+  #generation = -1;
+  #open = false;
 
   constructor(cloud, handlers) {
     this.#cloud = cloud;
@@ -41,8 +48,11 @@ export class LiveScene {
 
   get have() {
     return {
-      project: this.project, generation: this.#generation, points: this.#cloud.count,
-      path: this.path.length, marks: this.marks.length,
+      project: this.project,
+      generation: this.#generation,
+      points: this.#cloud.count,
+      path: this.path.length,
+      marks: this.marks.length,
     };
   }
 
@@ -61,7 +71,10 @@ export class LiveScene {
     this.#coming = null;
     this.#on.link(false, code === TOO_MANY ? reason : "");
     readMe(true).catch(() => {}); // signed out meanwhile? then this leads to the login
-    setTimeout(() => this.#socket ?? this.#connect(), code === TOO_MANY ? AGAIN_WHEN_FULL_MS : AGAIN_MS);
+    setTimeout(
+      () => this.#socket ?? this.#connect(),
+      code === TOO_MANY ? AGAIN_WHEN_FULL_MS : AGAIN_MS,
+    );
   }
 
   #connectAgain() {

@@ -31,7 +31,12 @@ class FolderBrowser extends HTMLElement {
       make("button", { type: "button", onclick }, make("span", {}, words), make("small", {}, note));
     this.#list.replaceChildren(
       make("p", { className: "path" }, path || "Folders of this server"),
-      ...(path ? [row("↩ All folders", "", () => this.#open("")), row("Use this folder", "", () => this.#pick(path))] : []),
+      ...(path
+        ? [
+            row("↩ All folders", "", () => this.#open("")),
+            row("Use this folder", "", () => this.#pick(path)),
+          ]
+        : []),
       ...(up && path ? [row("↑ Up", "", () => this.#open(up))] : []),
       ...entries.map((entry) =>
         entry.folder

@@ -1,6 +1,16 @@
 // The list of projects, with the jobs that run.
 
-import { listProjects, listTrash, thumbnailUrl, projectUrl, readMe, readServer, removeProject, restoreProject, watchJobs } from "../shared/api.js";
+import {
+  listProjects,
+  listTrash,
+  thumbnailUrl,
+  projectUrl,
+  readMe,
+  readServer,
+  removeProject,
+  restoreProject,
+  watchJobs,
+} from "../shared/api.js";
 import { attempt, fill, make } from "../shared/dom.js";
 import { stateOf, when } from "../shared/format.js";
 import { headline } from "../shared/figures.js";
@@ -29,14 +39,25 @@ function draw(id, project = projects.find((one) => one.id === id)) {
   const { root, facts, status } = card(id);
   const open = view && view.job.state !== "succeeded";
   const picture = project?.has_map
-    ? make("img", { src: thumbnailUrl(id, project.updated), alt: "", loading: "lazy", width: 320, height: 180 })
+    ? make("img", {
+        src: thumbnailUrl(id, project.updated),
+        alt: "",
+        loading: "lazy",
+        width: 320,
+        height: 180,
+      })
     : make("div", { className: "no-thumbnail", ariaHidden: "true" }, "No map yet");
   const words = project
     ? [...headline(project), when(project.updated)]
     : [view ? view.job.inputs.recordings.map((path) => path.split("/").at(-1)).join(", ") : ""];
   fill(
     facts,
-    make("a", { href: projectUrl(id), className: "cover" }, picture, make("strong", {}, project?.name ?? id)),
+    make(
+      "a",
+      { href: projectUrl(id), className: "cover" },
+      picture,
+      make("strong", {}, project?.name ?? id),
+    ),
     open ? null : badge(stateOf(project, view)),
     make("p", { className: "quiet" }, words.join(" · ")),
     project?.problem ? make("p", { className: "error" }, `Damaged: ${project.problem}`) : null,
@@ -51,9 +72,13 @@ function drawAll() {
   const waiting = [...jobs.keys()].filter((id) => !known.has(id) && !jobs.get(id).job.finished);
   const wanted = byId("find").value.trim().toLowerCase();
   const fits = (project) => `${project.name} ${project.id}`.toLowerCase().includes(wanted);
-  const roots = [...waiting.map((id) => draw(id)), ...projects.filter(fits).map((one) => draw(one.id, one))];
+  const roots = [
+    ...waiting.map((id) => draw(id)),
+    ...projects.filter(fits).map((one) => draw(one.id, one)),
+  ];
   const list = byId("projects");
-  if (roots.some((root, k) => list.children[k] !== root) || list.children.length !== roots.length) list.replaceChildren(...roots);
+  if (roots.some((root, k) => list.children[k] !== root) || list.children.length !== roots.length)
+    list.replaceChildren(...roots);
   byId("empty").hidden = projects.length + waiting.length > 0;
   byId("none").hidden = roots.length > 0 || !wanted;
   byId("find").closest("label").hidden = projects.length <= MANY;
@@ -81,13 +106,37 @@ async function showTrash() {
   };
   const row = ({ id, project, goes }) =>
     make(
-      "li", {},
-      make("div", {}, make("strong", {}, project), make("small", {}, ` goes for good on ${when(goes)}`)),
-      make("button", { type: "button", onclick: act(() => restoreProject(id)), ariaLabel: `Bring back ${project}` }, "Bring back"),
-      make("button", { type: "button", onclick: act(() => removeProject(id)), ariaLabel: `Remove ${project} for good` }, "Remove now"),
+      "li",
+      {},
+      make(
+        "div",
+        {},
+        make("strong", {}, project),
+        make("small", {}, ` goes for good on ${when(goes)}`),
+      ),
+      make(
+        "button",
+        {
+          type: "button",
+          onclick: act(() => restoreProject(id)),
+          ariaLabel: `Bring back ${project}`,
+        },
+        "Bring back",
+      ),
+      make(
+        "button",
+        {
+          type: "button",
+          onclick: act(() => removeProject(id)),
+          ariaLabel: `Remove ${project} for good`,
+        },
+        "Remove now",
+      ),
     );
   byId("trash").hidden = deleted.length === 0;
-  byId("trash").querySelector("ul").replaceChildren(...deleted.map(row));
+  byId("trash")
+    .querySelector("ul")
+    .replaceChildren(...deleted.map(row));
 }
 
 async function begin() {
@@ -96,7 +145,9 @@ async function begin() {
   byId("new").hidden = byId("to-new").hidden = !processes;
   document.querySelector("main").classList.toggle("alone", !processes);
   const server = await attempt(byId("message"), readServer);
-  byId("notices").replaceChildren(...(server?.notices ?? []).map((words) => make("p", { className: "notice" }, `▲ ${words}`)));
+  byId("notices").replaceChildren(
+    ...(server?.notices ?? []).map((words) => make("p", { className: "notice" }, `▲ ${words}`)),
+  );
   if (processes) await showTrash();
 }
 

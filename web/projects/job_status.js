@@ -6,7 +6,12 @@ import { STATES, overallWords, progressWords } from "../shared/format.js";
 
 export function badge(state) {
   const { mark, word } = STATES[state];
-  return make("span", { className: `badge ${state}` }, make("span", { ariaHidden: "true" }, mark), ` ${word}`);
+  return make(
+    "span",
+    { className: `badge ${state}` },
+    make("span", { ariaHidden: "true" }, mark),
+    ` ${word}`,
+  );
 }
 
 class JobStatus extends HTMLElement {
@@ -19,7 +24,14 @@ class JobStatus extends HTMLElement {
   #message = make("p", { className: "error", role: "alert" });
 
   connectedCallback() {
-    this.replaceChildren(this.#line, this.#bar, this.#words, this.#piece, this.#buttons, this.#message);
+    this.replaceChildren(
+      this.#line,
+      this.#bar,
+      this.#words,
+      this.#piece,
+      this.#buttons,
+      this.#message,
+    );
   }
 
   set view(view) {
@@ -27,7 +39,11 @@ class JobStatus extends HTMLElement {
     this.#view = view;
     const { job, status } = view;
     const running = job.state === "running";
-    fill(this.#line, badge(job.state), running && status.what ? make("strong", {}, status.what) : null);
+    fill(
+      this.#line,
+      badge(job.state),
+      running && status.what ? make("strong", {}, status.what) : null,
+    );
     this.#bar.hidden = !running;
     this.#bar.value = view.overall;
     this.#words.textContent = running ? overallWords(view) : job.note;
@@ -39,7 +55,11 @@ class JobStatus extends HTMLElement {
 
   async #offer(job) {
     const button = (words, action) =>
-      make("button", { type: "button", onclick: () => attempt(this.#message, () => action(job.id)) }, words);
+      make(
+        "button",
+        { type: "button", onclick: () => attempt(this.#message, () => action(job.id)) },
+        words,
+      );
     const open = job.state === "queued" || job.state === "running";
     const again = job.state === "failed" || job.state === "cancelled";
     const { may } = await readMe();

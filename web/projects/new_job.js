@@ -12,20 +12,39 @@ const field = (words, control, hint) =>
   make("label", {}, make("span", {}, words), control, hint ? make("small", {}, hint) : null);
 
 const slug = (path) =>
-  path.split("/").at(-1).replace(/\.[^.]*$/, "").replace(/[^A-Za-z0-9._-]+/g, "-").replace(/^[^A-Za-z0-9]+/, "").slice(0, 64);
+  path
+    .split("/")
+    .at(-1)
+    .replace(/\.[^.]*$/, "")
+    .replace(/[^A-Za-z0-9._-]+/g, "-")
+    .replace(/^[^A-Za-z0-9]+/, "")
+    .slice(0, 64);
 
-const text = (name, more = {}) => make("input", { name, autocomplete: "off", spellcheck: false, ...more });
+const text = (name, more = {}) =>
+  make("input", { name, autocomplete: "off", spellcheck: false, ...more });
 
 class NewJob extends HTMLElement {
   #recording = text("recording", { required: true, onchange: () => this.#look() });
   #browser = make("folder-browser", { onpick: (event) => this.#choose(event.detail) });
   #found = make("recording-look");
   #project = text("project", {
-    required: true, pattern: "[A-Za-z0-9][A-Za-z0-9._\\-]{0,63}", title: "Letters, digits, dot, dash and underscore",
+    required: true,
+    pattern: "[A-Za-z0-9][A-Za-z0-9._\\-]{0,63}",
+    title: "Letters, digits, dot, dash and underscore",
     oninput: () => this.#touched.add("project"),
   });
-  #preset = make("select", { name: "preset", onchange: () => { this.#touched.add("preset"); this.#editor.show(this.#preset.value); } });
-  #rig = make("select", { name: "rig", onchange: () => this.#touched.add("rig") }, make("option", { value: "" }, "Guess from the recording"));
+  #preset = make("select", {
+    name: "preset",
+    onchange: () => {
+      this.#touched.add("preset");
+      this.#editor.show(this.#preset.value);
+    },
+  });
+  #rig = make(
+    "select",
+    { name: "rig", onchange: () => this.#touched.add("rig") },
+    make("option", { value: "" }, "Guess from the recording"),
+  );
   #imu = text("imu", { oninput: () => this.#touched.add("imu") });
   #gnss = text("gnss", { oninput: () => this.#touched.add("gnss") });
   #editor = make("setting-editor");
@@ -39,17 +58,37 @@ class NewJob extends HTMLElement {
   async connectedCallback() {
     this.replaceChildren(
       make(
-        "form", { onsubmit: (event) => this.#submit(event) },
-        ...(this.#again ? [] : [make("upload-box", { onrecording: (event) => this.#choose(event.detail), onchosen: (event) => this.#suggest({ project: slug(event.detail).toLowerCase() }) })]),
-        field(this.#again ? "Recording" : "Or a recording on the server", this.#recording, "File or folder: pcap, bag, mcap, frames"),
+        "form",
+        { onsubmit: (event) => this.#submit(event) },
+        ...(this.#again
+          ? []
+          : [
+              make("upload-box", {
+                onrecording: (event) => this.#choose(event.detail),
+                onchosen: (event) => this.#suggest({ project: slug(event.detail).toLowerCase() }),
+              }),
+            ]),
+        field(
+          this.#again ? "Recording" : "Or a recording on the server",
+          this.#recording,
+          "File or folder: pcap, bag, mcap, frames",
+        ),
         make("button", { type: "button", onclick: () => this.#browser.toggle() }, "Browse…"),
         this.#browser,
         this.#found,
-        field("Project name", this.#project, this.#again ? "The same name: run again in this project. Another: a new project. Finished stages that the change does not touch are kept." : ""),
+        field(
+          "Project name",
+          this.#project,
+          this.#again
+            ? "The same name: run again in this project. Another: a new project. Finished stages that the change does not touch are kept."
+            : "",
+        ),
         field("Preset", this.#preset),
         field("Rig", this.#rig),
         make(
-          "details", {}, make("summary", {}, "IMU and GNSS files"),
+          "details",
+          {},
+          make("summary", {}, "IMU and GNSS files"),
           field("IMU, CSV", this.#imu, "Empty: what the recording has"),
           field("GNSS, CSV", this.#gnss, "Empty: what the recording has"),
         ),
@@ -58,8 +97,14 @@ class NewJob extends HTMLElement {
         this.#message,
       ),
     );
-    this.#settings.addEventListener("toggle", () => this.#settings.open && this.#editor.show(this.#preset.value));
-    const [choices, projects] = (await attempt(this.#message, () => Promise.all([readChoices(), this.#again ? [] : listProjects()]))) ?? [];
+    this.#settings.addEventListener(
+      "toggle",
+      () => this.#settings.open && this.#editor.show(this.#preset.value),
+    );
+    const [choices, projects] =
+      (await attempt(this.#message, () =>
+        Promise.all([readChoices(), this.#again ? [] : listProjects()]),
+      )) ?? [];
     this.#taken = new Set(projects?.map((one) => one.id));
     const option = (name) => make("option", { value: name }, name);
     this.#preset.append(...(choices?.presets ?? []).map(option));
@@ -130,7 +175,8 @@ class NewJob extends HTMLElement {
       gnss: this.#gnss.value,
       settings: this.#editor.texts(),
       only_new: !this.#again,
-      clone_of: this.#again && this.#again.project !== this.#project.value ? this.#again.project : "",
+      clone_of:
+        this.#again && this.#again.project !== this.#project.value ? this.#again.project : "",
     };
     const added = await attempt(this.#message, () => this.#add(job));
     if (added) location.assign(projectUrl(added.job.project));
@@ -143,7 +189,8 @@ class NewJob extends HTMLElement {
       if (Object.keys(error.problems).length) {
         this.#settings.open = true;
         await this.#editor.show(this.#preset.value);
-        if (this.#editor.complain(error.problems)) throw new Error("Some settings are wrong, see above");
+        if (this.#editor.complain(error.problems))
+          throw new Error("Some settings are wrong, see above");
       }
       throw error;
     }

@@ -1,6 +1,14 @@
 // One project: the map, the figures, the results, the job.
 
-import { ApiError, fileUrl, listJobsOf, readProject, reportUrl, viewerUrl, watchJobs } from "../shared/api.js";
+import {
+  ApiError,
+  fileUrl,
+  listJobsOf,
+  readProject,
+  reportUrl,
+  viewerUrl,
+  watchJobs,
+} from "../shared/api.js";
 import { fill, make } from "../shared/dom.js";
 import { figures } from "../shared/figures.js";
 import { bytes, seconds, stateOf, when } from "../shared/format.js";
@@ -24,10 +32,19 @@ function draw() {
   byId("title").textContent = name;
   document.querySelector("project-tools").name = name;
   const facts = project
-    ? [project.preset && `preset ${project.preset}`, project.rig && `rig ${project.rig}`, bytes(project.bytes), when(project.updated)]
+    ? [
+        project.preset && `preset ${project.preset}`,
+        project.rig && `rig ${project.rig}`,
+        bytes(project.bytes),
+        when(project.updated),
+      ]
     : [];
   status.hidden = !view || view.job.state === "succeeded";
-  fill(byId("state"), status.hidden ? badge(stateOf(project, view)) : null, make("p", { className: "quiet" }, facts.filter(Boolean).join(" · ")));
+  fill(
+    byId("state"),
+    status.hidden ? badge(stateOf(project, view)) : null,
+    make("p", { className: "quiet" }, facts.filter(Boolean).join(" · ")),
+  );
   if (view) status.view = view;
   drawMessage();
   drawFigures();
@@ -39,7 +56,10 @@ function draw() {
 function drawFigures() {
   const rows = figures(project?.summary ?? {});
   byId("figures").hidden = rows.length === 0;
-  fill(byId("figures").querySelector("dl"), ...rows.map(([words, value]) => make("div", {}, make("dt", {}, words), make("dd", {}, value))));
+  fill(
+    byId("figures").querySelector("dl"),
+    ...rows.map(([words, value]) => make("div", {}, make("dt", {}, words), make("dd", {}, value))),
+  );
 }
 
 function drawFiles() {
@@ -59,12 +79,18 @@ function drawStages() {
   const done = new Map((project?.stages ?? []).map((row) => [row.stage, row]));
   const live = view?.job.state === "running" ? view.status.stages : [];
   const rows = live.length
-    ? live.map((row) => [row.stage, STAGE_WORDS[row.state] ?? row.state, row.seconds, done.get(row.stage)?.peak_bytes])
+    ? live.map((row) => [
+        row.stage,
+        STAGE_WORDS[row.state] ?? row.state,
+        row.seconds,
+        done.get(row.stage)?.peak_bytes,
+      ])
     : [...done.values()].map((row) => [row.stage, STAGE_WORDS.done, row.seconds, row.peak_bytes]);
   byId("stages").hidden = rows.length === 0;
   const cells = ([stage, state, time, memory]) =>
     make(
-      "tr", {},
+      "tr",
+      {},
       make("th", { scope: "row" }, stage),
       make("td", {}, state),
       make("td", { className: "number" }, typeof time === "number" ? seconds(time) : ""),
@@ -74,7 +100,8 @@ function drawStages() {
 }
 
 function showMap() {
-  const walking = view?.job.state === "running" && view.status.stages.some((row) => row.stage === "odometry");
+  const walking =
+    view?.job.state === "running" && view.status.stages.some((row) => row.stage === "odometry");
   if (!(project?.viewable || walking) || byId("viewer").querySelector("iframe")) return;
   byId("viewer").replaceChildren(make("iframe", { src: viewerUrl(id), title: "Map in 3-D" }));
 }

@@ -1,6 +1,13 @@
 // <project-tools>: what can be done to a project: run again, rename, delete. And its log.
 
-import { deleteProject, listJobsOf, logUrl, readLog, readMe, renameProject } from "../shared/api.js";
+import {
+  deleteProject,
+  listJobsOf,
+  logUrl,
+  readLog,
+  readMe,
+  renameProject,
+} from "../shared/api.js";
 import { attempt, make } from "../shared/dom.js";
 import "./new_job.js";
 
@@ -21,11 +28,19 @@ class ProjectTools extends HTMLElement {
     this.replaceChildren(
       this.#again,
       make(
-        "details", {}, make("summary", {}, "Rename or delete"),
+        "details",
+        {},
+        make("summary", {}, "Rename or delete"),
         make(
-          "form", { onsubmit: (event) => this.#rename(event) },
+          "form",
+          { onsubmit: (event) => this.#rename(event) },
           make("label", {}, make("span", {}, "Name"), this.#name),
-          make("div", { className: "buttons" }, make("button", {}, "Rename"), make("button", { type: "button", onclick: () => this.#ask() }, "Delete…")),
+          make(
+            "div",
+            { className: "buttons" },
+            make("button", {}, "Rename"),
+            make("button", { type: "button", onclick: () => this.#ask() }, "Delete…"),
+          ),
         ),
       ),
       this.#message,
@@ -61,8 +76,17 @@ class ProjectTools extends HTMLElement {
     };
     this.#dialog.replaceChildren(
       make("h2", {}, `Delete ${this.#name.value || this.#id}?`),
-      make("p", {}, "It can be brought back from the list of projects for a week. The recording stays."),
-      make("div", { className: "buttons" }, make("button", { type: "button", autofocus: true, onclick: close }, "Keep"), make("button", { type: "button", className: "danger", onclick: go }, "Delete")),
+      make(
+        "p",
+        {},
+        "It can be brought back from the list of projects for a week. The recording stays.",
+      ),
+      make(
+        "div",
+        { className: "buttons" },
+        make("button", { type: "button", autofocus: true, onclick: close }, "Keep"),
+        make("button", { type: "button", className: "danger", onclick: go }, "Delete"),
+      ),
     );
     this.#dialog.showModal();
   }
@@ -95,11 +119,12 @@ class JobLog extends HTMLElement {
     if (!this.#job || !this.#details.open || this.#busy) return;
     this.#busy = true;
     try {
-      for (let piece; piece === undefined || piece.text; ) {
+      for (let piece; piece === undefined || piece.text;) {
         piece = await readLog(this.#job, this.#next);
         this.#next = piece.next;
         const atEnd = this.#pre.scrollHeight - this.#pre.scrollTop - this.#pre.clientHeight < 40;
-        if (piece.text) this.#pre.textContent = (this.#pre.textContent + piece.text).slice(-MOST_LETTERS);
+        if (piece.text)
+          this.#pre.textContent = (this.#pre.textContent + piece.text).slice(-MOST_LETTERS);
         if (atEnd) this.#pre.scrollTop = this.#pre.scrollHeight;
       }
     } finally {

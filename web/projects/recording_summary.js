@@ -24,17 +24,25 @@ class RecordingLook extends HTMLElement {
       this.#show(found);
       return found;
     } catch (error) {
-      if (mine === this.#asked) this.replaceChildren(make("p", { className: "error" }, error.message));
+      if (mine === this.#asked)
+        this.replaceChildren(make("p", { className: "error" }, error.message));
       return null;
     }
   }
 
   #show(found) {
     const about = found.estimated ? "about " : "";
-    const facts = [found.kind, bytes(found.bytes), ...(found.seconds > 0 ? [`${about}${seconds(found.seconds)}`] : [])];
+    const facts = [
+      found.kind,
+      bytes(found.bytes),
+      ...(found.seconds > 0 ? [`${about}${seconds(found.seconds)}`] : []),
+    ];
     const sensor = (one) => {
       const rate = one.rate_hz === null ? "" : `, ${one.rate_hz.toFixed(1)} a second`;
-      return ["LiDAR", `${one.model} (${one.label}): ${about}${count(one.count)} ${one.content}${rate}`];
+      return [
+        "LiDAR",
+        `${one.model} (${one.label}): ${about}${count(one.count)} ${one.content}${rate}`,
+      ];
     };
     const rows = [
       ...found.sensors.map(sensor),
@@ -48,8 +56,14 @@ class RecordingLook extends HTMLElement {
     const warnings = found.warnings.map((text) => make("li", {}, text));
     this.replaceChildren(
       make("p", {}, make("strong", {}, facts.join(" · "))),
-      make("dl", { className: "found" }, ...rows.flatMap(([term, text]) => [make("dt", {}, term), make("dd", {}, text)])),
-      ...(warnings.length ? [make("p", { className: "warn" }, "▲ Warnings"), make("ul", {}, ...warnings)] : []),
+      make(
+        "dl",
+        { className: "found" },
+        ...rows.flatMap(([term, text]) => [make("dt", {}, term), make("dd", {}, text)]),
+      ),
+      ...(warnings.length
+        ? [make("p", { className: "warn" }, "▲ Warnings"), make("ul", {}, ...warnings)]
+        : []),
     );
   }
 }

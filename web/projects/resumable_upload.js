@@ -1,6 +1,15 @@
 // Sends the files of one recording, goes on after any break, and says how far it is. No DOM.
 
-import { beginUpload, createFile, listUploadFiles, listUploads, readOffset, readUpload, removeUpload, sendBytes } from "../shared/api.js";
+import {
+  beginUpload,
+  createFile,
+  listUploadFiles,
+  listUploads,
+  readOffset,
+  readUpload,
+  removeUpload,
+  sendBytes,
+} from "../shared/api.js";
 
 export const CHUNK = 8 << 20;
 const SMALLEST_CHUNK = 512 << 10;
@@ -11,7 +20,9 @@ const FOR_NOBODY = new Set(["Thumbs.db", "desktop.ini"]);
 
 /** Of picked or dropped {file, name} the name of the whole, the files with names below it, and how many were left out. */
 export function sorted(picked) {
-  const meant = picked.filter(({ name }) => name.split("/").every((part) => !part.startsWith(".") && !FOR_NOBODY.has(part)));
+  const meant = picked.filter(({ name }) =>
+    name.split("/").every((part) => !part.startsWith(".") && !FOR_NOBODY.has(part)),
+  );
   const tops = new Set(meant.map(({ name }) => name.split("/")[0]));
   const folder = tops.size === 1 && meant.every(({ name }) => name.includes("/"));
   const files = meant
@@ -73,7 +84,9 @@ export class Sending extends EventTarget {
     try {
       await this.#find(stop.signal);
       if (!this.#upload.finished) await this.#sendAll(stop.signal);
-      this.recording = (await this.#again(stop.signal, () => readUpload(this.#upload.id))).recording;
+      this.recording = (
+        await this.#again(stop.signal, () => readUpload(this.#upload.id))
+      ).recording;
       this.#tell("done", "");
     } catch (error) {
       if (!stop.signal.aborted) this.#tell("failed", error.message);
@@ -96,8 +109,16 @@ export class Sending extends EventTarget {
   async #find(signal) {
     const mark = await fingerprint(this.files);
     const uploads = await this.#again(signal, listUploads);
-    const same = (one) => one.fingerprint === mark && one.bytes === this.total && one.files === this.files.length;
-    this.#upload = uploads.find(same) ?? (await beginUpload({ name: this.name, files: this.files.length, bytes: this.total, fingerprint: mark }));
+    const same = (one) =>
+      one.fingerprint === mark && one.bytes === this.total && one.files === this.files.length;
+    this.#upload =
+      uploads.find(same) ??
+      (await beginUpload({
+        name: this.name,
+        files: this.files.length,
+        bytes: this.total,
+        fingerprint: mark,
+      }));
     if (this.#upload.finished) return;
     const rows = await this.#again(signal, () => listUploadFiles(this.#upload.id));
     this.#known = new Map(rows.map((row) => [row.name, row]));
@@ -105,9 +126,12 @@ export class Sending extends EventTarget {
   }
 
   async #sendAll(signal) {
-    const waiting = this.files.filter(({ file, name }) => this.#known.get(name)?.offset !== file.size || !this.#known.has(name));
+    const waiting = this.files.filter(
+      ({ file, name }) => this.#known.get(name)?.offset !== file.size || !this.#known.has(name),
+    );
     const lane = async () => {
-      for (let next = waiting.shift(); next; next = waiting.shift()) await this.#sendFile(next, signal);
+      for (let next = waiting.shift(); next; next = waiting.shift())
+        await this.#sendFile(next, signal);
     };
     await Promise.all(Array.from({ length: AT_ONCE }, lane));
   }
@@ -122,7 +146,8 @@ export class Sending extends EventTarget {
         const began = performance.now();
         const bytes = await readBytes(file.slice(from, from + this.#chunk), name);
         if (row) row.offset = await sendBytes(row.url, from, bytes, signal);
-        else this.#known.set(name, await createFile(this.#upload.id, name, file.size, bytes, signal));
+        else
+          this.#known.set(name, await createFile(this.#upload.id, name, file.size, bytes, signal));
         this.#suit((performance.now() - began) / 1000);
         this.#count();
       });

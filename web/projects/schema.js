@@ -8,28 +8,60 @@ export function typeWords(schema = {}) {
   if (schema.anyOf) return schema.anyOf.map(typeWords).join(" or ");
   if (schema.enum) return schema.enum.map((one) => JSON.stringify(one)).join(" or ");
   if (schema.const !== undefined) return JSON.stringify(schema.const);
-  if (schema.type === "array") return `list of ${schema.items ? typeWords(schema.items) : "anything"}`;
-  if (schema.type === "object" && schema.additionalProperties) return `map of text to ${typeWords(schema.additionalProperties)}`;
+  if (schema.type === "array")
+    return `list of ${schema.items ? typeWords(schema.items) : "anything"}`;
+  if (schema.type === "object" && schema.additionalProperties)
+    return `map of text to ${typeWords(schema.additionalProperties)}`;
   return schema.type ?? "anything";
 }
 
 /** What a value is held to: `1 to 200 letters`, `at least 1`. */
-export function limits({ minimum, maximum, minLength, maxLength, minItems, maxItems, pattern, default: usual }) {
+export function limits({
+  minimum,
+  maximum,
+  minLength,
+  maxLength,
+  minItems,
+  maxItems,
+  pattern,
+  default: usual,
+}) {
   const span = (low, high, unit) =>
-    low === undefined && high === undefined ? "" : high === undefined ? `at least ${low}${unit}` : low === undefined ? `at most ${high}${unit}` : `${low} to ${high}${unit}`;
+    low === undefined && high === undefined
+      ? ""
+      : high === undefined
+        ? `at least ${low}${unit}`
+        : low === undefined
+          ? `at most ${high}${unit}`
+          : `${low} to ${high}${unit}`;
   return [
     span(minimum, maximum, ""),
     span(minLength, maxLength, " letters"),
     span(minItems, maxItems, " items"),
     pattern ? `pattern ${pattern}` : "",
     usual === undefined ? "" : `default ${JSON.stringify(usual)}`,
-  ].filter(Boolean).join(", ");
+  ]
+    .filter(Boolean)
+    .join(", ");
 }
 
 const GUESSES = {
-  project: "office", recordings: ["/data/walk.pcap"], settings: ["map.voxel_m=0.05"], preset: "indoor", name: "walk.pcap",
-  clone_of: "", rig: "", imu: "", gnss: "", files: 1, bytes: 114359304, job_id: "3f9a2c1b5d7e8f90", project_id: "office",
-  path: "/data/walk.pcap", upload_id: "9c2d41e07ab3", file_id: "9c2d41e07ab3-0",
+  project: "office",
+  recordings: ["/data/walk.pcap"],
+  settings: ["map.voxel_m=0.05"],
+  preset: "indoor",
+  name: "walk.pcap",
+  clone_of: "",
+  rig: "",
+  imu: "",
+  gnss: "",
+  files: 1,
+  bytes: 114359304,
+  job_id: "3f9a2c1b5d7e8f90",
+  project_id: "office",
+  path: "/data/walk.pcap",
+  upload_id: "9c2d41e07ab3",
+  file_id: "9c2d41e07ab3-0",
 };
 
 /** An example of a value. */
@@ -37,13 +69,16 @@ export function example(schema, schemas, key = "", depth = 0) {
   if (key in GUESSES && !schema.$ref) return GUESSES[key];
   if (schema.example !== undefined) return schema.example;
   if (schema.default !== undefined) return schema.default;
-  if (schema.$ref) return depth > 4 ? {} : example(schemas[nameOf(schema.$ref)] ?? {}, schemas, "", depth + 1);
+  if (schema.$ref)
+    return depth > 4 ? {} : example(schemas[nameOf(schema.$ref)] ?? {}, schemas, "", depth + 1);
   if (schema.anyOf) return example(schema.anyOf[0], schemas, key, depth);
   if (schema.enum) return schema.enum[0];
   if (schema.type === "array") return [example(schema.items ?? {}, schemas, key, depth + 1)];
   if (schema.type === "object") {
     const fields = Object.entries(schema.properties ?? {});
-    return Object.fromEntries(fields.map(([name, one]) => [name, example(one, schemas, name, depth + 1)]));
+    return Object.fromEntries(
+      fields.map(([name, one]) => [name, example(one, schemas, name, depth + 1)]),
+    );
   }
   return { string: "text", integer: 1, number: 0.5, boolean: true }[schema.type] ?? null;
 }

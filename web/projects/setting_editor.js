@@ -11,7 +11,12 @@ class SettingEditor extends HTMLElement {
   #preset = "";
   #rows = new Map(); // path -> {input, value, error, row}
   #wanted = new Map(); // path -> text, of settings not shown yet
-  #find = make("input", { type: "search", placeholder: "voxel, odometry, GNSS…", autocomplete: "off", oninput: () => this.#filter() });
+  #find = make("input", {
+    type: "search",
+    placeholder: "voxel, odometry, GNSS…",
+    autocomplete: "off",
+    oninput: () => this.#filter(),
+  });
   #only = make("input", { type: "checkbox", onchange: () => this.#filter() });
   #words = make("p", { className: "quiet", role: "status" });
   #groups = make("div", { className: "groups" });
@@ -30,7 +35,12 @@ class SettingEditor extends HTMLElement {
   /** Shows a preset; what was changed before stays changed. */
   async show(preset) {
     if (preset === this.#preset) return;
-    const kept = new Map(this.texts().map((text) => [text.slice(0, text.indexOf("=")), text.slice(text.indexOf("=") + 1)]));
+    const kept = new Map(
+      this.texts().map((text) => [
+        text.slice(0, text.indexOf("=")),
+        text.slice(text.indexOf("=") + 1),
+      ]),
+    );
     const groups = await attempt(this.#message, () => readSettings(preset));
     if (!groups) return;
     this.#preset = preset;
@@ -51,7 +61,10 @@ class SettingEditor extends HTMLElement {
   /** Takes over what another job differed in; before or after `show`. */
   set(texts) {
     for (const text of texts) {
-      const [path, value] = [text.slice(0, text.indexOf("=")).trim(), text.slice(text.indexOf("=") + 1).trim()];
+      const [path, value] = [
+        text.slice(0, text.indexOf("=")).trim(),
+        text.slice(text.indexOf("=") + 1).trim(),
+      ];
       const row = this.#rows.get(path);
       if (row) row.input.value = value;
       else this.#wanted.set(path, value);
@@ -78,7 +91,13 @@ class SettingEditor extends HTMLElement {
 
   #group({ name, text, settings }) {
     const rows = settings.map((setting) => this.#setting(setting));
-    return make("details", { className: "group" }, make("summary", {}, name), make("p", { className: "quiet" }, text), ...rows);
+    return make(
+      "details",
+      { className: "group" },
+      make("summary", {}, name),
+      make("p", { className: "quiet" }, text),
+      ...rows,
+    );
   }
 
   #setting({ path, name, kind, choices, unit, text, default: usual, value }) {
@@ -86,9 +105,22 @@ class SettingEditor extends HTMLElement {
     const shown = String(value);
     const input = this.#input(kind, choices, { id, value: this.#wanted.get(path) ?? shown });
     const error = make("p", { className: "error", id: `${id}-error` });
-    const about = [kind in TYPES ? TYPES[kind] : "", `default ${String(usual) === "" ? "empty" : usual}`, value !== usual ? `preset ${value}` : ""];
-    const label = make("label", { htmlFor: id }, make("span", {}, name, unit ? make("small", {}, ` ${unit}`) : null));
-    const hint = make("p", { className: "hint", id: `${id}-hint` }, text ? `${text} ` : "", make("span", { className: "quiet" }, `(${about.filter(Boolean).join(", ")})`));
+    const about = [
+      kind in TYPES ? TYPES[kind] : "",
+      `default ${String(usual) === "" ? "empty" : usual}`,
+      value !== usual ? `preset ${value}` : "",
+    ];
+    const label = make(
+      "label",
+      { htmlFor: id },
+      make("span", {}, name, unit ? make("small", {}, ` ${unit}`) : null),
+    );
+    const hint = make(
+      "p",
+      { className: "hint", id: `${id}-hint` },
+      text ? `${text} ` : "",
+      make("span", { className: "quiet" }, `(${about.filter(Boolean).join(", ")})`),
+    );
     input.setAttribute("aria-describedby", `${id}-hint ${id}-error`);
     input.addEventListener("change", () => this.#check());
     const row = make("div", { className: "setting" }, label, input, hint, error);
@@ -99,12 +131,21 @@ class SettingEditor extends HTMLElement {
   #input(kind, choices, props) {
     const options = kind === "bool" ? ["true", "false"] : kind === "choice" ? choices : null;
     if (options) {
-      const select = make("select", { id: props.id }, ...options.map((one) => make("option", { value: one }, one)));
+      const select = make(
+        "select",
+        { id: props.id },
+        ...options.map((one) => make("option", { value: one }, one)),
+      );
       select.value = props.value;
       return select;
     }
     const numeric = kind === "int" || kind === "float";
-    return make("input", { ...props, inputMode: numeric ? "decimal" : "text", autocomplete: "off", spellcheck: false });
+    return make("input", {
+      ...props,
+      inputMode: numeric ? "decimal" : "text",
+      autocomplete: "off",
+      spellcheck: false,
+    });
   }
 
   async #check() {
@@ -121,7 +162,8 @@ class SettingEditor extends HTMLElement {
     for (const [path, row] of this.#rows) {
       const changed = row.input.value !== row.value;
       row.row.classList.toggle("changed", changed);
-      const fits = !words || path.includes(words) || row.row.textContent.toLowerCase().includes(words);
+      const fits =
+        !words || path.includes(words) || row.row.textContent.toLowerCase().includes(words);
       row.row.hidden = !fits || (this.#only.checked && !changed);
     }
     for (const group of this.#groups.children) {

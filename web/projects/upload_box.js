@@ -18,13 +18,24 @@ const STATES = {
 
 class UploadBox extends HTMLElement {
   #sending = null;
-  #file = make("input", { type: "file", hidden: true, onchange: () => this.#take(ofInput(this.#file)) });
-  #folder = make("input", { type: "file", hidden: true, webkitdirectory: true, onchange: () => this.#take(ofInput(this.#folder)) });
+  #file = make("input", {
+    type: "file",
+    hidden: true,
+    onchange: () => this.#take(ofInput(this.#file)),
+  });
+  #folder = make("input", {
+    type: "file",
+    hidden: true,
+    webkitdirectory: true,
+    onchange: () => this.#take(ofInput(this.#folder)),
+  });
   #zone = make(
-    "div", { className: "drop" },
+    "div",
+    { className: "drop" },
     make("p", {}, "Drop a file or folder here"),
     make(
-      "div", { className: "buttons" },
+      "div",
+      { className: "buttons" },
       make("button", { type: "button", onclick: () => this.#pick(this.#file) }, "File…"),
       make("button", { type: "button", onclick: () => this.#pick(this.#folder) }, "Folder…"),
     ),
@@ -33,13 +44,27 @@ class UploadBox extends HTMLElement {
   #title = make("p", { className: "upload-title" });
   #words = make("p", { className: "job-words", role: "status" });
   #buttons = make("div", { className: "buttons" });
-  #now = make("div", { className: "upload-now", hidden: true }, this.#title, this.#bar, this.#words, this.#buttons);
+  #now = make(
+    "div",
+    { className: "upload-now", hidden: true },
+    this.#title,
+    this.#bar,
+    this.#words,
+    this.#buttons,
+  );
   #open = make("ul", { className: "uploads", ariaLabel: "Unfinished uploads" });
   #message = make("p", { className: "error", role: "alert" });
   #leaving = (event) => event.preventDefault();
 
   connectedCallback() {
-    this.replaceChildren(this.#zone, this.#file, this.#folder, this.#now, this.#open, this.#message);
+    this.replaceChildren(
+      this.#zone,
+      this.#file,
+      this.#folder,
+      this.#now,
+      this.#open,
+      this.#message,
+    );
     this.#zone.addEventListener("dragover", (event) => this.#over(event, true));
     this.#zone.addEventListener("dragleave", (event) => this.#over(event, false));
     this.#zone.addEventListener("drop", (event) => this.#drop(event));
@@ -90,7 +115,8 @@ class UploadBox extends HTMLElement {
     if (busy) addEventListener("beforeunload", this.#leaving);
     else removeEventListener("beforeunload", this.#leaving);
     if (["paused", "done", "removed"].includes(state)) this.#listOpen();
-    if (state === "done") this.dispatchEvent(new CustomEvent("recording", { detail: sending.recording }));
+    if (state === "done")
+      this.dispatchEvent(new CustomEvent("recording", { detail: sending.recording }));
   }
 
   #figures({ state, sent, total, rate, eta }) {
@@ -103,7 +129,8 @@ class UploadBox extends HTMLElement {
   #offer(state) {
     if (this.#buttons.dataset.state === state) return;
     this.#buttons.dataset.state = state;
-    const button = (words, action) => make("button", { type: "button", onclick: () => attempt(this.#message, action) }, words);
+    const button = (words, action) =>
+      make("button", { type: "button", onclick: () => attempt(this.#message, action) }, words);
     const pause = button("Pause", () => this.#sending.pause());
     const resume = button("Continue", () => this.#sending.start());
     const remove = button("Remove", () => this.#sending.remove());
@@ -117,7 +144,10 @@ class UploadBox extends HTMLElement {
   /** What was begun and is not whole, perhaps before this page was opened. */
   async #listOpen() {
     const uploads = (await attempt(this.#message, listUploads)) ?? [];
-    const mine = this.#sending && !["removed", "done"].includes(this.#sending.state) ? this.#sending.name : null;
+    const mine =
+      this.#sending && !["removed", "done"].includes(this.#sending.state)
+        ? this.#sending.name
+        : null;
     const rows = uploads.filter((one) => !one.finished && one.name !== mine);
     this.#open.hidden = rows.length === 0;
     this.#open.replaceChildren(...rows.map((one) => this.#row(one)));
@@ -129,13 +159,23 @@ class UploadBox extends HTMLElement {
       this.#listOpen();
     };
     return make(
-      "li", {},
+      "li",
+      {},
       make(
-        "div", {},
+        "div",
+        {},
         make("strong", {}, name),
-        make("small", {}, ` ${bytes(received)} of ${bytes(total)} are here. Choose the same ${name.includes(".") ? "file" : "folder"} again to go on, until ${when(expires)}`),
+        make(
+          "small",
+          {},
+          ` ${bytes(received)} of ${bytes(total)} are here. Choose the same ${name.includes(".") ? "file" : "folder"} again to go on, until ${when(expires)}`,
+        ),
       ),
-      make("button", { type: "button", ariaLabel: `Remove the upload of ${name}`, onclick: remove }, "Remove"),
+      make(
+        "button",
+        { type: "button", ariaLabel: `Remove the upload of ${name}`, onclick: remove },
+        "Remove",
+      ),
     );
   }
 }

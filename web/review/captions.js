@@ -7,8 +7,14 @@ export const VERDICTS = {
 };
 
 export const KINDS = {
-  accept: "accepted", reject: "rejected", restore: "left to the program", replace: "measured anew",
-  add: "added", undo: "undid", redo: "redid", approve: "approved the map",
+  accept: "accepted",
+  reject: "rejected",
+  restore: "left to the program",
+  replace: "measured anew",
+  add: "added",
+  undo: "undid",
+  redo: "redid",
+  approve: "approved the map",
 };
 
 /** What each key does; the help sheet is made of this. */
@@ -33,10 +39,16 @@ export const KEYS = [
   ["+ and −", "Zoom"],
   ["W", "Write a reason"],
   ["?", "This list"],
-  ["A key held down", "Counts once, except for moving, turning, the cut and zoom. After a decision A and R rest until another pair is drawn"],
+  [
+    "A key held down",
+    "Counts once, except for moving, turning, the cut and zoom. After a decision A and R rest until another pair is drawn",
+  ],
 ];
 
-export const seconds = (s) => (s < 60 ? `${s.toFixed(1)} s` : `${Math.floor(s / 60)}:${(s % 60).toFixed(0).padStart(2, "0")} min`);
+export const seconds = (s) =>
+  s < 60
+    ? `${s.toFixed(1)} s`
+    : `${Math.floor(s / 60)}:${(s % 60).toFixed(0).padStart(2, "0")} min`;
 
 export function length(m) {
   if (m === null || m === undefined) return "–";
@@ -45,5 +57,6 @@ export function length(m) {
 }
 
 export const share = (v) => (v === null || v === undefined ? "–" : `${Math.round(v * 100)} %`);
-export const plain = (v, digits = 3) => (v === null || v === undefined ? "–" : Number(v.toPrecision(digits)).toString());
+export const plain = (v, digits = 3) =>
+  v === null || v === undefined ? "–" : Number(v.toPrecision(digits)).toString();
 export const keyOf = ([i, j]) => `${i}-${j}`;

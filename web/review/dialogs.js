@@ -5,7 +5,12 @@ import { attempt } from "../shared/dom.js";
 import { KEYS, seconds } from "./captions.js";
 
 function open(title, ...children) {
-  const dialog = make("dialog", { "aria-labelledby": "dialog-title" }, make("h2", { id: "dialog-title" }, title), ...children);
+  const dialog = make(
+    "dialog",
+    { "aria-labelledby": "dialog-title" },
+    make("h2", { id: "dialog-title" }, title),
+    ...children,
+  );
   dialog.addEventListener("close", () => dialog.remove());
   document.body.append(dialog);
   dialog.showModal();
@@ -13,8 +18,14 @@ function open(title, ...children) {
 }
 
 export function showKeys() {
-  const rows = KEYS.map(([keys, words]) => make("tr", {}, make("th", { scope: "row" }, make("kbd", {}, keys)), make("td", {}, words)));
-  const dialog = open("Keys", make("table", {}, make("tbody", {}, ...rows)), make("button", { type: "button", onclick: () => dialog.close() }, "Close"));
+  const rows = KEYS.map(([keys, words]) =>
+    make("tr", {}, make("th", { scope: "row" }, make("kbd", {}, keys)), make("td", {}, words)),
+  );
+  const dialog = open(
+    "Keys",
+    make("table", {}, make("tbody", {}, ...rows)),
+    make("button", { type: "button", onclick: () => dialog.close() }, "Close"),
+  );
   dialog.classList.add("wide");
 }
 
@@ -25,7 +36,8 @@ export function askToSign(conflicts, sign) {
   const message = make("p", { className: "error", role: "alert" });
   const button = make("button", { className: "primary" }, "Sign");
   const form = make(
-    "form", {
+    "form",
+    {
       async onsubmit(event) {
         event.preventDefault();
         button.disabled = true;
@@ -36,11 +48,27 @@ export function askToSign(conflicts, sign) {
         if (done) dialog.close();
       },
     },
-    make("p", {}, "Your name, the time, the figures and the hashes of all results are signed. A version is kept that no later run or decision changes."),
+    make(
+      "p",
+      {},
+      "Your name, the time, the figures and the hashes of all results are signed. A version is kept that no later run or decision changes.",
+    ),
     make("label", {}, make("span", {}, conflicts ? "Reason (needed)" : "Remark"), why),
-    conflicts ? make("label", { className: "check" }, confirmed, make("span", {}, `${conflicts} accepted pairs do not fit the graph; sign all the same`)) : null,
+    conflicts
+      ? make(
+          "label",
+          { className: "check" },
+          confirmed,
+          make("span", {}, `${conflicts} accepted pairs do not fit the graph; sign all the same`),
+        )
+      : null,
     message,
-    make("div", { className: "buttons" }, make("button", { type: "button", onclick: () => dialog.close() }, "Cancel"), button),
+    make(
+      "div",
+      { className: "buttons" },
+      make("button", { type: "button", onclick: () => dialog.close() }, "Cancel"),
+      button,
+    ),
   );
   const dialog = open("Approve verification", form);
 }
@@ -48,16 +76,36 @@ export function askToSign(conflicts, sign) {
 /** Chooses two moments of the walk by sliders or on its plan; `look([frame_i, frame_j])`. */
 export function askForMoments(walk, chosen, look) {
   const most = walk.frames.length - 1;
-  const nodeOf = (frame) => Math.max(0, walk.frames.findIndex((one) => one >= frame));
-  const sliders = [0, 1].map((k) => make("input", { type: "range", min: 0, max: most, value: chosen ? nodeOf(chosen[k]) : k ? most : 0 }));
+  const nodeOf = (frame) =>
+    Math.max(
+      0,
+      walk.frames.findIndex((one) => one >= frame),
+    );
+  const sliders = [0, 1].map((k) =>
+    make("input", {
+      type: "range",
+      min: 0,
+      max: most,
+      value: chosen ? nodeOf(chosen[k]) : k ? most : 0,
+    }),
+  );
   const said = sliders.map(() => make("output"));
   const message = make("p", { className: "error", role: "alert" });
-  const plan = make("canvas", { width: 640, height: 400, className: "plan", ariaLabel: "The walk from above", role: "img" });
+  const plan = make("canvas", {
+    width: 640,
+    height: 400,
+    className: "plan",
+    ariaLabel: "The walk from above",
+    role: "img",
+  });
   let active = 0;
   const place = planner(walk, plan);
   const draw = () => {
     const nodes = sliders.map((one) => Number(one.value));
-    nodes.forEach((node, k) => (said[k].textContent = `${seconds(walk.t_s[node])}, multiframe ${walk.frames[node]}`));
+    nodes.forEach(
+      (node, k) =>
+        (said[k].textContent = `${seconds(walk.t_s[node])}, multiframe ${walk.frames[node]}`),
+    );
     place.draw(nodes);
   };
   sliders.forEach((one, k) => {
@@ -70,7 +118,8 @@ export function askForMoments(walk, chosen, look) {
     draw();
   });
   const form = make(
-    "form", {
+    "form",
+    {
       onsubmit(event) {
         event.preventDefault();
         const pair = sliders.map((one) => walk.frames[Number(one.value)]).sort((a, b) => a - b);
@@ -83,7 +132,12 @@ export function askForMoments(walk, chosen, look) {
     make("label", {}, make("span", {}, "First moment (red)"), sliders[0], said[0]),
     make("label", {}, make("span", {}, "Second moment (green)"), sliders[1], said[1]),
     message,
-    make("div", { className: "buttons" }, make("button", { type: "button", onclick: () => dialog.close() }, "Cancel"), make("button", { className: "primary" }, "Look at this pair")),
+    make(
+      "div",
+      { className: "buttons" },
+      make("button", { type: "button", onclick: () => dialog.close() }, "Cancel"),
+      make("button", { className: "primary" }, "Look at this pair"),
+    ),
   );
   const dialog = open("A loop between two moments", form);
   draw();
@@ -92,9 +146,17 @@ export function askForMoments(walk, chosen, look) {
 function planner(walk, canvas) {
   const xs = walk.xyz_m.map((p) => p[0]);
   const ys = walk.xyz_m.map((p) => p[1]);
-  const [left, right, low, high] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
+  const [left, right, low, high] = [
+    Math.min(...xs),
+    Math.max(...xs),
+    Math.min(...ys),
+    Math.max(...ys),
+  ];
   const scale = Math.min(600 / (right - left || 1), 360 / (high - low || 1));
-  const at = (node) => [320 + (xs[node] - (left + right) / 2) * scale, 200 - (ys[node] - (low + high) / 2) * scale];
+  const at = (node) => [
+    320 + (xs[node] - (left + right) / 2) * scale,
+    200 - (ys[node] - (low + high) / 2) * scale,
+  ];
   return {
     draw(nodes) {
       const context = canvas.getContext("2d");

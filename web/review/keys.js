@@ -56,7 +56,8 @@ export function listenToKeys(actions) {
   document.addEventListener("keydown", (event) => {
     if (document.querySelector("dialog[open]")) return;
     if (event.target.matches("input:not([type=checkbox], [type=range]), select")) {
-      if (event.key === "Escape" || (event.key === "Enter" && event.target === actions.reason)) event.target.blur();
+      if (event.key === "Escape" || (event.key === "Enter" && event.target === actions.reason))
+        event.target.blur();
       return;
     }
     if (event.ctrlKey || event.metaKey) onUndoKey(event, actions);

@@ -6,9 +6,15 @@ export const IDENTITY = [0, 0, 0, 0, 0, 0, 1];
 export function rotationOf([x, y, z, w]) {
   const n = 2 / (x * x + y * y + z * z + w * w);
   return [
-    1 - n * (y * y + z * z), n * (x * y - z * w), n * (x * z + y * w),
-    n * (x * y + z * w), 1 - n * (x * x + z * z), n * (y * z - x * w),
-    n * (x * z - y * w), n * (y * z + x * w), 1 - n * (x * x + y * y),
+    1 - n * (y * y + z * z),
+    n * (x * y - z * w),
+    n * (x * z + y * w),
+    n * (x * y + z * w),
+    1 - n * (x * x + z * z),
+    n * (y * z - x * w),
+    n * (x * z - y * w),
+    n * (y * z + x * w),
+    1 - n * (x * x + y * y),
   ];
 }
 
@@ -23,7 +29,8 @@ export const transposed = (R) => [R[0], R[3], R[6], R[1], R[4], R[7], R[2], R[5]
 export function times(A, B) {
   const out = [];
   for (let r = 0; r < 9; r += 3)
-    for (let c = 0; c < 3; c += 1) out.push(A[r] * B[c] + A[r + 1] * B[c + 3] + A[r + 2] * B[c + 6]);
+    for (let c = 0; c < 3; c += 1)
+      out.push(A[r] * B[c] + A[r + 1] * B[c + 3] + A[r + 2] * B[c + 6]);
   return out;
 }
 
@@ -66,8 +73,17 @@ export class Camera {
 
   /** Axes of the screen in the upright frame: right, up, and towards the eye. */
   axes() {
-    const [cy, sy, cp, sp] = [Math.cos(this.yaw), Math.sin(this.yaw), Math.cos(this.pitch), Math.sin(this.pitch)];
-    return [[cy, sy, 0], [-sy * sp, cy * sp, cp], [sy * cp, -cy * cp, sp]];
+    const [cy, sy, cp, sp] = [
+      Math.cos(this.yaw),
+      Math.sin(this.yaw),
+      Math.cos(this.pitch),
+      Math.sin(this.pitch),
+    ];
+    return [
+      [cy, sy, 0],
+      [-sy * sp, cy * sp, cp],
+      [sy * cp, -cy * cp, sp],
+    ];
   }
 
   toScreen(p, width, height) {

@@ -27,8 +27,11 @@ class ReviewQueue extends HTMLElement {
   tools = make("div", { className: "buttons" });
 
   connectedCallback() {
-    this.#show.append(...Object.entries(SHOW).map(([key, [words]]) => make("option", { value: key }, words)));
-    for (const one of [this.#show, this.#reason]) one.addEventListener("change", () => this.#fill());
+    this.#show.append(
+      ...Object.entries(SHOW).map(([key, [words]]) => make("option", { value: key }, words)),
+    );
+    for (const one of [this.#show, this.#reason])
+      one.addEventListener("change", () => this.#fill());
     this.replaceChildren(
       make("div", { className: "queue-head" }, make("h1", {}, "Loops"), this.tools),
       make("div", { className: "filters" }, this.#show, this.#reason),
@@ -43,7 +46,10 @@ class ReviewQueue extends HTMLElement {
     this.#chosen = null;
     this.#byKey = new Map(rows.map((row) => [row.key, row]));
     const reasons = [...new Set(rows.map((row) => row.reason).filter(Boolean))].sort();
-    this.#reason.replaceChildren(make("option", { value: "" }, "Any reason"), ...reasons.map((words) => make("option", { value: words }, words)));
+    this.#reason.replaceChildren(
+      make("option", { value: "" }, "Any reason"),
+      ...reasons.map((words) => make("option", { value: words }, words)),
+    );
     this.#fill();
   }
 
@@ -102,28 +108,45 @@ class ReviewQueue extends HTMLElement {
   }
 
   #pageOf(key) {
-    return Math.floor(Math.max(0, this.#shown.findIndex((row) => row.key === key)) / PAGE);
+    return Math.floor(
+      Math.max(
+        0,
+        this.#shown.findIndex((row) => row.key === key),
+      ) / PAGE,
+    );
   }
 
   /** The rows of the page on which a pair is. */
   #turnTo(key) {
     this.#page = this.#pageOf(key);
-    return this.#shown.slice(this.#page * PAGE, (this.#page + 1) * PAGE).map((row) => this.#item(row));
+    return this.#shown
+      .slice(this.#page * PAGE, (this.#page + 1) * PAGE)
+      .map((row) => this.#item(row));
   }
 
   #say() {
     const at = this.#shown.findIndex((row) => row.key === this.#chosen) + 1;
     const decided = this.#shown.filter((row) => row.who).length;
-    this.#count.textContent = this.#shown.length ? `${at || "–"} of ${this.#shown.length} · ${decided} decided by people` : "None";
+    this.#count.textContent = this.#shown.length
+      ? `${at || "–"} of ${this.#shown.length} · ${decided} decided by people`
+      : "None";
   }
 
   #item(row) {
     const { mark, word } = VERDICTS[row.state] ?? VERDICTS.rejected;
     const chosen = row.key === this.#chosen;
     return make(
-      "li", { "data-key": row.key, ...(chosen ? { ariaCurrent: "true" } : {}) },
-      make("button", { type: "button", tabIndex: chosen ? 0 : -1, onclick: () => this.choose(row.key) },
-        make("span", { className: `mark ${row.state}`, title: word }, make("span", { ariaHidden: "true" }, mark), make("span", { className: "unseen" }, word)),
+      "li",
+      { "data-key": row.key, ...(chosen ? { ariaCurrent: "true" } : {}) },
+      make(
+        "button",
+        { type: "button", tabIndex: chosen ? 0 : -1, onclick: () => this.choose(row.key) },
+        make(
+          "span",
+          { className: `mark ${row.state}`, title: word },
+          make("span", { ariaHidden: "true" }, mark),
+          make("span", { className: "unseen" }, word),
+        ),
         make("span", {}, `${seconds(row.t_i_s)} – ${seconds(row.t_j_s)}`),
         make("span", { className: "number" }, row.measured ? length(row.influence_m) : ""),
         make("small", {}, row.who ? `by ${row.who}` : row.reason || row.kind),

@@ -1,6 +1,22 @@
 // The review: loops by influence, each looked at, decided, measured anew; the map approved.
 
-import { alignPair, approveMap, decide, fitPoints, readEffect, readJournal, readPair, readPoints, readQueue, readReview, readWalk, remakeMap, stepBack, stepForth, watchJobs } from "../shared/api.js";
+import {
+  alignPair,
+  approveMap,
+  decide,
+  fitPoints,
+  readEffect,
+  readJournal,
+  readPair,
+  readPoints,
+  readQueue,
+  readReview,
+  readWalk,
+  remakeMap,
+  stepBack,
+  stepForth,
+  watchJobs,
+} from "../shared/api.js";
 import { attempt, make } from "../shared/dom.js";
 import { apart } from "./math.js";
 import { askForMoments, askToSign, showKeys } from "./dialogs.js";
@@ -48,7 +64,16 @@ async function fetched(pair) {
 
 async function take(pair) {
   const row = queue.get(keyOf(pair)) ?? newRow(pair);
-  hand = { pair, row, facts: null, found: null, moved: false, busy: false, drawn: false, decided: false };
+  hand = {
+    pair,
+    row,
+    facts: null,
+    found: null,
+    moved: false,
+    busy: false,
+    drawn: false,
+    decided: false,
+  };
   const mine = hand;
   drawHand();
   view.clear("Reading points…");
@@ -57,7 +82,11 @@ async function take(pair) {
     const [facts, points] = await fetched(pair);
     if (hand !== mine) return;
     mine.facts = facts;
-    const drawn = view.set(points, { odometry: facts.odometry, predicted: facts.predicted, after: poseOf(mine) }, facts.upright);
+    const drawn = view.set(
+      points,
+      { odometry: facts.odometry, predicted: facts.predicted, after: poseOf(mine) },
+      facts.upright,
+    );
     drawHand();
     drawn.then(() => {
       mine.drawn = true;
@@ -72,7 +101,8 @@ async function take(pair) {
   }
 }
 
-const standingOf = (pair) => state?.standing.find((one) => one.frame_i === pair[0] && one.frame_j === pair[1]);
+const standingOf = (pair) =>
+  state?.standing.find((one) => one.frame_i === pair[0] && one.frame_j === pair[1]);
 
 function poseOf({ pair, facts }) {
   const stands = standingOf(pair);
@@ -81,8 +111,27 @@ function poseOf({ pair, facts }) {
 
 /** A pair the program never tried. */
 function newRow(pair) {
-  const nothing = { influence_m: null, overlap: null, error_m: null, limit_m: null, degeneracy: null, verification_m: null, chi2: null };
-  return decorated({ frame_i: pair[0], frame_j: pair[1], t_i_s: 0, t_j_s: 0, kind: "manual", verdict: "rejected", reason: "", measured: Boolean(standingOf(pair)?.measured), paths: 0, ...nothing });
+  const nothing = {
+    influence_m: null,
+    overlap: null,
+    error_m: null,
+    limit_m: null,
+    degeneracy: null,
+    verification_m: null,
+    chi2: null,
+  };
+  return decorated({
+    frame_i: pair[0],
+    frame_j: pair[1],
+    t_i_s: 0,
+    t_j_s: 0,
+    kind: "manual",
+    verdict: "rejected",
+    reason: "",
+    measured: Boolean(standingOf(pair)?.measured),
+    paths: 0,
+    ...nothing,
+  });
 }
 
 function decorated(row) {
@@ -94,16 +143,25 @@ function decorated(row) {
 /** What holds for a pair: a person's decision, else what the program says now, else said at first. */
 function decidedAbout(row) {
   const stands = standingOf([row.frame_i, row.frame_j]);
-  if (stands) return { state: stands.accepted ? "accepted" : "rejected", who: stands.who, why: stands.why };
+  if (stands)
+    return { state: stands.accepted ? "accepted" : "rejected", who: stands.who, why: stands.why };
   const is = (pairs) => pairs?.some((p) => p[0] === row.frame_i && p[1] === row.frame_j);
-  const now = is(effect?.all.rejected_automatically) ? "rejected" : is(effect?.all.accepted_automatically) ? "accepted" : row.verdict;
+  const now = is(effect?.all.rejected_automatically)
+    ? "rejected"
+    : is(effect?.all.accepted_automatically)
+      ? "accepted"
+      : row.verdict;
   return { state: now, who: "", why: "" };
 }
 
 function drawHand() {
   showPair(byId("pair"), hand?.row, hand?.facts, hand?.found, limit_m);
   for (const [name, able] of Object.entries(ableTo())) buttons[name].disabled = !able;
-  buttons.refine.firstChild.textContent = hand?.busy ? "Refining…" : hand?.found?.measurement && !hand.moved ? "Create edge" : "Refine";
+  buttons.refine.firstChild.textContent = hand?.busy
+    ? "Refining…"
+    : hand?.found?.measurement && !hand.moved
+      ? "Create edge"
+      : "Refine";
   byId("said").textContent = hand && state ? handWords() : "";
 }
 
@@ -136,10 +194,14 @@ function handWords() {
     const [m, degrees] = apart(found.T_i_j, hand.facts.predicted);
     const moved = `${length(m)} and ${degrees.toFixed(2)}° from the graph`;
     if (!found.converged) return "It did not converge: move it nearer and refine again";
-    return found.reason ? `Refined, ${moved}. The program would turn it down: ${found.reason}` : `Refined, ${moved}. Enter creates the edge`;
+    return found.reason
+      ? `Refined, ${moved}. The program would turn it down: ${found.reason}`
+      : `Refined, ${moved}. Enter creates the edge`;
   }
   if (hand.moved) return "Moved by hand. Enter refines from here";
-  return !hand.row.measured && !standingOf(hand.pair)?.measured ? "Never registered: refine it (move it first where it is far off), then it can become an edge" : "";
+  return !hand.row.measured && !standingOf(hand.pair)?.measured
+    ? "Never registered: refine it (move it first where it is far off), then it can become an edge"
+    : "";
 }
 
 // -- decisions, one after the other in the order of the keys
@@ -190,7 +252,8 @@ function lookAround() {
 function refreshRows() {
   const changed = [];
   for (const row of allRows) {
-    if (row.kind === "manual") row.measured = Boolean(standingOf([row.frame_i, row.frame_j])?.measured);
+    if (row.kind === "manual")
+      row.measured = Boolean(standingOf([row.frame_i, row.frame_j])?.measured);
     const now = decidedAbout(row);
     if (now.state !== row.state || now.who !== row.who || now.why !== row.why) {
       Object.assign(row, now);
@@ -294,7 +357,8 @@ async function look() {
     if (mine !== effectAsked || !told) return;
     if (told.superseded) return look(); // somebody decided, or an earlier request came late
     effect = told;
-    for (const part of [effect.last, effect.all]) for (const move of part.moves) move.t_s = (move.t_ns - began_ns) / 1e9;
+    for (const part of [effect.last, effect.all])
+      for (const move of part.moves) move.t_s = (move.t_ns - began_ns) / 1e9;
     const chi2 = new Map(effect.edges.map((one) => [keyOf(one.pair), one.chi2]));
     for (const row of allRows) if (chi2.has(row.key)) row.chi2 = chi2.get(row.key);
   }
@@ -304,7 +368,11 @@ async function look() {
   drawHand();
 }
 
-const drawEffect = () => showEffect(byId("effect"), effect, { working: effectShown < effectAsked, choose: (pair) => take(pair) });
+const drawEffect = () =>
+  showEffect(byId("effect"), effect, {
+    working: effectShown < effectAsked,
+    choose: (pair) => take(pair),
+  });
 
 async function drawJournal() {
   const rows = await attempt(message, () => readJournal(id));
@@ -328,16 +396,39 @@ function approve() {
 
 // -- buttons and keys
 
-const reason = make("input", { autocomplete: "off", maxLength: 500, placeholder: "Reason (optional)", ariaLabel: "Reason" });
+const reason = make("input", {
+  autocomplete: "off",
+  maxLength: 500,
+  placeholder: "Reason (optional)",
+  ariaLabel: "Reason",
+});
 const onwards = make("input", { type: "checkbox", checked: localStorage.getItem(GO_ON) === "yes" });
-onwards.addEventListener("change", () => localStorage.setItem(GO_ON, onwards.checked ? "yes" : "no"));
-const button = (words, key, action, name = "") => make("button", { type: "button", className: name, onclick: action, title: `${words} (${key})` }, make("span", {}, words), make("kbd", {}, key));
+onwards.addEventListener("change", () =>
+  localStorage.setItem(GO_ON, onwards.checked ? "yes" : "no"),
+);
+const button = (words, key, action, name = "") =>
+  make(
+    "button",
+    { type: "button", className: name, onclick: action, title: `${words} (${key})` },
+    make("span", {}, words),
+    make("kbd", {}, key),
+  );
 const once = (action) => (event) => event.detail < 2 && action(); // the second click of a double one would hit the next pair
 const buttons = {
   previous: button("Previous", "K", () => queue.step(-1)),
   next: button("Next", "J", () => queue.step(1)),
-  accept: button("Accept", "A", once(() => decideNow("accept")), "yes"),
-  reject: button("Reject", "R", once(() => decideNow("reject")), "no"),
+  accept: button(
+    "Accept",
+    "A",
+    once(() => decideNow("accept")),
+    "yes",
+  ),
+  reject: button(
+    "Reject",
+    "R",
+    once(() => decideNow("reject")),
+    "no",
+  ),
   restore: button("Restore", "U", () => decideNow("restore")),
   refine: button("Refine", "Enter", enter),
   pick: button("Pick points", "P", pick),
@@ -347,9 +438,34 @@ const buttons = {
   keys: button("Keys", "?", showKeys),
 };
 byId("decision").append(
-  make("div", { className: "row main" }, buttons.previous, buttons.reject, buttons.accept, buttons.next),
-  make("div", { className: "row" }, buttons.restore, buttons.refine, buttons.pick, buttons.undo, buttons.redo),
-  make("div", { className: "row reason" }, reason, make("label", { className: "check" }, onwards, make("span", {}, "Go on to the next pair after a decision"))),
+  make(
+    "div",
+    { className: "row main" },
+    buttons.previous,
+    buttons.reject,
+    buttons.accept,
+    buttons.next,
+  ),
+  make(
+    "div",
+    { className: "row" },
+    buttons.restore,
+    buttons.refine,
+    buttons.pick,
+    buttons.undo,
+    buttons.redo,
+  ),
+  make(
+    "div",
+    { className: "row reason" },
+    reason,
+    make(
+      "label",
+      { className: "check" },
+      onwards,
+      make("span", {}, "Go on to the next pair after a decision"),
+    ),
+  ),
 );
 
 queue.tools.append(buttons.add, buttons.keys);
@@ -416,9 +532,17 @@ async function begin() {
   hand = effect = null;
   const told = graph ? await readQueue(id) : { rows: [], columns: [], began_ns: 0, limit_m };
   ({ began_ns, limit_m } = told);
-  allRows = told.rows.map((row) => decorated(Object.fromEntries(told.columns.map((name, k) => [name, row[k]]))));
+  allRows = told.rows.map((row) =>
+    decorated(Object.fromEntries(told.columns.map((name, k) => [name, row[k]]))),
+  );
   queue.rows = allRows;
-  view.clear(allRows.length ? "J takes the first pair" : graph ? "This walk has no pair to decide about" : "Nothing to review until loops have been searched and verified");
+  view.clear(
+    allRows.length
+      ? "J takes the first pair"
+      : graph
+        ? "This walk has no pair to decide about"
+        : "Nothing to review until loops have been searched and verified",
+  );
   become(fresh);
 }
 

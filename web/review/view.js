@@ -27,7 +27,13 @@ class PairView extends HTMLElement {
   #canvas = make("canvas", { tabIndex: 0, role: "img", ariaLabel: "Points of both places" });
   #over = make("p", { className: "view-words" });
   #empty = make("p", { className: "view-empty" });
-  #height = make("input", { type: "range", min: -300, max: 300, value: 0, ariaLabel: "Place of the cut" });
+  #height = make("input", {
+    type: "range",
+    min: -300,
+    max: 300,
+    value: 0,
+    ariaLabel: "Place of the cut",
+  });
   #upwards = make("input", { type: "checkbox" });
   #cutWords = make("output");
   #cut = make("div", { className: "cut", hidden: true });
@@ -36,10 +42,23 @@ class PairView extends HTMLElement {
 
   connectedCallback() {
     const group = (label, choices, action) =>
-      make("div", { role: "group", ariaLabel: label, className: "choice" },
-        ...Object.entries(choices).map(([key, words]) =>
-          (this.#buttons[key] = make("button", { type: "button", onclick: () => action(key) }, words))));
-    this.#reach.append(...[0, 2, 5, 10].map((n) => make("option", { value: n }, n ? `± ${n} multiframes` : "One multiframe")));
+      make(
+        "div",
+        { role: "group", ariaLabel: label, className: "choice" },
+        ...Object.entries(choices).map(
+          ([key, words]) =>
+            (this.#buttons[key] = make(
+              "button",
+              { type: "button", onclick: () => action(key) },
+              words,
+            )),
+        ),
+      );
+    this.#reach.append(
+      ...[0, 2, 5, 10].map((n) =>
+        make("option", { value: n }, n ? `± ${n} multiframes` : "One multiframe"),
+      ),
+    );
     this.#reach.addEventListener("change", () => this.#tell("reach"));
     this.#cut.append(
       make("label", {}, make("span", {}, "Place of the cut"), this.#height, this.#cutWords),
@@ -48,8 +67,21 @@ class PairView extends HTMLElement {
     this.#height.addEventListener("input", () => this.#draw());
     this.#upwards.addEventListener("change", () => this.show(this.#view));
     this.replaceChildren(
-      make("div", { className: "view-tools" }, group("View", VIEWS, (key) => this.show(key)), group("Show", SHOWN, (key) => this.compare(key)), this.#reach),
-      make("div", { className: "view-stage" }, this.#canvas, this.#over, this.#legend(), this.#empty),
+      make(
+        "div",
+        { className: "view-tools" },
+        group("View", VIEWS, (key) => this.show(key)),
+        group("Show", SHOWN, (key) => this.compare(key)),
+        this.#reach,
+      ),
+      make(
+        "div",
+        { className: "view-stage" },
+        this.#canvas,
+        this.#over,
+        this.#legend(),
+        this.#empty,
+      ),
       this.#cut,
     );
     new ResizeObserver(() => this.#draw()).observe(this.#canvas);
@@ -207,9 +239,13 @@ class PairView extends HTMLElement {
 
   #paint() {
     const ratio = Math.min(2, devicePixelRatio || 1);
-    const [width, height] = [Math.round(this.#canvas.clientWidth * ratio), Math.round(this.#canvas.clientHeight * ratio)];
+    const [width, height] = [
+      Math.round(this.#canvas.clientWidth * ratio),
+      Math.round(this.#canvas.clientHeight * ratio),
+    ];
     if (!width || !height) return;
-    if (this.#canvas.width !== width || this.#canvas.height !== height) Object.assign(this.#canvas, { width, height });
+    if (this.#canvas.width !== width || this.#canvas.height !== height)
+      Object.assign(this.#canvas, { width, height });
     const context = this.#canvas.getContext("2d");
     const image = context.createImageData(width, height);
     const pixels = new Uint32Array(image.data.buffer).fill(GROUND);
@@ -252,7 +288,8 @@ class PairView extends HTMLElement {
       if (u < 0 || v < 0 || u >= width - 1 || v >= height - 1) continue;
       const p = v * width + u;
       const q = p + width;
-      for (const at of [p, p + 1, q, q + 1]) pixels[at] = pixels[at] === GROUND || pixels[at] === color ? color : pixels[at] | color;
+      for (const at of [p, p + 1, q, q + 1])
+        pixels[at] = pixels[at] === GROUND || pixels[at] === color ? color : pixels[at] | color;
     }
   }
 
@@ -275,11 +312,19 @@ class PairView extends HTMLElement {
     context.lineTo(14 + length, height - 20);
     context.stroke();
     context.font = "13px system-ui, sans-serif";
-    context.fillText(metres < 1 ? `${Math.round(metres * 100)} cm` : `${metres} m`, 18, height - 22);
+    context.fillText(
+      metres < 1 ? `${Math.round(metres * 100)} cm` : `${metres} m`,
+      18,
+      height - 22,
+    );
   }
 
   #place(p) {
-    return this.camera.toScreen(this.#toUpright(p), this.#canvas.clientWidth, this.#canvas.clientHeight);
+    return this.camera.toScreen(
+      this.#toUpright(p),
+      this.#canvas.clientWidth,
+      this.#canvas.clientHeight,
+    );
   }
 
   /** A disc to move the second place by, a ring with a knob to turn it. */
@@ -311,7 +356,10 @@ class PairView extends HTMLElement {
 
   #pins(context, pose) {
     if (!this.#picking) return;
-    const pins = [...this.#picking.i.map((p, k) => [p, k, "#ff8f86"]), ...this.#picking.j.map((p, k) => [apply(pose, p), k, "#7bf0b3"])];
+    const pins = [
+      ...this.#picking.i.map((p, k) => [p, k, "#ff8f86"]),
+      ...this.#picking.j.map((p, k) => [apply(pose, p), k, "#7bf0b3"]),
+    ];
     context.font = "bold 14px system-ui, sans-serif";
     for (const [p, k, color] of pins) {
       const [u, v] = this.#place(p);
@@ -331,7 +379,9 @@ class PairView extends HTMLElement {
     }
     if (this.#picking) {
       const second = this.#picking.i.length > this.#picking.j.length;
-      words.push(`Pick point ${this.#picking.j.length + 1} of 3 in the ${second ? "second (green)" : "first (red)"} place`);
+      words.push(
+        `Pick point ${this.#picking.j.length + 1} of 3 in the ${second ? "second (green)" : "first (red)"} place`,
+      );
     }
     this.#over.textContent = this.#points ? words.join(" · ") : "";
   }
@@ -347,10 +397,14 @@ class PairView extends HTMLElement {
         this.#pointers.delete(event.pointerId);
         this.#drag = null;
       });
-    canvas.addEventListener("wheel", (event) => {
-      event.preventDefault();
-      this.zoom(Math.exp(-event.deltaY / 500), event.offsetX, event.offsetY);
-    }, { passive: false });
+    canvas.addEventListener(
+      "wheel",
+      (event) => {
+        event.preventDefault();
+        this.zoom(Math.exp(-event.deltaY / 500), event.offsetX, event.offsetY);
+      },
+      { passive: false },
+    );
   }
 
   zoom(factor, x = this.#canvas.clientWidth / 2, y = this.#canvas.clientHeight / 2) {
@@ -370,7 +424,8 @@ class PairView extends HTMLElement {
   }
 
   #grabbed(event) {
-    if (this.#shown !== "after" || this.#view === "cut") return this.#view === "free" ? "orbit" : "pan";
+    if (this.#shown !== "after" || this.#view === "cut")
+      return this.#view === "free" ? "orbit" : "pan";
     const [u, v] = this.#place(this.pose);
     const d = Math.hypot(event.offsetX - u, event.offsetY - v);
     if (d < HANDLE_PX) return "lay";

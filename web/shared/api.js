@@ -19,9 +19,13 @@ async function request(method, path, body) {
   try {
     response = await fetch(path, options);
   } catch {
-    throw new ApiError(0, { error: "Offline", detail: "The server does not answer. Is it still running?" });
+    throw new ApiError(0, {
+      error: "Offline",
+      detail: "The server does not answer. Is it still running?",
+    });
   }
-  const json = response.status !== 204 && response.headers.get("Content-Type")?.startsWith("application/json");
+  const json =
+    response.status !== 204 && response.headers.get("Content-Type")?.startsWith("application/json");
   const answer = json ? await response.json() : await response.text();
   if (response.ok) return answer;
   const error = new ApiError(response.status, json ? answer : { detail: answer });
@@ -35,7 +39,8 @@ async function request(method, path, body) {
 let whoami = null;
 
 /** Who is signed in: {name, role, may, login, token}; asked once a page, or `again`. */
-export const readMe = (again = false) => (again ? request("GET", "/api/me") : (whoami ??= request("GET", "/api/me")));
+export const readMe = (again = false) =>
+  again ? request("GET", "/api/me") : (whoami ??= request("GET", "/api/me"));
 
 /** Whether somebody is signed in already; for the login page. */
 export const isSignedIn = async () => (await fetch("/api/me")).ok;
@@ -62,11 +67,14 @@ async function become(answer) {
   return me;
 }
 
-export const signIn = (who, password) => become(request("POST", "/api/login", { name: who, password }));
-export const setUp = (token, who, password) => become(request("POST", "/api/setup", { token, name: who, password }));
+export const signIn = (who, password) =>
+  become(request("POST", "/api/login", { name: who, password }));
+export const setUp = (token, who, password) =>
+  become(request("POST", "/api/setup", { token, name: who, password }));
 export const signInAgain = (password) => become(request("POST", "/api/login/again", { password }));
 export const signOut = () => request("POST", "/api/logout");
-export const changePassword = (old, fresh) => become(request("POST", "/api/me/password", { old, new: fresh }));
+export const changePassword = (old, fresh) =>
+  become(request("POST", "/api/me/password", { old, new: fresh }));
 export const listMySessions = () => request("GET", "/api/me/sessions");
 export const endMySession = (id) => request("DELETE", `/api/me/sessions/${name(id)}`);
 export const listPeople = () => request("GET", "/api/people");
@@ -74,7 +82,8 @@ export const addPerson = (person) => request("POST", "/api/people", person);
 export const changePerson = (who, changes) => request("PATCH", `/api/people/${name(who)}`, changes);
 export const listSessions = () => request("GET", "/api/sessions");
 export const endSession = (id) => request("DELETE", `/api/sessions/${name(id)}`);
-export const readAudit = (before) => request("GET", `/api/audit?most=25${before ? `&before=${before}` : ""}`);
+export const readAudit = (before) =>
+  request("GET", `/api/audit?most=25${before ? `&before=${before}` : ""}`);
 
 const name = encodeURIComponent;
 
@@ -85,14 +94,17 @@ export const browse = (folder) => request("GET", `/api/recordings?folder=${name(
 export const addJob = (job) => request("POST", "/api/jobs", job);
 export const cancelJob = (id) => request("POST", `/api/jobs/${name(id)}/cancel`);
 export const retryJob = (id) => request("POST", `/api/jobs/${name(id)}/retry`);
-export const readLog = (id, offset) => request("GET", `/api/jobs/${name(id)}/log/since?offset=${offset}`);
+export const readLog = (id, offset) =>
+  request("GET", `/api/jobs/${name(id)}/log/since?offset=${offset}`);
 export const logUrl = (id) => `/api/jobs/${name(id)}/log/file`;
 export const readJob = (id) => request("GET", `/api/jobs/${name(id)}`);
 export const listJobsOf = (id) => request("GET", `/api/projects/${name(id)}/jobs`);
 export const lookAt = (path) => request("GET", `/api/look?path=${name(path)}`);
 export const readSettings = (preset) => request("GET", `/api/settings?of=${name(preset)}`);
-export const checkSettings = (preset, settings) => request("POST", "/api/settings/check", { preset, settings });
-export const renameProject = (id, words) => request("PATCH", `/api/projects/${name(id)}`, { name: words });
+export const checkSettings = (preset, settings) =>
+  request("POST", "/api/settings/check", { preset, settings });
+export const renameProject = (id, words) =>
+  request("PATCH", `/api/projects/${name(id)}`, { name: words });
 export const deleteProject = (id) => request("DELETE", `/api/projects/${name(id)}`);
 export const listTrash = () => request("GET", "/api/trash");
 export const restoreProject = (id) => request("POST", `/api/trash/${name(id)}/restore`);
@@ -111,7 +123,11 @@ export const removeUpload = (id) => request("DELETE", `/api/uploads/${name(id)}`
 async function tus(method, path, { headers = {}, body, signal } = {}) {
   let response;
   try {
-    const all = { "Tus-Resumable": "1.0.0", ...(method === "HEAD" ? {} : await changeHeaders(method)), ...headers };
+    const all = {
+      "Tus-Resumable": "1.0.0",
+      ...(method === "HEAD" ? {} : await changeHeaders(method)),
+      ...headers,
+    };
     response = await fetch(path, { method, headers: all, body, signal, cache: "no-store" });
   } catch (error) {
     if (error.name === "AbortError") throw error;
@@ -146,7 +162,10 @@ export async function createFile(upload, path, length, bytes, signal) {
     ...(await bytesHeaders(bytes)),
   };
   const answer = await tus("POST", "/api/uploads/files", { headers, body: bytes, signal });
-  return { url: answer.headers.get("Location"), offset: Number(answer.headers.get("Upload-Offset")) };
+  return {
+    url: answer.headers.get("Location"),
+    offset: Number(answer.headers.get("Upload-Offset")),
+  };
 }
 
 /** Sends bytes of a file; gives the offset the server has now. */
@@ -156,12 +175,14 @@ export async function sendBytes(url, offset, bytes, signal) {
   return Number(answer.headers.get("Upload-Offset"));
 }
 
-export const readOffset = async (url) => Number((await tus("HEAD", url)).headers.get("Upload-Offset"));
+export const readOffset = async (url) =>
+  Number((await tus("HEAD", url)).headers.get("Upload-Offset"));
 
 export const projectUrl = (id) => `/projects/${name(id)}/`;
 export const viewerUrl = (id) => `/projects/${name(id)}/viewer/`;
 export const reportUrl = (id) => `/api/projects/${name(id)}/report`;
-export const thumbnailUrl = (id, version) => `/api/projects/${name(id)}/thumbnail?v=${name(version)}`;
+export const thumbnailUrl = (id, version) =>
+  `/api/projects/${name(id)}/thumbnail?v=${name(version)}`;
 export const fileUrl = (id, file) => `/api/projects/${name(id)}/files/${name(file)}`;
 
 const ANEW_MS = 3000;
@@ -222,7 +243,8 @@ export const readJournal = (id) => request("GET", review(id, "/journal"));
 export const decide = (id, decision) => request("POST", review(id, "/decisions"), decision);
 export const stepBack = (id, seq) => request("POST", review(id, "/undo"), { after_seq: seq });
 export const stepForth = (id, seq) => request("POST", review(id, "/redo"), { after_seq: seq });
-export const alignPair = (id, [i, j], guess) => request("POST", review(id, "/align"), { frame_i: i, frame_j: j, T_i_j: guess });
+export const alignPair = (id, [i, j], guess) =>
+  request("POST", review(id, "/align"), { frame_i: i, frame_j: j, T_i_j: guess });
 export const fitPoints = (id, p_i, p_j) => request("POST", review(id, "/fit"), { p_i, p_j });
 export const remakeMap = (id) => request("POST", `/api/projects/${name(id)}/remake`);
 export const approveMap = (id, signed) => request("POST", review(id, "/approve"), signed);
@@ -236,7 +258,10 @@ export async function readPoints(id, pair, reach) {
   const data = await response.arrayBuffer();
   const head = new DataView(data);
   const [counted, other] = [head.getUint32(8, true), head.getUint32(12, true)];
-  return { i: new Float32Array(data, 16, 3 * counted), j: new Float32Array(data, 16 + 12 * counted, 3 * other) };
+  return {
+    i: new Float32Array(data, 16, 3 * counted),
+    j: new Float32Array(data, 16 + 12 * counted, 3 * other),
+  };
 }
 
 // -- phones
@@ -260,7 +285,9 @@ export const markHere = (mark) => request("POST", "/api/live/marks", mark);
 
 /** Opens the stream of a capture; tell it what this page has, it tells what is new. */
 export function openLiveStream(have, { onMessage, onPoints, onClose }) {
-  const socket = new WebSocket(`${location.protocol.replace("http", "ws")}//${location.host}/api/live/stream`);
+  const socket = new WebSocket(
+    `${location.protocol.replace("http", "ws")}//${location.host}/api/live/stream`,
+  );
   socket.binaryType = "arraybuffer";
   socket.addEventListener("open", () => socket.send(JSON.stringify({ have })));
   socket.addEventListener("message", ({ data }) =>
@@ -275,21 +302,26 @@ export function openLiveStream(have, { onMessage, onPoints, onClose }) {
 const slices = (id) => `/api/projects/${name(id)}/slices`;
 const asked = (ask) => name(JSON.stringify(ask));
 
-export const readSliceFacts = (id, source = "") => request("GET", `${slices(id)}?source=${name(source)}`);
+export const readSliceFacts = (id, source = "") =>
+  request("GET", `${slices(id)}?source=${name(source)}`);
 export const readSlice = (id, ask) => request("POST", `${slices(id)}/image`, ask);
 export const aboveUrl = (id, version) => `${slices(id)}/overview?v=${name(version)}`;
 export const readAboveWindow = (id) => request("GET", `${slices(id)}/overview/window`);
 export const pickOnSlice = (id, ask) => request("POST", `${slices(id)}/pick`, ask);
-export const readDoubleWalls = (id, source = "") => request("GET", `${slices(id)}/doubles?source=${name(source)}`);
+export const readDoubleWalls = (id, source = "") =>
+  request("GET", `${slices(id)}/doubles?source=${name(source)}`);
 export const compareSlices = (id, ask) => request("POST", `${slices(id)}/compare`, ask);
 export const compareCsvUrl = (id, ask) => `${slices(id)}/compare.csv?ask=${asked(ask)}`;
 export const sliceFileUrl = (id, ending, ask) => `${slices(id)}/export.${ending}?ask=${asked(ask)}`;
 export const addReference = (id, add) => request("POST", `${slices(id)}/references`, add);
-export const removeReference = (id, one) => request("DELETE", `${slices(id)}/references/${name(one)}`);
-export const alignReference = (id, one, ask) => request("POST", `${slices(id)}/references/${name(one)}/align`, ask);
+export const removeReference = (id, one) =>
+  request("DELETE", `${slices(id)}/references/${name(one)}`);
+export const alignReference = (id, one, ask) =>
+  request("POST", `${slices(id)}/references/${name(one)}/align`, ask);
 export const lookAtControl = (id, file) => request("POST", `${slices(id)}/control/preview`, file);
 export const readControl = (id) => request("GET", `${slices(id)}/control`);
 export const keepControl = (id, state) => request("PUT", `${slices(id)}/control`, state);
 export const readControlReport = (id) => request("GET", `${slices(id)}/control/report`);
 export const controlFileUrl = (id, ending) => `${slices(id)}/control/report.${ending}`;
-export const readSurface = (id, point) => request("GET", `${slices(id)}/control/surface?point=${name(point)}`);
+export const readSurface = (id, point) =>
+  request("GET", `${slices(id)}/control/surface?point=${name(point)}`);

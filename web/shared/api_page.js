@@ -12,11 +12,25 @@ const schemas = api?.components?.schemas ?? {};
 const anchor = (words) => words.replace(/[^A-Za-z0-9]+/g, "-").toLowerCase();
 
 function table(heads, rows) {
-  const head = make("thead", {}, make("tr", {}, ...heads.map((words) => make("th", { scope: "col" }, words))));
-  return make("div", { className: "scroll", tabIndex: 0, role: "group", ariaLabel: heads.join(", ") }, make("table", {}, head, make("tbody", {}, ...rows)));
+  const head = make(
+    "thead",
+    {},
+    make("tr", {}, ...heads.map((words) => make("th", { scope: "col" }, words))),
+  );
+  return make(
+    "div",
+    { className: "scroll", tabIndex: 0, role: "group", ariaLabel: heads.join(", ") },
+    make("table", {}, head, make("tbody", {}, ...rows)),
+  );
 }
 
-const row = (name, ...cells) => make("tr", {}, make("th", { scope: "row" }, make("code", {}, name)), ...cells.map((cell) => make("td", {}, cell)));
+const row = (name, ...cells) =>
+  make(
+    "tr",
+    {},
+    make("th", { scope: "row" }, make("code", {}, name)),
+    ...cells.map((cell) => make("td", {}, cell)),
+  );
 
 /** A type that leads to its record. */
 function typeLink(schema) {
@@ -28,11 +42,20 @@ function typeLink(schema) {
 /** Words of the description; what it marks as code is plain text here. */
 const plain = (words = "") => words.replaceAll("`", "");
 
-const RIGHTS = { look: "", process: "who may process", capture: "who may record", review: "who may review", administer: "admins" };
+const RIGHTS = {
+  look: "",
+  process: "who may process",
+  capture: "who may record",
+  review: "who may review",
+  administer: "admins",
+};
 
 /** Who may call it, where that is not everybody; and whether that is not the reader. */
 function rights(needed = []) {
-  const words = needed.map((one) => RIGHTS[one] ?? one).filter(Boolean).join(" and ");
+  const words = needed
+    .map((one) => RIGHTS[one] ?? one)
+    .filter(Boolean)
+    .join(" and ");
   if (!words) return null;
   const mine = needed.every((one) => me.may.includes(one));
   return make("span", { className: "needs" }, mine ? words : `✕ ${words}, not you`);
@@ -41,32 +64,58 @@ function rights(needed = []) {
 const code = (text) => make("pre", { tabIndex: 0 }, text);
 
 function copyable(text) {
-  const button = make("button", { type: "button", onclick: async () => {
-    await navigator.clipboard.writeText(text);
-    button.textContent = "Copied";
-  } }, "Copy");
+  const button = make(
+    "button",
+    {
+      type: "button",
+      onclick: async () => {
+        await navigator.clipboard.writeText(text);
+        button.textContent = "Copied";
+      },
+    },
+    "Copy",
+  );
   return make("div", { className: "copy" }, code(text), button);
 }
 
 function fields(record) {
   const needed = new Set(record.required ?? []);
   return Object.entries(record.properties ?? {}).map(([name, one]) =>
-    row(name, typeLink(one), [needed.has(name) ? "needed" : "", limits(one)].filter(Boolean).join(", "), plain(one.description)),
+    row(
+      name,
+      typeLink(one),
+      [needed.has(name) ? "needed" : "", limits(one)].filter(Boolean).join(", "),
+      plain(one.description),
+    ),
   );
 }
 
 /** A command that does it. */
 function curl(path, method, operation, body) {
   const query = (operation.parameters ?? []).filter((one) => one.in === "query" && one.required);
-  const values = { ...Object.fromEntries((operation.parameters ?? []).map((one) => [one.name, example(one.schema ?? {}, schemas, one.name)])) };
+  const values = {
+    ...Object.fromEntries(
+      (operation.parameters ?? []).map((one) => [
+        one.name,
+        example(one.schema ?? {}, schemas, one.name),
+      ]),
+    ),
+  };
   const filled = path.replace(/\{(\w+)\}/g, (_, name) => encodeURIComponent(values[name] ?? name));
-  const asked = query.length ? `?${query.map((one) => `${one.name}=${encodeURIComponent(values[one.name])}`).join("&")}` : "";
+  const asked = query.length
+    ? `?${query.map((one) => `${one.name}=${encodeURIComponent(values[one.name])}`).join("&")}`
+    : "";
   const headers = (operation.parameters ?? []).filter((one) => one.in === "header" && one.required);
   const parts = ["curl"];
   if (method !== "get") parts.push(`-X ${method.toUpperCase()}`);
-  if (me.login) parts.push("-b cookies.txt", ...(method === "get" ? [] : ["-H 'X-Recon4-Token: TOKEN'"]));
-  for (const one of headers) parts.push(`-H '${one.name}: ${{ "Tus-Resumable": "1.0.0", "Upload-Offset": "0", "Upload-Length": "114359304" }[one.name] ?? "…"}'`);
-  if (body?.json) parts.push("-H 'Content-Type: application/json'", `-d '${JSON.stringify(body.json)}'`);
+  if (me.login)
+    parts.push("-b cookies.txt", ...(method === "get" ? [] : ["-H 'X-Recon4-Token: TOKEN'"]));
+  for (const one of headers)
+    parts.push(
+      `-H '${one.name}: ${{ "Tus-Resumable": "1.0.0", "Upload-Offset": "0", "Upload-Length": "114359304" }[one.name] ?? "…"}'`,
+    );
+  if (body?.json)
+    parts.push("-H 'Content-Type: application/json'", `-d '${JSON.stringify(body.json)}'`);
   if (body?.binary) parts.push(`-H 'Content-Type: ${body.binary}'`, "--data-binary @walk.pcap");
   return `${parts.join(" ")} '${location.origin}${filled}${asked}'`;
 }
@@ -91,16 +140,39 @@ function answers({ responses = {} }) {
 function parts(path, method, operation) {
   const body = bodyOf(operation);
   const given = operation.parameters ?? [];
-  const inputs = given.map((one) => row(one.name, one.in, typeWords(one.schema), [one.required ? "needed" : "", limits(one.schema ?? {})].filter(Boolean).join(", "), plain(one.description)));
+  const inputs = given.map((one) =>
+    row(
+      one.name,
+      one.in,
+      typeWords(one.schema),
+      [one.required ? "needed" : "", limits(one.schema ?? {})].filter(Boolean).join(", "),
+      plain(one.description),
+    ),
+  );
   const record = body?.schema?.$ref && schemas[typeWords(body.schema)];
-  const ok = Object.entries(operation.responses ?? {}).find(([status]) => status.startsWith("2"))?.[1]?.content?.["application/json"]?.schema;
+  const ok = Object.entries(operation.responses ?? {}).find(([status]) =>
+    status.startsWith("2"),
+  )?.[1]?.content?.["application/json"]?.schema;
   return [
     make("p", {}, plain(operation.description)),
-    ...(inputs.length ? [make("h3", {}, "Parameters"), table(["Name", "Where", "Type", "Limits", ""], inputs)] : []),
-    ...(record ? [make("h3", {}, "Body, JSON"), table(["Field", "Type", "Limits", ""], fields(record)), code(JSON.stringify(body.json, null, 1))] : []),
+    ...(inputs.length
+      ? [make("h3", {}, "Parameters"), table(["Name", "Where", "Type", "Limits", ""], inputs)]
+      : []),
+    ...(record
+      ? [
+          make("h3", {}, "Body, JSON"),
+          table(["Field", "Type", "Limits", ""], fields(record)),
+          code(JSON.stringify(body.json, null, 1)),
+        ]
+      : []),
     ...(body?.binary ? [make("h3", {}, "Body"), make("p", {}, make("code", {}, body.binary))] : []),
     ...answers(operation),
-    ...(ok && Object.keys(ok).length ? [make("h3", {}, "Example of an answer"), code(JSON.stringify(example(ok, schemas), null, 1))] : []),
+    ...(ok && Object.keys(ok).length
+      ? [
+          make("h3", {}, "Example of an answer"),
+          code(JSON.stringify(example(ok, schemas), null, 1)),
+        ]
+      : []),
     make("h3", {}, "Try it"),
     copyable(curl(path, method, operation, body)),
   ];
@@ -108,8 +180,20 @@ function parts(path, method, operation) {
 
 function route(path, method, operation) {
   const inside = make("div");
-  const summary = make("summary", {}, make("span", { className: `method ${method}` }, method.toUpperCase()), make("code", {}, path), make("span", { className: "quiet" }, operation.summary ?? ""), rights(operation["x-needs"]));
-  const details = make("details", { className: "route", id: anchor(`${method} ${path}`) }, summary, inside);
+  const summary = make(
+    "summary",
+    {},
+    make("span", { className: `method ${method}` }, method.toUpperCase()),
+    make("code", {}, path),
+    make("span", { className: "quiet" }, operation.summary ?? ""),
+    rights(operation["x-needs"]),
+  );
+  const details = make(
+    "details",
+    { className: "route", id: anchor(`${method} ${path}`) },
+    summary,
+    inside,
+  );
   details.addEventListener("toggle", () => {
     if (!inside.childElementCount) inside.append(...parts(path, method, operation));
   });
@@ -125,11 +209,26 @@ for (const [path, methods] of Object.entries(api?.paths ?? {})) {
 }
 const title = (words) => words[0].toUpperCase() + words.slice(1);
 const records = Object.entries(schemas).map(([name, one]) =>
-  make("details", { className: "route", id: `record-${name}` }, make("summary", {}, make("code", {}, name)), make("div", {}, make("p", {}, plain(one.description)), table(["Field", "Type", "Limits", ""], fields(one)))),
+  make(
+    "details",
+    { className: "route", id: `record-${name}` },
+    make("summary", {}, make("code", {}, name)),
+    make(
+      "div",
+      {},
+      make("p", {}, plain(one.description)),
+      table(["Field", "Type", "Limits", ""], fields(one)),
+    ),
+  ),
 );
-byId("groups").append(...[...tags.keys(), "records"].map((tag) => make("a", { href: `#tag-${tag}` }, title(tag))));
+byId("groups").append(
+  ...[...tags.keys(), "records"].map((tag) => make("a", { href: `#tag-${tag}` }, title(tag))),
+);
 byId("paths").append(
-  ...[...tags].flatMap(([tag, routes]) => [make("h2", { id: `tag-${tag}` }, title(tag)), ...routes]),
+  ...[...tags].flatMap(([tag, routes]) => [
+    make("h2", { id: `tag-${tag}` }, title(tag)),
+    ...routes,
+  ]),
   make("h2", { id: "tag-records" }, "Records"),
   ...records,
 );

@@ -22,8 +22,14 @@ precision mediump float; in vec3 color; out vec4 pixel;
 void main() { pixel = vec4(color, 1.0); }`;
 
 export class CloudCanvas {
-  #canvas; #gl; #program; #places = {}; #buffers; #room = 0;
-  #voxels = new Int16Array(0); #values = new Uint8Array(0);
+  #canvas;
+  #gl;
+  #program;
+  #places = {};
+  #buffers;
+  #room = 0;
+  #voxels = new Int16Array(0);
+  #values = new Uint8Array(0);
   count = 0;
   voxelM = 0.1;
   heights = [-1.5, 2.5];
@@ -85,7 +91,10 @@ export class CloudCanvas {
     const gl = (this.#gl = this.#canvas.getContext("webgl2", { alpha: true, antialias: false }));
     if (!gl) return;
     const program = (this.#program = gl.createProgram());
-    for (const [kind, text] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {
+    for (const [kind, text] of [
+      [gl.VERTEX_SHADER, VERTEX],
+      [gl.FRAGMENT_SHADER, FRAGMENT],
+    ]) {
       const shader = gl.createShader(kind);
       gl.shaderSource(shader, text);
       gl.compileShader(shader);
@@ -94,7 +103,18 @@ export class CloudCanvas {
     gl.linkProgram(program);
     gl.useProgram(program);
     gl.enable(gl.DEPTH_TEST);
-    for (const name of ["turn", "target", "scale", "shift", "size", "voxelM", "heights", "top", "byHeight", "ink"])
+    for (const name of [
+      "turn",
+      "target",
+      "scale",
+      "shift",
+      "size",
+      "voxelM",
+      "heights",
+      "top",
+      "byHeight",
+      "ink",
+    ])
       this.#places[name] = gl.getUniformLocation(program, name);
     this.#room = 0;
     this.#makeRoom(Math.max(this.count, 1 << 14));

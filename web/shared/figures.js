@@ -17,7 +17,10 @@ const ROWS = [
 
 /** [words, value] rows; figures the run did not make are left out. */
 export const figures = (summary) =>
-  ROWS.filter(([, key]) => summary[key] !== undefined).map(([words, key, format]) => [words, format(summary[key])]);
+  ROWS.filter(([, key]) => summary[key] !== undefined).map(([words, key, format]) => [
+    words,
+    format(summary[key]),
+  ]);
 
 /** The few words under a project's name. */
 export function headline(summary) {

@@ -2,7 +2,10 @@
 
 const NARROW = "\u202f";
 
-export const count = (n) => Math.round(n).toString().replace(/\B(?=(\d{3})+$)/g, NARROW);
+export const count = (n) =>
+  Math.round(n)
+    .toString()
+    .replace(/\B(?=(\d{3})+$)/g, NARROW);
 
 export function bytes(n) {
   const units = ["B", "kB", "MB", "GB", "TB"];
@@ -49,7 +52,9 @@ export function overallWords({ overall, overall_eta_s, status }) {
 
 /** The piece of work in hand in one line: how far, how fast, how long still. */
 export function progressWords({ status, fraction }) {
-  const parts = [fraction === null ? `${count(status.done)} ${status.unit}` : `${Math.round(fraction * 100)} %`];
+  const parts = [
+    fraction === null ? `${count(status.done)} ${status.unit}` : `${Math.round(fraction * 100)} %`,
+  ];
   if (status.rate_per_s > 0) {
     const rate = status.rate_per_s;
     parts.push(`${rate < 10 ? rate.toFixed(1) : count(rate)} ${status.unit}/s`);

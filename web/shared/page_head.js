@@ -26,7 +26,10 @@ class PageHead extends HTMLElement {
       this.#account,
     );
     if (inProject) this.name = decodeURIComponent(id);
-    readMe().then((me) => this.#greet(me), (error) => (this.#link.textContent = error.message));
+    readMe().then(
+      (me) => this.#greet(me),
+      (error) => (this.#link.textContent = error.message),
+    );
   }
 
   async #greet(me) {
@@ -41,10 +44,17 @@ class PageHead extends HTMLElement {
       ...(live ? [link(liveUrl, "Live")] : []),
       ...(may.includes("process") ? [link("/api", "API")] : []),
       ...(may.includes("administer") ? [link("/people", "People")] : []),
-      ...(login ? [
-        make("a", { className: "who", href: "/account", ariaLabel: `Account of ${name}, ${role}` }, make("b", {}, name), make("span", { className: "role" }, role)),
-        make("button", { type: "button", onclick: () => this.#leave() }, "Sign out"),
-      ] : []),
+      ...(login
+        ? [
+            make(
+              "a",
+              { className: "who", href: "/account", ariaLabel: `Account of ${name}, ${role}` },
+              make("b", {}, name),
+              make("span", { className: "role" }, role),
+            ),
+            make("button", { type: "button", onclick: () => this.#leave() }, "Sign out"),
+          ]
+        : []),
     );
   }
 
@@ -68,13 +78,25 @@ class PageHead extends HTMLElement {
   }
 
   #way() {
-    return make("nav", { ariaLabel: "Where you are", className: "way" },
-      make("a", { href: "/" }, "Projects"), make("span", { ariaHidden: "true" }, " / "), this.#name);
+    return make(
+      "nav",
+      { ariaLabel: "Where you are", className: "way" },
+      make("a", { href: "/" }, "Projects"),
+      make("span", { ariaHidden: "true" }, " / "),
+      this.#name,
+    );
   }
 
   #tabs(id, here) {
     const tab = ([path, words]) =>
-      make("a", { href: projectUrl(id) + path, ...(path === (here && `${here}/`) ? { ariaCurrent: "page" } : {}) }, words);
+      make(
+        "a",
+        {
+          href: projectUrl(id) + path,
+          ...(path === (here && `${here}/`) ? { ariaCurrent: "page" } : {}),
+        },
+        words,
+      );
     return make("nav", { ariaLabel: "Pages of the project", className: "tabs" }, ...PAGES.map(tab));
   }
 }

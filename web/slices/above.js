@@ -101,15 +101,22 @@ class SliceAbove extends HTMLElement {
     const n = normalOf(s);
     const flat = Math.hypot(n[0], n[1]);
     if (flat < 0.02) return null;
-    const reach = (this.#window.right - this.#window.left + this.#window.top - this.#window.bottom) / 2;
+    const reach =
+      (this.#window.right - this.#window.left + this.#window.top - this.#window.bottom) / 2;
     const along = [n[1] / flat, -n[0] / flat];
-    return [-1, 1].map((side) => [s.o[0] + side * reach * along[0], s.o[1] + side * reach * along[1]]);
+    return [-1, 1].map((side) => [
+      s.o[0] + side * reach * along[0],
+      s.o[1] + side * reach * along[1],
+    ]);
   }
 
   #line(pen, ends, color) {
     const [a, b] = ends.map((end) => this.#toPx(end));
     const grips = this.#state.kind === "vertical";
-    for (const [stroke, width] of [[color("--panel"), 6], [color("--accent"), 2.5]]) {
+    for (const [stroke, width] of [
+      [color("--panel"), 6],
+      [color("--accent"), 2.5],
+    ]) {
       pen.strokeStyle = stroke;
       pen.lineWidth = width;
       pen.beginPath();
@@ -169,14 +176,18 @@ class SliceAbove extends HTMLElement {
     const near = (end) => Math.hypot(...this.#toPx(end).map((x, k) => x - at[k])) < GRIP_PX;
     if (kind === "vertical" && near(a)) this.#drag = { what: "a" };
     else if (kind === "vertical" && near(b)) this.#drag = { what: "b" };
-    else if (kind === "vertical" && this.#offLine(at) < GRIP_PX) this.#drag = { what: "line", from: place, a, b };
+    else if (kind === "vertical" && this.#offLine(at) < GRIP_PX)
+      this.#drag = { what: "line", from: place, a, b };
     else this.#drag = { what: "new", from: place, px: at };
   }
 
   #offLine(at) {
     const [a, b] = [this.#toPx(this.#state.a), this.#toPx(this.#state.b)];
     const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
-    const s = Math.max(0, Math.min(1, ((at[0] - a[0]) * dx + (at[1] - a[1]) * dy) / (dx * dx + dy * dy || 1)));
+    const s = Math.max(
+      0,
+      Math.min(1, ((at[0] - a[0]) * dx + (at[1] - a[1]) * dy) / (dx * dx + dy * dy || 1)),
+    );
     return Math.hypot(at[0] - a[0] - s * dx, at[1] - a[1] - s * dy);
   }
 
@@ -189,12 +200,17 @@ class SliceAbove extends HTMLElement {
     const { a, b } = this.#state;
     if (drag.what === "a") this.#say(place, b);
     else if (drag.what === "b") this.#say(a, place);
-    else if (drag.what === "line") this.#say(drag.a.map((x, k) => x + shift[k]), drag.b.map((x, k) => x + shift[k]));
+    else if (drag.what === "line")
+      this.#say(
+        drag.a.map((x, k) => x + shift[k]),
+        drag.b.map((x, k) => x + shift[k]),
+      );
     else if (Math.hypot(at[0] - drag.px[0], at[1] - drag.px[1]) > 12) this.#say(drag.from, place);
   }
 
   #say(a, b) {
-    if (Math.hypot(b[0] - a[0], b[1] - a[1]) > 0.05) this.dispatchEvent(new CustomEvent("cut", { detail: { a, b } }));
+    if (Math.hypot(b[0] - a[0], b[1] - a[1]) > 0.05)
+      this.dispatchEvent(new CustomEvent("cut", { detail: { a, b } }));
   }
 }
 

@@ -1,6 +1,13 @@
 // Control and check points: import, pick in the slice, residuals with pass or fail.
 
-import { controlFileUrl, keepControl, lookAtControl, readControl, readControlReport, readSurface } from "../shared/api.js";
+import {
+  controlFileUrl,
+  keepControl,
+  lookAtControl,
+  readControl,
+  readControlReport,
+  readSurface,
+} from "../shared/api.js";
 import { attempt, make } from "../shared/dom.js";
 
 const MOST_ROWS = 300;
@@ -15,23 +22,58 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
   let last = Promise.resolve();
   let georeferenced = false;
 
-  file.addEventListener("change", () => file.files[0] && attempt(message, () => look(file.files[0])));
+  file.addEventListener(
+    "change",
+    () => file.files[0] && attempt(message, () => look(file.files[0])),
+  );
 
   async function look(chosen, order = null) {
     const data = new Uint8Array(await chosen.arrayBuffer());
-    if (data.length > 600_000) throw new Error("The file has more than 600 kB; a list of points is smaller");
+    if (data.length > 600_000)
+      throw new Error("The file has more than 600 kB; a list of points is smaller");
     let binary = "";
     for (const one of data) binary += String.fromCharCode(one);
     const found = await lookAtControl(id, { name: chosen.name, base64: btoa(binary), order });
-    const rows = found.points.slice(0, 5).map((one) => make("tr", {}, make("th", { scope: "row" }, one.id), ...one.xyz_m.map((x) => make("td", { className: "number" }, x.toFixed(3)))));
-    const button = (words, action) => make("button", { type: "button", onclick: () => attempt(message, action) }, words);
+    const rows = found.points
+      .slice(0, 5)
+      .map((one) =>
+        make(
+          "tr",
+          {},
+          make("th", { scope: "row" }, one.id),
+          ...one.xyz_m.map((x) => make("td", { className: "number" }, x.toFixed(3))),
+        ),
+      );
+    const button = (words, action) =>
+      make("button", { type: "button", onclick: () => attempt(message, action) }, words);
     const use = (frame) => () => keep(() => ({ points: found.points, frame, picks: {} }));
     preview.replaceChildren(
-      make("p", {}, `${found.points.length} points, separated by "${found.delimiter}", decimal "${found.decimal}"`),
-      make("table", {}, make("thead", {}, make("tr", {}, ...["Point", "East, x", "North, y", "Height"].map((words, k) => make("th", { scope: "col", className: k ? "number" : "" }, words)))), make("tbody", {}, ...rows)),
+      make(
+        "p",
+        {},
+        `${found.points.length} points, separated by "${found.delimiter}", decimal "${found.decimal}"`,
+      ),
+      make(
+        "table",
+        {},
+        make(
+          "thead",
+          {},
+          make(
+            "tr",
+            {},
+            ...["Point", "East, x", "North, y", "Height"].map((words, k) =>
+              make("th", { scope: "col", className: k ? "number" : "" }, words),
+            ),
+          ),
+        ),
+        make("tbody", {}, ...rows),
+      ),
       ...found.skipped.slice(0, 5).map((words) => make("p", { className: "error" }, words)),
       found.question ? make("p", {}, found.question) : "",
-      make("div", { className: "buttons" },
+      make(
+        "div",
+        { className: "buttons" },
         button("Swap east and north", () => look(chosen, found.order === "NE" ? "EN" : "NE")),
         button("Use, in the map's frame", use("map")),
         ...(georeferenced ? [button("Use, in the map's CRS", use("crs"))] : []),
@@ -62,31 +104,82 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
 
   async function report() {
     if (!kept.points.length) {
-      table.replaceChildren(make("p", { className: "quiet" }, "No points yet. ID,X,Y,Z[,Radius]; with ; and decimal comma too."));
+      table.replaceChildren(
+        make(
+          "p",
+          { className: "quiet" },
+          "No points yet. ID,X,Y,Z[,Radius]; with ; and decimal comma too.",
+        ),
+      );
       return;
     }
     const found = await readControlReport(id);
     const residuals = new Map(found.rows.map((one) => [one.id, one]));
     const earlier = new Set(found.outdated);
-    const head = ["Point", "Role", "dE", "dN", "dU", "2D", "3D [cm]", ""].map((words, k) => make("th", { scope: "col", className: k > 1 ? "number" : "" }, words));
-    const all = make("button", { type: "button", onclick: () => attempt(message, () => everySurface(all)) }, "All on the nearest surface");
-    const file = (ending, words, more) => make("a", { className: "button", href: controlFileUrl(id, ending), ...more }, words);
+    const head = ["Point", "Role", "dE", "dN", "dU", "2D", "3D [cm]", ""].map((words, k) =>
+      make("th", { scope: "col", className: k > 1 ? "number" : "" }, words),
+    );
+    const all = make(
+      "button",
+      { type: "button", onclick: () => attempt(message, () => everySurface(all)) },
+      "All on the nearest surface",
+    );
+    const file = (ending, words, more) =>
+      make("a", { className: "button", href: controlFileUrl(id, ending), ...more }, words);
     table.replaceChildren(
       verdict(found),
       ...found.figures.map(figures),
-      make("div", { className: "wide" }, make("table", {}, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...kept.points.slice(0, MOST_ROWS).map((one) => row(one, residuals.get(one.id), earlier.has(one.id)))))),
-      kept.points.length > MOST_ROWS ? make("p", { className: "quiet" }, `The first ${MOST_ROWS} of ${kept.points.length} points; the files have all.`) : "",
-      make("div", { className: "buttons" }, all, file("csv", "Residuals as CSV", { download: "" }), file("html", "Sheet to print and sign", { target: "_blank", rel: "noopener" })),
+      make(
+        "div",
+        { className: "wide" },
+        make(
+          "table",
+          {},
+          make("thead", {}, make("tr", {}, ...head)),
+          make(
+            "tbody",
+            {},
+            ...kept.points
+              .slice(0, MOST_ROWS)
+              .map((one) => row(one, residuals.get(one.id), earlier.has(one.id))),
+          ),
+        ),
+      ),
+      kept.points.length > MOST_ROWS
+        ? make(
+            "p",
+            { className: "quiet" },
+            `The first ${MOST_ROWS} of ${kept.points.length} points; the files have all.`,
+          )
+        : "",
+      make(
+        "div",
+        { className: "buttons" },
+        all,
+        file("csv", "Residuals as CSV", { download: "" }),
+        file("html", "Sheet to print and sign", { target: "_blank", rel: "noopener" }),
+      ),
     );
   }
 
   function verdict({ passed, judged_by, missing, outdated }) {
     const left = [
       missing.length ? `${missing.length} not found yet` : "",
-      outdated.length ? `${outdated.length} found in an earlier map only, they do not count: find them again` : "",
+      outdated.length
+        ? `${outdated.length} found in an earlier map only, they do not count: find them again`
+        : "",
     ].filter(Boolean);
-    const words = passed === null ? "– Nothing checked yet" : passed ? `✓ The map keeps the limits at the ${judged_by} points` : `✕ The map does not keep the limits at the ${judged_by} points`;
-    return make("p", { className: `verdict ${passed === null ? "" : passed ? "good" : "bad"}` }, [words, ...left].join(" · "));
+    const words =
+      passed === null
+        ? "– Nothing checked yet"
+        : passed
+          ? `✓ The map keeps the limits at the ${judged_by} points`
+          : `✕ The map does not keep the limits at the ${judged_by} points`;
+    return make(
+      "p",
+      { className: `verdict ${passed === null ? "" : passed ? "good" : "bad"}` },
+      [words, ...left].join(" · "),
+    );
   }
 
   async function everySurface(button) {
@@ -100,19 +193,59 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
       else without.push(one.id);
     }
     await put(places);
-    if (without.length) message.textContent = `No surface within 30 cm of ${without.slice(0, 10).join(", ")}${without.length > 10 ? ` and ${without.length - 10} more` : ""}`;
+    if (without.length)
+      message.textContent = `No surface within 30 cm of ${without.slice(0, 10).join(", ")}${without.length > 10 ? ` and ${without.length - 10} more` : ""}`;
   }
 
   function row(one, residual, earlier) {
-    const values = residual ? [residual.east_m, residual.north_m, residual.up_m, residual.d2_m, residual.d3_m].map(cm) : ["", "", "", "", ""];
-    const role = make("select", { ariaLabel: `Role of ${one.id}` }, make("option", { value: "check" }, "check"), make("option", { value: "control" }, "control"));
+    const values = residual
+      ? [residual.east_m, residual.north_m, residual.up_m, residual.d2_m, residual.d3_m].map(cm)
+      : ["", "", "", "", ""];
+    const role = make(
+      "select",
+      { ariaLabel: `Role of ${one.id}` },
+      make("option", { value: "check" }, "check"),
+      make("option", { value: "control" }, "control"),
+    );
     role.value = one.role;
-    role.addEventListener("change", () => attempt(message, () => keep((now) => ({ ...now, points: now.points.map((p) => (p.id === one.id ? { ...p, role: role.value } : p)) }))));
-    const button = (words, action, label) => make("button", { type: "button", className: "go", ariaLabel: label, onclick: () => attempt(message, action) }, words);
-    return make("tr", {},
-      make("th", { scope: "row" }, one.id), make("td", {}, role),
-      ...(earlier ? [make("td", { colSpan: values.length, className: "quiet" }, "found in an earlier map")] : values.map((words) => make("td", { className: "number" }, words))),
-      make("td", {}, make("span", { className: "buttons" }, button("Go", () => go(one), `Go to ${one.id}`), button("Here", () => pick(one), `${one.id} is the picked point`), button("Surface", () => surface(one), `${one.id} on the nearest surface`))),
+    role.addEventListener("change", () =>
+      attempt(message, () =>
+        keep((now) => ({
+          ...now,
+          points: now.points.map((p) => (p.id === one.id ? { ...p, role: role.value } : p)),
+        })),
+      ),
+    );
+    const button = (words, action, label) =>
+      make(
+        "button",
+        {
+          type: "button",
+          className: "go",
+          ariaLabel: label,
+          onclick: () => attempt(message, action),
+        },
+        words,
+      );
+    return make(
+      "tr",
+      {},
+      make("th", { scope: "row" }, one.id),
+      make("td", {}, role),
+      ...(earlier
+        ? [make("td", { colSpan: values.length, className: "quiet" }, "found in an earlier map")]
+        : values.map((words) => make("td", { className: "number" }, words))),
+      make(
+        "td",
+        {},
+        make(
+          "span",
+          { className: "buttons" },
+          button("Go", () => go(one), `Go to ${one.id}`),
+          button("Here", () => pick(one), `${one.id} is the picked point`),
+          button("Surface", () => surface(one), `${one.id} on the nearest surface`),
+        ),
+      ),
     );
   }
 
@@ -137,14 +270,43 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
   /** The limits of one role, with what was measured. */
   function figures(one) {
     const cell = (words) => make("td", { className: "number" }, words);
-    const line = (limit) => make("tr", {},
-      make("th", { scope: "row" }, limit.words),
-      make("td", { className: limit.holds ? "good" : "bad" }, limit.holds ? "✓ holds" : "✕ exceeded"),
-      cell(cm(limit.value_m)), cell(`≤ ${Math.round(limit.limit_m * 100)}`));
-    const head = [`${one.points} ${one.role} point${one.points === 1 ? "" : "s"}`, "", "Is [cm]", "Limit"].map((words, k) => make("th", { scope: "col", className: k > 1 ? "number" : "" }, words));
-    return make("div", { className: "figures" },
-      make("div", { className: "wide" }, make("table", {}, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...one.requirements.map(line)))),
-      make("p", { className: "quiet" }, `RMSE E ${cm(one.rmse_m[0])}  N ${cm(one.rmse_m[1])}  U ${cm(one.rmse_m[2])}  3D ${cm(one.rmse_3d_m)} cm`),
+    const line = (limit) =>
+      make(
+        "tr",
+        {},
+        make("th", { scope: "row" }, limit.words),
+        make(
+          "td",
+          { className: limit.holds ? "good" : "bad" },
+          limit.holds ? "✓ holds" : "✕ exceeded",
+        ),
+        cell(cm(limit.value_m)),
+        cell(`≤ ${Math.round(limit.limit_m * 100)}`),
+      );
+    const head = [
+      `${one.points} ${one.role} point${one.points === 1 ? "" : "s"}`,
+      "",
+      "Is [cm]",
+      "Limit",
+    ].map((words, k) => make("th", { scope: "col", className: k > 1 ? "number" : "" }, words));
+    return make(
+      "div",
+      { className: "figures" },
+      make(
+        "div",
+        { className: "wide" },
+        make(
+          "table",
+          {},
+          make("thead", {}, make("tr", {}, ...head)),
+          make("tbody", {}, ...one.requirements.map(line)),
+        ),
+      ),
+      make(
+        "p",
+        { className: "quiet" },
+        `RMSE E ${cm(one.rmse_m[0])}  N ${cm(one.rmse_m[1])}  U ${cm(one.rmse_m[2])}  3D ${cm(one.rmse_3d_m)} cm`,
+      ),
     );
   }
 

@@ -3,18 +3,34 @@
 import { fill, make } from "../shared/dom.js";
 import { anglesOf, COLORS, normalFrom } from "./state.js";
 
-const KINDS = [["horizontal", "Horizontal", "H"], ["vertical", "Vertical", "V"], ["free", "Free", "F"]];
+const KINDS = [
+  ["horizontal", "Horizontal", "H"],
+  ["vertical", "Vertical", "V"],
+  ["free", "Free", "F"],
+];
 
 const field = (words, control) => make("label", {}, make("span", {}, words), control);
 
 function number(words, value, step, onValue) {
-  const input = make("input", { type: "number", step: String(step), value: String(Number(value.toFixed(4))), inputMode: "decimal" });
-  input.addEventListener("change", () => Number.isFinite(input.valueAsNumber) && onValue(input.valueAsNumber));
+  const input = make("input", {
+    type: "number",
+    step: String(step),
+    value: String(Number(value.toFixed(4))),
+    inputMode: "decimal",
+  });
+  input.addEventListener(
+    "change",
+    () => Number.isFinite(input.valueAsNumber) && onValue(input.valueAsNumber),
+  );
   return field(words, input);
 }
 
 function select(options, value, onValue) {
-  const element = make("select", {}, ...options.map(([key, words]) => make("option", { value: key }, words)));
+  const element = make(
+    "select",
+    {},
+    ...options.map(([key, words]) => make("option", { value: key }, words)),
+  );
   element.value = value;
   element.addEventListener("change", () => onValue(element.value));
   return element;
@@ -30,44 +46,123 @@ export function controls(root, { change, step, toKind }) {
   let facts = null;
   root.append(kinds, where, how);
   besideMap.addEventListener("change", () => change({ beside: besideMap.value }, { keep: true }));
-  besideColor.addEventListener("change", () => change({ besideColor: besideColor.value }, { keep: true }));
+  besideColor.addEventListener("change", () =>
+    change({ besideColor: besideColor.value }, { keep: true }),
+  );
 
   function places(state) {
     if (state.kind === "horizontal") {
       const [low, high] = facts ? facts.bounds_m.map((p) => p[2]) : [-5, 5];
-      const slider = make("input", { type: "range", min: low, max: high, step: 0.01, value: state.z, ariaLabel: "Height" });
+      const slider = make("input", {
+        type: "range",
+        min: low,
+        max: high,
+        step: 0.01,
+        value: state.z,
+        ariaLabel: "Height",
+      });
       slider.addEventListener("input", () => change({ z: Number(slider.value) }));
       return [number("Height z [m]", state.z, 0.01, (z) => change({ z })), slider];
     }
     if (state.kind === "vertical") {
-      const end = (key, axis) => number(`${key.toUpperCase()} ${"xy"[axis]} [m]`, state[key][axis], 0.01, (x) => change({ [key]: state[key].map((old, k) => (k === axis ? x : old)) }));
-      return [make("div", { className: "pair" }, end("a", 0), end("a", 1), end("b", 0), end("b", 1))];
+      const end = (key, axis) =>
+        number(`${key.toUpperCase()} ${"xy"[axis]} [m]`, state[key][axis], 0.01, (x) =>
+          change({ [key]: state[key].map((old, k) => (k === axis ? x : old)) }),
+        );
+      return [
+        make("div", { className: "pair" }, end("a", 0), end("a", 1), end("b", 0), end("b", 1)),
+      ];
     }
     const angles = anglesOf(state.n);
     const turn = (key) => (degrees) => change({ n: normalFrom({ ...angles, [key]: degrees }) });
-    const through = (axis) => number(`${"xyz"[axis]} [m]`, state.o[axis], 0.01, (x) => change({ o: state.o.map((old, k) => (k === axis ? x : old)) }));
-    return [make("div", { className: "pair" }, number("Normal to, azimuth [°]", angles.azimuth, 1, turn("azimuth")), number("Tilt from level [°]", angles.tilt, 1, turn("tilt")), through(0), through(1), through(2))];
+    const through = (axis) =>
+      number(`${"xyz"[axis]} [m]`, state.o[axis], 0.01, (x) =>
+        change({ o: state.o.map((old, k) => (k === axis ? x : old)) }),
+      );
+    return [
+      make(
+        "div",
+        { className: "pair" },
+        number("Normal to, azimuth [°]", angles.azimuth, 1, turn("azimuth")),
+        number("Tilt from level [°]", angles.tilt, 1, turn("tilt")),
+        through(0),
+        through(1),
+        through(2),
+      ),
+    ];
   }
 
   function kindButton([kind, words, key], state) {
-    return make("button", { type: "button", ariaPressed: String(state.kind === kind), title: `${words}  ${key}`, onclick: () => toKind(kind) }, words);
+    return make(
+      "button",
+      {
+        type: "button",
+        ariaPressed: String(state.kind === kind),
+        title: `${words}  ${key}`,
+        onclick: () => toKind(kind),
+      },
+      words,
+    );
   }
 
   const thick = (state, words, t) =>
-    make("button", { type: "button", ariaPressed: String(state.t === t), onclick: () => change({ t }, { keep: true }) }, words);
+    make(
+      "button",
+      {
+        type: "button",
+        ariaPressed: String(state.t === t),
+        onclick: () => change({ t }, { keep: true }),
+      },
+      words,
+    );
 
   function looks(state) {
-    const colors = Object.entries(COLORS).filter(([key]) => key !== "normalized" || !facts || facts.fields.includes("intensity_normalized"));
+    const colors = Object.entries(COLORS).filter(
+      ([key]) => key !== "normalized" || !facts || facts.fields.includes("intensity_normalized"),
+    );
     const able = colors.filter(([key]) => key !== "distance" || state.ref);
-    const references = [["", "None"], ...(facts?.references ?? []).map((one) => [one.id, one.name])];
+    const references = [
+      ["", "None"],
+      ...(facts?.references ?? []).map((one) => [one.id, one.name]),
+    ];
     return [
-      make("div", { className: "pair" },
-        number("Thickness [cm]", state.t * 100, 1, (cm) => cm > 0 && change({ t: cm / 100 }, { keep: true })),
+      make(
+        "div",
+        { className: "pair" },
+        number(
+          "Thickness [cm]",
+          state.t * 100,
+          1,
+          (cm) => cm > 0 && change({ t: cm / 100 }, { keep: true }),
+        ),
         number("Step [m]", state.step, 0.01, (m) => m > 0 && change({ step: m }, { keep: true })),
       ),
-      make("div", { className: "kinds", role: "group", ariaLabel: "Usual thickness" }, thick(state, "2 cm, errors", 0.02), thick(state, "10 cm, looking", 0.1)),
-      field("Color by", select(able, state.color, (color) => change({ color, lo: null, hi: null }, { keep: true }))),
-      references.length > 1 ? field("Reference", select(references, state.ref, (ref) => change({ ref, color: ref ? "distance" : state.color === "distance" ? "height" : state.color, lo: null, hi: null }, { keep: true }))) : null,
+      make(
+        "div",
+        { className: "kinds", role: "group", ariaLabel: "Usual thickness" },
+        thick(state, "2 cm, errors", 0.02),
+        thick(state, "10 cm, looking", 0.1),
+      ),
+      field(
+        "Color by",
+        select(able, state.color, (color) => change({ color, lo: null, hi: null }, { keep: true })),
+      ),
+      references.length > 1
+        ? field(
+            "Reference",
+            select(references, state.ref, (ref) =>
+              change(
+                {
+                  ref,
+                  color: ref ? "distance" : state.color === "distance" ? "height" : state.color,
+                  lo: null,
+                  hi: null,
+                },
+                { keep: true },
+              ),
+            ),
+          )
+        : null,
     ];
   }
 
@@ -82,13 +177,26 @@ export function controls(root, { change, step, toKind }) {
     last = state;
     fill(kinds, ...KINDS.map(() => null));
     kinds.replaceChildren(...KINDS.map((kind) => kindButton(kind, state)));
-    if (!where.contains(document.activeElement) || where.dataset.kind !== state.kind) where.replaceChildren(...places(state));
+    if (!where.contains(document.activeElement) || where.dataset.kind !== state.kind)
+      where.replaceChildren(...places(state));
     where.dataset.kind = state.kind;
-    if (!how.contains(document.activeElement) || document.activeElement.type === undefined || document.activeElement.localName === "button") how.replaceChildren(...looks(state).filter(Boolean));
+    if (
+      !how.contains(document.activeElement) ||
+      document.activeElement.type === undefined ||
+      document.activeElement.localName === "button"
+    )
+      how.replaceChildren(...looks(state).filter(Boolean));
     const sources = [["", "This map"], ...(facts?.sources ?? []).map((one) => [one.id, one.words])];
     options(besideMap, sources, state.beside);
     const colors = Object.entries(COLORS).filter(([key]) => key !== "distance" || state.ref);
-    options(besideColor, [["", state.beside ? "Same color" : "One slice"], ...colors.map(([key, words]) => [key, `Beside: ${words.toLowerCase()}`])], state.besideColor);
+    options(
+      besideColor,
+      [
+        ["", state.beside ? "Same color" : "One slice"],
+        ...colors.map(([key, words]) => [key, `Beside: ${words.toLowerCase()}`]),
+      ],
+      state.besideColor,
+    );
   }
 
   return {

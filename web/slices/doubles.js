@@ -23,11 +23,27 @@ function cutAt(wall) {
 export function doublesPanel({ id, change, point, state }) {
   const message = make("p", { className: "error", role: "alert" });
   const list = make("div", {});
-  const button = make("button", { type: "button", onclick: () => attempt(message, look) }, "Look for double walls");
-  const hint = make("p", { className: "quiet" }, "A wall is double where two visits put one surface at two places. The whole map is checked.");
+  const button = make(
+    "button",
+    { type: "button", onclick: () => attempt(message, look) },
+    "Look for double walls",
+  );
+  const hint = make(
+    "p",
+    { className: "quiet" },
+    "A wall is double where two visits put one surface at two places. The whole map is checked.",
+  );
 
-  const choose = (words, choices) => make("select", { ariaLabel: words, hidden: true, onchange: () => listed() }, ...Object.entries(choices).map(([value, name]) => make("option", { value }, name)));
-  const which = choose("Which surfaces", { double: "Only double ones", all: "All seen twice, worst first" });
+  const choose = (words, choices) =>
+    make(
+      "select",
+      { ariaLabel: words, hidden: true, onchange: () => listed() },
+      ...Object.entries(choices).map(([value, name]) => make("option", { value }, name)),
+    );
+  const which = choose("Which surfaces", {
+    double: "Only double ones",
+    all: "All seen twice, worst first",
+  });
   const where = choose("Where", { all: "Whole map", slice: "In this slice" });
   const table = make("div", { className: "wide" });
   let walls = [];
@@ -50,7 +66,11 @@ export function doublesPanel({ id, change, point, state }) {
       : "No surface was visited twice: nothing can be said.";
     const verdict = found.walls.length
       ? make("p", { className: "verdict bad" }, `✕ ${found.walls.length} places are double`)
-      : make("p", { className: "verdict good" }, found.patches ? "✓ No double wall found" : "– Not checked");
+      : make(
+          "p",
+          { className: "verdict good" },
+          found.patches ? "✓ No double wall found" : "– Not checked",
+        );
     [walls, surfaces] = [found.walls, found.surfaces];
     which.hidden = where.hidden = walls.length + surfaces.length === 0;
     which.value = walls.length ? "double" : "all";
@@ -62,15 +82,45 @@ export function doublesPanel({ id, change, point, state }) {
 
   /** The rows that are asked for; with "in this slice" they follow the cut. */
   function listed() {
-    const focused = table.contains(document.activeElement) ? document.activeElement.ariaLabel : null;
+    const focused = table.contains(document.activeElement)
+      ? document.activeElement.ariaLabel
+      : null;
     const asked = which.value === "all" ? [...walls, ...surfaces] : walls;
     const meant = where.value === "slice" ? asked.filter(inSlice) : asked;
     if (!asked.length) return table.replaceChildren();
-    const told = [`${meant.length} of ${asked.length} places`, meant.length > MOST_ROWS ? `the ${MOST_ROWS} worst are listed` : ""];
-    const head = ["Place", "", "Apart", "Limit", "Thickness σ", "D = apart / σ", "Weaker layer", "Visits"].map((words) => make("th", { scope: "col" }, words));
+    const told = [
+      `${meant.length} of ${asked.length} places`,
+      meant.length > MOST_ROWS ? `the ${MOST_ROWS} worst are listed` : "",
+    ];
+    const head = [
+      "Place",
+      "",
+      "Apart",
+      "Limit",
+      "Thickness σ",
+      "D = apart / σ",
+      "Weaker layer",
+      "Visits",
+    ].map((words) => make("th", { scope: "col" }, words));
     const rows = meant.slice(0, MOST_ROWS).map(row);
-    const caption = make("p", { className: "quiet", role: "status" }, told.filter(Boolean).join(", "));
-    table.replaceChildren(caption, ...(rows.length ? [make("table", {}, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...rows))] : []));
+    const caption = make(
+      "p",
+      { className: "quiet", role: "status" },
+      told.filter(Boolean).join(", "),
+    );
+    table.replaceChildren(
+      caption,
+      ...(rows.length
+        ? [
+            make(
+              "table",
+              {},
+              make("thead", {}, make("tr", {}, ...head)),
+              make("tbody", {}, ...rows),
+            ),
+          ]
+        : []),
+    );
     if (focused) table.querySelector(`[aria-label="${focused}"]`)?.focus();
   }
 
@@ -82,17 +132,42 @@ export function doublesPanel({ id, change, point, state }) {
       document.getElementById("views").scrollIntoView({ block: "nearest" });
     };
     const words = wall.middle_m.map((x) => x.toFixed(1)).join(" ");
-    return make("tr", {},
-      make("td", {}, make("button", { type: "button", className: "go", onclick: go, ariaLabel: `Go to ${words}` }, words)),
+    return make(
+      "tr",
+      {},
+      make(
+        "td",
+        {},
+        make(
+          "button",
+          { type: "button", className: "go", onclick: go, ariaLabel: `Go to ${words}` },
+          words,
+        ),
+      ),
       make("td", { className: double ? "bad" : "good" }, double ? "✕ double" : "✓ single"),
       make("td", { className: "number" }, cm(wall.separation_m)),
       make("td", { className: "number" }, cm(wall.limit_m)),
       make("td", { className: "number" }, cm(wall.sigma_m)),
       make("td", { className: "number" }, wall.bimodality.toFixed(1)),
       make("td", { className: "number" }, `${(wall.share * 100).toFixed(0)} %`),
-      make("td", {}, `${wall.spans_s.map(span).join(" and ")}; multiframes ${wall.frames.map(([from, to]) => `${from}–${to}`).join(" and ")}`),
+      make(
+        "td",
+        {},
+        `${wall.spans_s.map(span).join(" and ")}; multiframes ${wall.frames.map(([from, to]) => `${from}–${to}`).join(" and ")}`,
+      ),
     );
   }
 
-  return { element: make("div", {}, hint, make("div", { className: "row" }, button, which, where), message, list, table), show: () => where.value === "slice" && listed() };
+  return {
+    element: make(
+      "div",
+      {},
+      hint,
+      make("div", { className: "row" }, button, which, where),
+      message,
+      list,
+      table,
+    ),
+    show: () => where.value === "slice" && listed(),
+  };
 }

@@ -15,20 +15,49 @@ const KINDS = [
 const SCALES = [10, 20, 25, 50, 100, 200, 250, 500, 1000];
 
 export function exportPanel({ id, change, state, ask }) {
-  const part = make("select", { ariaLabel: "What is exported" }, make("option", { value: "all" }, "All of the slice"), make("option", { value: "seen" }, "What is seen"));
-  const size = make("select", { ariaLabel: "Paper" }, ...["a4", "a3", "a2", "a1"].map((one) => make("option", { value: one }, one.toUpperCase())));
-  const scale = make("select", { ariaLabel: "Scale" }, make("option", { value: "0" }, "Scale that fits"), ...SCALES.map((one) => make("option", { value: String(one) }, `1 : ${one}`)));
+  const part = make(
+    "select",
+    { ariaLabel: "What is exported" },
+    make("option", { value: "all" }, "All of the slice"),
+    make("option", { value: "seen" }, "What is seen"),
+  );
+  const size = make(
+    "select",
+    { ariaLabel: "Paper" },
+    ...["a4", "a3", "a2", "a1"].map((one) => make("option", { value: one }, one.toUpperCase())),
+  );
+  const scale = make(
+    "select",
+    { ariaLabel: "Scale" },
+    make("option", { value: "0" }, "Scale that fits"),
+    ...SCALES.map((one) => make("option", { value: String(one) }, `1 : ${one}`)),
+  );
   const flat = make("input", { type: "checkbox", id: "flat" });
-  const count = make("input", { type: "number", min: 1, max: 200, value: "1", ariaLabel: "Number of slices" });
-  const spacing = make("input", { type: "number", step: "0.05", value: "0.5", ariaLabel: "Spacing of slices" });
+  const count = make("input", {
+    type: "number",
+    min: 1,
+    max: 200,
+    value: "1",
+    ariaLabel: "Number of slices",
+  });
+  const spacing = make("input", {
+    type: "number",
+    step: "0.05",
+    value: "0.5",
+    ariaLabel: "Spacing of slices",
+  });
   const links = KINDS.map(([ending, name]) => [ending, make("a", { download: "" }, name)]);
 
   function wanted() {
     const { width, height, ground, window, ...look } = ask();
     return {
       ...look,
-      window: part.value === "seen" ? window ?? null : null,
-      count: state().count, spacing_m: state().spacing, size: size.value, scale: Number(scale.value), flat: flat.checked,
+      window: part.value === "seen" ? (window ?? null) : null,
+      count: state().count,
+      spacing_m: state().spacing,
+      size: size.value,
+      scale: Number(scale.value),
+      flat: flat.checked,
     };
   }
 
@@ -38,14 +67,43 @@ export function exportPanel({ id, change, state, ask }) {
   }
 
   for (const control of [part, size, scale, flat]) control.addEventListener("change", draw);
-  count.addEventListener("change", () => count.valueAsNumber >= 1 && change({ count: Math.round(count.valueAsNumber) }, { keep: true }));
-  spacing.addEventListener("change", () => Number.isFinite(spacing.valueAsNumber) && change({ spacing: spacing.valueAsNumber }, { keep: true }));
+  count.addEventListener(
+    "change",
+    () =>
+      count.valueAsNumber >= 1 &&
+      change({ count: Math.round(count.valueAsNumber) }, { keep: true }),
+  );
+  spacing.addEventListener(
+    "change",
+    () =>
+      Number.isFinite(spacing.valueAsNumber) &&
+      change({ spacing: spacing.valueAsNumber }, { keep: true }),
+  );
   const field = (words, control) => make("label", {}, make("span", {}, words), control);
   return {
-    element: make("div", {},
-      make("div", { className: "row" }, field("Part", part), field("Paper", size), field("Scale", scale), field("Slices", count), field("Spacing [m]", spacing)),
-      make("label", { className: "check" }, flat, make("span", {}, "DXF laid flat: u, v instead of coordinates")),
-      make("ul", { className: "files" }, ...links.map(([, link], k) => make("li", {}, link, make("small", {}, KINDS[k][2])))),
+    element: make(
+      "div",
+      {},
+      make(
+        "div",
+        { className: "row" },
+        field("Part", part),
+        field("Paper", size),
+        field("Scale", scale),
+        field("Slices", count),
+        field("Spacing [m]", spacing),
+      ),
+      make(
+        "label",
+        { className: "check" },
+        flat,
+        make("span", {}, "DXF laid flat: u, v instead of coordinates"),
+      ),
+      make(
+        "ul",
+        { className: "files" },
+        ...links.map(([, link], k) => make("li", {}, link, make("small", {}, KINDS[k][2]))),
+      ),
     ),
     show: draw,
   };

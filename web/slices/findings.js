@@ -14,7 +14,11 @@ export function findings(root, page) {
     ["Control and check points", controlPanel(page)],
     ["Export", exportPanel(page)],
   ];
-  root.replaceChildren(...panels.map(([words, { element }]) => make("details", { className: "panel" }, make("summary", {}, words), element)));
+  root.replaceChildren(
+    ...panels.map(([words, { element }]) =>
+      make("details", { className: "panel" }, make("summary", {}, words), element),
+    ),
+  );
   const tell = (what) => (value) => panels.forEach(([, panel]) => panel[what]?.(value));
   return { show: tell("show"), facts: tell("facts"), picked: tell("picked") };
 }

@@ -18,8 +18,16 @@ const KEYS = [
 export function help(dialog) {
   dialog.replaceChildren(
     make("h2", { id: "help-title" }, "Keys"),
-    make("dl", { className: "keys" }, ...KEYS.map(([key, words]) => make("div", {}, make("dt", {}, key), make("dd", {}, words)))),
-    make("p", {}, "On the map from above: drag for a vertical cut, drag its line or its ends A and B. The arrow points where the picture looks."),
+    make(
+      "dl",
+      { className: "keys" },
+      ...KEYS.map(([key, words]) => make("div", {}, make("dt", {}, key), make("dd", {}, words))),
+    ),
+    make(
+      "p",
+      {},
+      "On the map from above: drag for a vertical cut, drag its line or its ends A and B. The arrow points where the picture looks.",
+    ),
     make("form", { method: "dialog" }, make("button", { className: "primary" }, "Close")),
   );
 }

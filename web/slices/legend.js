@@ -11,7 +11,14 @@ export function legend(root, { state, shown, facts, onRange }) {
   const scale = state.color === "distance" ? 100 : 1;
   const unit = UNITS[state.color] ? ` [${UNITS[state.color]}]` : "";
   const head = make("span", { className: "what" }, `${COLORS[state.color]}${unit}`);
-  const green = state.ref ? make("span", { className: "reference" }, make("i", {}), facts.references.find((one) => one.id === state.ref)?.name ?? "Reference") : null;
+  const green = state.ref
+    ? make(
+        "span",
+        { className: "reference" },
+        make("i", {}),
+        facts.references.find((one) => one.id === state.ref)?.name ?? "Reference",
+      )
+    : null;
   if (state.color === "sensor") {
     const names = facts.sensors.length ? facts.sensors : ["1", "2"];
     const swatch = (name, k) => {
@@ -23,7 +30,12 @@ export function legend(root, { state, shown, facts, onRange }) {
     return;
   }
   const end = (value, words, which) => {
-    const input = make("input", { type: "number", step: "any", value: String(Number((value * scale).toPrecision(4))), ariaLabel: words });
+    const input = make("input", {
+      type: "number",
+      step: "any",
+      value: String(Number((value * scale).toPrecision(4))),
+      ariaLabel: words,
+    });
     input.addEventListener("change", () => {
       const x = input.valueAsNumber / scale;
       const range = which ? [state.lo ?? shown.low, x] : [x, state.hi ?? shown.high];
@@ -34,6 +46,18 @@ export function legend(root, { state, shown, facts, onRange }) {
   };
   const bar = make("span", { className: "ramp" });
   bar.style.background = `linear-gradient(90deg, ${shown.colors.join(", ")})`;
-  const usual = state.lo !== null || state.hi !== null ? make("button", { type: "button", onclick: () => onRange(null, null) }, "Usual range") : null;
-  root.replaceChildren(...[head, end(shown.low, "Low end of the colors", 0), bar, end(shown.high, "High end of the colors", 1), usual, green].filter(Boolean));
+  const usual =
+    state.lo !== null || state.hi !== null
+      ? make("button", { type: "button", onclick: () => onRange(null, null) }, "Usual range")
+      : null;
+  root.replaceChildren(
+    ...[
+      head,
+      end(shown.low, "Low end of the colors", 0),
+      bar,
+      end(shown.high, "High end of the colors", 1),
+      usual,
+      green,
+    ].filter(Boolean),
+  );
 }

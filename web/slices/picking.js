@@ -7,7 +7,9 @@ export const ofInput = (input) =>
 export async function ofDrop(transfer) {
   const dropped = [...transfer.items].filter((item) => item.kind === "file");
   // all are taken at once: a browser forgets them when the event is over
-  const taken = dropped.map((item) => item.webkitGetAsEntry?.() ?? item.getAsFile()).filter(Boolean);
+  const taken = dropped
+    .map((item) => item.webkitGetAsEntry?.() ?? item.getAsFile())
+    .filter(Boolean);
   const found = [];
   for (const one of taken) {
     if (one instanceof File) found.push({ file: one, name: one.name });

@@ -1,6 +1,13 @@
 // References: add, align, remove; the table of slices against one (V Table 3.2).
 
-import { addReference, alignReference, browse, compareCsvUrl, compareSlices, removeReference } from "../shared/api.js";
+import {
+  addReference,
+  alignReference,
+  browse,
+  compareCsvUrl,
+  compareSlices,
+  removeReference,
+} from "../shared/api.js";
 import { attempt, make } from "../shared/dom.js";
 import { bytes, count } from "../shared/format.js";
 import { Sending, sorted } from "../projects/resumable_upload.js";
@@ -13,11 +20,33 @@ const METHODS = { plane: "to the reference's surface", point: "to its nearest po
 export function referencePanel({ id, change, state, reload }) {
   const message = make("p", { className: "error", role: "alert" });
   const list = make("div", {});
-  const path = make("input", { placeholder: "Path on this computer", ariaLabel: "Path of the reference", autocomplete: "off", spellcheck: false });
+  const path = make("input", {
+    placeholder: "Path on this computer",
+    ariaLabel: "Path of the reference",
+    autocomplete: "off",
+    spellcheck: false,
+  });
   const folder = make("div", { className: "folder", hidden: true });
-  const frame = make("select", { ariaLabel: "Its coordinates" }, make("option", { value: "map" }, "In the map's frame"), make("option", { value: "crs" }, "In the map's CRS"));
-  const which = make("select", { ariaLabel: "Slices to compare" }, make("option", { value: "usual" }, "8 slices over the map, 2 cm"), make("option", { value: "this" }, "This slice"), make("option", { value: "repeated" }, "This slice, repeated"));
-  const method = make("select", { ariaLabel: "How distances are measured" }, ...Object.entries(METHODS).map(([key, words]) => make("option", { value: key }, `Distances ${words}`)));
+  const frame = make(
+    "select",
+    { ariaLabel: "Its coordinates" },
+    make("option", { value: "map" }, "In the map's frame"),
+    make("option", { value: "crs" }, "In the map's CRS"),
+  );
+  const which = make(
+    "select",
+    { ariaLabel: "Slices to compare" },
+    make("option", { value: "usual" }, "8 slices over the map, 2 cm"),
+    make("option", { value: "this" }, "This slice"),
+    make("option", { value: "repeated" }, "This slice, repeated"),
+  );
+  const method = make(
+    "select",
+    { ariaLabel: "How distances are measured" },
+    ...Object.entries(METHODS).map(([key, words]) =>
+      make("option", { value: key }, `Distances ${words}`),
+    ),
+  );
   const table = make("div", {});
   const busy = (button, action) => async () => {
     button.disabled = true;
@@ -30,7 +59,13 @@ export function referencePanel({ id, change, state, reload }) {
     return button;
   };
 
-  const file = make("input", { type: "file", hidden: true, accept: KINDS, ariaLabel: "Reference file", onchange: () => attempt(message, upload) });
+  const file = make("input", {
+    type: "file",
+    hidden: true,
+    accept: KINDS,
+    ariaLabel: "Reference file",
+    onchange: () => attempt(message, upload),
+  });
   const words = make("span", { role: "status" });
   const bar = make("progress", { max: 1, ariaLabel: "Upload of the reference" });
   const stop = make("button", { type: "button" }, "Stop");
@@ -43,14 +78,16 @@ export function referencePanel({ id, change, state, reload }) {
     file.value = ""; // the same file may be chosen again
     stop.onclick = () => attempt(message, () => sending.remove());
     sending.addEventListener("change", () => {
-      words.textContent = sending.words || `${sending.name}: ${bytes(sending.sent)} of ${bytes(sending.total)}`;
+      words.textContent =
+        sending.words || `${sending.name}: ${bytes(sending.sent)} of ${bytes(sending.total)}`;
       bar.value = sending.total ? sending.sent / sending.total : 1;
     });
     choose.disabled = true;
     sendingNow.hidden = false;
     try {
       await sending.start();
-      if (sending.state === "failed") throw new Error(`${sending.words}; choose the same file again to go on`);
+      if (sending.state === "failed")
+        throw new Error(`${sending.words}; choose the same file again to go on`);
       if (sending.state !== "done") return;
       words.textContent = `${sending.name} is being read`;
       path.value = sending.recording;
@@ -71,15 +108,35 @@ export function referencePanel({ id, change, state, reload }) {
   async function openFolder(at) {
     const entries = await browse(at);
     folder.hidden = false;
-    const up = at ? [make("button", { type: "button", onclick: () => attempt(message, () => openFolder(at.split("/").slice(0, -1).join("/"))) }, "‥ Up")] : [];
-    folder.replaceChildren(...up, ...entries.map((entry) => {
-      const open = () => {
-        if (entry.folder) return attempt(message, () => openFolder(entry.path));
-        path.value = entry.path;
-        folder.hidden = true;
-      };
-      return make("button", { type: "button", onclick: open }, make("span", {}, entry.folder ? `${entry.name}/` : entry.name), entry.folder ? null : make("small", {}, bytes(entry.bytes)));
-    }));
+    const up = at
+      ? [
+          make(
+            "button",
+            {
+              type: "button",
+              onclick: () =>
+                attempt(message, () => openFolder(at.split("/").slice(0, -1).join("/"))),
+            },
+            "‥ Up",
+          ),
+        ]
+      : [];
+    folder.replaceChildren(
+      ...up,
+      ...entries.map((entry) => {
+        const open = () => {
+          if (entry.folder) return attempt(message, () => openFolder(entry.path));
+          path.value = entry.path;
+          folder.hidden = true;
+        };
+        return make(
+          "button",
+          { type: "button", onclick: open },
+          make("span", {}, entry.folder ? `${entry.name}/` : entry.name),
+          entry.folder ? null : make("small", {}, bytes(entry.bytes)),
+        );
+      }),
+    );
   }
 
   async function align(one, how) {
@@ -102,7 +159,12 @@ export function referencePanel({ id, change, state, reload }) {
   }
 
   async function compare() {
-    const ask = { reference: state().ref, method: method.value, cuts: cuts(), source: state().source };
+    const ask = {
+      reference: state().ref,
+      method: method.value,
+      cuts: cuts(),
+      source: state().source,
+    };
     if (!ask.reference) throw new Error("Choose a reference first");
     change({ method: method.value }, { keep: true });
     show(await compareSlices(id, ask), ask);
@@ -111,40 +173,101 @@ export function referencePanel({ id, change, state, reload }) {
   function show(found, ask) {
     const cell = (words) => make("td", { className: "number" }, words);
     const figure = (x, digits = 2) => cell(x === null ? "–" : (x * 100).toFixed(digits));
-    const row = (name, one) => make("tr", {}, make("th", { scope: "row" }, name), figure(one.mean_m), figure(one.ratio_within_2cm, 1), figure(one.ratio_within_5cm, 1), cell(count(one.points)), cell(count(one.outliers)));
-    const head = ["Slice", "Mean [cm]", "< 2 cm [%]", "< 5 cm [%]", "Points", "Beyond 50 cm"].map((words, k) => make("th", { scope: "col", className: k ? "number" : "" }, words));
-    const rows = [...found.slices.map((one) => row(one.name, one)), row("Average by points", found.point_weighted)];
-    rows.push(make("tr", {}, make("th", { scope: "row" }, "Plain average of the slices"), figure(found.plain_mean_m)));
+    const row = (name, one) =>
+      make(
+        "tr",
+        {},
+        make("th", { scope: "row" }, name),
+        figure(one.mean_m),
+        figure(one.ratio_within_2cm, 1),
+        figure(one.ratio_within_5cm, 1),
+        cell(count(one.points)),
+        cell(count(one.outliers)),
+      );
+    const head = ["Slice", "Mean [cm]", "< 2 cm [%]", "< 5 cm [%]", "Points", "Beyond 50 cm"].map(
+      (words, k) => make("th", { scope: "col", className: k ? "number" : "" }, words),
+    );
+    const rows = [
+      ...found.slices.map((one) => row(one.name, one)),
+      row("Average by points", found.point_weighted),
+    ];
+    rows.push(
+      make(
+        "tr",
+        {},
+        make("th", { scope: "row" }, "Plain average of the slices"),
+        figure(found.plain_mean_m),
+      ),
+    );
     table.replaceChildren(
-      make("div", { className: "wide" }, make("table", {}, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...rows))),
-      make("p", { className: "quiet" }, `Against ${found.reference}, distances ${METHODS[found.method]}`),
-      make("a", { className: "button", href: compareCsvUrl(id, ask), download: "" }, "Download CSV"),
+      make(
+        "div",
+        { className: "wide" },
+        make("table", {}, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...rows)),
+      ),
+      make(
+        "p",
+        { className: "quiet" },
+        `Against ${found.reference}, distances ${METHODS[found.method]}`,
+      ),
+      make(
+        "a",
+        { className: "button", href: compareCsvUrl(id, ask), download: "" },
+        "Download CSV",
+      ),
     );
   }
 
   function rows(facts) {
-    list.replaceChildren(...facts.references.map((one) => {
-      const size = one.points ? `${count(one.points)} points` : `${count(one.triangles)} triangles`;
-      return make("div", { className: "reference-row" },
-        make("strong", {}, one.name),
-        make("span", { className: "quiet" }, `${size}, alignment: ${one.alignment}`),
-        make("span", { className: "buttons" },
-          make_("Show", async () => change({ ref: one.id, color: "distance", lo: null, hi: null }, { keep: true })),
-          make_("Align by ICP", () => align(one, "icp")),
-          make_("No alignment", () => align(one, "none")),
-          make_("Remove", () => remove(one)),
-        ),
-      );
-    }));
+    list.replaceChildren(
+      ...facts.references.map((one) => {
+        const size = one.points
+          ? `${count(one.points)} points`
+          : `${count(one.triangles)} triangles`;
+        return make(
+          "div",
+          { className: "reference-row" },
+          make("strong", {}, one.name),
+          make("span", { className: "quiet" }, `${size}, alignment: ${one.alignment}`),
+          make(
+            "span",
+            { className: "buttons" },
+            make_("Show", async () =>
+              change({ ref: one.id, color: "distance", lo: null, hi: null }, { keep: true }),
+            ),
+            make_("Align by ICP", () => align(one, "icp")),
+            make_("No alignment", () => align(one, "none")),
+            make_("Remove", () => remove(one)),
+          ),
+        );
+      }),
+    );
   }
 
-  const element = make("div", {},
+  const element = make(
+    "div",
+    {},
     list,
-    make("div", { className: "row" }, choose, file, path, make_("Browse…", () => openFolder("")), frame, make_("Add reference", add)),
-    sendingNow, folder,
-    make("p", { className: "quiet" }, "PLY, LAZ, LAS, E57, PCD, XYZ, CSV, OBJ or STL. Nothing is aligned unless you ask for it."),
+    make(
+      "div",
+      { className: "row" },
+      choose,
+      file,
+      path,
+      make_("Browse…", () => openFolder("")),
+      frame,
+      make_("Add reference", add),
+    ),
+    sendingNow,
+    folder,
+    make(
+      "p",
+      { className: "quiet" },
+      "PLY, LAZ, LAS, E57, PCD, XYZ, CSV, OBJ or STL. Nothing is aligned unless you ask for it.",
+    ),
     make("div", { className: "row" }, which, method, make_("Compare", compare)),
-    message, table,
+    message,
+    table,
   );
   return { element, facts: rows };
 }

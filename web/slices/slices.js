@@ -1,6 +1,14 @@
 // The page of slices: where is cut, how it is shown, what is found. The address is the state.
 
-import { aboveUrl, ApiError, pickOnSlice, readAboveWindow, readProject, readSlice, readSliceFacts } from "../shared/api.js";
+import {
+  aboveUrl,
+  ApiError,
+  pickOnSlice,
+  readAboveWindow,
+  readProject,
+  readSlice,
+  readSliceFacts,
+} from "../shared/api.js";
 import { fill, make } from "../shared/dom.js";
 import { count } from "../shared/format.js";
 import { controls } from "./controls.js";
@@ -18,7 +26,14 @@ const dark = matchMedia("(prefers-color-scheme: dark)");
 const above = make("slice-above");
 const first = make("slice-view");
 const second = make("slice-view", { className: "second" });
-const swipe = make("input", { type: "range", min: 0, max: 100, value: 50, ariaLabel: "Swipe between the two slices", className: "swipe" });
+const swipe = make("input", {
+  type: "range",
+  min: 0,
+  max: 100,
+  value: 50,
+  ariaLabel: "Swipe between the two slices",
+  className: "swipe",
+});
 const captions = [make("p", { className: "caption" }), make("p", { className: "caption second" })];
 const reading = make("p", { className: "readout", role: "status" });
 const facing = make("div", { className: "facing" });
@@ -34,7 +49,8 @@ let turn = 0;
 function change(next, { keep = false } = {}) {
   const before = state;
   state = { ...state, ...next };
-  const elsewhere = format({ ...before, color: "", t: 0 }) !== format({ ...state, color: "", t: 0 });
+  const elsewhere =
+    format({ ...before, color: "", t: 0 }) !== format({ ...state, color: "", t: 0 });
   if (!keep && elsewhere) clearMeasure();
   if (state.u === null) first.frame = second.frame = null;
   else if (next.m) first.frame = second.frame = { u: state.u, v: state.v, m: state.m };
@@ -53,11 +69,15 @@ const toKind = (kind) => kind !== state.kind && change(unframed({ ...state, ...s
 function start(kind) {
   const [low, high] = facts.bounds_m;
   const middle = low.map((x, k) => (x + high[k]) / 2);
-  const at = shown && state.kind === "horizontal" && first.frame ? [first.frame.u, first.frame.v] : middle;
-  if (kind === "horizontal") return { kind, z: state.given ? state.z : low[2] + Math.min(1.2, (high[2] - low[2]) / 2) };
+  const at =
+    shown && state.kind === "horizontal" && first.frame ? [first.frame.u, first.frame.v] : middle;
+  if (kind === "horizontal")
+    return { kind, z: state.given ? state.z : low[2] + Math.min(1.2, (high[2] - low[2]) / 2) };
   if (kind === "vertical") {
     const wide = high[0] - low[0] >= high[1] - low[1];
-    return wide ? { kind, a: [low[0], at[1]], b: [high[0], at[1]] } : { kind, a: [at[0], low[1]], b: [at[0], high[1]] };
+    return wide
+      ? { kind, a: [low[0], at[1]], b: [high[0], at[1]] }
+      : { kind, a: [at[0], low[1]], b: [at[0], high[1]] };
   }
   return { kind, o: [...at.slice(0, 2), middle[2]], n: normalFrom({ azimuth: 0, tilt: 45 }) };
 }
@@ -102,34 +122,53 @@ async function loadSecond(mine) {
   second.frame = first.frame;
   const color = state.besideColor || state.color;
   const range = color === state.color ? {} : { low: null, high: null };
-  const told = await readSlice(id, ask(second, { page: `${tab}2`, turn: mine, color, source: state.beside, ...range }));
+  const told = await readSlice(
+    id,
+    ask(second, { page: `${tab}2`, turn: mine, color, source: state.beside, ...range }),
+  );
   if (mine !== turn) return;
   await second.show(told);
   captions[1].textContent = `${sourceWords(state.beside)} · ${COLORS[color]} · ${count(told.points)} points`;
 }
 
-const sourceWords = (source) => (source ? facts.sources.find((one) => one.id === source)?.words ?? source : "This map");
+const sourceWords = (source) =>
+  source ? (facts.sources.find((one) => one.id === source)?.words ?? source) : "This map";
 
 function describe() {
   const [name, points] = [shown.name, count(shown.points)];
   captions[0].textContent = `${sourceWords(state.source)} · ${COLORS[state.color]} · ${points} points`;
   first.label = `Slice ${name}, ${points} points, colored by ${COLORS[state.color]}`;
   second.label = captions[1].textContent;
-  fill(facing,
-    make("strong", {}, `${{ horizontal: "Horizontal", vertical: "Vertical", free: "Free plane" }[state.kind]} ${name}`),
+  fill(
+    facing,
+    make(
+      "strong",
+      {},
+      `${{ horizontal: "Horizontal", vertical: "Vertical", free: "Free plane" }[state.kind]} ${name}`,
+    ),
     make("span", {}, `${Number((state.t * 100).toFixed(1))} cm thick`),
     make("span", {}, `${points} points`),
     make("span", { className: "frame" }, facts.frame),
     make("span", {}, facts.approval),
   );
-  legend(byId("legend"), { state, shown, facts, onRange: (lo, hi) => change({ lo, hi }, { keep: true }) });
+  legend(byId("legend"), {
+    state,
+    shown,
+    facts,
+    onRange: (lo, hi) => change({ lo, hi }, { keep: true }),
+  });
   mark();
 }
 
 // -- reading points
 
 async function place({ u, v, reach }) {
-  const answer = await pickOnSlice(id, { cut: cutOf(state), uv: [u, v], radius_m: Math.min(5, Math.max(0.005, reach)), source: state.source });
+  const answer = await pickOnSlice(id, {
+    cut: cutOf(state),
+    uv: [u, v],
+    radius_m: Math.min(5, Math.max(0.005, reach)),
+    source: state.source,
+  });
   if (!answer.found) {
     reading.textContent = "No point of the map here";
     return;
@@ -148,7 +187,8 @@ function pointWords({ p_map, p_crs, about }) {
   if (p_crs) parts.push(`${facts.crs}  E N H  ${fixed(p_crs)} m`);
   if (about.intensity !== undefined) parts.push(`intensity ${about.intensity}`);
   if (facts.sensors.length) parts.push(facts.sensors[about.sensor] ?? `sensor ${about.sensor}`);
-  if (about.time_s !== undefined) parts.push(`${about.time_s.toFixed(1)} s, multiframe ${about.frame_id}`);
+  if (about.time_s !== undefined)
+    parts.push(`${about.time_s.toFixed(1)} s, multiframe ${about.frame_id}`);
   return parts.join(" · ");
 }
 
@@ -164,7 +204,12 @@ function distanceWords(a, b) {
 
 function mark() {
   const line = measured.length === 2 ? `${lengths(...measured).all.toFixed(3)} m` : "";
-  const marks = measuring || measured.length ? [{ points: measured.map((one) => one.uv), words: line }] : picked ? [{ points: [picked.uv] }] : [];
+  const marks =
+    measuring || measured.length
+      ? [{ points: measured.map((one) => one.uv), words: line }]
+      : picked
+        ? [{ points: [picked.uv] }]
+        : [];
   first.marks = marks;
   second.marks = marks;
 }
@@ -202,24 +247,47 @@ function follow(from, to) {
     to.frame = from.frame;
     change(from.frame, { keep: true });
   });
-  from.addEventListener("place", (event) => place(event.detail).catch((error) => (byId("message").textContent = error.message)));
+  from.addEventListener("place", (event) =>
+    place(event.detail).catch((error) => (byId("message").textContent = error.message)),
+  );
 }
 
 // -- keys
 
 const KEYS = {
-  "[": () => step(-1), PageDown: () => step(-1), "]": () => step(1), PageUp: () => step(1),
-  h: () => toKind("horizontal"), v: () => toKind("vertical"), f: () => toKind("free"),
-  "+": () => thicker(2), "=": () => thicker(2), "-": () => thicker(0.5),
-  c: () => nextColor(), m: () => measure(), 0: () => change(unframed(state), { keep: true }),
-  Escape: () => measure(false), "?": () => byId("help").showModal(),
+  "[": () => step(-1),
+  PageDown: () => step(-1),
+  "]": () => step(1),
+  PageUp: () => step(1),
+  h: () => toKind("horizontal"),
+  v: () => toKind("vertical"),
+  f: () => toKind("free"),
+  "+": () => thicker(2),
+  "=": () => thicker(2),
+  "-": () => thicker(0.5),
+  c: () => nextColor(),
+  m: () => measure(),
+  0: () => change(unframed(state), { keep: true }),
+  Escape: () => measure(false),
+  "?": () => byId("help").showModal(),
 };
 
-const thicker = (times) => change({ t: Number(Math.min(100, Math.max(0.001, state.t * times)).toPrecision(6)) }, { keep: true });
+const thicker = (times) =>
+  change(
+    { t: Number(Math.min(100, Math.max(0.001, state.t * times)).toPrecision(6)) },
+    { keep: true },
+  );
 
 function nextColor() {
-  const able = Object.keys(COLORS).filter((color) => (color !== "distance" || state.ref) && (color !== "normalized" || facts.fields.includes("intensity_normalized")));
-  change({ color: able[(able.indexOf(state.color) + 1) % able.length], lo: null, hi: null }, { keep: true });
+  const able = Object.keys(COLORS).filter(
+    (color) =>
+      (color !== "distance" || state.ref) &&
+      (color !== "normalized" || facts.fields.includes("intensity_normalized")),
+  );
+  change(
+    { color: able[(able.indexOf(state.color) + 1) % able.length], lo: null, hi: null },
+    { keep: true },
+  );
 }
 
 addEventListener("keydown", (event) => {
@@ -235,24 +303,52 @@ addEventListener("keydown", (event) => {
 
 const tab = Math.random().toString(36).slice(2, 12);
 const panel = controls(byId("controls"), { change, step, toKind, unframed });
-const found = findings(byId("findings"), { id, change, state: () => state, ask: () => ask(first), point: (p) => (above.place = p), reload, measured: () => picked });
+const found = findings(byId("findings"), {
+  id,
+  change,
+  state: () => state,
+  ask: () => ask(first),
+  point: (p) => (above.place = p),
+  reload,
+  measured: () => picked,
+});
 
 function tools() {
-  const button = (words, action, more = {}) => make("button", { type: "button", onclick: action, ...more }, words);
-  const mode = (words, value) => button(words, () => {
-    byId("views").dataset.mode = value;
-    layOut();
-  }, { id: `mode-${value}` });
+  const button = (words, action, more = {}) =>
+    make("button", { type: "button", onclick: action, ...more }, words);
+  const mode = (words, value) =>
+    button(
+      words,
+      () => {
+        byId("views").dataset.mode = value;
+        layOut();
+      },
+      { id: `mode-${value}` },
+    );
   byId("tools").replaceChildren(
-    make("span", { className: "moves" },
+    make(
+      "span",
+      { className: "moves" },
       button("◂ Step", () => step(-1), { title: "One step back  [", ariaLabel: "Step back" }),
       button("Step ▸", () => step(1), { title: "One step on  ]", ariaLabel: "Step on" }),
       button("−", () => first.zoom(1.5), { title: "Farther away", ariaLabel: "Zoom out" }),
       button("+", () => first.zoom(1 / 1.5), { title: "Closer", ariaLabel: "Zoom in" }),
-      button("All", () => change(unframed(state), { keep: true }), { title: "All of the slice  0" }),
-      button("Measure", () => measure(), { id: "measure", ariaPressed: "false", title: "Distance of two points  M" }),
+      button("All", () => change(unframed(state), { keep: true }), {
+        title: "All of the slice  0",
+      }),
+      button("Measure", () => measure(), {
+        id: "measure",
+        ariaPressed: "false",
+        title: "Distance of two points  M",
+      }),
     ),
-    make("span", { className: "beside" }, ...panel.beside, mode("Split", "split"), mode("Swipe", "swipe")),
+    make(
+      "span",
+      { className: "beside" },
+      ...panel.beside,
+      mode("Split", "split"),
+      mode("Swipe", "swipe"),
+    ),
     button("?", () => byId("help").showModal(), { ariaLabel: "Help", title: "Keys  ?" }),
   );
   byId("views").dataset.mode = "split";
@@ -277,14 +373,19 @@ async function begin() {
   help(byId("help"));
   follow(first, second);
   follow(second, first);
-  above.addEventListener("cut", ({ detail }) => change(state.kind === "vertical" ? detail : unframed({ ...state, kind: "vertical", ...detail })));
+  above.addEventListener("cut", ({ detail }) =>
+    change(
+      state.kind === "vertical" ? detail : unframed({ ...state, kind: "vertical", ...detail }),
+    ),
+  );
   dark.addEventListener("change", load);
   try {
     const [project] = await Promise.all([readProject(id), reload()]);
     document.querySelector("page-head").name = project.name;
     document.title = `Slices · ${project.name} · recon4`;
     if (!state.given) state = { ...state, ...start("horizontal"), given: true };
-    if (state.u !== null && state.v !== null && state.m !== null) first.frame = { u: state.u, v: state.v, m: state.m };
+    if (state.u !== null && state.v !== null && state.m !== null)
+      first.frame = { u: state.u, v: state.v, m: state.m };
     change({});
     above.show(aboveUrl(id, facts.key), await readAboveWindow(id));
   } catch (error) {

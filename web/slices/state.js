@@ -2,7 +2,15 @@
 
 const NUMBERS = { z: 1.5, t: 0.1, step: 0.1, count: 1, spacing: 0.5 };
 const LISTS = { a: [0, 0], b: [1, 0], o: [0, 0, 0], n: [0, 0, 1] };
-const WORDS = { kind: "horizontal", color: "height", ref: "", method: "plane", beside: "", besideColor: "", source: "" };
+const WORDS = {
+  kind: "horizontal",
+  color: "height",
+  ref: "",
+  method: "plane",
+  beside: "",
+  besideColor: "",
+  source: "",
+};
 const MAYBE = ["lo", "hi", "u", "v", "m"];
 
 export const COLORS = {
@@ -17,7 +25,8 @@ export const COLORS = {
 /** State out of the query of an address; what makes no sense is left at its usual value. */
 export function parse(query) {
   const given = new URLSearchParams(query);
-  const number = (text, usual) => (text !== null && text !== "" && Number.isFinite(Number(text)) ? Number(text) : usual);
+  const number = (text, usual) =>
+    text !== null && text !== "" && Number.isFinite(Number(text)) ? Number(text) : usual;
   const state = {};
   for (const [key, usual] of Object.entries(NUMBERS)) state[key] = number(given.get(key), usual);
   for (const key of MAYBE) state[key] = number(given.get(key), null);
@@ -40,9 +49,13 @@ export function format(state) {
   const query = new URLSearchParams({ kind: state.kind });
   const used = { horizontal: ["z"], vertical: ["a", "b"], free: ["o", "n"] }[state.kind];
   for (const key of used) query.set(key, [state[key]].flat().map(short).join(","));
-  for (const [key, usual] of Object.entries(NUMBERS)) if (key !== "z" && state[key] !== usual) query.set(key, short(state[key]));
-  for (const key of MAYBE) if (state[key] !== null) query.set(key, key === "m" ? String(Number(state[key].toPrecision(5))) : short(state[key]));
-  for (const [key, usual] of Object.entries(WORDS)) if (key !== "kind" && state[key] !== usual) query.set(key, state[key]);
+  for (const [key, usual] of Object.entries(NUMBERS))
+    if (key !== "z" && state[key] !== usual) query.set(key, short(state[key]));
+  for (const key of MAYBE)
+    if (state[key] !== null)
+      query.set(key, key === "m" ? String(Number(state[key].toPrecision(5))) : short(state[key]));
+  for (const [key, usual] of Object.entries(WORDS))
+    if (key !== "kind" && state[key] !== usual) query.set(key, state[key]);
   return query.toString().replaceAll("%2C", ",").replaceAll("%3A", ":");
 }
 
@@ -50,7 +63,8 @@ export function format(state) {
 export function cutOf(state) {
   const thickness_m = state.t;
   if (state.kind === "horizontal") return { kind: state.kind, z_m: state.z, thickness_m };
-  if (state.kind === "vertical") return { kind: state.kind, a_m: state.a, b_m: state.b, thickness_m };
+  if (state.kind === "vertical")
+    return { kind: state.kind, a_m: state.a, b_m: state.b, thickness_m };
   return { kind: state.kind, origin_m: state.o, normal: state.n, thickness_m };
 }
 
@@ -69,7 +83,11 @@ export function normalOf(state) {
 /** How far a point lies from the plane of the cut [m]. */
 export function distanceFrom(state, p) {
   const n = normalOf(state);
-  const on = { horizontal: () => [0, 0, state.z], vertical: () => [...state.a, 0], free: () => state.o }[state.kind]();
+  const on = {
+    horizontal: () => [0, 0, state.z],
+    vertical: () => [...state.a, 0],
+    free: () => state.o,
+  }[state.kind]();
   return Math.abs(p.reduce((sum, x, k) => sum + (x - on[k]) * n[k], 0));
 }
 
@@ -94,7 +112,10 @@ export function roundStep(least) {
 /** Azimuth (clockwise from y) and steepness (0 = level plane) of a normal, in degrees. */
 export function anglesOf([x, y, z]) {
   const flat = Math.hypot(x, y);
-  return { azimuth: (Math.round((Math.atan2(x, y) * 1800) / Math.PI) / 10 + 360) % 360, tilt: Math.round((Math.atan2(flat, z) * 1800) / Math.PI) / 10 };
+  return {
+    azimuth: (Math.round((Math.atan2(x, y) * 1800) / Math.PI) / 10 + 360) % 360,
+    tilt: Math.round((Math.atan2(flat, z) * 1800) / Math.PI) / 10,
+  };
 }
 
 export function normalFrom({ azimuth, tilt }) {

@@ -59,7 +59,10 @@ class SliceView extends HTMLElement {
   get wanted() {
     const { width, height } = this.#size();
     const ratio = Math.min(2, devicePixelRatio || 1);
-    const ask = { width: Math.max(16, Math.round(width * ratio)), height: Math.max(16, Math.round(height * ratio)) };
+    const ask = {
+      width: Math.max(16, Math.round(width * ratio)),
+      height: Math.max(16, Math.round(height * ratio)),
+    };
     if (!this.#center) return ask;
     const [u, v] = this.#center;
     const [du, dv] = [(width * this.#metersPerPx) / 2, (height * this.#metersPerPx) / 2];
@@ -81,7 +84,10 @@ class SliceView extends HTMLElement {
   /** All of a window between the edges with the coordinates. */
   #fit(window) {
     const { width, height } = this.#size();
-    const m = Math.max((window.right - window.left) / (width - EDGE.left), (window.top - window.bottom) / (height - EDGE.bottom));
+    const m = Math.max(
+      (window.right - window.left) / (width - EDGE.left),
+      (window.top - window.bottom) / (height - EDGE.bottom),
+    );
     const [u, v] = [(window.left + window.right) / 2, (window.bottom + window.top) / 2];
     this.#center = [u - (m * EDGE.left) / 2, v - (m * EDGE.bottom) / 2];
     this.#metersPerPx = m;
@@ -106,12 +112,18 @@ class SliceView extends HTMLElement {
 
   #toPx([u, v]) {
     const { width, height } = this.#size();
-    return [width / 2 + (u - this.#center[0]) / this.#metersPerPx, height / 2 - (v - this.#center[1]) / this.#metersPerPx];
+    return [
+      width / 2 + (u - this.#center[0]) / this.#metersPerPx,
+      height / 2 - (v - this.#center[1]) / this.#metersPerPx,
+    ];
   }
 
   #toPlane([x, y]) {
     const { width, height } = this.#size();
-    return [this.#center[0] + (x - width / 2) * this.#metersPerPx, this.#center[1] - (y - height / 2) * this.#metersPerPx];
+    return [
+      this.#center[0] + (x - width / 2) * this.#metersPerPx,
+      this.#center[1] - (y - height / 2) * this.#metersPerPx,
+    ];
   }
 
   draw() {
@@ -210,13 +222,20 @@ class SliceView extends HTMLElement {
     pen.fillRect(x + px / 2, y + 1, px / 2 - 1, 2);
     pen.fillStyle = color("--ink");
     pen.textAlign = "center";
-    pen.fillText(length >= 1 ? `${length} m` : `${Number((length * 100).toPrecision(2))} cm`, x + px / 2, y - 9);
+    pen.fillText(
+      length >= 1 ? `${length} m` : `${Number((length * 100).toPrecision(2))} cm`,
+      x + px / 2,
+      y - 9,
+    );
   }
 
   #mark(pen, { points, words, tone }, color) {
     if (!points.length) return;
     const places = points.map((point) => this.#toPx(point));
-    for (const [stroke, width] of [[color("--paper"), 5], [color(tone ?? "--mark"), 2]]) {
+    for (const [stroke, width] of [
+      [color("--paper"), 5],
+      [color(tone ?? "--mark"), 2],
+    ]) {
       pen.strokeStyle = stroke;
       pen.lineWidth = width;
       pen.beginPath();
@@ -257,7 +276,9 @@ class SliceView extends HTMLElement {
     const place = this.#place(event);
     if (this.#center && event.pointerType === "mouse") {
       const digits = this.#metersPerPx < 0.005 ? 3 : 2;
-      this.#hover.value = this.#toPlane(place).map((x, k) => `${["u", "v"][k]} ${x.toFixed(digits)}`).join("  ");
+      this.#hover.value = this.#toPlane(place)
+        .map((x, k) => `${["u", "v"][k]} ${x.toFixed(digits)}`)
+        .join("  ");
     }
     const before = this.#pointers.get(event.pointerId);
     if (!before || !this.#center) return;
@@ -297,17 +318,27 @@ class SliceView extends HTMLElement {
   }
 
   #key(event) {
-    const shifts = { ArrowLeft: [80, 0], ArrowRight: [-80, 0], ArrowUp: [0, 80], ArrowDown: [0, -80] };
+    const shifts = {
+      ArrowLeft: [80, 0],
+      ArrowRight: [-80, 0],
+      ArrowUp: [0, 80],
+      ArrowDown: [0, -80],
+    };
     if (event.key in shifts) this.#shift(...shifts[event.key]);
     else if (event.key === "Enter" && this.#center) {
       const [u, v] = this.#center;
-      this.dispatchEvent(new CustomEvent("place", { detail: { u, v, reach: 16 * this.#metersPerPx } }));
+      this.dispatchEvent(
+        new CustomEvent("place", { detail: { u, v, reach: 16 * this.#metersPerPx } }),
+      );
     } else return;
     event.preventDefault();
   }
 
   #shift(dx, dy) {
-    this.#center = [this.#center[0] - dx * this.#metersPerPx, this.#center[1] + dy * this.#metersPerPx];
+    this.#center = [
+      this.#center[0] - dx * this.#metersPerPx,
+      this.#center[1] + dy * this.#metersPerPx,
+    ];
     this.#changed();
   }
 
