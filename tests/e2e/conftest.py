@@ -100,16 +100,16 @@ def pages() -> str:
 
 @pytest.fixture
 def picture(look):
-    """Keeps a screenshot when ``RECON4_PICTURES=1``.
+    """Keeps a screenshot when ``RECON4_SCREENSHOTS=1``.
 
-    Those that a page of the documentation shows lie beside it, the others in ``out/pictures``.
+    Those that a page of the documentation shows lie beside it, the others in ``out/screenshots``.
     """
 
     def keep(page: Page, name: str) -> None:
-        if os.environ.get("RECON4_PICTURES") == "1":
+        if os.environ.get("RECON4_SCREENSHOTS") == "1":
             screen, scheme = look
             file = f"{name}-{screen}-{scheme}.png"
-            folder = ROOT / ("docs" if file in pages() else "out") / "pictures"
+            folder = ROOT / ("docs/images" if file in pages() else "out/screenshots")
             page.evaluate(SHORTEN_PATHS)
             page.screenshot(path=folder / file, full_page=screen == "phone")
             page.evaluate("() => shortened.forEach(([field, path]) => (field.value = path))")

@@ -28,8 +28,8 @@ from tests.service.cuttable import cuttable
 from tests.service.running import server_thread
 
 pytestmark = pytest.mark.e2e
-PICTURES = os.environ.get("RECON4_PICTURES") == "1"
-SECONDS = 40.0 if PICTURES else 16.0
+SCREENSHOTS = os.environ.get("RECON4_SCREENSHOTS") == "1"
+SECONDS = 40.0 if SCREENSHOTS else 16.0
 LONG = os.environ.get("RECON4_LONG") == "1"
 """Whether to make the whole map twice, not only its frames: minutes."""
 NEAR_M = 1.0
@@ -148,7 +148,7 @@ def test_a_walk_is_seen_from_its_start_to_its_map(server, link, walk, page, pict
         page.get_by_role("button", name="Follow").click()
         fits_both_ways(page)
         sensors_are_told(page)
-        if PICTURES:
+        if SCREENSHOTS:
             wait_for_points(page, 40_000)
         picture(page, "live")
         mark(page, "crack in the wall")
