@@ -37,10 +37,21 @@ def look(request) -> tuple[str, str]:
     return screen, scheme
 
 
-def only(look: tuple[str, str], *wanted: str) -> None:
-    """Skip what looks the same on the other screens; ``only(look, "desktop light")``."""
-    if look not in [tuple(one.split()) for one in wanted]:
-        pytest.skip("once is enough")
+looks = pytest.mark.looks
+"""Only on these screens, where a test sees the same on the others; ``@looks("desktop light")``."""
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out the looks a test does not ask for before anything is set up for them."""
+    left_out = [item for item in items if not _asked_for(item)]
+    if left_out:
+        config.hook.pytest_deselected(items=left_out)
+        items[:] = [item for item in items if _asked_for(item)]
+
+
+def _asked_for(item: pytest.Item) -> bool:
+    mark, call = item.get_closest_marker("looks"), getattr(item, "callspec", None)
+    return mark is None or call is None or call.params["look"] in mark.args
 
 
 @pytest.fixture

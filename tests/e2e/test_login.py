@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.e2e.conftest import EXPECTED_NOISE, SCREENS, only
+from tests.e2e.conftest import EXPECTED_NOISE, SCREENS, looks
 from tests.project_builder import build_project
 from tests.service.running import server_thread
 from tests.service.secure import PASSWORD, Secure, secure_server
@@ -99,8 +99,8 @@ def test_signing_out_leads_to_the_login_and_nothing_is_left(server, page):
     )
 
 
-def test_a_hostile_link_to_the_login_does_not_lead_away(server, page, look):
-    only(look, "desktop dark")
+@looks("desktop dark")
+def test_a_hostile_link_to_the_login_does_not_lead_away(server, page):
     page.goto(f"{server.url}/login#next=//evil.example/x")
     page.get_by_label("Name").fill("vera")
     page.get_by_label("Password", exact=True).fill(PASSWORD)
@@ -109,16 +109,16 @@ def test_a_hostile_link_to_the_login_does_not_lead_away(server, page, look):
     page.wait_for_url(f"{server.url}/")
 
 
-def test_no_script_reads_the_session(server, page, look):
-    only(look, "desktop dark")
+@looks("desktop dark")
+def test_no_script_reads_the_session(server, page):
     sign_in(page, server, "vera")
 
     assert page.evaluate("document.cookie") == ""
     assert page.evaluate("JSON.stringify([localStorage, sessionStorage])") == "[{},{}]"
 
 
-def test_the_viewer_works_behind_the_login(server, page, look):
-    only(look, "desktop dark")
+@looks("desktop dark")
+def test_the_viewer_works_behind_the_login(server, page):
     sign_in(page, server, "vera", "/projects/office/")
 
     viewer = page.frame_locator("iframe")

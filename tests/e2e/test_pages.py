@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import expect
 
-from tests.e2e.conftest import only
+from tests.e2e.conftest import looks
 from tests.project_builder import build_project
 from tests.service.cuttable import cuttable
 from tests.service.running import SLOW, open_gate, recording_with_gate, server_thread
@@ -99,8 +99,8 @@ def test_real_projects_look_as_they_should(real, page, picture):
     picture(page, "project")
 
 
-def test_layers_and_colors_follow_the_panel(finished, page, look):
-    only(look, "desktop dark")
+@looks("desktop dark")
+def test_layers_and_colors_follow_the_panel(finished, page):
     page.goto(f"{finished.url}/projects/office/")
     viewer = page.frame_locator("iframe")
     legend = viewer.get_by_text("Rejected, verification median > limit (2)").first
@@ -113,8 +113,8 @@ def test_layers_and_colors_follow_the_panel(finished, page, look):
     expect(viewer.get_by_text("Points by height")).to_be_visible()
 
 
-def test_a_download_and_the_report_open(finished, page, look):
-    only(look, "desktop light")
+@looks("desktop light")
+def test_a_download_and_the_report_open(finished, page):
     page.goto(f"{finished.url}/projects/office/")
 
     with page.expect_download() as download:
@@ -161,8 +161,8 @@ def test_a_job_is_started_watched_cancelled_and_resumed(server, page, tmp_path, 
     expect(page.locator("job-log pre")).to_contain_text("succeeded")
 
 
-def test_a_page_that_was_cut_off_learns_how_its_job_ended(server, context, tmp_path, look):
-    only(look, "desktop light")
+@looks("desktop light")
+def test_a_page_that_was_cut_off_learns_how_its_job_ended(server, context, tmp_path):
     page = context.new_page()  # its browser complains of the cut
     recording = recording_with_gate(tmp_path / "walk")
     job = server.start("office", recording)
@@ -193,8 +193,8 @@ def test_a_refusal_is_shown_in_words(server, page, look):
     expect(page.get_by_role("alert").filter(has_text="recordings may only lie in")).to_be_visible()
 
 
-def test_the_keyboard_is_enough_to_start_a_job(server, page, tmp_path, look):
-    only(look, "desktop light")
+@looks("desktop light")
+def test_the_keyboard_is_enough_to_start_a_job(server, page, tmp_path):
     (tmp_path / "empty.pcap").write_bytes(b"")
     build_project(server.root / "empty", with_map=False)
     page.goto(server.url)
@@ -211,8 +211,8 @@ def test_the_keyboard_is_enough_to_start_a_job(server, page, tmp_path, look):
     expect(page.locator("job-status")).to_contain_text("empty.pcap holds no points")
 
 
-def test_a_hostile_link_to_the_viewer_stays_with_our_server(finished, page, look):
-    only(look, "desktop light")
+@looks("desktop light")
+def test_a_hostile_link_to_the_viewer_stays_with_our_server(finished, page):
     page.goto(f"{finished.url}/projects/office/viewer/?websocket=ws://127.0.0.1:9")
 
     expect(page.get_by_text("Connected", exact=True)).to_be_visible()

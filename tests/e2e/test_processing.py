@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import expect
 
-from tests.e2e.conftest import only
+from tests.e2e.conftest import looks
 from tests.e2e.test_pages import fits
 from tests.service.running import SLOW, open_gate, recording_with_gate, server_thread
 
@@ -20,11 +20,6 @@ def server(tmp_path):
     (tmp_path / "server").mkdir()
     with server_thread(tmp_path / "server", worker=SLOW) as running:
         yield running
-
-
-@pytest.fixture
-def once(look):
-    only(look, "desktop light")
 
 
 @pytest.fixture
@@ -64,7 +59,8 @@ def test_a_recording_is_uploaded_looked_into_and_suits_the_form(server, page, ca
     expect(field).to_be_focused()
 
 
-def test_an_upload_goes_on_after_the_page_was_closed(server, page, tmp_path, once):
+@looks("desktop light")
+def test_an_upload_goes_on_after_the_page_was_closed(server, page, tmp_path):
     data = random.Random(3).randbytes(40_000_000)
     walk = tmp_path / "walk.bag"
     walk.write_bytes(data)
@@ -93,7 +89,8 @@ def test_an_upload_goes_on_after_the_page_was_closed(server, page, tmp_path, onc
     assert len(server.get("/api/uploads").json()) == 1
 
 
-def test_an_upload_is_paused_continued_and_removed(server, page, tmp_path, once):
+@looks("desktop light")
+def test_an_upload_is_paused_continued_and_removed(server, page, tmp_path):
     (tmp_path / "walk.bag").write_bytes(bytes(100_000_000))
     page.route(
         "**/api/uploads/files/**", lambda route: (page.wait_for_timeout(300), route.continue_())
@@ -114,7 +111,8 @@ def test_an_upload_is_paused_continued_and_removed(server, page, tmp_path, once)
     page.unroute_all(behavior="ignoreErrors")  # a piece may still be held up
 
 
-def test_a_folder_is_uploaded_with_its_names(server, page, tmp_path, once):
+@looks("desktop light")
+def test_a_folder_is_uploaded_with_its_names(server, page, tmp_path):
     walk = tmp_path / "KITTI walk"
     (walk / "clouds").mkdir(parents=True)
     for n in range(12):
@@ -130,7 +128,8 @@ def test_a_folder_is_uploaded_with_its_names(server, page, tmp_path, once):
     assert (folder / "clouds" / "000011.bin").stat().st_size == 176
 
 
-def test_a_dropped_file_is_taken(server, page, once):
+@looks("desktop light")
+def test_a_dropped_file_is_taken(server, page):
     page.goto(server.url)
     transfer = page.evaluate_handle(
         """() => { const one = new DataTransfer();
@@ -143,7 +142,8 @@ def test_a_dropped_file_is_taken(server, page, once):
     expect(page.locator("recording-look")).to_contain_text("no reader recognizes it")
 
 
-def test_a_project_is_run_again_as_a_clone_renamed_deleted_and_brought_back(server, page, once):
+@looks("desktop light")
+def test_a_project_is_run_again_as_a_clone_renamed_deleted_and_brought_back(server, page):
     recording = recording_with_gate(server.root / "walk")
     job = server.start("office", recording)
     gate = open_gate(recording)

@@ -8,7 +8,7 @@ from playwright.sync_api import expect
 
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append, broken, read_rows
-from tests.e2e.conftest import only
+from tests.e2e.conftest import looks
 from tests.review_project import make
 from tests.service.running import server_thread
 
@@ -124,8 +124,8 @@ def decidable(page):
     expect(page.locator("#decision").get_by_role("button", name="Reject")).to_be_enabled()
 
 
-def test_forty_loops_are_reviewed_without_the_mouse(opened, root, look):
-    only(look, "desktop light")
+@looks("desktop light")
+def test_forty_loops_are_reviewed_without_the_mouse(opened, root):
     page = opened
 
     page.get_by_label("Go on to the next pair after a decision").check()
@@ -149,10 +149,10 @@ def test_forty_loops_are_reviewed_without_the_mouse(opened, root, look):
     expect(page.locator("review-queue")).to_contain_text("38 decided by people")
 
 
+@looks("desktop light")
 @pytest.mark.parametrize("onwards", [False, True], ids=["stay", "go on"])
 @pytest.mark.parametrize("key", ["a", "r"])
-def test_a_key_held_down_decides_about_one_pair(opened, root, look, key, onwards):
-    only(look, "desktop light")
+def test_a_key_held_down_decides_about_one_pair(opened, root, key, onwards):
     page = opened
     if onwards:
         page.get_by_label("Go on to the next pair after a decision").check()
@@ -166,11 +166,9 @@ def test_a_key_held_down_decides_about_one_pair(opened, root, look, key, onwards
     only_one_decision(page, root, key)
 
 
+@looks("desktop light")
 @pytest.mark.parametrize("key", ["a", "r"])
-def test_a_key_that_a_remote_desktop_repeats_as_presses_decides_about_one_pair(
-    opened, root, look, key
-):
-    only(look, "desktop light")
+def test_a_key_that_a_remote_desktop_repeats_as_presses_decides_about_one_pair(opened, root, key):
     page = opened
     page.get_by_label("Go on to the next pair after a decision").check()
     page.keyboard.press("j")
@@ -181,8 +179,8 @@ def test_a_key_that_a_remote_desktop_repeats_as_presses_decides_about_one_pair(
     only_one_decision(page, root, key)
 
 
-def test_a_double_click_decides_about_one_pair(opened, root, look):
-    only(look, "desktop light")
+@looks("desktop light")
+def test_a_double_click_decides_about_one_pair(opened, root):
     page = opened
     page.get_by_label("Go on to the next pair after a decision").check()
     page.keyboard.press("j")
@@ -195,8 +193,8 @@ def test_a_double_click_decides_about_one_pair(opened, root, look):
     only_one_decision(page, root, "a")
 
 
-def test_a_focused_button_held_down_decides_about_one_pair(opened, root, look):
-    only(look, "desktop light")
+@looks("desktop light")
+def test_a_focused_button_held_down_decides_about_one_pair(opened, root):
     page = opened
     page.get_by_label("Go on to the next pair after a decision").check()
     page.keyboard.press("j")
@@ -210,8 +208,8 @@ def test_a_focused_button_held_down_decides_about_one_pair(opened, root, look):
     only_one_decision(page, root, "a")
 
 
-def test_nothing_is_decided_before_the_points_are_drawn(opened, root, look):
-    only(look, "desktop light")
+@looks("desktop light")
+def test_nothing_is_decided_before_the_points_are_drawn(opened, root):
     page = opened
     held = []
     page.route("**/review/points?**", lambda route: held.append(route), times=1)
@@ -231,8 +229,8 @@ def test_nothing_is_decided_before_the_points_are_drawn(opened, root, look):
     expect(page.locator("review-queue")).to_contain_text("1 decided by people")
 
 
-def test_after_a_decision_keys_rest_until_another_pair_is_drawn(opened, root, look):
-    only(look, "desktop light")
+@looks("desktop light")
+def test_after_a_decision_keys_rest_until_another_pair_is_drawn(opened, root):
     page = opened
     page.keyboard.press("j")
     decidable(page)
@@ -253,8 +251,8 @@ def test_after_a_decision_keys_rest_until_another_pair_is_drawn(opened, root, lo
     assert rows[2].frame_i != rows[3].frame_i or rows[2].frame_j != rows[3].frame_j
 
 
-def test_going_on_after_a_decision_is_off_at_first_and_remembered(opened, look):
-    only(look, "desktop light")
+@looks("desktop light")
+def test_going_on_after_a_decision_is_off_at_first_and_remembered(opened):
     page = opened
     onwards = page.get_by_label("Go on to the next pair after a decision")
     expect(onwards).not_to_be_checked()
@@ -285,8 +283,8 @@ def test_the_page_says_what_a_decision_does(opened, look, picture):
     picture(page, "review-effect")
 
 
-def test_views_and_comparison_show_other_pictures(opened, look):
-    only(look, "desktop dark", "phone light")
+@looks("desktop dark", "phone light")
+def test_views_and_comparison_show_other_pictures(opened):
     page = opened
     page.keyboard.press("j")
     settled(page)
@@ -304,8 +302,8 @@ def test_views_and_comparison_show_other_pictures(opened, look):
     expect(page.locator(".view-words")).to_contain_text("at 0.20 m")
 
 
-def test_a_wrong_loop_is_laid_right_by_keys_and_becomes_an_edge(opened, root, look, picture):
-    only(look, "desktop dark")
+@looks("desktop dark")
+def test_a_wrong_loop_is_laid_right_by_keys_and_becomes_an_edge(opened, root, picture):
     page = opened
     page.keyboard.press("j")
     settled(page)
@@ -333,8 +331,8 @@ def test_a_wrong_loop_is_laid_right_by_keys_and_becomes_an_edge(opened, root, lo
     expect(page.locator("#effect .bad")).to_have_count(0)
 
 
-def test_a_place_is_dragged_turned_and_dropped_again(opened, look):
-    only(look, "desktop light")
+@looks("desktop light")
+def test_a_place_is_dragged_turned_and_dropped_again(opened):
     page = opened
     page.keyboard.press("j")
     settled(page)
@@ -365,8 +363,8 @@ def test_a_place_is_dragged_turned_and_dropped_again(opened, look):
     assert page.evaluate("document.querySelector('pair-view').pose") == pytest.approx(before)
 
 
-def test_three_picked_pairs_lay_the_second_place(opened, look):
-    only(look, "desktop light")
+@looks("desktop light")
+def test_three_picked_pairs_lay_the_second_place(opened):
     page = opened
     page.keyboard.press("j")
     settled(page)
@@ -383,8 +381,8 @@ def test_three_picked_pairs_lay_the_second_place(opened, look):
     expect(page.locator("#said")).to_have_text("Moved by hand. Enter refines from here")
 
 
-def test_a_loop_is_added_between_two_moments(opened, root, look, picture):
-    only(look, "desktop dark", "phone light")
+@looks("desktop dark", "phone light")
+def test_a_loop_is_added_between_two_moments(opened, root, picture):
     page = opened
 
     page.get_by_role("button", name="Add loop").click()
@@ -405,8 +403,8 @@ def test_a_loop_is_added_between_two_moments(opened, root, look, picture):
     assert (row.kind, row.frame_i, row.frame_j) == ("add", 31, 62)
 
 
-def test_the_help_sheet_lists_the_keys(opened, look, picture):
-    only(look, "desktop light")
+@looks("desktop light")
+def test_the_help_sheet_lists_the_keys(opened, picture):
     opened.keyboard.press("?")
 
     expect(opened.get_by_role("dialog")).to_contain_text("Undo")
@@ -415,8 +413,8 @@ def test_the_help_sheet_lists_the_keys(opened, look, picture):
     expect(opened.get_by_role("dialog")).to_have_count(0)
 
 
-def test_what_others_decide_is_seen_without_a_click(opened, root, look):
-    only(look, "phone dark")
+@looks("phone dark")
+def test_what_others_decide_is_seen_without_a_click(opened, root):
     page = opened
 
     append(root, Decision(kind=DecisionKind.REJECT, who="Eva", why="glass", pair=(17, 77)))
@@ -428,8 +426,8 @@ def test_what_others_decide_is_seen_without_a_click(opened, root, look):
     expect(page.locator("#news")).to_be_empty()
 
 
-def test_decide_make_a_new_map_approve_export(opened, root, look, picture):
-    only(look, "desktop dark")
+@looks("desktop dark")
+def test_decide_make_a_new_map_approve_export(opened, root, picture):
     page = opened
     page.keyboard.press("j")
     settled(page)

@@ -5,7 +5,7 @@ import re
 import pytest
 from playwright.sync_api import expect
 
-from tests.e2e.conftest import only
+from tests.e2e.conftest import looks
 from tests.e2e.test_pages import fits
 from tests.project_builder import build_project
 from tests.service.running import server_thread
@@ -123,8 +123,8 @@ def test_two_slices_stand_side_by_side_and_move_together(server, page, picture):
     assert frames[0] == frames[1]
 
 
-def test_no_double_wall_is_found_where_there_is_none(server, page, look):
-    only(look, "desktop light", "phone dark")
+@looks("desktop light", "phone dark")
+def test_no_double_wall_is_found_where_there_is_none(server, page):
     opened(page, server)
 
     page.get_by_text("Double walls", exact=True).click()
@@ -133,8 +133,8 @@ def test_no_double_wall_is_found_where_there_is_none(server, page, look):
     expect(page.locator(".verdict")).to_contain_text(re.compile("No double wall|Not checked"))
 
 
-def test_what_is_found_is_found_in_the_map_that_is_shown(server, page, look):
-    only(look, "desktop light")
+@looks("desktop light")
+def test_what_is_found_is_found_in_the_map_that_is_shown(server, page):
     (server.root / "wall.xyz").write_text("\n".join(f"0 {y / 20} 1.5" for y in range(200)))
     opened(page, server, "?source=project:earlier&kind=horizontal&z=1.5")
     expect(page.locator(".caption").first).to_contain_text("Project earlier")
@@ -199,8 +199,8 @@ def test_a_reference_is_uploaded_and_shown(server, page):
     expect(page.get_by_role("button", name="Remove")).to_have_count(0)
 
 
-def test_an_uploaded_reference_that_is_none_is_refused_in_words(server, page, look):
-    only(look, "desktop dark", "phone light")
+@looks("desktop dark", "phone light")
+def test_an_uploaded_reference_that_is_none_is_refused_in_words(server, page):
     opened(page, server)
 
     page.get_by_text("Compare with a reference").click()
@@ -264,8 +264,8 @@ def test_a_survey_is_imported_judged_and_taken_away(server, page, picture):
     expect(sheet.value.get_by_text("does not keep the limits at 3 check points")).to_be_visible()
 
 
-def test_two_tabs_judge_control_points_and_neither_undoes_the_other(server, page, look):
-    only(look, "desktop dark")
+@looks("desktop dark")
+def test_two_tabs_judge_control_points_and_neither_undoes_the_other(server, page):
     opened(page, server, "?kind=horizontal&z=1.5")
     other = page.context.new_page()  # its browser complains of the 409
     data = b"ID;X;Y;Z\nA;0,02;5;1,5\nB;16,01;4;1,2\n"
@@ -287,8 +287,8 @@ def test_two_tabs_judge_control_points_and_neither_undoes_the_other(server, page
     other.close()
 
 
-def test_a_sheet_is_downloaded(server, page, look):
-    only(look, "desktop light", "phone dark")
+@looks("desktop light", "phone dark")
+def test_a_sheet_is_downloaded(server, page):
     opened(page, server, "?kind=horizontal&z=1.5")
 
     page.get_by_text("Export", exact=True).click()

@@ -13,7 +13,7 @@ from app.viewer.client.show import start_m
 from app.viewer.cloud.parts import Cloud
 from app.viewer.scene.build import Content, bounds
 from recon4.model.pose_graph import Reason
-from tests.e2e.conftest import only
+from tests.e2e.conftest import looks
 from tests.processes import command_of
 from tests.project_builder import add_multiframes, build_project, loop_walk, verified_graph
 from tests.service.running import server_thread
@@ -86,8 +86,8 @@ def test_a_click_or_tap_on_a_rejected_edge_says_why_and_leads_to_its_review(
     picture(viewer, "viewer-edge")
 
 
-def test_keys_toggle_the_intensity_and_measure_the_room(finished, viewer, look, picture):
-    only(look, "desktop dark")
+@looks("desktop dark")
+def test_keys_toggle_the_intensity_and_measure_the_room(finished, viewer, picture):
     viewer.keyboard.press("n")
     expect(viewer.get_by_text("Points by raw intensity")).to_be_visible()
 
@@ -104,8 +104,8 @@ def test_keys_toggle_the_intensity_and_measure_the_room(finished, viewer, look, 
     picture(viewer, "viewer-measure")
 
 
-def test_the_scrubber_shows_single_multiframes(viewer, look, picture):
-    only(look, "desktop light")
+@looks("desktop light")
+def test_the_scrubber_shows_single_multiframes(viewer, picture):
     viewer.get_by_role("combobox", name="Show").click()
     viewer.get_by_role("option", name="map and multiframe").click()
     expect(viewer.get_by_text("Multiframe 0 of 599, at 0.0 s")).to_be_visible()
@@ -117,8 +117,8 @@ def test_the_scrubber_shows_single_multiframes(viewer, look, picture):
     picture(viewer, "viewer-multiframe")
 
 
-def test_a_viewer_that_is_killed_comes_back_with_camera_and_colors(finished, viewer, look):
-    only(look, "desktop dark")
+@looks("desktop dark")
+def test_a_viewer_that_is_killed_comes_back_with_camera_and_colors(finished, viewer):
     viewer.keyboard.press("n")
     expect(viewer.get_by_text("Points by raw intensity")).to_be_visible()
     viewer.keyboard.press("7")
