@@ -71,7 +71,7 @@ async def read_facts(
         "approval": await run_in_threadpool(slices.approval_words, project_id, source),
     }
     terms = slices.terms(project_id, caller.name, source)
-    return await caller.wait(slices.draw(terms, work.facts, artifacts, context))
+    return await caller.wait(slices.run_interactive(terms, work.facts, artifacts, context))
 
 
 @router.post("/image", summary="An image of a slice")
@@ -90,7 +90,9 @@ async def slice_image(
     terms = slices.terms(project_id, caller.name, ask.source)
     asking = Asking(ask.page, ask.turn)
     return await caller.wait(
-        slices.newest(asking, terms, work.slice_image, artifacts["map"], reference, ask, evidence)
+        slices.run_latest(
+            asking, terms, work.slice_image, artifacts["map"], reference, ask, evidence
+        )
     )
 
 
@@ -119,7 +121,7 @@ async def pick(project_id: str, ask: PickRequest, server: Server, caller: Called
     terms = server.slices.terms(project_id, caller.name, ask.source)
     cut = ask.cut.cut()
     return await caller.wait(
-        server.slices.draw(terms, work.pick_point, artifacts, cut, ask.uv, ask.radius_m)
+        server.slices.run_interactive(terms, work.pick_point, artifacts, cut, ask.uv, ask.radius_m)
     )
 
 
@@ -134,7 +136,7 @@ async def doubles(
     path = await caller.wait(
         server.slices.kept(
             f"{Path(folder).name}-surfaces.json",
-            lambda out: server.slices.survey(
+            lambda out: server.slices.run_background(
                 replace(terms, outputs={SURFACES: out}), work.double_walls, folder, SURFACES
             ),
         )
@@ -151,7 +153,7 @@ async def compare(
     reference = server.slices.reference(project_id, ask.reference)
     terms = server.slices.terms(project_id, caller.name, ask.source)
     return await caller.wait(
-        server.slices.survey(terms, work.comparison, artifacts["map"], reference, ask)
+        server.slices.run_background(terms, work.comparison, artifacts["map"], reference, ask)
     )
 
 
@@ -267,7 +269,7 @@ async def preview_control(
         raise BadRequest("the file must be sent as base64") from error
     terms = Terms(person=caller.name)
     return await caller.wait(
-        server.slices.survey(terms, work.preview_control, data, file.name, file.order)
+        server.slices.run_background(terms, work.preview_control, data, file.name, file.order)
     )
 
 
@@ -289,7 +291,9 @@ async def control_report(project_id: str, server: Server, caller: CalledBy) -> d
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     state = await run_in_threadpool(server.slices.control, project_id)
     terms = server.slices.terms(project_id, caller.name)
-    return await caller.wait(server.slices.draw(terms, work.control_report, artifacts, state))
+    return await caller.wait(
+        server.slices.run_interactive(terms, work.control_report, artifacts, state)
+    )
 
 
 @router.get("/control/report.{ending}", summary="Residuals as a file")
@@ -306,7 +310,7 @@ async def control_file(
     }
     terms = slices.terms(project_id, caller.name)
     text = await caller.wait(
-        slices.draw(terms, work.control_file, artifacts, state, ending, context)
+        slices.run_interactive(terms, work.control_file, artifacts, state, ending, context)
     )
     if ending == "csv":
         head = {"Content-Disposition": f'attachment; filename="{project_id}-control.csv"'}
@@ -324,7 +328,7 @@ async def surface(project_id: str, point: str, server: Server, caller: CalledBy)
         raise ConfigError(f"no point {point[:64]!r}")
     terms = server.slices.terms(project_id, caller.name)
     return await caller.wait(
-        server.slices.draw(terms, work.surface_at, artifacts, found[0], state.frame)
+        server.slices.run_interactive(terms, work.surface_at, artifacts, found[0], state.frame)
     )
 
 
@@ -338,7 +342,7 @@ async def compare_csv(
     reference = server.slices.reference(project_id, asked.reference)
     terms = server.slices.terms(project_id, caller.name, asked.source)
     text = await caller.wait(
-        server.slices.survey(terms, work.comparison_csv, artifacts["map"], reference, asked)
+        server.slices.run_background(terms, work.comparison_csv, artifacts["map"], reference, asked)
     )
     head = {"Content-Disposition": f'attachment; filename="{project_id}-comparison.csv"'}
     return PlainTextResponse(text, media_type="text/csv; charset=utf-8", headers=head)
@@ -353,7 +357,7 @@ async def _overview(project_id: str, server: Server, caller: Caller, source: str
     async def make(out: Path) -> None:
         # The image comes last: whoever finds it finds its window too.
         made = replace(terms, outputs={about: out.with_suffix(".json"), image: out})
-        await server.slices.draw(made, work.overview, folder, image, about)
+        await server.slices.run_interactive(made, work.overview, folder, image, about)
 
     return await caller.wait(server.slices.kept(f"{Path(folder).name}-above.png", make))
 

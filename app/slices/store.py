@@ -210,7 +210,7 @@ class Slices:
         root, names = self._projects.folder(project_id), (_name_of(folder),)
         await run_in_threadpool(begin_change, root, names)
         try:
-            return await self.survey(terms, function, *args)
+            return await self.run_background(terms, function, *args)
         finally:
             await run_in_threadpool(end_change, root, names)
 
@@ -275,11 +275,11 @@ class Slices:
         references = self._folder(project_id) / "references"
         return Terms(person=person, access=FileAccess(read=(of_map / "artifacts", references)))
 
-    async def draw(self, terms: Terms, function: Callable[..., T], *args: object) -> T:
+    async def run_interactive(self, terms: Terms, function: Callable[..., T], *args: object) -> T:
         """Compute what a person waits for."""
         return await self._pool.run_interactive(Lane.SLICE, terms, function, *args)
 
-    async def newest(
+    async def run_latest(
         self, asking: Asking, terms: Terms, function: Callable[..., T], *args: object
     ) -> T:
         """The same; of several requests of a page only the latest is answered.
@@ -288,14 +288,14 @@ class Slices:
             Superseded: If the page asked for something newer.
         """
         if not asking.page:
-            return await self.draw(terms, function, *args)
+            return await self.run_interactive(terms, function, *args)
         page = (terms.person, asking.page)
         before = self._newest.get(page)
         if before is not None and before.turn > asking.turn:
             raise Superseded("a newer picture was asked for")
         if before is not None:
             before.work.cancel()
-        work = asyncio.ensure_future(self.draw(terms, function, *args))
+        work = asyncio.ensure_future(self.run_interactive(terms, function, *args))
         self._newest[page] = _Latest(asking.turn, work)
         self._newest.move_to_end(page)
         while len(self._newest) > MOST_PAGES:
@@ -307,7 +307,7 @@ class Slices:
                 raise Superseded("a newer picture was asked for") from None
             raise
 
-    async def survey(
+    async def run_background(
         self, terms: Terms, function: Callable[..., T], *args: object, **kwargs: object
     ) -> T:
         """Compute what may take minutes, or reads a user's file, in a child of its own."""
