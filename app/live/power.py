@@ -11,15 +11,15 @@ from recon4.live.findings import Finding
 
 SUPPLIES = Path("/sys/class/power_supply")
 READ_EVERY_S = 15.0
-LITTLE_S, LITTLE_SHARE = 900.0, 0.15
-VERY_LITTLE_S, VERY_LITTLE_SHARE = 300.0, 0.06
+LITTLE_S, LITTLE_CHARGE = 900.0, 0.15
+VERY_LITTLE_S, VERY_LITTLE_CHARGE = 300.0, 0.06
 
 
 @dataclass(frozen=True, slots=True)
 class Battery:
     """What is left in all batteries of a computer together."""
 
-    match_ratio: float
+    charge: float
     """Of what they hold when full, 0 to 1."""
     left_s: float | None
     """How long it lasts as now [s]; None = not told, or on mains."""
@@ -62,11 +62,11 @@ def battery_words(battery: Battery | None) -> list[Finding]:
     if battery is None or battery.mains:
         return []
     left_s = float("inf") if battery.left_s is None else battery.left_s
-    if left_s >= LITTLE_S and battery.match_ratio >= LITTLE_SHARE:
+    if left_s >= LITTLE_S and battery.charge >= LITTLE_CHARGE:
         return []
-    urgent = left_s < VERY_LITTLE_S or battery.match_ratio < VERY_LITTLE_SHARE
+    urgent = left_s < VERY_LITTLE_S or battery.charge < VERY_LITTLE_CHARGE
     left = f", {left_s / 60:.0f} min" if battery.left_s is not None else ""
-    text = f"The computer's battery has {100 * battery.match_ratio:.0f} %{left} left"
+    text = f"The computer's battery has {100 * battery.charge:.0f} %{left} left"
     return [Finding("bad" if urgent else "care", text)]
 
 

@@ -55,7 +55,7 @@ export function chips({ lidars = [], rates = {}, fix, status, battery }, state, 
   if (battery)
     found.push({
       words: `laptop ${charge(battery)}`,
-      bad: battery.share < LITTLE_CHARGE && !battery.mains,
+      bad: battery.charge < LITTLE_CHARGE && !battery.mains,
     });
   if (phone)
     found.push({
@@ -126,9 +126,9 @@ export const lidarRow = ({ name, per_s: rate, lost, clock: keeps }) => [
   keeps || "–",
 ];
 
-const percent = (share) => `${Math.round(100 * share)} %`;
-const charge = ({ share, left_s: left }) =>
-  `${percent(share)}${left === null ? "" : `, ${duration(left)}`}`;
+const percent = (ratio) => `${Math.round(100 * ratio)} %`;
+const charge = ({ charge: ratio, left_s: left }) =>
+  `${percent(ratio)}${left === null ? "" : `, ${duration(left)}`}`;
 
 function fixWords({ quality, sd_m: sd }) {
   const name = FIXES[quality] ?? "no fix";

@@ -83,24 +83,24 @@ def test_two_batteries_are_one_and_a_mouse_is_none(supplies):
 
     battery = read_battery(folder)
 
-    assert battery == Battery(match_ratio=0.5, left_s=3600.0 * 30 / 20, mains=False)
+    assert battery == Battery(charge=0.5, left_s=3600.0 * 30 / 20, mains=False)
 
 
 def test_a_battery_that_tells_its_share_only_and_one_on_mains(supplies):
     folder, put = supplies
     put("BAT0", type="Battery", status="Charging", capacity=4)
 
-    assert read_battery(folder) == Battery(match_ratio=0.04, left_s=None, mains=True)
+    assert read_battery(folder) == Battery(charge=0.04, left_s=None, mains=True)
     assert battery_words(read_battery(folder)) == []
     assert read_battery(folder / "nothing") is None
 
 
 @pytest.mark.parametrize(
-    ("match_ratio", "left_s", "level"),
+    ("charge", "left_s", "level"),
     [(0.5, 3000.0, None), (0.12, None, "care"), (0.5, 600.0, "care"), (0.05, 2000.0, "bad")],
 )
-def test_a_battery_that_ends_is_said_in_words(match_ratio, left_s, level):
-    said = battery_words(Battery(match_ratio, left_s, mains=False))
+def test_a_battery_that_ends_is_said_in_words(charge, left_s, level):
+    said = battery_words(Battery(charge, left_s, mains=False))
 
     assert [word.level for word in said] == ([level] if level else [])
 
