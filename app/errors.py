@@ -6,7 +6,7 @@
     ├── Conflict             409  not possible in the present state
     │   └── IllegalTransition     a job cannot go from its state to that one
     ├── Unknown              401  nobody is signed in
-    │   ├── WrongPassword         name and password do not fit
+    │   ├── WrongPassword         wrong name or password
     │   └── SignInAgain           the password must be given once more
     ├── Refused              403  outside of what the server or this person may touch
     ├── TooMany              429  too often, or too much at a time

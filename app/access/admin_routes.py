@@ -1,4 +1,4 @@
-"""HTTP face of what admins do: people, everybody's sessions, the audit log."""
+"""HTTP routes for admins: people, the sessions of all people, the audit log."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ RECENT_LOGIN = Depends(recent_login)
 
 
 class NewPerson(Wire):
-    """Somebody who is to sign in."""
+    """An account to be added."""
 
     name: Text
     role: Role
     password: Text
-    """To begin with; the person can change it."""
+    """Initial password; the person can change it."""
 
 
 class Changes(Wire):
-    """What to change; what is left out stays."""
+    """Changes of an account; a field that is left out stays."""
 
     role: Role | None = None
     disabled: bool | None = None
@@ -56,7 +56,7 @@ class Log:
 
 @router.get("/people")
 def list_people(server: Server) -> list[Account]:
-    """Everybody who may sign in."""
+    """List the accounts of all people."""
     return server.access.accounts.all()
 
 
@@ -70,7 +70,7 @@ def add_person(new: NewPerson, request: Request, server: Server) -> Account:
 
 @router.patch("/people/{name}", dependencies=[RECENT_LOGIN])
 def change_person(name: str, changes: Changes, request: Request, server: Server) -> Account:
-    """Change role or password, lock out or let in again; the person's sessions end."""
+    """Change the role or password, disable or enable the account; the person's sessions end."""
     accounts = server.access.accounts
     account = accounts.get(name)
     if changes.password is not None:
@@ -88,13 +88,13 @@ def change_person(name: str, changes: Changes, request: Request, server: Server)
 
 @router.get("/sessions")
 def list_sessions(request: Request, server: Server) -> list[SessionView]:
-    """Everybody's sessions."""
+    """List the sessions of all people."""
     return views(request, server.access.sessions.all())
 
 
 @router.delete("/sessions/{session_id}", status_code=204)
 def end_session(session_id: str, request: Request, server: Server) -> None:
-    """End a session; whatever it has open closes within seconds."""
+    """End a session; its open streams and WebSockets close within seconds."""
     server.access.sessions.end(session_id)
     audit(request, "end session", session_id)
 
@@ -105,6 +105,6 @@ def read_audit(
     most: Annotated[int, Query(ge=1, le=1000)] = 100,
     before: Annotated[int | None, Query(ge=1, le=1 << 62)] = None,
 ) -> Log:
-    """The audit log, and whether it is as it was written."""
+    """Read the audit log, and verify its hash chain."""
     log = server.access.log
     return Log(entries=log.newest(most, before=before), chain=log.check())

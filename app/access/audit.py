@@ -1,8 +1,8 @@
-"""The audit log: who did what, when, from where, to what, and how it ended.
+"""The audit log: who did what, when, from where, to what, and with which outcome.
 
-Every row carries the hash of itself and the row before, so a row changed or taken out later shows.
-Whoever can write the file could make the whole chain anew: the newest hash, noted elsewhere,
-settles that.
+Every row carries the hash of itself and the row before, so a row changed or removed later is found.
+An attacker who can write the file can compute the whole chain again. The newest hash, noted
+elsewhere, reveals that.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from starlette.requests import HTTPConnection
 from app.access.database import AUDIT, writing
 
 BEGINNING = "0" * 64
-"""What stands for the hash before the first row."""
+"""Hash before the first row."""
 LONGEST = 300
 """Longer texts are cut [characters]."""
 REFUSALS_A_MINUTE = 60
-"""More are counted, not written: a stranger must not fill the disk."""
+"""Further refusals are counted, not written, so that a stranger cannot fill the disk."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,7 +39,7 @@ class Entry:
     """UTC, ISO 8601."""
     person: str
     address: str
-    """Where from."""
+    """Network address of the client."""
     action: str
     object: str
     outcome: str
@@ -50,11 +50,11 @@ class Entry:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Chain:
-    """Whether the log is as it was written."""
+    """Result of verifying the hash chain."""
 
     entries: int
     broken_at: int | None
-    """Number of the first row that does not follow from the one before; None = none."""
+    """Number of the first row whose hash does not match; None = the chain is whole."""
     newest: str
     """Hash of the newest row."""
 
@@ -74,9 +74,9 @@ class AuditLog:
         """Append a row; it is on disk when this returns."""
         if outcome != "done" and not (what := self._counted(what)):
             return
-        moment = datetime.fromtimestamp(self._clock(), UTC).isoformat(timespec="milliseconds")
+        timestamp = datetime.fromtimestamp(self._clock(), UTC).isoformat(timespec="milliseconds")
         texts = dict(person=person, address=address, action=action, object=what, outcome=outcome)
-        row: dict[str, Any] = {"time": moment}
+        row: dict[str, Any] = {"time": timestamp}
         row |= {name: printable(text) for name, text in texts.items()}
         newest = sa.select(AUDIT.c.number, AUDIT.c.hash).order_by(AUDIT.c.number.desc()).limit(1)
         with writing(self._engine) as connection:
@@ -99,7 +99,7 @@ class AuditLog:
             return follow(dict(row) for row in rows)
 
     def _counted(self, what: str) -> str:
-        """The object of a refusal with how many were left out before it; empty = leave it out."""
+        """The object of a refusal with the number left out before it; empty = leave it out."""
         with self._lock:
             minute = int(self._clock() // 60)
             if minute != self._minute:
@@ -113,7 +113,7 @@ class AuditLog:
 
 
 def audit(connection: HTTPConnection, action: str, what: str, *, outcome: str = "done") -> None:
-    """Note what the person who asks did to what; on disk when this returns.
+    """Append an entry about a request; it is on disk when this returns.
 
     Args:
         connection: The request or WebSocket.
@@ -127,7 +127,7 @@ def audit(connection: HTTPConnection, action: str, what: str, *, outcome: str = 
 
 
 def address(connection: HTTPConnection) -> str:
-    """Where a request came from."""
+    """Network address a request came from."""
     return connection.client.host if connection.client else "?"
 
 
@@ -149,7 +149,7 @@ def follow(rows: Iterable[dict[str, Any]]) -> Chain:
 
 
 def printable(text: str) -> str:
-    """Without control characters, which could forge lines, and not endless."""
+    """The text without control characters, which could forge lines, cut at `LONGEST`."""
     shown = "".join("\N{REPLACEMENT CHARACTER}" if _hidden(one) else one for one in text[:LONGEST])
     return shown.encode("utf-8", "replace").decode()
 

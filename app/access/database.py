@@ -1,7 +1,7 @@
 """``access.sqlite``: people, sessions, known browsers and the audit log, in a file of mode 0600.
 
 The server and the command ``recon4 users`` both write to it, so a change begins by taking the
-write lock; whoever only reads never waits.
+write lock. Readers never wait.
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ SESSIONS = sa.Table(
     sa.Column("agent", sa.String, nullable=False),
     sa.Column("phone_role", sa.String, nullable=True),
 )
-"""``person`` is a key of `PEOPLE`; times are in seconds since 1970; ``phone_role`` is that of a
-phone the person let in, NULL for a login."""
+"""``person`` is a key of `PEOPLE`; times are in seconds since 1970; ``phone_role`` is the
+role of a phone that the person paired, NULL for a login."""
 
 BROWSERS = sa.Table(
     "browsers",
@@ -51,7 +51,7 @@ BROWSERS = sa.Table(
     sa.Column("person", sa.String, nullable=False),
     sa.Column("known_s", sa.Float, nullable=False),
 )
-"""Browsers a person once signed in with: others' guesses do not delay them."""
+"""Browsers a person once signed in with: failed logins of others do not delay them."""
 
 AUDIT = sa.Table(
     "audit",
@@ -65,11 +65,11 @@ AUDIT = sa.Table(
     sa.Column("outcome", sa.String, nullable=False),
     sa.Column("hash", sa.String, nullable=False),
 )
-"""Triggers refuse to change or delete a row."""
+"""Triggers reject changes and deletions of a row."""
 
 
 def open_database(path: Path) -> sa.Engine:
-    """The database, made or brought up to date."""
+    """Open the database; create it or migrate it to the newest schema."""
     os.close(os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600))
     path.chmod(0o600)
     engine = open_engine(path)
@@ -80,7 +80,7 @@ def open_database(path: Path) -> sa.Engine:
 
 @contextmanager
 def writing(engine: sa.Engine) -> Iterator[sa.Connection]:
-    """A transaction that nobody else writes beside; committed at the end."""
+    """An exclusive write transaction; committed at the end."""
     with engine.begin() as connection:
         connection.exec_driver_sql("BEGIN IMMEDIATE")
         yield connection

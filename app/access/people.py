@@ -1,4 +1,4 @@
-"""Who asks, and what that person may do."""
+"""The person behind a request: role and permissions."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from app.errors import Refused, SignInAgain
 
 
 class Permission(StrEnum):
-    """What a route needs; deny by default: every route names one."""
+    """What a route requires; deny by default: every route names one."""
 
     LOOK = "look"
     """See projects, maps, reports; measure and cut slices."""
@@ -31,10 +31,10 @@ class Permission(StrEnum):
 
 
 class Role(StrEnum):
-    """What a person is on this server."""
+    """Role of a person on this server."""
 
     NOBODY = "nobody"
-    """Who has not signed in; never given to a person."""
+    """Not signed in; never assigned to an account."""
     VIEWER = "viewer"
     OPERATOR = "operator"
     REVIEWER = "reviewer"
@@ -50,29 +50,29 @@ MAY: dict[Role, frozenset[Permission]] = {
 }
 
 RECENT_LOGIN_S = 900.0
-"""What is signed with one's name needs a password given within this time [s]."""
+"""Signing with one's name requires a password given within this time [s]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Person:
-    """Who asks."""
+    """The person behind a request."""
 
     name: str
     role: Role
 
     def may(self, what: Permission) -> bool:
-        """Whether this person is allowed to."""
+        """Whether the role of this person has a permission."""
         return what in MAY[self.role]
 
 
 LOCAL = Person("local", Role.ADMIN)
-"""Whoever sits at this computer, when the server listens on loopback only."""
+"""The person at this computer, when the server listens on loopback only."""
 NOBODY = Person("nobody", Role.NOBODY)
-"""Who has not signed in."""
+"""A caller who has not signed in."""
 
 
 def person(connection: HTTPConnection) -> Person:
-    """Who asks, as the guard in front of the application found out."""
+    """The person behind a request, as `SessionMiddleware` determined it."""
     found: Person = connection.scope["state"]["person"]
     return found
 
@@ -87,10 +87,10 @@ Who = Annotated[Person, Depends(person)]
 
 
 def needs(what: Permission) -> Callable[[HTTPConnection], Awaitable[Person]]:
-    """A dependency that lets only those pass who may: ``dependencies=[Depends(needs(May.LOOK))]``.
+    """A dependency that requires a permission: ``dependencies=[Depends(needs(Permission.LOOK))]``.
 
     Raises (when called by the framework):
-        Refused: If the person may not; it is noted in the audit log.
+        Refused: If the person lacks the permission; the audit log gets an entry.
     """
 
     async def check(connection: HTTPConnection) -> Person:
@@ -106,23 +106,23 @@ def needs(what: Permission) -> Callable[[HTTPConnection], Awaitable[Person]]:
 
 
 def allow_anonymous() -> None:
-    """The dependency of the few routes that answer before login: ``Depends(anybody)``."""
+    """The dependency of the few routes without login: ``Depends(allow_anonymous)``."""
 
 
 def interactive_login(connection: HTTPConnection) -> Person:
-    """A dependency for what a phone that was let in may not, as ending its owner's sessions.
+    """A dependency that rejects paired phones, for actions such as ending their owner's sessions.
 
     Raises:
-        Refused: If a phone asks.
+        Refused: If the session is that of a paired phone.
     """
     session = connection.scope["state"].get("session")
     if session is not None and session.phone:
-        raise Refused("a phone that was let in may not do that; sign in with your password")
+        raise Refused("a paired phone may not do that; sign in with your password")
     return person(connection)
 
 
 def recent_login(connection: HTTPConnection) -> Person:
-    """A dependency for what is signed with one's name: the password was given a moment ago.
+    """A dependency for what is signed with one's name: requires a recent password.
 
     Raises:
         SignInAgain: If it was given more than `RECENT_LOGIN_S` ago: ``POST /api/login/again``.

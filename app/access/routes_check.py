@@ -1,4 +1,4 @@
-"""Deny by default: a server with a route that does not say who may use it does not start."""
+"""Deny by default: a server with a route that declares no permission does not start."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from app.access.people import Permission, allow_anonymous
 
 @dataclass(frozen=True, slots=True)
 class Declared:
-    """What a route says of itself."""
+    """What a route declares about access."""
 
     path: str
     methods: frozenset[str]
     """Empty for a WebSocket."""
     needs: frozenset[Permission]
-    """All of which a person must have."""
+    """Permissions a person must have, all of them."""
     allow_anonymous: bool
     """Whether it answers before login."""
 
@@ -41,13 +41,13 @@ def declared(app: FastAPI) -> Iterator[Declared]:
 
 
 def check_declared(app: FastAPI) -> None:
-    """See that every route says who may use it.
+    """Check that every route declares who may use it.
 
     Raises:
-        AssertionError: Naming those that do not.
+        AssertionError: With the paths of those that do not.
     """
     silent = [one.path for one in declared(app) if not one.needs and not one.allow_anonymous]
-    assert not silent, f"say who may use them, dependencies=[Depends(needs(May.…))]: {silent}"
+    assert not silent, f"declare dependencies=[Depends(needs(Permission.…))] for: {silent}"
 
 
 def _calls(dependant: Dependant | None) -> Iterator[object]:

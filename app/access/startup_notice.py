@@ -1,4 +1,4 @@
-"""What is said at the start of a server, once, on the terminal and in no log."""
+"""The notice at the start of a server: written once, to the terminal and to no log."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from app.network.certificate import Certificate
 def startup_notice(
     access: Access, url: str, *, others: list[str], certificate: Certificate | None
 ) -> list[str]:
-    """Lines for whoever started the server.
+    """Lines for the person who started the server.
 
     Args:
         access: Who may sign in.
         url: The best URL of the server.
         others: Its other URLs.
-        certificate: What it listens with; None = without TLS.
+        certificate: The TLS certificate in use; None = without TLS.
     """
     lines = [f"Also at {', '.join(others)}"] if others else []
     if certificate is not None:

@@ -72,7 +72,7 @@ def test_one_is_led_to_the_login_and_back_to_where_one_wanted_to_go(server, page
     page.get_by_label("Name").fill("rita")
     page.get_by_label("Password", exact=True).fill("wrong wrong wrong")
     page.get_by_role("button", name="Sign in").click()
-    expect(page.get_by_role("alert")).to_have_text("name and password do not fit")
+    expect(page.get_by_role("alert")).to_have_text("wrong name or password")
     fits(page)
     picture(page, "login")
 
@@ -136,7 +136,7 @@ def test_an_admin_adds_a_person_changes_a_role_and_reads_the_log(server, page, l
     form.get_by_label("Role").select_option("operator")
     form.get_by_label("First password").fill("password1234")
     form.get_by_role("button", name="Add").click()
-    expect(form.get_by_role("alert")).to_contain_text("the password is guessed in about")
+    expect(form.get_by_role("alert")).to_contain_text("the password is found in about")
     form.get_by_label("First password").fill(PASSWORD)
     form.get_by_role("button", name="Add").click()
 
@@ -183,7 +183,7 @@ def test_what_is_signed_with_a_name_asks_for_the_password_again(server, page, lo
         picture(page, "password-again")
         page.keyboard.type("wrong wrong wrong")
         page.keyboard.press("Enter")
-        expect(dialog.get_by_role("alert")).to_have_text("name and password do not fit")
+        expect(dialog.get_by_role("alert")).to_have_text("wrong name or password")
         page.keyboard.type(PASSWORD)
         page.keyboard.press("Enter")
         expect(dialog).to_be_hidden()
@@ -196,7 +196,7 @@ def test_the_first_admin_is_made_in_the_browser(tmp_path, page, look, picture):
     if look[1] != "light":
         pytest.skip("one color is enough")
     with server_thread(tmp_path, lan=True) as running:
-        token = running.app.state.parts.access.door.open_setup()
+        token = running.app.state.parts.access.logins.open_setup()
         page.goto(f"{running.url}/login#setup={token}")
         expect(page.get_by_role("heading", name="Make the first admin")).to_be_visible()
         assert token not in page.url

@@ -94,7 +94,7 @@ def test_a_wrong_password_and_a_wrong_name_are_answered_alike(server, name):
 
     assert answer.status_code == 401
     assert answer.json()["error"] == "WrongPassword"
-    assert answer.json()["detail"] == "name and password do not fit"
+    assert answer.json()["detail"] == "wrong name or password"
 
 
 @pytest.mark.parametrize("token", ["", "x" * 43, "a" * 1000, "../../etc", "é" * 43])

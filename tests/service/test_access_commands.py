@@ -126,7 +126,7 @@ def test_people_are_kept_from_the_command_line_and_the_log_is_checked(tmp_path):
 
     codes = [one.returncode for one in (weak, added, role, disabled, last, listed, log)]
     assert codes == [1, 0, 0, 0, 1, 0, 0]
-    assert "the password is guessed in about" in weak.stderr
+    assert "the password is found in about" in weak.stderr
     assert "last admin" in last.stderr
     assert re.search(r"^vera +reviewer +\d{4}-\d\d-\d\d disabled$", listed.stdout, re.MULTILINE)
     assert "add person: anna, admin" in log.stdout

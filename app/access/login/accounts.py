@@ -1,4 +1,4 @@
-"""The people who may sign in."""
+"""Accounts of the people who may sign in."""
 
 from __future__ import annotations
 
@@ -32,37 +32,37 @@ class Account:
 
 
 class Accounts:
-    """Reads and changes the people. Whatever changes a role or a password ends the sessions."""
+    """Reads and changes accounts. A change of a role or a password ends the person's sessions."""
 
     def __init__(self, engine: sa.Engine) -> None:
         self._engine = engine
 
     def all(self) -> list[Account]:
-        """Everybody, by name."""
+        """All accounts, sorted by name."""
         with self._engine.connect() as connection:
             rows = connection.execute(PEOPLE.select().order_by(PEOPLE.c.key)).mappings()
             return [_account(row) for row in rows]
 
     def get(self, name: str) -> Account:
-        """One person.
+        """The account of one person.
 
         Raises:
-            NotFound: If there is nobody of that name.
+            NotFound: If no account has that name.
         """
         with self._engine.connect() as connection:
             row = connection.execute(_of(name)).mappings().one_or_none()
         if row is None:
-            raise NotFound(f"nobody is called {name[:64]!r} here")
+            raise NotFound(f"no account is named {name[:64]!r}")
         return _account(row)
 
     def password_hash(self, name: str) -> str | None:
-        """The hash of a person's password; None if there is nobody, or who is there is disabled."""
+        """The hash of a person's password; None if there is no such account or it is disabled."""
         query = sa.select(PEOPLE.c.password).where(PEOPLE.c.key == key(name), ~PEOPLE.c.disabled)
         with self._engine.connect() as connection:
             return connection.execute(query).scalar_one_or_none()
 
     def has_admin(self) -> bool:
-        """Whether anybody could let the others in."""
+        """Whether an enabled admin account exists."""
         with self._engine.connect() as connection:
             return connection.execute(_admins()).scalar_one() > 0
 
@@ -70,9 +70,9 @@ class Accounts:
         """Add a person.
 
         Raises:
-            Refused: If the name or the role is unfit.
-            Conflict: If somebody has that name.
-            WeakPassword: If the password is guessed first.
+            Refused: If the name or the role is not valid.
+            Conflict: If an account has that name.
+            WeakPassword: If the password is too easy to find.
         """
         name = unicodedata.normalize("NFKC", name)
         if not NAME.fullmatch(name) or key(name) in ("local", "nobody"):
@@ -87,23 +87,23 @@ class Accounts:
                 values = {**row, "key": key(name), "password": hashed}
                 connection.execute(PEOPLE.insert().values(**values))
         except IntegrityError as error:
-            raise Conflict(f"{name} is here already") from error
+            raise Conflict(f"an account named {name} exists already") from error
         return self.get(name)
 
     def set_role(self, name: str, role: Role) -> Account:
-        """Give another role.
+        """Change the role of a person.
 
         Raises:
-            NotFound: If there is nobody of that name.
+            NotFound: If no account has that name.
             Conflict: If this was the last admin.
         """
         return self._change(name, role=_assignable(role))
 
     def set_disabled(self, name: str, disabled: bool) -> Account:
-        """Lock a person out, or let in again; nobody is ever deleted, as the log names them.
+        """Disable or enable an account; accounts are never deleted because the log names them.
 
         Raises:
-            NotFound: If there is nobody of that name.
+            NotFound: If no account has that name.
             Conflict: If this was the last admin.
         """
         return self._change(name, disabled=disabled)
@@ -112,8 +112,8 @@ class Accounts:
         """Set a password.
 
         Raises:
-            NotFound: If there is nobody of that name.
-            WeakPassword: If the password is guessed first.
+            NotFound: If no account has that name.
+            WeakPassword: If the password is too easy to find.
         """
         passwords.check(password, self.get(name).name)
         return self._change(name, password=passwords.hashed(password))
@@ -123,14 +123,14 @@ class Accounts:
         with writing(self._engine) as connection:
             connection.execute(PEOPLE.update().where(PEOPLE.c.key == key(name)).values(**values))
             if before.role is Role.ADMIN and connection.execute(_admins()).scalar_one() == 0:
-                raise Conflict(f"{before.name} is the last admin; make somebody else admin first")
+                raise Conflict(f"{before.name} is the last admin; make another person admin first")
             for table in (SESSIONS, BROWSERS):
                 connection.execute(table.delete().where(table.c.person == key(name)))
         return self.get(name)
 
 
 def key(name: str) -> str:
-    """A name as it is looked up: one for all spellings of the same letters."""
+    """The lookup key of a name: the same for all spellings of the same letters."""
     return unicodedata.normalize("NFKC", name).casefold()
 
 

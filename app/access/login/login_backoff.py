@@ -1,6 +1,6 @@
-"""How often may somebody try: waiting that grows with failures, and buckets that refill.
+"""Limits of login attempts: a delay that grows with failures, and token buckets that refill.
 
-Kept in memory: a restart forgets it, which guessing passwords across the network cannot cause.
+Kept in memory: a restart forgets it, which an attacker on the network cannot cause.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from collections import OrderedDict
 from collections.abc import Callable, Hashable
 
 MOST_KEYS = 20_000
-"""The longest unused are forgotten beyond that."""
+"""Beyond that the least recently used are forgotten."""
 
 
 class LoginBackoff:
-    """After some failures each further try has to wait twice as long as the one before."""
+    """After some failures each further attempt has to wait twice as long as the one before."""
 
     def __init__(
         self,
@@ -30,10 +30,10 @@ class LoginBackoff:
         self._lock = threading.Lock()
 
     def begin(self, key: Hashable) -> float:
-        """Ask to try; the try counts as a failure until `succeed` says otherwise.
+        """Begin an attempt; it counts as a failure until `succeed` is called.
 
         Returns:
-            0 if it may be tried now, else the seconds to wait; then nothing is counted.
+            0 if the attempt is allowed now, else the seconds to wait; then nothing is counted.
         """
         with self._lock:
             count, last_s = self._failures.get(key, (0, 0.0))
@@ -49,13 +49,13 @@ class LoginBackoff:
             return 0.0
 
     def succeed(self, key: Hashable) -> None:
-        """Forget the failures."""
+        """Reset the failures of a key."""
         with self._lock:
             self._failures.pop(key, None)
 
 
 class TokenBuckets:
-    """So many at once, so many a second after that, for each key."""
+    """Token bucket per key: ``burst`` tokens at once, ``per_s`` tokens a second after that."""
 
     def __init__(
         self, *, burst: int, per_s: float, clock: Callable[[], float] = time.monotonic
@@ -65,10 +65,10 @@ class TokenBuckets:
         self._lock = threading.Lock()
 
     def take(self, key: Hashable) -> float:
-        """Take one.
+        """Take a token.
 
         Returns:
-            0 if there was one, else the seconds until there is.
+            0 if there was one, else the seconds until there is one.
         """
         with self._lock:
             now_s = self._clock()
@@ -82,7 +82,7 @@ class TokenBuckets:
             return 0.0 if taken else (1.0 - left) / self._per_s
 
     def give_back(self, key: Hashable) -> None:
-        """One that was taken was not used after all."""
+        """Return a token that was taken but not used."""
         with self._lock:
             if key in self._left:
                 left, then_s = self._left[key]
@@ -90,7 +90,7 @@ class TokenBuckets:
 
 
 def network(address: str) -> str:
-    """An address as guesses are counted: one household has 2^64 of IPv6."""
+    """The network by which attempts are counted: one household has 2^64 IPv6 addresses."""
     try:
         parsed = ipaddress.ip_address(address)
     except ValueError:

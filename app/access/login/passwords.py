@@ -1,4 +1,4 @@
-"""Passwords: argon2id hashes, and refusal of those an attacker guesses first."""
+"""Passwords: argon2id hashes, and rejection of those an attacker finds first."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from app.settings import names_from_environment
 
 SHORTEST, LONGEST = 12, 256
 """Characters of a password."""
-LEAST_GUESSES = 10**10
-"""Guesses a new password must withstand ("very unguessable" in zxcvbn's scale)."""
+LEAST_ATTEMPTS = 10**10
+"""Attempts a new password must withstand (the highest score of zxcvbn)."""
 LONGEST_ESTIMATED = 64
-"""Characters the estimate looks at; its time grows with the square."""
+"""Characters the estimate uses; its time grows with the square."""
 MOST_SUBSTITUTES = 8
 """Different substitutes (``4`` for ``a``) in one estimate: zxcvbn tries all combinations."""
 
 HASHER = PasswordHasher(time_cost=2, memory_cost=64 * 1024, parallelism=1)
 """64 MiB, two passes: a tenth of a second here, expensive on a graphics card."""
 STAND_IN = HASHER.hash("nobody has this password")
-"""Verified when there is no such person, so that the answer takes as long."""
+"""Verified when there is no such account, so that the response takes as long."""
 
 SUBSTITUTES = frozenset("4@8({[<3691!|70$5+%2")
 """Characters zxcvbn reads as letters."""
@@ -36,7 +36,7 @@ CONTEXT = (
     *("recon4", "4recon", "recon", "lidar", "backpack", "velodyne", "mapping", "survey", "slam"),
     *("pointcloud", "surveyor", "scanner", "project", "server", "workstation", "company", "demo"),
 )
-"""What an attacker knows of this product: roles, its name, what it is for."""
+"""Words an attacker knows of this product: roles, its name, its purpose."""
 
 COMMON = (
     *("passwort", "passord", "heslo", "haslo", "motdepasse", "contrasena", "senha", "wachtwoord"),
@@ -57,14 +57,14 @@ WEAKNESS = {
     "dictionary": "a common word, name or password",
     "bruteforce": "too few different characters",
 }
-"""Pattern of zxcvbn -> what it is, in words."""
+"""Pattern of zxcvbn -> its description."""
 
 _estimating = threading.Lock()
 """zxcvbn keeps the words it is given in a global dictionary."""
 
 
 def check(password: str, name: str) -> None:
-    """Check that a new password withstands guessing.
+    """Check that a new password withstands an offline attack.
 
     The estimate is that of zxcvbn (30 000 common passwords, words and names, repetitions, keyboard
     rows, sequences, dates, reversed and with substitutes), given what is known here: the person's
@@ -97,7 +97,7 @@ def hashed(password: str) -> str:
 
 
 def fits(password: str, stored: str | None) -> bool:
-    """Whether a password is the one hashed; takes as long when there is none."""
+    """Whether a password matches its hash; takes as long when there is no hash."""
     try:
         return HASHER.verify(stored or STAND_IN, _normal(password)) and bool(stored)
     except (VerificationError, InvalidHashError):
@@ -105,22 +105,22 @@ def fits(password: str, stored: str | None) -> bool:
 
 
 def _normal(password: str) -> str:
-    """One spelling for what looks the same, whatever keyboard it was typed on."""
+    """One spelling (NFKC) for what looks the same, on every keyboard."""
     return unicodedata.normalize("NFKC", password)
 
 
 def _check_reading(text: str, known: list[str], *, separators: int) -> None:
-    """Check one reading of a password; each kind of separator left out counts ten guesses."""
+    """Check one reading of a password; each kind of separator left out counts as a factor of 10."""
     with _estimating:
         found = zxcvbn(text, user_inputs=known, max_length=2 * LONGEST_ESTIMATED)
     strings = len(set(text.casefold())) ** len(text)
-    guesses = min(int(found["guesses"]), strings) * 10**separators
-    if guesses < LEAST_GUESSES:
+    attempts = min(int(found["guesses"]), strings) * 10**separators
+    if attempts < LEAST_ATTEMPTS:
         kinds = dict.fromkeys(_kind(match) for match in found["sequence"])
         weak = [WEAKNESS[kind] for kind in kinds if kind != "bruteforce"]
         raise WeakPassword(
-            f"the password is guessed in about {float(f'{guesses:.0e}'):,.0f} tries, it needs "
-            f"{LEAST_GUESSES:,}: it is mostly {'; '.join(weak) or WEAKNESS['bruteforce']}. "
+            f"the password is found in about {float(f'{attempts:.0e}'):,.0f} attempts, it needs "
+            f"{LEAST_ATTEMPTS:,}: it is mostly {'; '.join(weak) or WEAKNESS['bruteforce']}. "
             "Add two or three unrelated words; digits or signs at the end, repeating and "
             "reversing help little"
         )
@@ -133,7 +133,7 @@ def _kind(match: dict[str, object]) -> str:
 
 
 def _known_words(name: str) -> list[str]:
-    """What an attacker would try first for this person on this computer."""
+    """Words an attacker would try first for this person on this computer."""
     names = (name, socket.gethostname(), *names_from_environment())
     parts = {part for one in names for part in re.split(r"[\W_]+", one) if len(part) > 2}
     return [*sorted({*parts, *names} - {""}), *CONTEXT, *COMMON]

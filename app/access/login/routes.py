@@ -1,4 +1,4 @@
-"""HTTP face of the login and of one's own account: parse, delegate, answer."""
+"""HTTP routes of the login and of one's own account."""
 
 from __future__ import annotations
 
@@ -37,15 +37,15 @@ router = APIRouter(
 )
 ALLOW_ANONYMOUS = Depends(allow_anonymous)
 SIGNED_IN = Depends(needs(Permission.LOOK))
-"""Whoever is signed in may look."""
+"""Every signed-in person may look."""
 INTERACTIVE = Depends(interactive_login)
-"""Not for a phone somebody let in."""
+"""Rejects paired phones."""
 
 Text = Annotated[str, Field(max_length=1000)]
 
 
 class Wire(BaseModel):
-    """What a browser sends; nothing unknown is taken."""
+    """Base of request bodies; unknown fields are rejected."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -58,20 +58,20 @@ class Credentials(Wire):
 
 
 class FirstAdmin(Credentials):
-    """The first admin."""
+    """Name and password of the first admin, with the setup token."""
 
     token: Text
     """From the link the server showed at its start."""
 
 
 class PasswordConfirmation(Wire):
-    """The password once more."""
+    """The current password, given again."""
 
     password: Text
 
 
 class NewPassword(Wire):
-    """The old password and the new."""
+    """The old and the new password."""
 
     old: Text
     new: Text
@@ -79,56 +79,56 @@ class NewPassword(Wire):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Me:
-    """Who asks."""
+    """The signed-in person."""
 
     name: str
     role: Role
     may: tuple[Permission, ...]
-    """What the role allows."""
+    """Permissions of the role."""
     login: bool
     """Whether people sign in to this server."""
     token: str
-    """Goes into the header ``X-Recon4-Token`` of every request that changes something."""
+    """Value of the header ``X-Recon4-Token`` of every request that changes state."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SessionView:
-    """A session, for people."""
+    """A session in a list of sessions."""
 
     session: Session
     current: bool
-    """Whether it is the one that asks."""
+    """Whether it is the session of this request."""
 
 
 @router.post("/login", dependencies=[ALLOW_ANONYMOUS])
 def login(given: Credentials, request: Request, response: Response, server: Server) -> Me:
-    """Sign in; the answer sets the cookie of the session."""
+    """Sign in; the response sets the session cookie."""
     access = _with_login(server.access)
     try:
-        entered = access.logins.enter(given.name, given.password, _caller(request))
+        result = access.logins.sign_in(given.name, given.password, _caller(request))
     except AppError as error:
         _note_failure(access, request, given.name, error)
         raise
-    return _welcome(access, request, response, entered=entered)
+    return _start_session(access, request, response, result=result)
 
 
 @router.post("/setup", dependencies=[ALLOW_ANONYMOUS])
 def set_up(given: FirstAdmin, request: Request, response: Response, server: Server) -> Me:
-    """Make the first admin, with the one-time token the server showed at its start."""
+    """Create the first admin with the one-time token that the server showed at its start."""
     access = _with_login(server.access)
-    entered = access.logins.set_up(
+    result = access.logins.set_up(
         given.token, given.name, password=given.password, caller=_caller(request)
     )
-    name = entered.account.name
+    name = result.account.name
     access.log.add(name, address(request), action="set up", what=f"{name}, admin")
-    return _welcome(access, request, response, entered=entered)
+    return _start_session(access, request, response, result=result)
 
 
 @router.post("/login/again", dependencies=[SIGNED_IN, INTERACTIVE])
 def login_again(
     given: PasswordConfirmation, request: Request, response: Response, server: Server
 ) -> Me:
-    """Give the password again, as approval asks for; the cookie changes."""
+    """Confirm the password again, as approval requires; the session cookie changes."""
     access = _with_login(server.access)
     session: Session = request.scope["state"]["session"]
     try:
@@ -144,7 +144,7 @@ def login_again(
 
 @router.post("/logout", status_code=204, dependencies=[SIGNED_IN])
 def logout(request: Request, response: Response, server: Server) -> None:
-    """End this session; whatever it has open closes."""
+    """Sign out: end this session; its open streams and WebSockets close."""
     access = _with_login(server.access)
     session: Session = request.scope["state"]["session"]
     access.sessions.end(session.id)
@@ -155,7 +155,7 @@ def logout(request: Request, response: Response, server: Server) -> None:
 
 @router.get("/me", dependencies=[SIGNED_IN])
 def read_me(request: Request, who: Who, server: Server) -> Me:
-    """Who asks, what that person may, and the token for changes."""
+    """The signed-in person, the person's permissions, and the token for changes."""
     token = cookie(request.scope, COOKIE) if server.access.login else ""
     return _me(server.access, who.name, role=who.role, token=token)
 
@@ -170,13 +170,13 @@ def change_password(given: NewPassword, request: Request, response: Response, se
     access.accounts.set_password(name, given.new)
     access.sessions.forget_cached()
     audit(request, "change password", name)
-    entered = access.logins.enter(name, given.new, caller)
-    return _welcome(access, request, response, entered=entered)
+    result = access.logins.sign_in(name, given.new, caller)
+    return _start_session(access, request, response, result=result)
 
 
 @router.get("/me/sessions", dependencies=[SIGNED_IN, INTERACTIVE])
 def list_my_sessions(request: Request, who: Who, server: Server) -> list[SessionView]:
-    """One's own sessions."""
+    """List one's own sessions."""
     return views(request, server.access.sessions.all(person=who.name))
 
 
@@ -188,7 +188,7 @@ def end_my_session(session_id: str, request: Request, who: Who, server: Server) 
 
 
 def views(request: Request, sessions: list[Session]) -> list[SessionView]:
-    """Sessions as they are shown."""
+    """Views of sessions; marks the one of this request."""
     mine: Session | None = request.scope["state"].get("session")
     return [SessionView(session=one, current=bool(mine and mine.id == one.id)) for one in sessions]
 
@@ -196,7 +196,7 @@ def views(request: Request, sessions: list[Session]) -> list[SessionView]:
 def enter_paired(
     access: Access, request: Request, response: Response, *, grant: PairingGrant
 ) -> Me:
-    """Begin the session of a phone somebody let in, and hand over its cookie."""
+    """Begin the session of a paired phone, and set its cookie."""
     caller = _caller(request)
     token = access.sessions.begin(
         grant.person, address=caller.address, agent=caller.agent, phone_role=grant.role
@@ -208,7 +208,7 @@ def enter_paired(
 
 def _with_login(access: Access) -> Access:
     if not access.login:
-        raise Conflict(f"there is no login here: whoever sits at this computer is {LOCAL.name}")
+        raise Conflict(f"this server has no login: the person at this computer is {LOCAL.name}")
     return access
 
 
@@ -220,24 +220,26 @@ def _caller(request: Request) -> LoginOrigin:
     )
 
 
-def _welcome(access: Access, request: Request, response: Response, *, entered: LoginResult) -> Me:
-    """Hand over the cookies; the session this browser had before ends."""
-    name, role = entered.account.name, entered.account.role
+def _start_session(
+    access: Access, request: Request, response: Response, *, result: LoginResult
+) -> Me:
+    """Set the cookies; the session this browser had before ends."""
+    name, role = result.account.name, result.account.role
     before: Session | None = request.scope["state"].get("session")
     if before is not None and access.sessions.alive(before.id):
         access.sessions.end(before.id)
     access.log.add(name, address(request), action="sign in", what=role)
-    _set_cookie(response, entered.session, LIVES[role].whole_s)
+    _set_cookie(response, result.session, LIVES[role].whole_s)
     response.set_cookie(
         BROWSER_COOKIE,
-        entered.browser,
+        result.browser,
         max_age=int(BROWSER_KNOWN_S),
         path="/",
         secure=True,
         httponly=True,
         samesite="strict",
     )
-    return _me(access, name, role=role, token=entered.session)
+    return _me(access, name, role=role, token=result.session)
 
 
 def _set_cookie(response: Response, token: str, lasts_s: float) -> None:
@@ -259,7 +261,7 @@ def _me(access: Access, name: str, *, role: Role, token: str) -> Me:
 
 
 def _note_failure(access: Access, request: Request, name: str, error: AppError) -> None:
-    """A name nobody has is not written: people type their password there by mistake."""
+    """Log a failed login without an unknown name: people type their password there by mistake."""
     known = access.accounts.password_hash(name) is not None
     outcome = "refused" if isinstance(error, TooMany) else "failed"
     who = access.accounts.get(name).name if known else "nobody"

@@ -1,6 +1,6 @@
-"""Sessions: an opaque random token in a cookie, everything else here.
+"""Sessions: an opaque random token in a cookie, everything else in the database.
 
-Only the hash of a token is stored: who reads the database cannot sign in with what is in it.
+Only the hash of a token is stored: a person who reads the database cannot sign in with it.
 """
 
 from __future__ import annotations
@@ -42,11 +42,11 @@ LIVES = {
     Role.ADMIN: Life(8 * HOUR_S, 0.5 * HOUR_S),
 }
 PHONE_LIFE = Life(12 * HOUR_S, 12 * HOUR_S)
-"""A phone lies in a pocket for hours of a walk."""
+"""A phone stays in a pocket for hours of a walk."""
 CACHED_S = 2.0
-"""What was looked up is believed so long: a session ended by another process ends then [s]."""
+"""Lifetime of a cached session: one ended by another process ends after that [s]."""
 NOTED_EVERY_S = 30.0
-"""A session in use is noted as such this often [s]."""
+"""Interval at which the last use of a session is written [s]."""
 BROWSER_KNOWN_S = 365 * 24 * HOUR_S
 
 
@@ -55,7 +55,7 @@ class Session:
     """A login of a person on a device."""
 
     id: str
-    """Public name of the session; not the secret."""
+    """Public identifier of the session; not the secret."""
     person: str
     role: Role
     began_s: float
@@ -66,43 +66,43 @@ class Session:
     """Last request, seconds since 1970."""
     address: str
     agent: str
-    """What the browser calls itself."""
+    """User-Agent header of the browser."""
     phone: bool = False
-    """Whether it is a phone somebody let in; ``person`` is who did, ``role`` the phone's own."""
+    """Whether it is a paired phone; ``person`` paired it, ``role`` is the phone's own."""
 
     def over(self, now_s: float) -> bool:
-        """Whether its time is up."""
+        """Whether the session has expired."""
         life = PHONE_LIFE if self.phone else LIVES[self.role]
         return now_s - self.began_s > life.whole_s or now_s - self.seen_s > life.idle_s
 
 
 @dataclass(frozen=True, slots=True)
 class AuthenticatedSession:
-    """A request's session."""
+    """The session of a request, with the hash of its token."""
 
     session: Session
     token_hash: str
 
     @property
     def person(self) -> Person:
-        """Who asks."""
+        """The person of the session."""
         return Person(self.session.person, self.session.role)
 
 
 class Sessions:
-    """All sessions there are; safe to call from any thread."""
+    """All sessions of a server; thread-safe."""
 
     def __init__(self, engine: sa.Engine, clock: Callable[[], float] = time.time) -> None:
         self._engine = engine
         self._clock = clock
-        self._believed: dict[str, tuple[float, AuthenticatedSession]] = {}
+        self._cached: dict[str, tuple[float, AuthenticatedSession]] = {}
         self._lock = threading.Lock()
 
     def begin(self, name: str, *, address: str, agent: str, phone_role: Role | None = None) -> str:
-        """A new session of a person, or of a phone a person let in.
+        """Begin a session of a person, or of a phone a person paired.
 
         Returns:
-            Its token, which is kept nowhere.
+            Its token, which is stored nowhere.
         """
         token, now_s = new_token(), self._clock()
         row = {
@@ -122,41 +122,45 @@ class Sessions:
         return token
 
     def cached_sessions(self, token: str) -> AuthenticatedSession | None:
-        """What was looked up a moment ago, without asking the database."""
-        until_s, visit = self._believed.get(hash_of(token), (0.0, None))
-        fresh = visit and time.monotonic() < until_s and not visit.session.over(self._clock())
-        return visit if fresh else None
+        """The session of a token from the cache, without a database query; None if not cached."""
+        until_s, found_session = self._cached.get(hash_of(token), (0.0, None))
+        fresh = (
+            found_session
+            and time.monotonic() < until_s
+            and not found_session.session.over(self._clock())
+        )
+        return found_session if fresh else None
 
     def find(self, token: str) -> AuthenticatedSession | None:
-        """The session a token belongs to, None if there is none, or it or the person is over."""
+        """The session of a token; None if missing, expired or of a disabled person."""
         token_hash = hash_of(token)
-        with self._lock:  # an end that comes between reading and believing waits
+        with self._lock:  # an end that comes between reading and caching waits
             found = self._select(SESSIONS.c.token_hash == token_hash)
             if not found or found[0].over(self._clock()):
-                self._believed.pop(token_hash, None)
+                self._cached.pop(token_hash, None)
                 return None
-            if len(self._believed) > 1000:
-                self._believed.clear()
-            visit = AuthenticatedSession(found[0], token_hash)
-            self._believed[token_hash] = (time.monotonic() + CACHED_S, visit)
-            return visit
+            if len(self._cached) > 1000:
+                self._cached.clear()
+            found_session = AuthenticatedSession(found[0], token_hash)
+            self._cached[token_hash] = (time.monotonic() + CACHED_S, found_session)
+            return found_session
 
     def alive(self, session_id: str) -> Session | None:
-        """A session that is not over, by its public name."""
+        """A session that has not expired, by its identifier."""
         found = self._select(SESSIONS.c.id == session_id)
         return found[0] if found and not found[0].over(self._clock()) else None
 
     def unnoted(self, session: Session) -> bool:
-        """Whether it is some time since it was noted that it is in use."""
+        """Whether the last use of a session is due to be written."""
         return self._clock() - session.seen_s > NOTED_EVERY_S
 
     def note(self, session: Session) -> None:
-        """Note that it is in use."""
+        """Write that a session is in use now."""
         now_s = self._clock()
         self._write(SESSIONS.update().where(SESSIONS.c.id == session.id).values(seen_s=now_s))
 
     def prove(self, session_id: str) -> str:
-        """The password was given again: a new token for the same session."""
+        """A new token for the same session, after the password was given again."""
         token = new_token()
         values = {"token_hash": hash_of(token), "proved_s": self._clock()}
         self._write(SESSIONS.update().where(SESSIONS.c.id == session_id).values(**values))
@@ -167,13 +171,13 @@ class Sessions:
         return max(0.0, self._clock() - session.proved_s)
 
     def all(self, *, person: str | None = None) -> list[Session]:
-        """Sessions that are not over, the latest first; of one person, or of everybody."""
+        """Sessions that have not expired, the latest first; of one person, or of all."""
         mine = SESSIONS.c.person == key(person) if person is not None else sa.true()
         now_s = self._clock()
         return [session for session in self._select(mine) if not session.over(now_s)]
 
     def end(self, session_id: str, *, person: str | None = None) -> None:
-        """End a session, with ``person`` only if it is theirs.
+        """End a session; with ``person`` only one of that person.
 
         Raises:
             NotFound: If there is no such session.
@@ -185,14 +189,14 @@ class Sessions:
             raise NotFound(f"no session {session_id[:32]!r}")
 
     def forget_cached(self) -> None:
-        """Ask the database again: somebody's sessions may have ended."""
+        """Empty the cache, because sessions may have ended."""
         with self._lock:
-            self._believed.clear()
+            self._cached.clear()
 
-    # -- browsers a person has signed in with
+    # -- known browsers
 
     def know_browser(self, name: str) -> str:
-        """A new token for a browser the person signed in with."""
+        """A new token for a browser with which the person signed in."""
         token, now_s = new_token(), self._clock()
         row = {"token_hash": hash_of(token), "person": key(name), "known_s": now_s}
         with writing(self._engine) as connection:
@@ -202,7 +206,7 @@ class Sessions:
         return token
 
     def knows_browser(self, token: str, name: str) -> bool:
-        """Whether the person signed in with this browser before."""
+        """Whether the person has signed in with this browser before."""
         mine = (BROWSERS.c.token_hash == hash_of(token)) & (BROWSERS.c.person == key(name))
         with self._engine.connect() as connection:
             known_s = connection.execute(sa.select(BROWSERS.c.known_s).where(mine)).scalar()
@@ -223,7 +227,7 @@ class Sessions:
     def _write(self, statement: sa.Update | sa.Delete) -> int:
         with self._lock, writing(self._engine) as connection:
             changed: Any = connection.execute(statement)
-            self._believed.clear()
+            self._cached.clear()
             return int(changed.rowcount)
 
 
@@ -233,10 +237,10 @@ def new_token() -> str:
 
 
 def hash_of(token: str) -> str:
-    """What is stored of a token; it is random, so one round is enough."""
+    """The stored hash of a token; a token is random, so one round of SHA-256 is enough."""
     return hashlib.sha256(token.encode("utf-8", "replace")).hexdigest()
 
 
 def form_token(session_token: str) -> str:
-    """The token a page sends along with whatever changes something; bound to the session."""
+    """The CSRF token a page sends with every change; bound to the session."""
     return hmac.new(session_token.encode(), b"recon4 form token", hashlib.sha256).hexdigest()

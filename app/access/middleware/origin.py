@@ -1,9 +1,9 @@
-"""Who may talk to the server: host names, origins, sessions, headers. Pure ASGI, before all else.
+"""Checks of host names and origins, and security headers. Pure ASGI, the outermost middleware.
 
-A page of another site open in somebody's browser can send requests here and open WebSockets; a
-name that points to this computer can even make them look same-site (DNS rebinding). So the host
-must be one of ours, whatever changes something must come from our own page, and where there is
-a login, nothing but the login itself is answered without a session.
+A page of another site in a user's browser can send requests here and open WebSockets. A name
+that points to this computer can even make them look same-site (DNS rebinding). So the host must be
+one of ours, and every change must come from our own page. With a login, only the login itself is
+answered without a session.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ PAGE_POLICY = (
     "default-src 'self'; img-src 'self' data: blob:; object-src 'none'; base-uri 'none'; "
     "form-action 'self'; frame-ancestors 'self'"
 )
-"""Content security policy of whatever does not bring its own."""
+"""Content security policy of responses that do not set their own."""
 
 HEADERS = {
     "Content-Security-Policy": PAGE_POLICY,
@@ -36,28 +36,28 @@ HEADERS = {
     "Cache-Control": "no-cache",
 }
 PRIVATE = {"Cache-Control": "no-store"}
-"""Answers of the API are kept by no browser where people sign in."""
+"""Responses of the API are cached by no browser where people sign in."""
 PINNED = {"Strict-Transport-Security": "max-age=31536000"}
-"""Only with a certificate browsers trust: with another they would lock people out."""
+"""Only with a certificate that browsers trust: with another they would lock people out."""
 
 
 @dataclass(frozen=True, slots=True)
 class Hosts:
-    """Which ``Host`` headers are answered."""
+    """``Host`` headers the server accepts."""
 
     names: frozenset[str]
     """Host names and addresses, lower case, without port."""
     by_address: bool = False
-    """Also the very address a connection came to, which no foreign name can be."""
+    """Also accept the address a connection came to, which no foreign name can be."""
 
-    def answer(self, name: str, scope: Scope) -> bool:
-        """Whether a request for this name is answered."""
+    def accepts(self, name: str, scope: Scope) -> bool:
+        """Whether a request with this host name is accepted."""
         came_to = (scope.get("server") or ("",))[0]
         return name in self.names or (self.by_address and bool(name) and name == came_to)
 
 
 class OriginMiddleware:
-    """Turns away foreign hosts and origins and whoever is not signed in; adds the headers."""
+    """Rejects foreign hosts and origins and callers without a session; adds security headers."""
 
     def __init__(self, app: ASGIApp, *, hosts: Hosts, login: bool, pinned: bool = False) -> None:
         self._app = SessionMiddleware(app) if login else app
@@ -71,11 +71,11 @@ class OriginMiddleware:
             return
         send = self._with_headers(scope, send)
         scope.setdefault("state", {}).update(person=LOCAL, signed_in_s=0.0)
-        if (refusal := judge(scope, self._hosts)) is None:
+        if (rejection := judge(scope, self._hosts)) is None:
             await self._app(scope, receive, send)
         else:
-            await note(scope, refusal)
-            await answer(refusal, scope, receive, send)
+            await note(scope, rejection)
+            await answer(rejection, scope, receive, send)
 
     def _with_headers(self, scope: Scope, send: Send) -> Send:
         private = self._login and scope["path"].startswith("/api/")
@@ -92,15 +92,15 @@ class OriginMiddleware:
 
 
 def judge(scope: Scope, hosts: Hosts) -> Rejection | None:
-    """The refusal of a request, None if it may pass.
+    """The rejection of a request, None if it may pass.
 
     Args:
         scope: The ASGI scope of a request or WebSocket.
-        hosts: The host names the server answers to.
+        hosts: The host names the server accepts.
     """
     headers = Headers(scope=scope)
     named = headers.getlist("host")
-    if len(named) != 1 or not hosts.answer(hostname(named[0]), scope):
+    if len(named) != 1 or not hosts.accepts(hostname(named[0]), scope):
         return Rejection(400, "Refused", "this server does not answer to that host name")
     origins = headers.getlist("origin")
     secure = scope["scheme"] in ("https", "wss")
@@ -110,14 +110,14 @@ def judge(scope: Scope, hosts: Hosts) -> Rejection | None:
         # Browsers always send Origin or Sec-Fetch-Site with these; scripts send neither.
         allowed = headers.get("sec-fetch-site", "same-origin") == "same-origin"
     if scope["type"] == "http" and scope["method"] in SAFE_METHODS:
-        allowed = allowed or _is_visit(scope, headers)
+        allowed = allowed or _is_navigation(scope, headers)
     if allowed:
         return None
     return Rejection(403, "Refused", "requests from other sites are not accepted")
 
 
-def _is_visit(scope: Scope, headers: Headers) -> bool:
-    """Whether a request that another site caused may pass: a person who follows a link to a page.
+def _is_navigation(scope: Scope, headers: Headers) -> bool:
+    """Whether a request that another site caused is a person who follows a link to a page.
 
     A page of another site may not make the server compute: an image, a frame, a download or a
     redirect to ``/api/`` would start an export, and cookies are not even needed on loopback.

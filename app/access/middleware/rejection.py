@@ -1,4 +1,4 @@
-"""Turning a request or WebSocket away, and noting it."""
+"""Rejecting a request or WebSocket, and writing that to the audit log."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from app.access.audit import audit
 
 @dataclass(frozen=True, slots=True)
 class Rejection:
-    """Why a request is turned away."""
+    """Why a request is rejected."""
 
     status: int
     error: str
@@ -23,23 +23,24 @@ class Rejection:
     headers: dict[str, str] = field(default_factory=dict)
 
 
-async def answer(refusal: Rejection, scope: Scope, receive: Receive, send: Send) -> None:
-    """Say no."""
+async def answer(rejection: Rejection, scope: Scope, receive: Receive, send: Send) -> None:
+    """Send the rejection as the response, or close the WebSocket."""
     if scope["type"] == "websocket":
         await receive()
-        await send({"type": "websocket.close", "code": 1008, "reason": refusal.detail})
+        await send({"type": "websocket.close", "code": 1008, "reason": rejection.detail})
         return
-    body = json.dumps({"error": refusal.error, "detail": refusal.detail}).encode()
+    body = json.dumps({"error": rejection.error, "detail": rejection.detail}).encode()
     headers = {"content-type": "application/json", "content-length": str(len(body))}
     raw = [
-        (name.lower().encode(), text.encode()) for name, text in (headers | refusal.headers).items()
+        (name.lower().encode(), text.encode())
+        for name, text in (headers | rejection.headers).items()
     ]
-    await send({"type": "http.response.start", "status": refusal.status, "headers": raw})
+    await send({"type": "http.response.start", "status": rejection.status, "headers": raw})
     await send({"type": "http.response.body", "body": body})
 
 
-async def note(scope: Scope, refusal: Rejection) -> None:
-    """Put it into the audit log."""
-    what = f"{scope.get('method', 'WebSocket')} {scope['path']}: {refusal.detail}"
+async def note(scope: Scope, rejection: Rejection) -> None:
+    """Write a rejection to the audit log."""
+    what = f"{scope.get('method', 'WebSocket')} {scope['path']}: {rejection.detail}"
     connection = HTTPConnection(scope)
     await asyncio.to_thread(audit, connection, "request", what, outcome="refused")

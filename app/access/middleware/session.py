@@ -1,4 +1,4 @@
-"""Sessions at the door: lets through who is signed in, and ends what outlives its session."""
+"""Session middleware: requires a session, and ends requests that outlive their session."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from app.access.middleware.rejection import Rejection, answer, note
 from app.access.people import NOBODY
 
 COOKIE = "__Host-sid"
-"""Browsers take a cookie of such a name only over TLS, for this very host and the whole of it."""
+"""Browsers accept a ``__Host-`` cookie only over TLS, for this host alone and its root path."""
 BROWSER_COOKIE = "__Host-browser"
 FORM_HEADER = "X-Recon4-Token"
 
 PAIRING = frozenset({"/pair", "/api/pairing/redeem", "/api/pairing/requests", "/api/pairing/claim"})
 OPEN_PATHS = PAIRING | {"/login", "/api/login", "/api/setup", "/healthz", "/metrics"}
-"""What is answered without a session, besides the files of `OPEN_FOLDER`; tested."""
+"""Paths answered without a session, besides the files of `OPEN_FOLDER`; tested."""
 OPEN_FOLDER = "/web/"
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 
@@ -33,7 +33,7 @@ TOKEN = re.compile(r"[A-Za-z0-9_-]{43}")
 
 
 class SessionMiddleware:
-    """Finds the session of each request; in front of the application where there is a login."""
+    """Finds the session of each request; used where there is a login."""
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
@@ -45,32 +45,32 @@ class SessionMiddleware:
             return
         access: Access = scope["app"].state.parts.access
         token = cookie(scope, COOKIE)
-        visit = await find(access, token)
+        authenticated = await find(access, token)
         state = scope["state"]
         state.update(person=NOBODY, signed_in_s=float("inf"), session=None)
-        if visit is not None:
-            session = visit.session
+        if authenticated is not None:
+            session = authenticated.session
             signed_in_s = access.sessions.age_s(session)
-            state.update(person=visit.person, signed_in_s=signed_in_s, session=session)
+            state.update(person=authenticated.person, signed_in_s=signed_in_s, session=session)
             state["form_token"] = form_token(token)
-        if (refusal := self._judge(scope, visit)) is not None:
-            if refusal.status == 403:
-                await note(scope, refusal)
-            await answer(refusal, scope, receive, send)
-        elif visit is None:
+        if (rejection := self._judge(scope, authenticated)) is not None:
+            if rejection.status == 403:
+                await note(scope, rejection)
+            await answer(rejection, scope, receive, send)
+        elif authenticated is None:
             await self._app(scope, receive, send)
         else:
-            if access.sessions.unnoted(visit.session):
-                await asyncio.to_thread(access.sessions.note, visit.session)
-            await SessionMonitor(access, visit.session, scope).run(self._app, receive, send)
+            if access.sessions.unnoted(authenticated.session):
+                await asyncio.to_thread(access.sessions.note, authenticated.session)
+            await SessionMonitor(access, authenticated.session, scope).run(self._app, receive, send)
 
-    def _judge(self, scope: Scope, visit: AuthenticatedSession | None) -> Rejection | None:
+    def _judge(self, scope: Scope, authenticated: AuthenticatedSession | None) -> Rejection | None:
         path = scope["path"]
-        if path.startswith(OPEN_FOLDER) or (visit is None and path in OPEN_PATHS):
+        if path.startswith(OPEN_FOLDER) or (authenticated is None and path in OPEN_PATHS):
             return None
-        if visit is None:
+        if authenticated is None:
             return sign_in_first(scope)
-        if wait_s := self._requests.take(visit.session.id):
+        if wait_s := self._requests.take(authenticated.session.id):
             retry = {"Retry-After": str(int(wait_s) + 1)}
             return Rejection(429, "TooMany", "too many requests at a time", retry)
         if scope["type"] == "http" and scope["method"] not in SAFE_METHODS:
@@ -90,18 +90,18 @@ class SessionMonitor:
         self._active = False
 
     async def run(self, app: ASGIApp, receive: Receive, send: Send) -> None:
-        """Until the application is done, or the session is over."""
+        """Run the application until it is done or the session has ended."""
 
-        async def hear() -> Message:
+        async def receive_and_note() -> Message:
             message = await receive()
             self._active |= message["type"] == "websocket.receive"
             return message
 
-        async def tell(message: Message) -> None:
+        async def send_and_note(message: Message) -> None:
             self._notice(message)
             await send(message)
 
-        running = asyncio.ensure_future(app(self._scope, hear, tell))
+        running = asyncio.ensure_future(app(self._scope, receive_and_note, send_and_note))
         try:
             while not (await asyncio.wait({running}, timeout=LOOK_AGAIN_S))[0]:
                 if self._begun and not await asyncio.to_thread(self._still):
@@ -114,7 +114,7 @@ class SessionMonitor:
         await running
 
     def _still(self) -> bool:
-        """Whether the session goes on; messages of a browser keep it from going idle."""
+        """Whether the session is still valid; messages of a browser keep it from going idle."""
         session = self._access.sessions.alive(self._session.id)
         if session is not None and self._active and self._access.sessions.unnoted(session):
             self._active = False
@@ -138,12 +138,12 @@ class SessionMonitor:
             return
         if self._scope["type"] == "websocket":
             await send({"type": "websocket.close", "code": 1008, "reason": "signed out"})
-        elif not self._sized:  # else the server cuts the connection: the file is not whole
+        elif not self._sized:  # else the server closes the connection: the file is incomplete
             await send({"type": "http.response.body", "body": b"", "more_body": False})
 
 
 async def find(access: Access, token: str) -> AuthenticatedSession | None:
-    """The session of a token; the database is asked in a thread."""
+    """The session of a token; the database is queried in a thread."""
     if not TOKEN.fullmatch(token):
         return None
     return access.sessions.cached_sessions(token) or await asyncio.to_thread(
@@ -163,11 +163,11 @@ def cookie(scope: Scope, name: str) -> str:
 
 
 def sign_in_first(scope: Scope) -> Rejection:
-    """Lead a person to the login, tell a program."""
+    """Redirect a browser to the login; answer a program with status 401."""
     accept = Headers(scope=scope).get("accept", "")
     page = scope["type"] == "http" and scope["method"] == "GET" and "text/html" in accept
     if not page:
         return Rejection(401, "Unknown", "sign in first: POST /api/login")
-    # A paired phone knows no password: the page of pairing has both ways in.
+    # A paired phone knows no password: the pairing page offers both.
     there = "/pair" if scope["path"] == "/live" else f"/login#next={quote(scope['path'])}"
     return Rejection(303, "Unknown", "sign in first", {"Location": there})

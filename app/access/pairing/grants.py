@@ -1,13 +1,13 @@
-"""Letting a phone in without a password: a QR code on the laptop, or a code of six digits.
+"""Pairing: signing in a phone without a password, with a QR code or a code of six digits.
 
-Two ways, both begun or confirmed by somebody who is signed in with a password. What the phone gets
-is a session of that person with a role of its own, which may not be more than the person's.
+Both ways are begun or confirmed by a person who is signed in with a password. The phone gets a
+session of that person with a role of its own, which may not exceed the person's.
 
 - **Invitation**: a token of 128 random bits, shown as a QR code; for one phone, two minutes long.
-- **Request**: the phone shows six digits and waits; somebody signed in types them where they are.
-  The digits alone are worth nothing: the phone redeems a secret of its own, which nobody sees.
+- **Request**: the phone shows six digits and waits; a signed-in person types them on the laptop.
+  The digits alone are worth nothing: the phone redeems a secret of its own, which is not shown.
 
-All of it is kept in memory and gone with the server; only hashes of tokens are kept.
+Everything is kept in memory and ends with the server; only hashes of tokens are kept.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ REQUEST_S = 300.0
 MOST_OPEN = 20
 """Invitations, and requests, that wait at the same time …"""
 MOST_OPEN_A_NETWORK = 4
-"""… of which requests from one address: nobody fills the list alone."""
+"""… of which requests from one address, so that one client cannot fill the list."""
 TRIES_A_MINUTE = 10
 LONGEST_NAME = 64
 PHONE_ROLES = (Role.OPERATOR, Role.VIEWER)
@@ -41,16 +41,16 @@ Open = TypeVar("Open", "Invitation", "PhoneRequest")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PairingGrant:
-    """What a phone was allowed."""
+    """The session a phone is granted."""
 
     person: str
-    """Who let it in."""
+    """The person who paired the phone."""
     role: Role
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Invitation:
-    """Shown as a QR code, for one phone."""
+    """An invitation for one phone, shown as a QR code."""
 
     grant: PairingGrant
     until_s: float
@@ -62,25 +62,25 @@ class PhoneRequest:
 
     code: str
     name: str
-    """What the phone calls itself."""
+    """Name that the phone gave."""
     address: str
     until_s: float
     grant: PairingGrant | None = None
-    """What it was allowed; None = it waits."""
+    """What it was granted; None = it waits."""
 
 
 @dataclass(frozen=True, slots=True)
 class PairingRequest:
-    """What a phone gets that asks to be let in."""
+    """The response to a phone that requests pairing."""
 
     code: str
-    """Six digits, to be shown."""
+    """Six digits that the phone shows."""
     token: str = field(repr=False)
-    """To be redeemed, not to be shown."""
+    """Secret that the phone redeems and does not show."""
 
 
 class Pairings:
-    """All invitations and requests of a server; safe to call from any thread."""
+    """All invitations and requests of a server; thread-safe."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
@@ -90,10 +90,10 @@ class Pairings:
         self._tries = TokenBuckets(burst=TRIES_A_MINUTE, per_s=TRIES_A_MINUTE / 60, clock=clock)
 
     def invite(self, maker: Person, role: Role) -> str:
-        """A one-time token for one phone; it is kept nowhere.
+        """A one-time token for one phone; it is stored nowhere.
 
         Raises:
-            Refused: If the phone would be allowed more than who invites it.
+            Refused: If the phone would be granted more than its inviter has.
             TooMany: If too many invitations are open.
         """
         grant = grant_of(maker, role)
@@ -107,11 +107,11 @@ class Pairings:
         return token
 
     def redeem(self, token: str, address: str) -> PairingGrant:
-        """Use an invitation up.
+        """Redeem an invitation, once.
 
         Raises:
-            Refused: If it was used, is too old, or never was.
-            TooMany: If there were too many tries from there.
+            Refused: If it was used, has expired, or never existed.
+            TooMany: If there were too many attempts from that network.
         """
         self._try(("redeem", network(address)))
         with self._lock:
@@ -122,11 +122,11 @@ class Pairings:
         return invitation.grant
 
     def ask(self, name: str, address: str) -> PairingRequest:
-        """A phone asks to be let in.
+        """Request pairing for a phone.
 
         Raises:
             Refused: If the name is too long.
-            TooMany: If too many wait, or it asks too often.
+            TooMany: If too many phones wait, or this one sends too many requests.
         """
         if len(name) > LONGEST_NAME:
             raise Refused(f"the name of a phone has at most {LONGEST_NAME} characters")
@@ -136,7 +136,7 @@ class Pairings:
             _drop_old(self._requests, self._clock())
             from_there = [r for r in self._requests.values() if network(r.address) == place]
             if len(self._requests) >= MOST_OPEN or len(from_there) >= MOST_OPEN_A_NETWORK:
-                raise TooMany("too many phones wait to be let in", retry_after_s=REQUEST_S)
+                raise TooMany("too many phones wait to be paired", retry_after_s=REQUEST_S)
             taken = {request.code for request in self._requests.values()}
             code = _code(taken)
             token = secrets.token_urlsafe(16)
@@ -149,12 +149,12 @@ class Pairings:
         return PairingRequest(code, token)
 
     def approve(self, code: str, maker: Person, role: Role) -> PhoneRequest:
-        """Let the phone in that shows a code.
+        """Approve the request of the phone that shows a code.
 
         Raises:
-            Refused: If it would be allowed more than who lets it in.
+            Refused: If the phone would be granted more than its approver has.
             NotFound: If no phone shows that code.
-            TooMany: If there were too many tries.
+            TooMany: If there were too many attempts.
         """
         grant = grant_of(maker, role)
         self._try(("approve", maker.name))
@@ -167,41 +167,43 @@ class Pairings:
         raise NotFound("no phone shows that code now; they are good for five minutes")
 
     def claim(self, token: str) -> PairingGrant | None:
-        """What a phone was allowed that asked, once; None = it still waits.
+        """What a waiting phone was granted, returned once; None = it still waits.
 
         Raises:
-            Refused: If it never asked, waited too long, or was let in already.
+            Refused: If there is no such request, it has expired, or it was granted already.
         """
         key = hash_of(token)
         with self._lock:
             _drop_old(self._requests, self._clock())
             request = self._requests.get(key)
             if request is None:
-                raise Refused("nobody let this phone in within five minutes; ask again")
+                raise Refused(
+                    "this phone was not approved within five minutes; request pairing again"
+                )
             if request.grant is not None:
                 del self._requests[key]
             return request.grant
 
     def _try(self, key: tuple[str, str]) -> None:
         if wait_s := self._tries.take(key):
-            raise TooMany("too many tries; wait a moment", retry_after_s=wait_s)
+            raise TooMany("too many attempts; wait a moment", retry_after_s=wait_s)
 
 
 def roles_for(maker: Person) -> list[Role]:
-    """What phones a person may let in."""
+    """Roles with which a person may pair phones."""
     return [
         role for role in PHONE_ROLES if maker.may(Permission.LOOK) and MAY[role] <= MAY[maker.role]
     ]
 
 
 def grant_of(maker: Person, role: Role) -> PairingGrant:
-    """What a phone is allowed that a person lets in.
+    """The grant for a phone that a person pairs.
 
     Raises:
-        Refused: If that is more than the person may, or no role of phones.
+        Refused: If the role exceeds the person's, or is none for phones.
     """
     if role not in roles_for(maker):
-        raise Refused(f"{maker.name} is a {maker.role} here and may not let in a phone as {role}")
+        raise Refused(f"{maker.name} is a {maker.role} here and may not pair a phone as {role}")
     return PairingGrant(person=maker.name, role=role)
 
 

@@ -1,4 +1,4 @@
-"""HTTP face of pairing: the laptop's side and the phone's."""
+"""HTTP routes of pairing: the laptop's side and the phone's."""
 
 from __future__ import annotations
 
@@ -39,30 +39,30 @@ router = APIRouter(
     },
 )
 ALLOW_ANONYMOUS = [Depends(allow_anonymous)]
-LET_IN = [Depends(needs(Permission.LOOK)), Depends(interactive_login)]
+MANAGE_PHONES = [Depends(needs(Permission.LOOK)), Depends(interactive_login)]
 
 
 class NewInvitation(Wire):
-    """What the phone may."""
+    """Role for the phone."""
 
     role: Role
 
 
 class Token(Wire):
-    """What the phone was given."""
+    """Token that the phone was given."""
 
     token: Text
 
 
 class NewRequest(Wire):
-    """A phone that wants in."""
+    """A phone that requests pairing."""
 
     name: Annotated[Name, Field(max_length=64)] = ""
-    """What it calls itself."""
+    """Name of the phone."""
 
 
 class PairingApproval(Wire):
-    """The digits a phone shows, and what it may."""
+    """The digits a phone shows, and the role for it."""
 
     code: Annotated[str, Field(pattern=r"^[0-9]{6}$")]
     role: Role
@@ -70,41 +70,41 @@ class PairingApproval(Wire):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PairingView:
-    """What a person can do about phones."""
+    """Pairing options of a person."""
 
     login: bool
-    """Whether phones can be let in at all: else the server listens to this computer only."""
+    """Whether phones can be paired; else the server listens on this computer only."""
     roles: list[Role]
-    """What phones this person may let in."""
+    """Roles with which this person may pair phones."""
     fingerprint: str
     """SHA-256 of the certificate, to compare on the phone."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PairingLink:
-    """A way for the phone to this computer."""
+    """A URL by which the phone reaches this computer."""
 
     host: str
     url: str
     """With the one-time token in its fragment, which browsers send nowhere."""
     qr: str
-    """The same as a picture: an SVG as data URI."""
+    """QR code of the URL: an SVG image as data URI."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class InvitationView:
-    """An invitation to be shown."""
+    """An invitation as the laptop shows it."""
 
     links: list[PairingLink]
     """One for each address of this computer, the likeliest first; all are the same invitation."""
     seconds: float
-    """So long it is good."""
+    """Time until it expires [s]."""
     role: Role
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PairingRequestView:
-    """What a phone shows, and what it keeps to itself."""
+    """The code that a phone shows, and the token that it keeps secret."""
 
     code: str
     token: str
@@ -113,24 +113,26 @@ class PairingRequestView:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Approved:
-    """The phone that was let in."""
+    """The phone that was approved."""
 
     name: str
     address: str
 
 
-@router.get("", dependencies=LET_IN, summary="How phones get in")
+@router.get("", dependencies=MANAGE_PHONES, summary="Pairing options")
 def read_pairing(server: Server, who: Who) -> PairingView:
-    """What this person can do about phones, and the certificate they should see."""
+    """Roles this person may give to phones, and the fingerprint of the certificate."""
     fingerprint = presented_fingerprint(server.settings)
     return PairingView(
         login=server.access.login, roles=roles_for(who), fingerprint=fingerprint or ""
     )
 
 
-@router.post("/invitations", status_code=201, dependencies=LET_IN, summary="A QR code for a phone")
+@router.post(
+    "/invitations", status_code=201, dependencies=MANAGE_PHONES, summary="Invite a phone (QR code)"
+)
 def invite(new: NewInvitation, request: Request, server: Server, who: Who) -> InvitationView:
-    """A one-time link for one phone, good for two minutes."""
+    """Create a one-time link for one phone, valid for two minutes."""
     _with_login(server)
     token = server.access.pairings.invite(who, new.role)
     audit(request, "invite phone", new.role)
@@ -138,9 +140,9 @@ def invite(new: NewInvitation, request: Request, server: Server, who: Who) -> In
     return InvitationView(links=links, seconds=INVITATION_S, role=new.role)
 
 
-@router.post("/redeem", dependencies=ALLOW_ANONYMOUS, summary="Use an invitation")
+@router.post("/redeem", dependencies=ALLOW_ANONYMOUS, summary="Redeem an invitation")
 def redeem(given: Token, request: Request, response: Response, server: Server) -> Me:
-    """The phone's side of the QR code; the answer sets the cookie of the session."""
+    """Redeem the token of a QR code; the response sets the session cookie of the phone."""
     _with_login(server)
     _signed_out(request)
     try:
@@ -151,18 +153,18 @@ def redeem(given: Token, request: Request, response: Response, server: Server) -
     return enter_paired(server.access, request, response, grant=grant)
 
 
-@router.post("/requests", status_code=201, dependencies=ALLOW_ANONYMOUS, summary="Ask to be let in")
+@router.post("/requests", status_code=201, dependencies=ALLOW_ANONYMOUS, summary="Request pairing")
 def ask(new: NewRequest, request: Request, server: Server) -> PairingRequestView:
-    """Six digits to show; somebody who is signed in types them at ``/phone``."""
+    """Request pairing with six digits; a signed-in person types them at ``/phone``."""
     _with_login(server)
     _signed_out(request)
     asked = server.access.pairings.ask(new.name, address(request))
     return PairingRequestView(code=asked.code, token=asked.token, seconds=REQUEST_S)
 
 
-@router.post("/claim", dependencies=ALLOW_ANONYMOUS, summary="Was this phone let in?")
+@router.post("/claim", dependencies=ALLOW_ANONYMOUS, summary="Claim a pairing")
 def claim(given: Token, request: Request, response: Response, server: Server) -> Me | None:
-    """Null while the phone waits; once it is let in the answer sets the cookie of the session."""
+    """Claim the session of a phone: null while it waits; once approved, sets the session cookie."""
     _with_login(server)
     _signed_out(request)
     grant: PairingGrant | None = server.access.pairings.claim(given.token)
@@ -171,26 +173,26 @@ def claim(given: Token, request: Request, response: Response, server: Server) ->
     return enter_paired(server.access, request, response, grant=grant)
 
 
-@router.post("/approve", dependencies=LET_IN, summary="Let in the phone that shows these digits")
+@router.post("/approve", dependencies=MANAGE_PHONES, summary="Approve a phone")
 def approve(given: PairingApproval, request: Request, server: Server, who: Who) -> Approved:
-    """Type the digits somebody reads to you from a phone you see."""
+    """Approve the phone that shows these digits; check that you see the phone."""
     _with_login(server)
     try:
         found = server.access.pairings.approve(given.code, Person(who.name, who.role), given.role)
     except AppError as error:
-        audit(request, "let in phone", str(error), outcome="failed")
+        audit(request, "approve phone", str(error), outcome="failed")
         raise
-    audit(request, "let in phone", f"{found.name} at {found.address}, {given.role}")
+    audit(request, "approve phone", f"{found.name} at {found.address}, {given.role}")
     return Approved(name=found.name, address=found.address)
 
 
 def _with_login(server: Server) -> None:
     if not server.access.login:
-        raise Conflict("this server listens to this computer only; start it with --lan for phones")
+        raise Conflict("this server listens on this computer only; start it with --lan for phones")
 
 
 def _signed_out(request: Request) -> None:
-    """A link must not make somebody who is signed in somebody else."""
+    """Reject a signed-in browser: a link must not sign it in as another person."""
     if request.scope["state"].get("session") is not None:
         raise Refused("this browser is signed in already")
 
@@ -201,7 +203,7 @@ def _note_failure(request: Request, server: Server, why: str) -> None:
 
 
 def _hosts(request: Request) -> list[str]:
-    """Names under which a phone finds this computer, the likeliest first."""
+    """Host names under which a phone reaches this computer, the likeliest first."""
     asked = request.url.hostname or ""
     own = sorted(one for one in own_addresses() if not ipaddress.ip_address(one).is_loopback)
     if asked in LOOPBACK or asked.startswith("127."):

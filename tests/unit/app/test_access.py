@@ -152,13 +152,13 @@ def test_the_last_admin_stays_and_what_failed_changed_nothing(access):
 def test_who_is_disabled_is_out_at_once_and_cannot_come_back(access, logins):
     access.accounts.add("Anna", Role.ADMIN, PASSWORD)
     access.accounts.add("Vera", Role.VIEWER, PASSWORD)
-    token = logins.enter("Vera", PASSWORD, HERE).session
+    token = logins.sign_in("Vera", PASSWORD, HERE).session
 
     access.accounts.set_disabled("Vera", True)
 
     assert access.sessions.find(token) is None
     with pytest.raises(WrongPassword):
-        logins.enter("Vera", PASSWORD, HERE)
+        logins.sign_in("Vera", PASSWORD, HERE)
 
 
 # -- throttling
@@ -214,38 +214,38 @@ def test_1000_guesses_get_few_tries_and_the_owner_behind_the_same_address_still_
     access, logins, clock
 ):
     access.accounts.add("Anna", Role.ADMIN, PASSWORD)
-    known = logins.enter("Anna", PASSWORD, HERE).browser
+    known = logins.sign_in("Anna", PASSWORD, HERE).browser
     outcomes = []
     for _ in range(1000):
         clock.now_s += 1.0
         with pytest.raises((WrongPassword, TooMany)) as refused:
-            logins.enter("Anna", "wrong", HERE)
+            logins.sign_in("Anna", "wrong", HERE)
         outcomes.append(refused.type)
 
     assert outcomes.count(WrongPassword) < 20
     owner = LoginOrigin(address=HERE.address, agent="", browser=known)
-    assert logins.enter("Anna", PASSWORD, owner).account.name == "Anna"
+    assert logins.sign_in("Anna", PASSWORD, owner).account.name == "Anna"
     clock.now_s += 900.0  # no ban is for ever
-    assert logins.enter("Anna", PASSWORD, HERE).account.name == "Anna"
+    assert logins.sign_in("Anna", PASSWORD, HERE).account.name == "Anna"
 
 
 def test_many_names_from_one_address_are_throttled_together(access, logins, clock):
     outcomes = []
     for k in range(300):
         with pytest.raises((WrongPassword, TooMany)) as refused:
-            logins.enter(f"person {k}", "wrong", HERE)
+            logins.sign_in(f"person {k}", "wrong", HERE)
         outcomes.append(refused.type)
 
     assert outcomes.count(WrongPassword) == 100
     clock.now_s += 3600.0
     with pytest.raises(WrongPassword):
-        logins.enter("somebody", "wrong", HERE)
+        logins.sign_in("somebody", "wrong", HERE)
 
 
 def test_a_known_browser_is_known_for_its_person_only(access, logins):
     for name in ("Anna", "Bert"):
         access.accounts.add(name, Role.ADMIN, PASSWORD)
-    annas = logins.enter("Anna", PASSWORD, HERE).browser
+    annas = logins.sign_in("Anna", PASSWORD, HERE).browser
 
     assert access.sessions.knows_browser(annas, "anna")
     assert not access.sessions.knows_browser(annas, "Bert")
@@ -425,5 +425,5 @@ def test_a_certificate_and_a_key_that_do_not_fit_are_refused(tmp_path):
 
 
 def test_who_is_not_there_is_told(access):
-    with pytest.raises(NotFound, match="nobody is called"):
+    with pytest.raises(NotFound, match="no account is named"):
         access.accounts.get("Anna")

@@ -78,7 +78,7 @@ def test_fifty_phones_with_one_invitation_are_one(pairings):
 def test_a_phone_never_may_more_than_who_lets_it_in(pairings, maker, roles):
     assert roles_for(maker) == roles
     for role in set(Role) - set(roles):
-        with pytest.raises(Refused, match="may not let in"):
+        with pytest.raises(Refused, match="may not pair"):
             pairings.invite(maker, role)
         with pytest.raises(Refused):
             pairings.approve("000000", maker, role)
