@@ -1,4 +1,4 @@
-"""SQLite files of the server: what is committed lasts; the schema is the newest migration's."""
+"""SQLite files of the server: durable commits, and a schema of the newest migration."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from alembic.config import Config
 
 
 def open_engine(path: Path) -> sa.Engine:
-    """An engine for a file; what is committed survives a power cut."""
+    """An engine for a file; a commit survives a power cut."""
     engine = sa.create_engine(f"sqlite:///{path}")
     sa.event.listen(engine, "connect", _make_durable)
     return engine
 
 
 def migrate(connection: sa.Connection, package: Path) -> None:
-    """Make the schema that of the newest migration in ``package/migrations``."""
+    """Migrate the schema to the newest migration in ``package/migrations``."""
     config = Config()
     config.set_main_option("script_location", str(package / "migrations"))
     config.attributes["connection"] = connection

@@ -1,4 +1,4 @@
-"""What the routes share: the parts of the running server."""
+"""Dependencies of the routes: the parts of the running server."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from app.viewer.pool import ViewerPool
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Parts:
-    """One of each for a server."""
+    """The parts of a server, one of each."""
 
     settings: ServerSettings
     access: Access

@@ -1,4 +1,4 @@
-"""``openapi.json``: what the framework knows of the routes, who may call each, how to sign in."""
+"""``openapi.json``: the routes, the permission each requires, and how to sign in."""
 
 from __future__ import annotations
 
@@ -13,37 +13,37 @@ from fastapi import FastAPI
 from app.access.middleware.session import COOKIE, FORM_HEADER
 from app.access.routes_check import declared
 
-WORDS = """Everything the pages do. Errors answer `{"error", "detail"}`; `detail` is for people.
-`x-needs` of an operation names the right it takes (empty = none); which role has which right is in
-`docs/access.md`, one's own rights are in `/api/me`."""
+INTRODUCTION = """The HTTP interface of the pages. The body of an error is `{"error", "detail"}`;
+`detail` is a text for users. `x-needs` of an operation names the permission it requires (empty =
+none). `docs/access.md` lists the permissions of each role, `/api/me` those of the caller."""
 SCHEMES = {
     "session": {"type": "apiKey", "in": "cookie", "name": COOKIE},
     "token": {
         "type": "apiKey",
         "in": "header",
         "name": FORM_HEADER,
-        "description": "`token` of `/api/me` or of the login, for whatever is not GET",
+        "description": "`token` of `/api/me` or of the login; required unless the method is GET",
     },
 }
-"""Only where people sign in; without `--lan` neither is asked for."""
+"""Required with `--lan` only."""
 CLASS = re.compile(r"^class (?P<name>\w+).*\n(?P<body>(?:(?: {4}.*)?\n)+)", re.MULTILINE)
 FIELD = re.compile(
     r'^ {4}(?P<name>\w+): .*\n(?: {8}.*\n| {4}[)\]].*\n)* {4}"""(?P<text>(?:.|\n)*?)"""',
     re.MULTILINE,
 )
 """Read as text: the parser of Python may not be called while others call it (3.11)."""
-OUR_PROBLEM = {"application/json": {"schema": {"$ref": "#/components/schemas/Problem"}}}
+OUR_PROBLEM = {"application/json": {"schema": {"$ref": "#/components/schemas/ProblemDetail"}}}
 
 
 def description(app: FastAPI) -> dict[str, Any]:
-    """The OpenAPI description of an application whose routes say who may use them."""
-    described = app.openapi()  # kept by the framework: what follows changes nothing the second time
-    described["info"]["description"] = WORDS
+    """The OpenAPI description of an application, with the permission of each operation."""
+    described = app.openapi()  # cached by the framework: the changes below are idempotent
+    described["info"]["description"] = INTRODUCTION
     parts = described["components"]
     parts["securitySchemes"] = SCHEMES
     for name in ("HTTPValidationError", "ValidationError"):  # ours are problems like all others
         parts["schemas"].pop(name, None)
-    _tell_fields(parts["schemas"])
+    _describe_fields(parts["schemas"])
     needed = {
         (route.path, method.lower()): sorted(route.needs)
         for route in declared(app)
@@ -57,18 +57,18 @@ def description(app: FastAPI) -> dict[str, Any]:
     return described
 
 
-def _tell_fields(schemas: dict[str, Any]) -> None:
-    """Put the text below each field of a record's class into the record's description."""
+def _describe_fields(schemas: dict[str, Any]) -> None:
+    """Copy the docstring below each field of a class into its schema."""
     for name, record in _documented(set(schemas)):
         fields = schemas[name].get("properties", {})
         if not record.keys() <= fields.keys():
             continue  # another class of the same name
-        for field, words in record.items():
-            fields[field].setdefault("description", words)
+        for field, text in record.items():
+            fields[field].setdefault("description", text)
 
 
 def _documented(names: set[str]) -> Iterator[tuple[str, dict[str, str]]]:
-    """Our classes of some names, each with the texts below its fields."""
+    """Classes of our own with these names, each with the docstrings of its fields."""
     ours = [module for name, module in sys.modules.items() if name.startswith(("app.", "recon4."))]
     for module in ours:
         try:

@@ -1,24 +1,24 @@
 """Errors of the server, and the one place where errors become HTTP.
 
     AppError
-    ├── WeakPassword         422  a password that is guessed first
+    ├── WeakPassword         422  a password that is too easy to find
     ├── NotFound             404  no such project, job or file
     ├── Conflict             409  not possible in the present state
     │   └── IllegalTransition     a job cannot go from its state to that one
-    ├── Unknown              401  nobody is signed in
+    ├── Unknown              401  not signed in
     │   ├── WrongPassword         wrong name or password
-    │   └── SignInAgain           the password must be given once more
-    ├── Refused              403  outside of what the server or this person may touch
-    ├── TooMany              429  too often, or too much at a time
-    ├── BadRequest           400  the request makes no sense
-    ├── TooLarge             413  more bytes than the server takes
-    ├── NoRoom               507  the disk has no room for it
+    │   └── SignInAgain           the password must be given again
+    ├── Refused              403  not permitted for the server or this person
+    ├── TooMany              429  too many requests, or too many at a time
+    ├── BadRequest           400  the request is malformed
+    ├── TooLarge             413  more bytes than the server accepts
+    ├── NoRoom               507  not enough disk space
     ├── ViewerFailed         503  the 3-D viewer does not start
     ├── ComputeFailed        503  a helper process died or took too long
     └── ClientLeft           499  the client disconnected; nobody reads the answer
 
-A `Recon4Error` of the library is the fault of the input: 422. What the framework refuses (fields
-of the wrong kind, addresses that are none) is answered in the same form.
+A `Recon4Error` of the library means wrong input: 422. Errors of the framework (fields of the wrong
+type, unknown paths) get a response of the same form.
 """
 
 from __future__ import annotations
@@ -44,31 +44,31 @@ from recon4.errors import Recon4Error, WrongSettings
 log = logging.getLogger(__name__)
 
 LOST = Path(__file__).parents[1] / "web" / "shared" / "lost.html"
-"""The page for people where there is none for them; ``{title}`` and ``{detail}`` are filled in."""
+"""The error page of browsers; ``{title}`` and ``{detail}`` are filled in."""
 TITLES = {403: "Not for you", 404: "There is nothing here"}
-FRAMEWORK_WORDS: Mapping[int, str] = {
+FRAMEWORK_MESSAGES: Mapping[int, str] = {
     404: "there is no such address on this server",
     405: "this address does not take that method",
 }
-OUTSIDE_OF_THE_GUARD = {
+HEADERS_OF_FAILURES = {
     "Content-Security-Policy": "default-src 'self'; frame-ancestors 'self'",
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
     "Cache-Control": "no-store",
 }
-"""Headers of the answer to a failure of our own, which the framework sends past the guard."""
+"""Headers of the response to an internal error, which the framework sends past the middleware."""
 
 
 class AppError(Exception):
-    """Base of the tree above; the message is fit to be shown."""
+    """Base of the tree above; the message may be shown to users."""
 
     status: ClassVar[int] = 500
     headers: Mapping[str, str] = MappingProxyType({})
-    """Sent with the answer."""
+    """Headers of the response."""
 
 
 class WeakPassword(AppError):
-    """A password that is guessed first."""
+    """A password that is too easy to find."""
 
     status = 422
 
@@ -90,7 +90,7 @@ class IllegalTransition(Conflict):
 
 
 class Unknown(AppError):
-    """Nobody is signed in."""
+    """Not signed in."""
 
     status = 401
 
@@ -100,17 +100,17 @@ class WrongPassword(Unknown):
 
 
 class SignInAgain(Unknown):
-    """The password must be given once more."""
+    """The password must be given again."""
 
 
 class Refused(AppError):
-    """Outside of what the server or this person may touch."""
+    """Not permitted for the server or this person."""
 
     status = 403
 
 
 class TooMany(AppError):
-    """Too often, or too much at a time; may say when it can be tried again."""
+    """Too many requests, or too many at a time; may carry the time to wait."""
 
     status = 429
 
@@ -121,19 +121,19 @@ class TooMany(AppError):
 
 
 class BadRequest(AppError):
-    """The request makes no sense."""
+    """The request is malformed."""
 
     status = 400
 
 
 class TooLarge(AppError):
-    """More bytes than the server takes."""
+    """More bytes than the server accepts."""
 
     status = 413
 
 
 class NoRoom(AppError):
-    """The disk has no room for it."""
+    """Not enough disk space."""
 
     status = 507
 
@@ -157,18 +157,18 @@ class ClientLeft(AppError):
 
 
 class ProblemDetail(BaseModel):
-    """What every error answers."""
+    """The response body of every error."""
 
     error: str
     """Name of the error."""
     detail: str
-    """What is wrong and what to do, for people."""
+    """What is wrong and what to do, as text for users."""
     problems: dict[str, str] = {}
-    """Field -> what is wrong with it, when several fields are."""
+    """Field -> its problem, where several fields have one."""
 
 
 def install(app: FastAPI) -> None:
-    """Answer every error as a `ProblemDetail`, to a browser that wants a page as a page."""
+    """Answer every error with a `ProblemDetail`, or with a page where a browser requests one."""
 
     @app.exception_handler(AppError)
     async def known(request: Request, error: AppError) -> Response:
@@ -186,37 +186,37 @@ def install(app: FastAPI) -> None:
 
     @app.exception_handler(RequestValidationError)
     async def wrong_form(_: Request, error: RequestValidationError) -> JSONResponse:
-        return _problem(422, "Invalid", "; ".join(_field_words(one) for one in error.errors()))
+        return _problem(422, "Invalid", "; ".join(_field_message(one) for one in error.errors()))
 
     @app.exception_handler(HTTPException)
     async def refused(request: Request, error: HTTPException) -> Response:
         status = HTTPStatus(error.status_code)
-        words = FRAMEWORK_WORDS.get(status, str(error.detail))
+        message = FRAMEWORK_MESSAGES.get(status, str(error.detail))
         if _wants_page(request):
-            return _page(status, words, error.headers)
+            return _page(status, message, error.headers)
         return _problem(
-            status, status.phrase.title().replace(" ", ""), words, headers=error.headers
+            status, status.phrase.title().replace(" ", ""), message, headers=error.headers
         )
 
     @app.exception_handler(Exception)
     async def our_own(request: Request, error: Exception) -> Response:
         number = secrets.token_hex(4)
         log.error("error %s in %r", number, request.scope["path"], exc_info=error)
-        words = f"the server failed; the log says why under {number}"
+        message = f"internal error {number}: the server log has the cause under this number"
         if _wants_page(request):
-            return _page(500, words, OUTSIDE_OF_THE_GUARD)
-        return _problem(500, "InternalError", words, headers=OUTSIDE_OF_THE_GUARD)
+            return _page(500, message, HEADERS_OF_FAILURES)
+        return _problem(500, "InternalError", message, headers=HEADERS_OF_FAILURES)
 
 
-def _field_words(problem: Mapping[str, Any]) -> str:
-    """One mistake of a form: ``recordings: List should have at least 1 item``."""
+def _field_message(problem: Mapping[str, Any]) -> str:
+    """Message about one field: ``recordings: List should have at least 1 item``."""
     place: Sequence[Any] = problem["loc"]
     named = ".".join(map(str, place[1:])) or str(place[0])
     return f"{named}: {problem['msg']}"
 
 
 def _wants_page(request: Request) -> bool:
-    """Whether a person's browser asks for a page."""
+    """Whether a browser requests a page."""
     accepts = "text/html" in request.headers.get("accept", "")
     return request.method == "GET" and accepts and not request.scope["path"].startswith("/api/")
 

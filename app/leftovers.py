@@ -1,4 +1,4 @@
-"""What a server that was killed left behind: ended and removed before the next one starts."""
+"""Leftovers of a killed server: ended and removed before the next one starts."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ log = logging.getLogger(__name__)
 
 
 def child_register(settings: ServerSettings) -> ChildRegister:
-    """Where the children of a server are registered."""
+    """The register of a server's child processes."""
     return ChildRegister(settings.state / "children")
 
 
 def sweep_leftovers(settings: ServerSettings) -> None:
     """End processes and remove sockets and unfinished files of an earlier server.
 
-    Call it only while this server holds the folder (`app.network.listen.only_one`). Job workers and
-    the processes of a live capture are no leftovers: they go on, and the server takes them over.
+    Call it only while this server has the folder's lock (`app.network.listen.only_one`). Workers of
+    jobs and processes of a live capture are no leftovers: they go on, and the server adopts them.
     """
     killed = child_register(settings).end_leftovers()
     if killed:

@@ -1,7 +1,7 @@
 """The log of a process: one line a record, without control characters, limited in rate and size.
 
-Whoever reaches the port can cause log records: a malformed request, a failed handshake. Records
-that repeat are counted instead of written, and files rotate, so that nobody can fill the disk.
+Anyone who reaches the port can cause log records: a malformed request, a failed handshake. Records
+that repeat are counted instead of written, and files rotate, so that a client cannot fill the disk.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ RECORDS_A_MINUTE = 200
 """Records of one logger written within a minute, of whatever kind."""
 MAX_MESSAGE_CHARS = 4000
 MOST_KINDS = 1000
-"""Kinds of records that are remembered; the longest unused are forgotten beyond that."""
+"""Kinds of records that are remembered; beyond that the least recently used are forgotten."""
 
 
 def printable(text: str) -> str:
@@ -51,7 +51,7 @@ class RepeatFilter(logging.Filter):
         """Records dropped since the start."""
 
     def filter(self, record: logging.LogRecord) -> bool:
-        """Whether to write a record; asked by several handlers it answers each the same."""
+        """Whether to write a record; the result is the same for every handler."""
         known: bool | None = getattr(record, "is_written", None)
         if known is None:
             known = record.is_written = self._judge(record)
@@ -124,13 +124,13 @@ class QuietRotatingFile(RotatingFileHandler):
         self.failures += 1
 
     def close(self) -> None:
-        """Close; what a full disk does not take is lost."""
+        """Close; records that a full disk cannot take are lost."""
         with suppress(OSError):
             super().close()
 
 
 class Logs:
-    """The handlers of a process, and what they left out."""
+    """The log handlers of a process, with counts of dropped records."""
 
     def __init__(self, file: Path | None = None, *, level: int = logging.WARNING) -> None:
         """Prepare.
@@ -167,7 +167,7 @@ class Logs:
 
     @contextmanager
     def installed(self) -> Iterator[None]:
-        """Write what the root logger gets meanwhile."""
+        """Install the handlers at the root logger for the duration."""
         root = logging.getLogger()
         before = root.level
         root.setLevel(self._level)

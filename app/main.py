@@ -35,7 +35,7 @@ from app.leftovers import child_register, sweep_leftovers
 from app.live import routes as live_routes
 from app.live.store import Captures
 from app.logs import Logs
-from app.maintenance import look_after, rotate_logs
+from app.maintenance import maintain, rotate_logs
 from app.metrics import Metrics, MetricsMiddleware
 from app.network.connections import (
     ConnectionLimits,
@@ -137,11 +137,11 @@ def serve(
     Args:
         settings: Where and how.
         open_project: The project whose page the URL leads to; None = the list.
-        on_ready: Called once, as soon as the server listens, with the URL and what else people
-            have to know: other URLs, the certificate's fingerprint, how to make the first admin.
+        on_ready: Called once, as soon as the server listens, with the URL and the startup notice:
+            other URLs, the certificate's fingerprint, how to create the first admin.
 
     Raises:
-        ConfigError: If ``root`` does not hold projects, or the certificate is none.
+        ConfigError: If ``root`` is not a folder of projects, or the certificate is not valid.
         StoreError: If it cannot listen there, or another server runs on the same folder.
     """
     raise_file_limit()
@@ -159,7 +159,7 @@ def serve(
             )
 
         server = AnnouncingServer(uvicorn_config(app, certificate), ready)
-        # uvicorn shuts down in order, then raises what it caught once more: by then all is done
+        # uvicorn shuts down in order, then raises the signal again: by then all is done
         signal.signal(signal.SIGTERM, lambda *_: None)
         logs: Logs = app.state.logs
         with logs.installed():
@@ -169,8 +169,8 @@ def serve(
 @asynccontextmanager
 async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None]:
     make_state(settings)
-    for words in open_state(settings.state):
-        log.error("%s: %s; recon4 verify %s lists all", STATE, words, settings.root)
+    for problem in open_state(settings.state):
+        log.error("%s: %s; recon4 verify %s lists all", STATE, problem, settings.root)
     access = open_access(settings.state, login=settings.lan)
     jobs = JobStore(settings.state / "jobs.sqlite")
     supervisor = Supervisor(jobs, settings)
@@ -208,7 +208,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
     app.state.metrics.follow(app.state.parts)
     watching = [
         asyncio.create_task(supervisor.run()),
-        asyncio.create_task(look_after(jobs, uploads, trash, slices)),
+        asyncio.create_task(maintain(jobs, uploads, trash, slices)),
         asyncio.create_task(rotate_logs(settings.state, jobs, captures)),
         asyncio.create_task(captures.adopt()),
     ]
@@ -239,7 +239,7 @@ def _viewer_limits(settings: ServerSettings) -> StreamLimits:
 
 
 def _import_folders(settings: ServerSettings) -> ImportFolders:
-    """What requests may name: folders of recordings without what is the server's own."""
+    """Folders of recordings that requests may name, without the server's own files."""
     private = [settings.state, *([settings.tls_key] if settings.tls_key else [])]
     return ImportFolders(settings.import_roots, private=private)
 
@@ -249,7 +249,7 @@ def _add_pages(app: FastAPI) -> None:
 
     @app.get("/healthz", tags=["server"], dependencies=anyone)
     async def healthz() -> dict[str, str]:
-        """Whether the server answers."""
+        """Health check: whether the server answers."""
         return {"status": "ok", "version": __version__}
 
     @app.get("/openapi.json", include_in_schema=False, dependencies=REQUIRES_LOOK)

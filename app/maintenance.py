@@ -1,4 +1,4 @@
-"""What has to be done now and then: sweep uploads and trash, copy the queue, rotate logs."""
+"""Periodic maintenance: sweep uploads and trash, back up the queue, rotate logs."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ log = logging.getLogger(__name__)
 
 EVERY_S = 3600.0
 ROTATE_LOGS_S = 20.0
-"""How often the logs of workers, viewers and captures are looked at [s]."""
+"""Interval of checking the logs of workers, viewers and captures [s]."""
 
 
-async def look_after(jobs: JobStore, uploads: UploadStore, trash: Trash, slices: Slices) -> None:
-    """Do it at once and every hour, until cancelled; a failure is logged and tried again."""
+async def maintain(jobs: JobStore, uploads: UploadStore, trash: Trash, slices: Slices) -> None:
+    """Sweep and back up every hour, until cancelled; a failure is logged and retried."""
     while True:
         for task in (
             jobs.back_up,
@@ -40,7 +40,7 @@ async def look_after(jobs: JobStore, uploads: UploadStore, trash: Trash, slices:
 
 
 async def rotate_logs(state: Path, jobs: JobStore, captures: Captures) -> None:
-    """Keep the logs other processes append to within their size, until cancelled."""
+    """Rotate the logs that other processes append to, until cancelled."""
     while True:
         try:
             for path in await asyncio.to_thread(lambda: list(growing_logs(state, jobs, captures))):

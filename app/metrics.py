@@ -30,7 +30,7 @@ from recon4 import __version__
 
 METHODS = frozenset({"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"})
 UNROUTED = "(none)"
-"""Label of what no route answers; a client could make up any number of paths."""
+"""Label of requests without a route; a client could invent any number of paths."""
 BUCKETS_S = (0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0)
 
 disable_created_metrics()  # type: ignore[no-untyped-call]
@@ -103,7 +103,7 @@ class MetricsMiddleware:
 
 
 class _Request:
-    """What is known of one request."""
+    """Measurements of one request."""
 
     def __init__(self, metrics: HttpMetrics, scope: Scope) -> None:
         self._metrics, self._scope = metrics, scope
@@ -127,7 +127,7 @@ class _Request:
         self._answered = True
 
     def failed(self) -> None:
-        """The application raised: the framework answers with status 500, out of our sight."""
+        """The application raised: count the status 500 that the framework sends outside of this."""
         if not self._answered and self._scope["type"] == "http":
             self._respond(500)
 
@@ -138,7 +138,7 @@ class _Request:
 
     @property
     def _route(self) -> str:
-        """Template of the route; known only when the application has looked it up."""
+        """Template of the route; known only after the application has matched it."""
         route = getattr(self._scope.get("route"), "path", None)
         if route is None:
             return "/web" if self._scope["path"].startswith("/web/") else UNROUTED

@@ -1,4 +1,4 @@
-"""HTTP face of the metrics, and the token that lets a program read them."""
+"""HTTP route of the metrics, and the token with which a program reads them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ router = APIRouter()
 
 
 def make_metrics_token(state: Path, *, renew: bool = False) -> str:
-    """The token for ``/metrics``, made if there is none yet.
+    """The token for ``/metrics``, created if there is none yet.
 
     Args:
         state: Folder of the server's own files; exists.
@@ -43,11 +43,11 @@ def make_metrics_token(state: Path, *, renew: bool = False) -> str:
 
 
 def may_read_metrics(request: Request) -> None:
-    """A dependency that lets admins pass, and programs with the token.
+    """A dependency that admits admins, and programs with the token.
 
     Raises (when called by the framework):
-        Unknown: If nobody is signed in and the token is missing or wrong.
-        Refused: If who is signed in is no admin.
+        Unknown: If the caller is not signed in and the token is missing or wrong.
+        Refused: If the signed-in person is not an admin.
     """
     who: Person = person(request)
     if who.may(Permission.ADMINISTER) or _has_token(request):

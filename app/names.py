@@ -1,4 +1,4 @@
-"""Names and notes in requests: kinds of fields that refuse characters nobody sees."""
+"""Names and notes in requests: field types that reject invisible characters."""
 
 from __future__ import annotations
 
@@ -18,6 +18,6 @@ def _note(text: str) -> str:
 
 
 Name = Annotated[str, AfterValidator(_name)]
-"""One line that people read; the field's own limits of length come on top."""
+"""One line of text; the field's own limits of length apply too."""
 Note = Annotated[str, AfterValidator(_note)]
-"""Some lines that people read."""
+"""Some lines of text."""

@@ -1,4 +1,4 @@
-"""Rig files of users: looked at in a child, never parsed in the server first."""
+"""Rig files of users: parsed in a confined child, never in the server."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from app.network.request_caller import Caller
 from recon4.model.rig import load_rig
 
 LIMIT_S = 20.0
-"""A rig file that takes longer to parse is refused [s]; it has at most 128 KiB."""
+"""A rig file that takes longer to parse is rejected [s]; it has at most 128 KiB."""
 
 
 async def check_rig_file(pool: ComputePool, caller: Caller, path: Path) -> None:
-    """See that a file is a rig.
+    """Check that a file is a rig.
 
     Raises:
-        ConfigError: If it is none, in words.
+        ConfigError: If it is not a rig file.
         ComputeFailed: If it takes too long to parse.
     """
     terms = Terms(person=caller.name, access=FileAccess(read=(path,)), limit_s=LIMIT_S)

@@ -1,4 +1,4 @@
-"""HTTP face of the server itself: what people should know of it."""
+"""HTTP route of the server itself: version, disk space, notices."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from recon4 import __version__
 router = APIRouter(prefix="/api", tags=["server"], dependencies=[Depends(needs(Permission.LOOK))])
 
 LITTLE_ROOM = 0.1
-"""Less than this share of the disk free is worth a word."""
+"""Free fraction of the disk below which a notice is shown."""
 
 
 class ServerView(BaseModel):
@@ -27,12 +27,12 @@ class ServerView(BaseModel):
     reserve_bytes: int
     """Uploads and jobs leave this much free."""
     notices: list[str]
-    """What people should know, in words; mostly empty."""
+    """Notices for users; mostly empty."""
 
 
 @router.get("/server", summary="The server")
 def read_server(server: Server) -> ServerView:
-    """Version, room on the disk, and what people should know."""
+    """Version of the server, disk space, and notices for users."""
     disk = shutil.disk_usage(server.settings.root)
     notices = [server.jobs.notice] if server.jobs.notice else []
     if disk.free < max(LITTLE_ROOM * disk.total, server.settings.reserve_bytes):

@@ -14,7 +14,7 @@ from recon4.sandbox import allowed_environment
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServerSettings:
-    """What a server is started with."""
+    """Settings with which a server is started."""
 
     root: Path
     """Folder that holds the project folders."""
@@ -35,45 +35,45 @@ class ServerSettings:
     running_jobs: int = 1
     """Jobs that run at the same time; the others wait."""
     attempts: int = 3
-    """A job whose worker died this often is given up."""
+    """A job whose worker died this many times fails."""
     hung_after_s: float = 120.0
     """A worker that makes no progress for this long is killed, ten times later where a stage
     computes on its own data [s]."""
     stop_within_s: float = 10.0
     """A worker asked to stop is killed after this long [s]."""
     viewer_idle_s: float = 600.0
-    """A viewer nobody looks at ends after this long [s]."""
+    """A viewer without browsers ends after this long [s]."""
     viewer_points: int = 3_000_000
-    """At most so many points of a map are sent to one browser; phones get fewer."""
+    """Point budget of one browser; phones get fewer."""
     viewer_sockets: int = 32
-    """At most so many viewers are open at the same time."""
+    """Most viewers open at the same time."""
     viewer_sockets_a_person: int = 8
-    """At most so many of them belong to one person."""
+    """Most of them per person."""
     max_connections: int = 1024
-    """At most this many connections are open; fewer where the limit of open files is low."""
+    """Most open connections; fewer where the limit of open files is low."""
     max_connections_per_address: int = 256
-    """At most this many of them come from one address; phones behind one router share it."""
+    """Most of them per address; phones behind one router share an address."""
     worker: str = "app.jobs.worker"
     """Module run for a job."""
     max_body_bytes: int = 1 << 20
-    """Larger request bodies are refused [bytes]."""
+    """Largest request body [bytes]."""
     waiting_jobs: int = 20
-    """So many jobs may wait for their turn; more are refused."""
+    """Most jobs in the queue; more are rejected."""
     memory_bytes: int = 0
-    """A worker may take so much memory [bytes]; 0 = 70 % of this computer's."""
+    """Most memory of a worker [bytes]; 0 = 70 % of this computer's."""
     reserve_bytes: int = 2 << 30
-    """Uploads and jobs leave at least this much of the disk free [bytes]."""
+    """Disk space that uploads and jobs leave free [bytes]."""
     upload_bytes: int = 100_000_000_000
-    """Larger uploads are refused [bytes]."""
+    """Largest upload [bytes]."""
     open_uploads: int = 16
-    """So many uploads may be unfinished."""
+    """Most unfinished uploads."""
     upload_stale_s: float = 7 * 86400.0
-    """An upload nothing comes for is given up after this long [s]."""
+    """An upload without new data is removed after this long [s]."""
     trash_s: float = 7 * 86400.0
-    """A deleted project can be brought back for this long [s]."""
+    """A deleted project can be restored for this long [s]."""
 
     live_address: str = "0.0.0.0"
-    """Of the network card the sensors of a live capture send to; 0.0.0.0 = any."""
+    """Address of the network interface for the sensors of a live capture; 0.0.0.0 = any."""
 
     def __post_init__(self) -> None:
         if not self.lan:
@@ -94,7 +94,7 @@ class ServerSettings:
 
     @property
     def state(self) -> Path:
-        """Folder of the server's own files: jobs, locks, pictures."""
+        """Folder of the server's own files: jobs, locks, thumbnails."""
         return self.root / ".recon4"
 
     @property
@@ -116,7 +116,7 @@ def names_from_environment() -> tuple[str, ...]:
 
 
 def worker_environment() -> dict[str, str]:
-    """What a child process inherits: no secrets, one thread a library, our modules and no others.
+    """Environment of a child process: no secrets, one thread a library, our modules and no others.
 
     Python would look for modules in the folder the server was started in, where users keep files.
     """

@@ -1,4 +1,4 @@
-"""Copies of the queue, one a day, and what is done when the queue is found damaged."""
+"""Backups of the queue, one a day, and their use when the queue is damaged."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Backups:
         self._folder = path.parent / "backups"
 
     def make(self) -> None:
-        """Copy the file as it is now, once a day; the oldest copies go."""
+        """Copy the file once a day; remove the oldest copies."""
         today = self._folder / f"{self._path.stem}-{datetime.now(UTC):%Y-%m-%d}.sqlite"
         if today.exists():
             return
@@ -35,10 +35,10 @@ class Backups:
             old.unlink()
 
     def repair(self) -> str:
-        """Put the newest whole copy in the place of a damaged file, which is kept aside.
+        """Replace a damaged file by the newest intact backup; the damaged one is renamed and kept.
 
         Returns:
-            What was done and lost, in words; empty when nothing was damaged.
+            A notice about what was restored and lost; empty when nothing was damaged.
         """
         if not self._path.exists() or (damage := damage_of(self._path)) == "":
             return ""
@@ -49,7 +49,7 @@ class Backups:
             beside = self._path.with_name(self._path.name + suffix)
             if beside.exists():
                 beside.rename(aside.with_name(aside.name + suffix))
-        notice = f"The list of jobs was damaged ({damage}); it lies aside as {aside.name}. "
+        notice = f"The list of jobs was damaged ({damage}); it is kept as {aside.name}. "
         notice += self._restore()
         log.error(notice)
         return notice
@@ -61,13 +61,13 @@ class Backups:
                     part.write_bytes(copy.read_bytes())
                 day = copy.stem.removeprefix(f"{self._path.stem}-")
                 return (
-                    f"The copy of {day} is in its place: jobs started after it are not listed any "
-                    "more. Projects and recordings are untouched; start such a job again and it "
-                    "goes on after its last finished stage."
+                    f"The backup of {day} replaces it: jobs started later are no longer listed. "
+                    "Projects and recordings are unchanged; start such a job again and it "
+                    "continues after its last finished stage."
                 )
         return (
-            "There is no whole copy, so the list begins anew. Projects and recordings are "
-            "untouched; start a job again and it goes on after its last finished stage."
+            "There is no intact backup, so the list is empty. Projects and recordings are "
+            "unchanged; start a job again and it continues after its last finished stage."
         )
 
     def _all(self) -> list[Path]:
@@ -76,10 +76,10 @@ class Backups:
 
 
 def damage_of(path: Path) -> str:
-    """What SQLite finds wrong with a file; empty = nothing.
+    """The first problem of SQLite's quick check of a file; empty = none.
 
     Raises:
-        StoreError: If it cannot be looked at.
+        StoreError: If the file cannot be opened.
     """
     try:
         with closing(sqlite3.connect(path)) as connection:

@@ -1,4 +1,4 @@
-"""HTTP face of what a job may choose from: presets, rigs, every setting with its meaning."""
+"""HTTP routes of the choices of a new job: presets, rigs, every setting with its meaning."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ UNITS = {
 
 
 class Choices(BaseModel):
-    """What a new job may choose from."""
+    """Presets and rigs of a new job."""
 
     presets: list[str]
     rigs: list[str]
@@ -47,13 +47,13 @@ class SettingView(BaseModel):
     kind: str
     """``int``, ``float``, ``text``, ``bool`` or ``choice``."""
     choices: list[str]
-    """Of a ``choice``."""
+    """Values of a ``choice``."""
     unit: str
     text: str
     """What it means."""
     default: Any
     value: Any
-    """In the preset asked for."""
+    """Value in the requested preset."""
 
 
 class GroupView(BaseModel):
@@ -65,7 +65,7 @@ class GroupView(BaseModel):
 
 
 class Assignments(BaseModel):
-    """Settings somebody thinks of."""
+    """Settings to be checked."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -75,28 +75,28 @@ class Assignments(BaseModel):
 
 
 class SettingsCheck(BaseModel):
-    """What is wrong with them."""
+    """Result of checking settings."""
 
     problems: dict[str, str]
-    """``group.field`` -> what is wrong and what was expected, in words; empty = all is well."""
+    """``group.field`` -> the problem and the expected value; empty = all are valid."""
 
 
 @router.get("/choices", summary="Presets and rigs")
 def read_choices() -> Choices:
-    """Presets and shipped rigs a job may name."""
+    """List the presets and the shipped rigs for a new job."""
     return Choices(presets=list(PRESETS), rigs=rig_presets())
 
 
 @router.get("/settings", summary="Every setting")
 def read_settings(of: str = "indoor") -> list[GroupView]:
-    """Every setting with its meaning, unit, default and its value in the preset ``of``."""
+    """List every setting with meaning, unit, default, and value in the preset ``of``."""
     values = to_json(preset(of))
     return [_group(group, values[group.name]) for group in _described()]
 
 
 @router.post("/settings/check", summary="Check settings")
 def check_settings(given: Assignments) -> SettingsCheck:
-    """Whether a job would take these settings; every mistake is named."""
+    """Check whether a job would accept these settings; lists every problem."""
     chosen = preset(given.preset)
     try:
         override(chosen, given.settings)
@@ -116,13 +116,13 @@ def _group(group: GroupHelp, values: dict[str, Any]) -> GroupView:
 
 
 def _setting(one: SettingHelp, value: Any) -> SettingView:
-    words = re.findall(r"`([^`]*)`", one.kind)
-    truth = words == ["true", "false"]
+    values = re.findall(r"`([^`]*)`", one.kind)
+    truth = values == ["true", "false"]
     return SettingView(
         path=one.path,
         name=one.name,
-        kind="bool" if truth else "choice" if words else one.kind,
-        choices=[] if truth else words,
+        kind="bool" if truth else "choice" if values else one.kind,
+        choices=[] if truth else values,
         unit=unit_of(one.name),
         text=_plain(one.text),
         default=one.default,

@@ -1,4 +1,4 @@
-"""Compile the kernels once, on data of our own, before the first worker reads a user's file.
+"""Compile the kernels once, on simulated data, before the first worker reads a user's file.
 
 A confined worker must not write code that other processes load, so what it compiles is lost with
 it. On a new installation the first worker therefore starts a small simulated walk through the
@@ -24,7 +24,7 @@ BEAT_EVERY_S = 1.0
 
 
 def compile_kernels_once(scratch: Path, heartbeat: Path) -> None:
-    """Fill the shared cache of compiled kernels if nothing is in it; a failure is only logged.
+    """Fill the shared cache of compiled kernels if it is empty; a failure is only logged.
 
     Args:
         scratch: Folder for the simulated walk, made when missing.

@@ -1,10 +1,10 @@
-"""How a worker that did not say its last word ended, for people."""
+"""Texts about how a worker ended that wrote no outcome."""
 
 from __future__ import annotations
 
 import signal
 
-WORDS = {
+REASONS = {
     signal.SIGKILL: "was killed from outside; often the memory of the computer was not enough",
     signal.SIGSEGV: "crashed in native code (segmentation fault)",
     signal.SIGABRT: "was given up by native code (abort)",
@@ -15,8 +15,8 @@ WORDS = {
 }
 
 
-def ending(code: int | None) -> str:
-    """What became of a worker, from its exit code; None = nobody saw it end."""
+def exit_reason(code: int | None) -> str:
+    """How a worker ended, from its exit code; None = no server saw it end."""
     if code is None:
         return "died while no server watched"
     if code >= 0:
@@ -25,4 +25,4 @@ def ending(code: int | None) -> str:
         kind = signal.Signals(-code)
     except ValueError:
         return f"was ended by signal {-code}"
-    return f"{WORDS.get(kind, 'was ended')} [{kind.name}]"
+    return f"{REASONS.get(kind, 'was ended')} [{kind.name}]"

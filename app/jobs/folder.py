@@ -1,15 +1,15 @@
-"""The folder through which server and worker talk: plain files, so either may die at any time.
+"""The folder through which server and worker communicate: plain files, so either may die any time.
 
 request.json    the job, written by the server before the worker starts
-lock            held (flock) by the worker as long as it lives; the kernel lets go of it
+lock            locked (flock) by the worker while it lives; the kernel releases it
 pid             the worker's process and group
 heartbeat       touched by the worker when its work advances
-cancel          made by the server: please stop
-events.jsonl    how far it is (`app.jobs.events`), appended by the worker
-log.txt         what the worker said
-room            some bytes that make way for the last words when the disk is full
-tmp             the worker's temporary files; emptied when it is gone
-outcome.json    how it ended, written last and whole
+cancel          created by the server: request to stop
+events.jsonl    progress (`app.jobs.events`), appended by the worker
+log.txt         output of the worker
+room            reserved bytes, freed for the outcome when the disk is full
+tmp             the worker's temporary files; emptied when it has ended
+outcome.json    how it ended, written last and atomically
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ MOST_REPLY_BYTES = 64 << 10
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outcome:
-    """How a worker ended on its own."""
+    """How a worker ended by itself."""
 
     state: Literal["succeeded", "failed", "cancelled"]
     note: str = ""
@@ -47,11 +47,11 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
-    """What a worker may take of this computer."""
+    """Resource limits of a worker."""
 
     memory_bytes: int
     reserve_bytes: int
-    """It does not begin when less of the disk than this would stay free."""
+    """Disk space that must stay free; otherwise the worker does not begin."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +66,7 @@ class JobFolder:
         return self.path / "tmp"
 
     def prepare(self, inputs: Inputs, project: Path, limits: Limits) -> None:
-        """Write the request; clear what an earlier attempt left."""
+        """Write the request; remove the files of an earlier attempt."""
         make_folders(self.path)
         for path in self.path.iterdir():
             if path.is_dir() and not path.is_symlink():  # none of ours but the temporary files
@@ -77,7 +77,7 @@ class JobFolder:
         write_json(self.path / "request.json", request)
 
     def sweep(self) -> None:
-        """Remove the temporary files of a worker that is gone."""
+        """Remove the temporary files of a worker that has ended."""
         shutil.rmtree(self.temporary, ignore_errors=True)
         (self.path / "room").unlink(missing_ok=True)
 
@@ -90,7 +90,7 @@ class JobFolder:
         return Path(request["project"]), Inputs(**inputs)
 
     def limits(self) -> Limits:
-        """What the worker may take."""
+        """Resource limits of the worker."""
         return Limits(**json.loads((self.path / "request.json").read_text("utf-8"))["limits"])
 
     @contextlib.contextmanager
@@ -103,7 +103,7 @@ class JobFolder:
             os.close(descriptor)
 
     def alive(self) -> bool:
-        """Whether a worker lives; never fooled by a process number used again."""
+        """Whether a worker is alive, by its lock: a reused process number does not matter."""
         with self.try_lock() as lock:
             return lock is None
 
@@ -114,12 +114,12 @@ class JobFolder:
         except FileNotFoundError:
             return 0
 
-    def ask_to_stop(self) -> None:
-        """Ask the worker to stop at its next unit of work."""
+    def request_stop(self) -> None:
+        """Request the worker to stop at its next unit of work."""
         (self.path / "cancel").touch()
 
-    def asked_to_stop_s(self) -> float | None:
-        """Seconds since the worker was asked to stop, None if it was not."""
+    def stop_requested_s(self) -> float | None:
+        """Seconds since the worker was requested to stop, None if it was not."""
         try:
             return time.time() - (self.path / "cancel").stat().st_mtime
         except FileNotFoundError:
@@ -133,14 +133,14 @@ class JobFolder:
                 os.killpg(number, sign)
 
     def end_orphans(self) -> None:
-        """End the children a dead worker left. Its number is not another's while they live."""
+        """End the children of a dead worker. Its process group id is not reused while they live."""
         number = self._group()
         if number is not None and _state(number) in ("", "Z"):
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(number, signal.SIGKILL)
 
     def _group(self) -> int | None:
-        """The worker's process group as it wrote it, None if that cannot be one."""
+        """The worker's process group from its file, None if that is not valid."""
         with contextlib.suppress(OSError, ValueError):
             number = int(_start(self.path / "pid"))
             if number > 1 and number != os.getpgrp():
@@ -148,25 +148,25 @@ class JobFolder:
         return None
 
     def keep_room(self) -> None:
-        """Take the room the last words need, while there is some."""
+        """Reserve the disk space that the outcome needs."""
         with (self.path / "room").open("wb") as file:
             file.write(bytes(KEPT_BYTES))
             os.fsync(file.fileno())
 
     def finish(self, outcome: Outcome) -> None:
-        """Say how it ended; the worker's last deed."""
+        """Write the outcome; the worker's last action."""
         (self.path / "room").unlink(missing_ok=True)
         write_json(self.path / "outcome.json", asdict(outcome))
 
     def outcome(self) -> Outcome | None:
-        """How it ended, None if it has not, was killed, or wrote something else."""
+        """The outcome; None if the worker runs, was killed, or wrote a malformed file."""
         try:
             return msgspec.json.decode(_start(self.path / "outcome.json"), type=Outcome)
         except (OSError, msgspec.DecodeError, RecursionError):
             return None
 
     def log_since(self, offset: int) -> tuple[str, int]:
-        """Whole lines of the log from a byte offset on, and the offset to ask from next time."""
+        """Whole lines of the log from a byte offset on, and the offset for the next call."""
         try:
             with (self.path / "log.txt").open("rb") as file:
                 if offset > file.seek(0, os.SEEK_END):
@@ -195,17 +195,17 @@ class JobFolder:
 
 
 def _start(path: Path) -> bytes:
-    """The first bytes of a file a worker wrote: all, unless something is wrong with it."""
+    """The first bytes of a file of a worker; all of them, unless it is too long."""
     with path.open("rb") as file:
         return file.read(MOST_REPLY_BYTES)
 
 
 def _is_worker_of(number: int, folder: Path) -> bool:
-    """Whether a process was started for a job's folder: the file with its number may lie."""
+    """Whether a process was started for a job's folder; the pid file may be wrong."""
     try:
         words = Path(f"/proc/{number}/cmdline").read_bytes().split(b"\0")
     except OSError:
-        return not Path("/proc/self").exists()  # macOS does not say
+        return not Path("/proc/self").exists()  # not available on macOS
     return os.fsencode(folder) in words
 
 
@@ -214,7 +214,7 @@ def _printable(line: str) -> str:
 
 
 def _state(number: int) -> str:
-    """What the kernel says of a process: a letter, ``Z`` for one that is over; empty = none."""
+    """State letter of a process, ``Z`` for a zombie; empty = no such process."""
     try:
         return Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[0]
     except (OSError, IndexError):

@@ -1,4 +1,4 @@
-"""What a worker may read, write and take of this computer."""
+"""Limits of a worker: files, memory, processor time."""
 
 from __future__ import annotations
 
@@ -13,26 +13,26 @@ from recon4.sandbox import Confinement, Policy, confine, restart_with_one_thread
 from recon4.sandbox.limits import physical_memory_bytes
 from recon4.sandbox.private_cache import use_private_cache
 
-SHARE_OF_MEMORY = 0.7
+MEMORY_FRACTION = 0.7
 MOST_FILES = 4096
 MOST_CPU_S = 96 * 3600
 """Of all threads together; a day of recording takes less."""
 LEAST_FILE_BYTES = 1 << 30
 NICENESS = 10
-"""Workers stand back, so that the pages answer while they work."""
+"""Workers run at low priority, so that the pages stay responsive."""
 
 
 def allowed_memory(setting_bytes: int) -> int:
-    """Memory a worker may take [bytes]: 70 % of this computer's, or less if the setting says so."""
-    most = int(SHARE_OF_MEMORY * physical_memory_bytes())
+    """Memory limit of a worker [bytes]: 70 % of this computer's, or the setting if that is less."""
+    most = int(MEMORY_FRACTION * physical_memory_bytes())
     return min(most, setting_bytes) if setting_bytes > 0 else most
 
 
 def worker_policy(folder: JobFolder) -> Policy:
-    """Read the files of the request and the kernels, write the project and the job's folder.
+    """The sandbox policy: read the job's inputs and the kernels, write the project and its folder.
 
-    Memory is limited where it is written (``RLIMIT_DATA``), not where it is addressed: a recording
-    larger than the memory is mapped and harmless. One file may take what the disk has free.
+    ``RLIMIT_DATA`` limits written memory, not mapped memory: mapping a recording larger than the
+    memory is harmless. One file may be as large as the free disk space.
     """
     project, inputs = folder.request()
     limits = folder.limits()
@@ -55,7 +55,7 @@ def prepare_worker(folder: JobFolder, policy: Policy) -> Confinement:
     """Confine this process to the policy of its job, before it opens a file of a user."""
     restart_with_one_thread()
     os.nice(NICENESS)
-    faulthandler.enable()  # a crash in native code says where in the log
+    faulthandler.enable()  # a crash in native code writes its stack to the log
     project, _ = folder.request()
     project.mkdir(parents=True, exist_ok=True)  # the kernel allows only paths that exist
     compile_kernels_once(folder.temporary / "compiling", folder.path / "heartbeat")

@@ -10,7 +10,7 @@ from app.errors import IllegalTransition
 
 
 class JobState(StrEnum):
-    """Where a job is in its life."""
+    """State of a job."""
 
     QUEUED = "queued"
     """Waits for its turn."""
@@ -35,13 +35,13 @@ TRANSITIONS: dict[JobState, frozenset[JobState]] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Inputs:
-    """What a job works on, with paths of this computer."""
+    """Inputs of a job, with paths of this computer."""
 
     recordings: tuple[str, ...]
     """Files or folders."""
     preset: str = "indoor"
     rig: str = ""
-    """Name of a shipped rig or path of a rig file; empty = guessed from the recording."""
+    """Name of a shipped rig or path of a rig file; empty = detected from the recording."""
     imu: str = ""
     """CSV file; empty = what the recording has."""
     gnss: str = ""
@@ -49,7 +49,7 @@ class Inputs:
     settings: tuple[str, ...] = ()
     """``group.field=value`` texts over the preset."""
     remake: bool = False
-    """Only make the map anew with the decisions that stand; the rest is how it was made first."""
+    """Only make the map again with the current decisions; the other inputs are unchanged."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,15 +64,15 @@ class Job:
     """UTC, ISO 8601."""
     state: JobState = JobState.QUEUED
     attempt: int = 0
-    """How many workers it has had."""
+    """Number of workers it has had."""
     started: str = ""
     finished: str = ""
     note: str = ""
-    """What went wrong or what to do, for people."""
+    """What went wrong and what to do, as text for users."""
 
     @property
     def over(self) -> bool:
-        """Whether it will not change any more."""
+        """Whether the state is final."""
         return not TRANSITIONS[self.state]
 
     def to(self, state: JobState, **changes: Any) -> Job:

@@ -1,4 +1,4 @@
-"""HTTP face of the jobs: parse, delegate, answer."""
+"""HTTP routes of the jobs."""
 
 from __future__ import annotations
 
@@ -43,22 +43,22 @@ REFUSALS: dict[int | str, dict[str, Any]] = {
 }
 
 LONGEST_QUIET_S = 15.0
-"""An event stream says at least every so often that it is still there [s]."""
+"""Longest interval between two messages of an event stream [s]."""
 
 
 class NewJob(BaseModel):
-    """What to process."""
+    """A job to be started."""
 
     model_config = ConfigDict(extra="forbid")
 
     project: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]{0,63}$")
-    """Name of the project's folder; a new one is made, an old one is run again."""
+    """Name of the project's folder; a new one is created, an existing project is run again."""
     recordings: list[str] = Field(min_length=1, max_length=16)
     """Files or folders of this computer."""
     preset: str = "indoor"
-    """Which settings to begin with: see `/api/choices`."""
+    """Preset of the settings: see `/api/choices`."""
     rig: str = ""
-    """Name of a shipped rig or path of a rig file; empty = guessed."""
+    """Name of a shipped rig or path of a rig file; empty = detected."""
     imu: str = ""
     """CSV file of this computer; empty = what the recording has."""
     gnss: str = ""
@@ -66,45 +66,47 @@ class NewJob(BaseModel):
     settings: list[str] = Field(default=[], max_length=300)
     """``group.field=value`` texts over the preset."""
     clone_of: str = Field(default="", max_length=64)
-    """A project whose finished stages the new one begins with, as far as they fit."""
+    """A project whose finished stages the new one reuses, as far as their inputs match."""
     only_new: bool = False
-    """Refuse if there is a project of that name, which would be run again otherwise."""
+    """Reject if a project of that name exists; otherwise it is run again."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JobView:
-    """A job and how far it is."""
+    """A job and its progress."""
 
     job: Job
     status: Status
     fraction: float | None
-    """Share of the piece of work in hand, None = not known."""
+    """Fraction of the current piece of work, None = not known."""
     overall: float
-    """Share of the whole run."""
+    """Fraction of the whole run."""
     overall_eta_s: float | None
-    """Time the whole run still takes [s], None = not known yet."""
+    """Remaining time of the whole run [s], None = not known yet."""
 
 
 class LogPiece(BaseModel):
-    """What a log says from some place on."""
+    """A piece of a log from a byte offset on."""
 
     text: str
     next: int
-    """Where to go on reading."""
+    """Byte offset for the next request."""
 
 
 @router.get("/jobs", summary="Newest jobs")
 def list_jobs(server: Server) -> list[JobView]:
-    """The newest job of each project."""
+    """List the newest job of each project."""
     return [_view(server, job) for job in server.jobs.latest().values()]
 
 
-@router.post("/jobs", status_code=201, responses=REFUSALS, dependencies=START, summary="Start")
+@router.post(
+    "/jobs", status_code=201, responses=REFUSALS, dependencies=START, summary="Start a job"
+)
 async def start_job(new: NewJob, server: Server, request: Request, caller: CalledBy) -> JobView:
-    """Put a job in the queue.
+    """Add a job to the queue.
 
-    On a project that exists, stages that do not depend on what changed are kept; so they are in a
-    new project with ``clone_of``.
+    On an existing project, stages that do not depend on a changed input are reused. ``clone_of``
+    does the same in a new project.
     """
     if new.rig and new.rig not in rig_presets():
         rig = await run_in_threadpool(server.projects.importable, new.rig)
@@ -113,7 +115,7 @@ async def start_job(new: NewJob, server: Server, request: Request, caller: Calle
 
 
 def add_job(new: NewJob, server: Parts, request: Request) -> JobView:
-    """Put a job in the queue; a rig file must have been checked."""
+    """Add a job to the queue; a rig file must have been checked."""
     inputs = _checked(new, server)
     _refuse_too_many(server)
     if new.only_new:
@@ -127,17 +129,17 @@ def add_job(new: NewJob, server: Parts, request: Request) -> JobView:
 
 @router.get("/jobs/{job_id}", summary="One job")
 def read_job(job_id: str, server: Server) -> JobView:
-    """A job with how far it is."""
+    """Read a job and its progress."""
     return _view(server, server.jobs.get(job_id))
 
 
 @router.get("/projects/{project_id}/jobs", summary="Jobs of a project")
 def jobs_of(project_id: str, server: Server) -> list[JobView]:
-    """All jobs of a project, the newest first: what it was made with."""
+    """List all jobs of a project with their inputs, the newest first."""
     return [_view(server, job) for job in server.jobs.of_project(project_id)]
 
 
-@router.post("/jobs/{job_id}/cancel", dependencies=PROCESS, summary="Cancel")
+@router.post("/jobs/{job_id}/cancel", dependencies=PROCESS, summary="Cancel a job")
 def cancel_job(job_id: str, server: Server, request: Request) -> JobView:
     """Stop a job; its finished stages are kept."""
     job = server.supervisor.cancel(server.jobs.get(job_id))
@@ -150,10 +152,10 @@ def cancel_job(job_id: str, server: Server, request: Request) -> JobView:
     status_code=201,
     responses=REFUSALS,
     dependencies=START,
-    summary="Resume",
+    summary="Resume a job",
 )
 def retry_job(job_id: str, server: Server, request: Request) -> JobView:
-    """Run the same again as a new job; it goes on after the last finished stage."""
+    """Run the same again as a new job; it continues after the last finished stage."""
     job = server.jobs.get(job_id)
     _refuse_hidden(server, job.inputs)
     _refuse_too_many(server)
@@ -171,7 +173,7 @@ def retry_job(job_id: str, server: Server, request: Request) -> JobView:
     summary="Make a new map",
 )
 def remake(project_id: str, server: Server, request: Request) -> JobView:
-    """Put the decisions about loops into the map: only what depends on them is run.
+    """Apply the decisions about loop closures to the map: runs only the stages that depend on them.
 
     Neither the recording nor an earlier job of this server is needed.
     """
@@ -187,11 +189,11 @@ def remake(project_id: str, server: Server, request: Request) -> JobView:
 
 @router.get("/jobs/{job_id}/log", response_class=PlainTextResponse, summary="Log")
 def read_log(job_id: str, server: Server, lines: Annotated[int, Query(ge=1, le=5000)] = 200) -> str:
-    """The last lines of a job's log."""
+    """Read the last lines of a job's log."""
     return server.supervisor.folder(server.jobs.get(job_id).id).log_tail(lines=lines)
 
 
-@router.get("/jobs/{job_id}/log/since", summary="Log as it grows")
+@router.get("/jobs/{job_id}/log/since", summary="New lines of a log")
 def follow_log(
     job_id: str, server: Server, offset: Annotated[int, Query(ge=0, le=1 << 40)] = 0
 ) -> LogPiece:
@@ -200,18 +202,18 @@ def follow_log(
     return LogPiece(text=text, next=following)
 
 
-@router.get("/jobs/{job_id}/log/file", response_class=FileResponse, summary="Log as a file")
+@router.get("/jobs/{job_id}/log/file", response_class=FileResponse, summary="Download a log")
 def download_log(job_id: str, server: Server) -> FileResponse:
-    """The whole log, as a download."""
+    """Download the whole log."""
     job = server.jobs.get(job_id)
     path = server.supervisor.folder(job.id).path / "log.txt"
     if not path.exists():
-        raise NotFound("this job has said nothing yet")
+        raise NotFound("this job has no log yet")
     return FileResponse(path, filename=f"{job.project}-log.txt", media_type="text/plain")
 
 
 def _event_place(request: Request, server: Server) -> Iterator[None]:
-    """A place among the event streams (dependency); held until the stream ends."""
+    """A slot of the event streams (dependency), released when the stream ends."""
     with server.event_streams.place(request):
         yield
 
@@ -221,12 +223,12 @@ def _event_place(request: Request, server: Server) -> Iterator[None]:
     response_class=EventSourceResponse,
     responses={429: {"model": ProblemDetail}},
     dependencies=[Depends(_event_place)],
-    summary="Changes as they happen",
+    summary="Stream of job changes",
 )
 async def stream_jobs(server: Server) -> AsyncIterator[ServerSentEvent]:
     """Server-sent events: a ``job`` with a `JobView` for each change of a job.
 
-    At first there is one for each project's newest job, unless that succeeded.
+    The stream begins with one for each project's newest job, unless that succeeded.
     """
     version = server.supervisor.version
     jobs = [job for job in server.jobs.latest().values() if job.state is not JobState.SUCCEEDED]
@@ -240,7 +242,7 @@ async def stream_jobs(server: Server) -> AsyncIterator[ServerSentEvent]:
 
 
 def _checked(new: NewJob, server: Parts) -> Inputs:
-    """The inputs with resolved paths; settings are parsed now so that mistakes show at once."""
+    """The inputs with resolved paths; settings are parsed now, to report mistakes at once."""
     override(preset(new.preset), new.settings)
 
     def resolved(path: str) -> str:
@@ -265,7 +267,7 @@ def _refuse_hidden(server: Parts, inputs: Inputs) -> None:
         return
     rig = () if inputs.rig in rig_presets() else (inputs.rig,)
     for path in (*inputs.recordings, *rig, inputs.imu, inputs.gnss):
-        if path and os.path.lexists(path):  # a missing file is for the job to report
+        if path and os.path.lexists(path):  # the job reports a missing file
             server.projects.importable(path)
 
 

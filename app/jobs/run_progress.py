@@ -1,7 +1,7 @@
-"""How far a whole run is: a fold over the events of its worker, like `app.jobs.status`.
+"""Progress of a whole run: a fold over the events of its worker, like `app.jobs.status`.
 
-A stage counts as long as it usually takes (shares of the time of a simulated walk of five minutes
-on two processors), a piece of work within it likewise.
+A stage is weighted by its usual time, measured on a simulated walk of five minutes on two
+processors; a piece of work within it likewise.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any
 BEFORE, AFTER = "hash", "results"
 """Work outside of any stage: hashing the recording, copying the results."""
 
-SHARES = {
+STAGE_PERCENT = {
     BEFORE: 2.0,
     "frames": 9.0,
     "odometry": 14.0,
@@ -24,7 +24,7 @@ SHARES = {
     "map": 26.0,
     AFTER: 6.0,
 }
-"""Stage -> its usual share of the time [%]."""
+"""Stage -> its usual part of the time [%]."""
 
 PIECES = {
     ("graph", "view volumes"): (0.0, 0.2),
@@ -36,35 +36,35 @@ PIECES = {
 """Where within its stage a piece of work begins and ends; others span the whole stage."""
 
 KNOWN_AFTER_S, KNOWN_AFTER = 2.0, 0.02
-"""The time left is told once so much time has passed and so much of the run is done."""
+"""The remaining time is given after this time [s] and this fraction of the run."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunProgress:
-    """How far a run is."""
+    """Progress of a run."""
 
     stage: str = BEFORE
-    """The stage in hand."""
+    """The current stage."""
     past: float = 0.0
-    """Share of the stages behind it."""
+    """Fraction of the run in the stages before it."""
     reused: float = 0.0
-    """Share of those that were found finished and took no time."""
+    """Fraction of the run in stages that were reused and took no time."""
     reached: float = 0.0
-    """Share of the stage in hand."""
+    """Fraction of the current stage that is done."""
     span: tuple[float, float] = (0.0, 1.0)
-    """What the piece of work in hand covers of the stage."""
+    """Where the current piece of work begins and ends within the stage."""
     began_s: float = 0.0
     now_s: float = 0.0
     over: bool = False
 
     @property
     def fraction(self) -> float:
-        """Share of the whole run, 0 to 1."""
+        """Fraction of the whole run, 0 to 1."""
         return 1.0 if self.over else min(self.past + self.reached * stage_weight(self.stage), 1.0)
 
     @property
     def eta_s(self) -> float | None:
-        """Time the whole run still takes [s], None = not known yet."""
+        """Remaining time of the whole run [s], None = not known yet."""
         worked, passed_s = self.fraction - self.reused, self.now_s - self.began_s
         if self.over or worked < KNOWN_AFTER or passed_s < KNOWN_AFTER_S:
             return None
@@ -72,39 +72,39 @@ class RunProgress:
 
 
 def stage_weight(stage: str) -> float:
-    """Share of a stage in the whole run; one nobody named takes none."""
-    return SHARES.get(stage, 0.0) / sum(SHARES.values())
+    """Weight of a stage in the whole run; 0 for an unknown stage."""
+    return STAGE_PERCENT.get(stage, 0.0) / sum(STAGE_PERCENT.values())
 
 
-def after(overall: RunProgress, event: dict[str, Any]) -> RunProgress:
-    """How far the run is after one more event."""
-    t_s = float(event.get("t", overall.now_s))
-    overall = replace(overall, now_s=t_s)
+def after(progress: RunProgress, event: dict[str, Any]) -> RunProgress:
+    """The progress after one more event."""
+    t_s = float(event.get("t", progress.now_s))
+    progress = replace(progress, now_s=t_s)
     match event:
         case {"kind": "run"}:
             return RunProgress(began_s=t_s, now_s=t_s)
         case {"kind": "stage", "stage": str(stage), "state": "running"}:
-            return _next(overall, stage)
+            return _next(progress, stage)
         case {"kind": "stage", "stage": str(stage), "state": str(state)}:
-            reused = overall.reused + (stage_weight(stage) if state == "reused" else 0.0)
-            return replace(overall, reached=1.0, reused=reused)
+            reused = progress.reused + (stage_weight(stage) if state == "reused" else 0.0)
+            return replace(progress, reached=1.0, reused=reused)
         case {"kind": "progress", "what": str(what), "done": done, "total": total}:
-            if what == AFTER and overall.stage != AFTER:
-                overall = _next(overall, AFTER)
-            return _piece(overall, what, done / total if total else 0.0)
-    return overall
+            if what == AFTER and progress.stage != AFTER:
+                progress = _next(progress, AFTER)
+            return _piece(progress, what, done / total if total else 0.0)
+    return progress
 
 
-def _next(overall: RunProgress, stage: str) -> RunProgress:
-    past = overall.past + stage_weight(overall.stage)
-    return replace(overall, stage=stage, past=past, reached=0.0, span=(0.0, 1.0))
+def _next(progress: RunProgress, stage: str) -> RunProgress:
+    past = progress.past + stage_weight(progress.stage)
+    return replace(progress, stage=stage, past=past, reached=0.0, span=(0.0, 1.0))
 
 
-def _piece(overall: RunProgress, what: str, fraction: float) -> RunProgress:
-    low, high = overall.span
+def _piece(progress: RunProgress, what: str, fraction: float) -> RunProgress:
+    low, high = progress.span
     if fraction == 0.0:
-        low, high = PIECES.get((overall.stage, what), (0.0, 0.98))
-        if overall.reached > low:  # the same piece once more: half of what is left
-            low, high = overall.reached, (overall.reached + 1.0) / 2.0
-    reached = max(overall.reached, low + min(fraction, 1.0) * (high - low))
-    return replace(overall, reached=min(reached, 1.0), span=(low, high))
+        low, high = PIECES.get((progress.stage, what), (0.0, 0.98))
+        if progress.reached > low:  # the same piece once more: half of what is left
+            low, high = progress.reached, (progress.reached + 1.0) / 2.0
+    reached = max(progress.reached, low + min(fraction, 1.0) * (high - low))
+    return replace(progress, reached=min(reached, 1.0), span=(low, high))

@@ -1,8 +1,8 @@
-"""How long a worker may make no progress before it counts as hung.
+"""Time without progress after which a worker counts as hung.
 
-Stages that read files of users report every unit, so the server's setting holds for them as it is.
-Later stages compute on artifacts of our own; a solver with a bounded number of iterations and the
-disk that takes a large artifact may be silent for longer.
+Stages that read files of users report every unit, so the server's setting applies to them as it is.
+Later stages compute on our own artifacts: a solver with a bounded number of iterations, or writing
+a large artifact, may report nothing for longer.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Room on the disk: asked before a job is taken, and again before it begins."""
+"""Disk space: checked before a job is accepted, and again before it begins."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from pathlib import Path
 from recon4.errors import NoSpace
 
 TIMES_THE_INPUT = 3
-"""Decoded frames and map together have at most so many times the bytes of the recording."""
+"""Decoded frames and map together have at most this multiple of the recording's bytes."""
 
 
 def refuse_if_full(project: Path, inputs: Iterable[Path], *, reserve_bytes: int) -> None:
-    """Refuse a job that the disk has no room for; what the project holds already counts.
+    """Reject a job for which the disk has too little space; existing files of the project count.
 
     Raises:
-        NoSpace: Saying how much is free and how much is needed.
+        NoSpace: With the needed and the free bytes.
     """
     given = sum(size_below(path) for path in inputs)
     needed = max(0, TIMES_THE_INPUT * given - size_below(project)) + reserve_bytes
@@ -41,5 +41,5 @@ def size_below(path: Path) -> int:
             try:
                 size += os.stat(os.path.join(parent, name), follow_symlinks=False).st_size
             except FileNotFoundError:
-                continue  # a running job tidies up
+                continue  # a running job removes files
     return size

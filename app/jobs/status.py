@@ -1,4 +1,4 @@
-"""How far a job is: a fold over the lines its worker wrote (`app.jobs.events`)."""
+"""Status of a job: a fold over the events its worker wrote (`app.jobs.events`)."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ class StageStatus:
     state: str
     """``running``, ``done`` or ``reused`` (found finished)."""
     seconds: float | None = None
-    """What it took [s], None while it runs."""
+    """Duration [s], None while it runs."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Status:
-    """What a person wants to know of a running job."""
+    """Current piece of work and stages of a running job."""
 
     what: str = ""
-    """The piece of work in hand."""
+    """The current piece of work."""
     unit: str = ""
     done: int = 0
     total: int = 0
@@ -36,7 +36,7 @@ class Status:
 
     @property
     def where(self) -> str:
-        """The stage and the piece of work in hand, in words."""
+        """The current stage and piece of work as text."""
         if not self.what:
             return "before it began"
         running = [row.stage for row in self.stages if row.state == "running"]
@@ -44,7 +44,7 @@ class Status:
 
     @property
     def fraction(self) -> float | None:
-        """Share of the piece that is done, None = not known."""
+        """Fraction of the piece of work that is done, None = not known."""
         return min(self.done / self.total, 1.0) if self.total else None
 
 

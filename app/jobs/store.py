@@ -39,22 +39,22 @@ JSON that `_job` reads itself: in a list, SQLAlchemy's own type fails over one d
 
 
 class JobStore:
-    """All jobs there ever were."""
+    """All jobs, finished ones too."""
 
     def __init__(self, path: Path) -> None:
         self._backups = Backups(path)
         self.notice = self._backups.repair()
-        """What people should know: set when the file was damaged; else empty."""
+        """Notice for users: set when the file was damaged, else empty."""
         self._engine = open_engine(path)
         with self._engine.begin() as connection:
             migrate(connection, Path(__file__).parent)
 
     def close(self) -> None:
-        """Let go of the file."""
+        """Close the database."""
         self._engine.dispose()
 
     def back_up(self) -> None:
-        """Keep a copy of today, unless there is one."""
+        """Make today's backup, unless there is one."""
         self._backups.make()
 
     def add(self, job: Job) -> Job:
@@ -100,7 +100,7 @@ class JobStore:
         return self._select(JOBS.select().where(JOBS.c.state.in_(states)).order_by(JOBS.c.number))
 
     def counts(self) -> dict[JobState, int]:
-        """How many jobs there are in each state; states without jobs are left out."""
+        """Number of jobs in each state; states without jobs are left out."""
         query = sa.select(JOBS.c.state, sa.func.count()).group_by(JOBS.c.state)
         with self._engine.connect() as connection:
             return {JobState(state): count for state, count in connection.execute(query)}
@@ -127,7 +127,7 @@ def _row(job: Job) -> dict[str, Any]:
 
 
 def _job(row: sa.RowMapping) -> Job:
-    """A row as a job; one that is damaged is a failed job that says so."""
+    """A row as a job; a damaged row is a failed job with a note."""
     try:
         return _whole_job(row)
     except (ValueError, KeyError, TypeError, StoreError) as error:

@@ -1,7 +1,7 @@
-"""Gives waiting jobs a worker and watches the workers there are, also those of a server before.
+"""Starts workers for waiting jobs and watches all workers, also those of an earlier server.
 
-Whether a worker lives is asked of the kernel (the lock it holds), how far it is of its files.
-Files make no noise on every system, so they are looked at four times a second.
+A worker is alive while it holds its file lock; its progress is in its files. File notifications
+are not available on every system, so the files are polled four times a second.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from pathlib import Path
 
 from app.errors import Conflict
 from app.jobs.events import read_events
-from app.jobs.exit_reasons import ending
+from app.jobs.exit_reasons import exit_reason
 from app.jobs.folder import JobFolder, Limits, Outcome
 from app.jobs.limits import allowed_memory
 from app.jobs.model import Job, JobState
 from app.jobs.run_progress import RunProgress
-from app.jobs.run_progress import after as further
+from app.jobs.run_progress import after as progress_after
 from app.jobs.silence import allowed_silence_s
 from app.jobs.status import Status, after
 from app.jobs.store import JobStore
@@ -37,37 +37,37 @@ LOOK_EVERY_S = 0.25
 
 
 class Tail:
-    """What a job's events say so far."""
+    """Reads the events of a job as they are appended."""
 
     def __init__(self, folder: JobFolder) -> None:
         self.status = Status()
         self.overall = RunProgress()
         self.unreadable = 0
-        """Events that make no sense."""
+        """Number of malformed events."""
         self._path = folder.path / "events.jsonl"
         self._offset = 0
 
     def read(self) -> bool:
-        """Take in what was appended; whether that changed the status."""
+        """Read the appended events; whether they changed the status."""
         before = self.status
         events, self._offset = read_events(self._path, self._offset)
         for event in events:
             try:
-                status, overall = after(self.status, event), further(self.overall, event)
+                status, overall = after(self.status, event), progress_after(self.overall, event)
             except (TypeError, ValueError, ArithmeticError, LookupError, AttributeError):
-                self.unreadable += 1  # a worker that a file has taken over writes what it likes
+                self.unreadable += 1  # a worker that a hostile file took over may write anything
             else:
                 self.status, self.overall = status, overall
         return self.status != before
 
     def forget(self) -> None:
-        """Start anew: what was said so far was another worker's."""
+        """Reset: the events so far are those of another worker."""
         self.read()
         self.status, self.overall = Status(), RunProgress()
 
 
 class Supervisor:
-    """The queue's engine; one a server."""
+    """Runs the queue; one a server."""
 
     def __init__(self, store: JobStore, settings: ServerSettings) -> None:
         self._store = store
@@ -75,74 +75,74 @@ class Supervisor:
         self._workers: dict[str, subprocess.Popen[bytes]] = {}
         self._tails: dict[str, Tail] = {}
         self._beats: dict[str, tuple[int, float]] = {}
-        """Running jobs -> heartbeat seen last, and when on the monotonic clock [s]."""
+        """Running jobs -> last heartbeat seen [ns], and its time on the monotonic clock [s]."""
         self._hung: dict[str, float] = {}
-        """Jobs whose worker is being ended -> how long it made no progress [s]."""
+        """Jobs whose worker is being ended -> time without progress [s]."""
         self._loop: asyncio.AbstractEventLoop | None = None
         self._wake = asyncio.Event()
         self._news = asyncio.Event()
         self.version = 0
-        """Counts whatever happened to any job."""
+        """Number of changes of jobs so far."""
         self._touched: dict[str, int] = {}
         self._asked: set[str] = set()
 
-    # -- asked by routes
+    # -- used by routes
 
     def folder(self, job_id: str) -> JobFolder:
-        """Where a job's files are."""
+        """The folder of a job's files."""
         return JobFolder(self._settings.state / "jobs" / job_id)
 
     def status(self, job: Job) -> Status:
-        """How far a job is."""
+        """The status of a job."""
         if job.state is JobState.QUEUED:
             return Status()
         return self._tail(job).status
 
     def overall(self, job: Job) -> RunProgress:
-        """How far its whole run is."""
+        """The progress of a job's whole run."""
         if job.state is JobState.QUEUED:
             return RunProgress()
         overall = self._tail(job).overall
         return replace(overall, over=True) if job.state is JobState.SUCCEEDED else overall
 
     def touched_since(self, version: int) -> list[str]:
-        """Jobs that something happened to after that version."""
+        """Jobs that changed after that version."""
         return [job_id for job_id, touched in self._touched.items() if touched > version]
 
     def wake(self, job: Job) -> None:
-        """A job was added or changed: look at the queue now. From any thread."""
+        """Process the queue now, because a job was added or changed. Thread-safe."""
         self._asked.add(job.id)
         if self._loop is not None:
             self._loop.call_soon_threadsafe(self._wake.set)
 
     async def news(self, version: int, *, timeout_s: float) -> None:
-        """Wait until there is a later version than that, at most so long."""
+        """Wait for a later version than this, at most ``timeout_s``."""
         if version == self.version:
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(self._news.wait(), timeout_s)
 
     def cancel(self, job: Job) -> Job:
-        """Take a job out of the queue, or ask its worker to stop.
+        """Remove a job from the queue, or request its worker to stop.
 
         Raises:
-            Conflict: If it is over already.
+            Conflict: If it has ended already.
         """
         if job.over:
             raise Conflict(f"job {job.id} is {job.state} already")
         if job.state is JobState.QUEUED:
             try:
                 job = self._store.change(job, job.to(JobState.CANCELLED, finished=now()))
-            except Conflict:  # it was started between the caller's look and ours
+            except Conflict:  # it was started after the caller read it
                 return self.cancel(self._store.get(job.id))
         else:
-            self.folder(job.id).ask_to_stop()
+            self.folder(job.id).request_stop()
         self.wake(job)
         return job
 
-    # -- the engine
+    # -- the loop
 
     async def run(self) -> None:
-        """Watch until cancelled."""
+        """Process the queue until cancelled."""
         self._loop = asyncio.get_running_loop()
         while True:
             self._wake.clear()
@@ -150,13 +150,13 @@ class Supervisor:
             try:
                 changed = await asyncio.to_thread(self.step)
             except Exception:
-                log.exception("the queue could not be looked after; trying again")
+                log.exception("the queue could not be processed; trying again")
                 changed = set()
-            self._tell(changed | asked)
+            self._publish(changed | asked)
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(self._wake.wait(), LOOK_EVERY_S)
 
-    def _tell(self, jobs: set[str]) -> None:
+    def _publish(self, jobs: set[str]) -> None:
         if jobs:
             self.version += 1
             self._touched |= dict.fromkeys(jobs, self.version)
@@ -164,7 +164,7 @@ class Supervisor:
             self._news = asyncio.Event()
 
     def step(self) -> set[str]:
-        """Look at every worker and the queue once; ids of the jobs that changed."""
+        """Check every worker and the queue once; ids of the jobs that changed."""
         running = self._store.in_state(JobState.RUNNING)
         changed = {job.id for job in running if self._alone(self._watch, job)}
         free = self._settings.running_jobs - len(self._store.in_state(JobState.RUNNING))
@@ -172,7 +172,7 @@ class Supervisor:
         return changed | {job.id for job in waiting if self._alone(self._start, job)}
 
     def _alone(self, step: Callable[[Job], bool], job: Job) -> bool:
-        """Take a step with one job; if it fails the others go on. Whether the job changed."""
+        """Run a step for one job; a failure does not affect the others. Whether the job changed."""
         try:
             return step(job)
         except Conflict:  # cancelled since it was read: nothing to do
@@ -182,14 +182,14 @@ class Supervisor:
             return False
 
     def close(self) -> None:
-        """Leave the workers alone: they go on and the next server adopts them."""
+        """Detach from the workers: they go on and the next server adopts them."""
         for worker in self._workers.values():
             if worker.poll() is None:
                 worker.returncode = 0  # not ours to wait for any more
         self._workers.clear()
 
     def _tail(self, job: Job) -> Tail:
-        """Its events, read from the beginning when nobody has yet."""
+        """The events of a job, read from the beginning at the first call."""
         if job.id not in self._tails:
             self._tails[job.id] = Tail(self.folder(job.id))
             self._tails[job.id].read()
@@ -204,8 +204,8 @@ class Supervisor:
         folder.prepare(job.inputs, self._settings.root.resolve() / job.project, limits)
         self._tail(job).forget()
         with folder.try_lock() as lock:
-            # The state comes first: a server killed between the two lines finds a running job
-            # without a worker, which is the case it knows how to repair.
+            # The state is stored first: after a kill between the two lines the next server finds a
+            # running job without a worker, which it can repair.
             started = job.started or now()
             attempt = job.attempt + 1
             self._store.change(job, job.to(JobState.RUNNING, attempt=attempt, started=started))
@@ -230,29 +230,29 @@ class Supervisor:
         return True
 
     def _exit_code(self, job: Job) -> int | None:
-        """How a worker that let go of its lock ended; None if a server before was its parent."""
+        """Exit code of a worker that released its lock; None if it has another parent."""
         worker = self._workers.get(job.id)
         if worker is None:
             return None
         try:
-            return worker.wait(5.0)  # the lock goes a moment before the process
+            return worker.wait(5.0)  # the lock is released shortly before the process ends
         except subprocess.TimeoutExpired:
             worker.kill()
             return worker.wait()
 
     def _end_if_stuck(self, job: Job, folder: JobFolder) -> None:
-        asked_s, silent_s = folder.asked_to_stop_s(), self._silent_s(job, folder)
+        asked_s, silent_s = folder.stop_requested_s(), self._silent_s(job, folder)
         if asked_s is not None and asked_s > self._settings.stop_within_s:
             folder.kill()
         elif job.id in self._hung:
-            folder.kill()  # it had the time of one look to say where it hangs
+            folder.kill()  # it had one polling interval to log where it hangs
         elif silent_s > allowed_silence_s(self._tail(job).status, self._settings.hung_after_s):
             self._hung[job.id] = silent_s
             log.warning("worker %s made no progress for %.0f s: killed", job.id, silent_s)
-            folder.kill(signal.SIGABRT)  # it writes into its log where every thread is
+            folder.kill(signal.SIGABRT)  # it writes the stack of every thread to its log
 
     def _silent_s(self, job: Job, folder: JobFolder) -> float:
-        """Seconds since the heartbeat was last seen to change, on a clock that never jumps."""
+        """Seconds since the heartbeat last changed, on the monotonic clock."""
         now_s, beat_ns = time.monotonic(), folder.heartbeat_ns()
         seen_ns, since_s = self._beats.get(job.id, (None, now_s))
         if beat_ns != seen_ns:
@@ -264,13 +264,13 @@ class Supervisor:
         """The job after its worker is gone."""
         if outcome is not None:
             return job.to(JobState(outcome.state), finished=now(), note=outcome.note)
-        where, how = self._tail(job).status.where, ending(code)
+        where, how = self._tail(job).status.where, exit_reason(code)
         if job.id in self._hung:
             how = f"made no progress for {self._hung[job.id]:.0f} s and was killed"
-        if self.folder(job.id).asked_to_stop_s() is not None:
+        if self.folder(job.id).stop_requested_s() is not None:
             return job.to(JobState.CANCELLED, finished=now(), note="stopped on request")
         if job.attempt < self._settings.attempts:
-            note = f"the worker {how}, {where}; it goes on after the last finished stage"
+            note = f"the worker {how}, {where}; it continues after the last finished stage"
             return job.to(JobState.QUEUED, note=note)
         note = (
             f"the worker died {job.attempt} times: last it {how}, {where}; perhaps the recording "
@@ -280,12 +280,12 @@ class Supervisor:
 
 
 def now() -> str:
-    """This moment, UTC, ISO 8601."""
+    """Current time, UTC, ISO 8601."""
     return datetime.now(UTC).isoformat(timespec="seconds")
 
 
 def _spawn(worker: str, folder: Path, lock: int) -> subprocess.Popen[bytes]:
-    """Start a worker that holds the lock from its first moment and survives the server."""
+    """Start a worker that holds the lock from its start and survives the server."""
     with (folder / "log.txt").open("ab") as output:
         return subprocess.Popen(
             [sys.executable, "-m", worker, str(folder)],

@@ -1,6 +1,6 @@
 """The worker process: ``python -m app.jobs.worker JOB_FOLDER`` runs one job to its end.
 
-It knows no server: it may outlive the one that started it and be adopted by the next.
+It is independent of the server: it may outlive the one that started it and be adopted by the next.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from recon4.store.atomic import raise_if_full
 log = logging.getLogger("recon4.job")
 
 OUT_OF_MEMORY = (
-    "out of memory: the job may take what the server's setting allows; close other programs, "
+    "out of memory: the job reached the server's memory limit; close other programs, "
     "or process fewer points (a larger map.voxel_m, a shorter recording), then resume"
 )
 
@@ -42,7 +42,7 @@ def main(path: Path, work: Work, policy_of: Callable[[JobFolder], Policy] = work
 
 
 def run(folder: JobFolder, work: Work) -> Outcome:
-    """Do the work; what happened in words."""
+    """Do the work and return its outcome."""
     events: EventWriter | None = None
     try:
         folder.keep_room()
@@ -58,7 +58,7 @@ def run(folder: JobFolder, work: Work) -> Outcome:
         if (full := _full(error, folder.path)) is not None:
             return Outcome(state="failed", note=full)
         log.exception("unexpected")
-        note = f"{type(error).__name__} in the program; the log says where"
+        note = f"{type(error).__name__} in the program; the log has the traceback"
         return Outcome(state="failed", note=note)
     finally:
         if events is not None:
@@ -93,7 +93,7 @@ def process(folder: JobFolder, progress: Progress) -> None:
 
 
 def _full(error: Exception, path: Path) -> str | None:
-    """The words of a full disk, if that is what an error came from."""
+    """The message about a full disk, if that caused an error."""
     try:
         raise_if_full(error, path)
     except NoSpace as full:

@@ -20,26 +20,26 @@ from app.network.connections import Connection, ConnectionTable, client_network
 from app.network.slow_readers import ReaderWatch
 
 HANDSHAKE_TIMEOUT_S = 10.0
-"""TLS is set up by then, from the moment the connection is accepted [s]."""
+"""Longest TLS handshake, from accepting the connection [s]."""
 SHUTDOWN_TIMEOUT_S = 5.0
-"""A TLS client confirms the end of the connection by then [s]."""
+"""Longest wait for a TLS client to confirm the end of the connection [s]."""
 BACKLOG = 2048
 """Connections the kernel keeps until they are accepted."""
 ACCEPTS_A_ROUND = 64
-"""Connections accepted before the event loop gets to do something else."""
+"""Connections accepted in one round of the event loop."""
 ACCEPT_PAUSE_S = 0.25
-"""How long nothing is accepted after file descriptors or memory ran out [s]."""
+"""Pause of accepting after file descriptors or memory ran out [s]."""
 SPARED_S = 1.0
 """A connection this young is not closed when file descriptors run out [s]."""
 SWEEP_S = 5.0
-"""How often clients that do not read are looked for [s]."""
+"""Interval of the search for clients that do not read [s]."""
 EXHAUSTED = frozenset({errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM})
 TLS_HANDSHAKE_RECORD = b"\x16"
 """First byte of every TLS connection."""
 
 
 class AcceptedSocket(socket.socket):
-    """A connection's socket that reports when it is closed, whoever closes it."""
+    """A connection's socket that reports when it is closed, from any code."""
 
     __slots__ = ("on_close",)
 
@@ -183,7 +183,7 @@ class Acceptor:
     async def _connected(
         self, sock: AcceptedSocket, connection: Connection, left_s: float | None
     ) -> None:
-        """Hand the socket to asyncio, which closes it whatever happens."""
+        """Hand the socket to asyncio, which closes it in every case."""
         tls: dict[str, Any] = {}
         if self._context is not None:
             tls = {
@@ -208,7 +208,7 @@ class Acceptor:
             self._watches.add(ReaderWatch(sock, transport))
 
     def _sweep(self) -> None:
-        """End the connections of clients that do not read."""
+        """Abort the connections of clients that do not read."""
         now_s = self._loop.time()
         self._watches = {watch for watch in self._watches if not watch.closed}
         for watch in self._watches:

@@ -1,9 +1,9 @@
-"""Open connections: how many there may be, which one makes room for a new one, what was counted.
+"""The table of open connections: limits, which one is closed for a new one, and counters.
 
-Whoever can reach the port can open connections and send nothing. A refusal at the limit would
-lock everybody else out, so a new connection takes the place of the oldest one that has not
-completed a request head, then of the oldest one that is idle between requests. A connection whose
-request is being worked on is never closed for another.
+Anyone who can reach the port can open connections and send nothing. Rejecting at the limit would
+lock all others out, so a new connection replaces the oldest one that has not completed a request
+head, then the oldest one that is idle between requests. A connection with a request in progress is
+never closed for another.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ class Phase(StrEnum):
     """What a connection is doing."""
 
     WAITING = "waiting"
-    """Has not completed the head of its first request: mute, in the TLS handshake, or slow."""
+    """Has not completed the head of its first request: silent, in the TLS handshake, or slow."""
     ACTIVE = "active"
-    """A request or a WebSocket is being worked on."""
+    """A request or a WebSocket is in progress."""
     IDLE = "idle"
     """Between two requests."""
 
@@ -66,7 +66,7 @@ class Connection:
 
 @dataclass(frozen=True, slots=True)
 class ConnectionLimits:
-    """How many connections may be open."""
+    """Limits of open connections."""
 
     total: int
     per_address: int
@@ -95,7 +95,7 @@ class _Queue:
         return sum(map(len, self.by_phase.values()))
 
     def expendable(self) -> Connection | None:
-        """The connection that makes room for a new one; None if all are being worked on."""
+        """The connection to close for a new one; None if all have a request in progress."""
         for phase in (Phase.WAITING, Phase.IDLE):
             if self.by_phase[phase]:
                 return next(iter(self.by_phase[phase]))
@@ -118,11 +118,11 @@ class ConnectionTable:
         return iter([one for queue in self._all.by_phase.values() for one in queue])
 
     def open_in(self, phase: Phase) -> int:
-        """How many connections are in a phase."""
+        """Number of connections in a phase."""
         return len(self._all.by_phase[phase])
 
     def admit(self, connection: Connection) -> bool:
-        """Take in a new connection; another one makes room for it where a limit is reached.
+        """Add a new connection; at a limit another one is closed for it.
 
         Returns:
             False if it must be closed, because none of the others can be.
@@ -141,7 +141,7 @@ class ConnectionTable:
         return True
 
     def make_room(self, *, accepted_before_s: float = math.inf) -> bool:
-        """Close the connection that can best be spared; False if there is none.
+        """Close the least active connection; False if there is none.
 
         Args:
             accepted_before_s: Younger connections are left alone: their request may be on its way.
@@ -180,7 +180,7 @@ class ConnectionTable:
 
 
 def client_network(address: str) -> str:
-    """The address connections are counted by."""
+    """The network by which connections are counted."""
     return network(address.partition("%")[0])  # a link-local address names its interface
 
 
@@ -193,5 +193,5 @@ def raise_file_limit() -> None:
 
 
 def open_file_limit() -> int:
-    """How many files this process may open."""
+    """The limit of open files of this process."""
     return resource.getrlimit(resource.RLIMIT_NOFILE)[0]

@@ -38,7 +38,7 @@ def own_addresses() -> set[str]:
     for family, far in ((socket.AF_INET, "192.0.2.1"), (socket.AF_INET6, "2001:db8::1")):
         with socket.socket(family, socket.SOCK_DGRAM) as going_out:
             try:
-                going_out.connect((far, 9))  # sends nothing: asks the kernel which way it would go
+                going_out.connect((far, 9))  # sends nothing: the kernel only selects a route
             except OSError:
                 continue
             found.add(going_out.getsockname()[0])

@@ -1,4 +1,4 @@
-"""Where the server listens: the socket, the certificate, the HTTP protocol."""
+"""Listening: the socket, the certificate, the HTTP protocol."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ from recon4.store.atomic import make_folders
 
 PING_INTERVAL_S = 20.0
 PING_TIMEOUT_S = 20.0
-"""A WebSocket is pinged that often; one that does not answer in time is closed [s]."""
+"""Interval of WebSocket pings, and time after which one without a pong is closed [s]."""
 
 
 class AnnouncingServer(uvicorn.Server):
-    """uvicorn with our accept loop; says when it listens."""
+    """uvicorn with our accept loop; calls back when it listens."""
 
     def __init__(self, config: uvicorn.Config, ready: Callable[[], None]) -> None:
         super().__init__(config)
@@ -42,7 +42,7 @@ class AnnouncingServer(uvicorn.Server):
         self._table = connections_of(config)
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Start, accept connections, then say so."""
+        """Start, accept connections, then call ``ready``."""
         await self.lifespan.startup()
         if self.lifespan.should_exit:
             sys.exit(uvicorn.config.STARTUP_FAILURE)
@@ -82,7 +82,7 @@ def connections_of(config: uvicorn.Config) -> ConnectionTable:
 
 
 def uvicorn_config(app: FastAPI, certificate: Certificate | None = None) -> uvicorn.Config:
-    """How the application is run, in tests too; with a certificate only TLS is spoken."""
+    """Configuration of uvicorn, in tests too; with a certificate only TLS is accepted."""
     context = certificate.context() if certificate is not None else None
     return uvicorn.Config(
         app,
@@ -90,7 +90,7 @@ def uvicorn_config(app: FastAPI, certificate: Certificate | None = None) -> uvic
         log_level="warning",
         log_config=None,  # `app.logs` writes what uvicorn logs, too
         access_log=False,
-        proxy_headers=False,  # nobody stands in between: such headers are made up
+        proxy_headers=False,  # there is no proxy: such headers are forged
         ws_max_size=1 << 20,
         ws_ping_interval=PING_INTERVAL_S,
         ws_ping_timeout=PING_TIMEOUT_S,
@@ -103,7 +103,7 @@ def uvicorn_config(app: FastAPI, certificate: Certificate | None = None) -> uvic
 
 
 def hosts_of(settings: ServerSettings) -> Hosts:
-    """Host names the server answers to."""
+    """Host names the server accepts."""
     if not settings.lan:
         return Hosts(LOOPBACK)
     names = {name.lower() for name in settings.names}
@@ -114,7 +114,7 @@ def certificate_of(settings: ServerSettings) -> Certificate | None:
     """The certificate to listen with; None = without TLS.
 
     Raises:
-        ConfigError: If the user's own is none.
+        ConfigError: If the user's own is not valid.
     """
     if not settings.lan:
         return None
@@ -124,7 +124,7 @@ def certificate_of(settings: ServerSettings) -> Certificate | None:
 
 
 def presented_fingerprint(settings: ServerSettings) -> str | None:
-    """SHA-256 of the certificate this server shows; None = it speaks no TLS."""
+    """SHA-256 fingerprint of this server's certificate; None = without TLS."""
     if not settings.lan:
         return None
     chain = settings.tls_certificate or settings.state / "tls" / "certificate.pem"
@@ -133,10 +133,10 @@ def presented_fingerprint(settings: ServerSettings) -> str | None:
 
 @contextmanager
 def only_one(settings: ServerSettings) -> Iterator[None]:
-    """Hold the folder: two servers would start every job twice.
+    """Lock the server's folder: two servers would start every job twice.
 
     Raises:
-        StoreError: If another server holds it.
+        StoreError: If another server has the lock.
     """
     make_state(settings)
     lock = os.open(settings.state / "server.lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
@@ -151,14 +151,14 @@ def only_one(settings: ServerSettings) -> Iterator[None]:
 
 
 def make_state(settings: ServerSettings) -> None:
-    """The folder of the server's own files, for nobody but its user."""
+    """Create the folder of the server's own files, accessible to its user only."""
     make_folders(settings.state, 0o700)
     settings.state.chmod(0o700)
 
 
 @contextmanager
 def private_files(wanted: bool) -> Iterator[None]:
-    """Files made meanwhile, those of workers too, are for nobody but the server's user."""
+    """Make new files, those of workers too, accessible to the server's user only."""
     before = os.umask(0o077) if wanted else None
     try:
         yield
@@ -169,7 +169,7 @@ def private_files(wanted: bool) -> Iterator[None]:
 
 @contextmanager
 def listening(settings: ServerSettings) -> Iterator[socket.socket]:
-    """The socket to listen on.
+    """Bind the socket to listen on.
 
     Raises:
         StoreError: If it cannot listen there.
@@ -188,7 +188,7 @@ def listening(settings: ServerSettings) -> Iterator[socket.socket]:
 
 
 def urls(settings: ServerSettings, listener: socket.socket) -> list[str]:
-    """Where browsers find the server, the best first."""
+    """URLs of the server, the best first."""
     name, port = listener.getsockname()[:2]
     scheme = "https" if settings.lan else "http"
     names = [name]

@@ -1,4 +1,4 @@
-"""How often a person may start what costs the server much."""
+"""Rate limit of expensive actions, per person."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from app.errors import TooMany
 def at_most(
     count: int, *, within_s: float, what: str
 ) -> Callable[[HTTPConnection], Iterator[None]]:
-    """A dependency: so many within that time for each person; failed requests do not count.
+    """A dependency: at most ``count`` within that time per person; failed requests do not count.
 
-    Where there is no login there is one person, and no limit.
+    Without login there is one person, and no limit.
 
     Raises (when called by the framework):
         TooMany: With the time to wait.

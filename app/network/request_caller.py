@@ -1,4 +1,4 @@
-"""Who waits for an answer, and whether they still do."""
+"""The caller of a request, and whether the client is still connected."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ class Caller:
     request: Request
 
     async def wait(self, work: Coroutine[Any, Any, T]) -> T:
-        """What ``work`` returns; it is cancelled as soon as the client disconnects.
+        """Return the result of ``work``; cancel it as soon as the client disconnects.
 
-        Call it once the body of the request was read.
+        Call it after the body of the request was read.
 
         Raises:
             ClientLeft: If the client disconnected first.

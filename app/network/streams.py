@@ -1,7 +1,7 @@
-"""How many streams may be open: in all, of one person, from one address.
+"""Limits of open streams: in all, per person, per address.
 
-A stream is a connection that stays: live map, events, viewer. Whoever may run a capture finds a
-place when others have filled theirs.
+A stream is a long-lived connection: live map, events, viewer. Some slots are reserved for people
+who may run a capture.
 """
 
 from __future__ import annotations
@@ -18,22 +18,22 @@ from app.access.people import LOCAL, Permission, person
 from app.errors import TooMany
 
 TOO_MANY = 4429
-"""Close code of a WebSocket that is one too many; the reason says so in words."""
+"""Close code of a WebSocket beyond the limit; the reason has the message."""
 RETRY_AFTER_S = 10.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StreamLimits:
-    """How many streams of a kind may be open."""
+    """Limits of open streams of a kind."""
 
     most: int
-    """In all."""
+    """Total."""
     per_person: int
-    """Of one person; not where there is no login, as everybody is the same person there."""
+    """Per person; not without login, where all callers are the same person."""
     per_address: int
-    """From one address, of people who may not run a capture; not where there is no login."""
+    """Per address, of people who may not run a capture; not without login."""
     reserved: int
-    """Of ``most``, only for people who may run a capture."""
+    """Part of ``most`` reserved for people who may run a capture."""
 
 
 class Streams:
@@ -44,22 +44,22 @@ class Streams:
         self._people: Counter[str] = Counter()
         self._addresses: Counter[str] = Counter()
         self.open = 0
-        """In all."""
+        """Open streams."""
         self.refused = 0
-        """Since the server started."""
+        """Rejected streams since the server started."""
 
     @contextmanager
     def place(self, connection: HTTPConnection) -> Iterator[None]:
-        """Hold a place for a request or WebSocket.
+        """Take a slot for a request or WebSocket.
 
         Raises:
-            TooMany: If there is none, in words.
+            TooMany: If there is none.
         """
         name = person(connection).name
         address = network(connection.client.host if connection.client else "")
-        if (words := self._refusal(connection, name, address)) is not None:
+        if (reason := self._rejection(connection, name, address)) is not None:
             self.refused += 1
-            raise TooMany(words, retry_after_s=RETRY_AFTER_S)
+            raise TooMany(reason, retry_after_s=RETRY_AFTER_S)
         self.open += 1
         self._people[name] += 1
         self._addresses[address] += 1
@@ -70,12 +70,12 @@ class Streams:
             _leave(self._people, name)
             _leave(self._addresses, address)
 
-    def _refusal(self, connection: HTTPConnection, name: str, address: str) -> str | None:
+    def _rejection(self, connection: HTTPConnection, name: str, address: str) -> str | None:
         who, limits = person(connection), self._limits
         runs_captures = who.may(Permission.CAPTURE)
         most = limits.most if runs_captures else limits.most - limits.reserved
         if self.open >= most:
-            return f"{self.open} {self._what} are open, {most} are possible: close one, try again"
+            return f"{self.open} {self._what} are open, the limit is {most}: close one, try again"
         if who is LOCAL:
             return None
         if self._people[name] >= limits.per_person:
@@ -88,4 +88,4 @@ class Streams:
 def _leave(counts: Counter[str], key: str) -> None:
     counts[key] -= 1
     if not counts[key]:
-        del counts[key]  # names of strangers are not kept
+        del counts[key]  # names of strangers are not stored

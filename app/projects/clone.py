@@ -1,4 +1,4 @@
-"""A new project that begins with the finished stages of another one."""
+"""Cloning: a new project that reuses the finished stages of another one."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from recon4.store.project import Project
 
 
 def clone_artifacts(artifacts: Mapping[str, Path], target: Path, work: Path) -> None:
-    """Make a project of the artifacts of another.
+    """Create a project from the artifacts of another one.
 
     Artifacts are never changed, so their files are shared (hard links) where the file system can.
-    The new project has no ledger: its first run reads and verifies every byte before it trusts it.
+    The new project has no ledger: its first run reads and verifies every byte before reusing it.
 
     Args:
         artifacts: Stage -> folder.
@@ -42,10 +42,10 @@ def clone_artifacts(artifacts: Mapping[str, Path], target: Path, work: Path) -> 
                 )
         building.rename(target)
     except (OSError, shutil.Error) as error:
-        _say_full(error, target)
+        _raise_no_room(error, target)
         raise
     except Recon4Error as error:
-        _say_full(error, target)
+        _raise_no_room(error, target)
         raise
     finally:
         shutil.rmtree(building.parent, ignore_errors=True)
@@ -58,7 +58,7 @@ def _link(source: str, target: str) -> None:
         shutil.copyfile(source, target)
 
 
-def _say_full(error: BaseException, target: Path) -> None:
+def _raise_no_room(error: BaseException, target: Path) -> None:
     try:
         raise_if_full(error, target)
     except NoSpace as full:

@@ -1,4 +1,4 @@
-"""Which files and folders of this computer a person may name in a request, and list."""
+"""Files and folders of this computer that requests may name and list."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ MOST_ENTRIES = 2000
 
 
 class ImportFolders:
-    """The folders recordings may lie in, without what is hidden, private or of the system.
+    """The folders for recordings, without hidden, private and system files.
 
-    A path is resolved first: links count as what they lead to. Then it must lie in one of the
-    folders, with no hidden name (``.recon4``, ``.ssh``) between that folder and the file.
+    A path is resolved first, links included. Then it must lie in one of the folders, with no hidden
+    name (``.recon4``, ``.ssh``) between that folder and the file.
     """
 
     def __init__(self, folders: Iterable[Path], *, private: Iterable[Path] = ()) -> None:
-        """Take the folders.
+        """Resolve the folders.
 
         Args:
-            folders: Where recordings may lie.
-            private: Files and folders that are never given out, such as the server's own.
+            folders: Folders of recordings.
+            private: Files and folders that are never accessible, such as the server's own.
         """
         self._folders = tuple(dict.fromkeys(folder.resolve() for folder in folders))
         self._private = tuple(path.resolve() for path in private)
@@ -37,7 +37,7 @@ class ImportFolders:
         """The real path of a file or folder, if requests may name it.
 
         Raises:
-            Refused: If it lies outside of the folders, is hidden, or is neither file nor folder.
+            Refused: If it is outside of the folders, hidden, or neither a file nor a folder.
             NotFound: If it does not exist.
         """
         try:
@@ -55,14 +55,14 @@ class ImportFolders:
                 "need into a folder of recordings"
             )
         mode = _mode(real)
-        if mode is None:  # nor if it has a name no file can have
+        if mode is None:  # also for a name that no file can have
             raise NotFound(f"no such file or folder: {path[:200]!r}")
         if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
             raise Refused(f"{path[:200]!r} is neither a file nor a folder")
         return real
 
     def shows(self, path: Path) -> bool:
-        """Whether a path may be named, without saying why not."""
+        """Whether requests may name a path."""
         try:
             self.checked(str(path))
         except (NotFound, Refused):
@@ -70,7 +70,7 @@ class ImportFolders:
         return True
 
     def entries(self, folder: str) -> list[FolderEntry]:
-        """What lies in a folder, folders first; the folders of recordings for an empty path.
+        """List a folder, folders first; for an empty path the folders of recordings.
 
         Raises:
             Refused: If requests may not name it.

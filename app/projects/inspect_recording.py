@@ -1,4 +1,4 @@
-"""What is inside a recording, and what to make of it: runs in a child of the compute pool."""
+"""Inspection of a recording, with suitable settings: runs in a child of the compute pool."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 MOST_BESIDE = 50
-"""Among more files than this no IMU or GNSS file is looked for."""
+"""In folders with more files, no IMU or GNSS file is searched for."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -23,37 +23,37 @@ class SensorSummary:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RecordingSummary:
-    """What a look at a recording found, and the settings that suit it."""
+    """Content of a recording, and suitable settings."""
 
     path: str
     kind: str
     bytes: int
     seconds: float
-    """How long it is; 0 = it does not say."""
+    """Duration [s]; 0 = unknown."""
     estimated: bool
-    """Only the beginning was read: counts and length are estimates."""
+    """Only the beginning was read: counts and duration are estimates."""
     sensors: tuple[SensorSummary, ...]
     samples: tuple[str, ...]
-    """IMU, GNSS and poses, in words."""
+    """IMU, GNSS and poses, as text."""
     derived: tuple[str, ...]
-    """What will be worked out."""
+    """What the pipeline derives because it is not in the recording."""
     missing: tuple[str, ...]
     warnings: tuple[str, ...]
     project: str
-    """A name for the project."""
+    """Proposed name of the project."""
     preset: str
     rig: str
-    """A rig file that lies beside it; empty = guessed from the recording."""
+    """A rig file in the same folder; empty = detected from the recording."""
     imu: str
-    """An IMU file that lies beside it."""
+    """An IMU file in the same folder."""
     gnss: str
-    """A GNSS file that lies beside it."""
+    """A GNSS file in the same folder."""
 
 
 def files_beside(path: Path) -> tuple[Path, ...]:
-    """Regular files in the folder of a recording: what `inspect_recording` may read besides it.
+    """Regular files in the folder of a recording: `inspect_recording` may read them too.
 
-    None among more than `MOST_BESIDE`, but those of the recording's own name (``x.db3-wal``).
+    With more than `MOST_BESIDE` files only those of the recording's own name (``x.db3-wal``).
     """
     folder = path if path.is_dir() else path.parent
     with os.scandir(folder) as entries:
@@ -65,14 +65,14 @@ def files_beside(path: Path) -> tuple[Path, ...]:
 
 
 def inspect_recording(path: Path, beside: tuple[Path, ...]) -> RecordingSummary:
-    """Look at a recording.
+    """Inspect a recording.
 
     Args:
         path: File or folder.
-        beside: `files_beside` it.
+        beside: Result of `files_beside`.
 
     Raises:
-        RecordingError: If it cannot be read or is nothing that recon4 knows.
+        RecordingError: If it cannot be read or has an unknown format.
     """
     import math
 
@@ -99,9 +99,9 @@ def inspect_recording(path: Path, beside: tuple[Path, ...]) -> RecordingSummary:
             for sensor in info.sensors
         ),
         samples=info.samples,
-        derived=tuple(text for text in info.derived if not _guessed(text, suited)),
-        missing=tuple(text for text in info.missing if not _there(text, suited)),
-        warnings=(*info.warnings, *_gap_words(len(info.gaps))),
+        derived=tuple(text for text in info.derived if not _is_detected_rig(text, suited)),
+        missing=tuple(text for text in info.missing if not _is_in(text, suited)),
+        warnings=(*info.warnings, *_gap_warning(len(info.gaps))),
         project=_project_name(path),
         preset="outdoor" if located else "indoor",
         rig=suited.get("rig", ""),
@@ -111,7 +111,7 @@ def inspect_recording(path: Path, beside: tuple[Path, ...]) -> RecordingSummary:
 
 
 def _suited(files: tuple[Path, ...]) -> dict[str, str]:
-    """Rig, IMU and GNSS files, known by their content."""
+    """Rig, IMU and GNSS files, recognized by their content."""
     from recon4.errors import Recon4Error
     from recon4.model.rig import load_rig
     from recon4.recording.open import RecordingKind, recognize
@@ -128,23 +128,23 @@ def _suited(files: tuple[Path, ...]) -> dict[str, str]:
                 if name:
                     found.setdefault(name, str(file))
         except Recon4Error:
-            continue  # not meant for us
+            continue  # another kind of file
     return found
 
 
-def _there(text: str, beside: dict[str, str]) -> bool:
-    """Whether what the recording lacks lies beside it."""
+def _is_in(text: str, beside: dict[str, str]) -> bool:
+    """Whether a missing input is among the files beside the recording."""
     return any(text.startswith(kind) for kind in beside) or (
         text.startswith("rig") and "rig" in beside
     )
 
 
-def _guessed(text: str, beside: dict[str, str]) -> bool:
-    """Whether it tells of a guess that a file beside the recording makes needless."""
+def _is_detected_rig(text: str, beside: dict[str, str]) -> bool:
+    """Whether a text is about a detected rig that a file beside the recording replaces."""
     return "rig" in beside and text.startswith("no rig given")
 
 
-def _gap_words(gaps: int) -> tuple[str, ...]:
+def _gap_warning(gaps: int) -> tuple[str, ...]:
     return (f"{gaps} gaps in the data",) if gaps else ()
 
 
@@ -156,7 +156,7 @@ def _project_name(path: Path) -> str:
     name = path.name
     if path.is_file() and re.fullmatch(r"(recording|data|capture|dump|out)\.\w+", name, re.I):
         name = path.parent.name
-    # a recording that was uploaded lies in a folder of its name and a number
+    # the folder of an uploaded recording has its name and an id
     if path.parent.name == "recordings" or path.parent.parent.name == "recordings":
         name = re.sub(r"-[0-9a-f]{12}$", "", name)
     return slug(name)

@@ -1,4 +1,4 @@
-"""A project as the pages show it."""
+"""Views of a project for the pages."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ RESULTS: dict[str, str] = {
     "graph.g2o": "Pose graph, g2o",
     "summary.json": "Figures, settings and hashes",
 }
-"""Files of a project that may be downloaded, and nothing else, with what they are."""
+"""Files of a project that may be downloaded, and their descriptions."""
 
 STAGE_ORDER = (
     "frames",
@@ -55,15 +55,15 @@ class StageView:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProjectView:
-    """What is known of a project without opening its arrays."""
+    """Details of a project, read without opening its arrays."""
 
     id: str
     """Name of its folder."""
     name: str
     finished: bool
-    """Whether a run came to its end."""
+    """Whether a run has finished."""
     updated: str
-    """When its newest file changed, UTC, ISO 8601."""
+    """Time of its newest file, UTC, ISO 8601."""
     bytes: int
     """Size of the whole folder."""
     preset: str
@@ -71,39 +71,39 @@ class ProjectView:
     files: tuple[ResultFile, ...]
     stages: tuple[StageView, ...]
     viewable: bool
-    """Whether there is something to show in 3-D."""
+    """Whether the viewer can show it in 3-D."""
     has_map: bool
-    """Whether there is a map to draw a picture of."""
+    """Whether there is a map, for a thumbnail."""
     summary: dict[str, Any]
-    """``summary.json`` as the run wrote it; empty before."""
+    """``summary.json`` of the run; empty before."""
     problem: str = ""
-    """Which files of the project cannot be read and why; empty = none."""
+    """Files of the project that cannot be read, and why; empty = none."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProjectCard:
-    """What the list shows of a project: what two small files say."""
+    """A project in the list, read from two small files."""
 
     id: str
     name: str
     finished: bool
     updated: str
-    """When its newest stage or result came, UTC, ISO 8601."""
+    """Time of its newest stage or result, UTC, ISO 8601."""
     preset: str
     rig: str
     has_map: bool
-    """Whether there is a map to draw a picture of."""
+    """Whether there is a map, for a thumbnail."""
     path_length_m: float | None
-    """Length of the way [m]; None before the first run ended."""
+    """Path length [m]; None before the first run has finished."""
     points: int | None
-    """Points of the map; None before the first run ended."""
+    """Points of the map; None before the first run has finished."""
     problem: str = ""
-    """Which file of the project cannot be read and why; empty = none."""
+    """File of the project that cannot be read, and why; empty = none."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FolderEntry:
-    """A file or folder a recording may be picked from."""
+    """An entry of a folder listing of this computer."""
 
     name: str
     path: str

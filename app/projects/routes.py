@@ -1,4 +1,4 @@
-"""HTTP face of the projects: parse, delegate, answer."""
+"""HTTP routes of the projects."""
 
 from __future__ import annotations
 
@@ -28,50 +28,50 @@ router = APIRouter(
 
 PROCESS = [Depends(needs(Permission.PROCESS))]
 REPORT_POLICY = "sandbox; default-src 'none'; style-src 'unsafe-inline'; img-src data:"
-"""A report is a file of the project: it may show itself and nothing more."""
+"""A report is a file of the project: it may load nothing else."""
 
 
 LOOK_LIMIT_S = 60.0
 
 
 class Rename(BaseModel):
-    """Another name."""
+    """A new display name."""
 
     model_config = ConfigDict(extra="forbid")
 
     name: Name = Field(min_length=1, max_length=100)
-    """For people; any letters."""
+    """Display name; any letters."""
 
 
 class Restored(BaseModel):
-    """A project that is back."""
+    """A restored project."""
 
     project: str
 
 
 @router.get("/projects", summary="Projects")
 def list_projects(server: Server) -> list[ProjectCard]:
-    """All projects, the newest first."""
+    """List all projects, the newest first."""
     return server.projects.all()
 
 
 @router.get("/projects/{project_id}", summary="One project")
 def read_project(project_id: str, server: Server) -> ProjectView:
-    """One project with its results and finished stages."""
+    """Read a project with its results and finished stages."""
     return server.projects.get(project_id)
 
 
-@router.patch("/projects/{project_id}", dependencies=PROCESS, summary="Rename")
+@router.patch("/projects/{project_id}", dependencies=PROCESS, summary="Rename a project")
 def rename_project(project_id: str, new: Rename, server: Server, request: Request) -> ProjectView:
-    """Give a project another name; its folder and addresses stay. Not while a job runs."""
+    """Change the display name of a project; its folder and URLs stay. Not while a job runs."""
     server.projects.rename(project_id, new.name.strip())
     audit(request, "rename project", f"{project_id}: {new.name}")
     return server.projects.get(project_id)
 
 
-@router.delete("/projects/{project_id}", dependencies=PROCESS, summary="Delete")
+@router.delete("/projects/{project_id}", dependencies=PROCESS, summary="Delete a project")
 def delete_project(project_id: str, server: Server, request: Request) -> Deleted:
-    """Move a project to the trash; it can be brought back for a week. Not while a job runs."""
+    """Move a project to the trash; it can be restored for a week. Not while a job runs."""
     folder = server.projects.folder(project_id)
     _refuse_while_busy(server, project_id)
     deleted = server.trash.put(folder)
@@ -81,28 +81,32 @@ def delete_project(project_id: str, server: Server, request: Request) -> Deleted
 
 @router.get("/trash", dependencies=PROCESS, summary="Deleted projects")
 def list_trash(server: Server) -> list[Deleted]:
-    """Projects that were deleted lately and can be brought back."""
+    """List deleted projects that can be restored."""
     return server.trash.all()
 
 
-@router.post("/trash/{deleted_id}/restore", dependencies=PROCESS, summary="Bring back")
+@router.post("/trash/{deleted_id}/restore", dependencies=PROCESS, summary="Restore a project")
 def restore_project(deleted_id: str, server: Server, request: Request) -> Restored:
-    """Bring a deleted project back under its old name."""
+    """Restore a deleted project under its old name."""
     project = server.trash.restore(deleted_id)
     audit(request, "restore project", project)
     return Restored(project=project)
 
 
-@router.delete("/trash/{deleted_id}", status_code=204, dependencies=PROCESS, summary="Remove")
+@router.delete(
+    "/trash/{deleted_id}", status_code=204, dependencies=PROCESS, summary="Remove a deleted project"
+)
 def remove_project(deleted_id: str, server: Server, request: Request) -> None:
-    """Remove a deleted project for good, now."""
+    """Remove a deleted project permanently."""
     server.trash.remove(deleted_id)
     audit(request, "remove project", deleted_id)
 
 
-@router.get("/projects/{project_id}/files/{name}", response_class=FileResponse, summary="A result")
+@router.get(
+    "/projects/{project_id}/files/{name}", response_class=FileResponse, summary="Download a result"
+)
 def download(project_id: str, name: str, server: Server) -> FileResponse:
-    """A result file, as a download."""
+    """Download a result file."""
     path = server.projects.result(project_id, name)
     return FileResponse(
         path, filename=f"{project_id}-{name}", media_type="application/octet-stream"
@@ -111,7 +115,7 @@ def download(project_id: str, name: str, server: Server) -> FileResponse:
 
 @router.get("/projects/{project_id}/report", response_class=FileResponse, summary="Report")
 def report(project_id: str, server: Server) -> FileResponse:
-    """The quality report, to look at."""
+    """Show the quality report."""
     path = server.projects.result(project_id, "report.html")
     policy = {"Content-Security-Policy": REPORT_POLICY}
     return FileResponse(path, media_type="text/html; charset=utf-8", headers=policy)
@@ -119,7 +123,7 @@ def report(project_id: str, server: Server) -> FileResponse:
 
 @router.get("/projects/{project_id}/thumbnail", response_class=FileResponse, summary="Thumbnail")
 async def thumbnail(project_id: str, server: Server, caller: CalledBy) -> FileResponse:
-    """The map from above, PNG; drawn when it is asked for the first time."""
+    """The map from above as PNG image; made at the first request."""
     artifact = await run_in_threadpool(server.projects.map_artifact, project_id)
     return FileResponse(await caller.wait(server.thumbnails.of(artifact, person=caller.name)))
 
@@ -131,7 +135,7 @@ async def thumbnail(project_id: str, server: Server, caller: CalledBy) -> FileRe
     summary="Folders of this computer",
 )
 def browse(server: Server, folder: str = "") -> list[FolderEntry]:
-    """Files and folders of this computer a recording may be picked from."""
+    """List files and folders of this computer to select a recording."""
     return server.projects.browse(folder)
 
 
@@ -143,10 +147,10 @@ def browse(server: Server, folder: str = "") -> list[FolderEntry]:
         422: {"model": ProblemDetail},
         503: {"model": ProblemDetail},
     },
-    summary="What is in a recording",
+    summary="Inspect a recording",
 )
 async def look(path: str, server: Server, caller: CalledBy) -> RecordingSummary:
-    """What is in a recording on this computer, and the settings that suit it."""
+    """Inspect a recording on this computer: content and suitable settings."""
     real = await run_in_threadpool(server.projects.importable, path)
     beside = await run_in_threadpool(files_beside, real)
     terms = Terms(person=caller.name, access=FileAccess(read=(real, *beside)), limit_s=LOOK_LIMIT_S)

@@ -35,9 +35,9 @@ from recon4.store.project import is_project, read_artifacts, read_stages
 PROJECT_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 Stamp = tuple[int | None, ...]
 MOST_PROBLEM = 400
-"""A longer description of what is wrong with a project is cut [characters]."""
+"""A longer description of a project's problem is cut [characters]."""
 _LARGE = 1 << 53
-"""Greater numbers are no figures of a map, and not the same in a browser."""
+"""Greater numbers are not plausible, and not exact in a browser."""
 MOST_ENTRIES = 2000
 """A longer folder listing is cut."""
 
@@ -48,11 +48,11 @@ class ProjectStore:
     def __init__(self, root: Path, imports: ImportFolders) -> None:
         self._root = root.resolve()
         self.imports = imports
-        """What requests may name of this computer's files."""
+        """Files of this computer that requests may name."""
         self._cards: dict[str, tuple[Stamp, ProjectCard]] = {}
 
     def all(self) -> list[ProjectCard]:
-        """Every project, the newest first. Folders that did not change are not read again."""
+        """All projects, the newest first. Unchanged folders are not read again."""
         with os.scandir(self._root) as entries:
             found = [card for entry in entries if (card := self._card(entry)) is not None]
         return sorted(found, key=lambda card: card.updated, reverse=True)
@@ -77,7 +77,7 @@ class ProjectStore:
         return folder
 
     def refuse_taken(self, name: str) -> None:
-        """See that a name is free for a new project.
+        """Check that a name is free for a new project.
 
         Raises:
             Conflict: If there is a project or another folder of that name.
@@ -89,7 +89,7 @@ class ProjectStore:
             )
 
     def result(self, project_id: str, name: str) -> Path:
-        """A result file; one of an approved map only if it is the one that was approved.
+        """A result file; one of an approved map only if it is unchanged since the approval.
 
         Raises:
             NotFound: If the project, or the file in it, does not exist.
@@ -118,11 +118,11 @@ class ProjectStore:
         return artifacts["map"]
 
     def rename(self, project_id: str, name: str) -> None:
-        """Give a project another name for people; its folder keeps its own.
+        """Change the display name of a project; its folder keeps its name.
 
         Raises:
             NotFound: If there is none of that name.
-            Conflict: If a job writes to it at the moment.
+            Conflict: If a job is writing to it.
         """
         try:
             with Folder.open(self.folder(project_id)) as project:
@@ -131,16 +131,16 @@ class ProjectStore:
             raise Conflict(f"not now: {error}") from error
 
     def clone(self, project_id: str, target: str) -> None:
-        """Make a project that begins with the finished stages of another.
+        """Create a project that reuses the finished stages of another.
 
         Raises:
             NotFound: If there is none of that name.
-            Conflict: If there is one of the new name already.
+            Conflict: If a project of the new name exists.
             NoRoom: If the disk is full.
         """
         folder = self.folder(project_id)
         if not PROJECT_ID.fullmatch(target):
-            raise NotFound(f"no name for a project: {target[:64]!r}")
+            raise NotFound(f"not a valid project name: {target[:64]!r}")
         work = self._root / ".recon4" / "clones"
         clone_artifacts(_artifacts(folder), self._root / target, work)
 
@@ -154,7 +154,7 @@ class ProjectStore:
         return self.imports.checked(path)
 
     def browse(self, folder: str) -> list[FolderEntry]:
-        """What lies in a folder, or the folders to begin with when none is given.
+        """List a folder; the folders of recordings for an empty path.
 
         Raises:
             Refused: If it is outside of the folders recordings may lie in, hidden or private.
@@ -197,7 +197,7 @@ class ProjectStore:
 
 
 def _stamp(folder: Path) -> Stamp:
-    """When what a card shows last changed [ns]; None for what is not there."""
+    """Modification times of the files of a card [ns]; None for a missing one."""
     return tuple(
         _changed_ns(folder / name) for name in ("project.json", "summary.json", "artifacts")
     )
@@ -233,7 +233,7 @@ def _name(facts: dict[str, Any], folder: Path) -> str:
 
 
 def _iso(t_s: float) -> str:
-    """UTC, ISO 8601; the first moment of 1970 for a time no calendar has."""
+    """UTC, ISO 8601; the start of 1970 for a time out of range."""
     try:
         return datetime.fromtimestamp(t_s, UTC).isoformat(timespec="seconds")
     except (ValueError, OverflowError, OSError):
@@ -249,7 +249,7 @@ def _whole(value: Any) -> int | None:
 
 
 def _is_project(folder: Path) -> bool:
-    """A folder of a fit name with a ``project.json``, not a link to somewhere else."""
+    """A folder of a valid name with a ``project.json``, not a link."""
     return (
         PROJECT_ID.fullmatch(folder.name) is not None
         and not folder.is_symlink()
@@ -279,7 +279,7 @@ def _artifacts(folder: Path) -> dict[str, Path]:
 
 
 def _stages(folder: Path) -> tuple[tuple[StageView, ...], str]:
-    """Stages of the latest run in the order of the pipeline, and why there are none."""
+    """Stages of the latest run in the order of the pipeline, and the problem if there are none."""
     if not (folder / "ledger.sqlite").exists():
         return (), ""
     try:
@@ -293,7 +293,7 @@ def _stages(folder: Path) -> tuple[tuple[StageView, ...], str]:
 
 
 def _stage(row: StageRow) -> StageView:
-    """A row as it may be sent; SQLite keeps whatever a damaged file has in a column."""
+    """A row with checked types; SQLite returns what a damaged file has in a column."""
     seconds = float(row.seconds)
     if not math.isfinite(seconds):
         raise ValueError(f"ledger.sqlite: {row.stage} took {seconds} s")
@@ -306,21 +306,21 @@ def _stage(row: StageRow) -> StageView:
 
 
 def _summary(folder: Path) -> tuple[dict[str, Any], str]:
-    """``summary.json`` under today's names, and what is wrong with it."""
+    """``summary.json`` with current names, and the problem with it."""
     summary, problem = _object(folder, "summary.json")
     return current_names(summary, SUMMARY), problem
 
 
 def _object(folder: Path, name: str) -> tuple[dict[str, Any], str]:
-    """A JSON object, and what is wrong with the file; a page shows what there is."""
+    """A JSON object and the problem with its file; a page shows the readable rest."""
     path = folder / name
     if not path.exists():
         return {}, ""
     try:
         return read_object(path), ""
     except StoreError as error:
-        words = str(error).replace(f"{folder}/", "")
-        return {}, visible(words, most=MOST_PROBLEM)
+        problem = str(error).replace(f"{folder}/", "")
+        return {}, visible(problem, most=MOST_PROBLEM)
 
 
 def _name_of(rig: Any) -> str:
@@ -328,15 +328,15 @@ def _name_of(rig: Any) -> str:
 
 
 def _weigh(folder: Path) -> tuple[int, float]:
-    """Bytes below a folder and when its newest file changed [s]."""
+    """Bytes below a folder, and modification time of its newest file [s]."""
     size, changed_s = 0, 0.0
     for parent, _, names in os.walk(folder):
         for name in names:
             try:
                 status = os.stat(os.path.join(parent, name), follow_symlinks=False)
             except FileNotFoundError:
-                continue  # a running job tidies up
+                continue  # a running job removes files
             size += status.st_size
-            if not name.startswith("ledger"):  # reading touches it too
+            if not name.startswith("ledger"):  # reading modifies it too
                 changed_s = max(changed_s, status.st_mtime)
     return size, changed_s

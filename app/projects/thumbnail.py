@@ -1,4 +1,4 @@
-"""The thumbnail of a project: its map from above, made once."""
+"""Thumbnail of a project: its map from above, made once."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ THUMBNAIL = "map.png"
 
 
 class Thumbnails:
-    """Makes thumbnails when they are asked for, and keeps them."""
+    """Makes thumbnails at the first request, and keeps them."""
 
     def __init__(self, pool: ComputePool, kept: Path) -> None:
         self._pool = pool
@@ -40,13 +40,13 @@ class Thumbnails:
                         Lane.THUMBNAIL, terms, draw_thumbnail, artifact, Path(THUMBNAIL)
                     )
                 except (Recon4Error, ComputeFailed) as error:
-                    raise NotFound(f"there is no picture of this map: {error}") from error
+                    raise NotFound(f"there is no thumbnail of this map: {error}") from error
         self._making.pop(path, None)
         return path
 
 
 def draw_thumbnail(artifact: Path, out: Path) -> None:
-    """Draw a map from above: walls as black lines on nothing."""
+    """Draw a map from above: walls as black lines on a transparent background."""
     from recon4.mapping.tiles import TileSet
     from recon4.report.maps import ABOVE, ink_png, map_chunks, rasterize
 

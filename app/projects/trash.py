@@ -1,7 +1,7 @@
-"""Deleting in two steps: a project is moved aside, and what lies aside long enough is removed.
+"""Deleting in two steps: a project is moved to the trash, and removed after some time.
 
-ROOT/.recon4/trash/<project>@<moment>/      the project, as it was
-ROOT/.recon4/trash/.going-…                 being removed; gone for good
+ROOT/.recon4/trash/<project>@<timestamp>/   the project, as it was
+ROOT/.recon4/trash/.going-…                 being removed permanently
 """
 
 from __future__ import annotations
@@ -17,25 +17,25 @@ from pathlib import Path
 from app.errors import Conflict, NotFound
 from recon4.store.atomic import make_folders
 
-NAME = re.compile(r"(?P<project>[A-Za-z0-9][A-Za-z0-9._-]{0,63})@(?P<moment>\d{8}T\d{12})")
-MOMENT = "%Y%m%dT%H%M%S%f"
+NAME = re.compile(r"(?P<project>[A-Za-z0-9][A-Za-z0-9._-]{0,63})@(?P<timestamp>\d{8}T\d{12})")
+TIMESTAMP = "%Y%m%dT%H%M%S%f"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Deleted:
-    """A project that lies aside."""
+    """A project in the trash."""
 
     id: str
-    """What to bring it back by."""
+    """Identifier to restore it."""
     project: str
     deleted: str
     """UTC, ISO 8601."""
     goes: str
-    """When it is removed for good."""
+    """When it is removed permanently, UTC, ISO 8601."""
 
 
 class Trash:
-    """What was deleted lately."""
+    """Recently deleted projects."""
 
     def __init__(self, root: Path, folder: Path, *, kept_s: float) -> None:
         self._root = root.resolve()
@@ -43,47 +43,47 @@ class Trash:
         self._kept_s = kept_s
 
     def put(self, project: Path) -> Deleted:
-        """Move a project aside; it is found under its name no more."""
+        """Move a project to the trash; its name becomes free."""
         make_folders(self._folder)
-        target = self._folder / f"{project.name}@{datetime.now(UTC).strftime(MOMENT)}"
+        target = self._folder / f"{project.name}@{datetime.now(UTC).strftime(TIMESTAMP)}"
         project.rename(target)
         _fsync(self._folder)
         _fsync(self._root)
         return self._deleted(target)
 
     def all(self) -> list[Deleted]:
-        """What lies aside, the newest first."""
+        """Projects in the trash, the newest first."""
         found = [path for path in self._entries() if _is_deleted(path)]
         return sorted(map(self._deleted, found), key=lambda one: one.deleted, reverse=True)
 
     def restore(self, deleted_id: str) -> str:
-        """Bring a project back.
+        """Restore a project.
 
         Returns:
             Its name.
 
         Raises:
-            NotFound: If it is gone.
-            Conflict: If there is another project of that name by now.
+            NotFound: If it was removed.
+            Conflict: If another project has that name now.
         """
         path = self._find(deleted_id)
         project = self._deleted(path).project
         if (self._root / project).exists():
-            raise Conflict(f"there is another project {project} by now; delete or rename that one")
+            raise Conflict(f"another project {project} exists now; delete or rename it first")
         path.rename(self._root / project)
         _fsync(self._root)
         return project
 
     def remove(self, deleted_id: str) -> None:
-        """Remove a deleted project for good.
+        """Remove a deleted project permanently.
 
         Raises:
-            NotFound: If it is gone already.
+            NotFound: If it was removed already.
         """
         self._remove(self._find(deleted_id))
 
     def sweep(self, now_s: float) -> list[str]:
-        """Remove what has lain aside long enough, and what was being removed when a server ended.
+        """Remove expired projects, and finish removals that an earlier server began.
 
         Returns:
             The names of the projects.
@@ -104,7 +104,7 @@ class Trash:
 
     def _find(self, deleted_id: str) -> Path:
         if not _is_deleted(self._folder / deleted_id) or not (self._folder / deleted_id).is_dir():
-            raise NotFound("this project is gone for good")
+            raise NotFound("this project was removed permanently")
         return self._folder / deleted_id
 
     def _entries(self) -> list[Path]:
@@ -121,7 +121,7 @@ class Trash:
 
 
 def _is_deleted(path: Path) -> bool:
-    """Whether it bears a name of ours, with a moment that a calendar has."""
+    """Whether the name is one of ours, with a valid timestamp."""
     if not NAME.fullmatch(path.name):
         return False
     try:
@@ -132,8 +132,8 @@ def _is_deleted(path: Path) -> bool:
 
 
 def _deleted_s(path: Path) -> float:
-    moment = datetime.strptime(path.name.split("@")[1], MOMENT)
-    return moment.replace(tzinfo=UTC).timestamp()
+    deleted = datetime.strptime(path.name.split("@")[1], TIMESTAMP)
+    return deleted.replace(tzinfo=UTC).timestamp()
 
 
 def _iso(t_s: float) -> str:

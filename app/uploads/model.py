@@ -1,4 +1,4 @@
-"""An upload: the files of one recording on their way from a browser or script to the disk."""
+"""An upload: the files of one recording, sent by a browser or script."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ class UploadPart:
 
     number: int
     name: str
-    """As the sender calls it, with its folders."""
+    """Name at the sender, with its folders."""
     path: PurePosixPath
-    """As it is called on disk, below the upload's folder."""
+    """Path on disk, below the upload's folder."""
     bytes: int
     offset: int = 0
-    """Bytes that are safely on disk."""
+    """Bytes that are durably on disk."""
     turn: asyncio.Lock = field(default_factory=asyncio.Lock, repr=False, compare=False)
     """Held by the request that writes to it."""
 
     @property
     def whole(self) -> bool:
-        """Whether all of it is here."""
+        """Whether all its bytes are on disk."""
         return self.offset == self.bytes
 
 
@@ -34,35 +34,35 @@ class Upload:
 
     id: str
     name: str
-    """As people call it."""
+    """Display name."""
     files: int
-    """How many there will be."""
+    """Number of announced files."""
     bytes: int
-    """How large all of them are."""
+    """Size of all files."""
     fingerprint: str
-    """What the sender recognizes its files by, to go on after a break; nothing to us."""
+    """By which the sender recognizes its files, to resume; not used by the server."""
     by: str
-    """Who sends it."""
+    """Person who sends it."""
     created: str
     """UTC, ISO 8601."""
     folder: str
-    """Name of the recording's folder once it is whole."""
+    """Name of the recording's folder when it is complete."""
     finished: bool = False
     parts: dict[str, UploadPart] = field(default_factory=dict)
-    """Name as the sender calls it -> file."""
+    """Name at the sender -> file."""
 
     @property
     def received(self) -> int:
-        """Bytes that are safely on disk."""
+        """Bytes that are durably on disk, of all files."""
         return self.bytes if self.finished else sum(part.offset for part in self.parts.values())
 
     @property
     def whole(self) -> bool:
-        """Whether every announced file is here to its last byte."""
+        """Whether every announced file is complete."""
         return len(self.parts) == self.files and all(part.whole for part in self.parts.values())
 
     def recording(self, recordings: Path) -> Path:
-        """What a job is given: the file itself when there is one, else the folder."""
+        """The path for a job: the file itself if there is only one, else the folder."""
         folder = recordings / self.folder
         only = next(iter(self.parts.values())) if self.files == 1 else None
         return folder / only.path if only else folder

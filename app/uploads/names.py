@@ -1,4 +1,4 @@
-"""Names from browsers become names on disk that no system and no reader trips over."""
+"""Conversion of file names from browsers to names that are safe on every system."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import PurePosixPath
 from app.errors import BadRequest
 
 MOST_LETTERS = 100
-"""Longer names are cut in the middle; the ending stays, since people look at it."""
+"""Longer names are cut in the middle; the ending stays visible."""
 MOST_FOLDERS = 8
 RESERVED = frozenset(
     {"con", "prn", "aux", "nul"} | {f"{port}{n}" for port in ("com", "lpt") for n in range(10)}
@@ -21,7 +21,7 @@ def safe_path(relative: str) -> PurePosixPath:
     """A relative path made of safe names; folders are kept so that readers find their files.
 
     Raises:
-        BadRequest: If it is empty, leads up, or is nested too deep.
+        BadRequest: If it is empty, contains ``..``, or is nested too deep.
     """
     parts = [part for part in re.split(r"[/\\]+", relative) if part not in ("", ".")]
     if not parts or ".." in parts or len(parts) > MOST_FOLDERS:
@@ -33,7 +33,7 @@ def safe_path(relative: str) -> PurePosixPath:
 
 
 def safe_name(name: str) -> str:
-    """Letters, digits, dot, dash, underscore and plus; accents fall off, the rest becomes ``_``."""
+    """The name with letters, digits and ``._+-`` only; accents are removed, the rest is ``_``."""
     plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
     kept = re.sub(r"[^A-Za-z0-9._+-]+", "_", plain).lstrip(".").rstrip(". ")
     kept = kept if re.search(r"[A-Za-z0-9]", kept) else f"file{kept}"
@@ -50,7 +50,7 @@ def slug(name: str) -> str:
 
 
 def another(path: PurePosixPath, taken: set[str]) -> PurePosixPath:
-    """The path, or one beside it if a file of that name (in any case) is there already."""
+    """The path, or a numbered one if a file of that name (in any case) exists."""
     found, n = path, 2
     while str(found).lower() in taken:
         found, n = path.with_name(f"{path.stem}~{n}{path.suffix}"), n + 1

@@ -1,4 +1,4 @@
-"""The bytes of a request onto the disk: flat memory, durable before anyone is told."""
+"""Writing the body of a request to disk: constant memory, durable before the response."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from recon4.errors import NoSpace
 from recon4.store.atomic import raise_if_full
 
 GATHER_BYTES = 1 << 20
-"""The network hands over some 64 kB at a time; the disk is given more at once."""
+"""The network delivers about 64 kB at a time; writes are gathered to this size."""
 SILENT_S = 30.0
-"""A sender that says nothing for so long is cut off [s]."""
+"""A sender without data for this long is disconnected [s]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Checksum:
-    """What the sender says the bytes of this request hash to."""
+    """Checksum of the bytes of a request, as the sender gave it."""
 
     algorithm: str
     digest: bytes
 
 
 class WrongChecksum(BadRequest):
-    """The bytes that came are not those that were sent."""
+    """The received bytes differ from the sent ones."""
 
     status = 460
 
@@ -43,25 +43,25 @@ async def receive(
     length: int,
     checksum: Checksum | None = None,
 ) -> int:
-    """Append what comes to a file.
+    """Append the received bytes to a file.
 
-    When the sender breaks off, what came is kept, unless it cannot be checked.
+    When the sender disconnects, the received bytes are kept, unless there is a checksum to verify.
 
     Args:
         path: The file; it is ``offset`` bytes long.
-        pieces: What comes.
-        offset: Where it belongs.
-        length: The file will be this long in the end.
-        checksum: Of what comes.
+        pieces: The received bytes.
+        offset: Where they belong in the file.
+        length: Final length of the file.
+        checksum: Checksum of the received bytes.
 
     Returns:
-        The new length, safely on disk.
+        The new length, durably on disk.
 
     Raises:
-        BadRequest: If more comes than the file is to hold; nothing of it is kept.
-        WrongChecksum: If the bytes are others; nothing of them is kept.
-        NoRoom: If the disk is full; what found room is kept.
-        ClientDisconnect: If the sender broke off.
+        BadRequest: If more bytes come than were announced; none of them are kept.
+        WrongChecksum: If the checksum differs; no bytes are kept.
+        NoRoom: If the disk is full; the written bytes are kept.
+        ClientDisconnect: If the sender disconnected.
     """
     descriptor = os.open(path, os.O_WRONLY)
     sink = _Sink(descriptor, offset, length, checksum)
@@ -77,7 +77,7 @@ async def receive(
         await asyncio.to_thread(_cut, descriptor, offset)
         raise
     except OSError as error:
-        _say_full(error, path)
+        _raise_no_room(error, path)
         raise
     finally:
         os.close(descriptor)
@@ -85,7 +85,7 @@ async def receive(
 
 
 class _Sink:
-    """Gathers, hashes and writes; counts what comes."""
+    """Gathers, hashes, counts and writes bytes."""
 
     def __init__(
         self, descriptor: int, offset: int, length: int, checksum: Checksum | None
@@ -102,21 +102,19 @@ class _Sink:
         self._gathered.append(piece)
         self._bytes += len(piece)
         if self.end + self._bytes > self._length:
-            raise BadRequest(
-                f"{self.end + self._bytes} bytes came, the file was announced with {self._length}"
-            )
+            raise BadRequest(f"expected {self._length} bytes, got {self.end + self._bytes}")
         if self._bytes >= GATHER_BYTES:
             await asyncio.to_thread(self._write)
 
     async def flush(self, *, keep: bool) -> None:
-        """The rest, and everything safely on disk; ``keep=False`` forgets this request."""
+        """Write the rest and sync; ``keep=False`` discards the bytes of this request."""
         if not keep:
             await asyncio.to_thread(_cut, self._descriptor, self._start)
             self.end = self._start
             return
         await asyncio.to_thread(self._write)
         if self._hash and self._checksum and self._hash.digest() != self._checksum.digest:
-            raise WrongChecksum("the bytes were damaged on the way; send them again")
+            raise WrongChecksum("the checksum differs: the bytes were damaged; send them again")
         await asyncio.to_thread(os.fsync, self._descriptor)
 
     def _write(self) -> None:
@@ -143,8 +141,8 @@ def _cut(descriptor: int, length: int) -> None:
     os.fsync(descriptor)
 
 
-def _say_full(error: OSError, path: Path) -> None:
+def _raise_no_room(error: OSError, path: Path) -> None:
     try:
         raise_if_full(error, path)
     except NoSpace as full:
-        raise NoRoom("the disk is full; make room, then the upload goes on where it is") from full
+        raise NoRoom("the disk is full; make room, then resume the upload") from full

@@ -1,4 +1,4 @@
-"""HTTP face of the uploads: tus 1.0 for the bytes, plain JSON for what they belong to."""
+"""HTTP routes of the uploads: tus 1.0 for the bytes, plain JSON for their recordings."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ SETTLES_WITHIN_S = 3.0
 
 
 class TusRoute(APIRoute):
-    """A route that speaks tus and takes bodies as large as a file: they are never in memory."""
+    """A tus route; it accepts bodies as large as a file, which are never held in memory."""
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass the request on, with our limit and the header every answer bears."""
+        """Handle a request with the upload limit and the tus header of every response."""
 
         async def send_tus(message: Message) -> None:
             if message["type"] == "http.response.start":
@@ -67,55 +67,55 @@ class Locked(AppError):
 
 
 class NewUpload(BaseModel):
-    """A recording that is about to be sent."""
+    """A recording to be announced."""
 
     model_config = ConfigDict(extra="forbid")
 
     name: Name = Field(min_length=1, max_length=200)
-    """As people call it: the name of the file or folder."""
+    """Display name: that of the file or folder."""
     files: int = Field(ge=1, le=100_000)
-    """How many files it has."""
+    """Number of files."""
     bytes: int = Field(ge=0)
-    """How large all of them are."""
+    """Size of all files."""
     fingerprint: Name = Field(default="", max_length=200)
-    """What you recognize the same files by, to go on after a break."""
+    """By which the sender recognizes the same files, to resume."""
 
 
 class UploadView(BaseModel):
-    """An upload and how far it is."""
+    """An upload and its progress."""
 
     id: str
     name: str
     files: int
     bytes: int
     received: int
-    """Bytes that are safely on the server's disk."""
+    """Bytes that are durably on the server's disk."""
     fingerprint: str
     by: str
-    """Who sends it."""
+    """Person who sends it."""
     created: str
     expires: str
-    """When it is given up if nothing comes any more, UTC, ISO 8601."""
+    """When it is removed unless more data arrive, UTC, ISO 8601."""
     finished: bool
     recording: str
-    """Path to start a job with; empty until everything is there."""
+    """Path for a job; empty until the upload is complete."""
 
 
 class FileView(BaseModel):
     """One file of an upload."""
 
     name: str
-    """As it was announced."""
+    """Announced name."""
     bytes: int
     offset: int
-    """Bytes that are safely on the server's disk: go on from here."""
+    """Bytes that are durably on the server's disk: resume from here."""
     url: str
-    """Where to send the rest to."""
+    """URL for the remaining bytes."""
 
 
 @router.get("", summary="Uploads")
 def list_uploads(server: Server) -> list[UploadView]:
-    """Uploads that are unfinished or were finished lately, the newest first."""
+    """List unfinished and recently finished uploads, the newest first."""
     return [_view(server, upload) for upload in server.uploads.all()]
 
 
@@ -123,8 +123,8 @@ def list_uploads(server: Server) -> list[UploadView]:
 def begin_upload(new: NewUpload, server: Server, who: Who, request: Request) -> UploadView:
     """Announce a recording of one or several files; then send each file with tus.
 
-    Refused when the disk has no room for it (507), when it is too large (413) or when too many
-    uploads are unfinished (429).
+    Rejected if the disk has too little space (507), if it is too large (413) or if too many uploads
+    are unfinished (429).
     """
     upload = server.uploads.begin(
         new.name, files=new.files, total=new.bytes, fingerprint=new.fingerprint, by=who.name
@@ -135,13 +135,13 @@ def begin_upload(new: NewUpload, server: Server, who: Who, request: Request) -> 
 
 @router.get("/{upload_id}", summary="One upload")
 def read_upload(upload_id: str, server: Server) -> UploadView:
-    """How far an upload is."""
+    """Read an upload and its progress."""
     return _view(server, server.uploads.get(upload_id))
 
 
 @router.get("/{upload_id}/files", summary="Files of an upload")
 def list_files(upload_id: str, server: Server) -> list[FileView]:
-    """The files announced so far with their offsets: what to know to go on after a break."""
+    """List the announced files with their offsets, to resume an upload."""
     upload = server.uploads.get(upload_id)
     return [
         FileView(name=part.name, bytes=part.bytes, offset=part.offset, url=_url(upload, part))
@@ -149,9 +149,9 @@ def list_files(upload_id: str, server: Server) -> list[FileView]:
     ]
 
 
-@router.delete("/{upload_id}", status_code=204, summary="Give up an upload")
+@router.delete("/{upload_id}", status_code=204, summary="Remove an upload")
 def remove_upload(upload_id: str, server: Server, request: Request) -> None:
-    """Forget an upload and what came of it. A recording that is whole stays."""
+    """Remove an upload and its received bytes. A complete recording stays."""
     upload = server.uploads.get(upload_id)
     server.uploads.remove(upload)
     audit(request, "give up upload", upload.folder)
@@ -164,15 +164,15 @@ CREATE: dict[str, Any] = {
             "in": "header",
             "required": needed,
             "schema": {"type": "string"},
-            "description": words,
+            "description": text,
         }
-        for name, needed, words in (
+        for name, needed, text in (
             ("Tus-Resumable", True, "1.0.0"),
             ("Upload-Length", True, "Bytes of the file"),
             (
                 "Upload-Metadata",
                 False,
-                "Pairs of name and base64, with commas: filename, relativePath, upload (an id)",
+                "Pairs of name and base64, comma-separated: filename, relativePath, upload (an id)",
             ),
         )
     ]
@@ -184,12 +184,12 @@ CHUNK: dict[str, Any] = {
             "in": "header",
             "required": needed,
             "schema": {"type": "string"},
-            "description": words,
+            "description": text,
         }
-        for name, needed, words in (
+        for name, needed, text in (
             ("Tus-Resumable", True, "1.0.0"),
-            ("Upload-Offset", True, "Where the bytes belong: the offset that HEAD says"),
-            ("Upload-Checksum", False, "sha256 or sha1, a blank, the digest in base64"),
+            ("Upload-Offset", True, "Position of the bytes: the offset that HEAD returns"),
+            ("Upload-Checksum", False, "sha256 or sha1, a space, the digest in base64"),
         )
     ],
     "requestBody": {
@@ -199,9 +199,9 @@ CHUNK: dict[str, Any] = {
 }
 
 
-@files.options("", status_code=204, summary="What the server speaks")
+@files.options("", status_code=204, summary="Options of tus")
 def options(server: Server) -> Response:
-    """Version, extensions and limits of tus on this server."""
+    """Read version, extensions and limits of tus on this server."""
     return Response(
         status_code=204,
         headers={
@@ -215,10 +215,10 @@ def options(server: Server) -> Response:
 
 @files.post("", status_code=201, summary="Announce a file", openapi_extra=CREATE)
 async def create(request: Request, server: Server, who: Who) -> Response:
-    """Announce one file (tus creation); the answer's ``Location`` takes its bytes.
+    """Announce one file (tus creation); send its bytes to the ``Location`` of the response.
 
     Without ``upload`` in its metadata the file is a recording of its own.
-    A body is taken as its first bytes.
+    A body has its first bytes.
     """
     tus.check_version(request.headers)
     length = tus.number(request.headers, "Upload-Length")
@@ -229,36 +229,36 @@ async def create(request: Request, server: Server, who: Who) -> Response:
     if request.headers.get("content-type") == tus.CHUNK_TYPE and part.offset == 0:
         await _take(server, upload, part, request)
     await asyncio.to_thread(server.uploads.finish, upload)
-    return Response(status_code=201, headers=headers | _told(server, upload, part))
+    return Response(status_code=201, headers=headers | _offset_headers(server, upload, part))
 
 
-@files.head("/{file_id}", summary="How far a file is")
+@files.head("/{file_id}", summary="Offset of a file")
 async def head(file_id: Annotated[str, Path(max_length=40)], server: Server) -> Response:
-    """Bytes of a file that are safely on the server's disk, as ``Upload-Offset``."""
+    """Read the bytes of a file that are durably on the server's disk, as ``Upload-Offset``."""
     upload, part = server.uploads.part(file_id)
-    with contextlib.suppress(TimeoutError):  # a request that was cut may still put its bytes away
+    with contextlib.suppress(TimeoutError):  # an interrupted request may still write its bytes
         async with asyncio.timeout(SETTLES_WITHIN_S), part.turn:
             pass
     headers = {"Upload-Length": str(part.bytes), "Cache-Control": "no-store"}
-    return Response(headers=headers | _told(server, upload, part))
+    return Response(headers=headers | _offset_headers(server, upload, part))
 
 
 @files.patch("/{file_id}", status_code=204, summary="Send bytes", openapi_extra=CHUNK)
 async def patch(
     file_id: Annotated[str, Path(max_length=40)], request: Request, server: Server
 ) -> Response:
-    """Append bytes to a file. They are safely on disk when 204 comes back."""
+    """Append bytes to a file. They are durably on disk when the response is 204."""
     tus.check_version(request.headers)
     tus.check_type(request.headers)
     upload, part = server.uploads.part(file_id)
     await _take(server, upload, part, request)
     await asyncio.to_thread(server.uploads.finish, upload)
-    return Response(status_code=204, headers=_told(server, upload, part))
+    return Response(status_code=204, headers=_offset_headers(server, upload, part))
 
 
-@files.delete("/{file_id}", status_code=204, summary="Give up a file")
+@files.delete("/{file_id}", status_code=204, summary="Remove a file")
 def terminate(file_id: Annotated[str, Path(max_length=40)], server: Server) -> Response:
-    """Give up the upload this file belongs to (tus termination)."""
+    """Remove the upload to which this file belongs (tus termination)."""
     upload, _ = server.uploads.part(file_id)
     server.uploads.remove(upload)
     return Response(status_code=204)
@@ -280,13 +280,13 @@ def _announce(
 
 
 async def _take(server: Parts, upload: Upload, part: UploadPart, request: Request) -> None:
-    """The body of a request into its file; one request a file at a time."""
+    """Write the body of a request to its file; one request per file at a time."""
     if part.turn.locked():
-        raise Locked("another request writes to this file; ask HEAD and try again")
+        raise Locked("another request writes to this file; send HEAD and try again")
     async with part.turn:
         offset = tus.number(request.headers, "Upload-Offset") if request.method == "PATCH" else 0
         if upload.finished or offset != part.offset:
-            raise Conflict(f"the file is at {part.offset}, the bytes belong to {offset}")
+            raise Conflict(f"expected Upload-Offset {part.offset}, got {offset}")
         path = server.uploads.data(upload, part)
         try:
             part.offset = await receive(
@@ -297,17 +297,17 @@ async def _take(server: Parts, upload: Upload, part: UploadPart, request: Reques
                 checksum=tus.checksum(request.headers),
             )
         except (ClientDisconnect, TimeoutError) as error:
-            raise BadRequest("the sender broke off; ask HEAD how far it came") from error
+            raise BadRequest("the sender disconnected; HEAD returns the offset") from error
         finally:
-            if path.exists():  # not when it was given up meanwhile
+            if path.exists():  # not if the upload was removed meanwhile
                 part.offset = path.stat().st_size
 
 
-def _told(server: Parts, upload: Upload, part: UploadPart) -> dict[str, str]:
-    told = {"Upload-Offset": str(part.offset)}
+def _offset_headers(server: Parts, upload: Upload, part: UploadPart) -> dict[str, str]:
+    headers = {"Upload-Offset": str(part.offset)}
     if not upload.finished:
-        told["Upload-Expires"] = formatdate(server.uploads.expires(upload), usegmt=True)
-    return told
+        headers["Upload-Expires"] = formatdate(server.uploads.expires(upload), usegmt=True)
+    return headers
 
 
 def _url(upload: Upload, part: UploadPart) -> str:

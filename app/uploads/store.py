@@ -1,11 +1,12 @@
-"""Uploads on disk, so that they survive the browser, the server and the power cut.
+"""Uploads on disk, so that they survive the browser, the server and a power cut.
 
-    ROOT/.recon4/uploads/<id>/upload.json     what was announced
+    ROOT/.recon4/uploads/<id>/upload.json     the announcement
     ROOT/.recon4/uploads/<id>/parts/<n>.json  one a file, written when it is announced
     ROOT/.recon4/uploads/<id>/data/…          the bytes so far; a file's length is its offset
-    ROOT/recordings/<name>-<id>/…             `data` once everything is here, read-only from then
+    ROOT/recordings/<name>-<id>/…             `data` when it is complete, read-only from then on
 
-What a request was told is on disk before it is told (fsync). The server process is the only writer.
+Everything in a response is durably on disk before it is sent (fsync). The server process is the
+only writer.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ UPLOAD_ID = re.compile(r"[0-9a-f]{12}")
 
 
 class UploadStore:
-    """All uploads there are; safe to be called from several threads."""
+    """All uploads of a server; thread-safe."""
 
     def __init__(self, settings: ServerSettings) -> None:
         self._settings = settings
@@ -49,7 +50,7 @@ class UploadStore:
         self._uploads: dict[str, Upload] = {}
         self._read()
 
-    # -- asked by routes
+    # -- used by routes
 
     def all(self) -> list[Upload]:
         """All uploads, the newest first; finished ones too, until they are swept."""
@@ -61,17 +62,17 @@ class UploadStore:
         """One upload.
 
         Raises:
-            NotFound: If there is none, or it was given up.
+            NotFound: If there is none, or it was removed.
         """
         with self._lock:
             if upload_id not in self._uploads:
                 raise NotFound(
-                    f"no upload {upload_id[:32]!r}; it may have been given up: send anew"
+                    f"no upload {upload_id[:32]!r}; it may have been removed: send it again"
                 )
             return self._uploads[upload_id]
 
     def part(self, part_id: str) -> tuple[Upload, UploadPart]:
-        """One file of an upload, by the last part of its address.
+        """One file of an upload, by the last part of its URL.
 
         Raises:
             NotFound: If there is none.
@@ -87,9 +88,9 @@ class UploadStore:
         """Announce a recording.
 
         Raises:
-            TooLarge: If it is larger than the server takes.
+            TooLarge: If it is larger than the server accepts.
             TooMany: If too many uploads are unfinished.
-            NoRoom: If the disk has no room for it.
+            NoRoom: If the disk has too little space.
         """
         with self._lock:
             self._refuse_too_much(total)
@@ -116,7 +117,7 @@ class UploadStore:
         """Announce a file of an upload; announced twice, it is the same file.
 
         Raises:
-            BadRequest: If the name is none, or the files are more than was announced.
+            BadRequest: If the name is not valid, or there are more files than announced.
             NoRoom: If the disk is full.
         """
         with self._lock:
@@ -139,11 +140,11 @@ class UploadStore:
             return part
 
     def data(self, upload: Upload, part: UploadPart) -> Path:
-        """Where the bytes of a file go."""
+        """The path of a file's bytes."""
         return self._data(upload, part)
 
     def finish(self, upload: Upload) -> None:
-        """Once everything is here: make it a recording. Called again, nothing happens."""
+        """Make a recording of a complete upload; idempotent."""
         with self._lock:
             if upload.finished or not upload.whole:
                 return
@@ -158,7 +159,7 @@ class UploadStore:
             self._note(upload)
 
     def remove(self, upload: Upload) -> None:
-        """Give an upload up; a finished recording stays."""
+        """Remove an upload; a finished recording stays."""
         with self._lock:
             self._uploads.pop(upload.id, None)
             folder = self._folder / upload.id
@@ -169,12 +170,12 @@ class UploadStore:
                 shutil.rmtree(gone, ignore_errors=True)
 
     def expires(self, upload: Upload) -> float:
-        """When an upload is given up, if nothing comes any more [s since 1970]."""
+        """When an upload is removed unless more data arrive [s since 1970]."""
         newest = max((p.stat().st_mtime for p in self._files(upload)), default=time.time())
         return newest + self._settings.upload_stale_s
 
     def sweep(self, now_s: float) -> list[str]:
-        """Give up uploads nothing came for in a long time.
+        """Remove uploads without new data for a long time.
 
         Returns:
             Their ids.
@@ -182,7 +183,7 @@ class UploadStore:
         stale = [upload for upload in self.all() if self.expires(upload) < now_s]
         for upload in stale:
             if not upload.finished:
-                log.info("upload %s of %s was given up", upload.id, upload.by)
+                log.info("upload %s of %s expired: removed", upload.id, upload.by)
             self.remove(upload)
         return [upload.id for upload in stale]
 
@@ -192,7 +193,7 @@ class UploadStore:
         settings = self._settings
         if total > settings.upload_bytes:
             raise TooLarge(
-                f"{total / 1e9:.1f} GB are more than this server takes in one upload "
+                f"{total / 1e9:.1f} GB are more than this server accepts in one upload "
                 f"({settings.upload_bytes / 1e9:.0f} GB)"
             )
         still_open = [upload for upload in self._uploads.values() if not upload.finished]
@@ -238,7 +239,7 @@ class UploadStore:
         write_json(self._folder / upload.id / "upload.json", facts)
 
     def _read(self) -> None:
-        """Take in what a server before left, and end what it had begun to end."""
+        """Read the uploads of an earlier server, and finish removals that it began."""
         make_folders(self._folder)
         for folder in sorted(self._folder.iterdir()):
             if not UPLOAD_ID.fullmatch(folder.name):
@@ -247,7 +248,7 @@ class UploadStore:
             try:
                 upload = self._read_one(folder)
             except (OSError, ValueError, TypeError, KeyError, StoreError) as error:
-                log.warning("upload %s is damaged and left alone: %s", folder.name, error)
+                log.warning("upload %s is damaged and ignored: %s", folder.name, error)
                 continue
             self._uploads[upload.id] = upload
             self.finish(upload)
@@ -266,10 +267,10 @@ class UploadStore:
 
 
 def _upload(facts: dict[str, Any]) -> Upload:
-    """An upload of what was noted; a name from before names were refused is made visible.
+    """An upload from its file; invisible characters of an earlier version's name are escaped.
 
     Raises:
-        TypeError, ValueError: If a fact is missing, unknown or of another kind.
+        TypeError, ValueError: If a field is missing, unknown or of another type.
     """
     upload = Upload(**facts)
     for fact in fields(Upload):

@@ -1,6 +1,6 @@
 """tus 1.0, the protocol of resumable uploads (https://tus.io/protocols/resumable-upload): headers.
 
-What a request may say, checked; what answers say. No files, no network.
+Checks the headers of requests; no files, no network.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ MOST_METADATA = 8192
 
 
 class WrongVersion(AppError):
-    """The sender speaks another version of tus."""
+    """The sender uses another version of tus."""
 
     status = 412
 
 
 class WrongType(AppError):
-    """A chunk must be declared as one."""
+    """The content type is not that of a chunk."""
 
     status = 415
 
 
 def check_version(headers: Mapping[str, str]) -> None:
-    """Refuse another protocol.
+    """Reject another protocol version.
 
     Raises:
         WrongVersion: If the request is not tus 1.0.0.
@@ -42,7 +42,7 @@ def check_version(headers: Mapping[str, str]) -> None:
 
 
 def check_type(headers: Mapping[str, str]) -> None:
-    """Refuse a chunk that is not declared as one.
+    """Reject a body that is not declared as a chunk.
 
     Raises:
         WrongType: If the content type is another.

@@ -23,7 +23,7 @@ from recon4.runtime_folder import private_folder, runtime_folder
 STARTS_WITHIN_S = 60.0
 """A viewer that does not listen by then will not [s]."""
 ENDS_WITHIN_S = 5.0
-"""A viewer asked to end is killed after this long [s]."""
+"""A viewer requested to end is killed after this long [s]."""
 READY = b"ready\n"
 """What a viewer writes as soon as it listens."""
 

@@ -22,14 +22,14 @@ import numpy as np
 import psutil
 from websockets.exceptions import ConnectionClosed
 
-from app.jobs.run_progress import AFTER, BEFORE, SHARES
+from app.jobs.run_progress import AFTER, BEFORE, STAGE_PERCENT
 from app.viewer.pool import socket_folder
 from tests.processes import command_of
 from tests.service.gated_worker import AT_GATE
 from tests.service.running import WITHOUT_TLS, Running, end_workers, server_process, wait_for
 from tests.service.viser_client import camera, viewing
 
-STAGES = tuple(stage for stage in SHARES if stage not in (BEFORE, AFTER))
+STAGES = tuple(stage for stage in STAGE_PERCENT if stage not in (BEFORE, AFTER))
 IN_A_STAGE = ("worker", "server", "viewer", "pool")
 RESULTS = ("trajectory.tum", "odometry.tum", "edges.json", "map.laz", "graph.g2o")
 VICTIMS = ("worker", "server", "both")

@@ -153,7 +153,7 @@ def test_a_damaged_queue_is_replaced_by_its_newest_copy_and_that_is_said(tmp_pat
         jobs = server.get("/api/jobs").json()
 
     assert "The list of jobs was damaged" in told["notices"][0]
-    assert "not listed any more" in told["notices"][0]
+    assert "no longer listed" in told["notices"][0]
     assert [view["job"]["id"] for view in jobs] == [job]
     assert list(state.glob("jobs.sqlite.damaged-*"))
 

@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 
-from app.jobs.run_progress import PIECES, SHARES
+from app.jobs.run_progress import PIECES, STAGE_PERCENT
 from recon4.progress import Silent
 from recon4.simulation.simulate import simulate
 from tests.service import killing
@@ -56,7 +56,7 @@ def test_server_worker_and_viewer_are_killed_in_the_middle_of_stages_and_the_byt
     assert artifacts(killed / "office") == artifacts(unbroken / "office")
     assert set(completed(killed, survived).values()) <= {1}
     assert set(completed(unbroken, whole)) == set(STAGES)
-    assert {stage for stage, _ in PIECES} <= set(SHARES)
+    assert {stage for stage, _ in PIECES} <= set(STAGE_PERCENT)
     assert not list((killed / "office").rglob(".tmp-*"))
 
 

@@ -118,7 +118,7 @@ def test_the_api_description_says_who_may_call_what_and_how_refusals_look(server
     records = described["components"]["schemas"]
     assert records["NewJob"]["properties"]["imu"]["description"].startswith("CSV file")
     assert records["ProjectView"]["properties"]["finished"]["description"] == (
-        "Whether a run came to its end."
+        "Whether a run has finished."
     )
     assert server.get("/openapi.json").json() == described
 

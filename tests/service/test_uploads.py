@@ -223,7 +223,7 @@ def test_too_much_too_many_and_no_room_are_refused_in_words(tmp_path):
         first = begin(server, "walk", 1, 1)
         second = server.post("/api/uploads", json=ask | {"bytes": 1})
 
-    assert large.status_code == 413 and "more than this server takes" in large.text
+    assert large.status_code == 413 and "more than this server accepts" in large.text
     assert no_room.status_code == 507 and "make room first" in no_room.text
     assert second.status_code == 429 and "unfinished already" in second.text
     assert first["received"] == 0

@@ -50,4 +50,4 @@ def test_a_job_started_while_it_is_being_cancelled_is_asked_to_stop(store, super
 
     supervisor.cancel(seen)
 
-    assert supervisor.folder("a").asked_to_stop_s() is not None
+    assert supervisor.folder("a").stop_requested_s() is not None

@@ -80,10 +80,10 @@ def test_what_is_over_stays_over(state):
             done.to(other)
 
 
-def test_rate_and_time_left_follow_from_what_was_told():
-    told = {"kind": "progress", "what": "odometry", "done": 25, "total": 100, "unit": "frames"}
+def test_rate_and_remaining_time_follow_from_an_event():
+    event = {"kind": "progress", "what": "odometry", "done": 25, "total": 100, "unit": "frames"}
 
-    status = after(Status(), {**told, "seconds": 5.0})
+    status = after(Status(), {**event, "seconds": 5.0})
 
     assert status.fraction == 0.25
     assert status.rate_per_s == 5.0
