@@ -283,7 +283,7 @@ class Metrics:
 
 def _capture(capture: Capture) -> Iterator[Metric]:
     """Packets of the live capture that runs, or of the last one."""
-    newest = capture.picture.newest
+    newest = capture.stream.newest
     status, notes = newest.get("status"), newest.get("notes")
     if status is not None:
         yield _gauges(

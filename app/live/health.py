@@ -1,4 +1,4 @@
-"""How each LiDAR is: what it sends, what was lost of it, and whose time it keeps. Pure."""
+"""Health of each LiDAR: packet rate, packet loss and clock. No I/O."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ IN_STEP, SHIFTED, JUMPED = "in step", "own, shifted", "jumped"
 
 @dataclass(frozen=True, slots=True)
 class LidarHealth:
-    """One LiDAR, for the table on the phone."""
+    """Health of one LiDAR."""
 
     name: str
     per_s: float
-    """Data packets a second."""
+    """Data packets per second."""
     lost: float | None
-    """Share of its packets that never came, of the last `RECENT_S`; None = not known."""
+    """Packet loss ratio of the last `RECENT_S`, 0 to 1; None = unknown."""
     clock: str
-    """`IN_STEP` with the recorder's or driven by GPS, `SHIFTED` as it runs freely (no PPS),
-    or it, or the recorder's, `JUMPED` since the start; empty = not known."""
+    """`IN_STEP` with the recorder's clock or GPS, `SHIFTED` if it runs freely (no PPS),
+    `JUMPED` if it or the recorder's clock jumped since the start; empty = unknown."""
 
 
 def lidars(rig: Rig, newest: dict[str, Fields]) -> list[LidarHealth]:
     """Health of each LiDAR of a rig.
 
     Args:
-        rig: What should be there.
-        newest: Kind of message to the last of it (`Picture.newest`).
+        rig: The LiDARs that should send.
+        newest: Newest message of each kind (`StreamState.newest`).
     """
     if "status" not in newest:
         return []
@@ -50,7 +50,7 @@ def _health(name: str, per_s: float, notes: Fields | None) -> LidarHealth:
 
 
 def _clock(warnings: list[str]) -> str:
-    """From what `recon4.recording.velodyne.sensor_clock` warns of."""
+    """State of the clock, from the warnings of `recon4.recording.velodyne.sensor_clock`."""
     if any("jumped by" in text for text in warnings):
         return JUMPED
     return SHIFTED if any("no GPS drives it" in text for text in warnings) else IN_STEP

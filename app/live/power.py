@@ -1,4 +1,4 @@
-"""The battery of this computer, which is carried on the walk."""
+"""Battery of this computer, which the operator carries."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from recon4.live.findings import Finding
 
 SUPPLIES = Path("/sys/class/power_supply")
 READ_EVERY_S = 15.0
-LITTLE_S, LITTLE_CHARGE = 900.0, 0.15
-VERY_LITTLE_S, VERY_LITTLE_CHARGE = 300.0, 0.06
+LOW_S, LOW_CHARGE = 900.0, 0.15
+CRITICAL_S, CRITICAL_CHARGE = 300.0, 0.06
 
 
 @dataclass(frozen=True, slots=True)
 class Battery:
-    """What is left in all batteries of a computer together."""
+    """Charge of all batteries of a computer together."""
 
     charge: float
-    """Of what they hold when full, 0 to 1."""
+    """Charge level, 0 to 1."""
     left_s: float | None
-    """How long it lasts as now [s]; None = not told, or on mains."""
+    """Time until it is empty at the present rate [s]; None = unknown, or on mains."""
     mains: bool
-    """Whether it is not being emptied."""
+    """Whether the computer runs on mains."""
 
 
 class Power:
-    """Reads the battery now and then: the kernel may take milliseconds to ask it."""
+    """Reads the battery at intervals, because a read may take milliseconds."""
 
     def __init__(
         self, read: Callable[[], Battery | None], clock: Callable[[], float] = time.monotonic
@@ -39,14 +39,14 @@ class Power:
 
     @property
     def battery(self) -> Battery | None:
-        """As it was `READ_EVERY_S` ago at most; None = there is none."""
+        """The battery, at most `READ_EVERY_S` old; None = there is none."""
         if self._clock() - self._read_s >= READ_EVERY_S:
             self._read_s, self._battery = self._clock(), self._read()
         return self._battery
 
 
 def read_battery(supplies: Path = SUPPLIES) -> Battery | None:
-    """The battery as the Linux kernel tells of it; None if there is none, or another system."""
+    """Read the battery from sysfs; None if there is none, or on another system than Linux."""
     found = list(_batteries(supplies))
     if not found:
         return None
@@ -57,21 +57,21 @@ def read_battery(supplies: Path = SUPPLIES) -> Battery | None:
     return Battery(min(max(now / full, 0.0), 1.0), left_s, mains)
 
 
-def battery_words(battery: Battery | None) -> list[Finding]:
-    """What a person must know of it while walking."""
+def battery_findings(battery: Battery | None) -> list[Finding]:
+    """Warnings about the battery for the operator."""
     if battery is None or battery.mains:
         return []
     left_s = float("inf") if battery.left_s is None else battery.left_s
-    if left_s >= LITTLE_S and battery.charge >= LITTLE_CHARGE:
+    if left_s >= LOW_S and battery.charge >= LOW_CHARGE:
         return []
-    urgent = left_s < VERY_LITTLE_S or battery.charge < VERY_LITTLE_CHARGE
+    critical = left_s < CRITICAL_S or battery.charge < CRITICAL_CHARGE
     left = f", {left_s / 60:.0f} min" if battery.left_s is not None else ""
     text = f"The computer's battery has {100 * battery.charge:.0f} %{left} left"
-    return [Finding("bad" if urgent else "care", text)]
+    return [Finding("error" if critical else "warning", text)]
 
 
 def _batteries(supplies: Path) -> Iterator[dict[str, float]]:
-    """Content, size, and what flows out of each, in units that go together."""
+    """Charge, capacity and discharge rate of each battery, in matching units."""
     for folder in sorted(supplies.glob("*")):
         about = _properties(folder / "uevent")
         if about.get("TYPE") != "Battery" or about.get("SCOPE") == "Device":

@@ -1,4 +1,4 @@
-"""Rigs a capture may be started with: one's own files, then those that ship with recon4."""
+"""Rigs for a capture: own files first, then those that ship with recon4."""
 
 from __future__ import annotations
 
@@ -18,33 +18,33 @@ LARGEST_BYTES = 1 << 17
 
 @dataclass(frozen=True, slots=True)
 class RigChoice:
-    """One rig."""
+    """A rig to choose from."""
 
     rig: str
-    """What to start a capture with: a name, or the path of a file."""
+    """Value to start a capture with: name of a shipped rig, or path of a file."""
     name: str
-    """What it is called."""
+    """Display name."""
     sensors: list[str]
-    """Its LiDARs."""
+    """Names of its LiDARs."""
     problem: str
-    """Why it cannot be used, in words; empty = it can."""
+    """Why it cannot be used; empty = it can."""
 
 
 def rig_files(
     folders: Sequence[Path], shows: Callable[[Path], bool] = lambda _: True
 ) -> tuple[Path, ...]:
-    """TOML files that lie in some folders, not deeper, or in ``rigs`` in them.
+    """TOML files directly in some folders or in their subfolders ``rigs``.
 
     Args:
-        folders: Where to look.
-        shows: Whether a file may be shown at all (`ImportFolders.shows`).
+        folders: Folders to search.
+        shows: Whether a file may be listed (`ImportFolders.shows`).
     """
     files = (path for folder in folders for path in _files(folder) if _fits(path) and shows(path))
     return tuple(islice(files, MOST_FILES))
 
 
 def rigs_in(files: tuple[Path, ...]) -> list[RigChoice]:
-    """The rigs among some files; parses files of users, so it runs in a child."""
+    """Read the rigs among some files; runs in a child process, because users wrote the files."""
     return [choice for path in files if (choice := _choice(path)) is not None]
 
 
@@ -67,7 +67,7 @@ def _fits(path: Path) -> bool:
 
 
 def _choice(path: Path) -> RigChoice | None:
-    """A file that says it has sensors; others are no rigs."""
+    """The rig in a file; None if the file has no sensors."""
     try:
         if "[[sensor]]" not in read_text_limited(path, LARGEST_BYTES):
             return None

@@ -1,4 +1,4 @@
-"""HTTP face of live capture: parse, delegate, answer."""
+"""HTTP routes of live capture."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ page = APIRouter()
 
 
 class NewCapture(BaseModel):
-    """What to capture."""
+    """Parameters of a new capture."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -49,40 +49,40 @@ class NewCapture(BaseModel):
     """Name of a shipped rig or path of a rig file on the server."""
     preset: str = "indoor"
     place: Name = Field(default="", max_length=200)
-    """What the place is called."""
+    """Name of the place."""
 
 
 class NewMark(BaseModel):
-    """A note of the operator."""
+    """A mark of the operator."""
 
     model_config = ConfigDict(extra="forbid")
 
     what: Literal["point", "place"] = "point"
     text: Note = Field(default="", max_length=500)
     ago_s: float = Field(default=0.0, ge=0.0, le=600.0)
-    """How long ago that was: a note takes a while to type, and one walks on."""
+    """Age of the mark [s]: the operator walks on while typing the note."""
 
 
 class CaptureChoices(BaseModel):
-    """What a capture may be started with."""
+    """Presets and rigs for a capture."""
 
     presets: list[str]
     rigs: list[RigChoice]
 
 
 class CaptureView(BaseModel):
-    """How a capture stands."""
+    """State of a capture."""
 
     project: str
     state: str
     """``recording``, ``paused``, ``finishing`` or ``ready`` (to be processed)."""
     words: list[dict[str, str]]
-    """Warnings, the most urgent first: level (``bad``, ``care``, ``info``) and text."""
+    """Warnings, the most urgent first: level (``error``, ``warning``, ``info``) and text."""
     rates: dict[str, float]
-    """Datagrams a second of each LiDAR, the IMU and the GNSS receiver."""
+    """Datagrams per second of each LiDAR, the IMU and the GNSS receiver."""
     phones: int
     may_capture: bool
-    """Whether who asks may steer it."""
+    """Whether the caller may control it."""
 
 
 @page.get("/live", include_in_schema=False, dependencies=LOOK)
@@ -92,7 +92,7 @@ def live_page() -> FileResponse:
 
 @router.get("", dependencies=LOOK, summary="State of the capture")
 def read_capture(server: Server, who: Who) -> CaptureView | None:
-    """The capture that runs, or the last one; null if there was none since the server started."""
+    """The running or the last capture; null if there was none since the server started."""
     if server.captures.newest is None:
         return None
     return _view(server.captures, who.may(Permission.CAPTURE))
@@ -100,7 +100,7 @@ def read_capture(server: Server, who: Who) -> CaptureView | None:
 
 @router.get("/choices", dependencies=LOOK, summary="Rigs and presets")
 async def read_choices(server: Server, caller: CalledBy) -> CaptureChoices:
-    """Rig files in the folder of the projects, or where recordings may lie; shipped rigs."""
+    """Rig files in the folder of the projects or the import folders; shipped rigs."""
     files = await run_in_threadpool(
         rig_files, server.settings.import_roots, server.projects.imports.shows
     )
@@ -114,7 +114,7 @@ async def read_choices(server: Server, caller: CalledBy) -> CaptureChoices:
 
 @router.post("", status_code=201, dependencies=CAPTURE, summary="Start a capture")
 async def start_capture(new: NewCapture, server: Server, who: Who, caller: CalledBy) -> CaptureView:
-    """Open the sensors' ports and record; the recording is a project from its first moment."""
+    """Open the sensors' ports and record; the project exists from the start."""
     rig = new.rig
     if Path(new.rig).suffix:
         file = await run_in_threadpool(server.projects.importable, new.rig)
@@ -124,7 +124,7 @@ async def start_capture(new: NewCapture, server: Server, who: Who, caller: Calle
         new.project, rig, preset=new.preset, address=server.settings.live_address
     )
     if new.place:
-        await capture.steer({"do": "mark", "what": "place", "text": new.place, "who": who.name})
+        await capture.request({"do": "mark", "what": "place", "text": new.place, "who": who.name})
     audit(caller.request, "live.start", new.project)
     return _view(server.captures, may_capture=True)
 
@@ -137,17 +137,17 @@ async def stop_capture(request: Request, server: Server) -> CaptureView:
     return _view(server.captures, may_capture=True)
 
 
-@router.post("/pause", dependencies=CAPTURE, summary="Record nothing for a while")
+@router.post("/pause", dependencies=CAPTURE, summary="Pause recording")
 async def pause_capture(server: Server) -> CaptureView:
-    """What comes in until `resume` is counted but not recorded."""
-    await server.captures.capture().steer({"do": "pause"})
+    """Datagrams until `resume` are counted but not recorded."""
+    await server.captures.capture().request({"do": "pause"})
     return _view(server.captures, may_capture=True)
 
 
-@router.post("/resume", dependencies=CAPTURE, summary="Record again")
+@router.post("/resume", dependencies=CAPTURE, summary="Resume recording")
 async def resume_capture(server: Server) -> CaptureView:
-    """End a pause. Stand where the pause began."""
-    await server.captures.capture().steer({"do": "resume"})
+    """End a pause. The operator should stand where the pause began."""
+    await server.captures.capture().request({"do": "resume"})
     return _view(server.captures, may_capture=True)
 
 
@@ -158,10 +158,10 @@ async def resume_capture(server: Server) -> CaptureView:
     summary="Make the map of a capture that has ended",
 )
 def process_capture(request: Request, server: Server) -> JobView:
-    """Start the usual job on the project; its frames are there already."""
+    """Start a processing job on the project; its frames are done already."""
     session = server.captures.capture().session
     if not server.captures.capture().over:
-        raise Conflict("the capture goes on: stop it first")
+        raise Conflict("the capture is still running: stop it first")
     new = NewJob(
         project=session.project.name,
         recordings=[str(session.capture)],
@@ -173,24 +173,24 @@ def process_capture(request: Request, server: Server) -> JobView:
 
 @router.post("/marks", status_code=201, dependencies=CAPTURE, summary="Mark a point of interest")
 async def add_mark(mark: NewMark, server: Server, who: Who) -> dict[str, str]:
-    """Note something here and now; on the disk before it appears in the stream."""
+    """Save a mark; it is on the disk before it appears in the stream."""
     message = {"do": "mark", "who": who.name, **mark.model_dump()}
-    await server.captures.capture().steer(message)
+    await server.captures.capture().request(message)
     return {"status": "noted"}
 
 
 @router.websocket("/stream", dependencies=LOOK)
 async def stream(socket: WebSocket) -> None:
-    """The map so far and everything new, as far as this phone lacks it (``docs/live.md``)."""
+    """Stream the part of the map and state this phone lacks (``docs/live.md``)."""
     captures = parts(socket).captures
-    await socket.accept()  # a page learns the code and the words of an accepted socket only
+    await socket.accept()  # a page receives the close code and reason of an accepted socket only
     try:
         with captures.streams.place(socket):
             await Phone(socket, captures).serve()
     except TooMany as error:
         await socket.close(TOO_MANY, str(error)[:120])
     except (WebSocketDisconnect, TimeoutError, RuntimeError):
-        pass  # gone or stalled: it comes back and says what it has
+        pass  # disconnected or stalled: it reconnects and reports what it has
 
 
 def _view(captures: Captures, may_capture: bool) -> CaptureView:

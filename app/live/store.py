@@ -1,4 +1,4 @@
-"""The capture of this computer: there is one at a time, as there is one set of ports."""
+"""Manages the capture of this computer: one at a time, because there is one set of ports."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ LIVE_STREAMS = StreamLimits(most=32, per_person=8, per_address=16, reserved=4)
 
 
 class Captures:
-    """Starts captures and remembers the last one."""
+    """Starts captures and keeps the last one."""
 
     def __init__(self, root: Path) -> None:
         self._root = root
@@ -34,13 +34,13 @@ class Captures:
         self._rig: Rig | None = None
         self._starting = asyncio.Lock()
         self.streams = Streams("live streams", LIVE_STREAMS)
-        """Phones that look."""
+        """Streams of the connected phones."""
         self.power = Power(read_battery)
-        """Of this computer."""
+        """Battery of this computer."""
 
     @property
     def newest(self) -> Capture | None:
-        """The capture that runs, or the last one."""
+        """The running or the last capture; None if there was none."""
         return self._capture
 
     def capture(self) -> Capture:
@@ -98,7 +98,7 @@ class Captures:
             return
         alive, _, session, rig = max(found, key=lambda one: one[:2])
         capture = Capture(session)
-        capture.picture.recall(await asyncio.to_thread(marks_of, session))
+        capture.stream.restore_marks(await asyncio.to_thread(marks_of, session))
         await capture.follow()
         self._capture, self._rig = capture, rig
         what = "still runs and is followed again" if alive else "died: its map is completed"
@@ -111,17 +111,17 @@ class Captures:
             NotFound, Conflict: If nothing is being captured.
         """
         capture = self.capture()
-        await capture.steer({"do": "stop"})
+        await capture.request({"do": "stop"})
         return capture
 
     async def leave(self) -> None:
-        """Stop following; recorder and mapper go on."""
+        """Stop following; recorder and mapper continue."""
         if self._capture is not None:
             await self._capture.leave()
 
 
 def marks_of(session: CaptureSession) -> list[dict[str, Any]]:
-    """What was noted so far; a line that was being written when the power went is not there."""
+    """Read the marks of a session; skips a line that was being written at a power failure."""
     try:
         if not session.marks.exists():
             return []

@@ -1,4 +1,4 @@
-"""What is known of a running capture, as the phones are shown it; and what each of them lacks."""
+"""State of a running capture for the phones, and the part of it that each phone lacks."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from typing import Any
 Message = dict[str, Any]
 
 POINTS_AT_ONCE = 20_000
-"""Points in one message: 140 kB, so that a slow phone sees the map grow."""
+"""Points per message: 140 kB, so that the map grows steadily on a slow phone."""
 BYTES_A_POINT = 7
 _KEPT = ("status", "notes", "fix", "plan", "gaps", "loop")
-"""Kinds of which only the newest counts."""
-_PLACED_WITHIN_NS = 10_000_000_000
-"""A mark appears without a place if the mapping does not come to its moment."""
+"""Kinds of messages of which only the newest is kept."""
+_LOCATED_WITHIN_NS = 10_000_000_000
+"""A mark appears without a position if the mapping does not reach its time within this."""
 _PATH_STEP_M = 0.25
-"""The way is kept a point every so far: an hour's walk is a few thousand."""
+"""Distance between stored points of the path; an hour's walk has a few thousand."""
 _TRACK = 6000
-"""Poses kept to place marks: ten minutes, more than anybody types a note."""
+"""Poses kept to locate marks: ten minutes, longer than typing a note takes."""
 
 
 @dataclass(slots=True)
 class Cursor:
-    """What one phone has already."""
+    """What one phone has received."""
 
     generation: int = -1
     points: int = 0
@@ -38,52 +38,52 @@ class Cursor:
 
 
 class StreamState:
-    """Takes messages of recorder and mapper in; gives every phone what it lacks.
+    """Collects the messages of recorder and mapper and returns to each phone what it lacks.
 
-    Memory is bounded by the preview (400 k points) and the way, however many phones there are:
-    a phone that does not listen has a cursor that stays behind, nothing more.
+    Memory is bounded by the preview (400 k points) and the path, independent of the number of
+    phones: a phone that does not read only has an old cursor.
     """
 
     def __init__(self) -> None:
         self._changed = asyncio.Event()
         self.version = 0
         self.newest: dict[str, Message] = {}
-        """Kind -> its last message."""
+        """Kind -> its newest message."""
         self._versions: dict[str, int] = {}
         self._generation, self._voxel_m = 0, 0.0
         self._voxels, self._values = bytearray(), bytearray()
         self._path: list[list[float]] = []
         self._marks: list[Message] = []
-        self._unplaced: list[Message] = []
-        """Marks of moments the mapping has not come to."""
+        self._pending_marks: list[Message] = []
+        """Marks of times the mapping has not reached."""
         self._track: deque[tuple[int, list[float]]] = deque(maxlen=_TRACK)
-        """The newest moments [ns] and where the walk was."""
+        """Time [ns] and position of the newest poses."""
 
     @property
     def points(self) -> int:
-        """Points known."""
+        """Number of points."""
         return len(self._values)
 
     def take(self, message: Message) -> None:
-        """Take a message in."""
+        """Add a message of recorder or mapper."""
         match message.get("kind"):
             case "points":
                 self._take_points(message)
             case "path":
                 self._path = []
                 for place in message["points"]:
-                    self._go_to(place)
+                    self._extend_path(place)
             case "pose":
                 self.newest["pose"] = message
                 self._bump("pose")
                 self._track.append((message["t_ns"], message["p"]))
                 if not message["lost"]:
-                    self._go_to(message["p"])
-                self._place_marks(message["t_ns"])
+                    self._extend_path(message["p"])
+                self._locate_marks(message["t_ns"])
             case "mark":
                 self._take_mark(message)
             case "done":
-                self._place_marks(None)
+                self._locate_marks(None)
             case kind if kind in _KEPT:
                 self._keep(kind, message)
             case _:
@@ -92,12 +92,12 @@ class StreamState:
         self._changed.set()
         self._changed = asyncio.Event()
 
-    def recall(self, marks: list[Message]) -> None:
-        """Know marks an earlier server was told of; where they lie it knew alone."""
+    def restore_marks(self, marks: list[Message]) -> None:
+        """Add the marks received by an earlier server; their positions are lost."""
         self._marks = [mark | {"p": None} for mark in marks]
 
     async def news(self, version: int, *, timeout_s: float) -> None:
-        """Return when something is newer than a version, or after a while."""
+        """Wait until the state is newer than a version, at most for a time."""
         if self.version != version:
             return
         try:
@@ -106,7 +106,7 @@ class StreamState:
             return
 
     def lacking(self, cursor: Cursor, *, most: int = POINTS_AT_ONCE) -> tuple[Message, bytes]:
-        """What a phone with this cursor lacks, at most so many points; moves the cursor.
+        """The state a phone with this cursor lacks, with at most ``most`` points; moves the cursor.
 
         Returns:
             A message of JSON values, and the points it announces under ``points``: int16 x, y, z
@@ -130,7 +130,7 @@ class StreamState:
         return message, self._lacking_points(cursor, message, min(most, POINTS_AT_ONCE))
 
     def complete(self, cursor: Cursor) -> bool:
-        """Whether a phone has all points."""
+        """Whether a phone with this cursor has all points."""
         return cursor.generation == self._generation and cursor.points >= self.points
 
     def _lacking_points(self, cursor: Cursor, message: Message, most: int) -> bytes:
@@ -146,7 +146,7 @@ class StreamState:
         cursor.points = end
         return bytes(self._voxels[6 * start : 6 * end] + self._values[start:end])
 
-    def _go_to(self, place: list[float]) -> None:
+    def _extend_path(self, place: list[float]) -> None:
         if not self._path or math.dist(self._path[-1], place) >= _PATH_STEP_M:
             self._path.append([round(value, 2) for value in place])
 
@@ -154,21 +154,21 @@ class StreamState:
         self.newest[kind] = message
         self._bump(kind)
         if kind == "status":
-            self._place_marks(message["t_ns"] - _PLACED_WITHIN_NS)
+            self._locate_marks(message["t_ns"] - _LOCATED_WITHIN_NS)
 
     def _take_mark(self, message: Message) -> None:
-        self._unplaced.append(message)
+        self._pending_marks.append(message)
         if message.get("what") != "point":
-            self._place_marks(message["t_ns"])
+            self._locate_marks(message["t_ns"])
 
-    def _place_marks(self, until_ns: int | None) -> None:
-        """Put marks to where the walk was at their moment, those until a moment or all of them."""
-        due = [m for m in self._unplaced if until_ns is None or m["t_ns"] <= until_ns]
-        self._unplaced = [mark for mark in self._unplaced if mark not in due]
-        self._marks += [mark | {"p": self._place_at(mark["t_ns"])} for mark in due]
+    def _locate_marks(self, until_ns: int | None) -> None:
+        """Locate marks at the position of their time: those until a time, or all."""
+        due = [m for m in self._pending_marks if until_ns is None or m["t_ns"] <= until_ns]
+        self._pending_marks = [mark for mark in self._pending_marks if mark not in due]
+        self._marks += [mark | {"p": self._position_at(mark["t_ns"])} for mark in due]
 
-    def _place_at(self, t_ns: int) -> list[float] | None:
-        """Where the walk was; where it is, if the mapping has not come to that moment."""
+    def _position_at(self, t_ns: int) -> list[float] | None:
+        """Position at a time; the newest one if the mapping has not reached that time."""
         if not self._track:
             return None
         row = bisect_left(self._track, t_ns, key=lambda one: one[0])
@@ -180,7 +180,7 @@ class StreamState:
             self._voxels.clear()
             self._values.clear()
         if message["start"] != self.points:
-            return  # told twice around a new connection
+            return  # received twice around a new connection
         self._voxels += base64.b64decode(message["voxels"])
         self._values += base64.b64decode(message["values"])
 

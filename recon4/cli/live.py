@@ -16,7 +16,7 @@ AddressOption = Annotated[
 SpeedOption = Annotated[
     float,
     typer.Option(
-        min=0.1, max=100.0, help="So many times as fast, for trials; record and replay alike."
+        min=0.1, max=100.0, help="Speed factor, for tests; use the same for record and replay."
     ),
 ]
 
@@ -29,10 +29,10 @@ def replay(
     speed: SpeedOption = 1.0,
     times: Annotated[
         int,
-        typer.Option(min=1, help="So often, for walks that end where they began; time goes on."),
+        typer.Option(min=1, help="Number of rounds, for walks that end where they began."),
     ] = 1,
 ) -> None:
-    """Send a recording to the ports of a recorder as its sensors did."""
+    """Replay a recording to the ports of a recorder as its sensors sent it."""
     from recon4.live.replay import replay as run
     from recon4.terminal import watcher
 
@@ -50,16 +50,16 @@ def record(
         str, typer.Option(help="Start from: indoor, staircase, outdoor, thesis.")
     ] = "indoor",
     seconds: Annotated[
-        float | None, typer.Option(min=1.0, help="Stop after so long; default: at Ctrl-C.")
+        float | None, typer.Option(min=1.0, help="Stop after this time; default: at Ctrl-C.")
     ] = None,
     address: AddressOption = "0.0.0.0",
     speed: SpeedOption = 1.0,
 ) -> None:
-    """Record sensors and map while they walk; the recording is a project from its first moment."""
+    """Record sensors and map during the walk; the project exists from the start."""
     import asyncio
     import time
 
-    from recon4.live.findings import words
+    from recon4.live.findings import findings
     from recon4.live.headless import Headless, Newest, progress_line
     from recon4.live.project_files import begin
     from recon4.model.rig import load_rig
@@ -73,7 +73,7 @@ def record(
 
     def send(newest: Newest, problem: str) -> None:
         _write(progress_line(newest, began_s))
-        found = {word.text for word in words(loaded, newest, problem)}
+        found = {one.text for one in findings(loaded, newest, problem)}
         for text in sorted(found - reported):
             _write(f"  ! {text}")
         reported.clear()

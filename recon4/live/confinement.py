@@ -1,4 +1,4 @@
-"""What recorder and mapper may do: they take bytes from strangers on the network."""
+"""Sandbox policies of recorder and mapper, which read bytes from unknown network senders."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from recon4.sandbox import Confinement, Network, Policy, confine, restart_with_o
 from recon4.sandbox.limits import physical_memory_bytes
 from recon4.sandbox.private_cache import cached_elsewhere, private_cache
 
-_SHARE_OF_MEMORY = 0.7
+_MEMORY_FRACTION = 0.7
 _OPEN_FILES = 1024
 
 
 def confine_recorder(session: CaptureSession, rig: Rig) -> Confinement:
-    """Let this process write the recording and receive datagrams, and nothing else.
+    """Allow this process to write the recording and to receive datagrams, nothing else.
 
-    With a serial GNSS receiver it also opens devices, because a receiver that is plugged in again
-    is another file in ``/dev``.
+    With a serial GNSS receiver it may also open devices: a receiver that is plugged in again gets
+    another file in ``/dev``.
     """
     restart_with_one_thread()
     devices = (Path("/dev"),) if rig.gnss_serial else ()
@@ -34,7 +34,7 @@ def confine_recorder(session: CaptureSession, rig: Rig) -> Confinement:
 
 
 def confine_mapper(session: CaptureSession) -> Confinement:
-    """Let this process write its project and talk over Unix sockets, and nothing else."""
+    """Allow this process to write its project and to use Unix sockets, nothing else."""
     restart_with_one_thread()
     policy = Policy(
         write=(session.project, _sockets(session)),
@@ -48,13 +48,13 @@ def confine_mapper(session: CaptureSession) -> Confinement:
 
 
 def mapper_environment(session: CaptureSession) -> dict[str, str]:
-    """What the mapper needs in its environment besides the usual: its caches, made here."""
-    shutil.rmtree(scratch_of(session), ignore_errors=True)  # of a mapper that was killed
+    """Additional environment variables of the mapper: its cache folders, created here."""
+    shutil.rmtree(scratch_of(session), ignore_errors=True)  # left by a mapper that was killed
     return private_cache(scratch_of(session) / "caches")
 
 
 def scratch_of(session: CaptureSession) -> Path:
-    """Folder of the mapper's temporary files; to be removed when it ends."""
+    """Folder of the mapper's temporary files; removed when it ends."""
     return session.folder / "scratch"
 
 
@@ -63,4 +63,4 @@ def _sockets(session: CaptureSession) -> Path:
 
 
 def _memory_bytes() -> int:
-    return int(_SHARE_OF_MEMORY * physical_memory_bytes())
+    return int(_MEMORY_FRACTION * physical_memory_bytes())

@@ -1,4 +1,4 @@
-"""What a person must know while walking, in words, the most urgent first. Pure."""
+"""Warnings for the operator of a live capture, the most urgent first. No I/O."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from recon4.model.rig import Rig, Sensor
 
-Level = Literal["bad", "care", "info"]
+Level = Literal["error", "warning", "info"]
 Fields = dict[str, Any]
 
 _TURN_RAD_S = 3.0
@@ -15,11 +15,11 @@ _LATE_S = 1.5
 _LOW_DISK_S = 600
 _SILENT_S = 1.5
 _GRACE_S = 3.0
-"""After the start nothing has to come yet."""
+"""No sensor is reported as silent this soon after the start."""
 _MOST_LOST = 0.01
-_UNSURE_SHARE, _UNSURE_ERROR_M, _UNSURE_GAP_M = 0.4, 0.08, 0.25
-_UNSURE_HELD = 0.002
-"""Degeneracy: 1/3 = held alike in all directions, 0 = one of them is free (a long corridor)."""
+_DEGRADED_MATCH_RATIO, _DEGRADED_ERROR_M, _DEGRADED_OFFSET_M = 0.4, 0.08, 0.25
+_DEGRADED_DEGENERACY = 0.002
+"""1/3 = isotropic, 0 = one direction is unobservable (a long corridor)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,27 +30,27 @@ class Finding:
     text: str
 
 
-def words(rig: Rig, newest: dict[str, Fields], problem: str) -> list[Finding]:
-    """Warnings from the newest messages.
+def findings(rig: Rig, newest: dict[str, Fields], problem: str) -> list[Finding]:
+    """Derive the warnings from the newest messages of recorder and mapper.
 
     Args:
-        rig: What should be there.
-        newest: Kind of message to the last of it (`Picture.newest`).
-        problem: Of the capture itself.
+        rig: The sensors that should send.
+        newest: Newest message of each kind (`StreamState.newest`).
+        problem: What is wrong with the capture itself; empty = nothing.
     """
-    found = [Finding("bad", problem)] if problem else []
+    found = [Finding("error", problem)] if problem else []
     status = newest.get("status")
     if status:
         found += [*_disk(status), *_sensors(rig, status), *_samples(rig, status)]
         found += [*_strangers(rig, status), *_drops(status)]
     found += [*_tracking(newest.get("pose", {})), *_reader(newest.get("notes", {}))]
     found += _position(newest.get("fix"))
-    order: dict[Level, int] = {"bad": 0, "care": 1, "info": 2}
-    return sorted(found, key=lambda word: order[word.level])
+    order: dict[Level, int] = {"error": 0, "warning": 1, "info": 2}
+    return sorted(found, key=lambda finding: order[finding.level])
 
 
 def rates(rig: Rig, status: Fields) -> dict[str, float]:
-    """Datagrams a second of each sensor of a rig, of its IMU and GNSS."""
+    """Datagrams per second of each LiDAR of a rig, of its IMU and its GNSS receiver."""
     senders = status.get("senders", [])
     found = {s.name: sum(_data_rate(one) for one in _mine(s, senders)) for s in rig.sensors}
     for name, port in (("IMU", rig.imu_port), ("GNSS", rig.gnss_port)):
@@ -59,7 +59,7 @@ def rates(rig: Rig, status: Fields) -> dict[str, float]:
 
 
 def _mine(sensor: Sensor, senders: list[Fields]) -> list[Fields]:
-    """Senders that may be this sensor: they send data packets to its port."""
+    """Senders that can be this sensor: they send data packets to its port."""
     return [
         one
         for one in senders
@@ -78,11 +78,11 @@ def _disk(status: Fields) -> list[Finding]:
     found = []
     file, left_s = status["file"], status["disk"]["left_s"]
     if file["problem"]:
-        found.append(Finding("bad", f"Nothing is recorded: {file['problem']}"))
+        found.append(Finding("error", f"Nothing is recorded: {file['problem']}"))
     if left_s is not None and left_s < _LOW_DISK_S:
-        found.append(Finding("bad", f"Disk full in {max(left_s, 0) // 60} min"))
+        found.append(Finding("error", f"Disk full in {max(left_s, 0) // 60} min"))
     if status.get("notes"):
-        found.append(Finding("bad", f"A mark could not be noted: {status['notes']}"))
+        found.append(Finding("error", f"A mark could not be saved: {status['notes']}"))
     if status["paused"]:
         found.append(Finding("info", "Paused: nothing is recorded"))
     return found
@@ -95,14 +95,16 @@ def _sensors(rig: Rig, status: Fields) -> list[Finding]:
         shortest = min(silent.values())
         arrives = _arriving(rig, status)
         if arrives:
-            return [Finding("bad", f"No LiDAR of the rig sends: {arrives}")]
+            return [Finding("error", f"No LiDAR of the rig sends: {arrives}")]
         text = f"No LiDAR sends anything for {_seconds(shortest)}: check power and cables"
-        return [Finding("bad", text)]
-    return [Finding("bad", f"{name} LiDAR silent for {_seconds(s)}") for name, s in silent.items()]
+        return [Finding("error", text)]
+    return [
+        Finding("error", f"{name} LiDAR silent for {_seconds(s)}") for name, s in silent.items()
+    ]
 
 
 def _arriving(rig: Rig, status: Fields) -> str:
-    """What comes in on the LiDARs' ports though none of the rig's LiDARs is heard; empty = none."""
+    """Datagrams on the LiDARs' ports although no LiDAR of the rig sends; empty = none."""
     for sensor in rig.sensors:
         there = [one for one in status["senders"] if one["port"] == sensor.port]
         data = [one for one in there if _data_rate(one) > 0 and one["source"] != sensor.address]
@@ -116,19 +118,19 @@ def _arriving(rig: Rig, status: Fields) -> str:
         if other:
             return (
                 f"datagrams for port {sensor.port} ({sensor.name}) come from {_sources(other)}, "
-                "but they are no data packets of a LiDAR"
+                "but they are not LiDAR data packets"
             )
     return ""
 
 
 def _sources(senders: list[Fields]) -> str:
-    """Addresses of some senders, at most three."""
+    """Addresses of senders, at most three of them."""
     sources = sorted({str(one["source"]) for one in senders})
     return ", ".join(sources[:3]) + " …" * (len(sources) > 3)
 
 
 def _silent_s(senders: list[Fields], status: Fields) -> float:
-    """For how long none of some senders was heard [s]; 0 in the first moments."""
+    """Time since the last datagram of some senders [s]; 0 within `_GRACE_S` of the start."""
     if senders:
         return float(min(one.get("silent_s", 0.0) for one in senders))
     return float(status["seconds"]) if status["seconds"] >= _GRACE_S else 0.0
@@ -139,16 +141,16 @@ def _samples(rig: Rig, status: Fields) -> list[Finding]:
     imu = [one for one in status["senders"] if one["port"] == rig.imu_port]
     silent_s = _silent_s(imu, status)
     if rig.imu_port and imu and silent_s >= _SILENT_S:
-        found.append(Finding("care", f"IMU silent for {_seconds(silent_s)}: turn slowly"))
+        found.append(Finding("warning", f"IMU silent for {_seconds(silent_s)}: turn slowly"))
     elif silent_s >= _SILENT_S:
-        found.append(Finding("care", "No IMU: walk and turn slowly"))
+        found.append(Finding("warning", "No IMU: walk and turn slowly"))
     if status.get("serial"):
-        found.append(Finding("care", f"GNSS receiver: {status['serial']}"))
+        found.append(Finding("warning", f"GNSS receiver: {status['serial']}"))
     return found
 
 
 def _strangers(rig: Rig, status: Fields) -> list[Finding]:
-    """Senders to a LiDAR's port that are none of the rig's, or send something else."""
+    """Foreign senders to a LiDAR's port, and datagrams there that are not data packets."""
     ports: dict[int, list[Sensor]] = {}
     for sensor in rig.sensors:
         ports.setdefault(sensor.port, []).append(sensor)
@@ -165,7 +167,8 @@ def _strangers(rig: Rig, status: Fields) -> list[Finding]:
             some = ", ".join(strangers[:3]) + (" …" if len(strangers) > 3 else "")
             found.append(Finding("info", f"Foreign traffic on port {port} from {some}"))
         elif mixed:
-            text = f"Packets on port {port} that are none of a LiDAR, from {mixed[0]['source']}"
+            source = mixed[0]["source"]
+            text = f"Packets on port {port} that are not LiDAR data packets, from {source}"
             found.append(Finding("info", text))
     return found
 
@@ -174,29 +177,29 @@ def _drops(status: Fields) -> list[Finding]:
     found = []
     if status["kernel_drops"]:
         count = status["kernel_drops"]
-        found.append(Finding("bad", f"{count} packets were lost: this computer is too busy"))
+        found.append(Finding("error", f"{count} packets were lost: this computer is too busy"))
     if status["file"]["dropped"]:
         count = status["file"]["dropped"]
         text = f"{count} packets are not in the recording: the disk was full or too slow"
-        found.append(Finding("bad", text))
+        found.append(Finding("error", text))
     return found
 
 
 def _tracking(pose: Fields) -> list[Finding]:
     found = []
     if pose.get("lost"):
-        found.append(Finding("bad", "Tracking lost: stop, then go back a few steps"))
+        found.append(Finding("error", "Tracking lost: stop, then go back a few steps"))
     elif (pose.get("turn_rad_s") or 0.0) > _TURN_RAD_S:
-        found.append(Finding("care", "Turn slower"))
-    elif _unsure(pose):
-        found.append(Finding("care", "Tracking is unsure: walk slower, look at more walls"))
+        found.append(Finding("warning", "Turn slower"))
+    elif _degraded(pose):
+        found.append(Finding("warning", "Tracking is degraded: walk slower, look at more walls"))
     if pose.get("remark"):
-        found.append(Finding("care", f"{pose['remark'][0].upper()}{pose['remark'][1:]}"))
+        found.append(Finding("warning", f"{pose['remark'][0].upper()}{pose['remark'][1:]}"))
     return found + _late(pose)
 
 
 def _late(pose: Fields) -> list[Finding]:
-    """The preview lags; frames are left out of it, never of the recording."""
+    """Latency of the preview. Frames are left out of the preview, never of the recording."""
     age_s, lately = pose.get("age_s") or 0.0, pose.get("lately") or {"frames": 0, "thinned": 0}
     behind = f"The preview is {age_s:.0f} s behind" if age_s > _LATE_S else ""
     left_out = (
@@ -205,38 +208,39 @@ def _late(pose: Fields) -> list[Finding]:
         if lately["thinned"]
         else ""
     )
-    said = ": ".join(text for text in (behind, left_out) if text)
-    level: Level = "care" if behind else "info"
-    return [Finding(level, f"{said}; the recording is whole")] if said else []
+    text = ": ".join(part for part in (behind, left_out) if part)
+    level: Level = "warning" if behind else "info"
+    return [Finding(level, f"{text}; the recording is complete")] if text else []
 
 
-def _unsure(pose: Fields) -> bool:
+def _degraded(pose: Fields) -> bool:
+    """Whether tracking is degraded: poor match, residual, prediction or observability."""
     match_ratio, error_m, prediction_offset_m = (
         pose.get(name) for name in ("match_ratio", "error_m", "prediction_offset_m")
     )
-    held = pose.get("degeneracy")
+    degeneracy = pose.get("degeneracy")
+    registered = pose.get("frame_id", 0) > 0
     return bool(
-        (match_ratio is not None and match_ratio < _UNSURE_SHARE and pose.get("frame_id", 0) > 0)
-        or (held is not None and held < _UNSURE_HELD and pose.get("frame_id", 0) > 0)
-        or (error_m is not None and error_m > _UNSURE_ERROR_M)
-        or (prediction_offset_m is not None and prediction_offset_m > _UNSURE_GAP_M)
+        (registered and match_ratio is not None and match_ratio < _DEGRADED_MATCH_RATIO)
+        or (registered and degeneracy is not None and degeneracy < _DEGRADED_DEGENERACY)
+        or (error_m is not None and error_m > _DEGRADED_ERROR_M)
+        or (prediction_offset_m is not None and prediction_offset_m > _DEGRADED_OFFSET_M)
     )
 
 
 def _reader(notes: Fields) -> list[Finding]:
-    found = [Finding("care", text) for text in notes.get("warnings", [])[-3:]]
+    found = [Finding("warning", text) for text in notes.get("warnings", [])[-3:]]
     recent: Fields = notes.get("recent") or {}
     packets, missing = recent.get("packets", 0), recent.get("packets_missing", 0)
     if packets > 1000 and missing > _MOST_LOST * packets:
-        match_ratio = 100.0 * missing / (packets + missing)
-        found.append(
-            Finding("care", f"{match_ratio:.0f} % of the packets never arrived: check the cable")
-        )
+        percent = 100.0 * missing / (packets + missing)
+        text = f"{percent:.0f} % of the packets never arrived: check the cable"
+        found.append(Finding("warning", text))
     for name, what in (
-        ("packets_duplicate", "came twice: the copies are left out"),
-        ("packets_out_of_order", "came out of order: put right"),
-        ("packets_late", "came too late for their frame"),
-        ("packets_wrong_length", "on a LiDAR's port have a wrong size: left out"),
+        ("packets_duplicate", "arrived twice: the copies are discarded"),
+        ("packets_out_of_order", "arrived out of order: sorted"),
+        ("packets_late", "arrived too late for their frame"),
+        ("packets_wrong_length", "on a LiDAR's port have a wrong size: discarded"),
     ):
         if packets > 1000 and recent.get(name, 0) > _MOST_LOST * packets:
             found.append(Finding("info", f"{100 * recent[name] / packets:.0f} % of packets {what}"))
@@ -247,8 +251,8 @@ def _position(fix: Fields | None) -> list[Finding]:
     if not fix:
         return []
     if fix.get("jumped_m"):
-        text = f"GNSS jumped by {fix['jumped_m']:.0f} m: the map is made without it"
-        return [Finding("care", text)]
+        text = f"GNSS jumped by {fix['jumped_m']:.0f} m: the map does not use it"
+        return [Finding("warning", text)]
     sd_m = fix.get("sd_m")
     within = f", ±{max(sd_m[:2]):.2g} m" if sd_m else ""
     if fix["quality"] == 0:

@@ -1,4 +1,4 @@
-"""A capture without a server: recorder and mapper as child processes, lines for a terminal."""
+"""A capture without a server: recorder and mapper as child processes, progress as text lines."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ Newest = dict[str, dict[str, Any]]
 
 
 class Headless:
-    """Starts both processes, follows what they say, and stops them in good order."""
+    """Starts both processes, keeps their newest messages, and stops them in order."""
 
     def __init__(self, session: CaptureSession, *, send: Callable[[Newest, str], None]) -> None:
         """Prepare.
 
         Args:
-            session: Of a project that was begun.
-            send: Called every `REPORT_EVERY_S` with the newest message of each kind and what is
-                wrong with the capture itself.
+            session: Session of a project that was created with `begin`.
+            send: Called every `REPORT_EVERY_S` with the newest message of each kind and the
+                problem of the capture itself (empty = none).
         """
         self._session, self._send = session, send
         self._newest: Newest = {}
@@ -37,13 +37,13 @@ class Headless:
         self._stopping = asyncio.Event()
 
     async def run(self, seconds: float | None) -> Newest:
-        """Record until SIGINT, SIGTERM, the time is over or the recorder ends by itself.
+        """Record until SIGINT, SIGTERM, the end of the time limit or the end of the recorder.
 
         Returns:
-            The newest message of each kind, among them ``done`` of the mapper.
+            The newest message of each kind, including ``done`` of the mapper.
 
         Raises:
-            ConfigError: If a process cannot start, in its own words.
+            ConfigError: If a process cannot start; the text is its last log line.
         """
         try:
             recorder = await started(self._session, "recorder")
@@ -54,24 +54,24 @@ class Headless:
         for sign in (signal.SIGTERM, signal.SIGINT):
             loop.add_signal_handler(sign, self._stopping.set)
         stopping = asyncio.create_task(self._stop_after(seconds, recorder))
-        saying = asyncio.create_task(self._report_periodically())
-        hearing = asyncio.create_task(self._receive_line("recorder"))
+        reporting = asyncio.create_task(self._report_periodically())
+        receiving = asyncio.create_task(self._receive("recorder"))
         try:
             await self._map()
             await recorder.wait()
-            await hearing
+            await receiving
         finally:
             self._stopping.set()
             await stopping
-            saying.cancel()
-            await asyncio.gather(saying, return_exceptions=True)
+            reporting.cancel()
+            await asyncio.gather(reporting, return_exceptions=True)
         return self._newest
 
     async def _map(self) -> None:
-        """Keep a mapper running until it is done."""
+        """Keep a mapper running until it reports ``done``."""
         for _ in range(_MAPPER_STARTS):
             mapper = await started(self._session, "mapper")
-            await self._receive_line("mapper")
+            await self._receive("mapper")
             await mapper.wait()
             if "done" in self._newest:
                 return
@@ -87,7 +87,7 @@ class Headless:
             recorder.terminate()
         await recorder.wait()
 
-    async def _receive_line(self, name: str) -> None:
+    async def _receive(self, name: str) -> None:
         with suppress(OSError):
             async with linked(self._session.socket(name)) as link:
                 async for message in link.lines():
@@ -100,14 +100,14 @@ class Headless:
 
 
 def progress_line(newest: Newest, began_s: float) -> str:
-    """How a capture stands, in one line."""
+    """Progress of a capture in one line: duration, size, rates, tracking."""
     status, pose = newest.get("status", {}), newest.get("pose", {})
     rates = [f"{s['port']}: {s['per_s']:.0f}/s" for s in status.get("senders", [])]
     file = status.get("file", {})
     parts = [
         f"{time.monotonic() - began_s:6.0f} s",
         f"{file.get('written_bytes', 0) / 1e6:8.1f} MB",
-        ", ".join(rates) or "nothing comes in",
+        ", ".join(rates) or "no datagrams",
     ]
     if pose:
         walked = newest.get("loop", {}).get("walked_m", 0.0)

@@ -1,4 +1,4 @@
-"""A capture is a project from its first moment; when the walk ends its first stage is done."""
+"""The project of a capture: created at the start, with its first stage done at the end."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ from recon4.store.stage import Input, StageRunner
 
 
 def begin(project: Path, rig: Rig, **how: Any) -> CaptureSession:
-    """Make the project of a capture that is about to start.
+    """Create the project of a capture that is about to start.
 
     Args:
         project: Folder that does not exist yet, or is empty.
-        rig: What is on the backpack.
+        rig: The sensors of the backpack.
         how: Fields of `CaptureSession`.
 
     Raises:
-        ConfigError: If the packets of two LiDARs of the rig could not be told apart.
+        ConfigError: If the packets of two LiDARs of the rig cannot be distinguished.
         StoreError: If the folder is a project or something else, or cannot be written.
     """
     check_sources(rig)
@@ -40,7 +40,7 @@ def begin(project: Path, rig: Rig, **how: Any) -> CaptureSession:
     except OSError as error:
         raise StoreError(f"cannot use {project} as a project: {error.strerror}") from error
     if taken:
-        raise StoreError(f"there is a project {project.name} already; give a new name")
+        raise StoreError(f"project {project.name} exists already; choose another name")
     with Project.open(project) as opened:
         opened.describe(preset=session.preset, rig=rig.name)
         make_folders(session.capture.parent)
@@ -50,29 +50,29 @@ def begin(project: Path, rig: Rig, **how: Any) -> CaptureSession:
 
 
 def discard(session: CaptureSession) -> None:
-    """Remove a project again whose recorder could not start: nothing was recorded."""
+    """Remove the project of a recorder that could not start; nothing was recorded."""
     if _never_ran(session):
         shutil.rmtree(session.project, ignore_errors=True)
 
 
 def _never_ran(session: CaptureSession) -> bool:
-    """Whether this is what `begin` left, and nothing more."""
+    """Whether the project holds only what `begin` wrote."""
     left = (session.capture, session.outcome, *(session.project / "artifacts").glob("*"))
     return (session.folder / "session.json").exists() and not any(path.exists() for path in left)
 
 
 def finish(session: CaptureSession, frames: Path, settings: Settings) -> int:
-    """Give the frames made while walking to the project as its stage ``frames``.
+    """Store the frames made during the capture as the project's stage ``frames``.
 
-    `recon4.pipeline.process` finds them there: reading the capture again would give the same.
+    `recon4.pipeline.process` reuses them: reading the capture again gives the same frames.
 
     Args:
         session: Of a capture that has ended.
-        frames: Folder of a frame store; it is moved away.
-        settings: They were made with.
+        frames: Folder of a frame store; its files are moved.
+        settings: Settings the frames were made with.
 
     Returns:
-        How many multiframes there are.
+        Number of multiframes.
 
     Raises:
         StoreError: If the project is in use or cannot be written.

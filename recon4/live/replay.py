@@ -1,6 +1,6 @@
-"""Sends a recording to the ports of a recorder as its sensors did, so that no hardware is needed.
+"""Replays a recording to the ports of a recorder as its sensors sent it; needs no hardware.
 
-Stamps are moved to now: the sensors appear as they were, only today. Samples of ``imu.csv`` and
+Timestamps are shifted to the present. Samples of ``imu.csv`` and
 ``gnss.csv`` beside the capture go out as JSON datagrams.
 """
 
@@ -29,13 +29,13 @@ from recon4.recording.report import ImportReport
 from recon4.recording.velodyne.models import DATA_SIZE, HOUR_US, POSITION_SIZE
 
 _STAMP_AT = {DATA_SIZE: 1200, POSITION_SIZE: 198}
-"""Where a packet of this size has its microseconds past the hour."""
+"""Packet size -> offset of its microseconds past the hour."""
 _SAMPLE_DELAY_NS = {"imu.csv": 2_000_000, "gnss.csv": 50_000_000}
-"""How long after its time a sample is sent [ns]."""
+"""Delay between the timestamp of a sample and its sending [ns]."""
 _BETWEEN_NS = 1_000_000
-"""From the last datagram of a round to the first of the next."""
+"""Time between the last datagram of a round and the first of the next [ns]."""
 _AHEAD_NS = 500_000
-"""Datagrams that are due so soon are sent at once."""
+"""Datagrams that are due within this time are sent at once [ns]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,16 +43,16 @@ class Shipment:
     """A datagram to be sent."""
 
     t_ns: int
-    """When it came in, in the recording [ns]."""
+    """Arrival time in the recording [ns]."""
     source: str
     port: int
     payload: bytes
     stamped: bool = False
-    """It holds an absolute ``t_ns`` as JSON."""
+    """The payload is JSON with an absolute ``t_ns``."""
 
 
 Alter = Callable[[Shipment], Iterable[Shipment]]
-"""What becomes of a datagram on its way; for trials with bad networks."""
+"""Datagrams that are sent in place of one; simulates bad networks in tests."""
 
 
 def replay(
@@ -64,29 +64,29 @@ def replay(
     times: int = 1,
     alter: Alter = lambda shipment: (shipment,),
 ) -> int:
-    """Send a capture file, and the CSV files beside it, at the speed it was recorded.
+    """Send a capture file and the CSV files beside it at the recorded speed.
 
     Args:
         recording: A pcap file, or a folder with pcap files (``recon4 simulate``, a live project's
             ``recordings``).
-        progress: Counts seconds of the recording.
+        progress: Receives the seconds of the recording.
         target: Address to send to.
-        speed: How many times as fast; the recorder must be started with the same.
-        times: How often, one after the other while time goes on; for walks that end where they
-            began.
+        speed: Speed factor; the recorder must be started with the same one.
+        times: Number of rounds, one after the other with increasing time; for walks that end
+            where they began.
         alter: May drop, change or multiply datagrams.
 
     Returns:
-        How many datagrams were sent.
+        Number of datagrams sent.
 
     Raises:
         RecordingError: If there is nothing to send.
-        ConfigError: If the address is none, or cannot be reached.
+        ConfigError: If the address is invalid or cannot be reached.
     """
     rounds = _rounds(recording, times)
     first = next(rounds, None)
     if first is None:
-        raise EmptyRecording(f"{recording.name}: no UDP datagram in it")
+        raise EmptyRecording(f"{recording.name}: no UDP datagram found")
     first_ns = second_ns = first[0].t_ns
     began_ns = time.time_ns()
     shift_ns = (stretched(began_ns, speed) - first_ns) // 1000 * 1000
@@ -106,7 +106,7 @@ def replay(
 
 
 def shipments_of(recording: Path) -> Iterator[Shipment]:
-    """All datagrams of a recording in order of their time."""
+    """All datagrams of a recording in order of time."""
     files = pcap_files(recording)
     folder = recording if recording.is_dir() else recording.parent
     parts = [_datagrams(file) for file in files]
@@ -117,7 +117,7 @@ def shipments_of(recording: Path) -> Iterator[Shipment]:
 
 
 def _rounds(recording: Path, times: int) -> Iterator[tuple[Shipment, int]]:
-    """Every datagram of every round, with how much later its round is [ns]."""
+    """Every datagram of every round, with the time offset of the round [ns]."""
     later_ns = 0
     for _ in range(times):
         first_ns = last_ns = None
@@ -131,7 +131,7 @@ def _rounds(recording: Path, times: int) -> Iterator[tuple[Shipment, int]]:
 
 
 def moved(shipment: Shipment, shift_ns: int) -> Shipment:
-    """The datagram as it would have been so much later."""
+    """The datagram with all its timestamps shifted by ``shift_ns``."""
     payload = shipment.payload
     at = _STAMP_AT.get(len(payload))
     if shipment.stamped:
@@ -179,7 +179,7 @@ def _wait_until(t_ns: int) -> None:
 
 
 class _Senders:
-    """A socket for each sender, with an address of its own where that is possible."""
+    """A socket per sender, with an address of its own where that is possible."""
 
     def __init__(self, target: str) -> None:
         self._target = target
@@ -204,6 +204,6 @@ class _Senders:
 
     def _open(self, source: str) -> socket.socket:
         udp = self._closing.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
-        if self._target.startswith("127."):  # every address of 127/8 is ours
+        if self._target.startswith("127."):  # every address of 127/8 is local
             udp.bind(("127." + source.split(".", 1)[1], 0))
         return udp

@@ -1,10 +1,10 @@
-"""The folder of one capture, inside its project: what both processes and the server know of it.
+"""The files of one capture in its project, shared by recorder, mapper and server.
 
-PROJECT/recordings/walk.pcap    every datagram, as it came
-PROJECT/recordings/rig.toml     what was on the backpack
-PROJECT/recordings/marks.jsonl  points of interest, pauses, the place's name
-PROJECT/live/session.json       how it was started
-PROJECT/live/outcome.json       written last by the recorder: how it ended
+PROJECT/recordings/walk.pcap    every datagram as received
+PROJECT/recordings/rig.toml     the sensors of the backpack
+PROJECT/recordings/marks.jsonl  points of interest, pauses, name of the place
+PROJECT/live/session.json       parameters of the capture
+PROJECT/live/outcome.json       written last by the recorder: why it ended
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ MOST_JSON_BYTES = 1 << 20
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CaptureSession:
-    """How a capture was started."""
+    """Parameters and file paths of a capture."""
 
     project: Path
     preset: str = "indoor"
     address: str = "0.0.0.0"
-    """Of the network card to listen on."""
+    """Address of the network card to listen on."""
     least_free_bytes: int = 1 << 30
-    """Recording stops, in good order, before the disk has less than this left."""
+    """Recording stops in order before the disk has less free space than this."""
 
     speed: float = 1.0
-    """Only for trials: the sensors are replayed so many times as fast as they were."""
+    """Speed factor of a replay; 1 with real sensors."""
 
     @property
     def capture(self) -> Path:
@@ -50,45 +50,45 @@ class CaptureSession:
 
     @property
     def marks(self) -> Path:
-        """What the operator noted."""
+        """Marks of the operator, one JSON object per line."""
         return self.project / "recordings" / "marks.jsonl"
 
     @property
     def folder(self) -> Path:
-        """Of our own files."""
+        """Folder of the session files."""
         return self.project / "live"
 
     @property
     def outcome(self) -> Path:
-        """Written when the recorder ended by itself."""
+        """Written by the recorder when it ends; missing if it was killed."""
         return self.folder / "outcome.json"
 
     def socket(self, name: str) -> Path:
-        """Where a process of this capture listens: short, as a socket's path must be."""
-        name_of_us = hashlib.sha256(str(self.project.resolve()).encode()).hexdigest()[:16]
-        return runtime_folder() / f"{name_of_us}.{name}"
+        """Socket path of a process of this capture; short, because socket paths are limited."""
+        digest = hashlib.sha256(str(self.project.resolve()).encode()).hexdigest()[:16]
+        return runtime_folder() / f"{digest}.{name}"
 
     def save(self) -> None:
         """Write ``session.json``."""
         make_folders(self.folder)
-        message = {k: v for k, v in asdict(self).items() if k != "project"}
-        write_json(self.folder / "session.json", message)
+        fields = {k: v for k, v in asdict(self).items() if k != "project"}
+        write_json(self.folder / "session.json", fields)
 
 
 def stretched(t_ns: int, speed: float) -> int:
-    """The time it would be if the day ran ``speed`` times as fast since midnight UTC [ns].
+    """A time scaled by ``speed`` since midnight UTC [ns].
 
-    Recorder and replay agree on it without a word; at speed 1 it is the time.
+    Recorder and replay compute it independently; at speed 1 it is the time itself.
     """
     midnight_ns = t_ns // _DAY_NS * _DAY_NS
     return midnight_ns + round((t_ns - midnight_ns) * speed)
 
 
 def load_session(project: Path) -> CaptureSession:
-    """The session of a project.
+    """Load the session of a project.
 
     Raises:
-        StoreError: If it has none, or the file is damaged.
+        StoreError: If the project has no session, or the file is damaged.
     """
     path = project / "live" / "session.json"
     try:

@@ -1,4 +1,4 @@
-"""A walk on a phone, from its start to the map, on a replay of a simulated walk."""
+"""A capture on a phone, from its start to the map, with a replayed simulated walk."""
 
 from __future__ import annotations
 
@@ -31,20 +31,20 @@ pytestmark = pytest.mark.e2e
 SCREENSHOTS = os.environ.get("RECON4_SCREENSHOTS") == "1"
 SECONDS = 40.0 if SCREENSHOTS else 16.0
 LONG = os.environ.get("RECON4_LONG") == "1"
-"""Whether to make the whole map twice, not only its frames: minutes."""
+"""Whether to make the whole map twice, not only its frames; takes minutes."""
 NEAR_M = 1.0
 OFFLINE = ("WebSocket connection to", "ERR_")
-"""What Chromium itself says of a cut link."""
+"""Console messages of Chromium about a cut link."""
 
 GAPS = """() => new Promise((resolve) => {
   const socket = new WebSocket(`ws://${location.host}/api/live/stream`);
   socket.onopen = () => socket.send("{}");
   socket.onmessage = ({ data }) => {
-    const told = typeof data === "string" ? JSON.parse(data) : {};
-    if (told.gaps?.gaps.length) (socket.close(), resolve(told.gaps.gaps));
+    const message = typeof data === "string" ? JSON.parse(data) : {};
+    if (message.gaps?.gaps.length) (socket.close(), resolve(message.gaps.gaps));
   };
 })"""
-"""The gaps as a phone is told."""
+"""Returns the gaps of the next message to a phone."""
 
 
 @pytest.fixture(scope="module")
@@ -78,12 +78,12 @@ def look():
 @pytest.fixture
 def page(context):
     page = context.new_page()
-    complaints = []
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.on("console", lambda message: message.type == "error" and complaints.append(message.text))
+    errors = []
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.on("console", lambda message: message.type == "error" and errors.append(message.text))
     yield page
     noise = (*EXPECTED_NOISE, *OFFLINE)
-    assert [text for text in complaints if not any(one in text for one in noise)] == []
+    assert [text for text in errors if not any(one in text for one in noise)] == []
 
 
 def points(page):
@@ -123,7 +123,7 @@ def begin(page, url):
 
 
 def fits(page, inside="main"):
-    """Nothing sticks out, and everything to press is large enough."""
+    """Nothing exceeds the page, and all controls are large enough."""
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
     wrong = page.evaluate(
         """(inside) => [...document.querySelectorAll(`${inside} :is(button, a)`)].filter((one) => {
@@ -136,7 +136,7 @@ def fits(page, inside="main"):
     assert wrong == []
 
 
-def test_a_walk_is_seen_from_its_start_to_its_map(server, link, walk, page, picture, tmp_path):
+def test_a_capture_from_its_start_to_the_map(server, link, walk, page, picture, tmp_path):
     begin(page, link.url)
     with sending(server, walk):
         wait_for_points(page, 3000)
@@ -147,7 +147,7 @@ def test_a_walk_is_seen_from_its_start_to_its_map(server, link, walk, page, pict
         expect(page.locator("#hint")).to_have_text(re.compile(r"Not seen: .* m wide"))
         page.get_by_role("button", name="Follow").click()
         fits_both_ways(page)
-        sensors_are_told(page)
+        sensors_are_shown(page)
         if SCREENSHOTS:
             wait_for_points(page, 40_000)
         picture(page, "live")
@@ -180,7 +180,7 @@ def test_a_walk_is_seen_from_its_start_to_its_map(server, link, walk, page, pict
 
 
 def fits_both_ways(page):
-    """While everything there is to show is shown; held across nothing lies over the map."""
+    """With everything shown; in landscape no bar covers the map."""
     for width, height in ((360, 640), (740, 360)):
         page.set_viewport_size({"width": width, "height": height})
         fits(page)
@@ -191,7 +191,7 @@ def fits_both_ways(page):
     page.set_viewport_size({"width": 390, "height": 844})
 
 
-def sensors_are_told(page):
+def sensors_are_shown(page):
     """Rate, loss and clock of each LiDAR."""
     page.locator("#sensors").click()
     rows = page.locator("#lidars tr")
@@ -200,20 +200,21 @@ def sensors_are_told(page):
     page.get_by_role("button", name="Close").click()
 
 
-def mark(page, words):
-    """With the keyboard's own key: a hand is enough."""
+def mark(page, text):
+    """Add a mark; Enter submits the form."""
     page.get_by_role("button", name="Mark").click()
-    page.get_by_label("Note").fill(words)
+    page.get_by_label("Note").fill(text)
     page.get_by_label("Note").press("Enter")
     expect(page.locator("#note")).to_be_hidden()
 
 
 def cut_and_restore(page, link):
-    """The page says so, comes back by itself, and gets only what it lacks."""
+    """The page shows the lost link, reconnects by itself, and receives only what it lacks."""
     wait_for_points(page, 25_000)
     link.cut()
     expect(page.locator("#state")).to_have_text("No link")
-    expect(page.locator("#words li")).to_have_text(re.compile("No link for 2 s.*does not need it"))
+    warning = re.compile("No link for 2 s.*recording continues")
+    expect(page.locator("#words li")).to_have_text(warning)
     before = points(page)
     at = link.received
     link.restore()
@@ -228,7 +229,7 @@ def far(gap, other):
 
 
 class FirstStage(Silent):
-    """Lets the pipeline get as far as its first stage, if that is all there is time for."""
+    """Cancels the pipeline after its first stage, unless `LONG`."""
 
     def start(self, what, total, unit):
         if what == "odometry" and not LONG:
@@ -236,7 +237,7 @@ class FirstStage(Silent):
 
 
 def same_as_from_the_file(live, again):
-    """Whoever processes the capture file anew gets the same artifacts, byte by byte."""
+    """Processing the capture file again gives the same artifacts, byte by byte."""
     rig = load_rig(live / "recordings" / "rig.toml")
     with contextlib.suppress(Cancelled):
         process([live / "recordings" / "walk.pcap"], again, rig=rig, progress=FirstStage())
@@ -262,7 +263,7 @@ def test_everything_fits_on_a_small_phone_both_ways(server, page):
         expect(page.get_by_role("dialog")).to_be_visible()
 
 
-def test_the_keyboard_does_it_too(server, page):
+def test_keyboard_shortcuts(server, page):
     page.goto(f"{server.url}/live")
     expect(page.get_by_role("button", name="Start…")).to_be_visible()
 

@@ -169,10 +169,12 @@ def test_another_user_reaches_no_socket(served):
 @pytest.mark.skipif(os.getuid() != 0, reason="only root can become another user")
 def test_live_messages_are_for_their_user_alone_even_where_permissions_fail(tmp_path):
     """Folder and socket are opened to all on purpose: the kernel still says who connects."""
-    heard = []
+    requests = []
 
     async def attack() -> str:
-        lines = LineServer(greet=lambda: [{"kind": "secret"}], hear=heard.append)
+        lines = LineServer(
+            initial_messages=lambda: [{"kind": "secret"}], on_request=requests.append
+        )
         path = Path("/tmp") / f"recon4-test-{os.getpid()}"
         await lines.listen(path)
         mode = stat.S_IMODE(path.stat().st_mode)
@@ -190,7 +192,7 @@ def test_live_messages_are_for_their_user_alone_even_where_permissions_fail(tmp_
         return said.decode().split()[1]
 
     assert asyncio.run(attack()) == "0"
-    assert heard == []
+    assert requests == []
 
 
 @pytest.mark.parametrize("how", ["mode", "link", "file"])

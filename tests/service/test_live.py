@@ -38,7 +38,7 @@ def server(tmp_path):
 
 
 class Phone:
-    """What a phone knows after some messages."""
+    """A client of the stream with the state it has received."""
 
     def __init__(self):
         self.voxels = np.zeros((0, 3), np.int16)
@@ -46,22 +46,22 @@ class Phone:
         self.path = 0
         self.bytes = 0
 
-    async def look(self, server, met, have=None, seconds=60.0):
+    async def follow(self, server, met, have=None, seconds=60.0):
         url = server.url.replace("http", "ws") + "/api/live/stream"
         async with asyncio.timeout(seconds):
             async with connect(url, origin=server.url, max_size=None) as socket:
                 await socket.send(json.dumps({"have": have} if have else {}))
                 async for text in socket:
-                    told = json.loads(text)
+                    message = json.loads(text)
                     self.bytes += len(text)
-                    self.newest |= told
-                    if "path" in told:
-                        self.path = told["path"]["start"] + len(told["path"]["points"])
-                    if "points" in told:
+                    self.newest |= message
+                    if "path" in message:
+                        self.path = message["path"]["start"] + len(message["path"]["points"])
+                    if "points" in message:
                         data = await socket.recv()
                         self.bytes += len(data)
-                        self._take(told["points"], data)
-                    if met(self, told):
+                        self._take(message["points"], data)
+                    if met(self, message):
                         return self
 
     def _take(self, points, data):
@@ -73,11 +73,11 @@ class Phone:
 
 
 def start(server, walk, project="walk"):
-    answer = server.post(
+    response = server.post(
         "/api/live", json={"project": project, "rig": "4recon", "preset": "indoor"}
     )
-    assert answer.status_code == 201, answer.text
-    return answer.json()
+    assert response.status_code == 201, response.text
+    return response.json()
 
 
 @contextmanager
@@ -97,10 +97,10 @@ def test_a_walk_is_seen_on_the_phone_and_is_a_project_when_it_ends(server, walk)
     phone = Phone()
 
     with sending(server, walk):
-        asyncio.run(phone.look(server, lambda p, told: len(p.voxels) > 5000 and p.path > 10))
+        asyncio.run(phone.follow(server, lambda p, message: len(p.voxels) > 5000 and p.path > 10))
         assert server.post("/api/live/marks", json={"text": "crack"}).status_code == 201
     assert server.post("/api/live/stop").json()["project"] == "walk"
-    asyncio.run(phone.look(server, lambda p, told: told.get("state") == "ready",
+    asyncio.run(phone.follow(server, lambda p, message: message.get("state") == "ready",
                            have={"project": "walk", "generation": 0, "points": len(phone.voxels),
                                  "path": phone.path, "marks": 0}))  # fmt: skip
 
@@ -114,25 +114,25 @@ def test_a_walk_is_seen_on_the_phone_and_is_a_project_when_it_ends(server, walk)
     assert [stage["stage"] for stage in project["stages"]] == ["frames"]
 
 
-@pytest.mark.parametrize("said", [b"\x00\xff", "", "[", "3", '{"have": [1]}', "[" * 100_000])
-def test_what_is_no_phone_of_ours_gets_nothing_and_is_no_error(server, said, caplog):
-    async def say():
+@pytest.mark.parametrize("greeting", [b"\x00\xff", "", "[", "3", '{"have": [1]}', "[" * 100_000])
+def test_an_invalid_greeting_gets_no_map_and_logs_no_error(server, greeting, caplog):
+    async def connect_with_greeting():
         url = server.url.replace("http", "ws") + "/api/live/stream"
         async with connect(url, origin=server.url) as socket:
-            await socket.send(said)
+            await socket.send(greeting)
             with suppress(TimeoutError, ConnectionClosed):
                 return json.loads(await asyncio.wait_for(socket.recv(), 1.0))["state"]
 
-    heard = asyncio.run(say())
+    state = asyncio.run(connect_with_greeting())
 
-    assert heard in (None, "none")
+    assert state in (None, "none")
     assert not [record for record in caplog.records if record.levelname == "ERROR"]
     assert server.get("/healthz").status_code == 200
 
 
 @pytest.mark.parametrize("rig", ["../../pyproject", "/etc/hostname", "underwater"])
-def test_a_rig_is_no_way_to_files_elsewhere(server, rig):
-    answer = server.post("/api/live", json={"project": "walk", "rig": rig})
+def test_a_rig_path_outside_the_allowed_folders_is_refused(server, rig):
+    response = server.post("/api/live", json={"project": "walk", "rig": rig})
 
-    assert answer.status_code == 422 and "no rig named" in answer.json()["detail"]
+    assert response.status_code == 422 and "no rig named" in response.json()["detail"]
     assert not (server.root / "walk").exists()

@@ -1,6 +1,6 @@
-"""A capture in trouble: processes that die, datagrams that do not come as they should.
+"""A capture with faults: processes that die, datagrams that are lost, late or wrong.
 
-What was recorded is whole and becomes a project, and the operator is told in words.
+The recording is complete and becomes a project, and the operator gets a warning.
 """
 
 from __future__ import annotations
@@ -55,16 +55,16 @@ def process_of(module, project):
     for folder in Path("/proc").iterdir():
         if folder.name.isdigit():
             try:
-                words = (folder / "cmdline").read_bytes().split(b"\0")
+                arguments = (folder / "cmdline").read_bytes().split(b"\0")
             except OSError:
                 continue
-            if module.encode() in words and str(project).encode() in words:
+            if module.encode() in arguments and str(project).encode() in arguments:
                 return int(folder.name)
     return None
 
 
-def hear_frame(project, frame_id):
-    """Listen to the mapper until it has mapped a multiframe."""
+def wait_for_frame(project, frame_id):
+    """Wait until the mapper has mapped a multiframe."""
     path = str(load_session(project).socket("mapper"))
 
     def connected():
@@ -79,8 +79,8 @@ def hear_frame(project, frame_id):
         link = wait_for(connected, "no mapper listens")
         with link, link.makefile("r") as lines, suppress(ConnectionError):  # it was just killed
             for line in lines:
-                told = json.loads(line)
-                if told["kind"] == "pose" and told["frame_id"] >= frame_id:
+                message = json.loads(line)
+                if message["kind"] == "pose" and message["frame_id"] >= frame_id:
                     return
     raise AssertionError(f"multiframe {frame_id} was never mapped")
 
@@ -126,15 +126,15 @@ def test_mapper_server_and_recorder_die_and_nothing_recorded_is_lost(tmp_path, w
     with serving(root, address) as server:
         start(server)
         sending.start()
-        hear_frame(project, 3)
+        wait_for_frame(project, 3)
         mapper = process_of("recon4.live.mapper.process", project)
         os.kill(mapper, signal.SIGKILL)
-        hear_frame(project, 20)
+        wait_for_frame(project, 20)
         again = process_of("recon4.live.mapper.process", project)
 
     with serving(root, address) as server:
         assert server.get("/api/live").json()["state"] == "recording"
-        hear_frame(project, 40)
+        wait_for_frame(project, 40)
         os.kill(process_of("recon4.live.recorder.process", project), signal.SIGKILL)
         state = wait_for(
             lambda: (s := server.get("/api/live").json())["state"] == "ready" and s, "not ready"
@@ -161,8 +161,8 @@ def test_mapper_server_and_recorder_die_and_nothing_recorded_is_lost(tmp_path, w
 
 
 @dataclass
-class BadWay:
-    """From the sensors to the recorder: one trouble after the other, in seconds of the walk."""
+class FaultyNetwork:
+    """Network from the sensors to the recorder, with one fault after the other."""
 
     rng: np.random.Generator = field(default_factory=lambda: np.random.default_rng(7))
     first_ns: int = 0
@@ -201,7 +201,7 @@ class BadWay:
         return replace(one, payload=one.payload[:1200] + stamp + one.payload[1204:])
 
     def others(self, one: Shipment, at_s: float) -> Iterator[Shipment]:
-        """A receiver whose position jumps by 50 m, and somebody else's devices."""
+        """A receiver whose position jumps by 50 m, and foreign devices."""
         lat_deg = 49.2 + (50.0 / 111_195.0 if at_s > 6.0 else 0.0)
         fix = json.dumps({"lat_deg": lat_deg, "lon_deg": 16.6, "quality": 4}).encode()
         yield Shipment(one.t_ns, "127.0.0.1", 8310, fix)
@@ -210,18 +210,18 @@ class BadWay:
                 yield Shipment(one.t_ns, "127.9.9.9", 2368, self.rng.bytes(size))
 
 
-def test_every_trouble_on_the_way_is_said_in_words_and_all_is_recorded(walk, project):
-    address, sent, said = an_address(), [], set()
+def test_every_network_fault_gives_a_warning_and_all_datagrams_are_recorded(walk, project):
+    address, sent, texts = an_address(), [], set()
 
     def send():
-        sent.append(replay(walk, progress=Silent(), target=address, alter=BadWay()))
+        sent.append(replay(walk, progress=Silent(), target=address, alter=FaultyNetwork()))
 
     sending = threading.Thread(target=send)
     with serving(project.parent, address) as server:
         start(server)
         sending.start()
         while sending.is_alive():
-            said |= {word["text"] for word in server.get("/api/live").json()["words"]}
+            texts |= {word["text"] for word in server.get("/api/live").json()["words"]}
             sending.join(0.25)
         server.post("/api/live/stop").raise_for_status()
         wait_for(lambda: server.get("/api/live").json()["state"] == "ready", "not ready")
@@ -231,12 +231,12 @@ def test_every_trouble_on_the_way_is_said_in_words_and_all_is_recorded(walk, pro
         r"No LiDAR sends anything for \d+ s: check power and cables",
         r"vertical: its clock is .* s off the recorder's and no GPS drives it.*",
         r"\d+ % of the packets never arrived: check the cable",
-        r"\d+ % of packets came twice: the copies are left out",
-        r"\d+ % of packets came out of order: put right",
+        r"\d+ % of packets arrived twice: the copies are discarded",
+        r"\d+ % of packets arrived out of order: sorted",
         r"Foreign traffic on port 2368 from 127\.9\.9\.9",
-        r"GNSS jumped by 50 m: the map is made without it",
+        r"GNSS jumped by 50 m: the map does not use it",
     ):
-        assert any(re.fullmatch(pattern, text) for text in said), (pattern, sorted(said))
+        assert any(re.fullmatch(pattern, text) for text in texts), (pattern, sorted(texts))
     batches = read_pcap(project / "recordings" / "walk.pcap", ImportReport())
     assert sum(len(batch) for batch in batches) == sent[0]
     frames = FrameStore.open(read_artifacts(project)["frames"])
@@ -244,25 +244,25 @@ def test_every_trouble_on_the_way_is_said_in_words_and_all_is_recorded(walk, pro
     assert frames.report["counts"]["packets_duplicate"] > 1000
 
 
-def test_a_capture_that_cannot_start_leaves_nothing_and_one_that_ends_by_itself_says_why(project):
+def test_a_capture_that_cannot_start_leaves_nothing_and_one_that_ends_reports_why(project):
     address = an_address()
 
     async def run():
         captures = Captures(project.parent)
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
             taken.bind((address, 2369))
-            with pytest.raises(Conflict, match=r"vertical.*does another recorder run"):
+            with pytest.raises(Conflict, match=r"vertical.*is another recorder"):
                 await captures.start("walk", "4recon", address=address)
         left = project.exists()
         capture = await captures.start("walk", "4recon", address=address, least_free_bytes=1 << 62)
         while not capture.over:
-            await capture.picture.news(capture.picture.version, timeout_s=0.5)
-        with pytest.raises(StoreError, match="there is a project walk already"):
+            await capture.stream.news(capture.stream.version, timeout_s=0.5)
+        with pytest.raises(StoreError, match="project walk exists already"):
             await captures.start("walk", "4recon", address=address)
         await capture.leave()
         for module in ("recon4.live.recorder.process", "recon4.live.mapper.process"):
             await asyncio.to_thread(wait_for, lambda m=module: not process_of(m, project), module)
-        await asyncio.sleep(0.1)  # the loop hears of it
+        await asyncio.sleep(0.1)  # the event loop reaps them
         return left, capture.problem
 
     left, problem = asyncio.run(run())

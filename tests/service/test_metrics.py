@@ -197,8 +197,8 @@ def test_the_packets_of_a_live_capture_are_counted(server):
         "kind": "status", "t_ns": 1, "kernel_drops": 3, "skipped_in_pauses": 4,
         "file": {"dropped": 5, "datagrams": 600},
     }  # fmt: skip
-    capture.picture.take(status)
-    capture.picture.take({"kind": "notes", "counts": {"packets_missing": 7}, "warnings": []})
+    capture.stream.take(status)
+    capture.stream.take({"kind": "notes", "counts": {"packets_missing": 7}, "warnings": []})
     server.app.state.parts.captures._capture = capture
     found = figures(server)
     server.app.state.parts.captures._capture = None

@@ -1,4 +1,4 @@
-// The buttons of the operator's page and the dialogs they open: start, mark, pause, stop, make the map.
+// Buttons and dialogs of the operator's page: start, mark, pause, stop, make the map.
 
 import {
   markHere,
@@ -13,7 +13,7 @@ const byId = (id) => document.getElementById(id);
 
 const LONGEST_NOTE_S = 600;
 
-/** A dialog whose form asks for something; it closes once `act(form)` went well. */
+/** A dialog with a form; it closes when `act(form)` succeeds. */
 function dialog(id, act) {
   const element = byId(id);
   const form = element.querySelector("form");
@@ -49,15 +49,15 @@ const showMark = dialog("note", (form) => {
 const showName = dialog("naming", (form) => markHere({ what: "place", text: form.text.value }));
 const showEnd = dialog("ending", () => steerCapture("stop"));
 
-let touched = 0; // when Mark was; one walks on while the note is typed
+let touched = 0; // time of the Mark button; the operator walks on while typing
 
 const LAST = "recon4.live.last";
 
-/** What was chosen the last time, on this phone. */
+/** The last choices on this phone. */
 const keep = (chosen) => localStorage.setItem(LAST, JSON.stringify(chosen));
 const kept = () => JSON.parse(localStorage.getItem(LAST) ?? "{}");
 
-/** Fills a select; what was chosen the last time is chosen again. */
+/** Fills a select and restores the last choice. */
 function offer(select, options, last) {
   select.replaceChildren(...options);
   const usable = options.filter((option) => !option.disabled);
@@ -93,8 +93,8 @@ export function mark() {
 
 export const nameThePlace = () => (byId("more").close(), showName());
 
-function stop(words) {
-  byId("ending-words").textContent = words;
+function stop(text) {
+  byId("ending-words").textContent = text;
   showEnd();
 }
 
@@ -105,13 +105,13 @@ async function makeMap() {
 
 let shown = "";
 
-/** Shows what can be done in a state; nothing to who only looks on. */
+/** Shows the buttons of a state; none to a user without the permission. */
 export function drawActions({ state, project, mayCapture, linked, loop }) {
   const key = `${state}/${mayCapture}/${project}/${linked}`;
   if (key === shown) return;
   shown = key;
-  const button = (words, className, onclick) =>
-    make("button", { type: "button", className, onclick, disabled: !linked }, words);
+  const button = (text, className, onclick) =>
+    make("button", { type: "button", className, onclick, disabled: !linked }, text);
   const steer = (what) => () => attempt(byId("message"), () => steerCapture(what));
   const atStart = () =>
     loop()?.closed

@@ -1,8 +1,8 @@
-// Where the map is looked at from: from above or tilted, always orthographic. And how fingers move it.
+// Orthographic camera of the map, from above or tilted, and its control by fingers and mouse.
 
 const ABOVE = Math.PI / 2;
 const TILTED = 0.62;
-const MEANT_TURN = 0.2; // fingers that pinch turn a little without meaning it [rad]
+const MEANT_TURN = 0.2; // smaller rotations of a pinch are unintended [rad]
 const FIT = 0.9;
 
 export class Camera {
@@ -19,7 +19,7 @@ export class Camera {
     this.pitch = this.above ? TILTED : ABOVE;
   }
 
-  /** Rotation into the picture (right, up, toward the eye), by columns. */
+  /** Rotation into the image (right, up, toward the viewer), by columns. */
   get turn() {
     const [c, s, u, f] = [
       Math.cos(this.yaw),
@@ -30,7 +30,7 @@ export class Camera {
     return [c, -s * u, s * f, s, c * u, -c * f, 0, f, u];
   }
 
-  /** Pixels of a place, from where the target is in the picture, y down. */
+  /** Pixel coordinates of a point, relative to the target in the image, y down. */
   project([x, y, z]) {
     const t = this.turn;
     const [a, b, c] = [x - this.target[0], y - this.target[1], z - this.target[2]];
@@ -53,7 +53,7 @@ export class Camera {
     this.pitch = Math.min(Math.max(this.pitch + dy * 0.006, 0.12), ABOVE - 0.01);
   }
 
-  /** Zooms; what is at `x`, `y` from the target stays there. */
+  /** Zooms about the pixel `x`, `y` relative to the target. */
   zoom(factor, [x, y] = [0, 0]) {
     const before = this.pxPerM;
     this.pxPerM = Math.min(Math.max(before * factor, 1), 400);
@@ -61,14 +61,14 @@ export class Camera {
     this.pan(x - x * grown, y - y * grown);
   }
 
-  /** Turns the picture clockwise; what is at `x`, `y` from the target stays there. */
+  /** Rotates the image clockwise about the pixel `x`, `y` relative to the target. */
   rotate(angle, [x, y] = [0, 0]) {
     this.yaw += angle;
     const [c, s] = [Math.cos(angle), Math.sin(angle)];
     this.pan(x - (c * x - s * y), y - (s * x + c * y));
   }
 
-  /** Shows all of a box of the plan, [[x, y], [x, y]], in a window of so many pixels. */
+  /** Fits a horizontal box, [[x, y], [x, y]], into a window of `width` x `height` pixels. */
   fit([[x0, y0], [x1, y1]], { width, height }) {
     this.target = [(x0 + x1) / 2, (y0 + y1) / 2, this.target[2]];
     this.pxPerM = 1;
@@ -86,12 +86,12 @@ export class Camera {
 }
 
 /**
- * One finger pans (or orbits in 3-D), two zoom, turn and pan, a wheel zooms. `middle()` is where the
- * target is on the screen; while `following()` fingers zoom and turn about it and do not pan.
+ * One finger pans (or orbits in 3-D), two zoom, rotate and pan, a wheel zooms. `middle()` is the
+ * target's position on the screen; while `following()` fingers zoom and rotate about it and do not pan.
  */
 export function moveByPointer(element, camera, { onMove, onPan, middle, following }) {
   const held = new Map();
-  let turned = 0; // by the fingers that are down now
+  let turned = 0; // rotation of the current touch
   const about = ({ x, y }) => {
     const [left, top] = middle();
     return following() ? [0, 0] : [x - left, y - top];

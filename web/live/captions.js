@@ -1,4 +1,4 @@
-// What the operator's page says, from what the stream told. No elements, no state.
+// Texts of the operator's page, from the messages of the stream. No elements, no state.
 
 const STATES = {
   none: "Nothing is recorded",
@@ -10,13 +10,13 @@ const STATES = {
 const FIXES = { 1: "single", 2: "DGNSS", 4: "RTK fixed", 5: "RTK float" };
 const CLOCKS = { "own, shifted": "own clock", jumped: "clock jumped" };
 const NEAR_START_M = 4;
-const SOME_WAY_M = 20; // before that no loop can close
-const LITTLE_LEFT_S = 600;
-const LITTLE_CHARGE = 0.15;
-const MUCH_LOST = 0.01;
-const GRACE_S = 3; // after the start nothing has to come yet
+const LOOP_WALKED_M = 20; // shortest path of a loop
+const LOW_DISK_S = 600;
+const LOW_BATTERY = 0.15;
+const HIGH_LOSS = 0.01;
+const GRACE_S = 3; // no sensor is shown as silent this soon after the start
 
-export const listens = (state) => state === "recording" || state === "paused";
+export const records = (state) => state === "recording" || state === "paused";
 
 export function clock(seconds) {
   const s = Math.floor(seconds);
@@ -26,21 +26,21 @@ export function clock(seconds) {
     : `${Math.floor(s / 60)}:${pad(s % 60)}`;
 }
 
-/** The state in words and how it is shown: {words, look}. */
-export function stateWords(state, linked) {
-  if (!linked) return { words: state ? "No link" : "Connecting", look: state ? "bad" : "" };
-  return { words: STATES[state] ?? "Connecting", look: state === "recording" ? "on" : "" };
+/** Text and CSS class of the state: {text, className}. */
+export function stateText(state, linked) {
+  if (!linked) return { text: state ? "No link" : "Connecting", className: state ? "error" : "" };
+  return { text: STATES[state] ?? "Connecting", className: state === "recording" ? "on" : "" };
 }
 
-/** What is said instead of all warnings while there is no link. */
-export const lostWords = (state, seconds) => ({
-  level: "bad",
-  text: `No link for ${seconds} s, trying again.${listens(state) ? " The recording does not need it" : ""}`,
+/** The warning shown in place of all others while there is no link. */
+export const linkLost = (state, seconds) => ({
+  level: "error",
+  text: `No link for ${seconds} s, trying again.${records(state) ? " The recording continues" : ""}`,
 });
 
-/** Sensors, disk and batteries at a glance: [{words, bad}]. */
+/** Sensors, disk and batteries in brief: [{text, error}]. */
 export function chips({ lidars = [], rates = {}, fix, status, battery }, state, phone) {
-  if (!status || !listens(state)) return [];
+  if (!status || !records(state)) return [];
   const samples = Object.entries(rates).filter(([name, rate]) =>
     name === "GNSS" ? rate > 0 && !fix : name === "IMU",
   );
@@ -48,36 +48,39 @@ export function chips({ lidars = [], rates = {}, fix, status, battery }, state, 
   const found = [
     ...lidars.map(lidarChip),
     ...samples.map(([name, rate]) => rateChip(name, rate)),
-  ].map((chip) => (fresh && chip.silent ? { words: `${chip.silent} …` } : chip));
-  if (fix) found.push({ words: fixWords(fix), bad: !(fix.quality > 0) });
+  ].map((chip) => (fresh && chip.silent ? { text: `${chip.silent} …` } : chip));
+  if (fix) found.push({ text: fixText(fix), error: !(fix.quality > 0) });
   const left = status.disk.left_s;
-  if (left !== null) found.push({ words: `disk ${duration(left)}`, bad: left < LITTLE_LEFT_S });
+  if (left !== null) found.push({ text: `disk ${duration(left)}`, error: left < LOW_DISK_S });
   if (battery)
     found.push({
-      words: `laptop ${charge(battery)}`,
-      bad: battery.charge < LITTLE_CHARGE && !battery.mains,
+      text: `laptop ${charge(battery)}`,
+      error: battery.charge < LOW_BATTERY && !battery.mains,
     });
   if (phone)
     found.push({
-      words: `phone ${percent(phone.level)}`,
-      bad: phone.level < LITTLE_CHARGE && !phone.charging,
+      text: `phone ${percent(phone.level)}`,
+      error: phone.level < LOW_BATTERY && !phone.charging,
     });
-  return found.map(({ words, bad }) => ({ words: bad ? `✕ ${words}` : words, bad: Boolean(bad) }));
+  return found.map(({ text, error }) => ({
+    text: error ? `✕ ${text}` : text,
+    error: Boolean(error),
+  }));
 }
 
 function lidarChip({ name, per_s: rate, lost, clock: keeps }) {
-  if (lost > MUCH_LOST) return { words: `${name} ${percent(lost)} lost`, bad: true };
+  if (lost > HIGH_LOSS) return { text: `${name} ${percent(lost)} lost`, error: true };
   if (rate >= 1 && keeps && keeps !== "in step")
-    return { words: `${name} ${Math.round(rate)}/s, ${CLOCKS[keeps] ?? keeps}` };
+    return { text: `${name} ${Math.round(rate)}/s, ${CLOCKS[keeps] ?? keeps}` };
   return rateChip(name, rate);
 }
 
 const rateChip = (name, rate) =>
   rate < 1
-    ? { words: `${name} silent`, bad: true, silent: name }
-    : { words: `${name} ${Math.round(rate)}/s` };
+    ? { text: `${name} silent`, error: true, silent: name }
+    : { text: `${name} ${Math.round(rate)}/s` };
 
-/** Every figure of sensors and supplies: [[what, figure], …]; LiDARs have a table of their own. */
+/** All values of sensors and supplies: [[name, value], …]; LiDARs have a separate table. */
 export function supplies({ rates = {}, fix, status, battery, notes }, phone) {
   if (!status) return [];
   const { free_bytes: free, left_s: left } = status.disk;
@@ -87,7 +90,7 @@ export function supplies({ rates = {}, fix, status, battery, notes }, phone) {
     [
       "GNSS",
       fix
-        ? fixWords(fix).replace("GNSS ", "")
+        ? fixText(fix).replace("GNSS ", "")
         : rates.GNSS > 0
           ? `${Math.round(rates.GNSS)}/s, no position yet`
           : "none",
@@ -102,18 +105,14 @@ export function supplies({ rates = {}, fix, status, battery, notes }, phone) {
     ],
     [
       "Computer",
-      battery
-        ? `${charge(battery)}${battery.mains ? ", on mains" : ""}`
-        : "has no battery, or does not tell",
+      battery ? `${charge(battery)}${battery.mains ? ", on mains" : ""}` : "no battery, or unknown",
     ],
     [
       "Phone",
-      phone
-        ? `${percent(phone.level)}${phone.charging ? ", charging" : ""}`
-        : "does not tell its battery",
+      phone ? `${percent(phone.level)}${phone.charging ? ", charging" : ""}` : "battery unknown",
     ],
     ...(notes?.counts.clock_jumps
-      ? [["Clocks", `jumped ${notes.counts.clock_jumps} times, put right`]]
+      ? [["Clocks", `jumped ${notes.counts.clock_jumps} times, corrected`]]
       : []),
   ];
 }
@@ -130,7 +129,7 @@ const percent = (ratio) => `${Math.round(100 * ratio)} %`;
 const charge = ({ charge: ratio, left_s: left }) =>
   `${percent(ratio)}${left === null ? "" : `, ${duration(left)}`}`;
 
-function fixWords({ quality, sd_m: sd }) {
+function fixText({ quality, sd_m: sd }) {
   const name = FIXES[quality] ?? "no fix";
   const within = sd && quality > 0 ? Math.max(sd[0], sd[1]) : null;
   return within === null
@@ -141,33 +140,34 @@ function fixWords({ quality, sd_m: sd }) {
 const duration = (s) =>
   s > 7200 ? `${Math.floor(s / 3600)} h` : `${Math.max(0, Math.floor(s / 60))} min`;
 
-/** What to do next, in words. */
+/** What the operator should do next. */
 export function hint(state, { loop }, { mayCapture, mapped }) {
   if (state === "none")
     return mayCapture
       ? "Put the backpack on, stand still, then start"
-      : "You are looking on. Nothing is recorded yet";
-  if (state === "finishing") return "What was recorded is safe; its map is being completed";
+      : "View only. Nothing is recorded yet";
+  if (state === "finishing") return "The recording is safe; the map is being completed";
   if (state === "ready")
     return mayCapture
       ? "Everything is stored. Now make the map"
       : "The walk is over; everything is stored";
-  if (state === "paused") return "Stay here: go on where the pause began";
-  if (!mapped) return "Stand still: the map begins in a few seconds";
-  if (!loop || !(loop.walked_m > SOME_WAY_M)) return "Walk slowly, doors open, through every room";
+  if (state === "paused") return "Stay here: resume where the pause began";
+  if (!mapped) return "Stand still: the map starts in a few seconds";
+  if (!loop || !(loop.walked_m > LOOP_WALKED_M))
+    return "Open all rooms and walk slowly through each";
   if (loop.closed)
     return `✓ Loop closed${loop.drift_m == null ? "" : `, drift ${Math.round(100 * loop.drift_m)} cm`}`;
   if (loop.start_m < NEAR_START_M) return "At the start, loop not closed yet";
   return `Loop open: return to the start, ${Math.round(loop.start_m)} m`;
 }
 
-/** Coverage in figures: {well, poor, gap, all (of the gaps, in words), one (the chosen gap)}. */
-export function coverageWords(gaps, chosen) {
-  const share = (value) => (value === null || value === undefined ? "–" : percent(value));
+/** Texts of the coverage bar: {well, poor, text, count, all (gaps), one (chosen gap)}. */
+export function coverageTexts(gaps, chosen) {
+  const ratio = (value) => (value === null || value === undefined ? "–" : percent(value));
   const count = gaps?.gaps.length ?? 0;
   const elsewhere = gaps?.elsewhere ?? 0; // on other floors
   const gap = gaps?.gaps[chosen];
-  const words = gap
+  const text = gap
     ? `${chosen + 1}/${count} ›`
     : count
       ? `${count} ›`
@@ -177,14 +177,14 @@ export function coverageWords(gaps, chosen) {
   const others = elsewhere ? `, ${elsewhere} on other floors` : "";
   const all = count
     ? `${count} ${count === 1 ? "place" : "places"} not seen${others}, show the next`
-    : `No gaps near your way${others}`;
+    : `No gaps near your path${others}`;
   const one = gap
-    ? `Not seen: ${gap.width_m.toFixed(1)} m wide, ${gap.away_m.toFixed(0)} m from your way${others}`
+    ? `Not seen: ${gap.width_m.toFixed(1)} m wide, ${gap.away_m.toFixed(0)} m from your path${others}`
     : "";
   return {
-    well: share(gaps?.well),
-    poor: share(gaps?.well == null ? null : 1 - gaps.well),
-    words,
+    well: ratio(gaps?.well),
+    poor: ratio(gaps?.well == null ? null : 1 - gaps.well),
+    text,
     count,
     all,
     one,

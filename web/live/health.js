@@ -1,48 +1,48 @@
-// Sensors, disk, batteries and warnings: at a glance on the page, and every figure in a sheet.
+// Sensors, disk, batteries and warnings: in brief on the page, all values in a sheet.
 
 import { make } from "../shared/dom.js";
-import { chips, lidarRow, lostWords, supplies } from "./captions.js";
+import { chips, lidarRow, linkLost, supplies } from "./captions.js";
 
 const byId = (id) => document.getElementById(id);
 const shown = new Map();
 const NO_POINTS = {
   level: "info",
-  text: "This browser cannot draw points (no WebGL 2); plan, way and warnings work",
+  text: "This browser cannot draw points (no WebGL 2); plan, path and warnings work",
 };
 const SHORT_PX = 700;
-let bad = new Set();
+let shownErrors = new Set(); // texts without their numbers
 
-/** Fills an element anew only if what it says is something else: ten messages a second come. */
-export function say(element, items, show) {
+/** Fills an element only if its items have changed: ten messages arrive per second. */
+export function fill(element, items, show) {
   const key = JSON.stringify(items);
   if (shown.get(element) === key) return;
   shown.set(element, key);
   element.replaceChildren(...items.map(show));
 }
 
-/** Shows how everything is; `battery` is the phone's. */
+/** Shows sensors and warnings; `battery` is the phone's. */
 export function drawHealth({ scene, linked, battery, drawsPoints }) {
   const { state, newest } = scene;
   const found = chips(newest, state, battery);
   byId("sensors").hidden = found.length === 0;
   byId("sensors").classList.toggle("old", !linked);
-  say(byId("sensors"), found, (one) =>
-    make("span", { className: one.bad ? "bad" : "" }, one.words),
+  fill(byId("sensors"), found, (one) =>
+    make("span", { className: one.error ? "error" : "" }, one.text),
   );
-  const words = linked
+  const warnings = linked
     ? [...(newest.words ?? []), ...(drawsPoints ? [] : [NO_POINTS])]
-    : [lostWords(state, scene.silentS)];
-  drawWords(words);
-  if (byId("health").open) drawSheet(newest, words, battery);
+    : [linkLost(state, scene.silentS)];
+  drawWarnings(warnings);
+  if (byId("health").open) drawSheet(newest, warnings, battery);
 }
 
-function drawWords(words) {
+function drawWarnings(warnings) {
   const most = innerHeight < SHORT_PX ? 2 : 3;
-  const more = words.length - most;
-  say(byId("words"), more > 0 ? [...words.slice(0, most), { more }] : words, (word) =>
-    word.more ? moreOf(word.more) : line(word),
+  const more = warnings.length - most;
+  fill(byId("words"), more > 0 ? [...warnings.slice(0, most), { more }] : warnings, (one) =>
+    one.more ? moreOf(one.more) : line(one),
   );
-  shake(words.filter((word) => word.level === "bad"));
+  vibrateOnNew(warnings.filter(({ level }) => level === "error"));
 }
 
 const line = ({ level, text }) => make("li", { className: level }, text);
@@ -53,12 +53,12 @@ const moreOf = (count) =>
     make("button", { type: "button", onclick: () => byId("sensors").click() }, `and ${count} more`),
   );
 
-/** Who walks does not look all the time: a new grave warning shakes the phone, where it can. */
-function shake(words) {
-  const kinds = new Set(words.map(({ text }) => text.replace(/\d+/g, "#")));
-  if ([...kinds].some((kind) => !bad.has(kind)) && navigator.userActivation?.hasBeenActive)
+/** Vibrates for a new error, because the operator does not always look at the phone. */
+function vibrateOnNew(errors) {
+  const kinds = new Set(errors.map(({ text }) => text.replace(/\d+/g, "#")));
+  if ([...kinds].some((kind) => !shownErrors.has(kind)) && navigator.userActivation?.hasBeenActive)
     navigator.vibrate?.([120, 80, 120]);
-  bad = kinds;
+  shownErrors = kinds;
 }
 
 /** Opens the sheet. */
@@ -67,14 +67,14 @@ export function showHealth({ scene, battery }) {
   drawSheet(scene.newest, scene.newest.words ?? [], battery);
 }
 
-function drawSheet(newest, words, battery) {
-  say(byId("all-words"), words, line);
+function drawSheet(newest, warnings, battery) {
+  fill(byId("all-words"), warnings, line);
   const cell = (text, k) =>
     make(k ? "td" : "th", { className: k === 1 || k === 2 ? "number" : "" }, text);
-  say(byId("lidars"), (newest.lidars ?? []).map(lidarRow), (row) =>
+  fill(byId("lidars"), (newest.lidars ?? []).map(lidarRow), (row) =>
     make("tr", {}, ...row.map(cell)),
   );
-  say(byId("supplies"), supplies(newest, battery), ([what, figure]) =>
-    make("div", {}, make("dt", {}, what), make("dd", {}, figure)),
+  fill(byId("supplies"), supplies(newest, battery), ([name, value]) =>
+    make("div", {}, make("dt", {}, name), make("dd", {}, value)),
   );
 }

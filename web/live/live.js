@@ -1,4 +1,4 @@
-// The operator's page: is everything captured?
+// The operator's page of a live capture: map, coverage, warnings, controls.
 
 import { readMe } from "../shared/api.js";
 import { CloudCanvas } from "../shared/cloud_canvas.js";
@@ -6,9 +6,9 @@ import { attempt } from "../shared/dom.js";
 import { drawActions, mark, nameThePlace } from "./actions.js";
 import { Camera, moveByPointer } from "./camera.js";
 import { drawHealth, showHealth } from "./health.js";
-import { drawOverlay, planPicture } from "./overlay.js";
+import { drawOverlay, planImage } from "./overlay.js";
 import { LiveScene } from "./scene.js";
-import { clock, coverageWords, hint, listens, stateWords } from "./captions.js";
+import { clock, coverageTexts, hint, records, stateText } from "./captions.js";
 
 const HEAD_M = 0.5;
 const LEAST_FREE_PX = 80;
@@ -20,23 +20,23 @@ const camera = new Camera();
 const overlay = byId("overlay").getContext("2d");
 const dark = matchMedia("(prefers-color-scheme: dark)");
 let [follow, byHeight, ceiling, linked, due] = [true, false, false, true, false];
-let chosen = -1; // of the gaps
-let me = null; // who looks
+let chosen = -1; // index of the chosen gap
+let me = null; // the user
 let battery = null;
-let whole = ""; // project whose end was shown as a whole
-let fitted = false; // the whole map is shown, and nobody moved it since
+let whole = ""; // project whose whole map was shown at the end
+let fitted = false; // the whole map is shown and was not moved since
 
 const scene = new LiveScene(cloud, {
-  news: () => (drawWords(), redraw()),
+  news: () => (drawTexts(), redraw()),
   link: (yes, reason = "") => {
     if (reason) byId("message").textContent = reason;
     if (yes === linked) return;
     linked = yes;
-    if (yes) byId("message").textContent = ""; // what could not be asked for without a link
-    drawWords();
+    if (yes) byId("message").textContent = ""; // errors of requests without a link
+    drawTexts();
     if (yes && !me)
       readMe(true).then(
-        (found) => ((me = found), drawWords()),
+        (found) => ((me = found), drawTexts()),
         () => {},
       );
   },
@@ -45,14 +45,14 @@ const scene = new LiveScene(cloud, {
 
 async function paintPlan(plan) {
   const { poor, well } = styles();
-  const painted = await planPicture(plan, [poor, well]);
+  const painted = await planImage(plan, [poor, well]);
   if (plan !== scene.newest.plan) return painted.bitmap.close();
   scene.plan?.bitmap.close();
   scene.plan = painted;
   redraw();
 }
 
-/** The colors are others now. */
+/** Draws everything with new colors. */
 function repaint() {
   if (scene.plan) paintPlan(scene.newest.plan);
   redraw();
@@ -70,7 +70,7 @@ function redraw() {
   due = true;
 }
 
-/** What no bar covers of the map, {left, top, right, bottom}, and its middle, in pixels of the map. */
+/** Area of the map no bar covers, {left, top, right, bottom}, and its center, in pixels of the map. */
 function space() {
   const [map, top, bottom, views] = [
     byId("map"),
@@ -143,18 +143,18 @@ function draw() {
   byId("needle").style.transform = `rotate(${camera.yaw}rad)`;
 }
 
-/** A text is set only if it is another one: whoever listens to the page hears it once. */
+/** Sets a text only if it has changed, so that a screen reader reads it once. */
 function write(id, text) {
   if (byId(id).textContent !== text) byId(id).textContent = text;
 }
 
-function drawWords() {
+function drawTexts() {
   if (scene.renewed && !document.querySelector("dialog[open]")) location.reload();
   const { state, newest } = scene;
-  document.body.classList.toggle("walking", listens(state));
-  const { words, look } = stateWords(state, linked);
-  write("state", words);
-  byId("state").className = look;
+  document.body.classList.toggle("walking", records(state));
+  const { text, className } = stateText(state, linked);
+  write("state", text);
+  byId("state").className = className;
   const place = scene.marks.findLast((one) => one.what === "place")?.text;
   write("place", !state || state === "none" ? "" : (place ?? scene.project));
   const walked = newest.loop?.walked_m ? ` · ${Math.round(newest.loop.walked_m)} m` : "";
@@ -170,10 +170,10 @@ function drawCoverage() {
   const { newest, state } = scene;
   byId("coverage").hidden = !newest.gaps || newest.gaps.well === null || state === "none";
   if (chosen >= (newest.gaps?.gaps.length ?? 0)) chosen = -1;
-  const { well, poor, words, count, all, one } = coverageWords(newest.gaps, chosen);
+  const { well, poor, text, count, all, one } = coverageTexts(newest.gaps, chosen);
   write("well", well);
   write("poor", poor);
-  write("gap-words", words);
+  write("gap-words", text);
   byId("gap").disabled = count === 0;
   byId("gap").ariaLabel = all;
   write(
@@ -239,11 +239,11 @@ function help() {
   byId("about").textContent = me
     ? `${me.login ? `Signed in as ${me.name}, ${me.role}. ` : ""}${scene.total.toLocaleString("en")} points on this phone.`
     : "";
-  byId("name-it").hidden = !me?.may.includes("capture") || !listens(scene.state);
+  byId("name-it").hidden = !me?.may.includes("capture") || !records(scene.state);
   byId("more").showModal();
 }
 
-const sensors = () => listens(scene.state) && showHealth({ scene, battery });
+const sensors = () => records(scene.state) && showHealth({ scene, battery });
 
 byId("help").addEventListener("click", help);
 byId("sensors").addEventListener("click", sensors);
@@ -290,7 +290,7 @@ moveByPointer(byId("overlay"), camera, {
   },
 });
 
-/** A dark phone shows no warnings; where this is not possible the phone darkens as it always does. */
+/** Keeps the screen on, so that warnings are visible, where the browser supports it. */
 const stayAwake = () => document.hidden || navigator.wakeLock?.request("screen").catch(() => {});
 stayAwake();
 document.addEventListener("visibilitychange", stayAwake);
@@ -302,8 +302,8 @@ for (const bar of [byId("bottom"), document.querySelector(".top")])
   new ResizeObserver(redraw).observe(bar);
 new ResizeObserver(() => (fitted && showWhole(), redraw())).observe(byId("map"));
 dark.addEventListener("change", repaint);
-setInterval(() => linked || drawWords(), 1000); // for how long there is no link
+setInterval(() => linked || drawTexts(), 1000); // updates the duration of a lost link
 if (localStorage.getItem(SUN)) setSun(true);
 
 me = (await attempt(byId("message"), readMe)) ?? null;
-drawWords();
+drawTexts();

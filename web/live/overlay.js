@@ -1,4 +1,4 @@
-// What lies over the points: the plan of what was seen, the way, the gaps, the marks, and me.
+// Draws over the points: coverage plan, path, gaps, marks and position.
 
 const SEEN = { FREE: 1, POOR: 2, WELL: 3 };
 
@@ -11,16 +11,16 @@ const INKS = {
 const LONGEST_NOTE = 24;
 
 /**
- * The plan as a picture of 4 x 4 pixels a cell, x to the right and y up; what was seen poorly is hatched.
- * `box` is what was seen well, [[x, y], [x, y]] in meters; null if nothing was.
+ * The plan as an image of 4 x 4 pixels per cell, x to the right and y up; cells seen poorly are hatched.
+ * `box` is the bounding box of the cells seen well, [[x, y], [x, y]] in meters; null if there are none.
  */
-export async function planPicture(plan, [poor, well]) {
+export async function planImage(plan, [poor, well]) {
   const bytes = Uint8Array.from(atob(plan.seen), (letter) => letter.charCodeAt(0));
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
   const seen = new Uint8Array(await new Response(stream).arrayBuffer());
   const [along, across] = plan.shape;
-  const picture = new ImageData(PX * along, PX * across);
-  const pixels = new Uint32Array(picture.data.buffer);
+  const image = new ImageData(PX * along, PX * across);
+  const pixels = new Uint32Array(image.data.buffer);
   const stamps = {
     [SEEN.FREE]: stamp(well, INKS[SEEN.FREE]),
     [SEEN.POOR]: stamp(poor, INKS[SEEN.POOR]),
@@ -36,7 +36,7 @@ export async function planPicture(plan, [poor, well]) {
         pixels.set(stamps[kind].subarray(PX * y, PX * (y + 1)), first + y * PX * along);
       if (kind === SEEN.WELL) widen(cells, i, j);
     }
-  return { ...plan, bitmap: await createImageBitmap(picture), box: boxOf(plan, cells) };
+  return { ...plan, bitmap: await createImageBitmap(image), box: boxOf(plan, cells) };
 }
 
 /** The pixels of one cell. */
@@ -64,7 +64,7 @@ function boxOf({ first_cell: first, cell_m: size }, { from, to }) {
 
 const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
 
-/** Draws; `middle` is where the target is, `free` what no bar covers: {left, top, right, bottom}, in pixels. */
+/** Draws; `middle` is the target's position, `free` the area no bar covers: {left, top, right, bottom} [px]. */
 export function drawOverlay(
   context,
   { width, height, ratio, middle, free },
@@ -130,7 +130,7 @@ function drawPath(context, camera, path, styles) {
   }
 }
 
-/** A ring where the walk began; when that is out of sight an arrow at the edge shows the way there. */
+/** A ring at the start of the path; if it is out of sight, an arrow at the edge points there. */
 function drawStart(context, camera, place, inside, styles) {
   const [x, y] = camera.project(place);
   const at = [

@@ -1,13 +1,13 @@
-// What this page knows of the capture, kept over lost links: it asks only for what it lacks.
+// State of the capture on this page, kept when the link is lost: a new link sends only what is missing.
 
 import { openLiveStream, readMe } from "../shared/api.js";
 
 const SILENT_MS = 5000;
 const CONNECT_MS = 3000;
-const AGAIN_MS = 700;
-const TOO_MANY = 4429; // close code: no place for this stream; the reason says so in words
-const AGAIN_WHEN_FULL_MS = 10_000;
-const HERE_EVERY_MS = 30_000;
+const RETRY_MS = 700;
+const TOO_MANY = 4429; // close code: too many streams; the reason is a text for the user
+const RETRY_WHEN_FULL_MS = 10_000;
+const PRESENT_EVERY_MS = 30_000;
 
 export class LiveScene {
   project = "";
@@ -21,13 +21,13 @@ export class LiveScene {
   newest = {};
   total = 0;
   server = "";
-  renewed = false; // the server is another version than this page was made for
+  renewed = false; // the server has another version than this page
   #cloud;
   #on;
   #socket;
-  #heard = 0;
-  #heardLast = performance.now();
-  #coming = null;
+  #received = 0;
+  #receivedLast = performance.now();
+  #announced = null;
   #generation = -1;
   #open = false;
 
@@ -36,14 +36,14 @@ export class LiveScene {
     this.#on = handlers;
     this.#connect();
     setInterval(() => this.#checkLink(), 500);
-    setInterval(() => this.#sayHere(), HERE_EVERY_MS);
+    setInterval(() => this.#sendPresent(), PRESENT_EVERY_MS);
     addEventListener("online", () => this.#connectAgain());
     document.addEventListener("visibilitychange", () => document.hidden || this.#checkLink());
   }
 
-  /** Since when nothing was heard [s]. */
+  /** Time since the last message [s]. */
   get silentS() {
-    return Math.round((performance.now() - this.#heardLast) / 1000);
+    return Math.round((performance.now() - this.#receivedLast) / 1000);
   }
 
   get have() {
@@ -57,10 +57,10 @@ export class LiveScene {
   }
 
   #connect() {
-    this.#heard = performance.now();
+    this.#received = performance.now();
     this.#open = false;
     const socket = (this.#socket = openLiveStream(this.have, {
-      onMessage: (told) => socket === this.#socket && this.#take(told),
+      onMessage: (message) => socket === this.#socket && this.#take(message),
       onPoints: (data) => socket === this.#socket && this.#takePoints(data),
       onClose: (event) => socket === this.#socket && this.#lost(event),
     }));
@@ -68,12 +68,12 @@ export class LiveScene {
 
   #lost({ code, reason }) {
     this.#socket = null;
-    this.#coming = null;
+    this.#announced = null;
     this.#on.link(false, code === TOO_MANY ? reason : "");
-    readMe(true).catch(() => {}); // signed out meanwhile? then this leads to the login
+    readMe(true).catch(() => {}); // leads to the login if the session has ended
     setTimeout(
       () => this.#socket ?? this.#connect(),
-      code === TOO_MANY ? AGAIN_WHEN_FULL_MS : AGAIN_MS,
+      code === TOO_MANY ? RETRY_WHEN_FULL_MS : RETRY_MS,
     );
   }
 
@@ -85,44 +85,44 @@ export class LiveScene {
   }
 
   #checkLink() {
-    const patience = this.#open ? SILENT_MS : CONNECT_MS;
-    if (this.#socket && performance.now() - this.#heard > patience) this.#connectAgain();
+    const timeout = this.#open ? SILENT_MS : CONNECT_MS;
+    if (this.#socket && performance.now() - this.#received > timeout) this.#connectAgain();
   }
 
-  /** Somebody looks: the session does not go idle. */
-  #sayHere() {
+  /** Keeps the session from going idle while the page is visible. */
+  #sendPresent() {
     if (this.#open && !document.hidden) this.#socket?.send("{}");
   }
 
-  #take(told) {
-    this.#heard = this.#heardLast = performance.now();
+  #take(message) {
+    this.#received = this.#receivedLast = performance.now();
     this.#open = true;
     this.#on.link(true);
-    if (told.project && told.project !== this.project) this.#forget(told.project);
-    this.state = told.state ?? this.state;
-    this.renewed ||= Boolean(told.server && this.server && told.server !== this.server);
-    this.server = told.server ?? this.server;
-    Object.assign(this.newest, told);
-    if (told.points) {
-      this.#coming = told.points;
-      this.total = told.points.total;
+    if (message.project && message.project !== this.project) this.#forget(message.project);
+    this.state = message.state ?? this.state;
+    this.renewed ||= Boolean(message.server && this.server && message.server !== this.server);
+    this.server = message.server ?? this.server;
+    Object.assign(this.newest, message);
+    if (message.points) {
+      this.#announced = message.points;
+      this.total = message.points.total;
     }
-    if (told.path) this.path.splice(told.path.start, Infinity, ...told.path.points);
-    if (told.pose) this.me = told.pose;
-    if (told.marks) this.marks.splice(told.marks.start, Infinity, ...told.marks.marks);
-    if (told.gaps) this.gaps = told.gaps.gaps;
-    if (told.plan) this.#on.plan(told.plan);
+    if (message.path) this.path.splice(message.path.start, Infinity, ...message.path.points);
+    if (message.pose) this.me = message.pose;
+    if (message.marks) this.marks.splice(message.marks.start, Infinity, ...message.marks.marks);
+    if (message.gaps) this.gaps = message.gaps.gaps;
+    if (message.plan) this.#on.plan(message.plan);
     this.#on.news();
   }
 
   #takePoints(data) {
-    this.#heard = performance.now();
-    const coming = this.#coming;
-    if (!coming) return;
-    if (coming.start === 0) this.#cloud.clear();
-    this.#generation = coming.generation;
-    this.#cloud.add(data, coming.count, coming.voxel_m);
-    this.#coming = null;
+    this.#received = performance.now();
+    const announced = this.#announced;
+    if (!announced) return;
+    if (announced.start === 0) this.#cloud.clear();
+    this.#generation = announced.generation;
+    this.#cloud.add(data, announced.count, announced.voxel_m);
+    this.#announced = null;
     this.#on.news();
   }
 

@@ -1,4 +1,4 @@
-"""Recorder and mapper seen from outside: how they are started, the other end of their sockets."""
+"""Starts recorder and mapper, and connects to their sockets."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ _LONGEST_LINE = 32 << 20
 
 
 class LineClient:
-    """JSON lines to and from one process."""
+    """Receives and sends JSON lines over a connection to one process."""
 
     def __init__(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         self._reader, self._writer = reader, writer
 
     async def lines(self) -> AsyncIterator[dict[str, Any]]:
-        """What is said, until the other side ends."""
+        """Messages of the process until it closes the connection."""
         try:
             while line := await self._reader.readline():
                 yield json.loads(line)
@@ -37,17 +37,17 @@ class LineClient:
             return
 
     async def send(self, message: dict[str, Any]) -> None:
-        """Tell the other side."""
+        """Send a message to the process."""
         self._writer.write(json.dumps(message).encode() + b"\n")
         await self._writer.drain()
 
 
 @asynccontextmanager
 async def linked(path: Path) -> AsyncIterator[LineClient]:
-    """A connection to the process that listens on a path.
+    """Connect to the process that listens on a path.
 
     Raises:
-        OSError: If none does.
+        OSError: If no process listens there.
     """
     reader, writer = await asyncio.open_unix_connection(path, limit=_LONGEST_LINE)
     try:
@@ -68,15 +68,15 @@ async def listens(path: Path) -> bool:
 async def started(
     session: CaptureSession, name: str, *, env: Mapping[str, str] | None = None
 ) -> asyncio.subprocess.Process:
-    """Start the ``recorder`` or the ``mapper`` of a capture; it outlives whoever started it.
+    """Start the ``recorder`` or the ``mapper`` of a capture; it outlives its parent.
 
     Args:
-        session: Of a project that was begun.
-        name: Of the module.
-        env: Environment of the process; None = what it may have of ours.
+        session: Session of a project that was created with `begin`.
+        name: ``recorder`` or ``mapper``.
+        env: Environment of the process; None = the allowed variables of this process.
 
     Raises:
-        ConfigError: If it does not get ready, in its own last words.
+        ConfigError: If it does not report ``ready``; the text is its last log line.
     """
     env = {**allowed_environment(os.environ), **ONE_THREAD} if env is None else dict(env)
     if name == "mapper":
@@ -88,7 +88,7 @@ async def started(
             stdin=asyncio.subprocess.DEVNULL,
             stdout=asyncio.subprocess.PIPE,
             stderr=log_file,
-            start_new_session=True,  # Ctrl-C is not for it
+            start_new_session=True,  # Ctrl-C must not reach it
             env=env,
         )
     assert process.stdout is not None

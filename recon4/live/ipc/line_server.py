@@ -1,8 +1,8 @@
-"""JSON lines over a Unix socket: how the processes of a capture talk.
+"""Broadcasts JSON lines over a Unix socket: messages between the processes of a capture.
 
-Everybody connected hears everything said, in order. A listener that does not listen is let go:
-it connects again and is told what is so by then. Only this user (and root) is answered: the socket
-lies in a folder closed to others, has mode 0600, and the kernel is asked who connected.
+Every client receives every message, in order. A client that does not read is disconnected; it
+connects again and receives the initial messages. Only clients of this user (and root) are
+accepted: the socket is in a private folder, has mode 0600, and the kernel reports the peer's user.
 """
 
 from __future__ import annotations
@@ -18,63 +18,64 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-MOST_UNHEARD_BYTES = 16 << 20
-"""A whole preview and the way of an hour are 5 MB."""
+MOST_UNREAD_BYTES = 16 << 20
+"""A complete preview and the path of an hour are 5 MB."""
 _LONGEST_LINE = 1 << 16
 
 log = logging.getLogger(__name__)
 
 
 class LineServer:
-    """Listens on a path; `send` reaches all who are connected."""
+    """Listens on a path; `send` broadcasts to all clients."""
 
     def __init__(
         self,
         *,
         initial_messages: Callable[[], Iterable[dict[str, Any]]],
-        hear: Callable[[dict[str, Any]], None],
+        on_request: Callable[[dict[str, Any]], None],
     ) -> None:
-        """Make it.
+        """Prepare.
 
         Args:
-            initial_messages: What a new listener is told first.
-            hear: Called with every whole line that is a JSON object; others are ignored.
+            initial_messages: The messages a new client receives first.
+            on_request: Called with every line of a client that is a JSON object; other lines are
+                ignored.
         """
-        self._greet, self._receive_line = initial_messages, hear
+        self._initial_messages, self._on_request = initial_messages, on_request
         self._writers: set[asyncio.StreamWriter] = set()
-        self._listeners: set[asyncio.Task[None]] = set()
+        self._tasks: set[asyncio.Task[None]] = set()
         self._server: asyncio.Server | None = None
         self._path = Path()
 
     async def listen(self, path: Path) -> None:
-        """Start."""
+        """Start to accept clients."""
         with suppress(FileNotFoundError):
-            path.unlink()  # of a process that was killed
+            path.unlink()  # left by a process that was killed
         self._path = path
-        before = os.umask(0o177)  # only this user may connect, from the first moment
+        before = os.umask(0o177)  # only this user may connect
         try:
             self._server = await asyncio.start_unix_server(self._serve, path, limit=_LONGEST_LINE)
         finally:
             os.umask(before)
 
     def send(self, message: dict[str, Any]) -> None:
-        """Tell everybody."""
+        """Send a message to all clients."""
         line = json.dumps(message, separators=(",", ":")).encode() + b"\n"
         for writer in list(self._writers):
-            if writer.transport.get_write_buffer_size() > MOST_UNHEARD_BYTES:
+            if writer.transport.get_write_buffer_size() > MOST_UNREAD_BYTES:
                 writer.transport.abort()
             else:
                 writer.write(line)
 
     async def close(self) -> None:
-        """Stop; what was said is still delivered."""
+        """Stop; messages already sent are still delivered."""
         for writer in list(self._writers):
             with suppress(ConnectionError, TimeoutError):
                 await asyncio.wait_for(writer.drain(), 2.0)
             writer.close()
         if self._server is not None:
             self._server.close()
-            await asyncio.gather(*self._listeners, return_exceptions=True)
+            await asyncio.gather(*self._tasks, return_exceptions=True)
         with suppress(FileNotFoundError):
             self._path.unlink()
 
@@ -86,25 +87,25 @@ class LineServer:
             return
         task = asyncio.current_task()
         assert task is not None
-        self._listeners.add(task)
-        task.add_done_callback(self._listeners.discard)
-        for said in self._greet():
-            writer.write(json.dumps(said, separators=(",", ":")).encode() + b"\n")
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+        for message in self._initial_messages():
+            writer.write(json.dumps(message, separators=(",", ":")).encode() + b"\n")
         self._writers.add(writer)
         try:
             while line := await reader.readline():
-                message = _object(line)
-                if message is not None:
-                    self._receive_line(message)
+                request = _object(line)
+                if request is not None:
+                    self._on_request(request)
         except (ConnectionError, ValueError):
-            pass  # gone, or no line of ours
+            pass  # disconnected, or a line that is too long
         finally:
             self._writers.discard(writer)
             writer.close()
 
 
 def peer_uid(connection: socket.socket) -> int | None:
-    """User at the other end of a Unix socket; None where the kernel does not tell (not Linux)."""
+    """User at the other end of a Unix socket; None if the system does not report it."""
     if not hasattr(socket, "SO_PEERCRED"):
         return None
     credentials = connection.getsockopt(

@@ -1,4 +1,4 @@
-"""Messages to those who look on: plain JSON values, arrays in base64 (``docs/live.md``)."""
+"""Builds messages for clients: plain JSON values, arrays in base64 (``docs/live.md``)."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ _MOST_GAPS = 50
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
-    """All that was told and still holds; turned into messages without holding the mapping up."""
+    """The current state of a capture; its messages are built without blocking the mapping."""
 
     path: list[list[float]]
     chunk: Chunk | None
     others: list[Message]
 
     def messages(self) -> list[Message]:
-        """For a listener that comes late."""
+        """The messages for a client that connects late."""
         points = [] if self.chunk is None else [points_message(self.chunk)]
         return [{"kind": "path", "points": self.path}, *points, *self.others]
 
 
 def points_message(chunk: Chunk) -> Message:
-    """Points of the preview."""
+    """The message ``points``: points of the preview."""
     return {
         "kind": "points",
         "generation": chunk.generation,
@@ -46,7 +46,7 @@ def points_message(chunk: Chunk) -> Message:
 
 
 def plan_message(coverage: Coverage) -> Message:
-    """What was seen of the floor the body is on."""
+    """The message ``plan``: coverage of the floor the body is on."""
     first_cell, seen = coverage.seen()
     return {
         "kind": "plan",
@@ -59,7 +59,7 @@ def plan_message(coverage: Coverage) -> Message:
 
 
 def gaps_message(coverage: Coverage) -> Message:
-    """Places to look at on this floor, and how many there are on others."""
+    """The message ``gaps``: gaps on this floor, and their count on other floors."""
     gaps = [
         {"p": list(gap.p_map), "width_m": gap.width_m, "away_m": round(gap.away_m, 2)}
         for gap in coverage.gaps()[:_MOST_GAPS]
@@ -69,7 +69,7 @@ def gaps_message(coverage: Coverage) -> Message:
 
 
 def figure(value: float) -> float | None:
-    """Four digits of a number; None if it is none."""
+    """A number rounded to four digits; None if it is not finite."""
     return float(f"{value:.4g}") if np.isfinite(value) else None
 
 

@@ -1,4 +1,4 @@
-"""GNSS while walking: shown, watched for jumps, and never let near the map."""
+"""GNSS during a capture: reported and checked for jumps; it does not affect the live map."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from recon4.model.samples import GnssSamples
 EARTH_M = 6_371_000.0
 _FASTEST_M_S = 10.0
 _NOISE_M = 10.0
-"""Fixes may differ by that at any time."""
+"""Distance between fixes that never counts as a jump."""
 SHOWN_S = 30.0
 
 
 class GnssWatch:
-    """Takes fixes, says how good they are and whether they jumped."""
+    """Reports the quality of GNSS fixes and detects jumps of the position."""
 
     def __init__(self) -> None:
         self._last: tuple[int, float, float] | None = None
         self._jump = (0, 0.0)
 
     def push(self, gnss: GnssSamples) -> dict[str, Any]:
-        """The message ``fix`` of ``docs/live.md`` for the newest of some fixes."""
+        """Build the message ``fix`` of the newest of some fixes."""
         rows = zip(gnss.t_ns.tolist(), gnss.lat_rad.tolist(), gnss.lon_rad.tolist(), strict=True)
         for t_ns, lat_rad, lon_rad in rows:
             self._take(t_ns, lat_rad, lon_rad)

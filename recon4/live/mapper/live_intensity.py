@@ -1,4 +1,4 @@
-"""Intensity made comparable while walking: a running table by sensor, ring and range."""
+"""Intensity normalization during a capture: a running table by sensor, ring and range."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from recon4.geometry.se3 import Array
 _RANGE_BIN_M = 2.0
 _RANGES = 32
 _MEMORY = 20_000.0
-"""Points a bin remembers."""
+"""Largest weight of the past in a bin [points]."""
 
 
 class LiveIntensity:
-    """Mean and deviation a bin so far; the finished map has the better table (``intensity``)."""
+    """Running mean and deviation per bin; the stage ``intensity`` makes the final table."""
 
     def __init__(self, sensors: int) -> None:
         shape = (sensors, 128, _RANGES)
@@ -31,7 +31,7 @@ class LiveIntensity:
         ring: NDArray[Any],
         range_m: Array,
     ) -> NDArray[np.uint8]:
-        """Learn from points, then give their intensities with mean 128 and deviation 48 a bin.
+        """Update the table with points and normalize them to mean 128 and deviation 48 per bin.
 
         Args:
             intensity: As measured, (N,).

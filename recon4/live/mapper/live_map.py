@@ -1,6 +1,6 @@
-"""Mapping while walking: multiframes in, what the operator should see out. No clocks, no wires.
+"""Maps multiframes during a capture and reports the result as messages. No clocks, no sockets.
 
-What comes out are messages, plain JSON values (``docs/live.md`` lists them); arrays are base64.
+The messages are those of ``docs/live.md``; arrays are base64.
 """
 
 from __future__ import annotations
@@ -36,33 +36,33 @@ from recon4.registration.segments import sample_segments
 from recon4.settings import Settings
 
 PREVIEW_POINTS = 6000
-"""Taken of a multiframe for the preview …"""
+"""Points of a multiframe used for the preview."""
 COVERAGE_RAYS = 1500
-"""… and for the plan."""
+"""Points of a multiframe used for coverage."""
 SUMMARY_EVERY_NS = 1_000_000_000
 _SEARCH_AFTER = 5
-"""After so many lost multiframes in a row the place is searched, now and then after as many."""
+"""Number of lost multiframes after which relocalization starts, and between its attempts."""
 _LOOP_WITHIN_M = 4.0
 _LOOP_WALKED_M = 20.0
 _PATH_STEP_M = 0.25
-"""The way is kept a point every so far: an hour's walk is a few thousand."""
-_GAP_SHOWN_NS = 3_000_000_000
-_LATELY_NS = 10_000_000_000
-"""What was left out is said for so long."""
+"""Distance between stored points of the path; an hour's walk has a few thousand."""
+_OFFSET_SHOWN_NS = 3_000_000_000
+_RECENT_NS = 10_000_000_000
+"""Period over which multiframes left out are counted."""
 _PLAN_BYTES_PER_S = 20_000
-"""Of a large plan: it is told less often then."""
+"""Data rate of plans; a large plan is sent less often."""
 
 
 class LiveMap:
-    """One walk as it goes on; memory follows the area that was seen, and that slowly."""
+    """The map of a running capture; memory grows slowly with the area seen."""
 
     def __init__(self, rig: Rig, settings: Settings, *, scratch: Path | None = None) -> None:
-        """Begin.
+        """Start with an empty map.
 
         Args:
-            rig: What is on the backpack.
-            settings: Of the odometry and of what is registered.
-            scratch: Folder for what need not be in memory; None = the system's.
+            rig: The sensors of the backpack.
+            settings: Settings of odometry and registration.
+            scratch: Folder of the spill file; None = the system's temporary folder.
         """
         self._rig, self._settings = rig, settings
         self._scratch = scratch
@@ -70,20 +70,20 @@ class LiveMap:
         self._preview = PreviewCloud()
         self._intensity = LiveIntensity(len(rig.sensors))
         self._thinned, self._relocated = 0, 0
-        self._lately: deque[tuple[int, bool]] = deque()
-        """Newest multiframes: time and whether it was left out."""
-        self._gaps_m: deque[tuple[int, float]] = deque()
-        """Newest multiframes: time and how far the prediction was off."""
+        self._recent: deque[tuple[int, bool]] = deque()
+        """Time of each recent multiframe and whether it was left out."""
+        self._offsets_m: deque[tuple[int, float]] = deque()
+        """Time and prediction offset of each recent multiframe."""
         self._summary_ns = 0
-        self._begin()
+        self._reset()
 
-    def _begin(self) -> None:
-        """An empty map; the preview is another matter, its generation counts on."""
+    def _reset(self) -> None:
+        """Reset the map, except the preview, whose generation continues."""
         self._coverage = Coverage()
         self._places = PlaceIndex(self._settings, scratch=self._scratch)
         self._path: list[list[float]] = []
         self._here_m = np.zeros(3)
-        """Where the body was when it was last not lost."""
+        """Last position before tracking was lost [m]."""
         self._lost = self._lost_steps = 0
         self._recovery: Recovery | None = None
         self._plan_due_ns = self._plan_floor = 0
@@ -93,55 +93,55 @@ class LiveMap:
         self._gaps: Message = {"kind": "gaps", "gaps": [], "well": None, "elsewhere": 0}
 
     def extend_imu(self, imu: ImuSamples) -> None:
-        """Take samples as they were read."""
+        """Add IMU samples."""
         self.tracker.extend_imu(imu)
 
     def thin(self, frame: Multiframe) -> None:
-        """Leave a multiframe out, as the mapping has fallen behind; it is in the recording."""
+        """Count a multiframe that is left out because of latency; the recording contains it."""
         self._thinned += 1
-        self._lately.append((frame.t_ns, True))
+        self._recent.append((frame.t_ns, True))
 
     def push(self, frame: Multiframe) -> list[Message]:
         """Map a multiframe.
 
         Returns:
-            What to tell: always a ``pose``; ``points`` when there are new ones; about once a
-            second ``plan``, ``gaps`` and ``loop``.
+            Messages: always a ``pose``; ``points`` when there are new ones; about once a second
+            ``plan``, ``gaps`` and ``loop``.
         """
-        self._lately.append((frame.t_ns, False))
-        broken_off = self.tracker.broken_off(frame)
-        step = self.tracker.start_over(frame) if broken_off else self.tracker.push(frame)
-        anew: list[Message] = []
-        if self.tracker.anew:
-            self._begin()
-            self._preview.forget()
-            anew = [{"kind": "path", "points": []}]
-        step, lost = self._go_on(step) if broken_off else self._follow(frame, step)
+        self._recent.append((frame.t_ns, False))
+        interrupted = self.tracker.interrupted(frame)
+        step = self.tracker.restart(frame) if interrupted else self.tracker.push(frame)
+        reset: list[Message] = []
+        if self.tracker.map_reset:
+            self._reset()
+            self._preview.reset()
+            reset = [{"kind": "path", "points": []}]
+        step, lost = self._resume(step) if interrupted else self._follow(frame, step)
         T_map_body = self.tracker.T_map_odom @ step.T_odom_body
-        message = [self._pose(frame, step, T_map_body, lost=lost), *anew]
+        messages = [self._pose(frame, step, T_map_body, lost=lost), *reset]
         if lost:
-            return message
-        self._go_to(T_map_body.t)
-        message += self._add_points(frame, step)
+            return messages
+        self._extend_path(T_map_body.t)
+        messages += self._add_points(frame, step)
         if frame.t_ns - self._summary_ns >= SUMMARY_EVERY_NS:
             self._summary_ns = frame.t_ns
-            message += self._summary(frame, T_map_body, step)
-        return message
+            messages += self._summary(frame, T_map_body, step)
+        return messages
 
     def snapshot(self) -> Snapshot:
-        """All that was told and still holds."""
+        """The current state, for clients that connect late."""
         chunk = self._preview.since(0) if len(self._preview) else None
         others = [*([self._plan] if self._plan else []), self._gaps, self._loop]
         return Snapshot(list(self._path), chunk, others)
 
-    def _go_to(self, p_map: Array) -> None:
+    def _extend_path(self, p_map: Array) -> None:
         self._here_m = p_map
         place = [round(float(v), 2) for v in p_map]
         if not self._path or np.linalg.norm(p_map - self._path[-1]) >= _PATH_STEP_M:
             self._path.append(place)
 
-    def _go_on(self, step: OdometryStep) -> tuple[OdometryStep, bool]:
-        """After a pause: probably where it began, but that has to be seen."""
+    def _resume(self, step: OdometryStep) -> tuple[OdometryStep, bool]:
+        """After a pause: assume the position of its start until relocalization confirms it."""
         if not len(self._places):
             return step, False
         self._recovery = Recovery(self._places, self._here_m, expected=self.tracker.T_map_odom)
@@ -149,16 +149,16 @@ class LiveMap:
         return step, True
 
     def _follow(self, frame: Multiframe, step: OdometryStep) -> tuple[OdometryStep, bool]:
-        """The step to go on with, and whether the body is lost.
+        """The step to continue with, and whether tracking is lost.
 
-        A few lost multiframes are forgiven: the odometry finds back by itself. After
-        `_SEARCH_AFTER` it begins anew, and what it sees is searched for in the map so far; until
-        it is found nothing is added to the map.
+        The odometry recovers from a few lost multiframes by itself. After `_SEARCH_AFTER` of them
+        it restarts, and its views are relocalized in the map so far. Until that succeeds nothing
+        is added to the map.
         """
         self._lost_steps = self._lost_steps + 1 if step.lost else 0
         self._lost = self._lost + 1 if step.lost or self._recovery else 0
         if self._lost_steps >= _SEARCH_AFTER:
-            step = self.tracker.start_over(frame)
+            step = self.tracker.restart(frame)
             self._lost_steps = 0
             if self._recovery is None and len(self._places):
                 self._recovery = Recovery(self._places, self._here_m)
@@ -194,27 +194,29 @@ class LiveMap:
             "error_m": figure(step.error_m),
             "match_ratio": figure(step.match_ratio),
             "degeneracy": figure(step.degeneracy),
-            "prediction_offset_m": figure(self._worst_gap_m(frame.t_ns, step.prediction_offset_m)),
+            "prediction_offset_m": figure(
+                self._largest_offset_m(frame.t_ns, step.prediction_offset_m)
+            ),
             "turn_rad_s": figure(_turn_rate(step)),
             "points": np.bincount(frame.sensor, minlength=len(self._rig.sensors)).tolist(),
             "thinned": self._thinned,
-            "lately": self._counts_lately(frame.t_ns),
+            "lately": self._counts_recently(frame.t_ns),
             "imu": self.tracker.with_imu,
             "remark": self.tracker.remark,
         }
 
-    def _worst_gap_m(self, t_ns: int, prediction_offset_m: float) -> float:
-        """Of the last seconds: one multiframe is too short for anybody to read of it."""
-        self._gaps_m.append((t_ns, prediction_offset_m))
-        while t_ns - self._gaps_m[0][0] > _GAP_SHOWN_NS:
-            self._gaps_m.popleft()
-        return max(prediction_offset_m for _, prediction_offset_m in self._gaps_m)
+    def _largest_offset_m(self, t_ns: int, prediction_offset_m: float) -> float:
+        """Largest prediction offset of the last seconds, so that the warning stays readable."""
+        self._offsets_m.append((t_ns, prediction_offset_m))
+        while t_ns - self._offsets_m[0][0] > _OFFSET_SHOWN_NS:
+            self._offsets_m.popleft()
+        return max(prediction_offset_m for _, prediction_offset_m in self._offsets_m)
 
-    def _counts_lately(self, now_ns: int) -> dict[str, int]:
-        """Multiframes of the last 10 s, and how many of them were left out."""
-        while now_ns - self._lately[0][0] > _LATELY_NS:
-            self._lately.popleft()
-        return {"frames": len(self._lately), "thinned": sum(out for _, out in self._lately)}
+    def _counts_recently(self, now_ns: int) -> dict[str, int]:
+        """Count the multiframes of the last 10 s and those of them that were left out."""
+        while now_ns - self._recent[0][0] > _RECENT_NS:
+            self._recent.popleft()
+        return {"frames": len(self._recent), "thinned": sum(out for _, out in self._recent)}
 
     def _add_points(self, frame: Multiframe, step: OdometryStep) -> list[Message]:
         rows = np.arange(0, len(frame), max(1, len(frame) // PREVIEW_POINTS))
@@ -241,7 +243,7 @@ class LiveMap:
         return [*self._new_plan(frame.t_ns), self._gaps, self._loop]
 
     def _new_plan(self, now_ns: int) -> list[Message]:
-        """The plan, unless the last one was so large that it is not due."""
+        """The message ``plan``, unless the next one is not due because the last one was large."""
         if now_ns < self._plan_due_ns and self._coverage.floor == self._plan_floor:
             return []
         self._plan, self._plan_floor = plan_message(self._coverage), self._coverage.floor
@@ -250,7 +252,7 @@ class LiveMap:
         return [self._plan]
 
     def _close_loop(self, source: Array, T_map_body: SE3, step: OdometryStep) -> None:
-        """Recognize a place left long ago; the map goes on from where it was."""
+        """Recognize a place visited before and correct the drift of the map."""
         start_m = np.array(self._path[0])
         place = self._places.revisited(
             T_map_body.t, within_m=_LOOP_WITHIN_M, walked_before_m=_LOOP_WALKED_M
@@ -276,7 +278,7 @@ def _in_body(frame: Multiframe, rig: Rig) -> Array:
 
 
 def _turn_rate(step: OdometryStep) -> float:
-    """Fastest turn within the frame [rad/s]."""
+    """Largest turn rate within the frame [rad/s]."""
     if len(step.t_ns) < 2:
         return 0.0
     between = step.T_dense[:-1].inverse() @ step.T_dense[1:]

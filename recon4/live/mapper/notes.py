@@ -1,4 +1,4 @@
-"""What the reader of a capture repaired or warns of, as far as it is news."""
+"""Recent warnings and repairs of the reader of a capture."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from recon4.recording.report import ImportReport
 
 RECENT_S = 10.0
 FRESH_S = 120.0
-"""A warning is told for so long; those about clocks as long as the capture runs."""
+"""A warning is reported for this time; warnings about clocks until the capture ends."""
 _MOST = 20
 
 
 class Notes:
-    """Follows an import report while it grows."""
+    """Follows an import report that grows."""
 
     def __init__(self, report: ImportReport) -> None:
         self._report = report
@@ -22,14 +22,14 @@ class Notes:
         self._counts: deque[tuple[float, dict[str, int]]] = deque()
 
     def message(self, now_s: float) -> dict[str, Any]:
-        """The message ``notes`` of ``docs/live.md``.
+        """Build the message ``notes`` of ``docs/live.md``.
 
         Args:
             now_s: A monotonic time [s].
         """
         warnings = self._report.warnings
         self._seen_s += [now_s] * (len(warnings) - len(self._seen_s))
-        message = [
+        current = [
             text
             for text, seen_s in zip(warnings, self._seen_s, strict=False)
             if now_s - seen_s < FRESH_S or "clock" in text
@@ -41,4 +41,4 @@ class Notes:
         before = self._counts[0][1]
         recent = {name: count - before.get(name, 0) for name, count in counts.items()}
         recent = {name: count for name, count in recent.items() if count}
-        return {"kind": "notes", "warnings": message[-_MOST:], "counts": counts, "recent": recent}
+        return {"kind": "notes", "warnings": current[-_MOST:], "counts": counts, "recent": recent}

@@ -1,4 +1,4 @@
-"""Places walked through, to be recognized: after tracking was lost, and when a loop closes."""
+"""Place index: sub-maps along the path, for relocalization and loop closures."""
 
 from __future__ import annotations
 
@@ -17,42 +17,42 @@ from recon4.settings import Settings
 
 KEEP_EVERY_M = 1.0
 _SEGMENTS = 3000
-"""Kept of a place, up to twice as many; 72 to 144 kB. An hour of walking is 4000 places: they
-wait in a file."""
+"""Segments stored per place, up to twice as many: 72 to 144 kB. An hour of walking has 4000
+places, which are in a spill file."""
 _AROUND = 3
-"""Places before and after one that make up its local map."""
-_SURE_SHARE, _SURE_DEGENERACY = 0.5, 0.02
-"""What a view must have to be found without a good guess."""
+"""Places before and after a place that form its local map."""
+_SURE_MATCH_RATIO, _SURE_DEGENERACY = 0.5, 0.02
+"""Smallest values to accept a view without a prior."""
 _LEVELS = 2
-"""Cells of 0.2 and 0.4 m: guesses are that good, and coarser planes of few points mislead."""
-_GUESSES = 3
+"""Cells of 0.2 and 0.4 m: hypotheses have this accuracy; coarser planes of few points mislead."""
+_HYPOTHESES = 3
 _FLOOR_M, _CEILING_M = 0.9, 0.8
-"""Between so far below and so far above the body there are walls."""
+"""Points between these heights below and above the body count as walls [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _StoredPlace:
     T_map_body: SE3
     ends_body: slice
-    """Its ends of segments in the body [m], on the shelf."""
+    """Rows of its segment ends in the body frame [m], in the spill file."""
 
 
 class PlaceIndex:
-    """Submaps along the way, and the registration of a new view to one of them."""
+    """Sub-maps along the path, and the registration of a new view to one of them."""
 
     def __init__(self, settings: Settings, *, scratch: Path | None = None) -> None:
-        """Begin without any.
+        """Create an empty index.
 
         Args:
-            settings: How views are registered.
-            scratch: Folder of the file; None = the system's.
+            settings: Settings of the registration.
+            scratch: Folder of the spill file; None = the system's temporary folder.
         """
         self._settings = settings
         self._planes = replace(settings.planes, levels=_LEVELS)
-        self._shelf = SpillFile(scratch)
+        self._spill = SpillFile(scratch)
         self._places: list[_StoredPlace] = []
         self._at = np.zeros((64, 4))
-        """Position [m] and length of the way until there [m] of each place, and room for more."""
+        """Position [m] and path length [m] of each place; the last rows are spare."""
         self._walked_m = 0.0
         self._last_m: Array | None = None
 
@@ -61,15 +61,15 @@ class PlaceIndex:
 
     @property
     def walked_m(self) -> float:
-        """Length of the way [m]."""
+        """Path length [m]."""
         return self._walked_m
 
     def keep(self, T_map_body: SE3, ends_body: Array) -> None:
-        """Remember this place if the last one is far enough away.
+        """Add a place if the last one is at least `KEEP_EVERY_M` away.
 
         Args:
             T_map_body: Pose of the body.
-            ends_body: Ends of segments in the body [m], (N, 3).
+            ends_body: Segment ends in the body frame [m], (N, 3).
         """
         here = T_map_body.t
         if self._last_m is not None:
@@ -79,15 +79,18 @@ class PlaceIndex:
             self._walked_m += step_m
         self._last_m = here
         step = max(1, len(ends_body) // (2 * _SEGMENTS))
-        kept = self._shelf.put(ends_body[::step].astype(np.float32))
+        kept = self._spill.put(ends_body[::step].astype(np.float32))
         if len(self) == len(self._at):
             self._at = np.concatenate([self._at, np.zeros_like(self._at)])
         self._at[len(self)] = [*here, self._walked_m]
         self._places.append(_StoredPlace(T_map_body, kept))
 
     def revisited(self, p_map: Array, *, within_m: float, walked_before_m: float) -> int | None:
-        """The nearest place that was left at least so much of the way ago; None = none near."""
-        # The way only grows: the old ones come first.
+        """The nearest place within ``within_m`` that lies ``walked_before_m`` or more of path back.
+
+        None if there is none.
+        """
+        # The path length only grows, so the old places come first.
         old = int(np.count_nonzero(self._path_length_m <= self._walked_m - walked_before_m))
         if not old:
             return None
@@ -96,15 +99,15 @@ class PlaceIndex:
         return best if away_m[best] <= within_m else None
 
     def locate(self, source: Array, initial: SE3, place: int) -> Registration | None:
-        """Register a view to a place; None if it does not fit.
+        """Register a view to a place; None if the registration is rejected.
 
         Args:
-            source: Midpoints of segments in the body [m], (N, 3).
-            initial: First ``T_map_body``.
-            place: Of `revisited`.
+            source: Segment midpoints in the body frame [m], (N, 3).
+            initial: Initial ``T_map_body``.
+            place: Row of a place, as from `revisited`.
 
         Returns:
-            With ``T_target_source`` = ``T_map_body``.
+            Registration with ``T_target_source`` = ``T_map_body``.
         """
         found = register_to_planes(
             self._local_map(place),
@@ -124,7 +127,7 @@ class PlaceIndex:
         return found if fits else None
 
     def near(self, p_map: Array, *, most: int, apart_m: float = 0.0) -> list[int]:
-        """The nearest places, so far apart from each other."""
+        """Rows of the nearest places that are at least ``apart_m`` from each other."""
         at_m = self._at[: len(self), :3]
         chosen: list[int] = []
         for k in np.argsort(self._away_m(p_map), kind="stable").tolist():
@@ -136,23 +139,23 @@ class PlaceIndex:
         return chosen
 
     def relocate(self, source: Array, R: Array, place: int) -> list[tuple[SE3, float]]:
-        """Where a view may be near a place, whatever its heading: poses with the share that fits.
+        """Find possible poses of a view near a place with any heading, each with its match ratio.
 
         Args:
-            source: Midpoints of segments in the body [m], (N, 3).
-            R: Attitude of the body, (3, 3); its roll and pitch are taken for true.
+            source: Segment midpoints in the body frame [m], (N, 3).
+            R: Attitude of the body, (3, 3); roll and pitch are taken from it.
             place: Row of a place.
         """
         T = self._places[place].T_map_body
         level = SE3(R, np.zeros(3)) @ source
         target = np.concatenate([self._in_map(k) for k in self._around(place)]) - T.t
         found: list[Registration] = []
-        for yaw, shift_m in plan_hypotheses(_walls(target), _walls(level), most=_GUESSES):
+        for yaw, shift_m in plan_hypotheses(_walls(target), _walls(level), most=_HYPOTHESES):
             initial = SE3(so3_exp([0.0, 0.0, yaw]) @ R, T.t + np.append(shift_m, 0.0))
             one = self.locate(source, initial, place)
             if (
                 one is not None
-                and one.match_ratio >= _SURE_SHARE
+                and one.match_ratio >= _SURE_MATCH_RATIO
                 and one.degeneracy >= _SURE_DEGENERACY
             ):
                 found.append(one)
@@ -177,10 +180,10 @@ class PlaceIndex:
 
     def _in_map(self, place: int) -> Array:
         one = self._places[place]
-        ends_body = self._shelf.get(one.ends_body).astype(np.float64)
+        ends_body = self._spill.get(one.ends_body).astype(np.float64)
         return np.ascontiguousarray(one.T_map_body @ ends_body)
 
 
 def _walls(p_m: Array) -> Array:
-    """Points between floor and ceiling, in plan; heights count from the body."""
+    """Horizontal coordinates of the points between floor and ceiling; heights are body-relative."""
     return p_m[(p_m[:, 2] > -_FLOOR_M) & (p_m[:, 2] < _CEILING_M), :2]

@@ -1,4 +1,4 @@
-"""Where in plan a view may lie on a map, whatever its heading: two plans of walls correlated."""
+"""Horizontal pose hypotheses of a view in a map, by correlation of two plans of walls."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from recon4.geometry.se3 import Array
 CELL_M = 0.25
 _CELLS = 128
 _REACH_M = 10.0
-"""Of the view; map and shift stay within 16 m then, and nothing wraps around."""
+"""Range of the view; with it map and shift stay within 16 m, so that nothing wraps around."""
 _SHIFT_M = 5.0
 _YAW_STEP_RAD = np.deg2rad(4.0)
 _APART_M, _APART_RAD = 1.0, 0.25
 
 
 def plan_hypotheses(target_m: Array, source_m: Array, *, most: int) -> list[tuple[float, Array]]:
-    """Turns and shifts that lay most walls of a view on walls of the map, the best first.
+    """Rotations and shifts that align most walls of a view with walls of the map, best first.
 
-    The share of the view's points that fall on walls is, for one turn and all shifts at once, the
-    cross-correlation of the two plans, taken by FFT.
+    The number of points of the view on walls of the map is, for one rotation and all shifts, the
+    cross-correlation of the two plans; it is computed by FFT.
 
     Args:
-        target_m: Points on walls of the map in plan around the place searched [m], (N, 2).
-        source_m: Points on walls of the view around its sensor [m], (M, 2).
-        most: So many guesses.
+        target_m: Horizontal wall points of the map relative to the place [m], (N, 2).
+        source_m: Horizontal wall points of the view relative to the sensor [m], (M, 2).
+        most: Number of hypotheses.
 
     Returns:
         Yaw [rad] and shift [m] (2,) that map the view onto the map, up to 5 m away.
@@ -44,7 +44,7 @@ def plan_hypotheses(target_m: Array, source_m: Array, *, most: int) -> list[tupl
     for _ in range(most):
         k, i, j = np.unravel_index(int(np.argmax(scores)), scores.shape)
         found.append((float(yaws[k]), np.array([shifts[i], shifts[j]]) * CELL_M))
-        _forget(scores, (int(k), int(i), int(j)))
+        _suppress(scores, (int(k), int(i), int(j)))
     return found
 
 
@@ -62,8 +62,8 @@ def _raster(p_m: Array) -> Array:
     return counts.reshape(_CELLS, _CELLS).astype(np.float64)
 
 
-def _forget(scores: Array, at: tuple[int, int, int]) -> None:
-    """Leave out what is so near that it is the same guess."""
+def _suppress(scores: Array, at: tuple[int, int, int]) -> None:
+    """Exclude the neighborhood of a maximum, which belongs to the same hypothesis."""
     turn, near = round(_APART_RAD / _YAW_STEP_RAD), round(_APART_M / CELL_M)
     rows = np.arange(at[0] - turn, at[0] + turn + 1) % len(scores)
     a, b = max(at[1] - near, 0), max(at[2] - near, 0)

@@ -1,9 +1,9 @@
-"""The mapper: a process that follows a capture file, maps it, and keeps the frames for the project.
+"""The mapper: a process that reads a growing capture file, maps it, and stores the frames.
 
-``python -m recon4.live.mapper.process PROJECT`` reads the file the recorder writes, at most
-as fast as it grows. It may be killed and started again at any time: it begins at the start of the
-file and catches up. It talks JSON lines on a Unix socket (``docs/live.md``): messages of `LiveMap`,
-``notes`` (repairs and warnings of the reader) and, at the end, ``done``.
+``python -m recon4.live.mapper.process PROJECT`` reads the file while the recorder writes it.
+It may be killed and restarted at any time: it starts at the beginning of the file and catches up.
+It sends JSON lines over a Unix socket (``docs/live.md``): messages of `LiveMap`, ``notes`` (repairs
+and warnings of the reader) and, at the end, ``done``.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ log = logging.getLogger(__name__)
 
 
 class Mapper:
-    """Reads and maps in a thread; the event loop listens to the recorder and talks."""
+    """Reads and maps in a thread; the event loop exchanges messages."""
 
     def __init__(self, session: CaptureSession) -> None:
         self._session = session
@@ -58,20 +58,22 @@ class Mapper:
         self._growth = WriteProgress()
         self._live = LiveSource(self._open, self._watch)
         self._loop = asyncio.get_running_loop()
-        self._lines = LineServer(initial_messages=self._initial_messages, hear=lambda fields: None)
+        self._lines = LineServer(
+            initial_messages=self._initial_messages, on_request=lambda request: None
+        )
         self._gnss, self._notes = GnssWatch(), Notes(self._live.report)
         self._newest_notes = self._notes.message(time.monotonic())
         self._newest_pose: list[Message] = []
-        self._told_s = 0.0
-        self._in_step = ImuSynchronization()
-        self._lateness = Latency(self._live.report, self._now_ns)
-        self._given_up = False
+        self._notes_s = 0.0
+        self._synchronization = ImuSynchronization()
+        self._latency = Latency(self._live.report, self._now_ns)
+        self._aborted = False
 
     async def run(self, on_ready: Callable[[], None]) -> int:
-        """Map until the recorder has ended; exit code."""
+        """Map until the recorder has ended; returns the exit code."""
         await self._lines.listen(self._session.socket("mapper"))
-        for sign in (signal.SIGTERM, signal.SIGINT):
-            self._loop.add_signal_handler(sign, self._give_up)
+        for number in (signal.SIGTERM, signal.SIGINT):
+            self._loop.add_signal_handler(number, self._abort)
         following = asyncio.create_task(self._follow())
         await asyncio.to_thread(warm_up, self._rig, self._settings)
         on_ready()
@@ -87,32 +89,32 @@ class Mapper:
         return 1 if outcome.get("problem") else 0
 
     async def _follow(self) -> None:
-        """Hear from the recorder how far the file is; when it is gone the file is complete."""
+        """Receive the readable size from the recorder; when it has ended the file is complete."""
         try:
             with suppress(ConnectionError, FileNotFoundError):
                 while not await self._receive_recorder():
-                    pass  # it let us go as we were slow: connect again
+                    pass  # disconnected as too slow: connect again
             self._growth.reached(self._session.capture.stat().st_size)
         finally:
-            self._growth.complete()  # also if the whole folder is gone
+            self._growth.complete()  # even if the folder was removed
 
     async def _receive_recorder(self) -> bool:
-        """Whether it said that it has stopped; else the connection is gone.
+        """Whether the recorder has reported ``stopped``; else the connection was closed.
 
         Raises:
             ConnectionError, FileNotFoundError: If there is no recorder.
         """
         async with linked(self._session.socket("recorder")) as link:
-            async for fields in link.lines():
-                if fields["kind"] == "written":
-                    self._growth.reached(fields["bytes"])
-                elif fields["kind"] == "stopped":
+            async for message in link.lines():
+                if message["kind"] == "written":
+                    self._growth.reached(message["bytes"])
+                elif message["kind"] == "stopped":
                     return True
         return False
 
-    def _give_up(self) -> None:
-        """End soon, without frames for the project."""
-        self._given_up = True
+    def _abort(self) -> None:
+        """End soon, without storing frames."""
+        self._aborted = True
         self._growth.complete()
 
     def _read(self) -> Message:
@@ -129,10 +131,10 @@ class Mapper:
             progress=Silent(),
             live=self._live,
         )
-        for frame in self._in_step.rest():
+        for frame in self._synchronization.flush():
             self._map_frame(frame)
-        if self._given_up:
-            return {"kind": "done", "frames": 0, "problem": "the mapper was told to stop"}
+        if self._aborted:
+            return {"kind": "done", "frames": 0, "problem": "the mapper was stopped by a signal"}
         began_s = time.monotonic()
         frames = finish(self._session, out, self._settings)
         if not self._session.outcome.exists():
@@ -150,22 +152,23 @@ class Mapper:
         if isinstance(item, ImuSamples):
             self._map.extend_imu(item)
             offset_ns = round(self._rig.imu_time_offset_s * 1e9)
-            ready = self._in_step.heard(int(item.t_ns[-1]) + offset_ns)
+            ready = self._synchronization.imu_until(int(item.t_ns[-1]) + offset_ns)
         else:
-            ready = self._in_step.came(item)
+            ready = self._synchronization.push(item)
         for frame in ready:
             self._map_frame(frame)
 
     def _map_frame(self, frame: Multiframe) -> None:
-        if self._lateness.leave_out(frame.t_ns + frame.duration_ns):
+        if self._latency.leave_out(frame.t_ns + frame.duration_ns):
             self._map.thin(frame)
             return
         with self._mapping:
-            fields = self._map.push(frame)
-        fields[0]["t_ns"] = self._lateness.on_our_clock(fields[0]["t_ns"])
-        fields[0]["age_s"] = self._lateness.age_s(fields[0]["t_ns"])
-        self._newest_pose = fields[:1]
-        for message in fields:
+            messages = self._map.push(frame)
+        pose = messages[0]
+        pose["t_ns"] = self._latency.on_recorder_clock(pose["t_ns"])
+        pose["age_s"] = self._latency.age_s(pose["t_ns"])
+        self._newest_pose = [pose]
+        for message in messages:
             self._send(message)
         self._report_notes()
 
@@ -173,10 +176,10 @@ class Mapper:
         return stretched(time.time_ns(), self._session.speed)
 
     def _report_notes(self) -> None:
-        if time.monotonic() - self._told_s < 1.0:
+        if time.monotonic() - self._notes_s < 1.0:
             return
-        self._told_s = time.monotonic()
-        self._newest_notes = self._notes.message(self._told_s)
+        self._notes_s = time.monotonic()
+        self._newest_notes = self._notes.message(self._notes_s)
         self._send(self._newest_notes)
 
     def _send(self, message: Message) -> None:
@@ -189,7 +192,7 @@ class Mapper:
 
 
 def warm_up(rig: Rig, settings: Settings) -> None:
-    """Load the compiled kernels on made-up multiframes: the first real ones must not be late."""
+    """Load the compiled kernels with synthetic multiframes, so that real ones are not delayed."""
     live_map = LiveMap(rig, settings)
     rng = np.random.default_rng(0)
     ring, step = np.meshgrid(np.arange(16), np.arange(900))
@@ -198,7 +201,7 @@ def warm_up(rig: Rig, settings: Settings) -> None:
     reach_m = 3.0 / np.abs(ray).max(axis=1, keepdims=True) + rng.normal(0, 0.01, (len(ray), 1))
     count = len(ray)
     for k in range(3):
-        t_ns = (20 + k) * 100_000_000  # late enough for the summary of a second
+        t_ns = (20 + k) * 100_000_000  # late enough for a summary
         imu_ns = t_ns + 10_000_000 * np.arange(11, dtype=np.int64)
         accel = np.tile([0.0, 0.0, STANDARD_GRAVITY_M_S2], (11, 1))
         live_map.extend_imu(ImuSamples(imu_ns, np.zeros((11, 3)), accel))
@@ -217,7 +220,7 @@ def warm_up(rig: Rig, settings: Settings) -> None:
 
 
 def main(project: Path) -> int:
-    """Follow the capture of a project; says ``ready`` on its output once it listens."""
+    """Map the capture of a project; print ``ready`` once the socket is open."""
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(name)s %(message)s")
 
     def report_ready() -> None:

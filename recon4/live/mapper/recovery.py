@@ -1,4 +1,4 @@
-"""Finding back into the map after tracking was lost."""
+"""Relocalization in the map after tracking was lost."""
 
 from __future__ import annotations
 
@@ -10,31 +10,31 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.live.mapper.place_index import PlaceIndex
 
 _PLACES_TRIED, _PLACES_APART_M = 16, 1.5
-"""So many of the nearest to where tracking was lost, one a search; then they are tried again."""
+"""Number and spacing of the nearest places that are tried in turn, one per search."""
 _SAME_M, _SAME_RAD = 0.3, 0.1
 _MOST_SCORE, _SURE_SCORE, _LEAD = 4.0, 2.0, 1.5
-"""Rooms may look alike: one guess must have proved itself, and no other one nearly as well."""
+"""Rooms may look alike: a hypothesis is accepted with this score and this lead over the next."""
 
 
 @dataclass(slots=True)
 class _Hypothesis:
-    """Where the frame of the odometry may lie."""
+    """A possible pose of the odometry frame in the map."""
 
     T_map_odom: SE3
     score: float
 
 
 class Recovery:
-    """Searches now and then; guesses gather or lose credit with every view that follows."""
+    """Collects pose hypotheses; every following view raises or lowers their scores."""
 
     def __init__(self, places: PlaceIndex, lost_m: Array, *, expected: SE3 | None = None) -> None:
-        """Begin.
+        """Start a relocalization.
 
         Args:
-            places: The map so far.
-            lost_m: Where tracking was lost, in the map [m], (3,).
-            expected: ``T_map_odom`` if the body has stayed there; it need not wait for other
-                places to be tried.
+            places: The place index of the map so far.
+            lost_m: Position in the map where tracking was lost [m], (3,).
+            expected: ``T_map_odom`` if the body has not moved; it is accepted before all other
+                places were tried.
         """
         self._places = places
         self._to_try = places.near(lost_m, most=_PLACES_TRIED, apart_m=_PLACES_APART_M)
@@ -43,35 +43,35 @@ class Recovery:
         self._hypotheses = [] if self._expected is None else [self._expected]
 
     def search(self, source: Array, T_odom_body: SE3) -> SE3 | None:
-        """Where the frame of the odometry lies in the map, ``T_map_odom``; None = not known yet.
+        """Pose of the odometry frame in the map, ``T_map_odom``; None = undecided.
 
         Args:
-            source: Midpoints of segments of a view in the body [m], (N, 3).
-            T_odom_body: Its pose by an odometry that began after tracking was lost; roll and
-                pitch are taken for true.
+            source: Segment midpoints of a view in the body frame [m], (N, 3).
+            T_odom_body: Pose of the view by an odometry that began after tracking was lost; roll
+                and pitch are taken from it.
         """
-        for initial in self._hypotheses:
-            self._examine(initial, source, T_odom_body)
-        self._hypotheses = [initial for initial in self._hypotheses if initial.score > 0.0]
+        for hypothesis in self._hypotheses:
+            self._examine(hypothesis, source, T_odom_body)
+        self._hypotheses = [one for one in self._hypotheses if one.score > 0.0]
         place = self._to_try[self._tried % len(self._to_try)]
         self._tried += 1
-        for T_map_body, share in self._places.relocate(source, T_odom_body.R, place):
+        for T_map_body, match_ratio in self._places.relocate(source, T_odom_body.R, place):
             T_map_odom = T_map_body @ T_odom_body.inverse()
             if not any(_same(g.T_map_odom @ T_odom_body, T_map_body) for g in self._hypotheses):
-                self._hypotheses.append(_Hypothesis(T_map_odom, share))
+                self._hypotheses.append(_Hypothesis(T_map_odom, match_ratio))
         return self._decide()
 
-    def _examine(self, initial: _Hypothesis, source: Array, T_odom_body: SE3) -> None:
-        expected = initial.T_map_odom @ T_odom_body
+    def _examine(self, hypothesis: _Hypothesis, source: Array, T_odom_body: SE3) -> None:
+        expected = hypothesis.T_map_odom @ T_odom_body
         found = self._places.locate(source, expected, self._places.near(expected.t, most=1)[0])
         if found is None or not _same(found.T_target_source, expected):
-            initial.score -= 1.0
+            hypothesis.score -= 1.0
             return
-        initial.score = min(initial.score + found.match_ratio, _MOST_SCORE)
-        initial.T_map_odom = found.T_target_source @ T_odom_body.inverse()
+        hypothesis.score = min(hypothesis.score + found.match_ratio, _MOST_SCORE)
+        hypothesis.T_map_odom = found.T_target_source @ T_odom_body.inverse()
 
     def _decide(self) -> SE3 | None:
-        ranked = sorted(self._hypotheses, key=lambda initial: -initial.score)
+        ranked = sorted(self._hypotheses, key=lambda one: -one.score)
         if not ranked or ranked[0].score < _SURE_SCORE:
             return None
         if self._tried < len(self._to_try) and ranked[0] is not self._expected:

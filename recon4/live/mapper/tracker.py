@@ -1,4 +1,4 @@
-"""Odometry of a capture that goes on: takes the IMU as it comes, and doubts it when it must."""
+"""Odometry of a running capture, with a consistency check of the IMU."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from recon4.registration.odometry import Odometry, OdometryStep
 from recon4.settings import Settings
 
 _TRIED_FRAMES = 20
-"""The IMU is doubted on so many of the last multiframes, and at most once in so many."""
+"""Number of recent multiframes of an IMU check, and between two checks."""
 _BAD_FRAMES = 8
-"""Of those, lost or far off: so many raise the doubt."""
+"""Number of them, lost or with a large residual, that starts a check."""
 _FAR_M = 0.08
 _BETTER = 0.75
 _EARLY_FRAMES = 100
-"""An IMU found wrong so soon never was right: the map made with it is none."""
+"""If the IMU is rejected before this multiframe, the map made with it is reset."""
 _LEAST_UPRIGHT = 0.5
-"""Cosine: nobody carries the sensors more than 60 degrees tilted when the walk begins."""
-_BROKEN_OFF_NS = 2_000_000_000
-"""Nobody knows where a body is after such a pause, unless the IMU went on."""
+"""Cosine of the largest tilt at the start, 60 degrees."""
+_INTERRUPTED_NS = 2_000_000_000
+"""Duration of a pause after which the pose is unknown, unless the IMU continued."""
 _IMU_WRONG = "is it mounted as the rig file says (upside down?)"
 
 
 class Tracker:
-    """`Odometry` with ``push``, whose IMU samples come in pieces."""
+    """Runs `Odometry` with IMU samples that arrive in pieces."""
 
     def __init__(self, rig: Rig, settings: Settings) -> None:
         self._rig, self._settings = rig, settings
@@ -39,25 +39,25 @@ class Tracker:
         self._odometry: Odometry | None = None
         self._recent: deque[tuple[Multiframe, bool]] = deque(maxlen=_TRIED_FRAMES)
         self._imu: deque[ImuSamples] = deque(maxlen=1000)
-        self._since_doubt = self._frames = 0
+        self._since_check = self._frames = 0
         self._end_ns: int | None = None
         """End of the last multiframe."""
         self._imu_ns: int | None = None
         self._imu_hole_ns = 0
-        """Longest time without a sample since the last multiframe."""
-        self.anew = False
-        """Whether the map before the last multiframe is worth nothing: poses are in a new frame."""
-        self._believed = SE3.identity()
-        """Where the body was when it was last not lost, in the map."""
+        """Longest time without an IMU sample since the last multiframe."""
+        self.map_reset = False
+        """Whether the last multiframe started a new map frame; the map before it is void."""
+        self._tracked = SE3.identity()
+        """Last ``T_map_body`` before tracking was lost."""
         self.T_map_odom = SE3.identity()
-        """Where the frame of the odometry lies; moved when a place is recognized."""
+        """Pose of the odometry frame in the map; moved by loop closures and relocalization."""
         self.with_imu = False
-        """Whether the motion comes from an IMU."""
+        """Whether the odometry uses an IMU."""
         self.remark = ""
-        """What the operator should know of the IMU; empty = nothing."""
+        """Warning about the IMU; empty = none."""
 
     def extend_imu(self, imu: ImuSamples) -> None:
-        """Take samples as they were read."""
+        """Add IMU samples."""
         imu = ImuSamples(imu.t_ns + self._offset_ns, imu.gyro_rad_s, imu.accel_m_s2)
         self._imu.append(imu)
         if self._imu_ns is not None:
@@ -68,26 +68,26 @@ class Tracker:
         else:
             self._odometry.extend_imu(imu)
 
-    def broken_off(self, frame: Multiframe) -> bool:
-        """Whether nothing is known of the motion between the last multiframe and this one."""
-        blind = not self.with_imu or self._imu_hole_ns > _BROKEN_OFF_NS
-        return blind and self._end_ns is not None and frame.t_ns - self._end_ns > _BROKEN_OFF_NS
+    def interrupted(self, frame: Multiframe) -> bool:
+        """Whether the motion between the last multiframe and this one is unknown."""
+        blind = not self.with_imu or self._imu_hole_ns > _INTERRUPTED_NS
+        return blind and self._end_ns is not None and frame.t_ns - self._end_ns > _INTERRUPTED_NS
 
     def push(self, frame: Multiframe) -> OdometryStep:
-        """Register the next multiframe; poses are in the frame `T_map_odom` places."""
+        """Register the next multiframe; its pose is in the odometry frame (`T_map_odom`)."""
         self._note(frame)
-        self._frames, self.anew = self._frames + 1, False
+        self._frames, self.map_reset = self._frames + 1, False
         if self._odometry is None:
             self._odometry = self._begin()
         step = self._odometry.push(frame)
         if not step.lost:
-            self._believed = self.T_map_odom @ step.T_odom_body
+            self._tracked = self.T_map_odom @ step.T_odom_body
         self._recent.append((frame, step.lost or not step.error_m < _FAR_M))
-        self._since_doubt += 1
+        self._since_check += 1
         bad = sum(is_bad for _, is_bad in self._recent)
-        if self.with_imu and bad >= _BAD_FRAMES and self._since_doubt >= _TRIED_FRAMES:
-            self._since_doubt = 0
-            return self._doubt(step)
+        if self.with_imu and bad >= _BAD_FRAMES and self._since_check >= _TRIED_FRAMES:
+            self._since_check = 0
+            return self._check_imu(step)
         return step
 
     def _begin(self) -> Odometry:
@@ -96,13 +96,13 @@ class Tracker:
         self.with_imu = imu is not None and len(imu) > 1
         if self.with_imu and imu is not None and not _upright(imu, self._rig):
             self.with_imu, imu = False, None
-            self.remark = f"the IMU does not know which way is up and is not used: {_IMU_WRONG}"
+            self.remark = f"the IMU does not measure gravity upward and is not used: {_IMU_WRONG}"
         return Odometry(self._rig, self._settings, imu)
 
-    def start_over(self, frame: Multiframe) -> OdometryStep:
-        """Begin a new odometry with a multiframe; the body is believed to be where it was."""
+    def restart(self, frame: Multiframe) -> OdometryStep:
+        """Start a new odometry with a multiframe, at the last tracked pose."""
         self._note(frame)
-        last = self._believed
+        last = self._tracked
         imu = join(list(self._imu)) if self.with_imu else None
         self._odometry = Odometry(self._rig, self._settings, imu)
         step = self._odometry.push(frame)
@@ -113,11 +113,11 @@ class Tracker:
         self._end_ns, self._imu_hole_ns = frame.t_ns + frame.duration_ns, 0
 
     def move(self, T_map_body: SE3, step: OdometryStep) -> None:
-        """From now on the map has this pose at the step's time."""
+        """Set `T_map_odom` so that the step has this pose in the map."""
         self.T_map_odom = T_map_body @ step.T_odom_body.inverse()
 
-    def _doubt(self, step: OdometryStep) -> OdometryStep:
-        """Go on without the IMU if the last multiframes fit clearly better without it."""
+    def _check_imu(self, step: OdometryStep) -> OdometryStep:
+        """Continue without the IMU if the recent multiframes fit clearly better without it."""
         frames = [frame for frame, _ in self._recent]
         with_imu, _, _ = self._tried(frames, join(list(self._imu)))
         without, odometry, last = self._tried(frames, None)
@@ -128,10 +128,10 @@ class Tracker:
         self.remark = (
             f"the IMU contradicts the LiDARs and is not used: {_IMU_WRONG}, its clock the same?"
         )
-        self.anew = self._frames < _EARLY_FRAMES
-        if self.anew:
+        self.map_reset = self._frames < _EARLY_FRAMES
+        if self.map_reset:
             self.T_map_odom = SE3.identity()
-            self._believed = last.T_odom_body
+            self._tracked = last.T_odom_body
         else:
             self.move(T_map_body, last)
         return last
@@ -146,9 +146,9 @@ class Tracker:
 
 
 def _upright(imu: ImuSamples, rig: Rig) -> bool:
-    """Whether the body's z axis points up, as far as the IMU can tell."""
+    """Whether the body's z axis points up by the accelerometer; True without one."""
     force = imu.accel_m_s2 @ rig.T_body_imu.R.T
-    if not np.isfinite(force).all():  # a gyroscope alone
+    if not np.isfinite(force).all():  # gyroscope only
         return True
     up = force.mean(axis=0)
     return bool(up[2] > _LEAST_UPRIGHT * np.linalg.norm(up))

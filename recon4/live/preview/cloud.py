@@ -1,4 +1,4 @@
-"""The map so far as a phone gets it: one point a voxel, in the order they were found."""
+"""Preview of the map: one point per voxel, in the order in which they were found."""
 
 from __future__ import annotations
 
@@ -12,28 +12,28 @@ from recon4.kernels.live import EMPTY, add_voxels
 
 FIRST_VOXEL_M = 0.1
 MOST_POINTS = 400_000
-"""More than that and the voxels become twice as large; the budget of a phone is 500 k."""
+"""Above this the voxel size is doubled; a phone can draw 500 k points."""
 _LONGEST = 1 << 15
 """Voxel coordinates are sent as int16."""
 
 
 @dataclass(frozen=True, slots=True)
 class Chunk:
-    """Some points of the preview."""
+    """A range of the preview points."""
 
     generation: int
-    """Goes up when the voxels become larger: what was sent before is void then."""
+    """Increases with the voxel size and at a reset; earlier points are void then."""
     start: int
-    """How many points of the generation came before."""
+    """Number of points of the generation before this chunk."""
     voxel_m: float
     voxels: NDArray[np.int16]
-    """Whole coordinates of the voxels, (N, 3)."""
+    """Integer voxel coordinates, (N, 3)."""
     values: NDArray[np.uint8]
     """Normalized intensity, (N,)."""
 
 
 class PreviewCloud:
-    """Takes points, keeps one a voxel."""
+    """Keeps one point per voxel."""
 
     def __init__(self, voxel_m: float = FIRST_VOXEL_M, most: int = MOST_POINTS) -> None:
         self.voxel_m, self._most = voxel_m, most
@@ -44,11 +44,11 @@ class PreviewCloud:
         return self._count
 
     def add(self, p_map: Array, values: NDArray[np.uint8]) -> Chunk | None:
-        """Add points; what is new, or everything if the voxels had to become larger.
+        """Add points; returns the new ones, or all if the voxel size was increased.
 
         Args:
-            p_map: Points [m], (N, 3); farther than 32767 voxels from the origin they are left out.
-            values: What they are colored by, (N,).
+            p_map: Points [m], (N, 3); those farther than 32767 voxels from the origin are left out.
+            values: Normalized intensity, (N,).
         """
         start = self._count
         generation = self.generation
@@ -61,13 +61,13 @@ class PreviewCloud:
             return self.since(0)
         return self.since(start) if self._count > start else None
 
-    def forget(self) -> None:
-        """Begin anew: what was sent before is void."""
+    def reset(self) -> None:
+        """Remove all points and start a new generation."""
         self.generation += 1
         self._clear()
 
     def since(self, start: int) -> Chunk:
-        """Points from a place on."""
+        """Points from an index on."""
         rows = slice(start, self._count)
         return Chunk(
             self.generation, start, self.voxel_m, self._voxels[rows].copy(),

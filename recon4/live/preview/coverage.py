@@ -1,8 +1,8 @@
 """Is everything captured? Plan cells the rays have seen, and where the seen world ends.
 
-Every cell near the way is one of: not seen; free (rays passed); solid and seen well (often, from
-near); solid but seen poorly. A **gap** is a row of free cells that border on cells nobody has seen,
-near the way: a door not entered, a corner not looked into. Each floor has a plan of its own.
+Every cell near the path is one of: not seen; free (rays passed); solid and seen well (often, from
+near); solid but seen poorly. A **gap** is a row of free cells near the path that border on unseen
+cells: a door not entered, a corner not looked into. Each floor has its own plan.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from recon4.live.preview.tiles import MARGIN, TILE, Key, Tiles
 
 CELL_M = 0.25
 RAY_M = CELL_M * (MARGIN - 8)
-"""Rays are followed so far: 30 m; what lies beyond is a matter of the preview."""
+"""Length up to which rays are traced, 30 m."""
 _FAR = 1e9
 _LAYERS = {
     "free": ("u2", 0),
@@ -37,7 +37,7 @@ _LAYERS = {
 
 
 class CoverageClass(IntEnum):
-    """What is known of a cell."""
+    """Coverage of a cell."""
 
     NOTHING = 0
     FREE = 1
@@ -47,49 +47,49 @@ class CoverageClass(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class CoverageRules:
-    """What counts as captured."""
+    """Limits of the coverage classes and gaps."""
 
     well_hits: int = 12
-    """A surface is seen well with so many sampled rays in its cell …"""
+    """A surface is seen well with at least this many sampled rays in its cell …"""
     well_range_m: float = 12.0
-    """… one of them not longer than this."""
+    """… and one of them not longer than this."""
     gap_reach_m: float = 8.0
-    """Unseen places are gaps only so near to the way."""
+    """Largest distance of a gap from the path."""
     gap_width_m: float = 0.75
-    """Narrower ones are cracks between rays."""
+    """Smallest width of a gap; narrower ones lie between two rays."""
     floor_m: float = 0.9
-    """What lies so far below the body is floor: it stands in nobody's way."""
+    """Points this far below the body are floor and not solid."""
     ceiling_m: float = 0.8
-    """Rays that end so far above the body say nothing about the plan."""
+    """Rays that end this far above the body are ignored."""
 
 
 @dataclass(frozen=True, slots=True)
 class CoverageGap:
-    """A place to look at."""
+    """A place that was not seen."""
 
     p_map: tuple[float, float]
-    """Its middle [m]."""
+    """Its center [m]."""
     width_m: float
     away_m: float
-    """From the nearest point of the way."""
+    """Distance from the path."""
 
 
 @dataclass(slots=True)
 class _Floor:
-    """The plan of one floor, and what was counted in each of its tiles."""
+    """The plan of one floor, and counts per tile."""
 
     tiles: Tiles = field(default_factory=lambda: Tiles(_LAYERS))
     last_cell: Key | None = None
     edges: dict[Key, NDArray[np.int64]] = field(default_factory=dict)
-    """Cells (N, 2) of gaps, with their distance from the way in `away_m`."""
+    """Cells (N, 2) of gaps; their distances from the path are in `away_m`."""
     away_m: dict[Key, NDArray[np.float32]] = field(default_factory=dict)
     solid: dict[Key, tuple[int, int]] = field(default_factory=dict)
-    """Solid cells near the way, and how many of them are seen well."""
+    """Number of solid cells near the path, and of those seen well."""
     gaps: list[CoverageGap] = field(default_factory=list)
 
 
 class Coverage:
-    """Plans that grow with the walk; `refresh` before asking."""
+    """Coverage plans of all floors; call `refresh` before reading results."""
 
     def __init__(self, rules: CoverageRules | None = None) -> None:
         self._rules = rules or CoverageRules()
@@ -101,22 +101,22 @@ class Coverage:
 
     @property
     def floor(self) -> int:
-        """Number of the floor the body is on, in the order in which they were come to."""
+        """Number of the current floor, in the order of first visits."""
         return self._heights.now
 
     def add(self, body_m: Array, p_map: Array) -> None:
         """Add the rays of a multiframe.
 
         Args:
-            body_m: Where the body was [m], (3,).
-            p_map: Where sampled rays ended [m], (N, 3).
+            body_m: Position of the body [m], (3,).
+            p_map: End points of sampled rays [m], (N, 3).
         """
         floor = self._heights.at(float(body_m[2]))
         if floor not in self._floors:
             self._floors[floor] = _Floor()
         plan = self._floors[floor]
         here = np.floor(body_m[:2] / CELL_M).astype(np.int64)
-        if not plan.tiles.holds(here):
+        if not plan.tiles.contains(here):
             self._count(plan)
             plan.tiles.move_to(here)
         self._trace(plan.tiles, body_m, p_map)
@@ -126,7 +126,7 @@ class Coverage:
             self._walk(plan.tiles, here)
 
     def refresh(self) -> None:
-        """Judge what the rays have seen since the last time."""
+        """Classify the cells and find the gaps of the current floor."""
         if self.floor in self._floors:
             plan = self._floors[self.floor]
             self._count(plan)
@@ -140,16 +140,17 @@ class Coverage:
         return first, cells.astype(np.uint8, copy=False)
 
     def gaps(self) -> list[CoverageGap]:
-        """Places to look at on this floor, the widest first."""
+        """Gaps on this floor, the widest first."""
         return self._floors[self.floor].gaps if self.floor in self._floors else []
 
     def gaps_elsewhere(self) -> int:
-        """How many there are on all other floors."""
+        """Number of gaps on all other floors."""
         return sum(len(p.gaps) for floor, p in self._floors.items() if floor != self.floor)
 
     def well_seen_ratio(self) -> float:
-        """Share of the solid cells near the way, on all floors, that are seen well; NaN before
-        there are any.
+        """Part of the solid cells near the path, on all floors, that is seen well, 0 to 1.
+
+        NaN if there are none.
         """
         counts = [pair for plan in self._floors.values() for pair in plan.solid.values()]
         solid, well = sum(pair[0] for pair in counts), sum(pair[1] for pair in counts)
@@ -184,7 +185,7 @@ class Coverage:
         trace(start, ends, np.linalg.norm(ray_m, axis=1), solid, *layers)
 
     def _walk(self, tiles: Tiles, here: NDArray[np.int64]) -> None:
-        """The way came to a cell: those around it are that near to it now."""
+        """Update the distances of the cells around a cell of the path."""
         i, j = (here - tiles.first_cell).tolist()
         reach = len(self._disk_m) // 2
         around = tiles.window["away_m"][i - reach : i + reach + 1, j - reach : j + reach + 1]
@@ -192,13 +193,13 @@ class Coverage:
 
     def _count(self, plan: _Floor) -> None:
         w = plan.tiles.window
-        w["seen"][:] = seen = self._judged(w)
+        w["seen"][:] = seen = self._classified(w)
         unseen = seen == CoverageClass.NOTHING
-        # A cell between cells that were seen lies between two rays: that is no gap.
+        # An unseen cell between seen cells lies between two rays and is not a gap.
         unseen &= ndimage.uniform_filter(unseen.astype(np.float32), 3) > 0.5
         near = w["away_m"] <= self._rules.gap_reach_m
         edge = (seen == CoverageClass.FREE) & ndimage.binary_dilation(unseen) & near
-        # What lies beyond the border is not known here, and no ray came so far.
+        # Cells beyond the border are unknown here; no ray reaches them.
         w["edge"][1:-1, 1:-1] = edge[1:-1, 1:-1]
         solid, well = near & (seen >= CoverageClass.POOR), near & (seen == CoverageClass.WELL)
         for key, rows in plan.tiles.parts():
@@ -207,7 +208,7 @@ class Coverage:
             plan.away_m[key] = w["away_m"][rows][tuple(cells.T)]
             plan.solid[key] = int(np.count_nonzero(solid[rows])), int(np.count_nonzero(well[rows]))
 
-    def _judged(self, w: dict[str, NDArray[Any]]) -> NDArray[np.uint8]:
+    def _classified(self, w: dict[str, NDArray[Any]]) -> NDArray[np.uint8]:
         r = self._rules
         free, hits = w["free"], w["hits"]
         solid = hits > 1 + free // 8
@@ -220,7 +221,7 @@ class Coverage:
 
 
 def _connected(cells: NDArray[np.int64]) -> list[NDArray[np.intp]]:
-    """Rows of cells (N, 2), each once, that touch each other, also at a corner."""
+    """Groups of cells (N, 2; rows, each once) that touch each other, also at corners."""
     if not len(cells):
         return []
     low = cells.min(axis=0)

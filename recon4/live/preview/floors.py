@@ -1,29 +1,29 @@
-"""Which floor of a building the body is on, told by its height alone."""
+"""Detects the floor of a building from the height of the body."""
 
 from __future__ import annotations
 
 APART_M = 2.0
-"""So far from all floors known is a new one."""
+"""Height difference to all known floors at which a new floor starts."""
 _NEARER_M = 0.5
-"""Another floor is changed to when it is nearer by that: halfway up the stairs nothing flickers."""
+"""Hysteresis: another floor must be nearer by this, so that stairs do not toggle the floor."""
 _FOLLOW = 0.005
-"""Share a floor's height follows the body each multiframe: 20 s. A street may rise gently all
-along and stay one floor; stairs are quicker than that."""
+"""Gain of the floor height per multiframe (time constant 20 s): a street that rises gently stays
+one floor, stairs are faster."""
 
 
 class Floors:
-    """Floors in the order in which they were come to."""
+    """Floors in the order of their first visit."""
 
     def __init__(self) -> None:
         self._heights_m: list[float] = []
         self.now = 0
-        """Number of the floor the body was on last."""
+        """Number of the current floor."""
 
     def __len__(self) -> int:
         return len(self._heights_m)
 
     def at(self, z_m: float) -> int:
-        """The floor of a body at a height [m]; call it for every multiframe."""
+        """Number of the floor at a body height [m]; call it for every multiframe."""
         away_m = [abs(z_m - height_m) for height_m in self._heights_m]
         if not away_m or min(away_m) > APART_M:
             self._heights_m.append(z_m)

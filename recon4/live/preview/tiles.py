@@ -1,7 +1,6 @@
-"""A plan without end, kept in square tiles; those around the body are one dense window.
+"""An unbounded plan in square tiles; the tiles around the body form one dense window.
 
-What is done every second costs the same however far the walk has gone, and memory follows the area
-that was seen.
+The cost per second does not depend on the path length, and memory follows the area seen.
 """
 
 from __future__ import annotations
@@ -13,28 +12,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 TILE = 64
-"""Cells along a side."""
+"""Side of a tile [cells]."""
 _AROUND = 2
-"""Tiles of the window on each side of the one the body is in."""
+"""Tiles of the window on each side of the body's tile."""
 WINDOW = TILE * (2 * _AROUND + 1)
 MARGIN = TILE * _AROUND
-"""The body is at least so many cells away from the window's border."""
+"""Smallest distance of the body from the border of the window [cells]."""
 
 Key = tuple[int, int]
 Layers = dict[str, NDArray[Any]]
 
 
 class Tiles:
-    """Layers of one plan; ``window[name]`` may be written to, and is the truth while it is there.
+    """Layers of one plan; ``window[name]`` is writable and overrides the stored tiles.
 
-    Tiles nothing was ever written to are not kept.
+    Tiles with unknown cells only are not stored.
     """
 
     def __init__(self, layers: Mapping[str, tuple[str, float]]) -> None:
-        """Make an empty plan.
+        """Create an empty plan.
 
         Args:
-            layers: Name to type and value of what is not known.
+            layers: Name -> data type and value of unknown cells.
         """
         self._layers = layers
         self._kept: dict[Key, Layers] = {}
@@ -43,16 +42,16 @@ class Tiles:
 
     @property
     def first_cell(self) -> NDArray[np.int64]:
-        """Cell of the window's corner, counted from the origin, (2,)."""
+        """Cell coordinates of the window's corner, (2,)."""
         return np.array(self._corner, dtype=np.int64) * TILE
 
-    def holds(self, cell: NDArray[np.int64]) -> bool:
-        """Whether the body may be in a cell without the window being moved."""
+    def contains(self, cell: NDArray[np.int64]) -> bool:
+        """Whether the window need not be moved for a body in this cell."""
         return _corner_for(cell) == self._corner
 
     def move_to(self, cell: NDArray[np.int64]) -> None:
-        """Put the window around a cell."""
-        if self.holds(cell):
+        """Move the window around a cell."""
+        if self.contains(cell):
             return
         self.keep()
         self._corner = _corner_for(cell)
@@ -62,14 +61,14 @@ class Tiles:
                 self.window[name][rows] = values
 
     def parts(self) -> Iterator[tuple[Key, tuple[slice, slice]]]:
-        """Tiles of the window, each with its rows and columns there."""
+        """Tiles of the window, each with its rows and columns in it."""
         for i in range(2 * _AROUND + 1):
             for j in range(2 * _AROUND + 1):
                 rows = slice(i * TILE, (i + 1) * TILE), slice(j * TILE, (j + 1) * TILE)
                 yield (self._corner[0] + i, self._corner[1] + j), rows
 
     def keep(self) -> None:
-        """Copy the window to its tiles."""
+        """Copy the window to the stored tiles."""
         for key, rows in self.parts():
             tile = {name: self.window[name][rows] for name in self._layers}
             known = any((tile[name] != fill).any() for name, (_, fill) in self._layers.items())
@@ -77,7 +76,7 @@ class Tiles:
                 self._kept[key] = {name: values.copy() for name, values in tile.items()}
 
     def whole(self, name: str) -> tuple[NDArray[np.int64], NDArray[Any]]:
-        """A layer of everything that is known: its first cell (2,) and its cells (H, W)."""
+        """A layer of the whole plan: first cell (2,) and cells (H, W)."""
         self.keep()
         dtype, fill = self._layers[name]
         if not self._kept:

@@ -1,8 +1,8 @@
-"""The capture file: datagrams as they come, safe on the disk within a second.
+"""The capture file: datagrams as received, synced to the disk within a second.
 
-A classic pcap file with nanosecond stamps: it needs no end, so a recorder that is killed leaves a
-file every reader opens; Wireshark and VeloView read it too. Writing happens in a thread of its
-own: a disk that stalls must not make the sockets overflow.
+A classic pcap file with nanosecond timestamps. It has no end mark: a recorder that is killed leaves
+a valid file, which Wireshark and VeloView read too. A separate thread writes it, so that a slow
+disk does not make the sockets overflow.
 """
 
 from __future__ import annotations
@@ -25,38 +25,38 @@ _ETHERNET = b"\xff" * 6 + b"\x60\x76\x88\x00\x00\x01"
 WRITE_EVERY_S = 0.05
 SYNC_EVERY_S = 1.0
 MOST_WAITING_BYTES = 64 << 20
-"""Half a minute of two VLP-16: more than that waiting for the disk is dropped, and counted."""
+"""Half a minute of two VLP-16; datagrams beyond it are dropped and counted."""
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 
 
 @dataclass(frozen=True, slots=True)
 class Datagram:
-    """What came in on a socket."""
+    """A datagram received on a socket."""
 
     t_ns: int
-    """When the kernel received it [ns]."""
+    """Time the kernel received it [ns]."""
     source: tuple[str, int]
     """Address and port of the sender."""
     port: int
-    """It was sent to."""
+    """Destination port."""
     payload: bytes
 
 
 @dataclass(slots=True)
 class FileState:
-    """How the file stands; read it as a whole with `CaptureFile.state`."""
+    """State of the file; `CaptureFile.state` returns a consistent copy."""
 
     written_bytes: int = 0
-    """Handed to the system, whole records only."""
+    """Passed to the system, complete records only."""
     synced_bytes: int = 0
-    """Safe on the disk."""
+    """Synced to the disk."""
     datagrams: int = 0
     dropped: int = 0
-    """Datagrams that did not get into the file: the disk was full or too slow."""
+    """Datagrams missing in the file because the disk was full or too slow."""
     waiting_bytes: int = 0
     longest_sync_s: float = 0.0
     problem: str = ""
-    """Why nothing is written at the moment; empty = all is well."""
+    """Why nothing is written now; empty = no problem."""
 
 
 @dataclass(slots=True)
@@ -69,11 +69,11 @@ class CaptureFile:
     """Appends datagrams; `add` never waits for the disk."""
 
     def __init__(self, path: Path, *, on_written: Callable[[int], None]) -> None:
-        """Begin a new file.
+        """Create the file.
 
         Args:
             path: Must not exist.
-            on_written: Told, from the writing thread, up to which byte the file can be read.
+            on_written: Called from the writing thread with the number of readable bytes.
         """
         self._path, self._on_written = path, on_written
         self._file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o644)
@@ -88,7 +88,7 @@ class CaptureFile:
         self._thread.start()
 
     def add(self, datagram: Datagram) -> None:
-        """Take a datagram; it is in the file soon and safe within `SYNC_EVERY_S`."""
+        """Queue a datagram; it is synced to the disk within `SYNC_EVERY_S`."""
         record = pcap_record(datagram)
         with self._news:
             if self._waiting.size + len(record) > MOST_WAITING_BYTES:
@@ -98,13 +98,13 @@ class CaptureFile:
             self._waiting.size += len(record)
 
     def state(self) -> FileState:
-        """How the file stands now."""
+        """State of the file now."""
         with self._news:
             self._state.waiting_bytes = self._waiting.size
             return FileState(*(getattr(self._state, name) for name in FileState.__slots__))
 
     def close(self) -> None:
-        """Write and sync what waits, then close."""
+        """Write and sync the queue, then close."""
         with self._news:
             self._ending = True
             self._news.notify()
@@ -131,7 +131,7 @@ class CaptureFile:
             while data:
                 data = data[os.write(self._file, data) :]
         except OSError as error:
-            os.ftruncate(self._file, at)  # whole records only
+            os.ftruncate(self._file, at)  # complete records only
             os.lseek(self._file, at, os.SEEK_SET)
             full = error.errno in _FULL
             with self._news:
@@ -160,7 +160,7 @@ class CaptureFile:
 
 
 def pcap_record(datagram: Datagram) -> bytes:
-    """A datagram as a record of a capture file, with the headers it had on the wire."""
+    """A datagram as a pcap record, with Ethernet, IPv4 and UDP headers."""
     size = len(datagram.payload)
     length = _HEADERS.size + size
     seconds, nanoseconds = divmod(datagram.t_ns, 1_000_000_000)

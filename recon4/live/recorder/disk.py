@@ -1,4 +1,4 @@
-"""How much longer the disk lasts: everything that fills it counts, not the recording alone."""
+"""Predicts when the disk is full, from the change of its free space."""
 
 from __future__ import annotations
 
@@ -9,16 +9,17 @@ from pathlib import Path
 from typing import Any
 
 _TREND_S = 60.0
-"""Of so much of the past the use of the disk is told."""
+"""The fill rate is measured over this period."""
 _SURE_AFTER_S = 5.0
 _LEAST_PER_S = 1000.0
-"""Bytes; less than that fills no disk."""
+"""Fill rate below which no time left is predicted [bytes/s]."""
 
 
 class DiskWatch:
-    """Looks at the free space now and then.
+    """Follows the free space of a disk.
 
-    The multiframes the mapper keeps take several times the space of the recording.
+    All programs that fill the disk count: the multiframes of the mapper take several times the
+    space of the recording.
     """
 
     def __init__(
@@ -31,23 +32,23 @@ class DiskWatch:
         """Prepare.
 
         Args:
-            folder: On the disk.
-            least_free_bytes: With less than that the disk is full.
-            free_bytes: How much is free.
+            folder: A folder on the disk.
+            least_free_bytes: The disk counts as full below this.
+            free_bytes: Returns the free space of a folder.
         """
         self._folder, self._least, self._free_bytes = folder, least_free_bytes, free_bytes
         self._seen: deque[tuple[float, int]] = deque()
         self._state: dict[str, Any] = {"free_bytes": None, "left_s": None, "enough": True}
 
-    def look(self, now_s: float) -> None:
-        """Look again.
+    def update(self, now_s: float) -> None:
+        """Read the free space.
 
         Args:
             now_s: A monotonic time [s].
         """
         try:
             free = self._free_bytes(self._folder)
-        except OSError:  # unplugged: writing says so
+        except OSError:  # unplugged: the writer reports it
             self._state = {"free_bytes": None, "left_s": None, "enough": True}
             return
         self._seen.append((now_s, free))
@@ -65,7 +66,7 @@ class DiskWatch:
         }
 
     def message(self) -> dict[str, Any]:
-        """``free_bytes``, ``left_s`` until it is full (None = not known, or it is not filling)
-        and whether there is ``enough`` to go on, when it was last looked at.
+        """``free_bytes``, ``left_s`` until the disk is full (None = unknown or not filling) and
+        whether there is ``enough`` space to continue, as of the last update.
         """
         return self._state

@@ -1,4 +1,4 @@
-"""The UDP ports of a rig, and what comes in on them."""
+"""Opens the UDP ports of a rig and receives datagrams."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from recon4.model.rig import Rig, Sensor
 POSITION_PORT = 8308
 """Velodyne's position packets."""
 _BUFFER_BYTES = 16 << 20
-"""Asked of the kernel; half a dozen seconds of two VLP-16."""
+"""Requested receive buffer; six seconds of two VLP-16."""
 _SO_TIMESTAMPNS = getattr(socket, "SO_TIMESTAMPNS", 35)
 _SO_RXQ_OVFL = 40
 _LONGEST = 9000
 _HINTS = {
-    errno.EADDRINUSE: "; does another recorder run, or VeloView?",
-    errno.EACCES: "; ports below 1024 are the administrator's: let the sensors send to others",
-    errno.EADDRNOTAVAIL: "; no network card of this computer has that address at the moment",
+    errno.EADDRINUSE: "; is another recorder or VeloView running?",
+    errno.EACCES: "; ports below 1024 need administrator rights: send to other ports",
+    errno.EADDRNOTAVAIL: "; no network card of this computer has that address now",
 }
 _TIMESPEC = struct.Struct("@qq")
 
@@ -33,14 +33,14 @@ class Port:
     """One open port."""
 
     number: int
-    words: str
-    """What is expected there."""
+    expected: str
+    """Names of the devices that send there."""
     socket: socket.socket
     kernel_drops: int = 0
-    """Datagrams the kernel threw away because nobody fetched them in time."""
+    """Datagrams the kernel dropped because the buffer was full."""
 
     def receive(self) -> Datagram | None:
-        """The next datagram; None if there is none at the moment."""
+        """The next datagram; None if none is waiting."""
         try:
             payload, ancillary, _, sender = self.socket.recvmsg(_LONGEST, 128)
         except BlockingIOError:
@@ -56,28 +56,28 @@ class Port:
 
 
 def wanted_ports(rig: Rig) -> dict[int, str]:
-    """Ports of a rig with what is expected there."""
+    """Port number -> names of the devices of a rig that send there."""
     ports: dict[int, list[str]] = {}
     for sensor in rig.sensors:
         ports.setdefault(sensor.port, []).append(sensor.name)
     ports.setdefault(POSITION_PORT, []).append("positions")
-    for number, words in ((rig.imu_port, "IMU"), (rig.gnss_port, "GNSS")):
+    for number, name in ((rig.imu_port, "IMU"), (rig.gnss_port, "GNSS")):
         if number:
-            ports.setdefault(number, []).append(words)
-    return {number: ", ".join(words) for number, words in ports.items()}
+            ports.setdefault(number, []).append(name)
+    return {number: ", ".join(names) for number, names in ports.items()}
 
 
 def check_sources(rig: Rig) -> None:
-    """Refuse a rig that cannot be listened to.
+    """Check that the datagrams of a rig can be received and assigned to its sensors.
 
     Raises:
-        ConfigError: If two LiDARs share a port and have no addresses of their own, an address is
-            none, or the serial line of the receiver is none or has no port.
+        ConfigError: If two LiDARs use one port without different addresses, an address is invalid,
+            or the serial line of the receiver is invalid or has no port.
     """
     if rig.gnss_serial:
         parse_device(rig.gnss_serial)
         if not rig.gnss_port:
-            raise ConfigError("gnss: serial needs a port: its sentences are kept as if sent to it")
+            raise ConfigError("gnss: serial needs a port, to which its sentences are recorded")
     ports: dict[int, list[Sensor]] = {}
     for sensor in rig.sensors:
         ports.setdefault(sensor.port, []).append(sensor)
@@ -103,25 +103,26 @@ def _check_address(sensor: Sensor) -> None:
 
 
 def open_ports(rig: Rig, *, address: str = "0.0.0.0") -> list[Port]:
-    """Open all ports of a rig; the kernel stamps and counts what it drops.
+    """Open all ports of a rig; the kernel timestamps datagrams and counts the dropped ones.
 
     Args:
-        rig: Its sensors, IMU and GNSS receiver.
-        address: Of the network card to listen on; sensors send to everybody, so all by default.
+        rig: Sensors, IMU and GNSS receiver.
+        address: Address of the network card to listen on; all cards by default, because sensors
+            broadcast.
 
     Raises:
         ConfigError: If a port is in use or may not be opened.
     """
     opened: list[Port] = []
     try:
-        for number, words in wanted_ports(rig).items():
-            opened.append(Port(number, words, _open(address, number)))
+        for number, expected in wanted_ports(rig).items():
+            opened.append(Port(number, expected, _open(address, number)))
     except OSError as error:
         for port in opened:
             port.socket.close()
         hint = _HINTS.get(error.errno or 0, "")
         raise ConfigError(
-            f"UDP port {number} ({words}) cannot be opened on {address}: {error.strerror}{hint}"
+            f"UDP port {number} ({expected}) cannot be opened on {address}: {error.strerror}{hint}"
         ) from error
     return opened
 

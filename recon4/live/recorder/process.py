@@ -1,14 +1,14 @@
-"""The recorder: a process that puts every datagram on the disk and does nothing else.
+"""The recorder: a process that writes every datagram to the disk and does nothing else.
 
 ``python -m recon4.live.recorder.process PROJECT`` listens on the ports of the rig until it
-receives ``stop`` or SIGTERM. It talks JSON lines on a Unix socket (`CaptureSession.socket`):
+receives ``stop`` or SIGTERM. It exchanges JSON lines over a Unix socket (`CaptureSession.socket`):
 
-    said   {"kind": "written", "bytes": n}                the capture file can be read up to there
-           {"kind": "status", …}                          twice a second, see `Recorder.status`
-           {"kind": "mark", "t_ns": …, "text": …, …}
-           {"kind": "stopped", …}                         the file is complete
-    heard  {"do": "stop"} {"do": "pause"} {"do": "resume"}
-           {"do": "mark", "what": "point" | "place", "text": …, "who": …}
+    sends     {"kind": "written", "bytes": n}             the capture file is readable up to there
+              {"kind": "status", …}                       twice a second, see `Recorder.status`
+              {"kind": "mark", "t_ns": …, "text": …, …}
+              {"kind": "stopped", …}                      the file is complete
+    receives  {"do": "stop"} {"do": "pause"} {"do": "resume"}
+              {"do": "mark", "what": "point" | "place", "text": …, "who": …}
 """
 
 from __future__ import annotations
@@ -42,42 +42,42 @@ from recon4.store.atomic import write_json
 
 STATUS_EVERY_S = 0.5
 _MOST_SENDERS = 64
-"""Told apart; a flood of strangers is counted together."""
+"""Counted one by one; datagrams of further senders are counted together."""
 _AT_ONCE = 256
-"""Datagrams fetched from a port before the others have their turn."""
+"""Datagrams read from a port before the other ports are read."""
 
 
 class Recorder:
-    """Sockets in, file out, status to whoever listens. Lives in one event loop."""
+    """Writes datagrams of sockets to a file and reports its status. Runs in one event loop."""
 
     def __init__(self, session: CaptureSession, rig: Rig) -> None:
         """Open ports and file.
 
         Raises:
             ConfigError: If a port cannot be opened.
-            OSError: If the capture file exists or cannot be made.
+            OSError: If the capture file exists or cannot be created.
         """
         self._session, self._rig = session, rig
         self._loop = asyncio.get_running_loop()
-        self._lines = LineServer(initial_messages=self._initial_messages, hear=self._receive_line)
+        self._lines = LineServer(initial_messages=self._initial_messages, on_request=self._handle)
         self._ports = open_ports(rig, address=session.address)
         self._file = CaptureFile(session.capture, on_written=self._written)
         self._serial = self._open_serial(rig)
         self._counts: Counter[tuple[str, int]] = Counter()
         self._counted: Counter[tuple[str, int]] = Counter()
         self._data: Counter[tuple[str, int]] = Counter()
-        """Those of the size of a LiDAR's data packets."""
+        """Datagrams with the size of a LiDAR data packet."""
         self._data_counted: Counter[tuple[str, int]] = Counter()
-        self._heard_s: dict[tuple[str, int], float] = {}
-        """When each sender was last heard."""
+        self._received_s: dict[tuple[str, int], float] = {}
+        """Time of the last datagram of each sender."""
         self._counted_s = self._began_s = time.monotonic()
         self._began_ns = time.time_ns()
         self._paused = False
         self._skipped = 0
         self._disk = DiskWatch(session.project, least_free_bytes=session.least_free_bytes)
-        self._disk.look(self._began_s)
+        self._disk.update(self._began_s)
         self._notes_problem = ""
-        """Why a mark is not on the disk; empty = all are."""
+        """Why a mark is not on the disk; empty = all marks are."""
         self._rates: list[dict[str, Any]] = []
         self._over = asyncio.Event()
         self._why = "stopped"
@@ -92,9 +92,9 @@ class Recorder:
         return SerialLine(rig.gnss_serial, rig.gnss_port, take=take)
 
     async def run(self, on_ready: Callable[[], None]) -> None:
-        """Record until told to stop."""
-        for sign in (signal.SIGTERM, signal.SIGINT):
-            self._loop.add_signal_handler(sign, self._over.set)
+        """Record until a request or signal to stop."""
+        for number in (signal.SIGTERM, signal.SIGINT):
+            self._loop.add_signal_handler(number, self._over.set)
         await self._lines.listen(self._session.socket("recorder"))
         for port in self._ports:
             self._loop.add_reader(port.socket, self._receive, port)
@@ -113,10 +113,10 @@ class Recorder:
             port.socket.close()
         if self._serial is not None:
             await asyncio.to_thread(self._serial.close)
-            await asyncio.sleep(0)  # its last sentences are taken
+            await asyncio.sleep(0)  # its last sentences are recorded
         await asyncio.to_thread(self._file.close)
         outcome = {"why": self._why, **self.status()}
-        with suppress(StoreError):  # on a full disk; whoever listens hears it all the same
+        with suppress(StoreError):  # on a full disk; clients still receive the message
             write_json(self._session.outcome, outcome)
         self._lines.send({"kind": "stopped", **outcome})
         await self._lines.close()
@@ -134,7 +134,7 @@ class Recorder:
             sender = "others", datagram.port
         self._counts[sender] += 1
         self._data[sender] += len(datagram.payload) == DATA_SIZE
-        self._heard_s[sender] = time.monotonic()
+        self._received_s[sender] = time.monotonic()
         if self._paused:
             self._skipped += 1
         else:
@@ -155,20 +155,20 @@ class Recorder:
                 "port": sender[1],
                 "per_s": round(fresh[sender] / seconds, 1),
                 "data_per_s": round(data[sender] / seconds, 1),
-                "silent_s": round(now_s - self._heard_s[sender], 1),
+                "silent_s": round(now_s - self._received_s[sender], 1),
             }
             for sender in sorted(self._counts)
         ]
         self._counted, self._counted_s = Counter(self._counts), now_s
         self._data_counted = Counter(self._data)
-        self._disk.look(now_s)
+        self._disk.update(now_s)
         self._lines.send({"kind": "status", **self.status()})
         if not self._disk.message()["enough"]:
             self._why = "the disk is nearly full"
             self._over.set()
 
     def status(self) -> dict[str, Any]:
-        """What a person may want to know; see ``docs/live.md``."""
+        """The fields of the message ``status``; see ``docs/live.md``."""
         return {
             "t_ns": stretched(time.time_ns(), self._session.speed),
             "began_ns": self._began_ns,
@@ -176,7 +176,7 @@ class Recorder:
             "paused": self._paused,
             "skipped_in_pauses": self._skipped,
             "senders": self._rates,
-            "ports": {str(port.number): port.words for port in self._ports},
+            "ports": {str(port.number): port.expected for port in self._ports},
             "kernel_drops": sum(port.kernel_drops for port in self._ports),
             "serial": None if self._serial is None else self._serial.problem,
             "file": asdict(self._file.state()),
@@ -188,7 +188,7 @@ class Recorder:
         size = self._file.state().written_bytes
         return [{"kind": "written", "bytes": size}, {"kind": "status", **self.status()}]
 
-    def _receive_line(self, message: dict[str, Any]) -> None:
+    def _handle(self, message: dict[str, Any]) -> None:
         match message.get("do"):
             case "stop":
                 self._over.set()
@@ -202,7 +202,7 @@ class Recorder:
                 facts = {name: message.get(name) for name in ("what", "text", "who")}
                 self._mark(facts, ago_s=message.get("ago_s", 0.0))
             case _:
-                pass  # a newer server may know more
+                pass  # a request of a newer server
 
     def _mark(self, facts: dict[str, Any], *, ago_s: float = 0.0) -> None:
         t_ns = time.time_ns() - round(1e9 * ago_s)
@@ -218,7 +218,7 @@ class Recorder:
 
 
 def _append(path: Path, line: str) -> None:
-    """Add a line to a file, on the disk when this returns; all of it or nothing.
+    """Append a line to a file and sync it; the line is written completely or not at all.
 
     Raises:
         OSError: If it cannot be written.
@@ -236,10 +236,10 @@ def _append(path: Path, line: str) -> None:
 
 
 def main(project: Path) -> int:
-    """Record a session that was prepared; says ``ready`` on its output once it listens."""
+    """Record a prepared session; print ``ready`` once the ports are open."""
 
     def report_ready() -> None:
-        refuse_new_sockets()  # before a stranger's datagram is looked at
+        refuse_new_sockets()  # before the first datagram is read
         sys.stdout.write("ready\n")
         sys.stdout.flush()
 

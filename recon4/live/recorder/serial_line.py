@@ -1,4 +1,4 @@
-"""A GNSS receiver on a serial line: each sentence becomes a datagram of the capture."""
+"""Reads a GNSS receiver on a serial line; each sentence becomes a datagram of the capture."""
 
 from __future__ import annotations
 
@@ -15,27 +15,27 @@ if TYPE_CHECKING:
 
 RETRY_S = 1.0
 _LONGEST = 1024
-"""Without a line end after so many bytes they are passed on as they are."""
+"""Bytes passed on as one sentence if no line end comes."""
 _USUAL_BAUD = 9600
 
 
 class SerialLine:
-    """Reads sentences in a thread of its own; opens the device again when it was pulled out."""
+    """Reads sentences in a separate thread; reopens the device after it was unplugged."""
 
     def __init__(self, device: str, port: int, *, take: Callable[[Datagram], None]) -> None:
         """Prepare.
 
         Args:
-            device: With its speed, as ``/dev/ttyUSB0:115200``; without one 9600.
-            port: UDP port the sentences would have come to.
+            device: Device and baud rate, ``/dev/ttyUSB0:115200``; default rate 9600.
+            port: UDP port of the datagrams the sentences are recorded as.
             take: Called from the thread with every sentence.
 
         Raises:
-            ConfigError: If the device is not spelled like that.
+            ConfigError: If the device is not ``DEVICE:BAUD``.
         """
         self.name, self.baud = parse_device(device)
         self.problem = "not opened yet"
-        """Empty = it is open."""
+        """Why the device is not open; empty = it is open."""
         self._port, self._take = port, take
         self._ending = threading.Event()
         self._thread = threading.Thread(target=self._run, name="serial", daemon=True)
@@ -73,10 +73,10 @@ class SerialLine:
 
 
 def parse_device(text: str) -> tuple[str, int]:
-    """``("/dev/ttyUSB0", 115200)`` of ``/dev/ttyUSB0:115200``.
+    """Split device and baud rate: ``("/dev/ttyUSB0", 115200)`` of ``/dev/ttyUSB0:115200``.
 
     Raises:
-        ConfigError: If the speed is no number.
+        ConfigError: If the baud rate is not a number.
     """
     name, colon, baud = text.rpartition(":")
     if not colon:

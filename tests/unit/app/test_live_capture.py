@@ -1,4 +1,4 @@
-"""The server's end of a capture, with a mapper that is a few lines on a socket."""
+"""The server's side of a capture, with a mapper that sends a few messages."""
 
 import asyncio
 import json
@@ -10,29 +10,29 @@ POSE = {"kind": "pose", "t_ns": 1, "p": [0.0, 0.0, 0.0], "lost": False}
 DONE = {"kind": "done", "frames": 3, "problem": ""}
 
 
-def test_a_server_the_mapper_let_go_comes_back_to_it_and_starts_no_second_one(tmp_path):
+def test_a_server_reconnects_to_its_mapper_and_starts_no_second_one(tmp_path):
     session = CaptureSession(project=tmp_path / "walk")
-    said = iter([[POSE], [POSE], [POSE, DONE]])
+    connections = iter([[POSE], [POSE], [POSE, DONE]])
     session.folder.mkdir(parents=True)
     session.outcome.write_text('{"why": "stopped"}')
 
-    async def say(reader, writer):
-        for told in next(said):
-            writer.write(json.dumps(told).encode() + b"\n")
+    async def serve(reader, writer):
+        for message in next(connections):
+            writer.write(json.dumps(message).encode() + b"\n")
         writer.close()
 
     async def run():
         capture = Capture(session)
-        async with await asyncio.start_unix_server(say, session.socket("mapper")):
+        async with await asyncio.start_unix_server(serve, session.socket("mapper")):
             await capture.follow()
             while not capture.over:
-                await capture.picture.news(capture.picture.version, timeout_s=0.1)
+                await capture.stream.news(capture.stream.version, timeout_s=0.1)
             await capture.leave()
         return capture
 
     capture = asyncio.run(run())
 
-    assert next(said, None) is None
+    assert next(connections, None) is None
     assert capture.problem == ""
     assert not (session.folder / "mapper.txt").exists()
 

@@ -1,10 +1,10 @@
-"""What the phone is told of LiDARs, batteries and rigs."""
+"""Health of LiDARs and batteries, choice of rigs, marks of a session."""
 
 import numpy as np
 import pytest
 
 from app.live.health import lidars
-from app.live.power import Battery, Power, battery_words, read_battery
+from app.live.power import Battery, Power, battery_findings, read_battery
 from app.live.rigs import rig_files, rigs_in, shipped_rigs
 from app.live.store import marks_of
 from recon4.live.mapper.notes import Notes
@@ -37,7 +37,7 @@ def health(report, rate=754.0):
     return {one.name: one for one in found}
 
 
-def test_a_lidar_without_pps_is_told_from_one_in_step():
+def test_a_lidar_without_pps_is_distinguished_from_one_in_step():
     found = health(clock_of("vertical", 700.0))
 
     assert found["vertical"].clock == "own, shifted"
@@ -56,7 +56,7 @@ def test_lost_packets_are_those_of_the_lidar_that_lost_them():
     assert [(one.name, one.lost) for one in found] == [("horizontal", 0.0), ("vertical", 0.1)]
 
 
-def test_before_anything_was_read_and_of_a_silent_lidar_nothing_is_claimed():
+def test_without_data_and_for_a_silent_lidar_loss_and_clock_are_unknown():
     assert lidars(RIG, {}) == []
     (first, _) = lidars(RIG, {"status": status()})
     assert (first.lost, first.clock) == (None, "")
@@ -65,9 +65,9 @@ def test_before_anything_was_read_and_of_a_silent_lidar_nothing_is_claimed():
 
 @pytest.fixture
 def supplies(tmp_path):
-    def put(name, **told):
+    def put(name, **properties):
         (tmp_path / name).mkdir()
-        lines = [f"POWER_SUPPLY_{key.upper()}={value}" for key, value in told.items()]
+        lines = [f"POWER_SUPPLY_{key.upper()}={value}" for key, value in properties.items()]
         (tmp_path / name / "uevent").write_text("\n".join(lines))
 
     put("AC", type="Mains", online=0)
@@ -86,36 +86,41 @@ def test_two_batteries_are_one_and_a_mouse_is_none(supplies):
     assert battery == Battery(charge=0.5, left_s=3600.0 * 30 / 20, mains=False)
 
 
-def test_a_battery_that_tells_its_share_only_and_one_on_mains(supplies):
+def test_a_battery_with_capacity_only_and_one_on_mains(supplies):
     folder, put = supplies
     put("BAT0", type="Battery", status="Charging", capacity=4)
 
     assert read_battery(folder) == Battery(charge=0.04, left_s=None, mains=True)
-    assert battery_words(read_battery(folder)) == []
+    assert battery_findings(read_battery(folder)) == []
     assert read_battery(folder / "nothing") is None
 
 
 @pytest.mark.parametrize(
     ("charge", "left_s", "level"),
-    [(0.5, 3000.0, None), (0.12, None, "care"), (0.5, 600.0, "care"), (0.05, 2000.0, "bad")],
+    [
+        (0.5, 3000.0, None),
+        (0.12, None, "warning"),
+        (0.5, 600.0, "warning"),
+        (0.05, 2000.0, "error"),
+    ],
 )
-def test_a_battery_that_ends_is_said_in_words(charge, left_s, level):
-    said = battery_words(Battery(charge, left_s, mains=False))
+def test_a_low_battery_gives_a_warning(charge, left_s, level):
+    found = battery_findings(Battery(charge, left_s, mains=False))
 
-    assert [word.level for word in said] == ([level] if level else [])
+    assert [one.level for one in found] == ([level] if level else [])
 
 
-def test_the_battery_is_asked_now_and_then_only():
-    asked, now = [], [0.0]
-    power = Power(lambda: asked.append(1), clock=lambda: now[0])
+def test_the_battery_is_read_at_intervals():
+    reads, now = [], [0.0]
+    power = Power(lambda: reads.append(1), clock=lambda: now[0])
 
     for now[0] in (0.0, 1.0, 14.0, 15.5, 16.0):
         assert power.battery is None
 
-    assert len(asked) == 2
+    assert len(reads) == 2
 
 
-def test_own_rig_files_come_first_and_a_broken_one_says_why(tmp_path):
+def test_own_rig_files_come_first_and_a_broken_one_has_its_problem(tmp_path):
     (tmp_path / "rigs").mkdir()
     (tmp_path / "rigs" / "ours.toml").write_text(format_rig(RIG))
     (tmp_path / "broken.toml").write_text('[[sensor]]\nname = "a"\nmodel = "VLP-99"')

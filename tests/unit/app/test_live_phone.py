@@ -1,4 +1,4 @@
-"""Phones that look on: what one does or does not do is its own affair, and none gets too much."""
+"""Phones are independent of each other, and the data rate to each is limited."""
 
 import asyncio
 import base64
@@ -19,27 +19,27 @@ from recon4.model.rig import load_rig
 POINTS = 400_000
 
 
-class Ear:
-    """The other end of a WebSocket: hears everything, or stops to listen."""
+class Client:
+    """The client side of a WebSocket: receives everything, or stalls."""
 
     def __init__(self, captures, *, stalls=False):
         self.stalls = stalls
-        self.told, self.bytes = [], 0
-        self._said = asyncio.Queue()
+        self.received, self.bytes = [], 0
+        self._incoming = asyncio.Queue()
         for message in ({"type": "websocket.connect"}, {"type": "websocket.receive", "text": "{}"}):
-            self._said.put_nowait(message)
+            self._incoming.put_nowait(message)
         scope = {"type": "websocket", "path": "/", "headers": []}
-        self.socket = WebSocket(scope, self._said.get, self._hear)
+        self.socket = WebSocket(scope, self._incoming.get, self._receive)
         self.captures = captures
 
-    async def look(self):
+    async def run(self):
         await self.socket.accept()
         await Phone(self.socket, self.captures).serve()
 
     def leave(self):
-        self._said.put_nowait({"type": "websocket.disconnect", "code": 1000})
+        self._incoming.put_nowait({"type": "websocket.disconnect", "code": 1000})
 
-    async def _hear(self, message):
+    async def _receive(self, message):
         if message["type"] == "websocket.accept":
             return
         if self.stalls:
@@ -47,66 +47,66 @@ class Ear:
         data = message.get("bytes") or message["text"].encode()
         self.bytes += len(data)
         if "text" in message:
-            self.told.append(json.loads(message["text"]))
+            self.received.append(json.loads(message["text"]))
 
 
 @pytest.fixture
 def captures(tmp_path):
-    known = Captures(tmp_path)
-    known._capture, known._rig = (
+    captures = Captures(tmp_path)
+    captures._capture, captures._rig = (
         Capture(CaptureSession(project=tmp_path / "walk")),
         load_rig("4recon"),
     )
-    return known
+    return captures
 
 
-def walk(picture, k):
-    picture.take({"kind": "pose", "t_ns": k, "p": [float(k), 0.0, 1.0], "lost": False})
+def walk(stream, k):
+    stream.take({"kind": "pose", "t_ns": k, "p": [float(k), 0.0, 1.0], "lost": False})
 
 
-def test_one_phone_that_stalls_is_let_go_and_nobody_else_notices(captures, monkeypatch):
+def test_a_phone_that_stalls_is_disconnected_without_effect_on_others(captures, monkeypatch):
     monkeypatch.setattr(phones, "STALLED_S", 0.5)
 
     async def ten_phones():
-        ears = [Ear(captures, stalls=k == 0) for k in range(10)]
-        looking = [asyncio.create_task(ear.look()) for ear in ears]
+        clients = [Client(captures, stalls=k == 0) for k in range(10)]
+        running = [asyncio.create_task(client.run()) for client in clients]
         for k in range(20):
-            walk(captures.newest.picture, k)
+            walk(captures.newest.stream, k)
             await asyncio.sleep(0.05)
-        for ear in ears[1:]:
-            ear.leave()
+        for client in clients[1:]:
+            client.leave()
         async with asyncio.timeout(20.0):
-            return ears, await asyncio.gather(*looking, return_exceptions=True)
+            return clients, await asyncio.gather(*running, return_exceptions=True)
 
-    ears, ends = asyncio.run(ten_phones())
+    clients, ends = asyncio.run(ten_phones())
 
     assert isinstance(ends[0], TimeoutError) and ends[1:] == [None] * 9
-    for ear in ears[1:]:
-        assert len([told for told in ear.told if "pose" in told]) > 5
-        assert ear.told[0]["state"] == "recording" and len(ear.told[0]["lidars"]) == 0
+    for client in clients[1:]:
+        assert len([one for one in client.received if "pose" in one]) > 5
+        assert client.received[0]["state"] == "recording" and len(client.received[0]["lidars"]) == 0
 
 
-def test_the_newest_comes_first_and_all_a_phone_gets_stays_within_two_megabits(captures):
-    picture = captures.newest.picture
+def test_the_newest_pose_is_sent_first_and_the_data_rate_stays_within_two_megabits(captures):
+    stream = captures.newest.stream
     voxels = np.zeros((POINTS, 3), np.int16)
-    told = {"kind": "points", "generation": 0, "start": 0, "voxel_m": 0.1}
-    told["voxels"] = base64.b64encode(voxels.tobytes()).decode()
-    told["values"] = base64.b64encode(bytes(POINTS)).decode()
-    picture.take(told)
+    message = {"kind": "points", "generation": 0, "start": 0, "voxel_m": 0.1}
+    message["voxels"] = base64.b64encode(voxels.tobytes()).decode()
+    message["values"] = base64.b64encode(bytes(POINTS)).decode()
+    stream.take(message)
 
     async def one_phone():
-        ear = Ear(captures)
-        looking = asyncio.create_task(ear.look())
+        client = Client(captures)
+        running = asyncio.create_task(client.run())
         began_s = time.monotonic()
         for k in range(20):
-            walk(picture, k)
+            walk(stream, k)
             await asyncio.sleep(0.1)
-        ear.leave()
-        await looking
-        return ear, time.monotonic() - began_s
+        client.leave()
+        await running
+        return client, time.monotonic() - began_s
 
-    ear, seconds = asyncio.run(one_phone())
+    client, seconds = asyncio.run(one_phone())
 
-    assert 300_000 < ear.bytes < phones.BYTES_AT_FIRST + 2e6 / 8 * seconds
-    poses = [told["pose"]["p"][0] for told in ear.told if "pose" in told]
+    assert 300_000 < client.bytes < phones.BYTES_AT_FIRST + 2e6 / 8 * seconds
+    poses = [one["pose"]["p"][0] for one in client.received if "pose" in one]
     assert poses[-1] == 19.0

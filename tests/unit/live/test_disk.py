@@ -9,7 +9,7 @@ def watch(*free_bytes, least=1000, every_s=1.0):
     left = iter(free_bytes)
     disk = DiskWatch(Path("x"), least_free_bytes=least, free_bytes=lambda folder: next(left))
     for k in range(len(free_bytes)):
-        disk.look(k * every_s)
+        disk.update(k * every_s)
     return disk.message()
 
 
@@ -44,6 +44,6 @@ def test_a_disk_that_was_pulled_out_stops_nothing():
         raise OSError(5, "Input/output error")
 
     disk = DiskWatch(Path("x"), least_free_bytes=1000, free_bytes=gone)
-    disk.look(0.0)
+    disk.update(0.0)
 
     assert disk.message() == {"free_bytes": None, "left_s": None, "enough": True}

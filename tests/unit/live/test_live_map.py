@@ -70,18 +70,18 @@ class Follower:
         self.start = None
 
     def push(self, row, shift_ns=0, *, noise=False):
-        """The pose told, and its error in plan [m]."""
+        """The pose and its horizontal error [m]."""
         before_ns = 0 if self.start else 2_000_000_000
         imu = self.walk.imu(row, shift_ns, before_ns=before_ns)
         gyro, accel = imu.gyro_rad_s * self.axes[0], imu.accel_m_s2 * self.axes[1]
         self.map.extend_imu(ImuSamples(imu.t_ns, gyro, accel))
         pose = self.map.push(self.walk.frame(row, shift_ns, noise=noise))[0]
-        told_m, truth = np.array(pose["p"]), self.walk.at(row)
+        p_m, truth = np.array(pose["p"]), self.walk.at(row)
         if self.start is None:
             turn = pose["yaw"] - np.arctan2(truth.R[1, 0], truth.R[0, 0])
-            self.start = so3_exp([0.0, 0.0, turn]), truth.t, told_m
+            self.start = so3_exp([0.0, 0.0, turn]), truth.t, p_m
         R, truth_m, start_m = self.start
-        off_m = R @ (truth.t - truth_m) - (told_m - start_m)
+        off_m = R @ (truth.t - truth_m) - (p_m - start_m)
         return pose, float(np.linalg.norm(off_m[:2]))
 
 
@@ -131,11 +131,11 @@ def test_an_imu_that_turns_the_wrong_way_is_found_out_and_the_map_begins_anew(wa
     )
 
 
-def test_the_way_remembers_its_start_however_long_it_is(walk):
+def test_a_long_path_keeps_its_start(walk):
     live_map = LiveMap(walk.store.rig, preset("indoor"))
 
-    for metre in range(30_000):
-        live_map._go_to(np.array([0.1 * metre, 0.0, 0.0]))
+    for k in range(30_000):
+        live_map._extend_path(np.array([0.1 * k, 0.0, 0.0]))
 
     path = live_map.snapshot().messages()[0]["points"]
     assert path[0] == [0.0, 0.0, 0.0]
@@ -145,7 +145,7 @@ def test_the_way_remembers_its_start_however_long_it_is(walk):
 def test_how_far_a_prediction_was_off_can_be_read_for_three_seconds(walk):
     live_map = LiveMap(walk.store.rig, preset("indoor"))
 
-    shown = [live_map._worst_gap_m(k * 100_000_000, 0.4 if k == 5 else 0.0) for k in range(50)]
+    shown = [live_map._largest_offset_m(k * 100_000_000, 0.4 if k == 5 else 0.0) for k in range(50)]
 
     assert shown == [0.0] * 5 + [0.4] * 31 + [0.0] * 14
 

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from recon4.errors import ConfigError
-from recon4.live.findings import words
+from recon4.live.findings import findings
 from recon4.live.recorder.capture_file import CaptureFile, Datagram
 from recon4.live.recorder.ports import check_sources, open_ports
 from recon4.live.recorder.serial_line import parse_device
@@ -114,7 +114,7 @@ def test_datagrams_from_an_unexpected_address_are_no_silence(session):
             message = talk.hear("status")
             if message["seconds"] > 3.0 and any(one["per_s"] for one in message["senders"]):
                 break
-        found = [word.text for word in words(rig, {"status": message}, "")]
+        found = [one.text for one in findings(rig, {"status": message}, "")]
         talk.send(do="stop")
         process.wait(20.0)
 
@@ -375,9 +375,9 @@ def test_on_a_full_disk_neither_marks_nor_pauses_end_the_recording(session):
         stopped = talk.hear("stopped")
 
     rig = load_rig(session.rig)
-    said = {word.text for one in (full, message) for word in words(rig, {"status": one}, "")}
-    assert "Nothing is recorded: the disk is full" in said
-    assert any(text.startswith("A mark could not be noted: ") for text in said)
+    texts = {found.text for one in (full, message) for found in findings(rig, {"status": one}, "")}
+    assert "Nothing is recorded: the disk is full" in texts
+    assert any(text.startswith("A mark could not be saved: ") for text in texts)
     assert (stopped["file"]["dropped"], stopped["notes"]) == (50, "")
     assert numbers(session.capture)[0] == [*range(50), *range(100, 105)]
     (mark,) = map(json.loads, session.marks.read_text().splitlines())

@@ -1,4 +1,4 @@
-"""Behind or not is told on one clock, also where the laptop's is wrong."""
+"""The latency is measured on one clock, also if the clock of the computer is wrong."""
 
 import pytest
 
@@ -17,7 +17,7 @@ class Clock:
 
 
 @pytest.mark.parametrize("wrong_s", [0.0, 3.0, -3.0, 86_400.0])
-def test_gps_drives_the_sensors_and_the_laptop_is_wrong(wrong_s):
+def test_gps_drives_the_sensors_and_the_computer_clock_is_wrong(wrong_s):
     t_ns, arrival, stamps = packets(500)
     report = ImportReport()
     offset_ns = -round(wrong_s * SECOND_NS)
@@ -25,15 +25,15 @@ def test_gps_drives_the_sensors_and_the_laptop_is_wrong(wrong_s):
     sensor.push(arrival - offset_ns, stamps)
     end_ns = int(t_ns[-1])
     clock = Clock(end_ns - offset_ns + 300_000_000)
-    lateness = Latency(report, clock)
+    latency = Latency(report, clock)
 
-    age_s = lateness.age_s(lateness.on_our_clock(end_ns))
-    soon = [lateness.leave_out(end_ns) for _ in range(4)]
+    age_s = latency.age_s(latency.on_recorder_clock(end_ns))
+    soon = [latency.leave_out(end_ns) for _ in range(4)]
     clock.now_ns += LATE_NS
-    behind = [lateness.leave_out(end_ns) for _ in range(4)]
+    behind = [latency.leave_out(end_ns) for _ in range(4)]
 
     clock.now_ns += 5_000_000_000
-    far_behind = [lateness.leave_out(end_ns) for _ in range(10)]
+    far_behind = [latency.leave_out(end_ns) for _ in range(10)]
 
     assert age_s == pytest.approx(0.3, abs=0.005)
     assert soon == [False] * 4

@@ -1,8 +1,8 @@
-"""Every trouble is said in words; nothing is said when all is well."""
+"""Every fault gives a warning; without faults there is none."""
 
 import pytest
 
-from recon4.live.findings import rates, words
+from recon4.live.findings import findings, rates
 from recon4.model.rig import load_rig, parse_rig
 
 RIG = load_rig("4recon")
@@ -32,7 +32,7 @@ IMU = sender(8309, 200.0)
 
 
 def status(*senders, **changed):
-    told = {
+    message = {
         "senders": list(senders or (FIRST, SECOND, IMU)),
         "seconds": 60.0,
         "paused": False,
@@ -41,12 +41,12 @@ def status(*senders, **changed):
         "file": {"problem": "", "dropped": 0},
         "disk": {"left_s": 7200},
     }
-    return told | changed
+    return message | changed
 
 
-def said(told=None, *, rig=RIG, problem="", **newest):
-    found = words(rig, {"status": told or status(), **newest}, problem)
-    return [(word.level, word.text) for word in found]
+def found_in(message=None, *, rig=RIG, problem="", **newest):
+    found = findings(rig, {"status": message or status(), **newest}, problem)
+    return [(one.level, one.text) for one in found]
 
 
 POSE = {"frame_id": 9, "lost": False, "turn_rad_s": 0.5, "age_s": 0.2, "match_ratio": 0.9,
@@ -54,16 +54,16 @@ POSE = {"frame_id": 9, "lost": False, "turn_rad_s": 0.5, "age_s": 0.2, "match_ra
         "lately": {"frames": 100, "thinned": 0}}  # fmt: skip
 
 
-def test_nothing_is_said_when_all_is_well():
+def test_without_faults_there_are_no_findings():
     fix = {"quality": 4, "sd_m": [0.01, 0.01, 0.02], "jumped_m": None}
     notes = {"warnings": [], "counts": {"packets": 9999}, "recent": {"packets": 9999}}
 
-    assert said(pose=POSE, fix=fix, notes=notes) == []
-    assert said(rig=WITH_ADDRESSES, pose=POSE) == []
+    assert found_in(pose=POSE, fix=fix, notes=notes) == []
+    assert found_in(rig=WITH_ADDRESSES, pose=POSE) == []
 
 
-def test_in_the_first_moments_nothing_has_to_come():
-    assert said(status(sender(9999), seconds=1.0)) == []
+def test_no_sensor_is_silent_in_the_first_seconds():
+    assert found_in(status(sender(9999), seconds=1.0)) == []
 
 
 @pytest.mark.parametrize(
@@ -80,38 +80,38 @@ def test_in_the_first_moments_nothing_has_to_come():
     ],
 )
 def test_a_silent_lidar_is_named_with_how_long(senders, text):
-    assert ("bad", text) in said(status(*senders))
+    assert ("error", text) in found_in(status(*senders))
 
 
-def test_datagrams_from_an_unexpected_address_are_named_not_called_silence():
+def test_datagrams_from_an_unexpected_address_are_named_not_reported_as_silence():
     strangers = (sender(2368, source="10.0.0.7"), sender(2369, source="10.0.0.8"))
 
-    found = said(status(*strangers, IMU), rig=WITH_ADDRESSES)
+    found = found_in(status(*strangers, IMU), rig=WITH_ADDRESSES)
 
     assert (
-        "bad",
+        "error",
         "No LiDAR of the rig sends: horizontal is expected from 10.0.0.1, but data packets for "
         "port 2368 come from 10.0.0.7: correct the address in the rig or in the sensor",
     ) in found
     assert not any("No LiDAR sends anything" in text for _, text in found)
 
 
-def test_datagrams_that_are_no_data_packets_are_named_not_called_silence():
-    found = said(status(sender(2368, 300.0, data_per_s=0.0, source="10.0.0.7"), IMU))
+def test_datagrams_that_are_no_data_packets_are_named_not_reported_as_silence():
+    found = found_in(status(sender(2368, 300.0, data_per_s=0.0, source="10.0.0.7"), IMU))
 
     assert (
-        "bad",
+        "error",
         "No LiDAR of the rig sends: datagrams for port 2368 (horizontal) come from 10.0.0.7, "
-        "but they are no data packets of a LiDAR",
+        "but they are not LiDAR data packets",
     ) in found
 
 
 def test_another_sender_on_the_port_of_a_silent_sensor_does_not_hide_it():
     stranger = sender(2369, 754.0, source="10.0.0.9")
 
-    found = said(status(FIRST, stranger, IMU), rig=WITH_ADDRESSES)
+    found = found_in(status(FIRST, stranger, IMU), rig=WITH_ADDRESSES)
 
-    assert ("bad", "vertical LiDAR silent for 60 s") in found
+    assert ("error", "vertical LiDAR silent for 60 s") in found
     assert ("info", "Foreign traffic on port 2369 from 10.0.0.9") in found
 
 
@@ -119,7 +119,7 @@ def test_another_sender_on_the_port_of_a_silent_sensor_does_not_hide_it():
 def test_foreign_traffic_is_named(rig):
     stranger = sender(2368, 300.0, source="10.0.0.7", data_per_s=100.0)
 
-    assert said(status(FIRST, SECOND, IMU, stranger), rig=rig) == [
+    assert found_in(status(FIRST, SECOND, IMU, stranger), rig=rig) == [
         ("info", "Foreign traffic on port 2368 from 10.0.0.7")
     ]
 
@@ -130,116 +130,121 @@ def test_the_rate_of_a_lidar_counts_its_data_packets():
     found = rates(RIG, status(mixed, SECOND, IMU))
 
     assert found == {"horizontal": 754.0, "vertical": 754.0, "IMU": 200.0, "GNSS": 0.0}
-    assert "none of a LiDAR" in said(status(mixed, SECOND, IMU))[0][1]
+    assert "not LiDAR data packets" in found_in(status(mixed, SECOND, IMU))[0][1]
 
 
 @pytest.mark.parametrize(
-    ("told", "level", "text"),
+    ("message", "level", "text"),
     [
-        (status(FIRST, SECOND), "care", "No IMU: walk and turn slowly"),
+        (status(FIRST, SECOND), "warning", "No IMU: walk and turn slowly"),
         (
             status(FIRST, SECOND, sender(8309, 0.0, silent_s=5.0)),
-            "care",
+            "warning",
             "IMU silent for 5 s: turn slowly",
         ),
-        (status(serial="/dev/x: gone"), "care", "GNSS receiver: /dev/x: gone"),
-        (status(kernel_drops=7), "bad", "7 packets were lost: this computer is too busy"),
+        (status(serial="/dev/x: gone"), "warning", "GNSS receiver: /dev/x: gone"),
+        (status(kernel_drops=7), "error", "7 packets were lost: this computer is too busy"),
         (
             status(file={"problem": "", "dropped": 5}),
-            "bad",
+            "error",
             "5 packets are not in the recording: the disk was full or too slow",
         ),
         (
             status(file={"problem": "the disk is full", "dropped": 0}),
-            "bad",
+            "error",
             "Nothing is recorded: the disk is full",
         ),
         (
             status(notes="No space left on device"),
-            "bad",
-            "A mark could not be noted: No space left on device",
+            "error",
+            "A mark could not be saved: No space left on device",
         ),
-        (status(disk={"left_s": 185}), "bad", "Disk full in 3 min"),
+        (status(disk={"left_s": 185}), "error", "Disk full in 3 min"),
         (status(paused=True), "info", "Paused: nothing is recorded"),
     ],
 )
-def test_the_recorder_is_heard(told, level, text):
-    assert said(told) == [(level, text)]
+def test_status_of_the_recorder_gives_findings(message, level, text):
+    assert found_in(message) == [(level, text)]
 
 
 @pytest.mark.parametrize(
     ("pose", "level", "text"),
     [
-        ({"lost": True}, "bad", "Tracking lost: stop, then go back a few steps"),
-        ({"turn_rad_s": 3.5}, "care", "Turn slower"),
-        ({"match_ratio": 0.3}, "care", "Tracking is unsure: walk slower, look at more walls"),
+        ({"lost": True}, "error", "Tracking lost: stop, then go back a few steps"),
+        ({"turn_rad_s": 3.5}, "warning", "Turn slower"),
+        ({"match_ratio": 0.3}, "warning", "Tracking is degraded: walk slower, look at more walls"),
         (
             {"prediction_offset_m": 0.4},
-            "care",
-            "Tracking is unsure: walk slower, look at more walls",
+            "warning",
+            "Tracking is degraded: walk slower, look at more walls",
         ),
-        ({"degeneracy": 1e-4}, "care", "Tracking is unsure: walk slower, look at more walls"),
-        ({"error_m": 0.2}, "care", "Tracking is unsure: walk slower, look at more walls"),
-        ({"remark": "the IMU lies"}, "care", "The IMU lies"),
-        ({"age_s": 3.0}, "care", "The preview is 3 s behind; the recording is whole"),
+        ({"degeneracy": 1e-4}, "warning", "Tracking is degraded: walk slower, look at more walls"),
+        ({"error_m": 0.2}, "warning", "Tracking is degraded: walk slower, look at more walls"),
+        ({"remark": "the IMU lies"}, "warning", "The IMU lies"),
+        ({"age_s": 3.0}, "warning", "The preview is 3 s behind; the recording is complete"),
         (
             {"age_s": 3.0, "thinned": 80, "lately": {"frames": 99, "thinned": 40}},
-            "care",
+            "warning",
             "The preview is 3 s behind: 40 of the last 99 frames are left out of the preview "
-            "(80 in all); the recording is whole",
+            "(80 in all); the recording is complete",
         ),
         (
             {"age_s": 0.8, "thinned": 3, "lately": {"frames": 99, "thinned": 3}},
             "info",
             "3 of the last 99 frames are left out of the preview (3 in all); the recording is "
-            "whole",
+            "complete",
         ),
     ],
 )
-def test_the_mapper_is_heard(pose, level, text):
-    assert said(pose=POSE | pose) == [(level, text)]
+def test_poses_of_the_mapper_give_findings(pose, level, text):
+    assert found_in(pose=POSE | pose) == [(level, text)]
 
 
 @pytest.mark.parametrize(
     ("recent", "level", "text"),
     [
-        ({"packets_missing": 3000}, "care", "30 % of the packets never arrived: check the cable"),
+        (
+            {"packets_missing": 3000},
+            "warning",
+            "30 % of the packets never arrived: check the cable",
+        ),
         (
             {"packets_duplicate": 700},
             "info",
-            "10 % of packets came twice: the copies are left out",
+            "10 % of packets arrived twice: the copies are discarded",
         ),
-        ({"packets_out_of_order": 700}, "info", "10 % of packets came out of order: put right"),
+        ({"packets_out_of_order": 700}, "info", "10 % of packets arrived out of order: sorted"),
         ({"packets_late": 70}, "info", None),
     ],
 )
-def test_what_the_reader_repairs_is_said_while_it_happens(recent, level, text):
+def test_repairs_of_the_reader_are_reported_while_they_happen(recent, level, text):
     counts = {"packets": 10**6, "packets_missing": 10**5}
 
-    found = said(notes={"warnings": [], "counts": counts, "recent": {"packets": 7000} | recent})
+    found = found_in(notes={"warnings": [], "counts": counts, "recent": {"packets": 7000} | recent})
 
     assert found == ([(level, text)] if text else [])
 
 
-def test_a_clock_that_runs_freely_is_said():
+def test_a_clock_that_runs_freely_is_reported():
     text = "horizontal: its clock is +5.000 s off the recorder's and no GPS drives it"
 
-    assert said(notes={"warnings": [text]}) == [("care", text)]
+    assert found_in(notes={"warnings": [text]}) == [("warning", text)]
 
 
 @pytest.mark.parametrize(
     ("fix", "level", "text"),
     [
-        ({"jumped_m": 50.2}, "care", "GNSS jumped by 50 m: the map is made without it"),
+        ({"jumped_m": 50.2}, "warning", "GNSS jumped by 50 m: the map does not use it"),
         ({"quality": 1, "sd_m": [2.0, 3.1, 5.0]}, "info", "GNSS without RTK fix, ±3.1 m"),
         ({"quality": 0}, "info", "GNSS has no position"),
     ],
 )
 def test_gnss_is_judged(fix, level, text):
-    assert said(fix={"quality": 4, "sd_m": None, "jumped_m": None} | fix) == [(level, text)]
+    assert found_in(fix={"quality": 4, "sd_m": None, "jumped_m": None} | fix) == [(level, text)]
 
 
 def test_the_most_urgent_comes_first():
-    found = said(status(paused=True, kernel_drops=3), problem="gone", pose=POSE | {"remark": "x"})
+    pose = POSE | {"remark": "x"}
+    found = found_in(status(paused=True, kernel_drops=3), problem="gone", pose=pose)
 
-    assert [level for level, _ in found] == ["bad", "bad", "care", "info"]
+    assert [level for level, _ in found] == ["error", "error", "warning", "info"]

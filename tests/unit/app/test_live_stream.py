@@ -1,0 +1,122 @@
+"""Each phone gets the part of the state it lacks, no more."""
+
+import base64
+
+import numpy as np
+
+from app.live.stream_state import Cursor, StreamState
+
+SECOND_NS = 1_000_000_000
+
+
+def pose(t_s, x, lost=False):
+    return {"kind": "pose", "t_ns": int(t_s * SECOND_NS), "p": [x, 0.0, 1.0], "lost": lost}
+
+
+def points(start, count, generation=0):
+    return {
+        "kind": "points",
+        "generation": generation,
+        "start": start,
+        "voxel_m": 0.1,
+        "voxels": base64.b64encode(np.full((count, 3), start, np.int16).tobytes()).decode(),
+        "values": base64.b64encode(np.zeros(count, np.uint8).tobytes()).decode(),
+    }
+
+
+def mark(t_s, text, what="point"):
+    return {"kind": "mark", "t_ns": int(t_s * SECOND_NS), "what": what, "text": text}
+
+
+def marks_of(stream):
+    return stream.lacking(Cursor())[0].get("marks", {"marks": []})["marks"]
+
+
+def test_a_phone_that_reconnects_gets_only_what_it_lacks():
+    stream = StreamState()
+    stream.take(points(0, 1000))
+    cursor = Cursor(generation=0, points=1000)
+
+    message, data = stream.lacking(cursor)
+    assert "points" not in message and data == b""
+    stream.take(points(1000, 10))
+    message, data = stream.lacking(cursor)
+
+    assert (message["points"]["start"], message["points"]["count"], len(data)) == (1000, 10, 70)
+
+
+def test_a_phone_with_points_of_larger_number_or_other_generation_gets_all_points():
+    stream = StreamState()
+    stream.take(points(0, 50, generation=1))
+
+    for cursor in (Cursor(generation=0, points=1000), Cursor(generation=1, points=51)):
+        assert stream.lacking(cursor)[0]["points"]["start"] == 0
+
+
+def test_a_mark_gets_the_position_of_its_time_although_the_mapping_is_late():
+    stream = StreamState()
+    stream.take(pose(1.0, 10.0))
+    stream.take(mark(3.0, "crack"))
+    assert marks_of(stream) == []
+
+    stream.take(pose(2.0, 20.0))
+    assert marks_of(stream) == []
+    stream.take(pose(3.0, 30.0))
+
+    assert [(one["text"], one["p"][0]) for one in marks_of(stream)] == [("crack", 30.0)]
+
+
+def test_a_mark_appears_without_mapping_too_and_a_place_name_at_once():
+    stream = StreamState()
+    stream.take(mark(3.0, "town hall", what="place"))
+    assert [one["text"] for one in marks_of(stream)] == ["town hall"]
+    stream.take(mark(3.0, "crack"))
+    stream.take({"kind": "status", "t_ns": 14 * SECOND_NS})
+
+    assert [(one["text"], one["p"]) for one in marks_of(stream)] == [
+        ("town hall", None),
+        ("crack", None),
+    ]
+
+
+def test_an_hour_of_standing_is_one_place_of_the_path():
+    stream = StreamState()
+    for k in range(1000):
+        stream.take(pose(k * 0.1, 0.001 * (k % 2)))
+    stream.take(pose(101.0, 5.0))
+
+    assert stream.lacking(Cursor())[0]["path"]["points"] == [[0.0, 0.0, 1.0], [5.0, 0.0, 1.0]]
+
+
+def test_a_mark_gets_the_position_of_the_touch_not_of_the_finished_note():
+    stream = StreamState()
+    for second in range(1, 9):
+        stream.take(pose(second, 10.0 * second))
+
+    stream.take(mark(3.0, "crack"))
+    stream.take(pose(9.0, 90.0))
+
+    assert [one["p"][0] for one in marks_of(stream)] == [30.0]
+
+
+def test_marks_of_an_earlier_server_are_not_sent_twice_and_later_ones_come():
+    stream = StreamState()
+    stream.restore_marks([mark(1.0, "town hall", what="place"), mark(2.0, "crack")])
+    there, new = Cursor(marks=2), Cursor()
+    stream.take(pose(3.0, 1.0))
+
+    assert "marks" not in stream.lacking(there)[0]
+    assert [one["text"] for one in stream.lacking(new)[0]["marks"]["marks"]] == [
+        "town hall",
+        "crack",
+    ]
+    stream.take(mark(3.0, "door"))
+    stream.take(pose(4.0, 2.0))
+    assert stream.lacking(there)[0]["marks"]["start"] == 2
+
+
+def test_a_phone_with_more_marks_than_there_are_gets_all():
+    stream = StreamState()
+    stream.restore_marks([mark(1.0, "crack")])
+
+    assert stream.lacking(Cursor(marks=3))[0]["marks"]["start"] == 0
