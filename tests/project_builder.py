@@ -65,9 +65,9 @@ def build_project(root: Path, *, points: int = 60_000, with_map: bool = True) ->
 def approve_project(root: Path, key_file: Path, *, who: str = "Eva") -> Approval:
     """Sign what `build_project` made."""
     with changing(root, "summary.json", compared=False):
-        told = json.loads((root / "summary.json").read_text())
+        summary = json.loads((root / "summary.json").read_text())
         artifacts = read_artifacts(root)
-        told |= {
+        summary |= {
             "name": root.name,
             "approval": None,
             "stages": [{"stage": name, "key": at.name} for name, at in artifacts.items()],
@@ -76,13 +76,13 @@ def approve_project(root: Path, key_file: Path, *, who: str = "Eva") -> Approval
                 "results": {n: hash_file(root / n) for n in ("trajectory.tum", "report.html")},
             },
         }
-        write_summary(root, told)
+        write_summary(root, summary)
     return approve(root, key_file, {"who": who, "role": "reviewer", "why": ""}, False)
 
 
-def write_summary(root: Path, told: dict[str, object]) -> None:
+def write_summary(root: Path, summary: dict[str, object]) -> None:
     """The way a run writes it."""
-    write_json(root / "summary.json", told)
+    write_json(root / "summary.json", summary)
 
 
 def add_multiframes(root: Path) -> None:
@@ -102,7 +102,7 @@ def loop_walk() -> Trajectory:
 
 
 def verified_graph(walk: Trajectory) -> PoseGraph:
-    """A node every 10 poses; odometry, neighbors, loops of the two rounds, some turned down."""
+    """A node every 10 poses; odometry, neighbors, loops of the two rounds, some rejected."""
     rows = np.arange(0, len(walk), 10)
     T, n = walk.T_a_b[rows], len(rows)
     pairs = [(k, k + 1, EdgeKind.ODOMETRY) for k in range(n - 1)]

@@ -120,7 +120,7 @@ def imu_of(pose, seconds, *, rate_hz=200.0, before_s=1.0):
 
 
 def walk(pose, frames, *, with_imu=True, **options):
-    """A recording of so many multiframes."""
+    """A recording of this many multiframes."""
     seconds = frames * FRAME_NS * 1e-9
     made = [scan(pose, T0_NS + k * FRAME_NS, frame_id=k, **options) for k in range(frames)]
     t_s = np.arange(-0.1, seconds + 0.15, 0.01)

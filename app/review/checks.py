@@ -1,7 +1,7 @@
-"""Whether what the pages call approved is what was approved: compared beside the requests.
+"""Compares approved artifacts with their signed hashes, in the background of the requests.
 
-Comparing a map of tens of gigabytes takes a minute the first time; later only what changed is read
-again (`recon4.store.checked`). So a page is answered at once, and says how far the comparison is.
+Comparing a map of tens of gigabytes takes a minute the first time; later only changed files are
+read again (`recon4.store.checked`). The page gets a response at once, with the state of the check.
 """
 
 from __future__ import annotations
@@ -16,16 +16,16 @@ from recon4.errors import Recon4Error
 from recon4.review.approved import Approval
 
 ANSWER_WITHIN_S = 2.0
-"""A page waits this long for a comparison to end [s]."""
+"""A request waits this long for a comparison [s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CheckState:
-    """How the comparison of an approved map ended, or that it has not."""
+    """State of the comparison of an approved map with its signature."""
 
     state: Literal["checked", "checking", "altered"]
-    words: str = ""
-    """Of ``altered``: which file, what was expected, what is there."""
+    message: str = ""
+    """Of ``altered``: which file, what was expected, what was found."""
 
 
 class ApprovalChecks:
@@ -37,11 +37,11 @@ class ApprovalChecks:
         self._running: dict[tuple[Path, str], Future[CheckState]] = {}
 
     def state(self, root: Path, approval: Approval) -> CheckState:
-        """Compare every byte of what was approved; ``checking`` when that takes long.
+        """Compare every byte of the approved files; ``checking`` while that is not finished.
 
         Args:
             root: The project folder.
-            approval: Of its results.
+            approval: Approval of its results.
         """
         key = (root, approval.hash)
         with self._lock:
@@ -54,11 +54,11 @@ class ApprovalChecks:
             return CheckState(state="checking")
         with self._lock:
             if self._running.get(key) is run:
-                del self._running[key]  # the next request compares again what changed since
+                del self._running[key]  # the next request compares files changed since
         return found
 
     def close(self) -> None:
-        """Begin no further comparison."""
+        """Start no further comparison."""
         self._pool.shutdown(wait=False, cancel_futures=True)
 
 
@@ -70,5 +70,5 @@ def compare(root: Path, approval: Approval) -> CheckState:
             evidence.artifact(stage, root / "artifacts" / key).check_all()
         approval.check_issued()
     except Recon4Error as error:
-        return CheckState(state="altered", words=str(error))
+        return CheckState(state="altered", message=str(error))
     return CheckState(state="checked")

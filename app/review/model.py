@@ -1,4 +1,4 @@
-"""The review as the pages see it."""
+"""Requests and responses of the review API."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ class NewDecision(BaseModel):
     frame_j: Frame
     why: Why = ""
     T_i_j: Annotated[list[Finite], Field(max_length=7)] = []
-    """The pose that was looked at, x y z qx qy qz qw; empty if there was none."""
+    """The pose the reviewer saw, x y z qx qy qz qw; empty if there was none."""
     measurement: Annotated[str, Field(max_length=64)] = ""
-    """Of ``replace`` and ``add``: what ``align`` called its result."""
+    """Of ``replace`` and ``add``: the ``measurement`` id that ``align`` returned."""
 
 
 class Step(BaseModel):
@@ -38,12 +38,12 @@ class Step(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     after_seq: int | None = None
-    """Refuse if the last row of the journal is another one; null = any."""
+    """Reject the request unless this is the last row of the journal; null = any row."""
     why: Why = ""
 
 
-class Guess(BaseModel):
-    """Where a registration is to begin."""
+class PredictedPose(BaseModel):
+    """Predicted relative pose at which a registration starts."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -56,33 +56,33 @@ Point = Annotated[list[Finite], Field(min_length=3, max_length=3)]
 
 
 class PointPairs(BaseModel):
-    """The same points in both places."""
+    """Corresponding points picked in two multiframes."""
 
     model_config = ConfigDict(extra="forbid")
 
     p_i: Annotated[list[Point], Field(min_length=3, max_length=20)]
-    """In the body frame of the first [m]."""
+    """In the body frame of the first multiframe [m]."""
     p_j: Annotated[list[Point], Field(min_length=3, max_length=20)]
-    """In the body frame of the second [m]."""
+    """In the body frame of the second multiframe [m]."""
 
 
 class Approve(BaseModel):
-    """Sign the map as it is."""
+    """Approve the current map and sign the approval."""
 
     model_config = ConfigDict(extra="forbid")
 
     why: Why = ""
     confirmed: bool = False
-    """Sign although accepted pairs do not fit the graph; asks for a reason."""
+    """Approve although accepted loop closures do not fit the graph; ``why`` is then required."""
     after_seq: Annotated[int | None, Field(ge=0, le=1 << 53)] = None
-    """``seq`` of the state the signer looked at …"""
+    """``seq`` of the state the signer saw; None = not checked."""
     graph: Annotated[str | None, Field(max_length=64)] = None
-    """… and its ``graph``: if either is another one by now nothing is signed. None = not said."""
+    """``graph`` of that state. Nothing is signed if either has changed. None = not checked."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StandingView:
-    """What holds for a pair."""
+    """The decision in force for a pair."""
 
     frame_i: int
     frame_j: int
@@ -90,9 +90,9 @@ class StandingView:
     who: str
     why: str
     measured: bool
-    """Whether a person measured it anew."""
+    """Whether a person registered the pair again."""
     T_i_j: list[float]
-    """That measurement; empty = that of the program."""
+    """Result of that registration; empty = the automatic one applies."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,23 +102,23 @@ class ReviewView:
     seq: int
     """Rows in the journal."""
     key: str
-    """Of the decisions that stand."""
+    """Key of the decisions in force."""
     graph: str
-    """Key of the verified graph the queue is made of; empty = there is none yet."""
+    """Key of the verified graph behind the queue; empty = there is none yet."""
     undoable: int
     redoable: int
     standing: list[StandingView]
     in_map: bool
-    """Whether the results were made with these decisions."""
+    """Whether the results include these decisions."""
     finished: bool
-    """Whether there are results."""
+    """Whether the project has results."""
     busy: bool
-    """Whether a job waits or runs."""
+    """Whether a job is queued or running."""
     may_review: bool
     may_process: bool
     approval: dict[str, Any] | None
-    """The newest approval: version, who, when, hash, and whether it is of these results. Of these
-    also ``check``: ``checked``, ``checking`` or ``altered``, with the reason in ``altered``."""
+    """The newest approval: version, who, when, hash, and whether it covers the current results.
+    If it does, also ``check``: ``checked``, ``checking`` or ``altered`` (reason in ``altered``)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -137,14 +137,14 @@ class RowView:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AlignmentView:
-    """What a registration found."""
+    """Result of a registration."""
 
     measurement: str
-    """Name by which a decision may bring it; known until the server ends, or 500 more are made."""
+    """Id for ``NewDecision.measurement``; valid until the server stops or 500 newer ones exist."""
     T_i_j: list[float]
     converged: bool
     reason: str
-    """Why the program would turn it down; empty = it would not."""
+    """Why the pair would be rejected automatically; empty = it would be accepted."""
     overlap: float | None
     error_m: float | None
     limit_m: float | None

@@ -1,4 +1,4 @@
-"""HTTP face of the review: parse, delegate, answer."""
+"""HTTP routes of the review."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from app.review.model import (
     AlignmentView,
     Approve,
     Frame,
-    Guess,
     NewDecision,
     PointPairs,
+    PredictedPose,
     ReviewView,
     RowView,
     StandingView,
@@ -74,15 +74,15 @@ def review_page(project_id: str, server: Server) -> FileResponse:
 
 @router.get("", dependencies=LOOK, summary="State of the review")
 def read_review(project_id: str, server: Server, who: Who) -> ReviewView:
-    """What stands, what can be taken back, and whether the map knows of it."""
+    """Decisions in force, undo and redo counts, and whether the map includes the decisions."""
     return _view(project_id, server, who)
 
 
 @router.get("/queue", dependencies=LOOK, summary="Pairs to decide about")
 async def read_queue(project_id: str, server: Server, caller: CalledBy) -> Response:
-    """All pairs but odometry: those whose registration holds, then the others, by influence.
+    """All pairs except odometry: good registrations first, then weak ones, by influence.
 
-    ``columns`` names what each of the ``rows`` holds. Figures are those before any decision.
+    ``columns`` names the values of each of the ``rows``. Figures are those before any decision.
     """
     root = server.projects.folder(project_id)
     source = await run_in_threadpool(Source.of, root)
@@ -90,7 +90,7 @@ async def read_queue(project_id: str, server: Server, caller: CalledBy) -> Respo
     return Response(record, media_type="application/json")
 
 
-@router.get("/walk", dependencies=LOOK, summary="Moments of the walk")
+@router.get("/walk", dependencies=LOOK, summary="Nodes along the trajectory")
 async def read_walk(project_id: str, server: Server, caller: CalledBy) -> dict[str, Any]:
     """Nodes of the graph: multiframe, seconds since the start, position."""
     return await _of_pairs(project_id, server, caller, walk_facts)
@@ -100,7 +100,7 @@ async def read_walk(project_id: str, server: Server, caller: CalledBy) -> dict[s
 async def read_pair(
     project_id: str, server: Server, caller: CalledBy, *, frame_i: Frame, frame_j: Frame
 ) -> dict[str, Any]:
-    """Poses of a pair, tried or not, and its alternative paths one by one."""
+    """Poses of a pair, registered or not, and its alternative paths."""
     return await _of_pairs(project_id, server, caller, pair_facts, (frame_i, frame_j))
 
 
@@ -125,11 +125,14 @@ async def read_points(
 
 @router.post("/align", dependencies=REVIEW, summary="Register a pair")
 async def align_pair(
-    project_id: str, guess: Guess, server: Server, caller: CalledBy
+    project_id: str, predicted: PredictedPose, server: Server, caller: CalledBy
 ) -> AlignmentView:
-    """Register two places as the search does, from a first guess; decides nothing."""
-    root, pair = server.projects.folder(project_id), (guess.frame_i, guess.frame_j)
-    found = await _of_pairs(project_id, server, caller, align, pair, tuple(guess.T_i_j))
+    """Register two multiframes like the loop closure search, from a predicted pose.
+
+    The journal is not changed.
+    """
+    root, pair = server.projects.folder(project_id), (predicted.frame_i, predicted.frame_j)
+    found = await _of_pairs(project_id, server, caller, align, pair, tuple(predicted.T_i_j))
     record = found.to_json()["measurement"]
     figures = ("overlap", "error_m", "limit_m", "degeneracy", "iterations")
     return AlignmentView(
@@ -143,13 +146,16 @@ async def align_pair(
 
 @router.post("/fit", dependencies=REVIEW, summary="Fit picked points")
 def fit_picked(picked: PointPairs) -> list[float]:
-    """``T_i_j`` that lays the second place's points on the first's; decides nothing."""
+    """``T_i_j`` that aligns the points of the second multiframe with those of the first.
+
+    The journal is not changed.
+    """
     return list(fit_points(np.array(picked.p_i), np.array(picked.p_j)))
 
 
 @router.post("/decisions", status_code=201, dependencies=REVIEW, summary="Decide")
 def decide(project_id: str, new: NewDecision, server: Server, who: Who) -> ReviewView:
-    """Append a decision to the journal; it is on the disk when this answers."""
+    """Append a decision to the journal; it is on disk before the response is sent."""
     root, pair = server.projects.folder(project_id), (new.frame_i, new.frame_j)
     measured = new.kind in ("replace", "add")
     decision = Decision(
@@ -166,21 +172,21 @@ def decide(project_id: str, new: NewDecision, server: Server, who: Who) -> Revie
 
 @router.post("/undo", status_code=201, dependencies=REVIEW, summary="Undo")
 def undo(project_id: str, step: Step, server: Server, who: Who) -> ReviewView:
-    """Take back the last decision, whoever made it."""
+    """Undo the last decision, by any reviewer."""
     return _step(DecisionKind.UNDO, project_id, step, server=server, who=who)
 
 
 @router.post("/redo", status_code=201, dependencies=REVIEW, summary="Redo")
 def redo(project_id: str, step: Step, server: Server, who: Who) -> ReviewView:
-    """Decide again what was taken back last."""
+    """Redo the decision that was undone last."""
     return _step(DecisionKind.REDO, project_id, step, server=server, who=who)
 
 
-@router.get("/effect", dependencies=LOOK, summary="What the decisions do")
+@router.get("/effect", dependencies=LOOK, summary="Effect of the decisions")
 async def read_effect(project_id: str, server: Server, caller: CalledBy) -> dict[str, Any]:
-    """The graph solved with what stands now: chi², moves, conflicts, without making a new map.
+    """The graph solved with the decisions in force: chi², moves, conflicts. The map is not rebuilt.
 
-    ``superseded`` is true, and nothing else there, when somebody decided something meanwhile.
+    The response is ``{"superseded": true}`` when a newer decision was made meanwhile.
     """
     root = server.projects.folder(project_id)
     source = await run_in_threadpool(Source.of, root)
@@ -195,7 +201,7 @@ async def read_effect(project_id: str, server: Server, caller: CalledBy) -> dict
 def read_journal(
     project_id: str, server: Server, most: Annotated[int, Query(ge=1, le=1000)] = 200
 ) -> list[RowView]:
-    """Who decided what, when and why; the newest first."""
+    """Reviewer, decision, time and reason of each row; the newest first."""
     rows = read_rows(server.projects.folder(project_id))
     names = ("seq", "time", "who", "kind", "frame_i", "frame_j", "why", "hash")
     return [RowView(**{n: getattr(row, n) for n in names}) for row in reversed(rows[-most:])]
@@ -205,10 +211,10 @@ def read_journal(
 async def approve(
     project_id: str, asked: Approve, request: Request, *, server: Server, who: Who
 ) -> ReviewView:
-    """Sign the results as they are; a version is kept that no later run or decision changes."""
+    """Sign the current results; no later run or decision changes the approved version."""
     root = server.projects.folder(project_id)
     if await run_in_threadpool(_busy, project_id, server):
-        raise Conflict("a job of this project waits or runs; approve when it is done")
+        raise Conflict("a job of this project is queued or running; approve when it is done")
     signer = {"who": who.name, "role": str(who.role), "why": asked.why}
     key = server.settings.state / "signing.key"
     try:
@@ -224,7 +230,7 @@ async def approve(
 async def _of_pairs(
     project_id: str, server: Parts, caller: Caller, function: Callable[..., T], *args: object
 ) -> T:
-    """What a function of the project's graph returns, while the caller waits."""
+    """Run a function of the project's graph in the compute pool and return its result."""
     root = server.projects.folder(project_id)
     source = await run_in_threadpool(Source.of, root)
     terms = terms_of(root, caller.name)
@@ -236,9 +242,9 @@ async def _of_pairs(
 async def _sign(
     root: Path, key: Path, signer: dict[str, str], asked: Approve, *, server: Parts
 ) -> Approval:
-    """Sign in a child of its own, the only one that can read the key.
+    """Sign in a separate child process, the only one that may read the key.
 
-    It is not cancelled when the client leaves: an approval counts or does not.
+    It is not canceled when the client disconnects: an approval is complete or absent.
     """
     await run_in_threadpool(ensure_key, key)
     terms = Terms(
@@ -296,7 +302,7 @@ def _view(project_id: str, server: Parts, who: Person) -> ReviewView:
 
 
 def _approval(root: Path, rows: Sequence[Row], server: Parts) -> dict[str, Any] | None:
-    """The newest approval for people, and whether the bytes are still those that were signed."""
+    """Fields of the newest approval, and whether the files still match the signature."""
     found = latest_approval(root, rows)
     if found is None or not found["current"]:
         return found
@@ -307,7 +313,7 @@ def _approval(root: Path, rows: Sequence[Row], server: Parts) -> dict[str, Any] 
     if approval is None:
         return found | {"check": "altered", "altered": "the results are of other artifacts"}
     check = server.checks.state(root, approval)
-    return found | {"check": check.state, "altered": check.words}
+    return found | {"check": check.state, "altered": check.message}
 
 
 def _busy(project_id: str, server: Parts) -> bool:
@@ -316,7 +322,7 @@ def _busy(project_id: str, server: Parts) -> bool:
 
 
 def _now_and_before(rows: Sequence[Row]) -> tuple[Decided, Decided]:
-    """What stands, and what stood before the last decision."""
+    """Decisions in force now, and before the last decision."""
     decisions = [row.decision() for row in rows]
     decisions = [one for one in decisions if one.kind is not DecisionKind.APPROVE]
     return fold(decisions), fold(decisions[:-1])

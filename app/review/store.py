@@ -1,4 +1,4 @@
-"""What the server remembers between the requests of a review; the journal is in the project."""
+"""State of the review between requests, in memory; the journal is in the project."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ _MOST_QUEUES = 4
 
 
 def terms_of(root: Path, person: str) -> Terms:
-    """Work that may read the artifacts of a project and nothing else."""
+    """Terms of work that may read only the artifacts of a project."""
     return Terms(person=person, access=FileAccess(read=(root / "artifacts",)))
 
 
 class Reviews:
-    """One a server."""
+    """Cached measurements, queues and effects; one instance per server."""
 
     def __init__(self, pool: ComputePool) -> None:
         self._pool = pool
@@ -36,10 +36,10 @@ class Reviews:
         self._effects: dict[Path, tuple[tuple[str, str, str], dict[str, Any]]] = {}
         self._turns: dict[Path, asyncio.Lock] = {}
 
-    # -- measurements: what a decision brings was measured by the program, not sent by a browser
+    # -- measurements: a decision refers to a registration made by the server
 
     def remember(self, root: Path, pair: Pair, alignment: Alignment) -> str:
-        """Keep a registration; returns its name."""
+        """Store a registration and return its id."""
         name = secrets.token_hex(12)
         self._measured[name] = (root, pair, alignment.measurement)
         if len(self._measured) > _MOST_MEASUREMENTS:
@@ -47,20 +47,20 @@ class Reviews:
         return name
 
     def measurement(self, root: Path, pair: Pair, name: str) -> Measurement:
-        """A registration of this pair.
+        """The stored registration of this pair.
 
         Raises:
-            Conflict: If it is not known (any more), or of another pair.
+            Conflict: If the id is unknown, expired, or of another pair.
         """
         found = self._measured.get(name)
         if found is None or found[:2] != (root, pair):
             raise Conflict("this alignment is not known any more; align the pair again")
         return found[2]
 
-    # -- the queue: the same for the same graph
+    # -- the queue: one per graph
 
     async def queue(self, root: Path, source: Source, *, person: str) -> bytes:
-        """`recon4.review.queue.queue_json`, made once a graph."""
+        """`recon4.review.queue.queue_json`, cached per graph."""
         known = (root, source.key)
         if known not in self._queues:
             self._queues[known] = await self._pool.run_interactive(
@@ -70,12 +70,12 @@ class Reviews:
                 self._queues.popitem(last=False)
         return self._queues[known]
 
-    # -- the quick look: the latest wins
+    # -- the preview of the effect: the newest request wins
 
     async def effect(
         self, root: Path, source: Source, *, decided: Decided, before: Decided, person: str
     ) -> dict[str, Any] | None:
-        """`recon4.review.preview.preview`; None if somebody decided something meanwhile."""
+        """`recon4.review.preview.preview`; None if a newer request superseded this one."""
         known = (source.key, decided.key, before.key)
         mine = (decided.key, before.key)
         self._wanted[root] = mine

@@ -1,7 +1,7 @@
-"""Files of slices: made once, kept for a day, sent in as many pieces as the line needs.
+"""Slice exports: made once, kept for a day, downloadable in ranges.
 
-An export is named by the hash of all that determines it. The same request after a connection
-broke finds the finished file, and ``Range`` with ``If-Range`` continues the download.
+The name of an export is the hash of its inputs. The same request after an interrupted connection
+finds the finished file, and ``Range`` with ``If-Range`` continues the download.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from app.slices.model import SliceExportRequest
 LIMIT_S = 1800.0
 """Longest time an export may take [s]."""
 KEPT_S = 86_400.0
-"""A finished export is kept at least this long, unless they get too large together [s]."""
+"""A finished export is kept at least this long, unless all exceed `MOST_KEPT_BYTES` [s]."""
 MOST_KEPT_BYTES = 20 << 30
-"""All kept exports together; the oldest go first."""
+"""Limit for all kept exports; the oldest are removed first."""
 LARGE_THICKNESS_M = 0.5
 """A thicker cut may hold most of the map [m]."""
 _POINTS = ("laz", "csv", "dxf")
@@ -46,7 +46,7 @@ class ExportRequest:
 
     @property
     def key(self) -> str:
-        """Hash of the request; another alignment of the reference is another one."""
+        """Hash of the request, including the alignment of the reference."""
         evidence = self.context["evidence"]
         facts = Path(self.reference) / "reference.json" if self.reference else None
         determines = {
@@ -67,7 +67,7 @@ class ExportRequest:
 
 
 class Exports:
-    """Makes exports and keeps them for downloads that break off."""
+    """Makes exports and keeps them, so that interrupted downloads can continue."""
 
     def __init__(self, pool: ComputePool, folder: Path, *, reserve_bytes: int) -> None:
         self._pool, self._folder = pool, folder
@@ -75,7 +75,7 @@ class Exports:
         self._making: dict[Path, asyncio.Lock] = {}
 
     async def make(self, request: ExportRequest, terms: Terms) -> Path:
-        """The file of an export, made if it is not there.
+        """The file of an export; it is made if it does not exist.
 
         Raises:
             NoRoom: If the disk is nearly full.
@@ -88,7 +88,7 @@ class Exports:
                 await asyncio.to_thread(self._refuse_if_full)
                 name = f"export.{request.ending}"
                 pool = self._pool
-                # A kept child has its fonts and its map open: a sheet takes a second, not five.
+                # A pooled child process has fonts and map loaded: a sheet takes 1 s instead of 5 s.
                 run = pool.run_background if request.large else pool.run_interactive
                 await run(
                     Lane.EXPORT,

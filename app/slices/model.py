@@ -1,4 +1,4 @@
-"""What the slices are asked and what they answer."""
+"""Requests and responses of the slices API."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ Coordinate = Annotated[float, Field(ge=-1e8, le=1e8, allow_inf_nan=False)]
 Xy = tuple[Coordinate, Coordinate]
 Xyz = tuple[Coordinate, Coordinate, Coordinate]
 Reach = Annotated[float, Field(ge=-1e9, le=1e9, allow_inf_nan=False)]
-"""A coordinate in a cut that begins anywhere."""
+"""A coordinate u or v of a cut [m]; its origin is arbitrary."""
 MOST_SIDE_PX = 4096
 
 
 class Strict(BaseModel):
-    """No unknown keys."""
+    """Request model without unknown keys."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class CutSpec(Strict):
-    """Where to cut."""
+    """Position and thickness of a cut."""
 
     kind: Literal["horizontal", "vertical", "free"]
     z_m: Coordinate = 0.0
@@ -70,7 +70,7 @@ class SliceView(Strict):
     """None = all of it."""
     color: ColorBy = "height"
     low: float | None = Field(default=None, allow_inf_nan=False)
-    """Value at the low end of the colors; None = as usual for what is seen."""
+    """Value at the low end of the color scale; None = from the values in the window."""
     high: float | None = Field(default=None, allow_inf_nan=False)
     reference: str = ""
     """Id of a reference; empty = none."""
@@ -80,35 +80,35 @@ class SliceView(Strict):
 
 
 class SliceImageRequest(SliceView):
-    """A picture of a slice for the screen."""
+    """Request for an image of a slice."""
 
     width: int = Field(ge=16, le=MOST_SIDE_PX)
     height: int = Field(ge=16, le=MOST_SIDE_PX)
     ground: Ground = "light"
     page: str = Field(default="", max_length=40)
-    """Who asks: of several requests of one page only the latest is answered."""
+    """Id of the page: of several requests of one page only the latest gets an image."""
     turn: int = Field(default=0, ge=0, le=1 << 53)
-    """The page's own count of its requests: they may come in another order than they were sent."""
+    """The page's request counter: requests may arrive in another order than they were sent."""
 
 
 class SliceImageView(BaseModel):
-    """A picture and what is on it."""
+    """An image of a slice and its description."""
 
     png: str
-    """Base64."""
+    """PNG file, base64."""
     window: WindowSpec
-    """What it shows: the window asked for, widened to the shape of the picture."""
+    """The shown window: the requested one, widened to the aspect ratio of the image."""
     pixel_m: float
     points: int
     """Points of the map in the window."""
     name: str
-    """Of the cut, in words."""
+    """Name of the cut."""
     low: float
     high: float
     colors: list[str]
     """Colors from low to high, as ``#rrggbb``."""
     axes: tuple[str, str]
-    """What goes to the right and up."""
+    """Labels of the horizontal and the vertical axis."""
     origin_m: Xyz
     u: Xyz
     v: Xyz
@@ -136,26 +136,26 @@ class PickView(BaseModel):
 
 
 class CompareRequest(Strict):
-    """A table of slices against a reference."""
+    """Request for a comparison of slices with a reference."""
 
     reference: str = Field(min_length=1)
     method: Literal["plane", "point"] = "plane"
     cuts: list[CutSpec] = Field(default=[], max_length=MOST_SLICES)
-    """None = eight spread over the map, 2 cm thick (V §3.2)."""
+    """Empty = eight slices spread over the map, 2 cm thick (V §3.2)."""
     source: str = ""
 
 
 class AddReference(Strict):
-    """A file on this computer becomes a reference."""
+    """Request to import a file on this computer as a reference."""
 
     path: str = Field(min_length=1, max_length=4096)
     name: Name = Field(default="", max_length=100)
     frame: Literal["map", "crs"] = "map"
-    """Whether its coordinates are those of the map's own frame or of its CRS."""
+    """Frame of its coordinates: the map frame or the CRS of the map."""
 
 
 class AlignRequest(Strict):
-    """Lay a reference onto the map."""
+    """Request to align a reference with the map."""
 
     how: Literal["none", "icp", "pairs"]
     p_map: list[Xyz] = Field(default=[], max_length=100)
@@ -163,7 +163,7 @@ class AlignRequest(Strict):
 
 
 class SliceExportRequest(SliceView):
-    """A file of slices."""
+    """Request for an export of slices."""
 
     count: int = Field(default=1, ge=1, le=MOST_SLICES)
     spacing_m: float = Field(default=0.5, ge=-1000.0, le=1000.0)
@@ -173,7 +173,7 @@ class SliceExportRequest(SliceView):
 
 
 class ControlFile(Strict):
-    """A survey's file, as it is."""
+    """Content of a survey file."""
 
     name: Name = Field(default="points.csv", max_length=200)
     base64: str = Field(max_length=900_000)
@@ -190,39 +190,39 @@ class ControlSpec(Strict):
 
 
 class ControlState(Strict):
-    """The control and check points of a project, and where they were found in the map."""
+    """Control and check points of a project, and their positions in the map."""
 
     points: list[ControlSpec] = Field(default=[], max_length=5000)
     frame: Literal["map", "crs"] = "map"
     picks: dict[Name, Xyz] = {}
-    """Id -> place in the map's frame [m]."""
+    """Id -> position in the map frame [m]."""
     found_in: dict[str, str] = {}
-    """Id -> key of the map it was found in; the server knows it and takes nobody's word."""
+    """Id -> key of the map it was found in; set by the server, never taken from a request."""
     version: int | None = Field(default=None, ge=0, le=1 << 53)
-    """How often they were kept when this was read: what somebody else kept since is not
-    overwritten. None = whatever is there is."""
+    """Version of the stored points when they were read: a newer version is not overwritten.
+    None = overwrite any version."""
 
     def of_map(self, key: str) -> dict[str, Xyz]:
-        """The places that were found in a map; those of an earlier one say nothing of it."""
+        """Positions found in this map; positions found in an earlier map are left out."""
         return {name: at for name, at in self.picks.items() if self.found_in.get(name) == key}
 
 
 class SliceFacts(BaseModel):
-    """What can be cut."""
+    """Facts about the map that can be cut."""
 
     points: int
     bounds_m: tuple[Xyz, Xyz]
     fields: list[str]
     sensors: list[str]
     seconds: float
-    """Length of the walk."""
+    """Duration of the recording [s]."""
     key: str
-    """Of the map."""
+    """Key of the map."""
     crs: str
     frame: str
-    """Frame, axes and unit in words."""
+    """Frame, axes and unit, as text."""
     approval: str
-    """Who approved the map, or that nobody did."""
+    """Who approved the map, or `Not approved`."""
     references: list[dict[str, Any]]
     sources: list[dict[str, str]]
-    """Other maps to compare with: ``id``, ``words``."""
+    """Other maps to compare with: ``id`` and the label ``words``."""

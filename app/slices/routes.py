@@ -1,4 +1,4 @@
-"""HTTP face of the slices: parse, delegate, answer."""
+"""HTTP routes of the slices."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ LOOK = [Depends(needs(Permission.LOOK))]
 PROCESS = [Depends(needs(Permission.PROCESS))]
 WEB = Path(__file__).parents[2] / "web"
 SURFACES, REFERENCE = "surfaces.json", "reference"
-"""Names of what children make, in their own working folder."""
+"""File names that child processes write in their working folder."""
 
 router = APIRouter(
     prefix="/api/projects/{project_id}/slices",
@@ -58,7 +58,7 @@ def slices_page(project_id: str, server: Server) -> FileResponse:
     return FileResponse(WEB / "slices/slices.html")
 
 
-@router.get("", summary="What can be cut")
+@router.get("", summary="Facts about the map")
 async def read_facts(
     project_id: str, server: Server, caller: CalledBy, source: str = ""
 ) -> SliceFacts:
@@ -68,7 +68,7 @@ async def read_facts(
     context = {
         "references": await run_in_threadpool(slices.references, project_id),
         "sources": await run_in_threadpool(slices.sources, project_id),
-        "approval": await run_in_threadpool(slices.approval_words, project_id, source),
+        "approval": await run_in_threadpool(slices.approval_text, project_id, source),
     }
     terms = slices.terms(project_id, caller.name, source)
     return await caller.wait(slices.run_interactive(terms, work.facts, artifacts, context))
@@ -80,13 +80,13 @@ async def slice_image(
 ) -> SliceImageView:
     """All points of the map in the window, at full resolution.
 
-    Of the requests of one ``page`` only the latest is answered; the others get 409.
+    Of the requests of one ``page`` only the latest gets an image; the others get 409.
     """
     slices = server.slices
     evidence = await run_in_threadpool(slices.evidence, project_id, ask.source)
     artifacts = await run_in_threadpool(slices.artifacts, project_id, ask.source)
     reference = slices.reference(project_id, ask.reference)
-    ask.cut.cut()  # a plane without meaning is refused before it waits
+    ask.cut.cut()  # an invalid plane is rejected before the request waits
     terms = slices.terms(project_id, caller.name, ask.source)
     asking = Asking(ask.page, ask.turn)
     return await caller.wait(
@@ -100,12 +100,12 @@ async def slice_image(
 async def overview(
     project_id: str, server: Server, caller: CalledBy, source: str = ""
 ) -> FileResponse:
-    """A transparent PNG; ``/overview/window`` says what it shows."""
+    """A transparent PNG; its window is at ``/overview/window``."""
     image = await _overview(project_id, server, caller, source)
     return FileResponse(image, media_type="image/png")
 
 
-@router.get("/overview/window", summary="What the picture from above shows")
+@router.get("/overview/window", summary="Window of the image from above")
 async def overview_window(
     project_id: str, server: Server, caller: CalledBy, source: str = ""
 ) -> dict[str, Any]:
@@ -114,9 +114,9 @@ async def overview_window(
     return await run_in_threadpool(work.read_kept, image.with_suffix(".json"))
 
 
-@router.post("/pick", summary="The point of the map at a place of a slice")
+@router.post("/pick", summary="The point of the map at a position on a slice")
 async def pick(project_id: str, ask: PickRequest, server: Server, caller: CalledBy) -> PickView:
-    """Coordinates of the full-resolution point nearest to the place, in the map and its CRS."""
+    """Coordinates of the nearest full-resolution point, in the map and in its CRS."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, ask.source)
     terms = server.slices.terms(project_id, caller.name, ask.source)
     cut = ask.cut.cut()
@@ -129,7 +129,7 @@ async def pick(project_id: str, ask: PickRequest, server: Server, caller: Called
 async def doubles(
     project_id: str, server: Server, caller: CalledBy, source: str = ""
 ) -> dict[str, Any]:
-    """Surfaces that were visited twice: double ones, and the others by how near they are to it."""
+    """Surfaces visited twice: double walls, then the others by ratio of separation and limit."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, source)
     folder = artifacts["map"]
     terms = server.slices.terms(project_id, caller.name, source)
@@ -144,11 +144,11 @@ async def doubles(
     return await run_in_threadpool(work.read_kept, path)
 
 
-@router.post("/compare", summary="Slices against a reference")
+@router.post("/compare", summary="Compare slices with a reference")
 async def compare(
     project_id: str, ask: CompareRequest, server: Server, caller: CalledBy
 ) -> dict[str, Any]:
-    """Mean distance and shares within 2 and 5 cm of every slice (V Table 3.2)."""
+    """Mean distance and ratios within 2 and 5 cm of every slice (V Table 3.2)."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, ask.source)
     reference = server.slices.reference(project_id, ask.reference)
     terms = server.slices.terms(project_id, caller.name, ask.source)
@@ -185,7 +185,7 @@ async def add_reference(
     "/references/{reference_id}", status_code=204, dependencies=PROCESS, summary="Remove it"
 )
 def remove_reference(project_id: str, reference_id: str, server: Server) -> Response:
-    """Forget a reference; the file it was made of stays."""
+    """Remove a reference; the imported source file stays."""
     server.slices.remove_reference(project_id, reference_id)
     return Response(status_code=204)  # without a content type: there is no JSON in it
 
@@ -194,7 +194,7 @@ def remove_reference(project_id: str, reference_id: str, server: Server) -> Resp
 async def align(
     project_id: str, reference_id: str, ask: AlignRequest, *, server: Server, caller: CalledBy
 ) -> dict[str, Any]:
-    """Lay a reference onto the map: by ICP, by pairs of points, or as its file says."""
+    """Align a reference with the map: by ICP, by pairs of points, or not at all."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     folder = server.slices.reference(project_id, reference_id)
     pairs = (ask.p_map, ask.p_reference)
@@ -217,7 +217,7 @@ async def align(
     )
 
 
-@router.get("/export.{ending}", response_class=FileResponse, summary="A file of slices")
+@router.get("/export.{ending}", response_class=FileResponse, summary="Export slices")
 async def export(
     project_id: str,
     ending: Literal["png", "svg", "pdf", "tif", "dxf", "laz", "csv"],
@@ -228,8 +228,8 @@ async def export(
 ) -> FileResponse:
     """PNG, SVG and PDF are sheets at a true scale; ``ask`` is a SliceExportRequest as JSON.
 
-    The work ends when the client disconnects. A finished file is kept for a day: the same request
-    with ``Range`` continues a download that broke off.
+    The work is canceled when the client disconnects. A finished file is kept for a day: the same
+    request with ``Range`` continues an interrupted download.
     """
     asked = _parsed(ask)
     slices = server.slices
@@ -257,11 +257,11 @@ async def export(
     )
 
 
-@router.post("/control/preview", dependencies=PROCESS, summary="Look at a survey's file")
+@router.post("/control/preview", dependencies=PROCESS, summary="Preview a survey file")
 async def preview_control(
     project_id: str, file: ControlFile, server: Server, caller: CalledBy
 ) -> dict[str, Any]:
-    """What a CSV seems to hold, and what has to be decided before it counts."""
+    """Points found in a CSV file, and the question to answer before they are stored."""
     server.projects.folder(project_id)
     try:
         data = base64.b64decode(file.base64, validate=True)
@@ -275,19 +275,19 @@ async def preview_control(
 
 @router.get("/control", summary="Control and check points")
 def read_control(project_id: str, server: Server) -> ControlState:
-    """As kept, with where they were found in the map."""
+    """The stored points, with their positions in the map."""
     return server.slices.control(project_id)
 
 
-@router.put("/control", dependencies=PROCESS, summary="Keep control and check points")
+@router.put("/control", dependencies=PROCESS, summary="Store control and check points")
 def keep_control(project_id: str, state: ControlState, server: Server) -> ControlState:
-    """Safely on disk when this answers."""
+    """The points are on disk before the response is sent."""
     return server.slices.keep_control(project_id, state)
 
 
 @router.get("/control/report", summary="Residuals")
 async def control_report(project_id: str, server: Server, caller: CalledBy) -> dict[str, Any]:
-    """Map minus survey, control and check points apart, with every limit and whether it holds."""
+    """Map minus survey, separate for control and check points, with every limit."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     state = await run_in_threadpool(server.slices.control, project_id)
     terms = server.slices.terms(project_id, caller.name)
@@ -300,7 +300,7 @@ async def control_report(project_id: str, server: Server, caller: CalledBy) -> d
 async def control_file(
     project_id: str, ending: Literal["csv", "html"], server: Server, caller: CalledBy
 ) -> Response:
-    """CSV, or a sheet to print and sign; both say which map it was and who approved it."""
+    """CSV, or a sheet to print and sign; both name the map and its approval."""
     slices = server.slices
     artifacts = await run_in_threadpool(slices.artifacts, project_id)
     state = await run_in_threadpool(slices.control, project_id)
@@ -320,7 +320,7 @@ async def control_file(
 
 @router.get("/control/surface", summary="The map's surface at a surveyed point")
 async def surface(project_id: str, point: str, server: Server, caller: CalledBy) -> dict[str, Any]:
-    """Where a point lies in the map, and the foot of it on the surface beside it."""
+    """Position of a surveyed point in the map, and its foot on the nearest surface."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     state = await run_in_threadpool(server.slices.control, project_id)
     found: list[Xyz] = [one.xyz_m for one in state.points if one.id == point]
@@ -336,7 +336,7 @@ async def surface(project_id: str, point: str, server: Server, caller: CalledBy)
 async def compare_csv(
     project_id: str, ask: str, server: Server, caller: CalledBy
 ) -> PlainTextResponse:
-    """``ask`` is an CompareRequest as JSON."""
+    """``ask`` is a CompareRequest as JSON."""
     asked = _parsed_compare(ask)
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, asked.source)
     reference = server.slices.reference(project_id, asked.reference)
@@ -355,7 +355,7 @@ async def _overview(project_id: str, server: Server, caller: Caller, source: str
     image, about = "above.png", "above.json"
 
     async def make(out: Path) -> None:
-        # The image comes last: whoever finds it finds its window too.
+        # The image is written last: if it exists, its window exists too.
         made = replace(terms, outputs={about: out.with_suffix(".json"), image: out})
         await server.slices.run_interactive(made, work.overview, folder, image, about)
 

@@ -1,4 +1,4 @@
-"""Which map a request means, what was kept of it, and whose turn it is."""
+"""Maps, references and control points of slice requests, and the newest request per page."""
 
 from __future__ import annotations
 
@@ -42,17 +42,17 @@ MOST_CONTROL_BYTES = 16 << 20
 
 
 class Superseded(Conflict):
-    """The page asked for something newer meanwhile."""
+    """A newer request of the same page replaced this one."""
 
 
 @dataclass(frozen=True, slots=True)
 class Asking:
-    """Which of the requests of a page this is."""
+    """Position of a request among those of its page."""
 
     page: str
-    """Who asks; empty = nobody who will ask again."""
+    """Id of the page; empty = a single request."""
     turn: int
-    """The greatest known is the latest; of equal ones the one that came last."""
+    """The greatest is the latest; of equal ones the last to arrive."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +64,7 @@ class _Latest:
 
 
 class Slices:
-    """Of all projects. Keeps pictures from above and checks of maps beside the queue of jobs."""
+    """Slices of all projects; caches images from above and map checks."""
 
     def __init__(
         self,
@@ -84,7 +84,7 @@ class Slices:
     # -- which map
 
     def artifacts(self, project_id: str, source: str = "") -> dict[str, str]:
-        """Folders of the run that a request means.
+        """Artifact folders of the requested map.
 
         Raises:
             NotFound: If there is no such map.
@@ -103,7 +103,7 @@ class Slices:
         return self._latest(project_id)
 
     def sources(self, project_id: str) -> list[dict[str, str]]:
-        """Other maps to set beside the latest: earlier ones, and those of other projects."""
+        """Other maps to compare with the latest: earlier ones, and those of other projects."""
         root = self._projects.folder(project_id)
         current = Path(self._latest(project_id)["map"]).name
         rows = [row for row in read_stages(root) if row.stage == "map" and row.key != current]
@@ -120,7 +120,7 @@ class Slices:
         return earlier[:20] + others[:200]
 
     def evidence(self, project_id: str, source: str = "") -> Evidence | None:
-        """Who approved the map that a request means, and what its bytes must be; None = nobody.
+        """Approval of the requested map and the expected hashes; None = not approved.
 
         Raises:
             Altered: If an approval counts but was changed.
@@ -128,21 +128,21 @@ class Slices:
         _, found = self._approval(project_id, source)
         return found.evidence if found else None
 
-    def approval_words(self, project_id: str, source: str = "") -> str:
-        """Who approved the map that a request means, and whether its bytes are still those."""
+    def approval_text(self, project_id: str, source: str = "") -> str:
+        """Approval of the requested map as text, and the result of the hash check."""
         try:
             root, found = self._approval(project_id, source)
         except Altered as error:
             return f"ALTERED: {error}"
-        from recon4.slices.sheet import approval_words
+        from recon4.slices.sheet import approval_text
 
-        words = approval_words(asdict(found.evidence.stamp) if found else None)
+        text = approval_text(asdict(found.evidence.stamp) if found else None)
         if found is None:
-            return words
+            return text
         check = self._checks.state(root, found)
         if check.state == "altered":
-            return f"ALTERED: {check.words}"
-        return words if check.state == "checked" else f"{words}, bytes not compared yet"
+            return f"ALTERED: {check.message}"
+        return text if check.state == "checked" else f"{text}, bytes not compared yet"
 
     def _approval(self, project_id: str, source: str) -> tuple[Path, Approval | None]:
         kind, _, name = source.partition(":")
@@ -155,7 +155,7 @@ class Slices:
     def approved_artifacts(
         self, project_id: str, source: str, evidence: Evidence | None
     ) -> dict[str, str]:
-        """Folders of the run that a request means; of an approved earlier map its own frame too.
+        """Artifact folders of the requested map; an approved earlier map has its own frame.
 
         Raises:
             NotFound: If there is no such map.
@@ -172,7 +172,7 @@ class Slices:
         return work.references_in(self._folder(project_id) / "references")
 
     def reference(self, project_id: str, reference_id: str) -> str:
-        """Folder of a reference; empty when none is meant.
+        """Folder of a reference; empty for an empty id.
 
         Raises:
             NotFound: If there is no such reference.
@@ -187,7 +187,7 @@ class Slices:
         return str(folder)
 
     def new_reference(self, project_id: str) -> Path:
-        """Where a new one goes.
+        """Folder for a new reference.
 
         Raises:
             Conflict: If there are too many.
@@ -206,7 +206,7 @@ class Slices:
         function: Callable[..., T],
         *args: object,
     ) -> T:
-        """Run what writes a reference in a child, and seal the files it wrote."""
+        """Run a function that writes a reference in a child process, and seal the files."""
         root, names = self._projects.folder(project_id), (_name_of(folder),)
         await run_in_threadpool(begin_change, root, names)
         try:
@@ -215,7 +215,7 @@ class Slices:
             await run_in_threadpool(end_change, root, names)
 
     def remove_reference(self, project_id: str, reference_id: str) -> None:
-        """Remove one; the file it was made of stays."""
+        """Remove a reference; the imported source file stays."""
         folder = Path(self.reference(project_id, reference_id))
         gone = folder.with_name(f".tmp-{secrets.token_hex(6)}-{folder.name}")
         with changing(self._projects.folder(project_id), _name_of(folder), compared=False):
@@ -241,10 +241,10 @@ class Slices:
         return state.model_copy(update={"version": state.version or 0})
 
     def keep_control(self, project_id: str, state: ControlState) -> ControlState:
-        """Keep them, safely on disk; a place that is new was found in the latest map.
+        """Store control points on disk; new positions are those of the latest map.
 
         Raises:
-            Conflict: If somebody else kept others since this state was read.
+            Conflict: If another user stored control points since this state was read.
         """
         with self._keeping:
             return self._keep_control(project_id, state)
@@ -253,7 +253,7 @@ class Slices:
         before, key = self.control(project_id), Path(self._latest(project_id)["map"]).name
         assert before.version is not None
         if state.version not in (None, before.version):
-            raise Conflict("somebody else changed the control points meanwhile; read them again")
+            raise Conflict("the control points were changed by another user; read them again")
         found_in = {
             name: before.found_in.get(name, "") if before.picks.get(name) == at else key
             for name, at in state.picks.items()
@@ -269,30 +269,30 @@ class Slices:
     # -- work
 
     def terms(self, project_id: str, person: str, source: str = "") -> Terms:
-        """Work that may read the map a request means, and the references of its project."""
+        """Terms of work that may read the requested map and the references of its project."""
         kind, _, name = source.partition(":")
         of_map = self._projects.folder(name if kind == "project" else project_id)
         references = self._folder(project_id) / "references"
         return Terms(person=person, access=FileAccess(read=(of_map / "artifacts", references)))
 
     async def run_interactive(self, terms: Terms, function: Callable[..., T], *args: object) -> T:
-        """Compute what a person waits for."""
+        """Run interactive work in the compute pool."""
         return await self._pool.run_interactive(Lane.SLICE, terms, function, *args)
 
     async def run_latest(
         self, asking: Asking, terms: Terms, function: Callable[..., T], *args: object
     ) -> T:
-        """The same; of several requests of a page only the latest is answered.
+        """Run interactive work; of several requests of a page only the latest is completed.
 
         Raises:
-            Superseded: If the page asked for something newer.
+            Superseded: If the page sent a newer request.
         """
         if not asking.page:
             return await self.run_interactive(terms, function, *args)
         page = (terms.person, asking.page)
         before = self._newest.get(page)
         if before is not None and before.turn > asking.turn:
-            raise Superseded("a newer picture was asked for")
+            raise Superseded("a newer image was requested")
         if before is not None:
             before.work.cancel()
         work = asyncio.ensure_future(self.run_interactive(terms, function, *args))
@@ -304,17 +304,17 @@ class Slices:
             return await work
         except asyncio.CancelledError:
             if self._newest.get(page) != _Latest(asking.turn, work):
-                raise Superseded("a newer picture was asked for") from None
+                raise Superseded("a newer image was requested") from None
             raise
 
     async def run_background(
         self, terms: Terms, function: Callable[..., T], *args: object, **kwargs: object
     ) -> T:
-        """Compute what may take minutes, or reads a user's file, in a child of its own."""
+        """Run work that may take minutes, or reads a user's file, in a separate child process."""
         return await self._pool.run_background(Lane.SURVEY, terms, function, *args, **kwargs)
 
     async def kept(self, name: str, make: Callable[[Path], Any]) -> Path:
-        """A file made once a map."""
+        """A cached file, made once per map."""
         path = self._kept / name
         async with self._making.setdefault(path, asyncio.Lock()):
             if not path.exists():
@@ -326,11 +326,11 @@ class Slices:
         return self._projects.folder(project_id) / "slices"
 
     def _latest(self, project_id: str) -> dict[str, str]:
-        self._projects.map_artifact(project_id)  # says what is missing
+        self._projects.map_artifact(project_id)  # raises if there is no map
         found = read_artifacts(self._projects.folder(project_id))
         return {stage: str(folder) for stage, folder in found.items()}
 
 
 def _name_of(reference: Path) -> str:
-    """Of a reference's folder, below its project."""
+    """Path of a reference's folder below its project."""
     return f"slices/references/{reference.name}"

@@ -1,4 +1,4 @@
-"""What the slices' child processes do. Arguments and results are plain values."""
+"""Work of the slices in child processes. Arguments and results are records and plain values."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from recon4.mapping.tiles import TileSet
 from recon4.names import visible
 from recon4.review.evidence import Evidence
 from recon4.review.stamp import stamp_file
-from recon4.slices.acceptance import SheetWords, render_acceptance
+from recon4.slices.acceptance import AcceptanceText, render_acceptance
 from recon4.slices.align import align_by_icp, align_by_pairs
 from recon4.slices.colors import SENSOR_COLORS, ColorBy, Ground, Span, table
 from recon4.slices.compare import compare, to_csv, to_json, usual_cuts
@@ -45,11 +45,11 @@ from recon4.slices.points import SliceWindow, extent
 from recon4.slices.reference import Method, Reference, load_reference, read_facts
 from recon4.slices.residuals import ControlReport, residual_csv, residuals
 from recon4.slices.sheet import (
-    Words,
-    approval_words,
-    axis_words,
+    SheetText,
+    approval_text,
+    axis_labels,
     lay_out,
-    source_words,
+    source_text,
     write_sheet,
 )
 from recon4.slices.slice_image import Paper, SliceImage, draw, png
@@ -66,21 +66,21 @@ MOST_KEPT_BYTES = 64 << 20
 
 @lru_cache(maxsize=4)
 def tiles_of(folder: str) -> TileSet:
-    """A map; its folder is named by its content, so it never changes."""
+    """Open a map; its folder name is its hash, so it never changes."""
     return TileSet.open(Path(folder))
 
 
 @lru_cache(maxsize=4)
 def _approved_tiles(folder: str, manifest_sha256: str) -> TileSet:
-    """The same, every byte of it compared before it is used."""
+    """Open an approved map; every byte is checked before it is used."""
     return TileSet.open(Path(folder), CheckedArtifact.open(Path(folder), manifest_sha256))
 
 
 def _map_of(artifacts: Artifacts, evidence: Evidence | None) -> TileSet:
-    """The map of a request; what is approved is compared with what was signed.
+    """The map of a request; an approved map is compared with its signed hashes.
 
     Raises:
-        Altered: If the map, or what says where it lies, is not what was approved.
+        Altered: If the map or its georeference differs from the approved one.
     """
     if evidence is None:
         return tiles_of(artifacts["map"])
@@ -95,7 +95,7 @@ def _reference(folder: str, method: Method, changed_ns: int) -> Reference:
 
 
 def reference_of(folder: str, method: Method) -> Reference | None:
-    """A reference, read anew only when it was aligned anew."""
+    """Load a reference; it is cached until its alignment changes."""
     if not folder:
         return None
     facts = Path(folder) / "reference.json"
@@ -104,7 +104,7 @@ def reference_of(folder: str, method: Method) -> Reference | None:
 
 
 def facts(artifacts: Artifacts, context: dict[str, Any]) -> SliceFacts:
-    """What can be cut; ``context`` is what the front knows already."""
+    """Facts about the map; ``context`` has the fields that the server adds."""
     tiles, frame = tiles_of(artifacts["map"]), _frame(artifacts)
     low, high = (_xyz(np.nan_to_num(corner)) for corner in tiles.bounds_m)
     times = tiles.facts["time_ns"] or [0, 0]
@@ -116,7 +116,7 @@ def facts(artifacts: Artifacts, context: dict[str, Any]) -> SliceFacts:
         seconds=(times[1] - times[0]) / 1e9,
         key=Path(artifacts["map"]).name,
         crs=frame.crs,
-        frame=frame.words,
+        frame=frame.text,
         **context,
     )
 
@@ -124,7 +124,7 @@ def facts(artifacts: Artifacts, context: dict[str, Any]) -> SliceFacts:
 def slice_image(
     map_folder: str, reference: str, ask: SliceImageRequest, evidence: Evidence | None = None
 ) -> SliceImageView:
-    """A picture of a slice for the screen; of an approved map, of approved points only."""
+    """Draw an image of a slice; of an approved map only checked tiles are drawn."""
     began = time.perf_counter()
     tiles, cut = _map_of({"map": map_folder}, evidence), ask.cut.cut()
     window = _shaped(_window(ask, tiles, cut), ask.width / ask.height)
@@ -141,7 +141,7 @@ def slice_image(
         low=span.low,
         high=span.high,
         colors=_stops(ask.color, ask.ground),
-        axes=axis_words(cut),
+        axes=axis_labels(cut),
         origin_m=cut.origin_m,
         u=cut.u,
         v=cut.v,
@@ -151,7 +151,7 @@ def slice_image(
 
 
 def overview(map_folder: str, image: str, about: str) -> None:
-    """The map from above as a transparent picture, kept; walls are dark, floors are not."""
+    """Write the map from above as a transparent image; walls are dark, floors are not."""
     tiles = tiles_of(map_folder)
     low, high = tiles.bounds_m
     if not np.isfinite(low).all():
@@ -172,7 +172,7 @@ def overview(map_folder: str, image: str, about: str) -> None:
         window.left + dense.shape[1] * pixel_m,
         window.top,
     )
-    # The picture comes last: whoever finds it finds its window too.
+    # The image is written last: if it exists, its window exists too.
     write_json(Path(about), {name: float(value) for name, value in asdict(shown).items()})
     with atomic_file(Path(image)) as temporary:
         temporary.write_bytes(png(rgba))
@@ -181,7 +181,7 @@ def overview(map_folder: str, image: str, about: str) -> None:
 def pick_point(
     artifacts: Artifacts, cut: Cut, uv: tuple[float, float], radius_m: float
 ) -> PickView:
-    """The point of the map nearest to a place on a slice."""
+    """The point of the map nearest to a position on a slice."""
     found = pick(tiles_of(artifacts["map"]), cut, uv, radius_m=radius_m)
     if found is None:
         return PickView(found=False)
@@ -195,14 +195,14 @@ def pick_point(
 
 
 def double_walls(map_folder: str, out: str) -> None:
-    """The check of the whole map, kept as JSON."""
+    """Write the double wall check of the whole map as JSON."""
     found = find_double_walls(tiles_of(map_folder))
     context = asdict(found) | {"share": found.share}
     write_json(Path(out), null_for_nan(context))
 
 
 def comparison(map_folder: str, reference: str, ask: CompareRequest) -> dict[str, Any]:
-    """V Table 3.2 of some slices."""
+    """Compare slices with a reference (V Table 3.2)."""
     tiles = tiles_of(map_folder)
     against = reference_of(reference, ask.method)
     assert against is not None
@@ -213,7 +213,7 @@ def comparison(map_folder: str, reference: str, ask: CompareRequest) -> dict[str
 
 
 def comparison_csv(map_folder: str, reference: str, ask: CompareRequest) -> str:
-    """The same as CSV."""
+    """Compare slices with a reference, as CSV."""
     tiles = tiles_of(map_folder)
     against = reference_of(reference, ask.method)
     assert against is not None
@@ -221,29 +221,29 @@ def comparison_csv(map_folder: str, reference: str, ask: CompareRequest) -> str:
 
 
 def add_reference(path: str, out: str, name: str, artifacts: Artifacts | None) -> dict[str, Any]:
-    """Read a file of unknown origin; ``artifacts`` when it is in the map's CRS."""
+    """Import a file of unknown origin; ``artifacts`` if it is in the map's CRS."""
     frame = _frame(artifacts) if artifacts else None
     if frame is not None and frame.to_crs is None:
-        raise ConfigError("the map is local: a reference in a CRS cannot be laid onto it")
+        raise ConfigError("the map is local: a reference in a CRS cannot be aligned with it")
     return import_reference(Path(path), Path(out), name=name, frame=frame)
 
 
 def align_reference(
     map_folder: str, reference: str, how: str, pairs: tuple[list[Xyz], list[Xyz]]
 ) -> dict[str, Any]:
-    """Lay a reference onto the map; what it was before is forgotten."""
+    """Align a reference with the map; its earlier alignment is replaced."""
     folder = Path(reference)
     if how == "none":
-        return set_alignment(folder, SE3.identity(), words="none")
+        return set_alignment(folder, SE3.identity(), description="none")
     if how == "pairs":
         p_map, p_reference = np.array(pairs[0]), np.array(pairs[1])
         T, left_m = align_by_pairs(p_map.reshape(-1, 3), p_reference.reshape(-1, 3))
-        words = f"{len(left_m)} pairs, {100.0 * float(left_m.max()):.1f} cm left at most"
-        return set_alignment(folder, T, words=words)
+        description = f"{len(left_m)} pairs, largest residual {100.0 * float(left_m.max()):.1f} cm"
+        return set_alignment(folder, T, description=description)
     against = reference_of(reference, "plane")
     assert against is not None
     fit = align_by_icp(tiles_of(map_folder), against, rng=np.random.default_rng(1))
-    return set_alignment(folder, fit.T_map_reference, words=fit.words)
+    return set_alignment(folder, fit.T_map_reference, description=fit.description)
 
 
 def export(
@@ -254,10 +254,10 @@ def export(
     reference: str,
     context: dict[str, Any],
 ) -> str:
-    """Write a file of slices; its ending says which. It carries the approval, if there is one.
+    """Write an export of slices in the format of its suffix, with the approval if there is one.
 
     Raises:
-        Altered: If a tile that it shows is not what was approved.
+        Altered: If a tile differs from the approved one.
     """
     path, evidence = Path(out), context["evidence"]
     tiles, frame = _map_of(artifacts, evidence), _frame(artifacts)
@@ -292,9 +292,9 @@ def _export_geotiff(
     paper = Paper(window, max(FINEST_M, side_m / MOST_GEOTIFF_PX))
     against = reference_of(reference, ask.method)
     made = draw(tiles, cut, paper, color=ask.color, reference=against)
-    words = f"{context['project']}: {_approval_words(context['evidence'])}"
+    description = f"{context['project']}: {_approval_text(context['evidence'])}"
     frame = _frame(artifacts)
-    write_geotiff(made, path, frame=frame, span=span_of(ask, made), words=words)
+    write_geotiff(made, path, frame=frame, span=span_of(ask, made), description=description)
 
 
 def _export_sheet(
@@ -309,24 +309,24 @@ def _export_sheet(
     against = reference_of(reference, ask.method)
     layout = lay_out(_window(ask, tiles, cut), ask.size, ask.scale)
     made = draw(tiles, cut, layout.paper, color=ask.color, reference=against)
-    words = Words(
+    text = SheetText(
         project=context["project"],
-        frame=_frame(artifacts).words,
-        sources=source_words(context["key"]),
-        approval=_approval_words(context["evidence"]),
+        frame=_frame(artifacts).text,
+        sources=source_text(context["key"]),
+        approval=_approval_text(context["evidence"]),
         reference=against.name if against else "",
         sensors=tuple(str(name) for name in tiles.facts.get("sensors", [])),
     )
-    write_sheet(made, layout, path, span=span_of(ask, made), words=words)
+    write_sheet(made, layout, path, span=span_of(ask, made), text=text)
 
 
 def preview_control(data: bytes, name: str, order: str | None) -> dict[str, Any]:
-    """What a survey's file seems to hold."""
+    """Points and open questions of a survey file."""
     return asdict(read_control(data, name=name, order=order))  # type: ignore[arg-type]
 
 
 def control_report(artifacts: Artifacts, state: ControlState) -> dict[str, Any]:
-    """Residuals of the points that were found in the map."""
+    """Residuals of the points found in the map."""
     context: dict[str, Any] = null_for_nan(asdict(found := _residuals(artifacts, state)))
     return context | {"passed": found.passed}
 
@@ -334,26 +334,26 @@ def control_report(artifacts: Artifacts, state: ControlState) -> dict[str, Any]:
 def control_file(
     artifacts: Artifacts, state: ControlState, ending: str, context: dict[str, Any]
 ) -> str:
-    """The same as CSV or as a sheet in HTML.
+    """The residuals as CSV or as an HTML sheet.
 
     Raises:
-        Altered: If the map, or what says where it lies, is not what was approved.
+        Altered: If the map or its georeference differs from the approved one.
     """
     evidence = context["evidence"]
     if evidence:
         _map_of(artifacts, evidence)
         evidence.artifact("map", Path(artifacts["map"])).check_all()  # points were found in it
-    found, sources = _residuals(artifacts, state), source_words(Path(artifacts["map"]).name)
-    words = SheetWords(
+    found, sources = _residuals(artifacts, state), source_text(Path(artifacts["map"]).name)
+    text = AcceptanceText(
         project=context["project"],
-        frame=_frame(artifacts).words,
+        frame=_frame(artifacts).text,
         sources=sources,
-        approval=_approval_words(evidence),
+        approval=_approval_text(evidence),
     )
     if ending == "html":
-        return render_acceptance(found, words)
-    line = f"of {words.project}, {words.sources}, {words.frame}. {words.approval}"
-    return residual_csv(found, words=line)
+        return render_acceptance(found, text)
+    line = f"of {text.project}, {text.sources}, {text.frame}. {text.approval}"
+    return residual_csv(found, comment=line)
 
 
 def _residuals(artifacts: Artifacts, state: ControlState) -> ControlReport:
@@ -362,14 +362,14 @@ def _residuals(artifacts: Artifacts, state: ControlState) -> ControlReport:
     measured = {name: np.array(p_map) for name, p_map in here.items()}
     if state.frame == "crs":
         if own.to_crs is None:
-            raise ConfigError("the map is local: points of a CRS have no place in it")
+            raise ConfigError("the map is local: CRS coordinates cannot be converted")
         measured = {name: own.to_crs(p[None])[0] for name, p in measured.items()}
     surveyed = [ControlPoint(**point.model_dump()) for point in state.points]
     return residuals(surveyed, measured, outdated=state.picks.keys() - here.keys())
 
 
 def surface_at(artifacts: Artifacts, xyz_m: Xyz, frame: str) -> dict[str, Any]:
-    """Where a surveyed point lies in the map, and the map's surface beside it."""
+    """Position of a surveyed point in the map, and the nearest point of the map's surface."""
     p = np.array(xyz_m)
     if frame == "crs":
         p = _frame(artifacts).from_crs(p[None])[0]
@@ -388,25 +388,25 @@ def references_in(folder: Path) -> list[dict[str, Any]]:
 
 
 def _facts_or_problem(folder: Path) -> dict[str, Any]:
-    """One reference that cannot be read does not hide the others."""
+    """Facts of a reference, or the problem if it cannot be read."""
     try:
         return read_facts(folder)
     except StoreError as error:
-        words = visible(str(error).replace(f"{folder.parent}/", ""))
-        return {"name": f"{folder.name}: {words}", "kind": "damaged", "problem": words}
+        problem = visible(str(error).replace(f"{folder.parent}/", ""))
+        return {"name": f"{folder.name}: {problem}", "kind": "damaged", "problem": problem}
 
 
 def span_of(ask: SliceView, made: SliceImage) -> Span:
-    """The ends of the colors: as asked, else as usual."""
+    """Ends of the color scale: requested values, else those of the image."""
     low = made.span.low if ask.low is None else ask.low
     high = made.span.high if ask.high is None else ask.high
     if not high > low:
-        raise ConfigError(f"colors need a low end below the high end, got {low} and {high}")
+        raise ConfigError(f"color scale: expected low < high, got {low} and {high}")
     return Span(low, high)
 
 
-def _approval_words(evidence: Evidence | None) -> str:
-    return approval_words(asdict(evidence.stamp) if evidence else None)
+def _approval_text(evidence: Evidence | None) -> str:
+    return approval_text(asdict(evidence.stamp) if evidence else None)
 
 
 def _window(ask: SliceView, tiles: TileSet, cut: Cut) -> SliceWindow:
@@ -423,10 +423,10 @@ def _window(ask: SliceView, tiles: TileSet, cut: Cut) -> SliceWindow:
 
 
 def _shaped(window: SliceWindow, aspect: float) -> SliceWindow:
-    """Widened to a shape, about its middle."""
+    """Widened to an aspect ratio, about its center."""
     width, height = window.right - window.left, window.top - window.bottom
     if not (width > 0.0 and height > 0.0):
-        return window  # refused by the paper, in words
+        return window  # `Paper` rejects it with a message
     more_u = max(0.0, height * aspect - width) / 2.0
     more_v = max(0.0, width / aspect - height) / 2.0
     return replace(
@@ -458,7 +458,7 @@ def _xyz(values: Any) -> Xyz:
 
 
 def read_kept(path: Path) -> dict[str, Any]:
-    """JSON that a child kept.
+    """Read JSON that a child process wrote.
 
     Raises:
         StoreError: If it is damaged or too large.

@@ -130,25 +130,25 @@ def _write(
 def _write_picture(
     tiles: TileSet, cut: Cut, file: Path, frame: MapFrame, *, about: dict[str, Any]
 ) -> int:
-    from recon4.slices.colors import WORDS
+    from recon4.slices.colors import LABELS
     from recon4.slices.export import write_geotiff
     from recon4.slices.points import extent
-    from recon4.slices.sheet import Words, approval_words, lay_out, source_words, write_sheet
+    from recon4.slices.sheet import SheetText, approval_text, lay_out, source_text, write_sheet
     from recon4.slices.slice_image import Paper, draw
 
-    if about["color"] not in WORDS:
-        raise ConfigError(f"colors are {', '.join(WORDS)}; got {about['color']!r}")
-    approval = approval_words(asdict(about["stamp"]) if about["stamp"] else None)
+    if about["color"] not in LABELS:
+        raise ConfigError(f"colors are {', '.join(LABELS)}; got {about['color']!r}")
+    approval = approval_text(asdict(about["stamp"]) if about["stamp"] else None)
     window = extent(tiles, cut)
     if file.suffix.lower() == ".tif":
         side_m = max(window.right - window.left, window.top - window.bottom)
         made = draw(tiles, cut, Paper(window, max(0.005, side_m / 6000)), color=about["color"])
         title = f"{about['name']}: {approval}"
-        write_geotiff(made, file, frame=frame, span=made.span, words=title)
+        write_geotiff(made, file, frame=frame, span=made.span, description=title)
         return made.points
     layout = lay_out(window)
     made = draw(tiles, cut, layout.paper, color=about["color"])
     key = tiles.tiles[0].folder.parent.name if tiles.tiles else ""
-    words = Words(about["name"], frame.words, source_words(key), approval)
-    write_sheet(made, layout, file, span=made.span, words=words)
+    text = SheetText(about["name"], frame.text, source_text(key), approval)
+    write_sheet(made, layout, file, span=made.span, text=text)
     return made.points

@@ -1,4 +1,4 @@
-"""Decisions put into a pose graph."""
+"""Applies the decisions of a review to a pose graph."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
 from recon4.review.decisions import Measurement, Pair, Standing, pose_of
 
 CHANGED_M = 0.1
-"""An edge that lies farther from what the person saw is named [m] …"""
+"""Translation between the pose the reviewer saw and the edge that is reported [m]."""
 CHANGED_RAD = 0.02
-"""… or turned by more than this [rad]."""
+"""Rotation that is reported [rad]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Applied:
-    """A graph with the decisions in it."""
+    """A graph with the decisions applied."""
 
     graph: PoseGraph
-    """Not solved again."""
+    """Not yet solved again."""
     missing: tuple[Standing, ...]
-    """Decisions about pairs this graph does not have, or never registered: without effect."""
+    """Decisions without effect: their pair is not in this graph, or was never registered."""
     changed: tuple[Standing, ...]
-    """Decisions about edges that measure something else than the person saw: they hold."""
+    """Decisions in effect about edges that differ from the pose the reviewer saw."""
 
 
 def apply_decisions(graph: PoseGraph, standing: Sequence[Standing]) -> Applied:
-    """The graph with each decision's edge accepted, rejected, measured anew or added."""
+    """Accept, reject, replace or add the edge of each decision."""
     row_of = rows_by_pair(graph)
     node_of = {int(frame): node for node, frame in enumerate(graph.frame_ids)}
     edges = list(graph.edges)
@@ -52,7 +52,7 @@ def apply_decisions(graph: PoseGraph, standing: Sequence[Standing]) -> Applied:
 
 
 def rows_by_pair(graph: PoseGraph) -> dict[Pair, int]:
-    """Row of the edge of each pair that may be decided about: all but odometry."""
+    """Row of the edge of each pair that can be reviewed: all except odometry."""
     return {
         (int(graph.frame_ids[edge.i]), int(graph.frame_ids[edge.j])): row
         for row, edge in enumerate(graph.edges)
@@ -61,7 +61,7 @@ def rows_by_pair(graph: PoseGraph) -> dict[Pair, int]:
 
 
 def is_measured(edge: Edge) -> bool:
-    """Whether its pose was registered; else it is only a guess, and nothing to accept."""
+    """Whether the edge was registered; else its pose is predicted only and cannot be accepted."""
     return edge.converged and edge.reason is not Reason.OVERLAP
 
 

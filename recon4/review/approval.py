@@ -1,7 +1,7 @@
-"""Approving: a signed statement about a finished run, and a copy that nothing changes any more.
+"""Approval: a signed statement about a finished run, and an unchangeable copy of its results.
 
-``versions/<n>/approval.json`` holds the statement, its SHA-256, the hashes of the files issued with
-it, and an Ed25519 signature over both. A row in the journal makes it count; it is written last.
+``versions/<n>/approval.json`` contains the statement, its SHA-256, the hashes of the issued files,
+and an Ed25519 signature over both. It is valid once its row is in the journal, written last.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from recon4.store.project import SUMMARY, Project
 from recon4.store.seal import changing, check_sealed
 
 FORMAT = 2
-"""Of the statement. 2: it names the hash of the manifest of every artifact."""
+"""Format of the statement. 2: it contains the manifest hash of every artifact."""
 _FIGURES = (
     "points",
     "path_length_m",
@@ -49,7 +49,7 @@ class NotApprovable(StoreError):
 
 @dataclass(frozen=True, slots=True)
 class _ApprovalRequest:
-    """What is to be signed, and by whom."""
+    """Results to approve, and the signer."""
 
     summary: dict[str, Any]
     decided: Decided
@@ -70,19 +70,19 @@ def approve(
     *,
     seen: tuple[int | None, str | None] = (None, None),
 ) -> Approval:
-    """Sign the results of a project as they are and keep them as a new version.
+    """Sign the results of a project and store them as a new version.
 
     Args:
-        root: The project folder; nobody else may work in it meanwhile.
+        root: The project folder; it is locked meanwhile.
         key_file: Private key of the server; made when it is missing.
         signer: ``who``, ``role`` and ``why``.
-        confirmed: Sign although accepted pairs do not fit; needs a reason.
-        seen: How many rows of the journal and which graph the signer looked at; None = not said.
+        confirmed: Sign although accepted loop closures do not fit; needs a reason.
+        seen: Number of journal rows and key of the graph that the signer saw; None = not checked.
 
     Raises:
-        NotApprovable: If there is no finished run, decisions are not in it, it is damaged, or
-            there are conflicts and nobody confirmed them with a reason, or it is approved already,
-            or it is not what the signer looked at.
+        NotApprovable: If there is no finished run, it lacks decisions, is damaged, has conflicts
+            that are not confirmed with a reason, is approved already, or differs from what the
+            signer saw.
         StoreError: If the project is in use or cannot be written (`NoSpace`: disk full).
     """
     with Project.open(root):
@@ -105,10 +105,10 @@ def approve(
 
 
 def put_back(root: Path, approval: Approval) -> None:
-    """Make the results in the project folder those that were issued.
+    """Restore the issued results in the project folder.
 
     Raises:
-        Altered: If a file of the version is not what was signed; nothing is put back.
+        Altered: If a file of the version differs from the signed one; nothing is restored.
     """
     approval.check_issued()
     for path in sorted(approval.folder.iterdir()):
@@ -117,25 +117,25 @@ def put_back(root: Path, approval: Approval) -> None:
 
 
 def make_read_only(approval: Approval) -> None:
-    """Keep people from changing issued files by mistake; what is changed all the same is found.
+    """Protect issued files from accidental changes; deliberate ones are found by their hash.
 
-    A confined process may not change modes, so this is for the one that asked it to `approve`.
+    A sandboxed process may not change file modes, so the caller of `approve` does this.
     """
     for path in approval.folder.iterdir():
         path.chmod(0o444)
 
 
 def _hand_out(root: Path, approval: Approval) -> None:
-    """The results and the summary of the project are from now on those that were issued."""
+    """Replace the results and the summary of the project by the issued ones."""
     with changing(root, SUMMARY, compared=False):
         put_back(root, approval)
         _link(approval.folder / SUMMARY, root / SUMMARY)
 
 
 def _refuse_again(root: Path, asked: _ApprovalRequest) -> None:
-    """Results are signed once; what was cut off after it counted is handed out first.
+    """Reject a second approval of the same results; complete an interrupted one first.
 
-    A version that was changed since is worth nothing: then they may be signed again.
+    A version that was altered since is invalid, and the results may be approved again.
     """
     try:
         before = approval_of(root, asked.keys)
@@ -160,7 +160,7 @@ def _asked(root: Path, signer: Mapping[str, str]) -> _ApprovalRequest:
         raise NotApprovable(f"{error}: make a new map first") from error
     rows = read_rows(root)
     if record := broken(rows):
-        raise NotApprovable(f"the journal is not what was written: {record[0]}")
+        raise NotApprovable(f"the journal was altered: {record[0]}")
     decided = fold(row.decision() for row in rows)
     return _ApprovalRequest(summary, decided, rows, signer, _conflicts(root, summary))
 
@@ -178,11 +178,11 @@ def _conflicts(root: Path, summary: dict[str, Any]) -> int:
 
 def _refuse(root: Path, asked: _ApprovalRequest, *, confirmed: bool) -> None:
     if decisions_in_map(root) != asked.decided.key:
-        raise NotApprovable("the map does not know the last decisions: make a new map first")
+        raise NotApprovable("the last decisions are not in the map: make a new map first")
     if asked.conflicts and not (confirmed and asked.signer["why"].strip()):
         raise NotApprovable(
-            f"{asked.conflicts} accepted pairs do not fit the graph: settle them, or confirm them "
-            "with a reason"
+            f"{asked.conflicts} accepted loop closures do not fit the graph: reject them, or "
+            "confirm them with a reason"
         )
     for name, sha256 in asked.summary["hashes"]["results"].items():
         path = root / name
@@ -196,9 +196,9 @@ def _refuse(root: Path, asked: _ApprovalRequest, *, confirmed: bool) -> None:
 
 
 def _issue(root: Path, asked: _ApprovalRequest, *, version: int, key_file: Path) -> Approval:
-    """Write ``versions/<n>/``; it counts once the journal says so."""
+    """Write ``versions/<n>/``; it is valid once its row is in the journal."""
     folder = root / VERSIONS / str(version)
-    if folder.exists():  # of an approval that was cut off before it counted
+    if folder.exists():  # of an approval that was interrupted before it was valid
         folder.rename(folder.with_name(f"unfinished-{version}-{secrets.token_hex(3)}"))
     time = datetime.now(UTC).isoformat(timespec="seconds")
     statement = _statement(root, asked, version=version, time=time)
@@ -248,15 +248,15 @@ def _statement(root: Path, asked: _ApprovalRequest, *, version: int, time: str) 
 
 
 def _write_summary(folder: Path, summary: dict[str, Any], stamp: Stamp) -> None:
-    """The summary vouches for the files as they were issued."""
+    """Write the summary with the hashes of the issued files."""
     hashes = {path.name: hash_file(path) for path in sorted(folder.iterdir())}
-    record = dict(summary) | {"approval": json.loads(stamp.words())}
+    record = dict(summary) | {"approval": json.loads(stamp.json_line())}
     record["hashes"] = dict(summary["hashes"]) | {"results": hashes}
     write_json(folder / "summary.json", record)
 
 
 def _link(source: Path, target: Path) -> None:
-    """The same file under another name; a file system without links gets a copy."""
+    """Hard-link a file; copy it on file systems without links."""
     with atomic_file(target) as temporary:
         try:
             os.link(source, temporary)

@@ -1,4 +1,4 @@
-"""Find an approval that counts, and compare it with the journal and its signature."""
+"""Finds valid approvals: compared with the journal and their signature."""
 
 from __future__ import annotations
 
@@ -22,42 +22,42 @@ VERSIONS = "versions"
 
 @dataclass(frozen=True, slots=True)
 class Approval:
-    """One that counts: its row in the journal, its statement, and its signature fit together."""
+    """A valid approval: journal row, statement and signature agree."""
 
     version: int
     hash: str
     """SHA-256 of the statement."""
     folder: Path
-    """Holds the files issued with it."""
+    """Folder of the issued files."""
     stamp: Stamp
     artifacts: Mapping[str, str]
-    """Stage -> key of what was approved."""
+    """Stage -> key of the approved artifact."""
     manifests: Mapping[str, str]
-    """Stage -> SHA-256 of the manifest of its artifact; nothing before statement format 2."""
+    """Stage -> SHA-256 of the manifest of its artifact; empty before statement format 2."""
     issued: Mapping[str, str]
     """File name -> SHA-256, as signed."""
 
     @property
     def evidence(self) -> Evidence:
-        """What the artifacts must hash to."""
+        """Expected hashes of the artifacts."""
         known = self.manifests
         manifests = {stage: known.get(stage, "") for stage in self.artifacts}
         return Evidence(self.stamp, self.artifacts, manifests)
 
     def check_issued(self) -> None:
-        """Compare every file that was issued; one that was checked before is not read again.
+        """Compare every issued file with its hash; an unchanged file is not read again.
 
         Raises:
-            Altered: If one is missing or has other bytes.
+            Altered: If a file is missing or has other bytes.
         """
         for name in self.issued:
             self.check_issued_file(self.folder / name)
 
     def check_issued_file(self, path: Path) -> None:
-        """Compare a file with the one of its name that was issued, wherever it lies.
+        """Compare a file in any folder with the issued file of the same name.
 
         Raises:
-            Altered: If none was issued under this name, or this one is missing or has other bytes.
+            Altered: If no such file was issued, or this one is missing or has other bytes.
         """
         if path.name not in self.issued:
             raise Altered(f"{path.name} was not issued with version {self.version}")
@@ -72,10 +72,10 @@ class Approval:
 
 
 def approval_of(root: Path, keys: Mapping[str, str]) -> Approval | None:
-    """The newest approval of results made of these artifacts; None if nobody approved them.
+    """The newest approval of results made of these artifacts; None if there is none.
 
     Raises:
-        Altered: If it counts but its file was changed, or the journal was.
+        Altered: If its file or the journal was changed.
         StoreError: If a file cannot be read.
     """
     wanted = hash_json(dict(keys))
@@ -90,7 +90,7 @@ def approval_of_map(root: Path, map_key: str) -> Approval | None:
     """The newest approval of an earlier map, by the key of its artifact.
 
     Raises:
-        Altered: If an approval counts but its file was changed, or the journal was.
+        Altered: If the file of an approval or the journal was changed.
         StoreError: If a file cannot be read.
     """
     rows = read_rows(root)
@@ -103,7 +103,7 @@ def approval_of_map(root: Path, map_key: str) -> Approval | None:
 
 
 def latest_approval(root: Path, rows: Sequence[Row]) -> dict[str, Any] | None:
-    """The newest approval for people; ``current`` = the results in the folder are those and say so.
+    """Fields of the newest approval; ``current`` = the results in the folder name it.
 
     Raises:
         StoreError: If a file is damaged.
@@ -124,11 +124,11 @@ def latest_approval(root: Path, rows: Sequence[Row]) -> dict[str, Any] | None:
 
 
 def read_approval(folder: Path, row: Row) -> tuple[Approval, str]:
-    """The approval that a row of the journal names, and the short name of the key that signed it.
+    """The approval named by a row of the journal, and the fingerprint of its key.
 
     Raises:
         Altered: If ``approval.json`` is missing or damaged, is not the one of the row, was signed
-            over another journal, or the signature does not hold.
+            over another journal, or its signature is not valid.
     """
     facts, path = _facts(row), folder / "approval.json"
     try:
@@ -146,7 +146,7 @@ def read_approval(folder: Path, row: Row) -> tuple[Approval, str]:
     if hash_json(statement) != stamp.hash or found["hash"] != stamp.hash:
         raise Altered("the statement is not the one in the journal")
     if not is_signed({"hash": stamp.hash, "issued": issued}, signature):
-        raise Altered("the signature does not hold")
+        raise Altered("the signature is not valid")
     if signature.get("key") != key:
         raise Altered(f"it names the key {signature.get('key')}, its signature is by {key}")
     if signed_head != row.prev_hash:
@@ -157,11 +157,11 @@ def read_approval(folder: Path, row: Row) -> tuple[Approval, str]:
 def _counted(root: Path, rows: Sequence[Row], row: Row) -> Approval:
     version = str(_facts(row).get("version"))
     if wrong := broken(rows):
-        raise Altered(f"the journal is not what was written: {wrong[0]}")
+        raise Altered(f"the journal was altered: {wrong[0]}")
     try:
         return read_approval(root / VERSIONS / version, row)[0]
     except Altered as error:
-        raise Altered(f"the approval of version {version} does not hold: {error}") from error
+        raise Altered(f"the approval of version {version} is not valid: {error}") from error
 
 
 def _facts(row: Row) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Are the journal and the approvals of a project what was written and signed?"""
+"""Audit of a project: hash chain of the journal, signatures and files of its approvals."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from recon4.store.hashing import hash_file
 
 @dataclass(frozen=True, slots=True)
 class ReviewAudit:
-    """What was found."""
+    """Result of an audit."""
 
     rows: int
-    """Of the journal."""
+    """Rows of the journal."""
     approvals: tuple[str, ...]
-    """Those that hold, in words."""
+    """Valid approvals, one line each."""
     damaged: tuple[str, ...]
-    """What differs, in words; empty = all is well."""
+    """Problems, one line each; empty = none."""
 
 
 def audit_review(root: Path, progress: Progress) -> ReviewAudit:
-    """Follow the chain of the journal; check the signature and the files of every approval.
+    """Check the hash chain of the journal, and signature and files of every approval.
 
     Raises:
         StoreError: If the journal cannot be read.
@@ -51,7 +51,7 @@ def audit_review(root: Path, progress: Progress) -> ReviewAudit:
 
 
 def _check(folder: Path, row: Row) -> tuple[list[str], str]:
-    """What is wrong with a version, and the short name of the key that signed it."""
+    """Problems of a version, and the fingerprint of its key."""
     try:
         approval, key = read_approval(folder, row)
     except Altered as error:
@@ -68,7 +68,7 @@ def _files(folder: Path, issued: dict[str, Any]) -> list[str]:
 
 
 def _surplus(folder: Path, counted: set[str]) -> list[str]:
-    """Versions the journal does not know; those cut off before they counted are named so."""
+    """Versions without a row in the journal, except interrupted approvals."""
     if not folder.is_dir():
         return []
     names = sorted(path.name for path in folder.iterdir())

@@ -1,6 +1,6 @@
-"""What people decided about pairs, and what stands of it: the fold over the journal.
+"""Decisions about pairs, and the ones in force: the fold over the journal.
 
-A decision names its pair by the ids of two multiframes, so that it survives another search.
+A decision names its pair by the ids of two multiframes, so it stays valid after another search.
 """
 
 from __future__ import annotations
@@ -22,36 +22,36 @@ Pair = tuple[int, int]
 
 
 class DecisionKind(StrEnum):
-    """What a row of the journal says."""
+    """Kind of a row of the journal."""
 
     ACCEPT = "accept"
-    """The pair counts, whatever the program found."""
+    """The pair is accepted; overrides the automatic verdict."""
     REJECT = "reject"
-    """The pair does not count."""
+    """The pair is rejected."""
     RESTORE = "restore"
-    """The program may decide again."""
+    """The automatic verdict applies again."""
     REPLACE = "replace"
-    """The pair counts, with another measurement."""
+    """The pair is accepted with another measurement."""
     ADD = "add"
-    """A pair the program never tried counts."""
+    """A pair that was never registered automatically is accepted."""
     UNDO = "undo"
-    """Take back the last decision that was not taken back."""
+    """Undo the last decision that is not undone."""
     REDO = "redo"
-    """Decide again what was taken back last."""
+    """Redo the decision that was undone last."""
     APPROVE = "approve"
-    """A finished map was signed; changes no decision."""
+    """A finished map was approved; changes no decision."""
 
 
 AUTOMATIC = "auto"
-"""`Edge.decided_by` of what the program decided; nobody may bear this name."""
+"""`Edge.decided_by` of automatic verdicts; no user may have this name."""
 MEASURED = (DecisionKind.REPLACE, DecisionKind.ADD)
-"""Kinds that bring a measurement of their own."""
+"""Kinds with a measurement of their own."""
 ABOUT_PAIRS = (DecisionKind.ACCEPT, DecisionKind.REJECT, DecisionKind.RESTORE, *MEASURED)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Measurement:
-    """A registration a person asked for."""
+    """A registration requested by a reviewer."""
 
     T_i_j: tuple[float, ...]
     """Pose of ``j`` in ``i``: x y z [m], quaternion x y z w."""
@@ -82,7 +82,7 @@ class Decision:
     pair: Pair | None = None
     """Of decisions about a pair."""
     T_i_j: tuple[float, ...] = ()
-    """The pose the person saw, x y z qx qy qz qw; empty where there is no edge."""
+    """The pose the reviewer saw, x y z qx qy qz qw; empty where there is no edge."""
     measurement: Measurement | None = None
     """Of `REPLACE` and `ADD`."""
     facts: dict[str, Any] | None = None
@@ -90,7 +90,7 @@ class Decision:
 
     def __post_init__(self) -> None:
         if self.who in ("", AUTOMATIC):
-            raise ConfigError(f"a decision is made by a person, not by {self.who!r}")
+            raise ConfigError(f"a decision needs the name of a user, got {self.who!r}")
         if (self.pair is None) == (self.kind in ABOUT_PAIRS):
             raise ConfigError(
                 f"a decision to {self.kind} names {'a' if self.pair is None else 'no'} pair"
@@ -103,16 +103,16 @@ class Decision:
             raise ConfigError(f"a decision to {self.kind} with or without a measurement")
 
     def body(self) -> dict[str, Any]:
-        """What the journal keeps beside its columns, as JSON values."""
+        """Fields that the journal stores beside its columns, as JSON values."""
         measured = asdict(self.measurement) if self.measurement else None
         return {"T_i_j": list(self.T_i_j), "measurement": _plain(measured), "facts": self.facts}
 
     @staticmethod
     def of(kind: str, who: str, why: str, *, pair: Pair | None, body: dict[str, Any]) -> Decision:
-        """From what the journal kept.
+        """Decode a row of the journal.
 
         Raises:
-            StoreError: If that is no decision.
+            StoreError: If the row is no decision.
         """
         try:
             record = body["measurement"]
@@ -126,22 +126,22 @@ class Decision:
                 facts=body["facts"],
             )
         except (KeyError, TypeError, ValueError) as error:
-            raise StoreError(f"the journal holds a row that is no decision: {error}") from error
+            raise StoreError(f"the journal has a row that is no decision: {error}") from error
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Standing:
-    """What holds for a pair after all decisions about it."""
+    """The decision in force for a pair."""
 
     pair: Pair
     accepted: bool
     who: str
-    """Who decided last."""
+    """Reviewer of the last decision."""
     why: str
     T_i_j: tuple[float, ...]
-    """What that person saw."""
+    """The pose that the reviewer saw."""
     measurement: Measurement | None = None
-    """In place of the program's."""
+    """Replaces the automatic measurement; None = that one applies."""
 
     def to_json(self) -> dict[str, Any]:
         """Plain JSON values."""
@@ -151,18 +151,18 @@ class Standing:
 
 @dataclass(frozen=True, slots=True)
 class Decided:
-    """The fold over a journal."""
+    """The decisions in force: the fold over a journal."""
 
     standing: tuple[Standing, ...] = ()
     """Ordered by pair."""
     undoable: int = 0
-    """How many decisions can be taken back."""
+    """Number of decisions that can be undone."""
     redoable: int = 0
-    """How many can be decided again."""
+    """Number of decisions that can be redone."""
 
     @property
     def key(self) -> str:
-        """SHA-256 of what stands; the same decisions have the same key, whenever they were made."""
+        """SHA-256 of the decisions in force, independent of when they were made."""
         return hash_json([one.to_json() for one in self.standing])
 
     def __bool__(self) -> bool:
@@ -173,10 +173,10 @@ NOTHING_DECIDED = Decided()
 
 
 def fold(decisions: Iterable[Decision]) -> Decided:
-    """What stands after these decisions, oldest first.
+    """The decisions in force after these, oldest first.
 
     Raises:
-        StoreError: If something is taken back that was never decided.
+        StoreError: If an undo or redo has no decision to apply to.
     """
     done: list[Decision] = []
     undone: list[Decision] = []
@@ -186,7 +186,9 @@ def fold(decisions: Iterable[Decision]) -> Decided:
                 (done, undone) if decision.kind is DecisionKind.UNDO else (undone, done)
             )
             if not source:
-                raise StoreError(f"the journal holds a row to {decision.kind} nothing")
+                raise StoreError(
+                    f"the journal is damaged: a row has nothing to {decision.kind}"
+                )
             target.append(source.pop())
         elif decision.kind is not DecisionKind.APPROVE:
             done.append(decision)

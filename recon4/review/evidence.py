@@ -1,4 +1,4 @@
-"""What an approval says about the bytes it was given for: compared before anything is stamped."""
+"""Expected hashes of an approved map, checked before a file is stamped."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from recon4.review.stamp import Stamp
 from recon4.store.checked import Altered, CheckedArtifact
 
 FRAME_FILE = "georeference.json"
-"""Of the artifact of the stage ``level``: says where the map lies on Earth."""
+"""Georeference of the map, in the artifact of the stage ``level``."""
 
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """The words of an approval, and the hashes of the manifests it was signed over."""
+    """The stamp of an approval, and the manifest hashes it was signed over."""
 
     stamp: Stamp
     artifacts: Mapping[str, str]
     """Stage -> key of the artifact."""
     manifests: Mapping[str, str]
-    """Stage -> SHA-256 of the manifest of its artifact. Empty text = the approval is of an earlier
-    version of recon4, which did not name it: then the manifest itself is trusted."""
+    """Stage -> SHA-256 of the manifest of its artifact. Empty text = the approval was made by an
+    earlier version of recon4 that did not store it; the manifest is then trusted."""
 
     def artifact(self, stage: str, folder: Path) -> CheckedArtifact:
-        """The artifact of a stage, to be compared as it is read.
+        """Open the artifact of a stage; its files are checked as they are read.
 
         Raises:
             Altered: If the approval is of another artifact, or the manifest was changed.
@@ -39,7 +39,7 @@ class Evidence:
             raise Altered(f"{self.refusal}: {error}") from error
 
     def open_map(self, folder: Path) -> TileSet:
-        """The approved map; every tile is compared before it is used.
+        """Open the approved map; every tile is checked before it is used.
 
         Raises:
             Altered: If it was changed.
@@ -48,7 +48,7 @@ class Evidence:
         return TileSet.open(folder, self.artifact("map", folder))
 
     def check_frame(self, artifacts: Mapping[str, Path]) -> None:
-        """Compare what says where the map lies.
+        """Check the georeference file.
 
         Raises:
             Altered: If it was changed.
@@ -61,5 +61,5 @@ class Evidence:
 
     @property
     def refusal(self) -> str:
-        """Why nothing is written."""
+        """Start of the message when a check fails."""
         return f"this is not what {self.stamp.who} approved as version {self.stamp.version}"

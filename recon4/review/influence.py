@@ -1,14 +1,14 @@
-"""How much the map would move if one edge changed sides: what the queue is ordered by.
+"""Influence on the map: how far it moves if an edge is removed or added; orders the queue.
 
 Linearized about the poses found. An edge has the residual ``r = log(T_ij^-1 T_i^-1 T_j)`` and the
 information ``W``; ``J = [-Ad(T_j^-1 T_i), I]`` is its derivative by right twists of the poses of
-``i`` and ``j``; ``S = J H^-1 J^T`` is what the whole graph knows about that relative pose
+``i`` and ``j``; ``S = J H^-1 J^T`` is the covariance of that relative pose
 (``H`` = sum of ``J^T W J`` over the edges in it). Then, by the matrix inversion lemma,
 
-    in the graph, taken out:    d = (I - S W)^-1 S W r
-    not in it, put in:          d = -S (S + W^-1)^-1 r
+    in the graph, removed:      d = (I - S W)^-1 S W r
+    not in it, added:           d = -S (S + W^-1)^-1 r
 
-is how the relative pose of the two would change. Its size, ``|v| + 5 m |omega|``, is the influence.
+is the change of the relative pose of the two. Its size, ``|v| + 5 m |omega|``, is the influence.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from recon4.model.pose_graph import PoseGraph, Relations
 from recon4.pose_graph.relations import adjoint
 
 ARM_M = 5.0
-"""A turn counts as what it moves at this distance [m]."""
+"""Lever arm that converts a rotation to a displacement [m]."""
 _NOTHING = 1e-12
-"""Share of the largest information that an entry weighs which is only to have a place."""
+"""Weight of structural entries, as a fraction of the largest information."""
 _GAUGE = 1e9
 
 
@@ -37,10 +37,10 @@ def influence_m(graph: PoseGraph, asked: NDArray[np.bool_]) -> Array:
 
     Args:
         graph: Solved.
-        asked: Edges to look at, (E,).
+        asked: Mask of the edges to evaluate, (E,).
 
     Returns:
-        (E,), NaN where not asked.
+        (E,), NaN outside the mask.
     """
     of = graph.relations
     out = np.full(len(of), np.nan)
@@ -59,13 +59,13 @@ def _changes(S: Array, W: Array, r: Array, in_graph: NDArray[np.bool_]) -> Array
     """Change of the relative pose of each edge's ends, (M, 6)."""
     out = np.empty_like(r)
     eye = np.eye(6)
-    share = S @ W
-    pull = share @ r[..., None]
+    gain = S @ W
+    pull = gain @ r[..., None]
     used, free = in_graph, ~in_graph
-    # The little more than one keeps an edge that alone holds its node from dividing by zero.
-    out[used] = np.linalg.solve((1.0 + 1e-6) * eye - share[used], pull[used])[..., 0]
+    # 1 + 1e-6: an edge that is the only one of its node would divide by zero.
+    out[used] = np.linalg.solve((1.0 + 1e-6) * eye - gain[used], pull[used])[..., 0]
     # S (S + W^-1)^-1 r = (S W + I)^-1 S W r: no inverse of W is needed.
-    out[free] = -np.linalg.solve(share[free] + eye, pull[free])[..., 0]
+    out[free] = -np.linalg.solve(gain[free] + eye, pull[free])[..., 0]
     return out
 
 
@@ -102,10 +102,10 @@ def _relative_covariance(of: Relations, A: Array, rows: NDArray[np.intp], *, nod
 
 
 def _hessian(of: Relations, A: Array, asked: NDArray[np.intp], *, nodes: int) -> Any:
-    """``H`` of the edges in the graph, the first node held, (6 N, 6 N).
+    """``H`` of the edges in the graph, the first node fixed, (6 N, 6 N).
 
-    What is asked about has a place in the factor only where ``H`` is not zero, so all blocks of
-    those edges and of the nodes weigh next to nothing at least.
+    The sparse factor has entries only where ``H`` is not zero, so the blocks of all evaluated edges
+    and of all nodes get at least the tiny weight `_NOTHING`.
     """
     used = np.flatnonzero(of.in_graph)
     i, j, W, A = of.i[used], of.j[used], of.information[used], A[used]

@@ -1,7 +1,7 @@
-"""The journal of a project: every decision, who, when and why, in rows nobody changes again.
+"""The append-only journal of a project: every decision with reviewer, time and reason.
 
-``decisions.sqlite`` (WAL, synchronous FULL). Each row holds the hash of the one before it, so a row
-that is changed, removed or put in between shows (`broken`).
+``decisions.sqlite`` (WAL, synchronous FULL). Each row contains the hash of the one before it, so
+`broken` finds a row that was changed, removed or inserted.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from recon4.store.seal import changing
 
 NAME = "decisions.sqlite"
 START = "0" * 64
-"""What the first row takes for the hash of the one before."""
+"""``prev_hash`` of the first row."""
 _BUSY_S = 10.0
 
 _SCHEMA = """
@@ -51,12 +51,12 @@ class NothingToUndo(StoreError):
 
 
 class JournalChanged(StoreError):
-    """Somebody else decided something meanwhile."""
+    """Another reviewer added a decision meanwhile."""
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One row; the fields are the columns."""
+    """A row of the journal; the fields are the columns."""
 
     seq: int
     """Counts from 1 without holes."""
@@ -79,7 +79,7 @@ class Row:
         return hashlib.sha256(text.encode()).hexdigest()
 
     def decision(self) -> Decision:
-        """What was decided.
+        """The decision of this row.
 
         Raises:
             StoreError: If the row is no decision.
@@ -95,7 +95,7 @@ class Row:
 
 
 def read_rows(root: Path) -> list[Row]:
-    """All rows of a project, oldest first; none if nothing was ever decided.
+    """All rows of a project, oldest first; none if there is no journal.
 
     Raises:
         StoreError: If the file is damaged.
@@ -108,7 +108,7 @@ def read_rows(root: Path) -> list[Row]:
 
 
 def read_decided(root: Path) -> Decided:
-    """What stands in a project.
+    """The decisions in force in a project.
 
     Raises:
         StoreError: If the journal is damaged.
@@ -117,20 +117,20 @@ def read_decided(root: Path) -> Decided:
 
 
 def append(root: Path, decision: Decision, *, after_seq: int | None = None) -> Row:
-    """Add a row; it is on the disk when this returns.
+    """Append a row; it is on disk when this returns.
 
     Args:
         root: The project folder.
-        decision: What was decided.
-        after_seq: Refuse if the last row is another one; None = any.
+        decision: The new decision.
+        after_seq: Required number of the last row; None = any.
 
     Raises:
-        NothingToUndo: If it is an undo or redo and there is nothing to take back.
+        NothingToUndo: If there is no decision to undo or redo.
         JournalChanged: If the last row is not ``after_seq``.
         StoreError: If the file is damaged or cannot be written (`NoSpace`: disk full).
     """
     with changing(root, NAME), _database(root / NAME, write=True) as db:
-        db.execute("BEGIN IMMEDIATE")  # from here on no other writer
+        db.execute("BEGIN IMMEDIATE")  # no other writer from here on
         rows = _rows(db)
         _check(rows, decision, after_seq)
         row = _next(rows, decision)
@@ -144,7 +144,7 @@ def append(root: Path, decision: Decision, *, after_seq: int | None = None) -> R
 
 
 def broken(rows: Sequence[Row]) -> list[str]:
-    """What is wrong with the chain of hashes, in words; empty = as it was written."""
+    """Problems of the hash chain; empty = intact."""
     problems, before = [], START
     for place, row in enumerate(rows, start=1):
         if row.seq != place:
@@ -166,7 +166,7 @@ def head(rows: Sequence[Row]) -> str:
 def _check(rows: Sequence[Row], decision: Decision, after_seq: int | None) -> None:
     if after_seq is not None and after_seq != len(rows):
         raise JournalChanged(
-            f"somebody decided something meanwhile ({len(rows) - after_seq} more rows); look again"
+            f"another reviewer made {len(rows) - after_seq} decisions meanwhile; look again"
         )
     if decision.kind in (DecisionKind.UNDO, DecisionKind.REDO):
         decided = fold(row.decision() for row in rows)

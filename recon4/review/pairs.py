@@ -1,6 +1,6 @@
-"""Two places of the walk laid over each other: their points, and a registration from a first guess.
+"""Points and poses of a pair, and its registration from a predicted pose.
 
-Only nodes of the graph can be joined; a moment between two of them means the nearer one.
+Only nodes of the graph can be joined; a time between two nodes selects the nearer one.
 """
 
 from __future__ import annotations
@@ -32,26 +32,26 @@ from recon4.store.atomic import null_for_nan
 
 MAGIC = b"R4PP"
 LAYOUT = struct.Struct("<4sIII")
-"""Head of the points: magic, version 1, numbers of points of i and of j; then float32 x y z of
-each in the body frame of its own multiframe [m], little-endian."""
+"""Header of the point data: magic, version 1, numbers of points of i and of j. Then float32 x y z
+of each point in the body frame of its multiframe [m], little-endian."""
 MOST_POINTS = 30_000
-"""Of each of the two."""
+"""Limit for each multiframe of the pair."""
 MOST_REACH = 10
-"""Multiframes before and after that may be shown along."""
+"""Largest number of multiframes shown before and after each one."""
 _VOXEL_M = 0.04
 _MOST_RANGE_M = 60.0
 _LEAST_SPREAD_M = 0.1
-"""Points picked must spread at least this far across the line they lie along [m]."""
+"""Smallest extent of picked points across their principal line [m]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Alignment:
-    """What a registration from a person's guess found."""
+    """Result of a registration from an operator's predicted pose."""
 
     measurement: Measurement
     converged: bool
     reason: str
-    """Why the program would turn it down; empty = it would not."""
+    """Why the pair would be rejected automatically; empty = it would be accepted."""
 
     def to_json(self) -> dict[str, Any]:
         """Plain JSON values."""
@@ -75,7 +75,7 @@ def pair_points(source: Source, pair: Pair, reach: int) -> bytes:
 
 
 def pair_facts(source: Source, pair: Pair) -> dict[str, Any]:
-    """Poses and alternative paths of a pair, tried or not, as JSON values.
+    """Poses and alternative paths of a pair, registered or not.
 
     Raises:
         ConfigError: If one of them is no node of the graph.
@@ -106,21 +106,21 @@ def pair_facts(source: Source, pair: Pair) -> dict[str, Any]:
     return record
 
 
-def align(source: Source, pair: Pair, guess: tuple[float, ...]) -> Alignment:
-    """Register two nodes as the search does, from a person's guess.
+def align(source: Source, pair: Pair, predicted: tuple[float, ...]) -> Alignment:
+    """Register two nodes like the loop closure search, from an operator's predicted pose.
 
     Args:
         source: The project's latest graph.
         pair: Two multiframes that are nodes.
-        guess: First ``T_i_j``, x y z [m] and quaternion x y z w.
+        predicted: Initial ``T_i_j``, x y z [m] and quaternion x y z w.
 
     Raises:
-        ConfigError: If one of them is no node, or the guess is no pose.
+        ConfigError: If one of them is no node, or ``predicted`` is no pose.
         StoreError: If artifacts are missing or damaged.
     """
-    T_predicted = _checked(guess)
+    T_predicted = _checked(predicted)
     nodes_of(source.verified, pair)
-    # What a person points at is tried, however little the two see of each other.
+    # An operator's pair is registered at any overlap.
     settings = replace(source.settings, overlap=replace(source.settings.overlap, threshold=0.0))
     lost = _lost(source)
     rows = np.array(pair, dtype=np.intp)
@@ -149,7 +149,7 @@ def align(source: Source, pair: Pair, guess: tuple[float, ...]) -> Alignment:
 
 
 def fit_points(p_i: Array, p_j: Array) -> tuple[float, ...]:
-    """``T_i_j`` of three or more points that a person found in both places, as `numbers_of`.
+    """``T_i_j`` from three or more corresponding points, as `numbers_of`.
 
     Args:
         p_i: Points in the body frame at i [m], (N, 3).
@@ -168,7 +168,7 @@ def fit_points(p_i: Array, p_j: Array) -> tuple[float, ...]:
 
 
 def walk_facts(source: Source) -> dict[str, Any]:
-    """The nodes for a map of the walk and its sliders: frame ids, seconds, x y z [m].
+    """The nodes along the trajectory: frame ids, seconds since the first, x y z [m].
 
     Raises:
         StoreError: If there is no verified graph.
@@ -207,7 +207,7 @@ def _cloud(source: Source, frame: int, reach: int) -> NDArray[np.float64]:
 
 
 def _thinned(p_body: Array) -> Array:
-    """One point a small cube, then evenly few enough."""
+    """One point per voxel, then an even sample of at most `MOST_POINTS`."""
     keys = np.floor(p_body / _VOXEL_M).astype(np.int64) + (1 << 20)
     packed = (keys[:, 0] << 42) | (keys[:, 1] << 21) | keys[:, 2]
     rows = np.sort(np.unique(packed, return_index=True)[1])
@@ -217,12 +217,12 @@ def _thinned(p_body: Array) -> Array:
 
 
 def _upright(source: Source, graph: PoseGraph, node: int) -> list[float]:
-    """Rotation of the body of a node in a levelled frame, as a quaternion x y z w."""
+    """Rotation of the body of a node in a leveled frame, as a quaternion x y z w."""
     folder = source.artifacts.get("level")
     if folder is not None:
-        levelled = load_trajectory(folder / "trajectory.npz")
-        at = int(np.clip(graph.t_ns[node], levelled.t_ns[0], levelled.t_ns[-1]))
-        quat = levelled.at(np.array([at]))[0].quat_xyzw()
+        leveled = load_trajectory(folder / "trajectory.npz")
+        at = int(np.clip(graph.t_ns[node], leveled.t_ns[0], leveled.t_ns[-1]))
+        quat = leveled.at(np.array([at]))[0].quat_xyzw()
     else:
         quat = graph.T_map_body[node].quat_xyzw()
     listed: list[float] = quat.tolist()
@@ -242,8 +242,11 @@ def _lost(source: Source) -> NDArray[np.bool_]:
     return lost
 
 
-def _checked(guess: tuple[float, ...]) -> SE3:
-    numbers = np.asarray(guess, dtype=np.float64)
+def _checked(predicted: tuple[float, ...]) -> SE3:
+    numbers = np.asarray(predicted, dtype=np.float64)
     if numbers.shape != (7,) or not np.isfinite(numbers).all() or not numbers[3:].any():
-        raise ConfigError("a guess is x y z and a quaternion x y z w, all finite")
+        raise ConfigError(
+            "predicted pose: expected x y z and a quaternion x y z w, all finite, "
+            f"got {list(predicted)[:7]}"
+        )
     return pose_of(numbers.tolist())

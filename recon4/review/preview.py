@@ -1,4 +1,4 @@
-"""A quick look at what decisions do to the graph, without running the pipeline."""
+"""Preview of the effect of decisions on the graph, without running the pipeline."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from recon4.review.source import Source
 
 _REMEMBERED = 6
 _solved: OrderedDict[tuple[str, str], Reviewed] = OrderedDict()
-"""The latest solutions of this process: the one before a decision was the one after the last."""
+"""Latest solutions of this process; the state before a decision is usually among them."""
 _sources: OrderedDict[str, Source] = OrderedDict()
 
 
 def preview(source: Source, decided: Decided, before: Decided) -> dict[str, Any]:
-    """What the stage ``review`` would find, and what changed since another set of decisions.
+    """Result the stage ``review`` would have, and the change since earlier decisions.
 
     Args:
         source: The project's latest graph.
-        decided: What stands now.
-        before: What stood before the last decision.
+        decided: Decisions in force now.
+        before: Decisions in force before the last one.
 
     Returns:
         JSON values: ``key`` of the decisions, ``last`` and ``all`` (`Difference` to before the last
@@ -61,7 +61,7 @@ def _review(source: Source, decided: Decided) -> Reviewed:
 
 
 def _known(found: Source) -> Source:
-    """The same, with what was read of it before: its artifacts never change."""
+    """The cached source of the same graph; artifacts never change."""
     known = str(found.artifacts["verification"])
     if known not in _sources:
         _sources[known] = found

@@ -1,4 +1,4 @@
-"""The pairs a person may decide about: those worth a look first, by how much the map would move."""
+"""The review queue: pairs ordered by their influence on the map."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ COLUMNS = (
     "frame_i", "frame_j", "t_i_s", "t_j_s", "kind", "verdict", "reason", "measured", "influence_m",
     "overlap", "error_m", "limit_m", "degeneracy", "verification_m", "paths", "chi2",
 )  # fmt: skip
-"""What is told of each pair, in this order."""
+"""Values of each row of the queue, in this order."""
 MOST_PATHS = 60
-"""So many alternative paths of a pair are told one by one, the worst first."""
-_HOLDS, _WEAK, _GUESSED, _APART = range(4)
-_DOUBTS_ITSELF = (Reason.ERROR, Reason.FEW_MATCHES, Reason.DEGENERATE)
-"""Turned down for what the registration itself says, whatever the rest of the graph does."""
+"""Largest number of alternative paths listed for a pair, the worst first."""
+_GOOD, _WEAK, _PREDICTED_ONLY, _NO_OVERLAP = range(4)
+_WEAK_REASONS = (Reason.ERROR, Reason.FEW_MATCHES, Reason.DEGENERATE)
+"""Reasons of a rejection that come from the registration itself, not from the graph."""
 
 
 def queue_json(source: Source) -> bytes:
     """All pairs but odometry as JSON: ``key``, ``columns`` and ``rows``, as `queue_rows` has them.
 
-    Figures are those of the verified graph, before any decision, so that the order does not change
-    under the hands of who decides. The same graph gives the same bytes.
+    Figures are those of the verified graph, before any decision, so that the order is stable during
+    a review. The same graph gives the same bytes.
 
     Raises:
         StoreError: If there is no verified graph.
@@ -54,19 +54,18 @@ def queue_json(source: Source) -> bytes:
 
 
 def queue_rows(graph: PoseGraph, *, settings: Settings) -> list[list[Any]]:
-    """One row a pair, as `COLUMNS`: what may be wrong and matters comes first.
+    """One row per pair, as `COLUMNS`, in the order of the review.
 
-    First pairs whose own registration holds, kept or turned down by the rest of the graph; then
-    those whose registration is weak; both by influence. Then those that were never registered:
-    their pose means nothing, but the more two places see of each other, the more likely a person
-    can lay them right.
+    First pairs with a good registration, accepted or rejected by verification; then pairs with a
+    weak registration; both by influence on the map. Then pairs that were never registered, by
+    overlap: their pose is predicted only, and a large overlap makes a manual registration likely.
     """
     asked = np.array([edge.kind is not EdgeKind.ODOMETRY for edge in graph.edges], np.bool_)
     rank = np.array([_rank(edge) for edge in graph.edges])
-    influence = influence_m(graph, asked & (rank < _GUESSED))
+    influence = influence_m(graph, asked & (rank < _PREDICTED_ONLY))
     medians, counts = medians_of_all(graph, settings=settings)
     overlaps = np.nan_to_num([edge.overlap for edge in graph.edges])
-    worth = np.where(rank < _GUESSED, np.nan_to_num(influence), overlaps)
+    worth = np.where(rank < _PREDICTED_ONLY, np.nan_to_num(influence), overlaps)
     rows = np.flatnonzero(asked)
     order = rows[np.lexsort((rows, -worth[rows], rank[rows]))]
     return [
@@ -82,19 +81,19 @@ def queue_rows(graph: PoseGraph, *, settings: Settings) -> list[list[Any]]:
 
 
 def _rank(edge: Edge) -> int:
-    """How much the registration of a pair is worth, the best first."""
+    """Class of a pair by the quality of its registration, the best first."""
     if edge.reason is Reason.OVERLAP:
-        return _APART
+        return _NO_OVERLAP
     if not is_measured(edge):
-        return _GUESSED
-    return _WEAK if edge.reason in _DOUBTS_ITSELF else _HOLDS
+        return _PREDICTED_ONLY
+    return _WEAK if edge.reason in _WEAK_REASONS else _GOOD
 
 
 def medians_of_all(graph: PoseGraph, *, settings: Settings) -> tuple[Array, NDArray[np.int64]]:
-    """Median disagreement with the alternative paths, also of edges that are not in the graph.
+    """Path discrepancy of every edge, also of edges that are not in the graph.
 
     Returns:
-        Medians [m], NaN without a path, and numbers of paths, (E,) each.
+        Path discrepancies [m], NaN without a path, and numbers of paths, (E,) each.
     """
     index = _index(graph, settings)
     of = index.of
@@ -109,26 +108,26 @@ def medians_of_all(graph: PoseGraph, *, settings: Settings) -> tuple[Array, NDAr
 
 @dataclass(frozen=True, slots=True)
 class AlternativePath:
-    """A way around an edge."""
+    """Another path through the graph between the ends of an edge."""
 
     frames: tuple[int, ...]
     """Multiframes from one end to the other."""
     residual_m: float
-    """How far its end lies from where the edge says."""
+    """Distance between the end of the path and the end of the edge."""
     residual_rad: float
 
 
 def alternative_paths(
     graph: PoseGraph, i: int, j: int, T_i_j: SE3, *, settings: Settings
 ) -> list[AlternativePath]:
-    """All simple paths between two nodes that the verification looks at, worst first.
+    """All simple paths between two nodes that the verification uses, worst first.
 
     Args:
-        graph: Its edges in the graph may be walked.
+        graph: Paths use its edges that are in the graph.
         i: First node.
         j: Second node.
-        T_i_j: What the edge in question says.
-        settings: How long paths may be.
+        T_i_j: Relative pose of the edge.
+        settings: Limits the length of the paths.
     """
     index = _index(graph, settings)
     own = {

@@ -29,13 +29,13 @@ def sign(value: object, key_file: Path) -> dict[str, str]:
 
     Args:
         value: What is signed, as `canonical` bytes.
-        key_file: The private key, PEM; made when it is missing, readable by its owner only.
+        key_file: The private key, PEM; created if missing, readable by its owner only.
 
     Returns:
-        ``algorithm``, ``public_key`` and ``value`` (hexadecimal), ``key`` (short name of the key).
+        ``algorithm``, ``public_key`` and ``value`` (hexadecimal), ``key`` (fingerprint).
 
     Raises:
-        StoreError: If the key cannot be read or made.
+        StoreError: If the key cannot be read or created.
     """
     private = _private_key(key_file)
     public = private.public_key().public_bytes(Encoding.Raw, PublicFormat.Raw)
@@ -48,7 +48,7 @@ def sign(value: object, key_file: Path) -> dict[str, str]:
 
 
 def is_signed(value: object, signature: dict[str, Any]) -> bool:
-    """Whether the signature is one of this value by the key it names."""
+    """Verify the signature of a value with the public key it contains."""
     try:
         public = Ed25519PublicKey.from_public_bytes(bytes.fromhex(signature["public_key"]))
         public.verify(bytes.fromhex(signature["value"]), canonical(value))
@@ -69,7 +69,7 @@ def canonical(value: object) -> bytes:
 
 
 def ensure_key(path: Path) -> None:
-    """Make the private key if there is none: its folder need not be open to who signs."""
+    """Create the private key if missing, so that signing needs no write access to its folder."""
     if not path.exists():
         _make(path)
 
@@ -79,9 +79,9 @@ def _private_key(path: Path) -> Ed25519PrivateKey:
     try:
         key = load_pem_private_key(path.read_bytes(), password=None)
     except (OSError, ValueError) as error:
-        raise StoreError(f"the key for signatures, {path}, cannot be read: {error}") from error
+        raise StoreError(f"signing key {path} cannot be read: {error}") from error
     if not isinstance(key, Ed25519PrivateKey):
-        raise StoreError(f"the key for signatures, {path}, is not of the kind {ALGORITHM}")
+        raise StoreError(f"signing key {path}: expected {ALGORITHM}, got {type(key).__name__}")
     return key
 
 

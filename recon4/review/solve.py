@@ -1,6 +1,6 @@
-"""The graph after the decisions of people: verified and solved again, and what that changed.
+"""Verifies and solves the graph with the decisions of a review, and reports the changes.
 
-The same function makes the stage ``review`` and the quick look after each decision.
+The stage ``review`` and the preview after each decision use the same function.
 """
 
 from __future__ import annotations
@@ -28,21 +28,21 @@ from recon4.store.atomic import null_for_nan, write_json
 
 MOST_MOVES = 10
 _APART_NODES = 5
-"""Moves of nodes nearer to each other than this are one move."""
+"""Nodes closer than this along the trajectory count as one move."""
 _LEAST_MOVE_M = 1e-4
 UNVERIFIED_MODES = ("10", "overlap")
-"""Modes of V Table 3.2 that stop before verification."""
+"""Modes of V Table 3.2 without verification."""
 
 
 @dataclass(frozen=True, slots=True)
 class EdgeConflict:
-    """An edge a person accepted that does not fit the graph: it counts all the same."""
+    """An edge accepted by a reviewer that does not fit the graph; it stays in the graph."""
 
     pair: Pair
     chi2: float
-    """Squared residual."""
+    """Chi-square contribution."""
     limit: float
-    """Beyond this the program would have called it an outlier."""
+    """Chi-square limit of an outlier."""
     residual_m: float
     residual_rad: float
     who: str
@@ -50,7 +50,7 @@ class EdgeConflict:
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """How far a node went."""
+    """Displacement of a node."""
 
     node: int
     frame_id: int
@@ -60,7 +60,7 @@ class Move:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Reviewed:
-    """A graph with the decisions in it, solved."""
+    """The solved graph with the decisions applied."""
 
     graph: PoseGraph
     conflicts: tuple[EdgeConflict, ...]
@@ -68,29 +68,29 @@ class Reviewed:
     missing: tuple[Standing, ...]
     """Decisions without effect: their pair is not in this graph, or was never registered."""
     changed: tuple[Standing, ...]
-    """Decisions about edges that measure something else than the person saw."""
+    """Decisions about edges that differ from the pose the reviewer saw."""
 
     @property
     def chi2(self) -> float:
-        """Sum over the edges in the graph."""
+        """Sum of the chi-square contributions of the edges in the graph."""
         return chi2_of(self.graph)[0]
 
     def warnings(self) -> list[str]:
-        """What a person should know, in words."""
+        """Warnings for the operator, one sentence each."""
         fields = []
         if self.conflicts:
             fields.append(
-                f"{len(self.conflicts)} accepted by an operator do not fit the rest of the graph: "
+                f"{len(self.conflicts)} accepted loop closures do not fit the graph: "
                 + ", ".join(_named(one.pair) for one in self.conflicts[:5])
             )
         if self.missing:
             fields.append(
-                f"{len(self.missing)} decisions are about pairs that are not there any more: "
+                f"{len(self.missing)} decisions are about pairs that are no longer in the graph: "
                 + ", ".join(_named(one.pair) for one in self.missing[:5])
             )
         if self.changed:
             fields.append(
-                f"{len(self.changed)} decisions are about pairs that now measure something else: "
+                f"{len(self.changed)} decisions are about pairs whose measurement has changed: "
                 + ", ".join(_named(one.pair) for one in self.changed[:5])
             )
         return fields
@@ -98,7 +98,7 @@ class Reviewed:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Difference:
-    """What lies between two solved graphs of the same nodes."""
+    """Difference between two solved graphs with the same nodes."""
 
     chi2_before: float
     chi2_after: float
@@ -106,11 +106,11 @@ class Difference:
     """In the graph."""
     edges_after: int
     moves: tuple[Move, ...]
-    """The largest, one a place, largest first."""
+    """The largest displacements, one per place, largest first."""
     rejected_automatically: tuple[Pair, ...]
-    """Pairs the program dropped of its own accord: they fit no longer."""
+    """Pairs that verification now rejects."""
     accepted_automatically: tuple[Pair, ...]
-    """Pairs the program took in again of its own accord."""
+    """Pairs that verification now accepts."""
 
     def to_json(self) -> dict[str, Any]:
         """Plain JSON values."""
@@ -136,11 +136,11 @@ def run_review(
     settings: Settings,
     progress: Progress,
 ) -> dict[str, Any]:
-    """The stage ``review``: the verified graph with the decisions of people in it.
+    """Run the stage ``review``: apply decisions to the verified graph and solve it.
 
     Args:
         graph: Folder of the verified graph.
-        decisions: What stands.
+        decisions: The decisions in force.
         out: Receives ``graph.npz``, ``edges.json`` and ``review.json``.
         settings: Uses verification and graph.
         progress: Counts the steps.
@@ -169,11 +169,11 @@ def review(
     settings: Settings,
     progress: Progress | None = None,
 ) -> Reviewed:
-    """Put the decisions in, verify and solve again.
+    """Apply the decisions, then verify and solve the graph again.
 
-    What a person accepted always counts (it is protected, like odometry); what the program thinks
-    of the other pairs is asked anew, because it may have thought so only for a pair that is now
-    rejected. Nothing is dropped in silence: accepted edges that do not fit are `EdgeConflict`.
+    Edges accepted by a reviewer always stay in the graph (protected, like odometry). All other
+    pairs are verified again, because their verdict may depend on a pair that is now rejected.
+    Accepted edges that do not fit are reported as `EdgeConflict`.
 
     Raises:
         GraphError: If the graph cannot be solved.
@@ -199,7 +199,7 @@ def _solved(graph: PoseGraph) -> PoseGraph:
 
 
 def conflicts(graph: PoseGraph, *, probability: float) -> tuple[EdgeConflict, ...]:
-    """Edges that people accepted and that do not fit, worst first."""
+    """Edges accepted by reviewers that do not fit the graph, worst first."""
     of = graph.relations
     chi2 = squared_residuals(graph.T_map_body, of)
     free = of.in_graph & ~of.protected
@@ -222,7 +222,7 @@ def conflicts(graph: PoseGraph, *, probability: float) -> tuple[EdgeConflict, ..
 
 
 def difference(before: PoseGraph, after: PoseGraph) -> Difference:
-    """What changed from one graph to the other; ``after`` may have more edges at its end."""
+    """Changes from one graph to the other; ``after`` may have more edges at its end."""
     chi2_before, edges_before = chi2_of(before)
     chi2_after, edges_after = chi2_of(after)
     rejected_automatically: list[Pair] = []
@@ -244,14 +244,14 @@ def difference(before: PoseGraph, after: PoseGraph) -> Difference:
 
 
 def chi2_of(graph: PoseGraph) -> tuple[float, int]:
-    """Sum of the squared residuals of the edges in the graph, and how many those are."""
+    """Sum of the chi-square contributions of the edges in the graph, and their number."""
     of = graph.relations
     used: NDArray[np.float64] = squared_residuals(graph.T_map_body, of)[of.in_graph]
     return float(used.sum()), len(used)
 
 
 def facts_of(reviewed: Reviewed, decisions: Sequence[Standing]) -> dict[str, Any]:
-    """Decisions and what is wrong with them, as JSON values."""
+    """Decisions, their conflicts and warnings, as JSON values."""
     fields: dict[str, Any] = null_for_nan(
         {
             "decisions": [one.to_json() for one in decisions],

@@ -1,4 +1,4 @@
-"""What a project has to be reviewed: its latest verified graph and how that was made."""
+"""Input of a review: the latest verified graph of a project and its settings."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ from recon4.store.project import read_artifacts
 from recon4.store.recipes import check_recipes, settings_in
 
 _MADE_WITH = ("graph", "verification")
-"""Stages whose settings a review goes on with."""
+"""Stages whose settings a review uses."""
 
 
 @dataclass(frozen=True)
 class Source:
-    """The artifacts of a project's latest run; each is read when it is asked for."""
+    """The artifacts of a project's latest run; each is read on first use."""
 
     artifacts: dict[str, Path]
 
     @staticmethod
     def of(root: Path) -> Source:
-        """The latest run.
+        """Open the latest run.
 
         Raises:
-            Altered: If the settings it was made with were changed.
+            Altered: If the recorded settings of a stage were changed.
             StoreError: If there is no verified graph yet.
         """
         artifacts = read_artifacts(root)
@@ -52,7 +52,7 @@ class Source:
 
     @cached_property
     def settings(self) -> Settings:
-        """Those the graph was searched and verified with; others are the defaults."""
+        """Settings of the search and the verification; others are the defaults."""
         return settings_in(self.artifacts[n] for n in _MADE_WITH if n in self.artifacts)
 
     @cached_property
@@ -67,7 +67,7 @@ class Source:
 
     def _folder(self, stage: str) -> Path:
         if stage not in self.artifacts:
-            raise StoreError(f"this project has no artifact of the stage {stage}")
+            raise StoreError(f"expected an artifact of the stage {stage}, the project has none")
         return self.artifacts[stage]
 
 

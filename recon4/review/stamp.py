@@ -1,6 +1,6 @@
-"""Result files that say who approved them.
+"""Writes the approval into result files.
 
-The file is copied with a few words more; nothing of what it holds is written anew.
+The file is copied with one added record; its own content is not changed.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _HEADER_BYTES = 375
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stamp:
-    """What an approved file carries."""
+    """The approval as stored in a file."""
 
     version: int
     who: str
@@ -37,16 +37,16 @@ class Stamp:
     hash: str
     """SHA-256 of the signed statement in ``versions/<version>/approval.json``."""
 
-    def words(self) -> str:
+    def json_line(self) -> str:
         """JSON in ASCII on one line."""
         return json.dumps(asdict(self))
 
 
 def stamp_file(source: Path, target: Path, stamp: Stamp) -> None:
-    """Copy a result with its approval in it; source and target may be the same.
+    """Copy a result file and add its approval; source and target may be the same.
 
     Raises:
-        StoreError: If the file is of a kind that cannot carry it, or cannot be written.
+        StoreError: If this file format has no place for it, or the file cannot be written.
     """
     write = _WRITERS.get(target.suffix)
     if write is None:
@@ -56,12 +56,12 @@ def stamp_file(source: Path, target: Path, stamp: Stamp) -> None:
 
 
 def _laz(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
-    """One more variable length record, user id ``recon4``; all that lies behind moves along."""
+    """Insert a variable length record with user id ``recon4``; later offsets are shifted."""
     header = bytearray(source.read(_HEADER_BYTES))
     if len(header) < _HEADER_BYTES or header[:4] != b"LASF" or header[25] != 4:
         raise StoreError("a LAZ file of version 1.4 was expected")
-    words = stamp.words().encode()
-    record = _VLR.pack(0, VLR_USER, VLR_RECORD, len(words), b"approval") + words
+    text = stamp.json_line().encode()
+    record = _VLR.pack(0, VLR_USER, VLR_RECORD, len(text), b"approval") + text
     points_at, count = struct.unpack_from("<II", header, _POINTS_AT)
     evlrs_at, evlrs = struct.unpack_from("<QI", header, _EVLRS_AT)
     struct.pack_into("<II", header, _POINTS_AT, points_at + len(record), count + 1)
@@ -76,27 +76,27 @@ def _laz(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
 def _after_first_line(prefix: str) -> Callable[[BinaryIO, BinaryIO, Stamp], None]:
     def write(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
         target.write(source.readline())
-        target.write(f"{prefix} recon4 approval {stamp.words()}\n".encode("ascii"))
+        target.write(f"{prefix} recon4 approval {stamp.json_line()}\n".encode("ascii"))
         shutil.copyfileobj(source, target, 1 << 20)
 
     return write
 
 
 def _tum(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
-    target.write(f"# recon4 approval {stamp.words()}\n".encode("ascii"))
+    target.write(f"# recon4 approval {stamp.json_line()}\n".encode("ascii"))
     shutil.copyfileobj(source, target, 1 << 20)
 
 
 def _dxf(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
     """A comment (group 999) before the first section."""
-    target.write(f"999\nrecon4 approval {stamp.words()}\n".encode("ascii"))
+    target.write(f"999\nrecon4 approval {stamp.json_line()}\n".encode("ascii"))
     shutil.copyfileobj(source, target, 1 << 20)
 
 
 def _json(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
     if source.read(1) != b"{":
         raise StoreError("a JSON object was expected")
-    target.write(f'{{"approval": {stamp.words()}, '.encode("ascii"))
+    target.write(f'{{"approval": {stamp.json_line()}, '.encode("ascii"))
     shutil.copyfileobj(source, target, 1 << 20)
 
 

@@ -1,4 +1,4 @@
-"""Whether the results of a project were made with the decisions that stand."""
+"""Whether the results of a project include the decisions in force."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MOST_SUMMARY_BYTES = 16 << 20
 
 
 def read_summary(root: Path) -> dict[str, Any] | None:
-    """``summary.json`` of the latest run that came to its end; None if there is none.
+    """``summary.json`` of the latest finished run; None if there is none.
 
     Raises:
         StoreError: If it is damaged.
@@ -27,7 +27,7 @@ def read_summary(root: Path) -> dict[str, Any] | None:
 
 
 def artifact_keys(summary: dict[str, Any]) -> dict[str, str]:
-    """Stage -> key of the artifact its results were made of."""
+    """Stage -> key of the artifact behind the results."""
     try:
         return {str(one["stage"]): str(one["key"]) for one in summary.get("stages", [])}
     except (TypeError, KeyError) as error:
@@ -35,7 +35,7 @@ def artifact_keys(summary: dict[str, Any]) -> dict[str, str]:
 
 
 def decisions_in_map(root: Path) -> str | None:
-    """`Decided.key` of the decisions the results were made with; None if there are no results.
+    """`Decided.key` of the decisions in the results; None if there are no results.
 
     Raises:
         StoreError: If a file is damaged.

@@ -1,4 +1,4 @@
-"""The acceptance sheet to print: limits, residuals at surveyed points, who approved the map."""
+"""The acceptance sheet to print: limits, residuals at surveyed points, approval of the map."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from recon4.slices.residuals import ControlReport
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SheetWords:
-    """What is written on the sheet beside the figures."""
+class AcceptanceText:
+    """Texts of the sheet beside the figures."""
 
     project: str
     frame: str
@@ -19,11 +19,11 @@ class SheetWords:
     sources: str
     """Version of the program and key of the map."""
     approval: str
-    """Who approved the map, or that nobody did."""
+    """Who approved the map, or `Not approved`."""
 
 
-def render_acceptance(report: ControlReport, words: SheetWords) -> str:
-    """The sheet as one HTML file without scripts; whatever people named is escaped."""
+def render_acceptance(report: ControlReport, text: AcceptanceText) -> str:
+    """The sheet as one HTML file without scripts; all names are escaped."""
     environment = Environment(
         loader=PackageLoader("recon4.slices", "."),
         autoescape=True,
@@ -33,20 +33,20 @@ def render_acceptance(report: ControlReport, words: SheetWords) -> str:
     )
     environment.filters["cm"] = lambda length_m: f"{100.0 * length_m:.1f}"
     template = environment.get_template("acceptance.html.jinja")
-    return template.render(report=report, words=words, verdict=_verdict(report))
+    return template.render(report=report, text=text, verdict=_verdict(report))
 
 
 def _verdict(report: ControlReport) -> tuple[str, str]:
-    """Level and words."""
+    """Level and message of the verdict."""
     if report.passed is None:
         return "note", "Nothing was checked: no point has a place in this map."
     count = report.figures[0].points
     points = f"{count} {report.judged_by} point{'s' if count != 1 else ''}"
-    level, words = "good", f"The map keeps the limits at {points}."
+    level, message = "good", f"The map keeps the limits at {points}."
     if not report.passed:
-        level, words = "bad", f"The map does not keep the limits at {points}."
+        level, message = "bad", f"The map does not keep the limits at {points}."
     elif report.judged_by == "control":
         level = "note"
-        words = f"The map keeps the limits at {points}, but no independent point was checked."
+        message = f"The map keeps the limits at {points}, but no independent point was checked."
     left = len(report.missing) + len(report.outdated)
-    return level, f"{words} {left} more not checked." if left else words
+    return level, f"{message} {left} more not checked." if left else message

@@ -1,4 +1,4 @@
-"""Laying a reference onto the map: by ICP or by pairs of points. Never done unasked."""
+"""Alignment of a reference with the map, by ICP or by pairs of points; only on request."""
 
 from __future__ import annotations
 
@@ -19,43 +19,45 @@ _NEAR_M = 0.5
 _ON_M = 0.10
 _LEAST_POINTS = 100
 _LEAST_NEAR = 0.02
-"""A reference may be one room of a building, so little of the map must lie near it …"""
+"""Smallest ratio of map points near the reference, which may be one room of a building."""
 _LEAST_ON = 0.6
-"""… but what does must lie on it."""
+"""Smallest inlier ratio among those points."""
 
 
 def align_by_pairs(p_map: Array, p_reference: Array) -> tuple[SE3, Array]:
-    """Rigid fit of points picked in both (N, 3).
+    """Rigid fit of corresponding points picked in map and reference, (N, 3) each.
 
     Returns:
-        ``T_map_reference`` and what remains at each pair [m], (N,).
+        ``T_map_reference`` and the residual of each pair [m], (N,).
 
     Raises:
         ConfigError: With fewer than three pairs, or pairs on a line.
     """
     if len(p_map) < 3 or len(p_map) != len(p_reference):
-        raise ConfigError(f"an alignment takes three pairs of points or more, got {len(p_map)}")
+        raise ConfigError(f"alignment: expected three pairs of points or more, got {len(p_map)}")
     if np.linalg.matrix_rank(p_reference - p_reference.mean(axis=0), tol=0.05) < 2:
-        raise ConfigError("the points of the pairs lie on a line: the turn about it is open")
+        raise ConfigError(
+            "alignment: the points lie on a line, so the rotation about it is undetermined"
+        )
     T = align_points(p_map, p_reference)
     return T, np.linalg.norm(p_map - T @ p_reference, axis=1)
 
 
 @dataclass(frozen=True, slots=True)
 class IcpFit:
-    """An alignment by ICP and what speaks for it."""
+    """An alignment by ICP and its quality."""
 
     T_map_reference: SE3
     near_ratio: float
-    """Of the map's points, those within half a metre of the reference, 0..1."""
+    """Ratio of the map points within 0.5 m of the reference, 0..1."""
     inlier_ratio: float
-    """Of these, those within 10 cm of its surface, 0..1."""
+    """Ratio of these within 10 cm of its surface, 0..1."""
     mean_m: float
-    """Distance of the latter from the surface [m]."""
+    """Mean distance of the inliers from the surface [m]."""
 
     @property
-    def words(self) -> str:
-        """For the list of references."""
+    def description(self) -> str:
+        """One line for the list of references."""
         return (
             f"ICP, point to plane: {100.0 * self.near_ratio:.0f} % of the map near it, "
             f"of these {100.0 * self.inlier_ratio:.0f} % on it, "
@@ -66,12 +68,12 @@ class IcpFit:
 def align_by_icp(tiles: TileSet, reference: Reference, *, rng: np.random.Generator) -> IcpFit:
     """Point-to-plane ICP of the map onto the reference, from the present alignment on.
 
-    Both must be within half a metre of each other; the figures after it say nothing about a
-    common shift or turn any more (V aligns by ICP too).
+    Both must be within 0.5 m of each other. Errors measured after it no longer include a common
+    translation or rotation (V aligns by ICP too).
 
     Raises:
-        ConfigError: If too little of the map lies near the reference or on it, or it went on
-            moving.
+        ConfigError: If too few map points lie near the reference or on it, or ICP did not
+            converge.
     """
     p_map = _sample_map(tiles, rng)
     q, normals = _targets(reference, rng)
@@ -82,14 +84,14 @@ def align_by_icp(tiles: TileSet, reference: Reference, *, rng: np.random.Generat
     near_ratio, inlier_ratio = near / max(1, len(p_map)), len(on) / max(1, near)
     if near < _LEAST_POINTS or near_ratio < _LEAST_NEAR:
         raise ConfigError(
-            f"the map and the reference do not lie on each other: {100.0 * near_ratio:.1f} % of "
+            f"ICP: the map and the reference do not overlap: {100.0 * near_ratio:.1f} % of "
             f"the map is within {100.0 * _NEAR_M:.0f} cm of it; align by pairs"
         )
     if not fit.converged or inlier_ratio < _LEAST_ON:
-        why = f"only {100.0 * inlier_ratio:.0f} % of the points near it came to lie on it (10 cm)"
+        why = f"inlier ratio (10 cm) {100.0 * inlier_ratio:.0f} %"
         if not fit.converged:
-            why = f"it still moved after {_ROUNDS} rounds"
-        raise ConfigError(f"ICP did not lay the reference onto the map: {why}; align by pairs")
+            why = f"no convergence after {_ROUNDS} iterations"
+        raise ConfigError(f"ICP did not align the reference with the map: {why}; align by pairs")
     return IcpFit(fit.T_model_map.inverse(), near_ratio, inlier_ratio, float(on.mean()))
 
 

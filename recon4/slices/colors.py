@@ -1,4 +1,4 @@
-"""Numbers to colors for slices, on white paper and on a dark screen."""
+"""Color scales of slices, for white paper and for a dark screen."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ SENSOR_COLORS: tuple[Rgb, ...] = (
     (204, 121, 167),
     (166, 134, 0),
 )
-"""Told apart also by people who see few colors (after Okabe and Ito 2008)."""
+"""Distinguishable for color-blind readers (after Okabe and Ito 2008)."""
 
 UNITS: dict[ColorBy, str] = {
     "height": "m",
@@ -36,7 +36,7 @@ UNITS: dict[ColorBy, str] = {
     "sensor": "",
     "distance": "m",
 }
-WORDS: dict[ColorBy, str] = {
+LABELS: dict[ColorBy, str] = {
     "height": "Height",
     "intensity": "Intensity",
     "normalized": "Normalized intensity",
@@ -49,7 +49,7 @@ _DISTANCE_STOPS: tuple[Rgb, ...] = ((32, 84, 255), (150, 60, 200), (232, 20, 20)
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """Values at the two ends of the colors."""
+    """Values at the two ends of the color scale."""
 
     low: float
     high: float
@@ -57,7 +57,7 @@ class Span:
 
 @cache
 def table(color: ColorBy, ground: Ground) -> NDArray[np.uint8]:
-    """256 colors from low to high, (256, 3); none of them fades into the ground."""
+    """256 colors from low to high, (256, 3); all of them contrast with the ground."""
     steps = np.linspace(0.0, 1.0, 256)
     if color == "distance":
         at = np.linspace(0.0, 1.0, len(_DISTANCE_STOPS))
@@ -83,7 +83,7 @@ def paint(values: Array, span: Span, *, color: ColorBy, ground: Ground) -> NDArr
 
 
 def usual_span(values: Array, *, color: ColorBy) -> Span:
-    """Fixed for distances; else from the 2nd to the 98th percentile of what is seen."""
+    """Fixed for distances; else from the 2nd to the 98th percentile of the values."""
     if color == "distance":
         return Span(*DISTANCE_RANGE_M)
     known = values[np.isfinite(values)]

@@ -1,4 +1,4 @@
-"""Slices of the map against a reference: the rows of V Table 3.2."""
+"""Comparison of map slices with a reference: the rows of V Table 3.2."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from recon4.slices.reference import FAR_M, Reference
 
 
 def compare(tiles: TileSet, cuts: Sequence[Cut], reference: Reference) -> RelativeError:
-    """Mean distance and shares within 2 and 5 cm of every slice, from all its points.
+    """Mean distance and ratios within 2 and 5 cm of every slice, from all its points.
 
-    Points farther than 0.5 m from the reference (people, what was not there then) are counted
-    apart. Averages are both by points, as V prints, and plain over the slices.
+    Points farther than 0.5 m from the reference (people, changed objects) are outliers and counted
+    separately. Averages are weighted by points, as in V, and plain over the slices.
 
     Raises:
         ConfigError: Without slices.
     """
     if not cuts:
-        raise ConfigError("a comparison takes one slice or more")
+        raise ConfigError("comparison: expected one slice or more, got none")
     found = [_one(tiles, cut, reference) for cut in cuts]
     rows = tuple(one.slices[0] for one in found)
     measured = [row.mean_m for row in rows if row.points]
@@ -72,7 +72,7 @@ def usual_cuts(tiles: TileSet, *, thickness_m: float = ERROR_THICKNESS_M) -> tup
 
 
 def to_csv(found: RelativeError) -> str:
-    """The table as CSV: centimetres and percent, a row a slice, both averages at the end."""
+    """The table as CSV in centimeters and percent: one row per slice, then both averages."""
     out = io.StringIO()
     rows = csv.writer(out, lineterminator="\n")
     rows.writerow(["slice", "points", "outliers", "mean_cm", "below_2cm_pct", "below_5cm_pct"])

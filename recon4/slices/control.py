@@ -1,4 +1,4 @@
-"""Control and check points: reading a survey's CSV."""
+"""Control and check points: reader of survey CSV files."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Order = Literal["EN", "NE"]
 MOST_POINTS = 5000
 MOST_BYTES = 4 << 20
 _MOST_SKIPPED = 100
-"""Lines left out that are told one by one."""
+"""Largest number of skipped lines listed individually."""
 _E = ("x", "e", "east", "easting", "x_m")
 _N = ("y", "n", "north", "northing", "y_m")
 _Z = ("z", "h", "u", "height", "elevation", "up", "z_m")
@@ -32,14 +32,14 @@ class ControlPoint:
     xyz_m: tuple[float, float, float]
     """Easting (or x), northing (or y), height [m]."""
     role: Role = "check"
-    """Control points made the map; only check points say how good it is."""
+    """Control points were used to make the map; only check points measure its accuracy."""
     radius_m: float = 0.0
-    """Of a spherical target [m]."""
+    """Radius of a spherical target [m]."""
 
 
 @dataclass(frozen=True, slots=True)
 class ControlPreview:
-    """What a file seems to hold, to be looked at before it counts."""
+    """Content of a survey file, to be confirmed before it is stored."""
 
     points: tuple[ControlPoint, ...]
     delimiter: str
@@ -47,20 +47,20 @@ class ControlPreview:
     order: Order
     """Order of the first two coordinates in the file, as used."""
     question: str
-    """What has to be decided by a person; empty = nothing."""
+    """Question to the operator; empty = none."""
     skipped: tuple[str, ...]
-    """Lines left out, with the reason."""
+    """Skipped lines, with the reason."""
 
 
 def read_control(data: bytes, *, name: str = "file", order: Order | None = None) -> ControlPreview:
-    """Read ``ID,X,Y,Z[,Radius]``, with or without a head line.
+    """Read ``ID,X,Y,Z[,Radius]``, with or without a header line.
 
-    A byte order mark, ``;`` or tabs, and decimal commas are understood.
+    A byte order mark, ``;`` or tabs, and decimal commas are accepted.
 
     Args:
         data: The file's bytes.
         name: For messages.
-        order: Which coordinate comes first; None = as the head says, else a question is asked.
+        order: Which coordinate comes first; None = from the header, else a question is returned.
 
     Raises:
         CorruptFile: If no line has an id and three numbers.
@@ -95,7 +95,7 @@ def read_control(data: bytes, *, name: str = "file", order: Order | None = None)
 
 
 def _cells(text: str, delimiter: str, name: str) -> list[list[str]]:
-    """Rows of cells; lines may end as on any system."""
+    """Rows of cells; any line ending is accepted."""
     lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
     rows: list[list[str]] = []
     try:
@@ -121,7 +121,7 @@ def _decoded(data: bytes, name: str) -> str:
 
 
 def _columns(head: list[str]) -> tuple[tuple[int, ...], bool]:
-    """Places of id, first, second coordinate, height, radius and role (-1 = none)."""
+    """Columns of id, first, second coordinate, height, radius and role (-1 = none)."""
 
     def place(names: Sequence[str]) -> int:
         return next((k for k, cell in enumerate(head) if cell in names), -1)
@@ -142,7 +142,7 @@ def _number_at(row: list[str], place: int) -> bool:
 
 
 def _order_of(head: list[str], columns: tuple[int, ...]) -> Order | None:
-    """Known when the head names east and north; x and y mean either in surveys."""
+    """Order of the coordinates if the header names east and north; x and y are ambiguous."""
     if (
         max(columns[1:3]) < len(head)
         and head[columns[1]] in _E[1:5]
@@ -188,7 +188,7 @@ def _point(row: list[str], columns: tuple[int, ...], decimal: str) -> ControlPoi
         return value
 
     name, a, b, c, radius, role = columns
-    words = row[role].strip().lower() if 0 <= role < len(row) else ""
+    role_text = row[role].strip().lower() if 0 <= role < len(row) else ""
     has_radius = 0 <= radius < len(row) and row[radius].strip()
     point_id = check_name(row[name].strip(), what="the id of a point", most=64)
     if not point_id:
@@ -196,7 +196,7 @@ def _point(row: list[str], columns: tuple[int, ...], decimal: str) -> ControlPoi
     return ControlPoint(
         point_id,
         (number(a), number(b), number(c)),
-        "control" if words == "control" else "check",
+        "control" if role_text == "control" else "check",
         number(radius) if has_radius else 0.0,
     )
 

@@ -24,7 +24,7 @@ MOST_SLICES = 200
 
 @dataclass(frozen=True, slots=True)
 class Cut:
-    """A slab of the map and the axes of its picture.
+    """A slab of the map and the axes of its image.
 
     ``u`` points to the right, ``v`` up, and the viewer looks against ``u × v``. A horizontal cut
     has the map's own x and y; a vertical one the distance along its line, and the map's z.
@@ -90,7 +90,7 @@ class Cut:
 
     @property
     def name(self) -> str:
-        """Where it is, in words: ``z = 1.200 m``."""
+        """Text of the position: ``z = 1.200 m``."""
         if self.kind == "horizontal":
             return f"z = {self.origin_m[2]:.3f} m"
         if self.kind == "vertical":

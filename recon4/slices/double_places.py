@@ -1,4 +1,4 @@
-"""What the check for double walls found: patches put together to places."""
+"""Report of the double wall check: patches grouped into places."""
 
 from __future__ import annotations
 
@@ -11,31 +11,31 @@ from recon4.geometry.se3 import Array
 
 MOST_SURFACES = 3000
 _PLACE_M = 1.5
-"""Patches this near to each other, facing alike, are one place [m]."""
+"""Patches within this distance that face alike form one place [m]."""
 _LEAST_PATCHES = 10
-"""A place has at least so many: an edge or a moved chair makes one or two."""
+"""Smallest number of patches of a place: an edge or a moved chair makes one or two."""
 
 
 @dataclass(frozen=True, slots=True)
 class DoubleWall:
-    """A surface of one place that was visited twice; the figures are medians of its patches."""
+    """A surface seen by two visits; its figures are medians of its patches."""
 
     middle_m: tuple[float, float, float]
-    """Of its patches, in the map [m]."""
+    """Center of its patches in the map [m]."""
     normal: tuple[float, float, float]
-    """Of the surface, towards the sensor's side or away."""
+    """Normal of the surface, toward the sensor or away from it."""
     separation_m: float
     """Distance of the two layers [m]."""
     limit_m: float
-    """What noise and poses explain at this place [m]."""
+    """Largest separation explained by noise and pose errors [m]."""
     sigma_m: float
     """Thickness of one layer (standard deviation within a visit) [m]."""
     bimodality: float
-    """Ashman's D, ``separation / sigma``: above 2 two layers are seen apart."""
+    """Ashman's D, ``separation / sigma``: above 2 the layers are distinct."""
     share: float
-    """Of the points in the weaker layer, 0..0.5."""
+    """Fraction of the points in the weaker layer, 0..0.5."""
     patches: int
-    """Patches like this one here."""
+    """Number of patches of this place."""
     points: int
     spans_s: tuple[tuple[float, float], tuple[float, float]]
     """First and last second since the start of the visits of both layers."""
@@ -45,17 +45,17 @@ class DoubleWall:
 
 @dataclass(frozen=True, slots=True)
 class DoubleReport:
-    """What the check found."""
+    """Result of the double wall check."""
 
     walls: tuple[DoubleWall, ...]
-    """Those that are double, the widest apart first."""
+    """Double walls, the largest separation first."""
     surfaces: tuple[DoubleWall, ...]
-    """The others, those nearest to their limit first; at most `MOST_SURFACES`."""
+    """Other surfaces, the nearest to their limit first; at most `MOST_SURFACES`."""
     patches: int
-    """Flat patches that were visited at least twice: where the check can see."""
+    """Flat patches with at least two visits: the only ones that can be checked."""
     double_patches: int
     median_separation_m: float
-    """Of all patches visited twice: how well visits agree [m]; NaN = none."""
+    """Median separation of all patches visited twice [m]; NaN = none."""
     p95_separation_m: float
     median_sigma_m: float
     """Thickness of a surface within a visit [m]."""
@@ -63,7 +63,7 @@ class DoubleReport:
 
     @property
     def share(self) -> float:
-        """Of the patches visited twice, those that are double, 0..1."""
+        """Fraction of double patches among those visited twice, 0..1."""
         return self.double_patches / self.patches if self.patches else 0.0
 
 
@@ -84,7 +84,7 @@ class Patches:
 
 
 def report(found: list[Patches], points: int) -> DoubleReport:
-    """Put the patches of all tiles together.
+    """Combine the patches of all tiles into a report.
 
     Args:
         found: Patches of one tile each, in any order.

@@ -1,8 +1,8 @@
-"""Double walls: one surface that two visits put at two places.
+"""Double walls: one surface that two visits place at two positions.
 
 The map is cut into patches (a cell, and the side it was seen from), and each patch into visits
-(windows of time). Within a visit a surface is sharp; if two groups of visits put it farther apart
-than noise and poses explain, the wall is double. See ``docs/slices.md`` for the equations.
+(windows of time). Within a visit a surface is sharp. If the separation of two groups of visits
+exceeds what noise and pose errors explain, the wall is double. Equations: ``docs/slices.md``.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _FIRST_TABLE = 1 << 15
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DoubleRule:
-    """When a patch counts as double."""
+    """Thresholds of the double wall check."""
 
     cell_m: float = 0.12
     """Width of a patch [m]: a step in a wall lies in few of them."""
@@ -35,31 +35,31 @@ class DoubleRule:
     window_s: float = 5.0
     """Points closer in time belong to one visit [s]."""
     least_points: int = 20
-    """Each of the two groups has at least so many points of the patch."""
-    least_share: float = 0.10
-    """Each of the two groups has at least this share of the patch's points."""
+    """Smallest number of points of each of the two groups."""
+    least_ratio: float = 0.10
+    """Smallest fraction of the patch's points in each of the two groups."""
     most_sigma_m: float = 0.04
-    """A patch thicker than this within its visits is not a surface [m] (standard deviation)."""
+    """Largest thickness of a surface within a visit [m] (standard deviation)."""
     least_spread_m: float = 0.02
-    """A patch narrower than this is not a surface [m] (standard deviation along it)."""
+    """Smallest extent of a surface [m] (standard deviation along it)."""
     most_aside_m: float = 0.04
-    """The middles of the two groups are at most so far from each other along the surface [m]."""
+    """Largest distance of the centers of the two groups along the surface [m]."""
     pose_sigma_m: float = 0.007
-    """Places of one surface in visits of a good map scatter by this [m]."""
+    """Standard deviation of the position of a surface between visits of a good map [m]."""
     z: float = 3.0
-    """So many standard deviations are not chance."""
+    """Significance limit in standard deviations."""
     correlated: float = 10.0
-    """So many neighboring points count as one independent measurement (same beam and angle)."""
+    """Number of neighboring points per independent measurement (same beam and angle)."""
 
 
 def find_double_walls(
     tiles: TileSet, *, rule: DoubleRule | None = None, progress: Progress | None = None
 ) -> DoubleReport:
-    """Check every surface of a map that was visited twice. Memory follows one tile.
+    """Find double walls among the surfaces visited twice. Memory is that of one tile.
 
     Args:
         tiles: The map, with normals.
-        rule: When a patch counts as double.
+        rule: Thresholds; None = the defaults.
         progress: Counts points.
 
     Raises:
@@ -68,7 +68,7 @@ def find_double_walls(
     rule, progress = rule or DoubleRule(), progress or Silent()
     missing = {"normal", "t_ns", "frame_id"} - set(tiles.fields)
     if missing:
-        raise ConfigError(f"the map lacks {sorted(missing)}: double walls cannot be looked for")
+        raise ConfigError(f"double walls: the map lacks the fields {sorted(missing)}")
     progress.start("double walls", len(tiles), "points")
     first_ns = (tiles.facts["time_ns"] or [0])[0]
     found, split = [], []
@@ -99,7 +99,7 @@ class _Visits:
         return _Visits(self.cell[rows], self.face[rows], self.window[rows], self.sums[rows])
 
     def patches(self) -> NDArray[np.int64]:
-        """A number a patch, the same for all its visits."""
+        """Number of the patch of each row, the same for all its visits."""
         low = self.cell.min(axis=0, initial=0)
         side = self.cell.max(axis=0, initial=0) - low + 1
         i, j, k = (self.cell - low).T
@@ -108,7 +108,7 @@ class _Visits:
 
 def _visits(tile: Tile, rule: DoubleRule, first_ns: int) -> _Visits:
     columns = tile.read(["xyz", "normal", "t_ns", "frame_id"])
-    # A layer of long cells all around: their middles may lie outside of the points.
+    # One more layer of cells on all sides: cell centers may lie outside of the points.
     base = np.floor((np.array(tile.low_m) - 1e-4) / rule.cell_m).astype(np.int64) - rule.depth
     low = base * rule.cell_m
     side = int(np.ceil(np.max(np.array(tile.high_m) - low) / rule.cell_m)) + rule.depth + 1
@@ -150,7 +150,7 @@ def _unpacked(keys: NDArray[np.int64], sums: Array, base: NDArray[np.int64], sid
 
 
 def _inner(visits: _Visits, tile: Tile, rule: DoubleRule, *, tile_m: float) -> NDArray[np.bool_]:
-    """Which patches lie in the tile with all their length: no other tile knows more of them."""
+    """Mask of the patches that lie completely in the tile."""
     half = np.zeros((len(visits.face), 3), np.int64)
     np.put_along_axis(half, visits.face[:, None] // 2, rule.depth // 2, axis=1)
     low = (visits.cell - half) * rule.cell_m - tile.origin_m
@@ -159,7 +159,7 @@ def _inner(visits: _Visits, tile: Tile, rule: DoubleRule, *, tile_m: float) -> N
 
 
 def _merged(parts: list[_Visits]) -> _Visits:
-    """Patches that tiles have parts of, put together."""
+    """Merge patches that lie in several tiles."""
     if not parts:
         return _Visits(
             np.empty((0, 3), np.int64), np.empty(0, np.int64), np.empty(0, np.int64),
@@ -186,8 +186,8 @@ def _merged(parts: list[_Visits]) -> _Visits:
 
 
 def _judge(visits: _Visits, rule: DoubleRule) -> Patches:
-    """Patches that are flat and were visited twice, and which of them are double."""
-    visits = visits.take(visits.sums[:, 0] >= 8.0)  # a few points have no place of their own
+    """Flat patches with at least two visits, and which of them are double."""
+    visits = visits.take(visits.sums[:, 0] >= 8.0)  # too few points for a position
     visits = visits.take(np.lexsort([visits.window, visits.patches()]))
     _, owner, count = np.unique(visits.patches(), return_inverse=True, return_counts=True)
     visits = visits.take(count[owner] >= 2)
@@ -284,9 +284,9 @@ def _patches(
     limit = limit_m(sigma, a.n, b.n, rule)
     share = np.minimum(a.n, b.n) / total
     flat = (sigma <= rule.most_sigma_m) & (spread >= rule.least_spread_m)
-    flat &= (np.minimum(a.n, b.n) >= rule.least_points) & (share >= rule.least_share)
+    flat &= (np.minimum(a.n, b.n) >= rule.least_points) & (share >= rule.least_ratio)
     flat &= aside <= rule.most_aside_m
-    # Between the faces of a thin wall normals are wild; the plane of such points is another.
+    # Between the faces of a thin wall normals are unreliable; such points fit another plane.
     flat &= np.abs(np.take_along_axis(normal, patch.face[:, None] // 2, axis=1)[:, 0]) >= 0.5
     mean = (a.n[:, None] * a.mean_m + b.n[:, None] * b.mean_m) / total[:, None]
     middle = (patch.cell + 0.5) * rule.cell_m + mean
@@ -305,7 +305,7 @@ def _patches(
 
 
 def limit_m(sigma_m: Array, n_a: Array, n_b: Array, rule: DoubleRule) -> Array:
-    """Separation that noise and good poses explain [m], (P,).
+    """Largest separation explained by noise and good poses [m], (P,).
 
     ``z * sqrt(sigma^2 c (1 / n_a + 1 / n_b) + 2 pose_sigma^2)``: the noise of two means, of which
     ``c`` neighboring points count as one, and of two poses.

@@ -1,4 +1,4 @@
-"""Slices as files for other programs: LAZ, CSV, DXF, GeoTIFF; streamed, never half there."""
+"""Export of slices as LAZ, CSV, DXF and GeoTIFF; streamed, and atomic."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def write_laz(
     frame: MapFrame,
     window: SliceWindow | None = None,
 ) -> int:
-    """The points of slices as LAZ 1.4, with all fields; a point in two slices is there twice.
+    """Write the points of slices as LAZ 1.4 with all fields; a point of two slices is there twice.
 
     Returns:
         How many points were written.
@@ -66,7 +66,7 @@ def write_csv(
     frame: MapFrame,
     window: SliceWindow | None = None,
 ) -> int:
-    """A line a point: slice, u, v and distance on the cut, coordinates, fields.
+    """Write one line per point: slice, u, v and distance from the plane, coordinates, fields.
 
     Returns:
         How many points were written.
@@ -76,7 +76,7 @@ def write_csv(
     count = 0
     axes = ["easting_m", "northing_m", "height_m"] if frame.to_crs else ["x_m", "y_m", "z_m"]
     with atomic_file(path) as temporary, temporary.open("w", encoding="utf-8") as file:
-        file.write(f"# recon4 slice, {frame.words}\n")
+        file.write(f"# recon4 slice, {frame.text}\n")
         file.write(",".join(["slice", "u_m", "v_m", "off_m", *axes, *fields]) + "\n")
         for number, part, p_map in _every(tiles, cuts, fields, window):
             p = frame.to_crs(p_map) if frame.to_crs else p_map
@@ -100,16 +100,16 @@ def write_dxf(
     window: SliceWindow | None = None,
     flat: bool = False,
 ) -> int:
-    """Points as DXF R2010 in metres, a layer a slice, one point a square centimetre of the cut.
+    """Write points as DXF R2010 in meters: one layer per slice, one point per cm² of the cut.
 
-    ezdxf makes the frame of the file; the points are written into it as they come, so that
-    memory does not follow their number.
+    ezdxf writes the skeleton of the file; the points are streamed into it, so memory does not
+    depend on their number.
 
     Args:
         tiles: The map.
-        cuts: Slices; their layers are named by number and place.
+        cuts: Slices; layers are named by number and position.
         path: File to write.
-        frame: Coordinates are those of its CRS, if it has one.
+        frame: Coordinates are in its CRS, if it has one.
         window: Only this part.
         flat: u, v and 0 instead of coordinates: a section to lay on a sheet.
 
@@ -133,8 +133,8 @@ def write_dxf(
             count += len(p)
             if count > MOST_DXF_POINTS:
                 raise ConfigError(
-                    f"a DXF holds at most {MOST_DXF_POINTS} points; take a thinner slice or a "
-                    "smaller window, or export LAZ"
+                    f"DXF: expected at most {MOST_DXF_POINTS} points, got more; "
+                    "use a thinner slice or a smaller window, or export LAZ"
                 )
             first = _FIRST_HANDLE + count - len(p)
             layer = layers[number - 1]
@@ -148,7 +148,7 @@ def write_dxf(
 
 
 def layer_name(number: int, cut: Cut) -> str:
-    """Name of a slice's layer, of characters every CAD takes."""
+    """Layer name of a slice, in characters every CAD program accepts."""
     place = {
         "horizontal": f"Z_{cut.origin_m[2]:.3f}",
         "vertical": f"V_{cut.offset_m:.3f}",
@@ -158,22 +158,22 @@ def layer_name(number: int, cut: Cut) -> str:
 
 
 def write_geotiff(
-    picture: SliceImage,
+    drawn: SliceImage,
     path: Path,
     *,
     frame: MapFrame,
     span: Span,
     ground: Ground = "light",
-    words: str = "",
+    description: str = "",
 ) -> None:
-    """The picture as GeoTIFF, colored, transparent where nothing is.
+    """Write the image as GeoTIFF, colored, transparent where there are no points.
 
-    A horizontal slice of a georeferenced map carries its CRS, and a transformation that is exact
-    at its middle. Everything else has the coordinates of the cut (u, v in metres) and no CRS.
-    ``words`` become the file's description.
+    A horizontal slice of a georeferenced map has its CRS, and a transformation that is exact at
+    its center. All other slices have the coordinates of the cut (u, v in meters) and no CRS.
+    ``description`` is stored in the tag ImageDescription.
 
     Raises:
-        GeoreferenceError: If the picture is so large that a pixel would be off by its half.
+        GeoreferenceError: If an affine transformation would be off by half a pixel at a corner.
         StoreError: If the file cannot be written.
     """
     from PIL import Image, TiffImagePlugin
@@ -181,13 +181,13 @@ def write_geotiff(
     check_name(path, ".tif")
 
     tags = TiffImagePlugin.ImageFileDirectory_v2()
-    geo = _georeference(picture, frame)
+    geo = _georeference(drawn, frame)
     for tag, values in geo.items():
         text = isinstance(values, str)
         tags.tagtype[tag] = 2 if text else (3 if tag == _GEO_KEYS else 12)
         tags[tag] = values if text else tuple(values)
-    tags[TiffImagePlugin.IMAGEDESCRIPTION] = words.encode("ascii", "replace").decode()
-    image = Image.fromarray(picture.rgba(span, ground))
+    tags[TiffImagePlugin.IMAGEDESCRIPTION] = description.encode("ascii", "replace").decode()
+    image = Image.fromarray(drawn.rgba(span, ground))
     with atomic_file(path) as temporary:
         image.save(temporary, format="TIFF", compression="tiff_adobe_deflate", tiffinfo=tags)
 
@@ -197,44 +197,44 @@ _FIRST_HANDLE = 0x10000
 _NEXT_HANDLE = 0x1000_0000
 
 
-def _georeference(picture: SliceImage, frame: MapFrame) -> dict[int, Any]:
+def _georeference(drawn: SliceImage, frame: MapFrame) -> dict[int, Any]:
     """Tags of GeoTIFF 1.1: the transformation from pixels, and keys that name the CRS."""
-    cut, paper = picture.cut, picture.paper
+    cut, paper = drawn.cut, drawn.paper
     u0, v0 = paper.corner
     if cut.kind == "horizontal" and frame.to_crs is not None:
         middle = np.array([u0 + paper.width * paper.pixel_m / 2.0,
                            v0 - paper.height * paper.pixel_m / 2.0, cut.origin_m[2]])  # fmt: skip
         J, place = jacobian(frame.to_crs, middle)
-        _refuse_bent(picture, frame, middle)
+        _refuse_bent(drawn, frame, middle)
         A = J[:2, :2] * [paper.pixel_m, -paper.pixel_m]
         corner = place[:2] + J[:2, :2] @ (np.array([u0, v0]) - middle[:2])
         code = _epsg(frame)
         keys = [(1024, 0, 1, 1), (1025, 0, 1, 1), (3072, 0, 1, code), (3076, 0, 1, 9001)]
-        words = ""
+        citation = ""
     else:
         A, corner = np.diag([paper.pixel_m, -paper.pixel_m]), np.array([u0, v0])
-        words = f"recon4 slice {cut.name}, {frame.words}|"
-        keys = [(1024, 0, 1, 32767), (1025, 0, 1, 1), (1026, _GEO_ASCII, len(words), 0)]
+        citation = f"recon4 slice {cut.name}, {frame.text}|"
+        keys = [(1024, 0, 1, 32767), (1025, 0, 1, 1), (1026, _GEO_ASCII, len(citation), 0)]
         keys.append((3076, 0, 1, 9001))
     matrix = [A[0, 0], A[0, 1], 0, corner[0], A[1, 0], A[1, 1], 0, corner[1],
               0, 0, 0, 0, 0, 0, 0, 1]  # fmt: skip
     directory = [1, 1, 1, len(keys), *(number for key in keys for number in key)]
     tags: dict[int, Any] = {_GEO_KEYS: directory, _GEO_MATRIX: [float(x) for x in matrix]}
-    if words:
-        tags[_GEO_ASCII] = words.encode("ascii", "replace").decode()
+    if citation:
+        tags[_GEO_ASCII] = citation.encode("ascii", "replace").decode()
     return tags
 
 
-def _refuse_bent(picture: SliceImage, frame: MapFrame, middle: Array) -> None:
+def _refuse_bent(drawn: SliceImage, frame: MapFrame, middle: Array) -> None:
     assert frame.to_crs is not None
     J, place = jacobian(frame.to_crs, middle)
-    w = picture.paper.window
+    w = drawn.paper.window
     corners = np.array([[x, y, middle[2]] for x in (w.left, w.right) for y in (w.bottom, w.top)])
     off = frame.to_crs(corners) - (place + (corners - middle) @ J.T)
     worst = float(np.linalg.norm(off[:, :2], axis=1).max())
-    if worst > max(0.5 * picture.paper.pixel_m, 0.005):
+    if worst > max(0.5 * drawn.paper.pixel_m, 0.005):
         raise GeoreferenceError(
-            f"the picture is so large that its corners would be off by {worst:.3f} m in "
+            f"GeoTIFF: the image is too large, its corners would be off by {worst:.3f} m in "
             f"{frame.crs}; export a smaller window"
         )
 
@@ -255,7 +255,7 @@ def _every(
     *,
     cell_m: float = 0.0,
 ) -> Iterator[tuple[int, TilePart, Array]]:
-    """Number of the slice (from 1), points, and their places in the map; thinned if asked for."""
+    """Number of the slice (from 1), points, and their map coordinates; thinned to one per cell."""
     for number, cut in enumerate(cuts, start=1):
         for part in points_in(tiles, cut, fields, window=window):
             kept = _thinned(part, cell_m) if cell_m else part
@@ -271,7 +271,7 @@ def _thinned(part: TilePart, cell_m: float) -> TilePart:
 
 
 def _dxf_frame(layers: list[str]) -> tuple[str, str, str]:
-    """Text before and behind the entities of an empty drawing, and the handle that owns them."""
+    """Text before and after the entities of an empty drawing, and the handle of their owner."""
     import ezdxf.filemanagement
     import ezdxf.units
 

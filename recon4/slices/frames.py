@@ -1,10 +1,9 @@
-"""Between the map and the coordinate reference system it lies in."""
+"""Transformation between the map frame and its coordinate reference system."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -13,7 +12,6 @@ from recon4.export.points import ToCrs
 from recon4.geometry.se3 import Array
 from recon4.georeference.stage import read_crs
 from recon4.mapping.tiles import TileSet
-from recon4.store.project import read_artifacts
 
 _STEP_M = 10.0
 _ROUNDS = 4
@@ -21,7 +19,7 @@ _ROUNDS = 4
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MapFrame:
-    """What coordinates a project's map can be given in."""
+    """Coordinate frame of a project's map, and its CRS if there is one."""
 
     crs: str
     """Code as ``EPSG:32633``; empty = the map is local."""
@@ -29,13 +27,13 @@ class MapFrame:
     to_crs: ToCrs | None
 
     @property
-    def words(self) -> str:
-        """For the edge of a picture: frame, axes, unit, and where its origin lies."""
+    def text(self) -> str:
+        """Caption for sheets and files: frame, axes, unit, CRS coordinates of the origin."""
         if self.to_crs is None:
-            return "map frame (local), x y z, z up, metres"
+            return "map frame (local), x y z, z up, meters"
         east, north, up = self.to_crs(np.zeros((1, 3)))[0].tolist()
         place = f"origin at E {east:.3f} N {north:.3f} H {up:.3f} in {self.crs}"
-        return f"map frame ({place}), x y z, z up, metres"
+        return f"map frame ({place}), x y z, z up, meters"
 
     def from_crs(self, p_crs: Array) -> Array:
         """Points of the CRS in the map [m], (N, 3): Newton steps on `to_crs`, to 1 µm.
@@ -44,7 +42,7 @@ class MapFrame:
             GeoreferenceError: If the map is local, or the points are not near it.
         """
         if self.to_crs is None:
-            raise GeoreferenceError("the map is local: it has no place on earth")
+            raise GeoreferenceError("the map is local: it is not georeferenced")
         J, origin = jacobian(self.to_crs, np.zeros(3))
         back = np.asarray(np.linalg.inv(J), dtype=np.float64)
         p_map: Array = (p_crs - origin) @ back.T
@@ -59,10 +57,10 @@ class MapFrame:
 
 
 def jacobian(to_crs: ToCrs, p_map: Array) -> tuple[Array, Array]:
-    """How coordinates of the CRS change with those of the map at a place.
+    """Derivative of the CRS coordinates by the map coordinates at a point.
 
     Returns:
-        Derivative (3, 3), columns are the map's axes; and the place in the CRS (3,).
+        Derivative (3, 3), columns are the map's axes; and the point in the CRS (3,).
     """
     steps = np.concatenate([np.eye(3), -np.eye(3)]) * _STEP_M
     around = to_crs(np.concatenate([p_map + steps, p_map[None]]))
@@ -70,18 +68,15 @@ def jacobian(to_crs: ToCrs, p_map: Array) -> tuple[Array, Array]:
     return J, around[6]
 
 
-def read_frame(project: Path) -> MapFrame:
-    """The frame of a project's map; local when the run found no place on earth.
+def frame_of(artifacts: dict[str, Path]) -> MapFrame:
+    """The frame of a project's map; local if the map is not georeferenced.
+
+    Args:
+        artifacts: Stage -> folder of its artifact.
 
     Raises:
-        StoreError: If the project has no map.
+        StoreError: If there is no map.
     """
-    artifacts = read_artifacts(project)
-    return frame_of(artifacts)
-
-
-def frame_of(artifacts: dict[str, Path]) -> MapFrame:
-    """As `read_frame`, of the artifacts of a run."""
     if "map" not in artifacts:
         raise StoreError("the project has no map yet")
     level = artifacts.get("level")
@@ -94,8 +89,3 @@ def frame_of(artifacts: dict[str, Path]) -> MapFrame:
         shift = np.array(own.origin_m)
         return MapFrame("its CRS", own.wkt, lambda p: np.asarray(p, dtype=np.float64) + shift)
     return MapFrame("", "", None)
-
-
-def facts(frame: MapFrame) -> dict[str, Any]:
-    """For the page, as plain JSON values."""
-    return {"crs": frame.crs, "words": frame.words}

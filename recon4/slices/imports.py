@@ -44,7 +44,7 @@ def import_reference(
         ``reference.json``.
 
     Raises:
-        CorruptFile, UnknownFormat, RecordingError: If the file cannot be used, in words.
+        CorruptFile, UnknownFormat, RecordingError: If the file cannot be used.
     """
     if not path.is_file():
         raise UnknownFormat(f"{path.name}: expected one file, got a folder or nothing")
@@ -61,11 +61,11 @@ def import_reference(
     return facts
 
 
-def set_alignment(folder: Path, T_map_reference: SE3, *, words: str) -> dict[str, object]:
+def set_alignment(folder: Path, T_map_reference: SE3, *, description: str) -> dict[str, object]:
     """Remember how a reference is laid onto the map."""
     facts = read_facts(folder) | {
         "T_map_reference": T_map_reference.matrix().tolist(),
-        "alignment": words,
+        "alignment": description,
     }
     write_json(folder / "reference.json", facts)
     return facts

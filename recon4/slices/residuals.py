@@ -1,4 +1,4 @@
-"""Residuals at control and check points, and whether the map keeps the limits."""
+"""Residuals at control and check points, compared with the limits."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from recon4.geometry.se3 import Array
 from recon4.slices.control import ControlPoint, Role
 
 RELATIVE_LIMIT_M = 0.05
-"""Distances between points of the map are off by no more than this (requirements, relative)."""
+"""Limit for the error of distances between points of the map (requirements, relative)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Residual:
-    """Map minus survey at one point."""
+    """Residual of one point: map minus survey."""
 
     id: str
     role: Role
@@ -48,7 +48,7 @@ class Requirement:
 
 @dataclass(frozen=True, slots=True)
 class ResidualStatistics:
-    """Residuals of one role taken together."""
+    """Statistics of the residuals of one role."""
 
     role: Role
     points: int
@@ -71,17 +71,17 @@ class ControlReport:
 
     rows: tuple[Residual, ...]
     missing: tuple[str, ...]
-    """Points without a place in the map yet."""
+    """Points not yet found in the map."""
     outdated: tuple[str, ...]
-    """Points that were found in an earlier map only: their places say nothing of this one."""
+    """Points found in an earlier map only; they are not used for this one."""
     figures: tuple[ResidualStatistics, ...]
-    """Of check points, then of control points; a role without points is left out."""
+    """Statistics of check points, then of control points; a role without points is omitted."""
     judged_by: Role | None
-    """Whose limits decide; None = no point was measured."""
+    """Role that decides about acceptance; None = no point was measured."""
 
     @property
     def passed(self) -> bool | None:
-        """Whether the map keeps all limits at the points that decide; None = nothing was found."""
+        """Whether the deciding points are within all limits; None = no point was measured."""
         return all(one.holds for one in self.figures[0].requirements) if self.figures else None
 
 
@@ -91,12 +91,12 @@ def residuals(
     *,
     outdated: Collection[str] = (),
 ) -> ControlReport:
-    """The residual table, control and check points apart.
+    """Compute the residual table, control and check points separately.
 
     Args:
-        points: As surveyed.
-        measured: Id -> place in the map, in the coordinates of the survey [m], (3,).
-        outdated: Ids of points that were found in an earlier map.
+        points: Surveyed points.
+        measured: Id -> position in the map, in the coordinates of the survey [m], (3,).
+        outdated: Ids of points found in an earlier map.
     """
     rows = tuple(_residual(p, measured[p.id]) for p in points if p.id in measured)
     figures = []
@@ -115,15 +115,15 @@ def residuals(
     )
 
 
-def residual_csv(report: ControlReport, *, words: str = "") -> str:
-    """The residuals in metres, and behind an empty line each limit with what was measured.
+def residual_csv(report: ControlReport, *, comment: str = "") -> str:
+    """The residuals in meters, and after an empty line each limit with the measured value.
 
     Args:
         report: The table.
-        words: What it is about, for the first line, a comment.
+        comment: Text of the first line: project, map, frame.
     """
     out = io.StringIO()
-    out.write(f"# recon4 control and check points {' '.join(words.split())}".rstrip() + "\n")
+    out.write(f"# recon4 control and check points {' '.join(comment.split())}".rstrip() + "\n")
     rows = csv.writer(out, lineterminator="\n")
     rows.writerow(["id", "role", "dE_m", "dN_m", "dU_m", "d2D_m", "d3D_m"])
     for row in report.rows:
@@ -145,7 +145,7 @@ def residual_csv(report: ControlReport, *, words: str = "") -> str:
 
 
 def safe_cell(text: str) -> str:
-    """A cell no spreadsheet takes for a formula."""
+    """A cell that spreadsheets do not evaluate as a formula."""
     return f"'{text}" if text[:1] in ("=", "+", "-", "@", "\t", "\r") else text
 
 
@@ -175,7 +175,7 @@ def _figures(rows: list[Residual], points: list[ControlPoint]) -> ResidualStatis
 
 
 def _requirements(flat_m: Array, up_m: Array, relative_m: float) -> tuple[Requirement, ...]:
-    """The limits of V §3.3, and that of distances where there are two points."""
+    """The limits of V §3.3, and the limit of distances if there are two points."""
     lines = [
         ("mean horizontal", float(flat_m.mean()), MEAN_HORIZONTAL_LIMIT_M),
         ("mean height", float(up_m.mean()), MEAN_VERTICAL_LIMIT_M),
@@ -184,7 +184,7 @@ def _requirements(flat_m: Array, up_m: Array, relative_m: float) -> tuple[Requir
     ]
     if math.isfinite(relative_m):
         lines.append(("distances between points", relative_m, RELATIVE_LIMIT_M))
-    return tuple(Requirement(words, value, limit, value <= limit) for words, value, limit in lines)
+    return tuple(Requirement(name, value, limit, value <= limit) for name, value, limit in lines)
 
 
 def _relative(true_m: Array, d: Array) -> float:

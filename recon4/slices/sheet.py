@@ -1,4 +1,4 @@
-"""A slice on paper: true scale, grid with coordinates, scale bar, legend, who approved it."""
+"""Slice sheets to print: true scale, coordinate grid, scale bar, legend, approval."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ import numpy as np
 import recon4
 from recon4.errors import ConfigError
 from recon4.slices.colors import (
+    LABELS,
     REFERENCE_COLOR,
     SENSOR_COLORS,
     UNITS,
-    WORDS,
     ColorBy,
     Span,
     table,
@@ -40,44 +40,44 @@ _INK, _QUIET, _GRID = "#17202a", "#56636f", "#b9c3cc"
 
 
 @dataclass(frozen=True, slots=True)
-class Words:
-    """What is written on a sheet."""
+class SheetText:
+    """Texts of a sheet."""
 
     project: str
     frame: str
     """Frame, axes, unit."""
     sources: str
-    """Versions and hashes that the picture rests on."""
+    """Program version and key of the map."""
     approval: str
-    """Who approved the map and when, or that nobody did."""
+    """Who approved the map and when, or `Not approved`."""
     reference: str = ""
     sensors: tuple[str, ...] = field(default=())
 
 
 @dataclass(frozen=True, slots=True)
 class SheetLayout:
-    """How a window lies on a sheet."""
+    """Scale and window of a sheet."""
 
     size: Size
     scale: int
-    """1 : so many."""
+    """Denominator of the scale 1 : n."""
     window: SliceWindow
-    """What is printed: the window asked for, in the middle of what fits [m]."""
+    """The printed window [m]: the requested one, centered in the printable area."""
 
     @property
     def paper(self) -> Paper:
-        """The picture to draw for it, at `DPI`."""
+        """Window and pixel size of the image to draw, at `DPI`."""
         return Paper(self.window, self.scale * _MM_PER_INCH / 1000.0 / DPI)
 
 
 def lay_out(window: SliceWindow, size: Size = "a4", scale: int = 0) -> SheetLayout:
-    """Choose the largest usual scale at which a window fits, or take the one asked for.
+    """Choose the largest usual scale at which a window fits, or use the requested one.
 
     Raises:
         ConfigError: If it does not fit at 1 : 10 000, or the scale is not a usual one.
     """
     if scale and scale not in SCALES:
-        raise ConfigError(f"a scale is one of {list(SCALES)}, got {scale}")
+        raise ConfigError(f"scale: expected one of {list(SCALES)}, got {scale}")
     across_mm, up_mm = _field_mm(size)
     width_m, height_m = window.right - window.left, window.top - window.bottom
     least = max(width_m * 1000.0 / across_mm, height_m * 1000.0 / up_mm)
@@ -90,17 +90,17 @@ def lay_out(window: SliceWindow, size: Size = "a4", scale: int = 0) -> SheetLayo
 
 
 def write_sheet(
-    picture: SliceImage, layout: SheetLayout, path: Path, *, span: Span, words: Words
+    drawn: SliceImage, layout: SheetLayout, path: Path, *, span: Span, text: SheetText
 ) -> None:
-    """Write a sheet as PNG (300 dpi), SVG or PDF; the same picture gives the same bytes.
+    """Write a sheet as PNG (300 dpi), SVG or PDF; the same image gives the same bytes.
 
     Raises:
-        ConfigError: If the ending is another.
+        ConfigError: If the file name has another suffix.
         StoreError: If the file cannot be written.
     """
     kind = path.suffix.lower().lstrip(".")
     if kind not in {"png", "svg", "pdf"}:
-        raise ConfigError(f"a sheet is written as .png, .svg or .pdf, got {path.name}")
+        raise ConfigError(f"sheet: expected a .png, .svg or .pdf file, got {path.name}")
     import matplotlib
     from matplotlib.figure import Figure
 
@@ -112,10 +112,10 @@ def write_sheet(
     with matplotlib.rc_context({**plain, "font.size": 7, "path.simplify": False}):
         across_mm, up_mm = SIZES_MM[layout.size]
         figure = Figure(figsize=(across_mm / _MM_PER_INCH, up_mm / _MM_PER_INCH), dpi=DPI)
-        _field(figure, picture, layout, span)
-        _head(figure, picture, layout, words)
+        _field(figure, drawn, layout, span)
+        _head(figure, drawn, layout, text)
         _scale_bar(figure, layout)
-        _legend(figure, picture, span, words)
+        _legend(figure, drawn, span, text)
         metadata = {"Date": None} if kind == "svg" else {}
         if kind == "pdf":
             metadata = {"CreationDate": None}
@@ -130,8 +130,8 @@ def grid_step_m(across_m: float) -> float:
     return float(power * next(s for s in (1.0, 2.0, 5.0, 10.0) if s * power >= rough * 0.999))
 
 
-def axis_words(cut: Cut) -> tuple[str, str]:
-    """What u and v are."""
+def axis_labels(cut: Cut) -> tuple[str, str]:
+    """Labels of the axes u and v."""
     if cut.kind == "horizontal":
         return "x [m]", "y [m]"
     if cut.kind == "vertical":
@@ -144,7 +144,7 @@ def _field_mm(size: Size) -> tuple[float, float]:
     return across_mm - _LEFT_MM - _RIGHT_MM, up_mm - _TOP_MM - _BOTTOM_MM
 
 
-def _field(figure: Any, picture: SliceImage, layout: SheetLayout, span: Span) -> None:
+def _field(figure: Any, drawn: SliceImage, layout: SheetLayout, span: Span) -> None:
     across_mm, up_mm = SIZES_MM[layout.size]
     width, height = _field_mm(layout.size)
     axes = figure.add_axes(
@@ -152,7 +152,7 @@ def _field(figure: Any, picture: SliceImage, layout: SheetLayout, span: Span) ->
     )
     w = layout.window
     axes.imshow(
-        picture.rgba(span, "light"),
+        drawn.rgba(span, "light"),
         extent=(w.left, w.right, w.bottom, w.top),
         interpolation="none",
         aspect="auto",
@@ -166,31 +166,31 @@ def _field(figure: Any, picture: SliceImage, layout: SheetLayout, span: Span) ->
     axes.tick_params(colors=_QUIET, width=0.4, length=2.5)
     axes.grid(color=_GRID, linewidth=0.35, zorder=0)
     axes.set_axisbelow(True)
-    u_words, v_words = axis_words(picture.cut)
-    axes.set_xlabel(u_words, color=_QUIET, labelpad=2)
-    axes.set_ylabel(v_words, color=_QUIET, labelpad=2)
+    u_label, v_label = axis_labels(drawn.cut)
+    axes.set_xlabel(u_label, color=_QUIET, labelpad=2)
+    axes.set_ylabel(v_label, color=_QUIET, labelpad=2)
     for spine in axes.spines.values():
         spine.set_color(_INK)
         spine.set_linewidth(0.6)
 
 
-def _head(figure: Any, picture: SliceImage, layout: SheetLayout, words: Words) -> None:
+def _head(figure: Any, drawn: SliceImage, layout: SheetLayout, text: SheetText) -> None:
     across_mm, up_mm = SIZES_MM[layout.size]
     x = _LEFT_MM / across_mm
     kind = {"horizontal": "Horizontal slice", "vertical": "Vertical slice", "free": "Slice"}
-    title = f"{words.project}   {kind[picture.cut.kind]}  {picture.cut.name}"
+    title = f"{text.project}   {kind[drawn.cut.kind]}  {drawn.cut.name}"
     facts = (
         f"1 : {layout.scale} on {layout.size.upper()}     "
-        f"thickness {_length(picture.cut.thickness_m)}"
-        f"     {picture.points:,} points".replace(",", "\u2009")
-        + f"     {words.frame}"
+        f"thickness {_length(drawn.cut.thickness_m)}"
+        f"     {drawn.points:,} points".replace(",", "\u2009")
+        + f"     {text.frame}"
     )
     figure.text(
         x, 1.0 - 9.0 / up_mm, title, fontsize=10, weight="bold", color=_INK, parse_math=False
     )
     figure.text(x, 1.0 - 15.0 / up_mm, facts, color=_INK, parse_math=False)
-    figure.text(x, 4.5 / up_mm, words.sources, fontsize=5.5, color=_QUIET, parse_math=False)
-    figure.text(x, 8.0 / up_mm, words.approval, fontsize=6, color=_INK, parse_math=False)
+    figure.text(x, 4.5 / up_mm, text.sources, fontsize=5.5, color=_QUIET, parse_math=False)
+    figure.text(x, 8.0 / up_mm, text.approval, fontsize=6, color=_INK, parse_math=False)
 
 
 def _scale_bar(figure: Any, layout: SheetLayout) -> None:
@@ -209,16 +209,16 @@ def _scale_bar(figure: Any, layout: SheetLayout) -> None:
         spine.set_linewidth(0.5)
 
 
-def _legend(figure: Any, picture: SliceImage, span: Span, words: Words) -> None:
+def _legend(figure: Any, drawn: SliceImage, span: Span, text: SheetText) -> None:
     across_mm, up_mm = SIZES_MM[layout_size(figure)]
-    color: ColorBy = picture.color
+    color: ColorBy = drawn.color
     right = 1.0 - (_RIGHT_MM + 3.0) / across_mm
     width = 60.0 / across_mm
     bar = (right - width, 12.5 / up_mm, width, 2.4 / up_mm)
     unit = f" [{UNITS[color]}]" if UNITS[color] else ""
-    label = f"{WORDS[color]}{unit}"
+    label = f"{LABELS[color]}{unit}"
     if color == "sensor":
-        _sensors(figure, bar, words)
+        _sensors(figure, bar, text)
     else:
         axes = figure.add_axes(bar)
         axes.imshow(table(color, "light")[None], aspect="auto", extent=(0, 1, 0, 1))
@@ -229,25 +229,25 @@ def _legend(figure: Any, picture: SliceImage, span: Span, words: Words) -> None:
         for spine in axes.spines.values():
             spine.set_linewidth(0.4)
     figure.text(right - width, 16.2 / up_mm, label, color=_INK, fontsize=6.5, parse_math=False)
-    if words.reference:
+    if text.reference:
         green = tuple(c / 255.0 for c in REFERENCE_COLOR)
         x = right - width - 4.0 / across_mm
         figure.text(
-            x, 13.0 / up_mm, f"\u25a0 reference: {words.reference}", color=green, fontsize=6.5,
+            x, 13.0 / up_mm, f"\u25a0 reference: {text.reference}", color=green, fontsize=6.5,
             ha="right", parse_math=False,
         )  # fmt: skip
 
 
 def layout_size(figure: Any) -> Size:
-    """Which paper a figure has."""
+    """Paper size of a figure."""
     across_mm = figure.get_figwidth() * _MM_PER_INCH
     return min(SIZES_MM, key=lambda size: abs(SIZES_MM[size][0] - across_mm))
 
 
-def _sensors(figure: Any, bar: tuple[float, float, float, float], words: Words) -> None:
-    for k, name in enumerate(words.sensors or ("1", "2")):
+def _sensors(figure: Any, bar: tuple[float, float, float, float], text: SheetText) -> None:
+    for k, name in enumerate(text.sensors or ("1", "2")):
         rgb = tuple(c / 255.0 for c in SENSOR_COLORS[k % len(SENSOR_COLORS)])
-        x = bar[0] + k * bar[2] / max(2, len(words.sensors))
+        x = bar[0] + k * bar[2] / max(2, len(text.sensors))
         figure.text(x, bar[1], f"\u25a0 {name}", color=rgb, fontsize=6.5, parse_math=False)
 
 
@@ -255,7 +255,7 @@ def _length(length_m: float) -> str:
     return f"{100.0 * length_m:g} cm" if length_m < 1.0 else f"{length_m:g} m"
 
 
-def approval_words(approval: Mapping[str, Any] | None) -> str:
+def approval_text(approval: Mapping[str, Any] | None) -> str:
     """Who approved a map and when, for sheets and files."""
     if not approval:
         return "Not approved"
@@ -264,6 +264,6 @@ def approval_words(approval: Mapping[str, Any] | None) -> str:
     return f"Approved by {who} ({role}) {when}, version {version}, statement {digest}"
 
 
-def source_words(artifact_key: str) -> str:
-    """What made a picture."""
+def source_text(artifact_key: str) -> str:
+    """Program version and key of the map, for the sheet."""
     return f"recon4 {recon4.__version__}, map {artifact_key[:16]}"

@@ -1,4 +1,4 @@
-"""A slice as a picture: every point of the map in the window, at full resolution."""
+"""Rendering of slice images from all points of the map in a window, at full resolution."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 MOST_PIXELS = 40_000_000
 _DOT_M = 0.006
-"""A point covers at least this when the pixels are smaller [m]."""
+"""Smallest size of a drawn point [m]."""
 _MOST_RADIUS_PX = 4
 _FIELD: dict[ColorBy, str] = {
     "intensity": "intensity",
@@ -36,22 +36,24 @@ _FIRST_OF_PIXEL = {"sensor", "distance"}
 
 @dataclass(frozen=True, slots=True)
 class Paper:
-    """What part of a cut is drawn, and how fine."""
+    """Drawn part of a cut and its pixel size."""
 
     window: SliceWindow
     pixel_m: float
 
     def __post_init__(self) -> None:
         if not self.pixel_m > 0.0 or not np.isfinite(self.pixel_m):
-            raise ConfigError(f"a pixel needs a size, got {self.pixel_m} m")
+            raise ConfigError(f"pixel size: expected a positive number, got {self.pixel_m} m")
         w = self.window
         corners = np.array([w.left, w.bottom, w.right, w.top])
         if not (np.isfinite(corners).all() and w.right > w.left and w.top > w.bottom):
-            raise ConfigError(f"the window makes no sense: {corners.tolist()}")
+            raise ConfigError(
+                f"window: expected left < right and bottom < top, got {corners.tolist()}"
+            )
         if self.width * self.height > MOST_PIXELS:
             raise ConfigError(
-                f"the picture would have {self.width} x {self.height} pixels, at most "
-                f"{MOST_PIXELS // 10**6} million are drawn; take larger pixels or a smaller window"
+                f"slice image: expected at most {MOST_PIXELS // 10**6} million pixels, got "
+                f"{self.width} x {self.height}; use larger pixels or a smaller window"
             )
 
     @property
@@ -66,12 +68,12 @@ class Paper:
 
     @property
     def corner(self) -> Array:
-        """U of the left and v of the upper edge [m], (2,)."""
+        """Coordinate u of the left edge and v of the upper edge [m], (2,)."""
         return np.array([self.window.left, self.window.top])
 
     @property
     def radius_px(self) -> int:
-        """Points stay visible when a pixel is smaller than the map's grid."""
+        """Radius of a drawn point: points stay visible where pixels are smaller than `_DOT_M`."""
         return min(_MOST_RADIUS_PX, int(_DOT_M / self.pixel_m))
 
 
@@ -91,10 +93,10 @@ class SliceImage:
     reference: NDArray[np.bool_]
     """Where the reference is, (H, W)."""
     span: Span
-    """Of the values seen."""
+    """Color range of the values."""
 
     def rgba(self, span: Span, ground: Ground) -> NDArray[np.uint8]:
-        """Colored, transparent where nothing is, (H, W, 4); single points are paler."""
+        """Colors (H, W, 4), transparent where there are no points; single points are paler."""
         out = np.zeros((*self.count.shape, 4), np.uint8)
         out[self.reference] = (*REFERENCE_COLOR, 255)
         hit = self.count > 0
@@ -113,13 +115,13 @@ def draw(
     color: ColorBy = "height",
     reference: Reference | None = None,
 ) -> SliceImage:
-    """Draw a slice from all its points. Memory follows the picture, not the map.
+    """Draw a slice from all its points. Memory depends on the image, not on the map.
 
     Args:
         tiles: The map.
-        cut: Where.
-        paper: Which part, how fine.
-        color: What is shown; of several points on a pixel their mean.
+        cut: The slice.
+        paper: Window and pixel size.
+        color: Value to show; the mean of the points of a pixel.
         reference: Drawn beneath; needed for ``distance``.
 
     Raises:
@@ -167,7 +169,7 @@ def png(rgba: NDArray[np.uint8]) -> bytes:
 
 def _fields(tiles: TileSet, color: ColorBy, reference: Reference | None) -> list[str]:
     if color == "distance" and reference is None:
-        raise ConfigError("distances need a reference: add one first")
+        raise ConfigError("color distance: needs a reference; add one first")
     field = _FIELD.get(color)
     if field is not None and field not in tiles.fields:
         raise ConfigError(f"this map has no {color} intensities; it has {list(tiles.fields)}")

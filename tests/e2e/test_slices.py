@@ -36,7 +36,7 @@ def test_a_slice_is_shown_with_frame_units_and_legend(server, page, picture):
     opened(page, server, "?kind=horizontal&z=1.5&color=intensity")
 
     expect(page.locator(".facing")).to_contain_text("z = 1.500 m")
-    expect(page.locator(".facing")).to_contain_text("map frame (local), x y z, z up, metres")
+    expect(page.locator(".facing")).to_contain_text("map frame (local), x y z, z up, meters")
     expect(page.get_by_role("img", name=re.compile("Slice z = 1.500 m, .* points"))).to_be_visible()
     expect(page.get_by_label("Low end of the colors")).to_be_visible()
     fits(page)

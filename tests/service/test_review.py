@@ -82,9 +82,9 @@ def test_a_decision_is_in_the_journal_when_it_is_acknowledged(server, root):
     assert (row.who, row.kind, row.frame_i, row.frame_j, row.why) == (
         *("local", "reject", 17, 77, "glass wall"),
     )
-    told = answer.json()
-    assert told["standing"][0]["accepted"] is False
-    assert (told["in_map"], told["undoable"], told["seq"]) == (False, 1, 1)
+    record = answer.json()
+    assert record["standing"][0]["accepted"] is False
+    assert (record["in_map"], record["undoable"], record["seq"]) == (False, 1, 1)
     assert server.get("/journal").json()[0]["why"] == "glass wall"
 
 
@@ -169,8 +169,8 @@ def test_the_points_of_both_lie_on_each_other_where_the_graph_says(server):
     moved = pose_of(facts["predicted"]) @ xyz[n_i:]
     from scipy.spatial import cKDTree
 
-    gap_m = cKDTree(xyz[:n_i]).query(moved)[0]
-    assert np.median(gap_m) < 0.06
+    distance_m = cKDTree(xyz[:n_i]).query(moved)[0]
+    assert np.median(distance_m) < 0.06
 
 
 def test_a_pair_of_moments_that_are_no_nodes_is_refused(server):
@@ -183,20 +183,20 @@ def test_a_pair_of_moments_that_are_no_nodes_is_refused(server):
 def test_the_effect_names_conflicts_and_moves(server):
     decide(server, "accept", WRONG)
 
-    told = server.get("/effect").json()
+    record = server.get("/effect").json()
 
-    assert [one["pair"] for one in told["conflicts"]] == [[20, 90]]
-    assert told["last"]["moves"][0]["moved_m"] > 0.01
-    assert told["last"]["chi2_after"] > told["last"]["chi2_before"]
+    assert [one["pair"] for one in record["conflicts"]] == [[20, 90]]
+    assert record["last"]["moves"][0]["moved_m"] > 0.01
+    assert record["last"]["chi2_after"] > record["last"]["chi2_before"]
 
 
 def test_a_pair_is_aligned_and_becomes_an_edge(server, root):
     pair = {"frame_i": 30, "frame_j": 60}
-    guess = list(server.get("/pair", params=pair).json()["predicted"])
-    true = guess.copy()
-    guess[0] += 0.25
+    predicted = list(server.get("/pair", params=pair).json()["predicted"])
+    true = predicted.copy()
+    predicted[0] += 0.25
 
-    found = server.post("/align", json={**pair, "T_i_j": guess}).json()
+    found = server.post("/align", json={**pair, "T_i_j": predicted}).json()
     answer = decide(server, "add", pair, measurement=found["measurement"], why="by hand")
 
     assert found["converged"]
@@ -204,9 +204,9 @@ def test_a_pair_is_aligned_and_becomes_an_edge(server, root):
     assert found["error_m"] < found["limit_m"]
     assert answer.status_code == 201
     assert answer.json()["standing"][0]["measured"]
-    told = server.get("/effect").json()
-    assert told["edges"][0]["pair"] == [30, 60]
-    assert told["missing"] == []
+    record = server.get("/effect").json()
+    assert record["edges"][0]["pair"] == [30, 60]
+    assert record["missing"] == []
 
 
 def test_a_measurement_nobody_made_is_not_taken(server, root):
@@ -299,9 +299,9 @@ def test_an_approval_is_signed_and_every_export_carries_it(server, root):
     assert (approval["version"], approval["who"], approval["current"]) == (1, "local", True)
     sha = approval["hash"]
     folder = root / "versions" / "1"
-    told = json.loads((folder / "approval.json").read_text())
-    assert set(told["issued"]) == {*RESULTS, "summary.json"}
-    assert told["statement"]["figures"]["points"] > 100_000
+    record = json.loads((folder / "approval.json").read_text())
+    assert set(record["issued"]) == {*RESULTS, "summary.json"}
+    assert record["statement"]["figures"]["points"] > 100_000
     assert json.loads((root / "summary.json").read_text())["approval"]["hash"] == sha
     for name in ("report.html", "trajectory.tum", "odometry.tum", "graph.g2o"):
         assert sha in (root / name).read_text()
@@ -407,18 +407,18 @@ def test_a_later_map_does_not_change_an_approved_version(server, root, capsys):
     decide(server, "reject", RIGHT)
 
     make_a_new_map(server, root)
-    told = server.get().json()
+    record = server.get().json()
     stages = json.loads((root / "summary.json").read_text())["stages"]
     assert [one["stage"] for one in stages if one["reused"]] == [
         *("frames", "odometry", "graph", "verification"),
     ]
-    assert told["in_map"]
+    assert record["in_map"]
     assert sha in slice_of(server, root, source=approved)
     assert sha not in slice_of(server, root)
     second = approve(server).json()["approval"]
 
     assert {path.name: hash_file(path) for path in files} == before
-    assert told["approval"]["current"] is False
+    assert record["approval"]["current"] is False
     assert (second["version"], second["current"]) == (2, True)
     assert main(["verify", str(root)]) == 0
     assert "version 1, approved by local" in capsys.readouterr().out
@@ -448,9 +448,9 @@ def forge_row(root):
 
 def change_statement(root):
     path = root / "versions/1/approval.json"
-    told = json.loads(path.read_text())
-    told["statement"]["figures"]["points"] += 1
-    overwrite(path, json.dumps(told).encode())
+    record = json.loads(path.read_text())
+    record["statement"]["figures"]["points"] += 1
+    overwrite(path, json.dumps(record).encode())
 
 
 def change_result(root):
@@ -460,10 +460,10 @@ def change_result(root):
 
 def change_issued(root):
     path = root / "versions/1/approval.json"
-    told = json.loads(path.read_text())
+    record = json.loads(path.read_text())
     change_result(root)
-    told["issued"]["edges.json"] = hash_file(root / "versions/1/edges.json")
-    overwrite(path, json.dumps(told).encode())
+    record["issued"]["edges.json"] = hash_file(root / "versions/1/edges.json")
+    overwrite(path, json.dumps(record).encode())
 
 
 def add_version(root):
@@ -481,7 +481,7 @@ def overwrite(path, data):
         (forge_row, "row 1 (reject by Jan) was changed"),
         (change_statement, "the statement is not the one in the journal"),
         (change_result, "edges.json has other bytes"),
-        (change_issued, "the signature does not hold"),
+        (change_issued, "the signature is not valid"),
         (add_version, "versions/2 is in no row of the journal"),
     ],
 )

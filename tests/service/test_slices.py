@@ -52,37 +52,37 @@ def exported(server, ending, **changes):
 
 
 def test_the_page_is_told_what_can_be_cut(server):
-    told = server.get(BASE).json()
+    body = server.get(BASE).json()
 
-    assert told["points"] == 120_000
-    assert told["bounds_m"][1] == pytest.approx(ROOM_M, abs=0.35)
-    assert told["frame"] == "map frame (local), x y z, z up, metres"
-    assert told["approval"] == "Not approved"
-    assert [source["id"] for source in told["sources"]] == ["project:other"]
+    assert body["points"] == 120_000
+    assert body["bounds_m"][1] == pytest.approx(ROOM_M, abs=0.35)
+    assert body["frame"] == "map frame (local), x y z, z up, meters"
+    assert body["approval"] == "Not approved"
+    assert [source["id"] for source in body["sources"]] == ["project:other"]
 
 
 def test_a_picture_shows_the_room_from_all_its_points(server):
-    told = sent(server, "/image", ask(color="sensor")).json()
+    body = sent(server, "/image", ask(color="sensor")).json()
 
-    image = Image.open(io.BytesIO(base64.b64decode(told["png"])))
+    image = Image.open(io.BytesIO(base64.b64decode(body["png"])))
     assert image.size == (400, 300)
-    window = told["window"]
-    assert (window["right"] - window["left"]) / told["pixel_m"] == pytest.approx(400)
+    window = body["window"]
+    assert (window["right"] - window["left"]) / body["pixel_m"] == pytest.approx(400)
     assert window["left"] < 0 and window["right"] > ROOM_M[0]
-    assert told["points"] > 3000 and told["name"] == "z = 1.500 m"
+    assert body["points"] > 3000 and body["name"] == "z = 1.500 m"
     assert np.asarray(image)[..., 3].any()
 
 
 def test_a_window_is_kept_to_and_only_widened_to_the_shape(server):
     window = {"left": 2.0, "bottom": 1.0, "right": 6.0, "top": 2.0}
 
-    told = sent(server, "/image", ask(window=window)).json()
+    body = sent(server, "/image", ask(window=window)).json()
 
-    assert told["window"]["left"] == 2.0 and told["window"]["right"] == 6.0
-    assert told["window"]["bottom"] == pytest.approx(0.0)
+    assert body["window"]["left"] == 2.0 and body["window"]["right"] == 6.0
+    assert body["window"]["bottom"] == pytest.approx(0.0)
 
 
-def test_of_several_pictures_a_page_asks_for_the_latest_is_answered(server):
+def test_of_several_image_requests_of_a_page_the_latest_is_answered(server):
     answers = {}
 
     def one(k):
@@ -100,7 +100,7 @@ def test_of_several_pictures_a_page_asks_for_the_latest_is_answered(server):
     assert all(a.json()["error"] == "Superseded" for a in answers.values() if a.status_code == 409)
 
 
-def test_pictures_asked_for_in_another_order_than_they_arrive(server):
+def test_image_requests_that_arrive_in_another_order(server):
     def one(turn):
         return httpx.post(f"{server.url}{BASE}/image", json=ask(page="p2", turn=turn), timeout=60)
 
@@ -113,10 +113,10 @@ def test_pictures_asked_for_in_another_order_than_they_arrive(server):
 def test_a_cut_that_begins_far_away_is_drawn(server):
     far = {"kind": "vertical", "a_m": [0.0, 1e8], "b_m": [1.0, 0.0]}
 
-    told = sent(server, "/image", ask(cut=far)).json()
+    body = sent(server, "/image", ask(cut=far)).json()
 
-    assert told["points"] > 0 and max(map(abs, told["window"].values())) > 99_999_900.0
-    assert sent(server, "/image", ask(cut=far, window=told["window"])).status_code == 200
+    assert body["points"] > 0 and max(map(abs, body["window"].values())) > 99_999_900.0
+    assert sent(server, "/image", ask(cut=far, window=body["window"])).status_code == 200
 
 
 def test_a_picked_point_is_one_of_the_map(server):
@@ -137,9 +137,9 @@ def test_the_map_from_above_comes_with_its_window(server):
     image = server.get(f"{BASE}/overview")
     window = server.get(f"{BASE}/overview/window").json()
 
-    picture = Image.open(io.BytesIO(image.content))
+    shown = Image.open(io.BytesIO(image.content))
     across, up = window["right"] - window["left"], window["top"] - window["bottom"]
-    assert picture.width / picture.height == pytest.approx(across / up, rel=0.01)
+    assert shown.width / shown.height == pytest.approx(across / up, rel=0.01)
     assert window["left"] < 0 < ROOM_M[0] < window["right"]
 
 
@@ -184,7 +184,7 @@ def test_a_reference_is_added_compared_aligned_and_removed(server):
         ("cut.ply", CUT_PLY, "cut: 1000 points"),
         ("nothing.laz", b"LASF" + bytes(300), "expected LAS 1.0 to 1.4, got 0.0"),
         ("words.csv", b"a;b;c\nd;e;f\n", "numbers"),
-        ("picture.png", b"\x89PNG\r\n\x1a\n" + bytes(200), "expected a PLY"),
+        ("image.png", b"\x89PNG\r\n\x1a\n" + bytes(200), "expected a PLY"),
     ],
 )
 def test_a_damaged_reference_is_refused_in_words(server, name, content, words):
@@ -237,8 +237,8 @@ def test_an_export_of_an_approved_map_says_so(server):
     assert shown.startswith("Approved by Eva (reviewer)") and later == "Not approved"
 
     with laspy.open(io.BytesIO(files["laz"])) as laz:
-        (told,) = [vlr for vlr in laz.header.vlrs if vlr.user_id == "recon4"]
-        assert json.loads(told.record_data_bytes()) == stamp
+        (record,) = [vlr for vlr in laz.header.vlrs if vlr.user_id == "recon4"]
+        assert json.loads(record.record_data_bytes()) == stamp
         assert laz.read().header.point_count > 1000
     assert json.loads(files["csv"].splitlines()[1].removeprefix(b"# recon4 approval ")) == stamp
     assert json.dumps(stamp).encode() in files["dxf"][:400]

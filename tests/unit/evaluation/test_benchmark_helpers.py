@@ -25,7 +25,7 @@ def test_nclt_scans_fit_their_true_poses(data: Callable[[str], Path]) -> None:
     raw = cKDTree(first.xyz).query(second.xyz)[0]
 
     assert len(truth) == 450
-    assert np.median(near) < 0.3  # the scans are thinned to voxels of some decimetres
+    assert np.median(near) < 0.3  # the scans are thinned to voxels of some decimeters
     assert np.median(near) < 0.9 * np.median(raw)
 
 

@@ -165,7 +165,7 @@ def test_the_report_says_what_was_found(facts: ReportFacts) -> None:
         "no pose by more than 50.0 cm",
         "The recording was read as: lossy.",
         "5\u202f000\u202f000",
-        "local map frame, z up (metres)",
+        "local map frame, z up (meters)",
         "map.voxel_m",
         "ab" * 32,
         "900.0 MB",
@@ -252,7 +252,7 @@ def test_a_report_without_any_artifact_can_still_be_written(
     assert "The run left nothing that could be judged." in text
 
 
-def test_a_map_without_points_has_no_pictures(facts: ReportFacts, tmp_path: Path) -> None:
+def test_a_map_without_points_has_no_charts_of_it(facts: ReportFacts, tmp_path: Path) -> None:
     empty = tmp_path / "empty"
     empty.mkdir()
     with TileWriter(empty, ["xyz", "intensity"], tile_m=10.0) as writer:

@@ -46,7 +46,7 @@ def publish(root, key="ab"):
     for name, text in FILES.items():
         (root / name).unlink(missing_ok=True)
         (root / name).write_text(text)
-    told = {
+    record = {
         "name": "office",
         "points": 7,
         "approval": None,
@@ -55,7 +55,7 @@ def publish(root, key="ab"):
     }
     with changing(root, "summary.json", compared=False):
         (root / "summary.json").unlink(missing_ok=True)
-        write_json(root / "summary.json", told)
+        write_json(root / "summary.json", record)
 
 
 @pytest.fixture
@@ -113,10 +113,10 @@ def forge_journal(root):
     ("spoil", "words"),
     [
         (lambda root: (root / "summary.json").unlink(), "no finished map yet"),
-        (forge_journal, "the journal is not what was written"),
+        (forge_journal, "the journal was altered"),
         (lambda root: (root / "edges.json").write_text("{}"), "edges.json is not what the run"),
         (lambda root: (root / "graph.g2o").unlink(), "graph.g2o is not what the run wrote"),
-        (lambda root: append(root, reject(9)), "does not know the last decisions"),
+        (lambda root: append(root, reject(9)), "the last decisions are not in the map"),
         (
             lambda root: (root / "artifacts/ab/points.txt").write_text("points of AB\n"),
             "artifacts/ab/points.txt: expected .* make a new map first",
@@ -177,9 +177,9 @@ def test_an_approval_that_counted_before_a_crash_is_handed_out_later(root, key, 
     with pytest.raises(NotApprovable, match="already"):
         approve(root, key, SIGNER, False)
 
-    told = latest_approval(root, read_rows(root))
-    assert (before["current"], told["current"], told["version"]) == (False, True, 1)
-    assert told["hash"] in (root / "report.html").read_text()
+    record = latest_approval(root, read_rows(root))
+    assert (before["current"], record["current"], record["version"]) == (False, True, 1)
+    assert record["hash"] in (root / "report.html").read_text()
 
 
 def test_an_earlier_map_keeps_its_approval(root, key):
@@ -196,20 +196,20 @@ def test_an_earlier_map_keeps_its_approval(root, key):
     assert damage(root) == () and not killed.exists()
 
 
-def change_statement(told):
-    told["statement"]["figures"]["points"] += 1
+def change_statement(record):
+    record["statement"]["figures"]["points"] += 1
 
 
-def other_hash(told):
-    told["hash"] = "0" * 64
+def other_hash(record):
+    record["hash"] = "0" * 64
 
 
-def other_algorithm(told):
-    told["signature"]["algorithm"] = "none"
+def other_algorithm(record):
+    record["signature"]["algorithm"] = "none"
 
 
-def other_signature(told):
-    told["signature"]["value"] = "00" * 64
+def other_signature(record):
+    record["signature"]["value"] = "00" * 64
 
 
 @pytest.mark.parametrize(
@@ -217,20 +217,20 @@ def other_signature(told):
     [
         (change_statement, "the statement is not the one in the journal"),
         (other_hash, "the statement is not the one in the journal"),
-        (other_algorithm, "the signature does not hold"),
-        (other_signature, "the signature does not hold"),
-        (lambda told: told.pop("signature"), "approval.json cannot be read"),
-        (lambda told: told["issued"].update({"more.txt": "ab"}), "the signature does not hold"),
-        (lambda told: told["issued"].pop("edges.json"), "the signature does not hold"),
-        (lambda told: told["signature"].update(key="0" * 16), "it names the key 0000"),
+        (other_algorithm, "the signature is not valid"),
+        (other_signature, "the signature is not valid"),
+        (lambda record: record.pop("signature"), "approval.json cannot be read"),
+        (lambda record: record["issued"].update({"more.txt": "ab"}), "the signature is not valid"),
+        (lambda record: record["issued"].pop("edges.json"), "the signature is not valid"),
+        (lambda record: record["signature"].update(key="0" * 16), "it names the key 0000"),
     ],
 )
 def test_a_changed_approval_is_found(root, key, change, words):
     path = approve(root, key, SIGNER, False).folder / "approval.json"
-    told = json.loads(path.read_text())
-    change(told)
+    record = json.loads(path.read_text())
+    change(record)
     path.chmod(0o644)
-    path.write_text(json.dumps(told))
+    path.write_text(json.dumps(record))
 
     assert any(words in what for what in damage(root))
 

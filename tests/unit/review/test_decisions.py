@@ -97,7 +97,7 @@ def test_an_approval_changes_nothing_and_is_not_undone():
     assert fold([*rows, decide(DecisionKind.UNDO)]) == fold(
         [decide(DecisionKind.REJECT), decide(DecisionKind.UNDO)]
     )
-    with pytest.raises(StoreError, match="undo nothing"):
+    with pytest.raises(StoreError, match="nothing to undo"):
         fold([decide(DecisionKind.APPROVE, facts=facts), decide(DecisionKind.UNDO)])
 
 

@@ -58,11 +58,11 @@ def test_undo_of_nothing_is_refused_and_leaves_no_row(tmp_path):
     assert len(read_rows(tmp_path)) == 2
 
 
-def test_who_did_not_see_the_last_decision_is_told(tmp_path):
+def test_an_append_after_an_outdated_row_is_rejected(tmp_path):
     append(tmp_path, reject(7))
     append(tmp_path, reject(9, who="Jan"))
 
-    with pytest.raises(JournalChanged, match="1 more rows"):
+    with pytest.raises(JournalChanged, match="1 decisions meanwhile"):
         append(tmp_path, undo(), after_seq=1)
     assert append(tmp_path, undo(), after_seq=2).seq == 3
 

@@ -92,12 +92,12 @@ def test_review_json_names_what_happened(run):
 
     found = run()["review"]
 
-    told = json.loads((found.artifact.folder / "review.json").read_text())
-    assert [one["pair"] for one in told["conflicts"]] == [[52, 202]]
-    assert told["missing"] == [[2, 102]]
-    assert told["moves"][0]["moved_m"] > 0.01
-    assert told["chi2_after"] > told["chi2_before"]
-    assert {one["why"] for one in told["decisions"]} == {"seen", ""}
+    record = json.loads((found.artifact.folder / "review.json").read_text())
+    assert [one["pair"] for one in record["conflicts"]] == [[52, 202]]
+    assert record["missing"] == [[2, 102]]
+    assert record["moves"][0]["moved_m"] > 0.01
+    assert record["chi2_after"] > record["chi2_before"]
+    assert {one["why"] for one in record["decisions"]} == {"seen", ""}
     assert found.figures["conflicts"] == 1
     assert len(found.figures["warnings"]) == 2
 
@@ -111,20 +111,20 @@ def test_the_quick_look_says_what_the_stage_will_say(run):
     quick = preview(Source.of(run.root), decided, before)
 
     artifact = run()["review"].artifact.folder
-    told = json.loads((artifact / "review.json").read_text())
-    assert quick["all"] == {name: told[name] for name in quick["all"]}
-    assert quick["conflicts"] == told["conflicts"]
+    record = json.loads((artifact / "review.json").read_text())
+    assert quick["all"] == {name: record[name] for name in quick["all"]}
+    assert quick["conflicts"] == record["conflicts"]
     assert quick["last"] == quick["all"]
     assert quick["edges"][0]["pair"] == [52, 202]
-    assert quick["edges"][0]["chi2"] == pytest.approx(told["conflicts"][0]["chi2"])
+    assert quick["edges"][0]["chi2"] == pytest.approx(record["conflicts"][0]["chi2"])
 
 
 def test_the_queue_is_ordered_by_influence_and_always_the_same(run):
     run()
 
-    told = json.loads(queue_json(Source.of(run.root)))
+    record = json.loads(queue_json(Source.of(run.root)))
 
-    rows = [dict(zip(COLUMNS, row, strict=True)) for row in told["rows"]]
+    rows = [dict(zip(COLUMNS, row, strict=True)) for row in record["rows"]]
     influence = [row["influence_m"] for row in rows if row["measured"]]
     assert influence == sorted(influence, reverse=True)
     assert (rows[0]["frame_i"], rows[0]["frame_j"]) == (52, 202)
@@ -158,9 +158,9 @@ def test_pairs_without_a_registration_that_holds_come_last():
 
     assert rows[0][:2] == [52, 202]
     assert [row[:2] for row in rows[-4:]] == [[22, 252], [17, 252], [7, 252], [12, 252]]
-    told = {name: [row[COLUMNS.index(name)] for row in rows[-4:]] for name in COLUMNS}
-    assert told["measured"] == [True, False, False, False]
-    assert told["influence_m"][0] > 1.0 and told["influence_m"][1:] == [None] * 3
+    column = {name: [row[COLUMNS.index(name)] for row in rows[-4:]] for name in COLUMNS}
+    assert column["measured"] == [True, False, False, False]
+    assert column["influence_m"][0] > 1.0 and column["influence_m"][1:] == [None] * 3
 
 
 def test_alternative_paths_one_by_one_have_the_median_of_the_verification():

@@ -200,15 +200,15 @@ def test_gnss_positions_are_those_of_the_antenna(tmp_path):
 
 
 def test_position_packets_tell_the_time_and_outdoors_the_place(perfect):
-    told = [
+    sentences = [
         payload[206:].split(b"\0")[0].decode()
         for _, _, port, payload in datagrams(perfect / "recording.pcap")
         if port == 8308
     ]
 
-    assert len(told) == 10
-    assert told[0].startswith("$GPRMC,100000,V,") and ",010626," in told[0]
-    assert told[-1].startswith("$GPRMC,100004,V,")
+    assert len(sentences) == 10
+    assert sentences[0].startswith("$GPRMC,100000,V,") and ",010626," in sentences[0]
+    assert sentences[-1].startswith("$GPRMC,100004,V,")
 
 
 def test_a_rig_with_clock_offsets_stamps_its_packets_with_them(tmp_path):

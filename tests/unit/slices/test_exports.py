@@ -10,7 +10,7 @@ import rasterio.transform
 
 from recon4.errors import ConfigError, CorruptFile, GeoreferenceError
 from recon4.georeference.crs import CrsTransform, GeodeticOrigin
-from recon4.slices.acceptance import SheetWords, render_acceptance
+from recon4.slices.acceptance import AcceptanceText, render_acceptance
 from recon4.slices.control import ControlPoint, read_control
 from recon4.slices.cut import horizontal, vertical
 from recon4.slices.export import write_csv, write_dxf, write_geotiff, write_laz
@@ -18,7 +18,7 @@ from recon4.slices.frames import MapFrame, frame_of
 from recon4.slices.pick import nearest_surface, pick
 from recon4.slices.points import SliceWindow, points_in
 from recon4.slices.residuals import residual_csv, residuals
-from recon4.slices.sheet import Words, approval_words, grid_step_m, lay_out, write_sheet
+from recon4.slices.sheet import SheetText, approval_text, grid_step_m, lay_out, write_sheet
 from recon4.slices.slice_image import Paper, draw
 from tests.unit.slices.room_map import wall, write_map
 
@@ -91,15 +91,15 @@ def test_a_csv_holds_every_point_with_place_and_coordinates(tiles, tmp_path):
     lines = (tmp_path / "s.csv").read_text().splitlines()
     rows = list(csv.DictReader(lines[1:]))
     x = np.array([float(row["x_m"]) for row in rows])
-    assert lines[0] == "# recon4 slice, map frame (local), x y z, z up, metres"
+    assert lines[0] == "# recon4 slice, map frame (local), x y z, z up, meters"
     assert len(rows) == count and np.abs(x - 1.0).max() < 0.06
     assert float(rows[0]["z_m"]) == pytest.approx(0.5 + float(rows[0]["off_m"]), abs=2e-4)
 
 
 def test_a_geotiff_lies_where_the_crs_says(tiles, tmp_path):
-    picture = draw(tiles, CUT, Paper(SliceWindow(0.0, -1.0, 3.0, 5.0), 0.02), color="intensity")
+    drawn = draw(tiles, CUT, Paper(SliceWindow(0.0, -1.0, 3.0, 5.0), 0.02), color="intensity")
 
-    write_geotiff(picture, tmp_path / "s.tif", frame=PLACED, span=picture.span)
+    write_geotiff(drawn, tmp_path / "s.tif", frame=PLACED, span=drawn.span)
 
     with rasterio.open(tmp_path / "s.tif") as file:
         bands = file.read()
@@ -113,11 +113,11 @@ def test_a_geotiff_lies_where_the_crs_says(tiles, tmp_path):
     assert np.ptp(ys) == pytest.approx(np.ptp(expected[:, 1]), abs=0.05)
 
 
-def test_a_geotiff_of_a_section_has_its_own_metres(tiles, tmp_path):
+def test_a_geotiff_of_a_section_has_its_own_meters(tiles, tmp_path):
     cut = vertical((0.0, 1.0), (4.0, 1.0), thickness_m=0.5)
-    picture = draw(tiles, cut, Paper(SliceWindow(0.0, -1.0, 4.0, 3.0), 0.01))
+    drawn = draw(tiles, cut, Paper(SliceWindow(0.0, -1.0, 4.0, 3.0), 0.01))
 
-    write_geotiff(picture, tmp_path / "s.tif", frame=PLACED, span=picture.span)
+    write_geotiff(drawn, tmp_path / "s.tif", frame=PLACED, span=drawn.span)
 
     with rasterio.open(tmp_path / "s.tif") as file:
         assert file.transform @ (0, 0) == pytest.approx((0.0, 3.0))
@@ -126,22 +126,22 @@ def test_a_geotiff_of_a_section_has_its_own_metres(tiles, tmp_path):
 
 
 def test_a_picture_too_large_for_one_transformation_is_refused(tiles, tmp_path):
-    picture = draw(tiles, CUT, Paper(SliceWindow(-40e3, -40e3, 40e3, 40e3), 100.0))
+    drawn = draw(tiles, CUT, Paper(SliceWindow(-40e3, -40e3, 40e3, 40e3), 100.0))
     small = draw(tiles, CUT, Paper(SliceWindow(-40e3, -40e3, 40e3, 40e3), 100.0))
     object.__setattr__(small.paper, "pixel_m", 0.01)
 
     with pytest.raises(GeoreferenceError, match="smaller window"):
-        write_geotiff(small, tmp_path / "s.tif", frame=PLACED, span=picture.span)
+        write_geotiff(small, tmp_path / "s.tif", frame=PLACED, span=drawn.span)
 
 
 @pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
 def test_a_sheet_is_the_same_file_each_time(tiles, tmp_path, ending):
     layout = lay_out(SliceWindow(0.0, -1.0, 3.0, 5.0))
-    picture = draw(tiles, CUT, layout.paper)
-    words = Words("office", LOCAL.words, "recon4", approval_words(None))
+    drawn = draw(tiles, CUT, layout.paper)
+    text = SheetText("office", LOCAL.text, "recon4", approval_text(None))
 
     for name in ("a", "b"):
-        write_sheet(picture, layout, tmp_path / f"{name}.{ending}", span=picture.span, words=words)
+        write_sheet(drawn, layout, tmp_path / f"{name}.{ending}", span=drawn.span, text=text)
 
     first, again = (tmp_path / f"{name}.{ending}" for name in ("a", "b"))
     assert first.read_bytes() == again.read_bytes() and first.stat().st_size > 10_000
@@ -167,10 +167,12 @@ def test_grid_lines_are_at_round_numbers():
 
 
 def test_an_approved_map_says_by_whom():
-    told = {"version": 2, "who": "Ada", "role": "reviewer", "time": "T", "hash": "ab" * 32}
+    approval = {"version": 2, "who": "Ada", "role": "reviewer", "time": "T", "hash": "ab" * 32}
 
-    assert approval_words(told) == f"Approved by Ada (reviewer) T, version 2, statement {'ab' * 8}"
-    assert approval_words(None) == "Not approved"
+    assert (
+        approval_text(approval) == f"Approved by Ada (reviewer) T, version 2, statement {'ab' * 8}"
+    )
+    assert approval_text(None) == "Not approved"
 
 
 def test_coordinates_of_the_crs_lead_back_to_the_map():
@@ -178,7 +180,7 @@ def test_coordinates_of_the_crs_lead_back_to_the_map():
 
     assert np.abs(PLACED.from_crs(BRNO.to_crs(p)) - p).max() < 1e-5
     east, north, up = BRNO.to_crs(np.zeros((1, 3)))[0]
-    assert f"origin at E {east:.3f} N {north:.3f} H {up:.3f} in EPSG:" in PLACED.words
+    assert f"origin at E {east:.3f} N {north:.3f} H {up:.3f} in EPSG:" in PLACED.text
 
 
 def test_coordinates_of_another_place_are_refused():
@@ -189,7 +191,7 @@ def test_coordinates_of_another_place_are_refused():
 def test_a_map_without_a_place_is_local(tiles):
     folder = tiles.tiles[0].folder.parent
 
-    assert frame_of({"map": folder}).words == "map frame (local), x y z, z up, metres"
+    assert frame_of({"map": folder}).text == "map frame (local), x y z, z up, meters"
 
 
 def test_the_nearest_point_of_the_slice_is_picked(tiles):
@@ -290,7 +292,7 @@ def test_only_places_in_this_map_count():
 def test_a_name_that_looks_like_a_formula_is_defused():
     found = residuals([ControlPoint("=1+1", (0.0, 0.0, 0.0))], {"=1+1": np.zeros(3)})
 
-    table = residual_csv(found, words="of a\nhouse")
+    table = residual_csv(found, comment="of a\nhouse")
 
     assert table.splitlines()[0] == "# recon4 control and check points of a house"
     assert table.splitlines()[2].startswith("'=1+1,check,0.0000")
@@ -307,7 +309,7 @@ def test_a_name_that_looks_like_a_formula_is_defused():
 )
 def test_the_sheet_says_what_was_measured_against_which_limit(up_m, role, words):
     points = [ControlPoint("<A>", (0.0, 0.0, 0.0), role), ControlPoint("B", (1.0, 0.0, 0.0))]
-    about = SheetWords(project="Dům & dvůr", frame="local", sources="map 12", approval="By Eva")
+    about = AcceptanceText(project="Dům & dvůr", frame="local", sources="map 12", approval="By Eva")
 
     sheet = render_acceptance(residuals(points, {"<A>": np.array([0.0, 0.0, up_m])}), about)
 

@@ -218,7 +218,7 @@ def test_an_alignment_moves_the_reference_and_its_outline(tmp_path):
     reference_wall(tmp_path)
     T = SE3.from_rpy(0.0, 0.0, np.pi / 2, [5.0, 0.0, 0.0])
 
-    set_alignment(tmp_path / "reference", T, words="test")
+    set_alignment(tmp_path / "reference", T, description="test")
     moved = load_reference(tmp_path / "reference")
     outline = np.concatenate(
         list(moved.outline(horizontal(1.0), SliceWindow(-9, -9, 9, 9), step_m=0.01))
@@ -294,7 +294,7 @@ def test_icp_finds_a_small_offset_and_says_what_remains(tmp_path, box_reference)
     assert np.abs(found.T_map_reference.matrix() - T.matrix()).max() < 2e-3
     assert found.near_ratio == pytest.approx(0.5, abs=0.02) and found.inlier_ratio > 0.99
     assert found.mean_m == pytest.approx(0.01 * np.sqrt(2.0 / np.pi), abs=0.001)
-    assert "0.8 cm from it on average" in found.words
+    assert "0.8 cm from it on average" in found.description
 
 
 def test_icp_onto_something_else_is_refused(tmp_path, box_reference):
@@ -302,7 +302,7 @@ def test_icp_onto_something_else_is_refused(tmp_path, box_reference):
     bush = rng.uniform(size=(20_000, 3)) * [4, 3, 2]
     tiles = write_map(tmp_path / "map", bush)
 
-    with pytest.raises(ConfigError, match="did not lay the reference onto the map"):
+    with pytest.raises(ConfigError, match="did not align the reference with the map"):
         align_by_icp(tiles, box_reference, rng=rng)
 
 

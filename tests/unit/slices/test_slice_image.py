@@ -32,20 +32,20 @@ def tiles(tmp_path):
 
 
 def test_every_point_is_where_it_belongs_and_pixels_show_means(tiles):
-    picture = draw(tiles, CUT, PAPER, color="intensity")
+    drawn = draw(tiles, CUT, PAPER, color="intensity")
 
-    assert picture.points == 3
-    assert np.argwhere(picture.count).tolist() == [[0, 0], [19, 39]]
-    assert picture.value[0, 0] == 20.0  # mean of 10 and 30
-    assert picture.value[19, 39] == 50.0
-    assert np.isnan(picture.value[10, 20])
+    assert drawn.points == 3
+    assert np.argwhere(drawn.count).tolist() == [[0, 0], [19, 39]]
+    assert drawn.value[0, 0] == 20.0  # mean of 10 and 30
+    assert drawn.value[19, 39] == 50.0
+    assert np.isnan(drawn.value[10, 20])
 
 
 def test_sensors_are_never_mixed(tiles):
-    picture = draw(tiles, CUT, PAPER, color="sensor")
+    drawn = draw(tiles, CUT, PAPER, color="sensor")
 
-    assert picture.value[0, 0] in (0.0, 1.0)
-    assert picture.value[19, 39] == 1.0
+    assert drawn.value[0, 0] in (0.0, 1.0)
+    assert drawn.value[19, 39] == 1.0
 
 
 def test_time_counts_from_the_start_and_height_is_that_of_the_map(tiles):
@@ -59,10 +59,10 @@ def test_time_counts_from_the_start_and_height_is_that_of_the_map(tiles):
 def test_points_grow_when_pixels_become_smaller_than_the_grid_of_the_map(tiles):
     paper = Paper(SliceWindow(3.9, 0.0, 4.0, 0.1), 0.001)
 
-    picture = draw(tiles, CUT, paper, color="height")
+    drawn = draw(tiles, CUT, paper, color="height")
 
-    assert picture.points == 1
-    assert (picture.count > 0).sum() == 69  # all within 4.5 pixels
+    assert drawn.points == 1
+    assert (drawn.count > 0).sum() == 69  # all within 4.5 pixels
 
 
 def test_distances_are_colored_from_blue_to_red_and_the_reference_is_green(tiles, tmp_path):
@@ -71,12 +71,12 @@ def test_distances_are_colored_from_blue_to_red_and_the_reference_is_green(tiles
     import_reference(cloud, tmp_path / "reference")
     reference = load_reference(tmp_path / "reference", method="point")
 
-    picture = draw(tiles, CUT, PAPER, color="distance", reference=reference)
-    rgba = picture.rgba(Span(*DISTANCE_RANGE_M), "light")
+    drawn = draw(tiles, CUT, PAPER, color="distance", reference=reference)
+    rgba = drawn.rgba(Span(*DISTANCE_RANGE_M), "light")
 
-    assert picture.span == Span(0.0, 0.10)
-    assert picture.value[0, 0] == pytest.approx(np.hypot(0.05, 0.01), abs=1e-3)
-    assert np.isinf(picture.value[19, 39])
+    assert drawn.span == Span(0.0, 0.10)
+    assert drawn.value[0, 0] == pytest.approx(np.hypot(0.05, 0.01), abs=1e-3)
+    assert np.isinf(drawn.value[19, 39])
     assert rgba[19, 39, 0] > 200 > rgba[19, 39, 2]
     assert tuple(rgba[1, 20, :3]) == REFERENCE_COLOR
 
@@ -89,9 +89,9 @@ def test_the_ends_of_a_palette_stand_for_everything_beyond():
 
 
 def test_a_picture_is_a_png_transparent_where_nothing_is(tiles):
-    picture = draw(tiles, CUT, PAPER)
+    drawn = draw(tiles, CUT, PAPER)
 
-    image = Image.open(io.BytesIO(png(picture.rgba(picture.span, "dark"))))
+    image = Image.open(io.BytesIO(png(drawn.rgba(drawn.span, "dark"))))
 
     assert image.size == (40, 20)
     assert image.getpixel((20, 10))[3] == 0 and image.getpixel((0, 0))[3] > 100

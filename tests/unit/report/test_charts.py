@@ -50,7 +50,7 @@ def test_both_side_views_have_the_scale_of_the_plan() -> None:
     assert side.frame.width * side.frame.pixel_m == pytest.approx(10.0, abs=1.5)
 
 
-def test_no_points_make_no_pictures() -> None:
+def test_no_points_make_no_images() -> None:
     assert rasterize(lambda: []) == []
 
 
@@ -117,7 +117,7 @@ def test_less_than_the_least_span_looks_like_nothing() -> None:
     assert "0.0003" in lines("height", series, labels=("t", "z"))
 
 
-def test_charts_are_pictures_that_take_the_color_of_the_page() -> None:
+def test_charts_take_the_color_of_the_page() -> None:
     svg = lines("one", [("a < b", np.arange(9.0), np.arange(9.0), "#0072b2")], labels=("s", "m"))
 
     ElementTree.fromstring(svg.replace("xlink:", ""))
