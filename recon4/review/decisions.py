@@ -186,9 +186,7 @@ def fold(decisions: Iterable[Decision]) -> Decided:
                 (done, undone) if decision.kind is DecisionKind.UNDO else (undone, done)
             )
             if not source:
-                raise StoreError(
-                    f"the journal is damaged: a row has nothing to {decision.kind}"
-                )
+                raise StoreError(f"the journal is damaged: a row has nothing to {decision.kind}")
             target.append(source.pop())
         elif decision.kind is not DecisionKind.APPROVE:
             done.append(decision)
