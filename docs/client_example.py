@@ -1,11 +1,11 @@
-r"""Send a recording to a recon4 server, process it, fetch the map: ``python client_example.py``.
+r"""Upload a recording to a recon4 server, process it and download the map.
 
     python docs/client_example.py http://127.0.0.1:8000 walk.pcap --project office
     python docs/client_example.py https://backpack.local:8000 walk.pcap --project office \
         --name anna --certificate certificate.pem
 
-An upload that was cut goes on where it was when this is called again. The password is asked for,
-or taken from RECON4_PASSWORD; ``certificate.pem`` is a copy of ROOT/.recon4/tls/certificate.pem.
+Call it again to continue an interrupted upload. The password is read from RECON4_PASSWORD or from
+the terminal; ``certificate.pem`` is a copy of ROOT/.recon4/tls/certificate.pem.
 """
 
 from __future__ import annotations
@@ -28,34 +28,35 @@ BYTES = TUS | {"Content-Type": "application/offset+octet-stream"}
 
 
 def connect(url: str, certificate: Path | None) -> httpx.Client:
-    """A connection that trusts the server's own certificate, or those every browser trusts."""
+    """Open a connection that trusts the given certificate, or the usual authorities."""
     trust = ssl.create_default_context(cafile=certificate)
     return httpx.Client(base_url=url, verify=trust, timeout=120.0)
 
 
 def sign_in(server: httpx.Client, name: str) -> None:
-    """Keep the cookie of a session, and send its token with whatever changes something."""
+    """Sign in; the client then sends the session's cookie and its token with every request."""
     password = os.environ.get("RECON4_PASSWORD") or getpass.getpass(f"Password of {name}: ")
-    me = answer(server.post("/api/login", json={"name": name, "password": password}))
+    me = content_of(server.post("/api/login", json={"name": name, "password": password}))
     server.headers["X-Recon4-Token"] = me["token"]
 
 
 def upload(server: httpx.Client, file: Path) -> str:
-    """Send a file, or the rest of it; its path on the server."""
+    """Upload a file, or the rest of it, and return its path on the server."""
     size = file.stat().st_size
-    mark = f"{file.name} {size} {file.stat().st_mtime_ns}"
-    begun = [one for one in answer(server.get("/api/uploads")) if one["fingerprint"] == mark]
-    new = {"name": file.name, "files": 1, "bytes": size, "fingerprint": mark}
-    upload = begun[0] if begun else answer(server.post("/api/uploads", json=new))
+    fingerprint = f"{file.name} {size} {file.stat().st_mtime_ns}"
+    uploads = content_of(server.get("/api/uploads"))
+    begun = [one for one in uploads if one["fingerprint"] == fingerprint]
+    new = {"name": file.name, "files": 1, "bytes": size, "fingerprint": fingerprint}
+    upload = begun[0] if begun else content_of(server.post("/api/uploads", json=new))
     if not upload["finished"]:
         send_bytes(server, file, announce(server, upload["id"], file.name, size), size)
-    return str(answer(server.get(f"/api/uploads/{upload['id']}"))["recording"])
+    return str(content_of(server.get(f"/api/uploads/{upload['id']}"))["recording"])
 
 
 def announce(server: httpx.Client, upload_id: str, name: str, size: int) -> str:
-    """Name a file of an upload; where its bytes go. Named twice, it is the same file."""
-    words = {"upload": upload_id, "relativePath": name}
-    metadata = ",".join(f"{k} {base64.b64encode(v.encode()).decode()}" for k, v in words.items())
+    """Announce a file of an upload and return the URL for its bytes; may be repeated."""
+    fields = {"upload": upload_id, "relativePath": name}
+    metadata = ",".join(f"{k} {base64.b64encode(v.encode()).decode()}" for k, v in fields.items())
     headers = TUS | {"Upload-Length": str(size), "Upload-Metadata": metadata}
     made = server.post("/api/uploads/files", headers=headers)
     made.raise_for_status()
@@ -63,7 +64,7 @@ def announce(server: httpx.Client, upload_id: str, name: str, size: int) -> str:
 
 
 def send_bytes(server: httpx.Client, file: Path, url: str, size: int) -> None:
-    """Send what the server does not have yet; each piece is on its disk when it answers."""
+    """Send the bytes that the server lacks; each chunk is on its disk when it responds."""
     offset = int(server.head(url, headers=TUS).headers["Upload-Offset"])
     with file.open("rb") as source:
         while offset < size:
@@ -76,41 +77,41 @@ def send_bytes(server: httpx.Client, file: Path, url: str, size: int) -> None:
 
 
 def process(server: httpx.Client, recording: str, project: str) -> dict[str, Any]:
-    """Start a job with what suits the recording and follow it; its last state."""
-    found = answer(server.get("/api/look", params={"path": recording}))
+    """Start a job with the settings that suit the recording, follow it, return its last state."""
+    found = content_of(server.get("/api/look", params={"path": recording}))
     job = {name: found[name] for name in ("preset", "rig", "imu", "gnss")}
     job |= {"project": project, "recordings": [recording]}
-    started = answer(server.post("/api/jobs", json=job))["job"]["id"]
+    started = content_of(server.post("/api/jobs", json=job))["job"]["id"]
     with server.stream("GET", "/api/events", timeout=None) as events:
-        view = answer(server.get(f"/api/jobs/{started}"))  # what is over is not told again
+        view = content_of(server.get(f"/api/jobs/{started}"))  # the stream omits finished jobs
         lines = events.iter_lines()
         while view["job"]["state"] in ("queued", "running"):
             line = next(lines, None)
             if line is None:
-                raise SystemExit("the server ended; the job goes on, ask /api/jobs later")
-            told = json.loads(line[5:]) if line.startswith("data:") else None
-            if told and told["job"]["id"] == started:
-                view = told
-                words = f"{view['status']['what']} {view['overall']:.0%}"
-                print(f"\r{words:40}", end="", file=sys.stderr)
+                raise SystemExit("the server ended; the job continues, see /api/jobs later")
+            event = json.loads(line[5:]) if line.startswith("data:") else None
+            if event and event["job"]["id"] == started:
+                view = event
+                progress = f"{view['status']['what']} {view['overall']:.0%}"
+                print(f"\r{progress:40}", end="", file=sys.stderr)
     return dict(view["job"])
 
 
-def answer(response: httpx.Response) -> Any:
-    """The JSON of an answer; a refusal in the server's own words."""
+def content_of(response: httpx.Response) -> Any:
+    """Return the JSON of a response, or exit with the detail of its error."""
     if response.is_error:
-        raise SystemExit(f"the server says: {response.json()['detail']}")
+        raise SystemExit(f"error of the server: {response.json()['detail']}")
     return response.json()
 
 
 def main() -> int:
-    """Upload, process, download."""
+    """Upload a recording, process it, download a result."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("server")
     parser.add_argument("recording", type=Path)
     parser.add_argument("--project", required=True)
     parser.add_argument("--result", default="map.laz")
-    parser.add_argument("--name", help="who signs in, where the server asks")
+    parser.add_argument("--name", help="name to sign in with, if the server needs a login")
     parser.add_argument("--certificate", type=Path, help="the server's own certificate")
     given = parser.parse_args()
     with connect(given.server, given.certificate) as server:
