@@ -43,8 +43,8 @@ RETIRED = {
 }
 IN_FOLDER = {r"\bdoors?\b": ("app/", "web/"), r"\bhear[ds]?\b": ("app/", "recon4/live/")}
 """Words with a meaning of their own elsewhere."""
-FOREIGN = ('found["guesses"]',)
-"""Names of other libraries."""
+FOREIGN = ('found["guesses"]', '"levelling"')
+"""Names of other libraries, and keys of stored files."""
 
 
 def lines_with(paths: list[str]) -> Iterator[tuple[str, int, str, str]]:

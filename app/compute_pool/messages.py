@@ -70,7 +70,7 @@ def encode_result(function: Callable[..., Any], result: object) -> bytes:
     """A result as the bytes of its declared type (child's side)."""
     if isinstance(result, bytes):
         return result
-    # `dump_json` writes null for NaN, which no float field takes back.
+    # `dump_json` writes null for NaN, which no float field accepts.
     plain = _adapter(function).dump_python(result, mode="json")
     return json.dumps(plain, separators=(",", ":")).encode()
 

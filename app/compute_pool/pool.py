@@ -38,7 +38,7 @@ class _Permission:
     lane: Lane
     access: FileAccess
     files: tuple[tuple[int, int] | None, ...]
-    """Device and number of each path: the child was let in to these, whatever has their name."""
+    """Device and number of each path: the child may open these, whatever their names are now."""
 
     @staticmethod
     def of(lane: Lane, access: FileAccess) -> _Permission:

@@ -1,4 +1,4 @@
-"""``events.jsonl``: what a worker says of its progress, a line a saying, and who reads it.
+"""``events.jsonl``: the progress and events of a worker, one JSON object per line.
 
     {"t": s, "kind": "run"}                                     a worker began
     {"t": s, "kind": "progress", "what", "done", "total", "unit", "seconds"}

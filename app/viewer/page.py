@@ -1,4 +1,4 @@
-"""The viewer's page: viser's own client, served under the project's path with a few repairs."""
+"""The viewer's page: viser's own client, served under the project's path with some fixes."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ router = APIRouter()
 
 SHIMS = """
 <script>
-// Taps on the scene: viser skips captured pointers, and browsers capture touch by themselves.
+// Taps on the scene: viser ignores captured pointers, and browsers capture touch implicitly.
 addEventListener('pointerdown', (event) => {
   if (event.pointerType === 'touch' && event.target.hasPointerCapture?.(event.pointerId))
     event.target.releasePointerCapture(event.pointerId);
 }, true);
-// Reconnecting: viser does so only with focus, which an iframe that was not tapped never has.
+// Reconnecting: viser requires focus, which an iframe that was not tapped never has.
 Document.prototype.hasFocus = function () { return !document.hidden; };
 document.addEventListener('visibilitychange', () =>
   dispatchEvent(new Event(document.hidden ? 'blur' : 'focus')));
-// Until our controls are there viser shows its own, on white: a cover. On a phone they would then
-// cover half of the map: fold them up.
+// Until our controls exist, a cover hides viser's own page. On a phone the controls would
+// hide half of the map: collapse them.
 addEventListener('DOMContentLoaded', () => new MutationObserver((_, watch) => {
-  const said = (words) => [...document.querySelectorAll('#root *')].find((one) =>
-    !one.firstElementChild && one.textContent === words);
-  const title = said('Connected');
-  if (!title || !said('Edges by')) return;
+  const withText = (text) => [...document.querySelectorAll('#root *')].find((one) =>
+    !one.firstElementChild && one.textContent === text);
+  const title = withText('Connected');
+  if (!title || !withText('Edges by')) return;
   watch.disconnect();
   document.getElementById('cover').remove();
   if (innerWidth < 576) title.click();
@@ -41,7 +41,7 @@ addEventListener('DOMContentLoaded', () => new MutationObserver((_, watch) => {
 <style>
 #cover { position: fixed; inset: 0; z-index: 10000; display: grid; place-items: center;
   font: 15px/1.5 system-ui, sans-serif; color: #9aa8b5; background: #101418; }
-#frame-words { position: fixed; left: 0; top: 0; z-index: 5; padding: 4px 10px;
+#frame-caption { position: fixed; left: 0; top: 0; z-index: 5; padding: 4px 10px;
   font: 12px/1.5 system-ui, sans-serif; color: #e8edf2; background: rgb(16 20 24 / 72%);
   pointer-events: none; border-bottom-right-radius: 6px; }
 </style>
@@ -52,44 +52,46 @@ addEventListener('DOMContentLoaded', () => new MutationObserver((_, watch) => {
 def viewer_page(project_id: str, request: Request, server: Server) -> Response:
     """Serve the page; its WebSocket goes to the same path without the trailing slash.
 
-    viser obeys ``?websocket=`` and ``?playbackPath=`` to foreign servers: no query is served.
+    viser would connect to foreign servers with ``?websocket=`` and ``?playbackPath=``: a URL with a
+    query is redirected.
     """
     project = server.projects.get(project_id)
     path = request.scope["path"]
     if request.scope["query_string"]:
         return RedirectResponse(path, status_code=307)
     policy = {"Content-Security-Policy": policy_for(request.headers["host"])}
-    return HTMLResponse(with_shims(client(), frame_words(project)), headers=policy)
+    return HTMLResponse(with_shims(client(), frame_caption(project)), headers=policy)
 
 
 @router.get("/projects/{project_id}/viewer", include_in_schema=False)
 def viewer_without_slash(project_id: str, server: Server) -> Response:
-    """Lead to the page."""
+    """Redirect to the page."""
     return RedirectResponse(f"/projects/{server.projects.get(project_id).id}/viewer/")
 
 
 @cache
 def client() -> str:
-    """Viser's client: one self-contained file of its wheel."""
+    """The client of viser: one self-contained file of its wheel."""
     found = find_spec("viser")
     assert found is not None and found.origin is not None
     page = Path(found.origin).parent / "client" / "build" / "index.html"
     return page.read_text("utf-8")
 
 
-def with_shims(page: str, words: str) -> str:
-    """The page with our repairs, and with words about units and frame always on it."""
+def with_shims(page: str, caption: str) -> str:
+    """The page with our fixes, and with a caption about units and frame."""
     head, body = page.find("<head>"), page.rfind("</body>")
     assert 0 <= head < body
     head += len("<head>")
     badge = (
-        f'<div id="cover">Opening the map…</div><div id="frame-words">{html.escape(words)}</div>'
+        '<div id="cover">Opening the map…</div>'
+        f'<div id="frame-caption">{html.escape(caption)}</div>'
     )
     return page[:head] + SHIMS + page[head:body] + badge + page[body:]
 
 
 def policy_for(host: str) -> str:
-    """Content security policy of the viewer: its inline code, and no server but ours."""
+    """Content security policy of the viewer: its inline code, and no other server."""
     return (
         "default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval' blob: data:; "
         "worker-src blob: data:; style-src 'unsafe-inline'; img-src 'self' data: blob:; "
@@ -98,8 +100,8 @@ def policy_for(host: str) -> str:
     )
 
 
-def frame_words(project: ProjectView) -> str:
-    """What the coordinates on screen mean."""
+def frame_caption(project: ProjectView) -> str:
+    """Caption about the coordinates on screen: frame and units."""
     crs = project.summary.get("crs")
     place = f"local map frame of {crs}" if isinstance(crs, str) and crs else "map frame"
-    return f"{place} · z up · metres"
+    return f"{place} · z up · meters"

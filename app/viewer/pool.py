@@ -1,7 +1,7 @@
 """The viewer processes: one for each open project, ended when idle or with the server.
 
-Each listens on a Unix socket in a folder that no other user may enter: no web page and no other
-user of this computer reaches it, only the relay (`app.viewer.proxy`).
+Each listens on a Unix socket in a private folder: only the relay (`app.viewer.proxy`) reaches it,
+no web page and no other user of this computer.
 """
 
 from __future__ import annotations
@@ -21,27 +21,27 @@ from recon4.processes import ChildRegister
 from recon4.runtime_folder import private_folder, runtime_folder
 
 STARTS_WITHIN_S = 60.0
-"""A viewer that does not listen by then will not [s]."""
+"""A viewer that does not listen after this long has failed [s]."""
 ENDS_WITHIN_S = 5.0
 """A viewer requested to end is killed after this long [s]."""
 READY = b"ready\n"
-"""What a viewer writes as soon as it listens."""
+"""Output of a viewer as soon as it listens."""
 
 Running = tuple[asyncio.subprocess.Process, Path]
 """A viewer and its socket."""
 
 
 class ViewerPool:
-    """Starts viewers when they are asked for and knows their sockets."""
+    """Starts viewers at the first request and keeps their sockets."""
 
     def __init__(
         self, *, idle_s: float, points: int, state: Path, sockets: Streams, children: ChildRegister
     ) -> None:
-        """Make it.
+        """Create the pool; no viewer is started yet.
 
         Args:
             idle_s: A viewer without a client for this long ends [s].
-            points: At most this many are sent to one client.
+            points: Most points sent to one client.
             state: Folder of the server's own files.
             sockets: Counts the clients.
             children: Where the processes are registered.
@@ -64,13 +64,13 @@ class ViewerPool:
         async with self._starting.setdefault(project, asyncio.Lock()):
             running = self._running.get(project)
             if running is not None and running[0].returncode is not None:
-                await self._end(*running)  # it died or was idle: its socket and record are there
+                await self._end(*running)  # it died or was idle: remove its socket and record
             if running is None or running[0].returncode is not None:
                 self._running[project] = await self._start(project)
             return self._running[project][1]
 
     async def give_up(self, project: Path, socket: Path) -> None:
-        """End the viewer that does not answer on this socket; `socket` starts another."""
+        """End the viewer that does not respond on this socket; `socket` starts another."""
         async with self._starting.setdefault(project, asyncio.Lock()):
             running = self._running.get(project)
             if running is not None and running[1] == socket:
@@ -106,7 +106,7 @@ class ViewerPool:
         )
 
     async def _end(self, process: asyncio.subprocess.Process, socket: Path) -> None:
-        """Ask it to end; kill it when it does not."""
+        """Request a viewer to end; kill it if it does not."""
         if process.returncode is None:
             process.terminate()
             try:
@@ -119,10 +119,10 @@ class ViewerPool:
 
 
 def socket_folder(state: Path) -> Path:
-    """Where the viewers of a server listen; one folder for each folder of projects.
+    """Folder of the sockets of a server's viewers; one for each folder of projects.
 
     Raises:
-        StoreError: If there is no folder that only this user may enter.
+        StoreError: If there is no private folder of this user.
     """
     name = hashlib.sha256(os.fsencode(state.resolve())).hexdigest()[:16]
     return runtime_folder() / name

@@ -1,7 +1,7 @@
-"""Relays a browser's WebSocket to the project's viewer, letting through only what is known.
+"""Relays a browser's WebSocket to the project's viewer; only known message types pass.
 
-viser asks nobody who they are, and obeys messages such as "open a public tunnel": so it listens on
-a private Unix socket and is reached only through here, after the `Guard` has checked host and
+viser has no login, and executes messages such as "open a public tunnel". So it listens on a private
+Unix socket and is reached only through this relay, after `OriginMiddleware` has checked host and
 origin.
 """
 
@@ -42,7 +42,7 @@ LOOKING = frozenset(
         "LocalStorageGetItemResponseMessage",
     }
 )
-"""What whoever may look may send: it changes that person's own view and nothing else."""
+"""Messages of people who may look: they change only that person's own view."""
 REVIEWING = frozenset(
     {
         "SceneNodeDragMessage",
@@ -51,25 +51,25 @@ REVIEWING = frozenset(
         "TransformControlsDragEndMessage",
     }
 )
-"""What moves things, beside that."""
+"""Messages that move objects: of people who may review."""
 
 MAX_MESSAGE_BYTES = 1 << 16
 """Longer messages from a browser are dropped."""
 MESSAGES_A_SECOND = 120.0
-"""A browser's messages are read no faster; a moving camera tells of itself 60 times a second."""
+"""Most messages read from a browser per second; a moving camera sends 60 per second."""
 BURST = 240
-"""So many may come at once."""
+"""Most messages at once."""
 ATTEMPTS = 3
-"""A viewer is started at most so often for one connection."""
+"""Most starts of a viewer for one connection."""
 STALLED_S = 30.0
-"""A browser that takes nothing for so long is disconnected [s]."""
+"""A browser that reads nothing for this long is disconnected [s]."""
 STALLED = 4408
-"""Close code: the browser took nothing for too long."""
+"""Close code: the browser read nothing for too long."""
 
 
 @router.websocket("/projects/{project_id}/viewer")
 async def relay(browser: WebSocket, project_id: str) -> None:
-    """Connect a browser with the viewer of a project."""
+    """Connect a browser to the viewer of a project."""
     server = parts(browser)
     who = person(browser)
     offered = [Subprotocol(name) for name in browser.scope["subprotocols"]]
@@ -93,7 +93,7 @@ async def relay(browser: WebSocket, project_id: str) -> None:
 async def _viewer(
     viewers: ViewerPool, project: Path, offered: list[Subprotocol]
 ) -> ClientConnection:
-    """A connection with the viewer of a project; one that was killed just now is started anew."""
+    """Connect to the viewer of a project; a viewer that was killed is started again."""
     for _ in range(ATTEMPTS):
         socket = await viewers.socket(project)
         try:
@@ -101,7 +101,7 @@ async def _viewer(
                 str(socket),
                 "ws://viewer/",
                 subprotocols=offered or None,
-                max_size=None,  # it is ours
+                max_size=None,  # a process of our own
                 compression=None,
                 ping_interval=None,
                 max_queue=2,
@@ -113,19 +113,19 @@ async def _viewer(
 
 
 async def _pump(browser: WebSocket, viewer: ClientConnection, *, may_review: bool) -> None:
-    """Carry messages both ways until one side leaves; then tell the other."""
-    ways = {
+    """Relay messages in both directions until one side closes; then close the other."""
+    directions = {
         asyncio.create_task(_from_browser(browser, viewer, may_review=may_review)),
         asyncio.create_task(_to_browser(browser, viewer)),
     }
     try:
-        done, _ = await asyncio.wait(ways, return_when=asyncio.FIRST_COMPLETED)
-        for way in done:
-            way.result()
+        done, _ = await asyncio.wait(directions, return_when=asyncio.FIRST_COMPLETED)
+        for task in done:
+            task.result()
     finally:
-        for way in ways:
-            way.cancel()
-        await asyncio.gather(*ways, return_exceptions=True)
+        for task in directions:
+            task.cancel()
+        await asyncio.gather(*directions, return_exceptions=True)
 
 
 async def _from_browser(browser: WebSocket, viewer: ClientConnection, *, may_review: bool) -> None:
@@ -135,7 +135,7 @@ async def _from_browser(browser: WebSocket, viewer: ClientConnection, *, may_rev
         if data is None or not passes(data, may_review=may_review):
             continue
         if (wait_s := rate.wait_s(time.monotonic())) > 0.0:
-            await asyncio.sleep(wait_s)  # unread messages then hold up their sender, nobody else
+            await asyncio.sleep(wait_s)  # unread messages then delay their sender only
         try:
             await viewer.send(data)
         except ConnectionClosed:
@@ -151,7 +151,7 @@ async def _to_browser(browser: WebSocket, viewer: ClientConnection) -> None:
     except WebSocketDisconnect:
         return
     except TimeoutError:
-        log.warning("a browser took nothing for %.0f s: disconnected", STALLED_S)
+        log.warning("a browser read nothing for %.0f s: disconnected", STALLED_S)
         code = STALLED
     except ConnectionClosed:
         log.info("viewer connection lost")
@@ -160,7 +160,7 @@ async def _to_browser(browser: WebSocket, viewer: ClientConnection) -> None:
 
 
 class Rate:
-    """How fast messages are read: a bucket of tokens that fills steadily."""
+    """Rate limit of reading messages: a token bucket."""
 
     def __init__(self, a_second: float, burst: int) -> None:
         self._a_second, self._burst = a_second, float(burst)
@@ -168,7 +168,7 @@ class Rate:
         self._at_s: float | None = None
 
     def wait_s(self, now_s: float) -> float:
-        """Take a token; how long to wait before using it [s]."""
+        """Take a token; time to wait before using it [s]."""
         since_s = 0.0 if self._at_s is None else now_s - self._at_s
         self._at_s = now_s
         self._tokens = min(self._tokens + since_s * self._a_second, self._burst) - 1.0
@@ -192,5 +192,5 @@ def passes(data: bytes, *, may_review: bool) -> bool:
 
 
 def allowed(message_type: str, may_review: bool) -> bool:
-    """Whether a person may send messages of a kind. Sharing, uploads and all unknown ones never."""
+    """Whether a person may send messages of a type; sharing, uploads and unknown ones never."""
     return message_type in LOOKING or (may_review and message_type in REVIEWING)

@@ -1,7 +1,7 @@
-"""Makes viser (pinned: 1.1.1) listen on a Unix socket only, and takes its tunnel away.
+"""Makes viser (pinned: 1.1.1) listen on a Unix socket only, and removes its tunnel.
 
-viser knows TCP ports only, asks for no login and accepts every origin: on a port of loopback any
-page open in a browser of this computer could read the scene. It starts its server by
+viser supports TCP ports only, has no login and accepts every origin: on a port of loopback any page
+open in a browser of this computer could read the scene. It starts its server by
 ``websockets.asyncio.server.serve(handler, host, port, ...)``; that call is redirected here.
 """
 
@@ -26,7 +26,7 @@ def listening_on(path: Path) -> Iterator[None]:
 
     Raises:
         OSError: If the path is in use or cannot be written.
-        AssertionError: If viser did not take the socket.
+        AssertionError: If viser did not use the socket.
     """
     listener = _bound(path)
     redirected: list[tuple[object, ...]] = []
@@ -46,7 +46,7 @@ def listening_on(path: Path) -> Iterator[None]:
 
 
 def remove_share_tunnel(server: viser.ViserServer) -> None:
-    """Forget the message that asks for a public tunnel, and make starting one an error."""
+    """Unregister the message that requests a public tunnel, and make starting one an error."""
     server._websock_server.unregister_handler(_messages.ShareUrlRequest)
     server._websock_server.unregister_handler(_messages.ShareUrlDisconnect)
     _viser.ViserTunnel = _NoTunnel  # type: ignore[assignment,attr-defined]
@@ -59,7 +59,7 @@ class _NoTunnel:
 
 def _bound(path: Path) -> socket.socket:
     listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-    before = os.umask(0o177)  # private from its first moment
+    before = os.umask(0o177)  # private from its creation
     try:
         listener.bind(str(path))
     except OSError:

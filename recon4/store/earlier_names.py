@@ -13,6 +13,8 @@ SUMMARY = {"way_m": "path_length_m"}
 """Keys of ``summary.json`` and of the figures in an ``approval.json``."""
 STEPS = {"share": "match_ratio", "gap_m": "prediction_offset_m"}
 """Columns of ``steps.npz``."""
+PALETTES = {"grey": "gray"}
+"""Palettes in the view that a browser keeps."""
 
 Value = TypeVar("Value")
 

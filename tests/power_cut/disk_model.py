@@ -90,8 +90,8 @@ class Disk:
         self._open: dict[int, File] = {}
 
     def follow(self, operation: list[Any]) -> None:
-        kind, *told = operation
-        getattr(self, f"_{kind}")(*told)
+        kind, *arguments = operation
+        getattr(self, f"_{kind}")(*arguments)
 
     def after_cut(self, target: Path, keeps: Keeps, rng: np.random.Generator) -> None:
         """Write the folder that a cut now would leave."""

@@ -1,7 +1,7 @@
 """A disk (FUSE) that passes everything on to a folder and records each operation in order.
 
 ``python -m tests.power_cut.recording_disk MOUNT BACKING LOG``. Making a folder ``.mark-TEXT`` makes
-none but puts a mark into the record: what a program was told is safe by then.
+none but writes a mark into the record: what a program reported is durable by then.
 """
 
 from __future__ import annotations

@@ -66,7 +66,7 @@ def connect(url, *, source="127.0.0.1", tls=None):
 
 @contextlib.contextmanager
 def mute(url, count, source_of):
-    """So many connections that send nothing."""
+    """A number of connections that send nothing."""
     with contextlib.ExitStack() as held:
         for number in range(count):
             held.enter_context(connect(url, source=source_of(number), tls=False))

@@ -59,28 +59,28 @@ def move_points(root):
 def move_tile(root):
     """The corner of a tile, in its list."""
     path = read_artifacts(root)["map"] / "tiles.json"
-    told = json.loads(path.read_text())
-    told["tiles"][0]["origin_m"][0] += 0.1
-    path.write_text(json.dumps(told))
+    record = json.loads(path.read_text())
+    record["tiles"][0]["origin_m"][0] += 0.1
+    path.write_text(json.dumps(record))
 
 
 def write_manifest_again(root):
     """Points moved, and the manifest made to fit: only the signature knows better."""
     move_points(root)
     folder = read_artifacts(root)["map"]
-    told = json.loads((folder / "manifest.json").read_text())
-    told["files"]["tiles/xyz.npy"] = FileDigest.of(folder / "tiles/xyz.npy").to_json()
-    (folder / "manifest.json").write_text(json.dumps(told))
+    record = json.loads((folder / "manifest.json").read_text())
+    record["files"]["tiles/xyz.npy"] = FileDigest.of(folder / "tiles/xyz.npy").to_json()
+    (folder / "manifest.json").write_text(json.dumps(record))
 
 
 def put_elsewhere(root):
     """A place on Earth that the approved map never had."""
-    told = {
+    record = {
         "levelling": {},
         "crs": {"name": "EPSG:32633"},
         "georeference": {"origin": {"lat_deg": 50.0, "lon_deg": 14.0, "height_m": 300.0}},
     }
-    (read_artifacts(root)["level"] / "georeference.json").write_text(json.dumps(told))
+    (read_artifacts(root)["level"] / "georeference.json").write_text(json.dumps(record))
 
 
 def change_signer(root):
@@ -208,10 +208,10 @@ def test_an_approval_without_hashes_of_manifests_is_compared_with_the_whole_file
     shutil.copytree(approved, old)
     sign_as_before(old, tmp_path / "signing.key")
     manifest = read_artifacts(old)["map"] / "manifest.json"
-    told = json.loads(manifest.read_text())
-    for digest in told["files"].values():
+    record = json.loads(manifest.read_text())
+    for digest in record["files"].values():
         digest.pop("blocks", None)
-    manifest.write_text(json.dumps(told))
+    manifest.write_text(json.dumps(record))
 
     assert main(["export", str(old), str(tmp_path / "whole.ply")]) == 0
     assert b'"who": "anna"' in (tmp_path / "whole.ply").read_bytes()[:600]
@@ -222,13 +222,13 @@ def test_an_approval_without_hashes_of_manifests_is_compared_with_the_whole_file
 def sign_as_before(root, key_file):
     """Statement format 1, by the same person over the same empty journal."""
     path = root / "versions" / "1" / "approval.json"
-    told = json.loads(path.read_text())
-    statement = {name: value for name, value in told["statement"].items() if name != "manifests"}
-    sha256, issued = hash_json(statement), told["issued"]
+    record = json.loads(path.read_text())
+    statement = {name: value for name, value in record["statement"].items() if name != "manifests"}
+    sha256, issued = hash_json(statement), record["issued"]
     signature = sign({"hash": sha256, "issued": issued}, key_file)
     path.chmod(0o644)
-    told = {"statement": statement, "hash": sha256, "issued": issued, "signature": signature}
-    write_json(path, told)
+    record = {"statement": statement, "hash": sha256, "issued": issued, "signature": signature}
+    write_json(path, record)
     (root / "decisions.sqlite").unlink()
     (root / "seals.json").unlink()
     facts = {"version": 1, "approval": sha256, "artifacts": hash_json(statement["artifacts"])}
@@ -268,8 +268,8 @@ def test_verify_names_what_was_edited(office, spoil, words, capsys):
 
     assert main(["verify", str(office)]) == 1
 
-    told = capsys.readouterr()
-    assert words in told.out and "Traceback" not in told.out + told.err
+    output = capsys.readouterr()
+    assert words in output.out and "Traceback" not in output.out + output.err
 
 
 @pytest.mark.parametrize("use", [remake, Source.of])

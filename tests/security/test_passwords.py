@@ -1,4 +1,4 @@
-"""What an attacker tries first is no password: 0 of these guesses is accepted.
+"""Passwords that an attacker tries first: none of them is accepted.
 
 Figures: every one of the 10 000 most common passwords, doubled, reversed, with a year or digits,
 and every role, product, host and person's name alike, is refused; one check takes less than 2 s
@@ -49,7 +49,7 @@ def refused(password):
 
 
 def dressed(word):
-    """A word the way people make twelve characters of it."""
+    """A word extended to twelve characters as people do it."""
     yield from (word * 2, word[::-1] * 2, word.title() * 2, word * 3, f"{word}-{word}")
     yield from (f"{word}123456", f"{word}2026{word}", f"123456{word}", f"{word}!!!!!!!!")
     yield from (f"{word} {word} {word}", f"{word}.{word[::-1]}", " ".join(word * 2))

@@ -107,7 +107,7 @@ def obey_sigint():
 
 
 def stop_after(folder, *, lines, sign):
-    """Send a signal after so many lines of progress; exit code and standard error."""
+    """Send a signal after some lines of progress; returns exit code and standard error."""
     with subprocess.Popen(
         command(folder),
         stderr=subprocess.PIPE,

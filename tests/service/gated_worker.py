@@ -19,7 +19,7 @@ AT_GATE = "waiting at the gate"
 
 
 class Gated:
-    """Passes on what is told; after the first unit of work of a stage it waits at its gate."""
+    """Forwards progress; waits at its gate after the first unit of work of a stage."""
 
     def __init__(self, progress: Progress, gates: Path) -> None:
         self._progress, self._gates = progress, gates

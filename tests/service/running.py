@@ -65,7 +65,7 @@ class Running:
         with httpx.stream(
             "GET", f"{self.url}/api/events", timeout=30.0, verify=WITHOUT_TLS
         ) as stream:
-            view = self.get(f"/api/jobs/{job_id}").json()  # what is over is not told again
+            view = self.get(f"/api/jobs/{job_id}").json()  # there is no event for an ended job
             if met(view):
                 return view
             for line in stream.iter_lines():

@@ -43,8 +43,8 @@ def leave_a_child() -> None:
 def tell_limits() -> None:
     names = ("RLIMIT_DATA", "RLIMIT_NOFILE", "RLIMIT_CORE")
     status = Path("/proc/self/status").read_text()
-    told = {name: resource.getrlimit(getattr(resource, name)) for name in names}
-    logging.getLogger("recon4.job").info("%s %s", told, status[status.index("NoNewPrivs") :][:20])
+    limits = {name: resource.getrlimit(getattr(resource, name)) for name in names}
+    logging.getLogger("recon4.job").info("%s %s", limits, status[status.index("NoNewPrivs") :][:20])
 
 
 def keep_busy() -> None:

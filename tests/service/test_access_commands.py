@@ -70,7 +70,7 @@ def test_a_network_without_tls_and_login_is_wrong_usage(tmp_path, arguments):
     assert not (tmp_path / ".recon4").exists()
 
 
-def test_a_certificate_that_is_none_is_told(tmp_path):
+def test_an_invalid_certificate_is_reported(tmp_path):
     (tmp_path / "x.pem").write_text("nothing")
     pem = tmp_path / "x.pem"
 

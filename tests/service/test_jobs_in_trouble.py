@@ -1,4 +1,4 @@
-"""Crashes, memory, disk, too many, a damaged queue: real workers, told in words."""
+"""Crashes, memory, disk, too many jobs, a damaged queue: messages of real workers."""
 
 import os
 import signal
@@ -145,15 +145,15 @@ def test_a_damaged_queue_is_replaced_by_its_newest_copy_and_that_is_said(tmp_pat
     copy = next((state / "backups").glob("jobs-*.sqlite"))
     copy.unlink()
     with server_process(tmp_path):
-        pass  # makes today's copy anew, with the job in it
+        pass  # makes today's backup again, with the job in it
     damage(state / "jobs.sqlite")
 
     with server_process(tmp_path) as (server, _):
-        told = server.get("/api/server").json()
+        status = server.get("/api/server").json()
         jobs = server.get("/api/jobs").json()
 
-    assert "The list of jobs was damaged" in told["notices"][0]
-    assert "no longer listed" in told["notices"][0]
+    assert "The list of jobs was damaged" in status["notices"][0]
+    assert "no longer listed" in status["notices"][0]
     assert [view["job"]["id"] for view in jobs] == [job]
     assert list(state.glob("jobs.sqlite.damaged-*"))
 

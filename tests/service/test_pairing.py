@@ -87,12 +87,12 @@ def test_eight_phones_at_once_with_one_link_are_one_session(server):
 
 def test_guessing_is_slowed_down_and_noted(server):
     with server.signed_in("anna") as laptop, server.client() as stranger:
-        statuses = [redeem(stranger, f"guess {k}").status_code for k in range(12)]
+        statuses = [redeem(stranger, f"secret {k}").status_code for k in range(12)]
         log = laptop.get("/api/audit").json()["entries"]
 
     assert statuses == [403] * 10 + [429] * 2
     assert {"pair phone"} <= {one["action"] for one in log if one["outcome"] == "failed"}
-    assert not any("guess" in one["object"] for one in log)
+    assert not any("secret" in one["object"] for one in log)
 
 
 def test_digits_on_the_phone_and_typed_on_the_laptop(server):

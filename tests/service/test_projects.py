@@ -59,9 +59,9 @@ def test_a_result_is_downloaded_as_an_attachment(server):
 
 
 def test_the_picture_shows_the_map_and_a_project_without_one_has_none(server):
-    picture = server.get("/api/projects/office/thumbnail")
+    image = server.get("/api/projects/office/thumbnail")
 
-    assert picture.content.startswith(b"\x89PNG")
+    assert image.content.startswith(b"\x89PNG")
     assert server.get("/api/projects/half/thumbnail").status_code == 404
 
 
@@ -137,7 +137,7 @@ def test_answers_are_not_held_back_by_the_network(tmp_path):
         assert listener.proto == socket.IPPROTO_TCP
 
 
-def test_a_taken_port_is_told(tmp_path):
+def test_a_port_in_use_is_reported(tmp_path):
     with server_process(tmp_path) as (server, _), pytest.raises(StoreError, match="is in use"):
         (tmp_path / "other").mkdir()
         serve(ServerSettings(root=tmp_path / "other", port=int(server.url.rsplit(":", 1)[1])))

@@ -172,14 +172,14 @@ def test_settings_are_listed_with_meaning_unit_and_value(server):
 def test_every_wrong_setting_is_named(server, recording):
     wrong = ["map.voxel_m=5", "graph.node_stride=x"]
 
-    told = server.post("/api/settings/check", json={"settings": wrong}).json()["problems"]
+    problems = server.post("/api/settings/check", json={"settings": wrong}).json()["problems"]
     request = {"project": "a", "recordings": [str(recording)], "settings": wrong}
     refused = server.post("/api/jobs", json=request)
 
-    assert told.keys() == {"map.voxel_m", "graph.node_stride"}
-    assert "voxel_m must be 0 to 1, got 5" in told["map.voxel_m"]
+    assert problems.keys() == {"map.voxel_m", "graph.node_stride"}
+    assert "voxel_m must be 0 to 1, got 5" in problems["map.voxel_m"]
     assert refused.status_code == 422
-    assert refused.json()["problems"] == told
+    assert refused.json()["problems"] == problems
 
 
 def test_a_thousand_projects_are_listed_in_half_a_second(tmp_path):

@@ -49,7 +49,7 @@ def test_a_file_sent_by_any_tus_client_becomes_a_recording(server):
     assert path.stat().st_mode & 0o222 == 0  # never modified
 
 
-def test_what_the_server_speaks_is_told(server):
+def test_the_server_lists_its_tus_extensions(server):
     answer = httpx.options(f"{server.url}/api/uploads/files")
 
     assert answer.headers["Tus-Version"] == "1.0.0"

@@ -220,8 +220,8 @@ def test_what_is_no_message_does_not_pass(data):
 
 def test_a_message_passes_up_to_64_kibibytes():
     def message(size):
-        told = {"type": "GuiUpdateMessage", "uuid": "x", "updates": {"value": "x" * size}}
-        return msgspec.msgpack.encode(told)
+        update = {"type": "GuiUpdateMessage", "uuid": "x", "updates": {"value": "x" * size}}
+        return msgspec.msgpack.encode(update)
 
     assert passes(message(65_000), may_review=False)
     assert not passes(message(65_536), may_review=True)
@@ -385,16 +385,16 @@ def test_a_browser_that_takes_nothing_is_disconnected_and_harms_nobody(
         stalled.set("Fewer when this browser is slow", False)  # a million points at once
         before = viewer_process(million).memory_info().rss
         for k in range(40):  # the first of them takes none of this
-            stalled.set("Palette", ("turbo", "grey")[k % 2])
+            stalled.set("Palette", ("turbo", "gray")[k % 2])
             other.press("Raw or normalized")
             words = f"Points by {('raw', 'normalized')[k % 2]} intensity"
             other.until(lambda c, words=words: words in c.html())
         grown = viewer_process(million).memory_info().rss - before
         deadline_s = time.monotonic() + 20.0
-        while "took nothing" not in caplog.text and time.monotonic() < deadline_s:
+        while "read nothing" not in caplog.text and time.monotonic() < deadline_s:
             other.rest()
 
-    assert "took nothing" in caplog.text
+    assert "read nothing" in caplog.text
     assert grown < 64 << 20
 
 
@@ -403,7 +403,7 @@ def test_the_page_is_viser_with_our_repairs_and_a_policy(server):
 
     policy = answer.headers["content-security-policy"]
     assert SHIMS in answer.text
-    assert "map frame · z up · metres" in answer.text
+    assert "map frame · z up · meters" in answer.text
     assert f"connect-src 'self' ws://{urlsplit(server.url).netloc} " in policy
     assert "frame-ancestors 'self'" in policy
 
@@ -429,7 +429,7 @@ def viewer_process(root):
 
 
 def rejected_edge():
-    """Ends of an edge of the project that verification turned down [m]."""
+    """Ends of an edge of the project that verification rejected [m]."""
     graph = verified_graph(loop_walk())
     edge = next(e for e in graph.edges if e.reason is Reason.VERIFICATION)
     return graph.T_map_body.t[edge.i], graph.T_map_body.t[edge.j]

@@ -64,7 +64,7 @@ class ViserClient:
         self.notes: list[str] = []
         self.bytes = 0
         self.colored = 0
-        """Points whose colors were sent anew."""
+        """Points whose colors were sent again."""
 
     def send(self, message: dict[str, Any]) -> None:
         self.socket.send(msgspec.msgpack.encode(message))

@@ -1,4 +1,4 @@
-"""What is said of a picked edge or point and of measurements."""
+"""Captions of picked edges, picked points and measurements."""
 
 from __future__ import annotations
 
@@ -13,56 +13,56 @@ import numpy as np
 from app.viewer.client.view import Position
 from app.viewer.cloud.pick import PickedPoint
 from app.viewer.scene.build import GnssMarks
-from app.viewer.scene.layers import KIND_WORDS, EdgeTable
+from app.viewer.scene.layers import KIND_LABELS, EdgeTable
 from recon4.geometry.se3 import Array
 
 
 @dataclass(frozen=True, slots=True)
 class Facts:
-    """Rows of words and values, and where to go on."""
+    """A titled table of labels and values, with a link."""
 
     title: str
     rows: tuple[tuple[str, str], ...]
     link: tuple[str, str] | None = None
-    """Words and path on this server."""
+    """Text and path on this server."""
 
 
 def edge_facts(table: EdgeTable, row: int, project: str) -> Facts:
-    """What is known of an edge."""
+    """Attributes of an edge."""
     edge, t_ns = table.graph.edges[row], table.graph.t_ns
     began_ns = t_ns[0]
     at = [f"{(t_ns[node] - began_ns) * 1e-9:.1f} s" for node in (edge.i, edge.j)]
     limit = f" of {_number(edge.limit_m)} m" if np.isfinite(edge.limit_m) else ""
     rows = [
         ("Nodes", f"{edge.i} at {at[0]}, {edge.j} at {at[1]}"),
-        ("Kind", KIND_WORDS[edge.kind]),
+        ("Kind", KIND_LABELS[edge.kind]),
         ("Verdict", str(edge.verdict)),
         ("Reason", str(edge.reason)),
         ("Overlap", _number(edge.overlap)),
         ("Error", f"{_number(edge.error_m)} m{limit}" if np.isfinite(edge.error_m) else ""),
         (
-            "Other paths",
+            "Alternative paths",
             f"{edge.paths}, median {_number(edge.verification_m)} m" * (edge.paths > 0),
         ),
         ("chi²", _number(edge.chi2)),
         ("Decided by", edge.decided_by),
     ]
     link = f"/projects/{quote(project)}/review/?edge={edge.i}-{edge.j}"
-    kept = tuple((words, value) for words, value in rows if value)
+    kept = tuple((label, value) for label, value in rows if value)
     return Facts(f"Edge {edge.i}\u2013{edge.j}", kept, ("Open in review", link))
 
 
 def gnss_facts(marks: GnssMarks, row: int, *, began_ns: int) -> Facts:
-    """What is known of a position a receiver gave."""
-    off = marks.p_map[row] - marks.p_antenna[row]
+    """Attributes of a GNSS fix."""
+    residual = marks.p_map[row] - marks.p_antenna[row]
     rows = (
         ("Time", f"{(marks.t_ns[row] - began_ns) * 1e-9:.1f} s"),
-        ("Verdict", "used" if marks.used[row] else "rejected, does not agree with the walk"),
-        ("Off the walk, east north up", " ".join(f"{value:+.3f}" for value in off) + " m"),
-        ("Horizontal", f"{np.linalg.norm(off[:2]):.3f} m"),
+        ("Verdict", "used" if marks.used[row] else "rejected as an outlier"),
+        ("Residual, east north up", " ".join(f"{value:+.3f}" for value in residual) + " m"),
+        ("Horizontal residual", f"{np.linalg.norm(residual[:2]):.3f} m"),
         ("x y z, m", " ".join(f"{value:.4f}" for value in marks.p_map[row])),
     )
-    return Facts("GNSS position", rows)
+    return Facts("GNSS fix", rows)
 
 
 def point_facts(
@@ -72,7 +72,7 @@ def point_facts(
     began_ns: int,
     crs: tuple[str, Array] | None,
 ) -> Facts:
-    """What is known of a point of the map."""
+    """Attributes of a point of the map."""
     named = point.sensor < len(sensors)
     normalized = point.intensity_normalized
     rows = [
@@ -89,29 +89,29 @@ def point_facts(
 
 
 def measurement_facts(number: int, points: tuple[Position, ...]) -> Facts:
-    """A measured point, or a distance and its parts."""
+    """A measured point, or a distance with its components."""
     if len(points) == 1:
         return Facts(f"{number}. Point", (("x y z, m", " ".join(f"{v:.4f}" for v in points[0])),))
-    away = np.subtract(points[1], points[0])
+    offset = np.subtract(points[1], points[0])
     return Facts(
         f"{number}. Distance",
         (
-            ("Distance", f"{np.linalg.norm(away):.4f} m"),
-            ("Horizontal", f"{np.linalg.norm(away[:2]):.4f} m"),
-            ("Vertical", f"{away[2]:+.4f} m"),
+            ("Distance", f"{np.linalg.norm(offset):.4f} m"),
+            ("Horizontal", f"{np.linalg.norm(offset[:2]):.4f} m"),
+            ("Vertical", f"{offset[2]:+.4f} m"),
         ),
     )
 
 
 def measurements_csv(measurements: Sequence[tuple[Position, ...]]) -> str:
-    """All measurements, a line each, for a spreadsheet."""
+    """All measurements as CSV, one per line."""
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
     names = "number x1_m y1_m z1_m x2_m y2_m z2_m distance_m horizontal_m vertical_m"
     rows.writerow(names.split())
     for number, points in enumerate(measurements, start=1):
-        away = np.subtract(points[-1], points[0])
-        lengths = (np.linalg.norm(away), np.linalg.norm(away[:2]), away[2])
+        offset = np.subtract(points[-1], points[0])
+        lengths = (np.linalg.norm(offset), np.linalg.norm(offset[:2]), offset[2])
         second = (*points[1], *lengths) if len(points) == 2 else ("",) * 6
         values = (*points[0], *second)
         rows.writerow([number, *(v if v == "" else f"{float(v):.5f}" for v in values)])

@@ -1,7 +1,7 @@
-"""One client: a thread of its own that keeps the client's screen equal to what it asked for.
+"""One client: a thread that keeps the client's screen up to date.
 
-Whatever happens (the camera moves, a switch is thrown, a stage ends) only wakes the thread, which
-then looks at the newest of everything: the latest wish wins, and none piles up.
+Every event (the camera moves, a setting changes, a stage ends) only wakes the thread, which then
+reads the newest state: the latest request wins, and requests do not queue up.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ from recon4.errors import Recon4Error
 
 log = logging.getLogger(__name__)
 
-GREETING_S = 1.0
-"""So long the browser is given to say which view it kept [s]."""
+KEPT_VIEW_TIMEOUT_S = 1.0
+"""Longest wait for the view that the browser kept [s]."""
 PLAY_S = 0.2
-"""While it plays a multiframe is shown so long [s]."""
+"""Time each multiframe is shown during playback [s]."""
 
 
 class ClientSession:
@@ -41,7 +41,7 @@ class ClientSession:
         self._source, self._project = source, project
         self._screen = Screen(client, project, begins_at=bounds(source.content))
         self._most = min(points, PHONE_POINTS) if self._screen.phone else points
-        self._pace = PointBudget(self._most)
+        self._budget = PointBudget(self._most)
         self._lock = threading.Lock()
         self._wake, self._over = threading.Event(), threading.Event()
         self._view, self._shown, self._kept = ViewState(), ViewState(), ViewState()
@@ -51,25 +51,25 @@ class ClientSession:
         self._thread.start()
 
     def refresh(self) -> None:
-        """Look at the newest of everything."""
+        """Wake the thread: something may have changed."""
         self._wake.set()
 
     def leave(self) -> None:
-        """The client is gone."""
+        """End the session: the client has disconnected."""
         self._over.set()
         self._wake.set()
 
     def _run(self) -> None:
-        kept, answer_s = self._screen.kept_view(GREETING_S)
-        self._pace.began(answer_s)
+        kept, answer_s = self._screen.kept_view(KEPT_VIEW_TIMEOUT_S)
+        self._budget.began(answer_s)
         self._view = self._kept = view_from_json(kept) or ViewState()
         self._panel = Panel(self._screen.gui, PanelCallbacks(self._change, self._command))
-        self._hand = PointerTools(
+        self._pointer = PointerTools(
             self._source, self._screen, self._panel, project=self._project, change=self._change
         )
         self._detail = Detail(self._screen, newer=self._wake.is_set, over=self._over.wait)
         self._screen.on_camera(self._wake.set)
-        self._screen.on_click(lambda ray: self._hand.click(ray, self._view))
+        self._screen.on_click(lambda ray: self._pointer.click(ray, self._view))
         self._wake.set()
         while not self._over.is_set():
             self._wake.wait(PLAY_S if self._playing else None)
@@ -80,30 +80,30 @@ class ClientSession:
                 self._pass()
             except Recon4Error as error:
                 log.warning("%s", error)
-            except Exception:  # a screen that shows nothing new any more would tell nobody why
+            except Exception:  # without a log entry nothing would explain a frozen screen
                 log.exception("a pass failed; the next one tries again")
 
     def _pass(self) -> None:
         view, content = self._view, self._source.content
-        changed = view is not self._shown or content is not self._content or self._hand.news()
+        changed = view is not self._shown or content is not self._content or self._pointer.news()
         if changed:
             self._show(content, view)
         span = span_of(content, view)
-        self._pace.allow(min(view.detail or self._most, self._most))
-        budget = self._pace.points if view.adapt else view.detail or self._most
+        self._budget.allow(min(view.detail or self._most, self._most))
+        budget = self._budget.points if view.adapt else view.detail or self._most
         done = self._detail.refine(content.cloud, view, span, budget=min(budget, self._most))
         self._panel.explain(legend(content, view, points=self._detail.points))
         if view != self._kept:
             self._kept = view
             self._screen.keep_view(view.to_json())
-        if done and view.adapt and content.cloud is not None and not self._pace.settled:
+        if done and view.adapt and content.cloud is not None and not self._budget.settled:
             self._try_more()
 
     def _try_more(self) -> None:
-        """Ask the browser how it is; more points, or fewer, if that is the answer."""
-        before = self._pace.points
-        self._pace.record(self._screen.answers_within_s(HOLD_S))
-        if self._pace.points != before:
+        """Measure the response time of the browser; adapt the number of points."""
+        before = self._budget.points
+        self._budget.record(self._screen.answers_within_s(HOLD_S))
+        if self._budget.points != before:
             self._wake.set()
 
     def _show(self, content: Content, view: ViewState) -> None:
@@ -113,9 +113,9 @@ class ClientSession:
                 self._screen.follow(bounds(content))
         self._shown, self._content = view, content
         points = [*_preview(content, view), *_window(content, view)]
-        self._screen.show([*describe(content, view), *self._hand.nodes(), *points])
+        self._screen.show([*describe(content, view), *self._pointer.nodes(), *points])
         self._panel.show(view, span_of(content, view))
-        self._hand.report(view)
+        self._pointer.report(view)
 
     def _change(self, update: Callable[[ViewState], ViewState]) -> None:
         with self._lock:
@@ -143,7 +143,7 @@ class ClientSession:
             case "narrow":
                 self._screen.toggle_narrow()
             case _:
-                self._hand.command(name, self._view)
+                self._pointer.command(name, self._view)
                 self._wake.set()
 
 
@@ -153,7 +153,7 @@ DIRECTIONS = {
     "south": np.array([0.0, -1.1, 0.0]),
     "east": np.array([1.1, 0.0, 0.0]),
 }
-"""From where the map is looked at, times its size."""
+"""Camera positions relative to the center of the map, in units of its size."""
 
 
 def _other_intensity(view: ViewState) -> Any:
@@ -162,7 +162,7 @@ def _other_intensity(view: ViewState) -> Any:
 
 
 def _preview(content: Content, view: ViewState) -> list[PointsNode]:
-    """The walk so far, while there is no map."""
+    """The preview of the walk, while there is no map."""
     line = content.trajectory
     if content.preview is None or line is None or not shows_preview(content, view):
         return []
@@ -170,7 +170,7 @@ def _preview(content: Content, view: ViewState) -> list[PointsNode]:
 
 
 def _window(content: Content, view: ViewState) -> list[Node]:
-    """The multiframes under the scrubber: over the map in one color, alone in the view's colors."""
+    """The selected multiframes: over the map in one color, alone in the view's colors."""
     frames, line = content.multiframes, content.trajectory
     if view.points == "map" or frames is None or line is None:
         return []

@@ -1,4 +1,4 @@
-"""What the colors of a view mean."""
+"""The legend of a view: the meaning of its colors."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from app.viewer.scene.layers import Layer
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Legend:
-    """What the colors mean."""
+    """Meaning of the colors on screen."""
 
     color_by: ColorBy | None
     """None = there are no points."""
@@ -23,24 +23,24 @@ class Legend:
     sensors: tuple[tuple[str, Rgb], ...] = ()
     layers: tuple[Layer, ...] = ()
     points: int = 0
-    """Shown just now."""
+    """Points on screen."""
     points_in_map: int = 0
     grid_cell_m: float = 0.0
     edge_color: EdgeColor = "verdict"
     edge_span: Range = ERROR_RANGE
     multiframes: str = ""
-    """Which of them are on screen; empty = none."""
+    """Caption of the multiframes on screen; empty = none."""
     preview: bool = False
-    """Whether the points on screen are those of the walk so far, by height."""
+    """Whether the points on screen are the preview, by height."""
 
 
 def legend(content: Content, view: ViewState, *, points: int = 0) -> Legend:
-    """Say what the colors of a view mean.
+    """The legend of a view.
 
     Args:
-        content: What there is.
-        view: What a person chose.
-        points: How many points of the map are on screen.
+        content: What the project has to show.
+        view: The view settings of a person.
+        points: Points of the map on screen.
     """
     shown = content.cloud is not None and view.color_by in content.colors
     return Legend(
@@ -55,19 +55,19 @@ def legend(content: Content, view: ViewState, *, points: int = 0) -> Legend:
         grid_cell_m=grid_cell_m(bounds(content)),
         edge_color=view.edge_color,
         edge_span=CHI2_RANGE if view.edge_color == "chi²" else ERROR_RANGE,
-        multiframes=multiframe_words(content, view),
+        multiframes=multiframe_caption(content, view),
         preview=shows_preview(content, view),
     )
 
 
 def shows_preview(content: Content, view: ViewState) -> bool:
-    """Whether the points of the walk so far stand in for the map that is not there yet."""
+    """Whether the preview is shown because there is no map yet."""
     there = content.preview is not None and content.trajectory is not None
     return there and view.points != "multiframe"
 
 
-def multiframe_words(content: Content, view: ViewState) -> str:
-    """Which multiframes are on screen, and when they were measured."""
+def multiframe_caption(content: Content, view: ViewState) -> str:
+    """Caption of the multiframes on screen, with their time."""
     frames = content.multiframes
     if frames is None or view.points == "map":
         return ""
@@ -78,7 +78,7 @@ def multiframe_words(content: Content, view: ViewState) -> str:
 
 
 def span_of(content: Content, view: ViewState) -> Range:
-    """Ends of the palette: a person's, else those of the map."""
+    """Ends of the palette: set by a person, else those of the map."""
     mine = view.range_of(view.color_by)
     if mine is not None or content.cloud is None:
         return mine or Range(0.0, 1.0)

@@ -1,4 +1,4 @@
-"""Legend, facts and measurements as HTML. viser does not escape it: every word is escaped here."""
+"""Legend, facts and measurements as HTML. viser does not escape it: all text is escaped here."""
 
 from __future__ import annotations
 
@@ -16,39 +16,39 @@ BLOCK = "padding:0.6em 1em;font-size:0.85em;line-height:1.5"
 
 
 def legend_html(legend: Legend) -> str:
-    """What the colors mean."""
+    """The legend as HTML."""
     points = ""
     if legend.color_by is not None:
         points = f"<b>Points by {html.escape(legend.color_by)}</b>{_scale(legend)}"
         points += f"<div>{count(legend.points)} of {count(legend.points_in_map)} points</div>"
     if legend.preview:
         points += f"<b>Preview by height</b>{_bar(legend.palette, HEIGHTS, 'm above the backpack')}"
-        points += "<div>A multiframe a second, until there is a map</div>"
+        points += "<div>One multiframe per second, until there is a map</div>"
     if legend.multiframes:
         points += f"<div>{html.escape(legend.multiframes)}</div>"
     if legend.edge_color == "verdict":
         lines = "".join(_swatch(counted(row), row.rgb, line=True) for row in legend.layers)
     else:
         bar = _bar("turbo", legend.edge_span, "")
-        lines = f"<div>Edges by {html.escape(legend.edge_color)}, grey = not known</div>{bar}"
+        lines = f"<div>Edges by {html.escape(legend.edge_color)}, gray = not known</div>{bar}"
     cell = f"<div>Grid cell {legend.grid_cell_m:g} m, map frame, z up</div>"
     return f'<div style="{BLOCK}">{points}<b>Lines</b>{lines}{cell}</div>'
 
 
 def facts_html(facts: Iterable[Facts]) -> str:
-    """What is known of some things, one below the other; empty without any."""
+    """Tables of facts as HTML, one below the other; empty without any."""
     blocks = []
     for one in facts:
         cells = "".join(
-            f"<tr><td style='padding-right:1em;opacity:0.75'>{html.escape(words)}</td>"
+            f"<tr><td style='padding-right:1em;opacity:0.75'>{html.escape(label)}</td>"
             f"<td style='user-select:all'>{html.escape(value)}</td></tr>"
-            for words, value in one.rows
+            for label, value in one.rows
         )
         link = ""
         if one.link is not None:
-            words, path = map(html.escape, one.link)
+            text, path = map(html.escape, one.link)
             style = "display:inline-block;padding:0.7em 0"
-            link = f'<a href="{path}" target="_top" style="{style}">{words}</a>'
+            link = f'<a href="{path}" target="_top" style="{style}">{text}</a>'
         blocks.append(f"<b>{html.escape(one.title)}</b><table>{cells}</table>{link}")
     return f'<div style="{BLOCK}">{"".join(blocks)}</div>' if blocks else ""
 
@@ -71,10 +71,10 @@ def _bar(palette: Palette, span: Range, unit: str) -> str:
     )
 
 
-def _swatch(words: str, rgb: Rgb, *, line: bool) -> str:
+def _swatch(text: str, rgb: Rgb, *, line: bool) -> str:
     size = "width:18px;height:3px" if line else "width:10px;height:10px"
     mark = f"display:inline-block;vertical-align:middle;margin-right:8px;{size}"
-    return f'<div><span style="{mark};background:{_css(rgb)}"></span>{html.escape(words)}</div>'
+    return f'<div><span style="{mark};background:{_css(rgb)}"></span>{html.escape(text)}</div>'
 
 
 def _css(rgb: tuple[int, ...]) -> str:
@@ -82,10 +82,10 @@ def _css(rgb: tuple[int, ...]) -> str:
 
 
 def counted(layer: Layer) -> str:
-    """The words of a layer with how many things are in it."""
+    """The label of a layer with its number of objects."""
     return f"{layer.words} ({count(layer.count)})" if layer.count else layer.words
 
 
 def count(number: int) -> str:
-    """A number that can be read: thousands set apart."""
+    """A number with thousands separators."""
     return f"{number:,}".replace(",", "\u202f")

@@ -1,4 +1,4 @@
-"""Widgets in, changes of one immutable `ViewState` out. With `show` the only viser module."""
+"""The control panel: widgets change an immutable `ViewState`. With `show` the only viser module."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from app.viewer.scene.layers import Layer
 Update = Callable[[ViewState], ViewState]
 HOTKEYS: tuple[tuple[str, Any, str], ...] = (
     ("Raw or normalized intensity", "N", "normalized"),
-    ("Fit the map into the picture", "F", "fit"),
-    ("Look from above", "7", "above"),
-    ("Look from the south", "1", "south"),
-    ("Look from the east", "3", "east"),
-    ("Narrow angle of view, nearly parallel", "O", "narrow"),
-    ("Measure: the next two points make a distance", "M", "measure"),
+    ("Fit the map into the view", "F", "fit"),
+    ("View from above", "7", "above"),
+    ("View from the south", "1", "south"),
+    ("View from the east", "3", "east"),
+    ("Narrow field of view, nearly orthographic", "O", "narrow"),
+    ("Measure a distance between two points", "M", "measure"),
     ("Play or stop", "P", "play"),
 )
-"""Words, key, and what it is called for `Doings.command`."""
+"""Label, key, and name for `PanelCallbacks.command`."""
 
 
 @dataclass(frozen=True, slots=True)
 class PanelCallbacks:
-    """What the controls set off."""
+    """Callbacks of the controls."""
 
     change: Callable[[Update], None]
     command: Callable[[str], None]
@@ -41,19 +41,19 @@ class PanelCallbacks:
 class Panel:
     """The controls of one client."""
 
-    def __init__(self, gui: viser.GuiApi, doings: PanelCallbacks) -> None:
-        self._gui, self._doings = gui, doings
+    def __init__(self, gui: viser.GuiApi, callbacks: PanelCallbacks) -> None:
+        self._gui, self._callbacks = gui, callbacks
         self._legend = gui.add_html("", order=0.0)
         self._picked = gui.add_html("", order=0.5)
         self._widgets: dict[str, Any] = {}
         self._folders: dict[str, tuple[object, viser.GuiFolderHandle]] = {}
-        self._told: dict[str, object] = {}
-        for words, key, name in HOTKEYS:
-            gui.add_command(words, hotkey=key).on_trigger(self._commanding(name))
+        self._shown: dict[str, object] = {}
+        for label, key, name in HOTKEYS:
+            gui.add_command(label, hotkey=key).on_trigger(self._commanding(name))
         self._measure_folder()
 
     def offer(self, content: Content, view: ViewState, most_points: int) -> None:
-        """Offer what the content has; folders whose offer is the same stay as they are."""
+        """Create the folders of controls for the content; unchanged folders stay as they are."""
         if content.cloud is not None:
             offered = (content.colors, most_points)
             self._fold("points", offered, lambda: self._point_folder(content, view, most_points))
@@ -67,7 +67,7 @@ class Panel:
             self._set(f"layer {layer.key}", view.shows(layer), counted(layer))
 
     def show(self, view: ViewState, span: Range) -> None:
-        """Set the widgets to a view that was changed elsewhere, by a key or a click."""
+        """Set the widgets to a view that was changed by a key or a click."""
         values = {
             "color": view.color_by, "palette": view.palette, "size": view.point_size_m,
             "adapt": view.adapt, "low": span.low, "high": span.high, "points": view.points,
@@ -77,20 +77,20 @@ class Panel:
             self._set(name, value)
 
     def explain(self, legend: Legend) -> None:
-        """Say what the colors mean."""
-        if self._told.get("legend") != legend:
-            self._told["legend"] = legend
+        """Show the legend."""
+        if self._shown.get("legend") != legend:
+            self._shown["legend"] = legend
             self._legend.content = legend_html(legend)
 
-    def tell_picked(self, facts: Facts | None) -> None:
-        """Say what was clicked at."""
+    def show_picked(self, facts: Facts | None) -> None:
+        """Show the facts of the picked object."""
         self._picked.content = facts_html([facts] if facts else [])
 
-    def tell_measured(self, facts: list[Facts], *, measuring: bool) -> None:
+    def show_measured(self, facts: list[Facts], *, measuring: bool) -> None:
         """List the measurements."""
         record = (tuple(facts), measuring)
-        if self._told.get("measured") != record:
-            self._told["measured"] = record
+        if self._shown.get("measured") != record:
+            self._shown["measured"] = record
             self._widgets["measured"].content = facts_html(facts)
             self._widgets["measure"].label = (
                 "Stop measuring (M)" if measuring else "Measure a distance (M)"
@@ -114,21 +114,21 @@ class Panel:
             widget.label = label
 
     def _bind(self, name: str, widget: Any, update: Callable[[ViewState, Any], ViewState]) -> None:
-        """Let a widget change the view; what we set it to ourselves is no change."""
+        """Bind a widget to the view; changes made by the program itself are ignored."""
         self._widgets[name] = widget
 
         @widget.on_update
         def record(event: Any) -> None:
             if event.client_id is not None:
-                self._doings.change(lambda view: update(view, widget.value))
+                self._callbacks.change(lambda view: update(view, widget.value))
 
-    def _button(self, words: str, command: str, *, name: str = "") -> None:
-        button = self._gui.add_button(words)
+    def _button(self, label: str, command: str, *, name: str = "") -> None:
+        button = self._gui.add_button(label)
         self._widgets[name or command] = button
         button.on_click(self._commanding(command))
 
     def _commanding(self, name: str) -> Callable[[Any], None]:
-        return lambda _: self._doings.command(name)
+        return lambda _: self._callbacks.command(name)
 
     def _point_folder(
         self, content: Content, view: ViewState, most_points: int
@@ -215,7 +215,7 @@ class Panel:
     def _measure_folder(self) -> None:
         with self._gui.add_folder("Measure", order=4.0):
             self._button("Measure a distance (M)", "measure")
-            self._button("Keep the point picked", "keep point")
+            self._button("Keep the picked point", "keep point")
             self._widgets["measured"] = self._gui.add_html("")
-            self._button("As CSV", "csv")
-            self._button("Take back the last", "undo measure")
+            self._button("Download CSV", "csv")
+            self._button("Undo the last", "undo measure")

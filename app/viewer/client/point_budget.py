@@ -1,27 +1,27 @@
-"""How many points one browser is given.
+"""The number of points sent to one browser.
 
-How many it can take is not known beforehand: without a graphics card it draws some 400 000 a
-second, with one it draws millions at once. So it begins with few, and gets twice as many as long as
-it still answers quickly.
+Its capacity is not known beforehand: without a graphics card it draws some 400 000 points a second,
+with one it draws millions at once. So the budget begins small, and doubles as long as the browser
+responds quickly.
 """
 
 from __future__ import annotations
 
 PHONE_POINTS = 300_000
-"""A phone gets at most so many."""
+"""Most points on a phone."""
 FIRST_POINTS = 200_000
-"""So many are sent before it is known how quick the browser is."""
+"""Points before the speed of the browser is known."""
 FEWEST_POINTS = 60_000
 QUICK_S = 0.25
-"""A browser that answers within that has time for more [s]."""
+"""Response time below which the budget grows [s]."""
 SLOW_S = 0.7
-"""One that takes longer is given less [s]."""
+"""Response time above which the budget shrinks [s]."""
 HOLD_S = 3.0
-"""An answer is not waited for longer than that [s]."""
+"""Longest wait for a response [s]."""
 
 
 class PointBudget:
-    """How many points one browser is given."""
+    """Adapts the number of points of one browser to its response time."""
 
     def __init__(self, most: int) -> None:
         self._calm_s = 0.0
@@ -29,18 +29,18 @@ class PointBudget:
         self.allow(most)
 
     def began(self, answer_s: float | None) -> None:
-        """Told how long an answer takes when there is nothing to draw (the way there and back)."""
+        """Set the response time when there is nothing to draw (the round trip)."""
         self._calm_s = answer_s or 0.0
 
     def allow(self, most: int) -> None:
-        """The person, or the server, allows so many; what was learnt is forgotten."""
+        """Set the limit of the person or the server; a new limit resets the adaptation."""
         if most != self._most:
             self._most = self._ceiling = most
             self.points = min(FIRST_POINTS, most)
             self.settled = self.points == most
 
     def record(self, answer_s: float | None) -> None:
-        """Told how long an answer took (None = too long) with `points` on screen."""
+        """Adapt to a response time (None = too long) measured with `points` on screen."""
         before = self.points
         if answer_s is None:
             self.points = max(before // 2, min(FEWEST_POINTS, self._most))

@@ -1,4 +1,4 @@
-"""What a person does with the pointer: pick edges and points, measure."""
+"""Pointer tools: picking edges and points, measuring."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ PICKED_COLOR = (255, 255, 255)
 
 
 class PointerTools:
-    """Picking and measuring of one client. Clicks come from viser's threads, one at a time here."""
+    """Picking and measuring of one client. Clicks come from viser's threads; a lock orders them."""
 
     def __init__(
         self,
@@ -50,12 +50,12 @@ class PointerTools:
         self._news = False
 
     def news(self) -> bool:
-        """Whether there is something to draw since the last time this was asked."""
+        """Whether there is something new to draw since the last call."""
         news, self._news = self._news, False
         return news
 
     def nodes(self) -> list[Node]:
-        """The edge picked, and the point a measurement begins at."""
+        """Nodes of the picked edge or point, and of the first point of a measurement."""
         nodes: list[Node] = []
         if self._edge is not None:
             nodes.append(_mark("/picked/edge", self._edge[None], PICKED_COLOR))
@@ -68,10 +68,10 @@ class PointerTools:
     def report(self, view: ViewState) -> None:
         """List the measurements of a view."""
         facts = [measurement_facts(n, points) for n, points in enumerate(view.measurements, 1)]
-        self._panel.tell_measured(facts, measuring=self._measuring)
+        self._panel.show_measured(facts, measuring=self._measuring)
 
     def click(self, ray: Ray, view: ViewState) -> None:
-        """A click or tap on the scene."""
+        """Handle a click or tap on the scene."""
         with self._one:
             ray = replace(ray, point_m=view.point_size_m)
             if self._measuring:
@@ -82,7 +82,7 @@ class PointerTools:
         self._change(lambda view: view)
 
     def command(self, name: str, view: ViewState) -> None:
-        """A button or a key."""
+        """Handle a button or a key."""
         match name:
             case "measure":
                 self._measuring, self._first = not self._measuring, None
@@ -118,7 +118,7 @@ class PointerTools:
             self._edge = None
             return False
         self._edge, self._last = table.graph.T_map_body.t[table.ends[row]], None
-        self._tell(edge_facts(table, row, self._project))
+        self._show_facts(edge_facts(table, row, self._project))
         return True
 
     def _picked_gnss(self, ray: Ray, view: ViewState) -> bool:
@@ -128,7 +128,7 @@ class PointerTools:
             return False
         self._last = as_position(content.gnss.p_map[row])
         began_ns = 0 if content.trajectory is None else int(content.trajectory.t_ns[0])
-        self._tell(gnss_facts(content.gnss, row, began_ns=began_ns))
+        self._show_facts(gnss_facts(content.gnss, row, began_ns=began_ns))
         return True
 
     def _pick_point(self, ray: Ray) -> PickedPoint | None:
@@ -136,7 +136,7 @@ class PointerTools:
         point = None if content.cloud is None else pick_point(content.cloud, ray)
         self._last = None if point is None else point.p_map
         if point is None or content.cloud is None:
-            self._panel.tell_picked(None)
+            self._panel.show_picked(None)
             return None
         facts = point_facts(
             point,
@@ -144,15 +144,15 @@ class PointerTools:
             began_ns=content.cloud.began_ns,
             crs=self._source.crs_coordinates(np.array([point.p_map])),
         )
-        self._tell(facts)
+        self._show_facts(facts)
         return point
 
-    def _tell(self, facts: Facts) -> None:
-        """Say it in the panel; on a phone, where that is folded, over the map too."""
-        self._panel.tell_picked(facts)
+    def _show_facts(self, facts: Facts) -> None:
+        """Show facts in the panel; on a phone, where the panel is collapsed, over the map too."""
+        self._panel.show_picked(facts)
         if self._screen.phone:
-            words = "; ".join(f"{name}: {value}" for name, value in facts.rows)
-            self._screen.tell(facts.title, words)
+            text = "; ".join(f"{label}: {value}" for label, value in facts.rows)
+            self._screen.notify(facts.title, text)
 
 
 def _mark(path: str, segments_m: Array, rgb: tuple[int, int, int]) -> LinesNode:

@@ -1,7 +1,7 @@
 """Draws nodes with viser. With `panels` the only module that imports it (pinned: 1.1.1).
 
-Everything is drawn for one client, not for all: phones get fewer points than desktops, each
-person has a view of their own, and nothing heavy stays in the buffer that viser replays.
+Everything is drawn per client: phones get fewer points than desktops, each person has a view of
+their own, and nothing large stays in the buffer that viser replays.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ KEPT = "recon4.view."
 """Name under which a browser keeps the view of a project."""
 NARROW_FOV_RAD, USUAL_FOV_RAD = np.deg2rad(6.0), np.deg2rad(75.0)
 GROWN = 0.2
-"""A map that grew by this share is put into the picture anew."""
+"""Relative growth of the map after which the camera is moved to fit it."""
 AWAY = np.array([0.0, -0.75, 0.75])
-"""From where a box is looked at, times its size: south and above."""
+"""Camera position relative to a box, in units of its size: south and above."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,7 +41,7 @@ class _Drawn:
 
 
 class Screen:
-    """Keeps what one client sees equal to the last nodes it was given."""
+    """The screen of one client: sends only the differences to the last nodes."""
 
     def __init__(self, client: viser.ClientHandle, project: str, *, begins_at: Bounds) -> None:
         self._client = client
@@ -56,7 +56,7 @@ class Screen:
 
     @property
     def gui(self) -> viser.GuiApi:
-        """Where the controls go."""
+        """The panel of controls."""
         return self._client.gui
 
     @property
@@ -66,7 +66,7 @@ class Screen:
 
     @property
     def camera(self) -> Camera:
-        """Where the person looks from just now."""
+        """The current camera of the client."""
         camera = self._client.camera
         return Camera(
             np.array(camera.position),
@@ -77,18 +77,18 @@ class Screen:
         )
 
     def on_camera(self, moved: Callable[[], None]) -> None:
-        """Call whenever the camera has moved; it must be quick."""
+        """Register a callback for camera movements; it must be quick."""
 
-        async def tell(_: viser.CameraHandle) -> None:
+        async def notify(_: viser.CameraHandle) -> None:
             moved()
 
-        self._client.camera.on_update(tell)
+        self._client.camera.on_update(notify)
 
     def on_click(self, clicked: Callable[[Ray], None]) -> None:
-        """Call with the line of sight of every click or tap on the scene."""
+        """Register a callback for the ray of every click or tap on the scene."""
 
         @self._client.scene.on_click()
-        def tell(event: viser.SceneClickEvent) -> None:
+        def notify(event: viser.SceneClickEvent) -> None:
             camera = self.camera
             direction = np.array(event.ray_direction)
             pixel_rad = 1.0 / camera.focal_px
@@ -96,7 +96,7 @@ class Screen:
             clicked(ray)
 
     def show(self, nodes: Iterable[Node]) -> None:
-        """Draw the nodes and nothing else beside the map; only what differs is sent."""
+        """Draw these nodes and no others beside the map; only differences are sent."""
         with self._client.atomic():
             fresh = {node.path: (node, self._update(node)) for node in nodes}
             for path in self._shown.keys() - fresh.keys():
@@ -104,7 +104,7 @@ class Screen:
         self._shown = fresh
 
     def put(self, nodes: Iterable[PointsNode], style: object) -> None:
-        """Show parts of the map; those that are there are only colored."""
+        """Show parts of the map; parts that are loaded are only recolored."""
         with self._client.atomic():
             for node in nodes:
                 before = self._points.pop(node.path, None)
@@ -117,7 +117,7 @@ class Screen:
         self._client.flush()  # now, not at viser's next tick
 
     def keep_only(self, paths: set[str], spare: int) -> None:
-        """Hide the other parts of the map; of them as many points as are spared stay loaded."""
+        """Hide the other parts of the map; ``spare`` of their points stay loaded."""
         with self._client.atomic():
             for path in [path for path in reversed(self._points) if path not in paths]:
                 drawn = self._points[path]
@@ -139,21 +139,21 @@ class Screen:
         return None if drawn is None else drawn.node
 
     def show_map(self, visible: bool) -> None:
-        """Show the map or not; nothing is sent again."""
+        """Show or hide the map without sending it again."""
         if self._map.visible != visible:
             self._map.visible = visible
 
     def forget_map(self) -> None:
-        """Take the map off the screen: there is another one."""
+        """Remove the map from the screen, because there is a new one."""
         self.keep_only(set(), -1)
 
     @property
     def behind(self) -> int:
-        """Messages the browser has not taken yet. viser tells nobody, so its buffer is asked."""
+        """Messages that the browser has not read yet, counted in viser's buffer."""
         return len(self._client._websock_connection.get_message_buffer().message_from_id)
 
     def answers_within_s(self, limit_s: float) -> float | None:
-        """How long the browser takes to answer after all that was sent [s]; None = longer."""
+        """Response time of the browser after all sent messages [s]; None = above the limit."""
         began_s = time.monotonic()
         try:
             self._client.local_storage.get_item("recon4.ping", timeout=limit_s)
@@ -162,7 +162,7 @@ class Screen:
         return time.monotonic() - began_s
 
     def kept_view(self, limit_s: float) -> tuple[str | None, float | None]:
-        """The view this browser kept, as text from outside, and how long the answer took [s]."""
+        """The view this browser kept, as untrusted text, and the response time [s]."""
         began_s = time.monotonic()
         try:
             kept = self._client.local_storage.get_item(self._key, timeout=limit_s)
@@ -175,14 +175,14 @@ class Screen:
         self._client.local_storage.set_item(self._key, text)
 
     def look_at(self, box: Bounds, direction: Array = AWAY) -> None:
-        """Put the camera so that all of a box is seen from a direction."""
+        """Move the camera so that all of a box is visible from a direction."""
         self._put_m = start_m(box, direction, aspect=self.camera.aspect)
         with self._client.atomic():
             self._client.camera.position = self._put_m
             self._client.camera.look_at = box.center_m
 
     def follow(self, box: Bounds) -> None:
-        """Keep a growing map in the picture as long as the person leaves the camera alone."""
+        """Keep a growing map in view as long as the person does not move the camera."""
         if self._put_m is None or abs(box.size_m - self._box_m) < GROWN * self._box_m:
             return
         if np.allclose(self._client.camera.position, self._put_m, atol=1e-3):
@@ -190,7 +190,7 @@ class Screen:
             self.look_at(box)
 
     def toggle_narrow(self) -> None:
-        """Nearly parallel rays from far away, or the usual angle of view from near; same size."""
+        """Toggle a narrow field of view from far away and the usual one; the map keeps its size."""
         camera = self._client.camera
         fov_rad = USUAL_FOV_RAD if camera.fov < 2.0 * NARROW_FOV_RAD else NARROW_FOV_RAD
         away = np.array(camera.position) - np.array(camera.look_at)
@@ -200,12 +200,12 @@ class Screen:
             camera.position = np.array(camera.look_at) + scale * away
 
     def download(self, name: str, text: str) -> None:
-        """Give the person a file."""
+        """Send a file as a download."""
         self._client.send_file_download(name, text.encode(), save_immediately=True)
 
-    def tell(self, title: str, words: str) -> None:
-        """Say something over the map that vanishes again."""
-        self._client.add_notification(title, words, auto_close_seconds=8.0)
+    def notify(self, title: str, text: str) -> None:
+        """Show a notification over the map that closes by itself."""
+        self._client.add_notification(title, text, auto_close_seconds=8.0)
 
     def _update(self, node: Node) -> Any:
         if node.path not in self._shown:
@@ -269,7 +269,7 @@ class Screen:
 
 
 class Viewer:
-    """A viser server without its ways to the outside, on a Unix socket."""
+    """A viser server on a Unix socket, without its public tunnel."""
 
     def __init__(
         self,
@@ -306,16 +306,16 @@ class Viewer:
 
 
 def start_m(box: Bounds, direction: Array = AWAY, *, aspect: float) -> Array:
-    """From where all of a box is seen on a screen of some width by height [m], (3,)."""
+    """Camera position from which all of a box is visible at an aspect ratio [m], (3,)."""
     away = max(box.size_m, 5.0) * max(1.0, 0.9 / max(aspect, 0.1))
     return np.asarray(box.center_m + away * direction)
 
 
 def _is_fresh(camera: viser.CameraHandle) -> bool:
-    """Whether a page was just loaded: viser's camera begins three meters off on each axis.
+    """Whether a page was just loaded: viser's camera starts at 3 m on each axis.
 
-    One that reconnects tells where the person left it. (viser's own ``initial_camera`` would put
-    it back to the beginning then.)
+    A page that reconnects sends its last camera. (viser's own ``initial_camera`` would reset it
+    then.)
     """
     return np.allclose(np.abs(camera.position), 3.0, atol=1e-3) and np.allclose(
         camera.look_at, 0.0, atol=1e-3

@@ -1,4 +1,4 @@
-"""What a person chose to see: one immutable value, kept in the person's browser as JSON."""
+"""The view settings of a person: one immutable value, kept in the browser as JSON."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import Any, Literal, get_args
 
 from app.viewer.cloud.palette import Palette, Range
 from app.viewer.scene.layers import Layer
+from recon4.store.earlier_names import PALETTES
 
 ColorBy = Literal[
     "normalized intensity", "raw intensity", "height", "time", "sensor", "ring", "multiframe",
@@ -39,25 +40,25 @@ MOST_MEASUREMENTS = 200
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ViewState:
-    """What a person chose to see."""
+    """View settings of a person."""
 
     color_by: ColorBy = "normalized intensity"
     palette: Palette = "viridis"
     ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    """Ends of the palette where a person set them, by what the points are colored by."""
+    """Ends of the palette that a person set, by what the points are colored by."""
     point_size_m: float = 0.02
     chosen: Mapping[str, bool] = field(default_factory=dict)
-    """Layers a person switched, by key; the others are as they are at first."""
+    """Layers a person switched, by key; the others have their default."""
     points: Points = "map"
     moment: int = 0
-    """Multiframe under the scrubber."""
+    """Selected multiframe."""
     window_s: float = 0.0
-    """Multiframes so long after it are shown with it [s]."""
+    """Multiframes within this time after it are shown with it [s]."""
     edge_color: EdgeColor = "verdict"
     detail: int = 0
-    """At most so many points; 0 = what the server allows."""
+    """Most points; 0 = the server's limit."""
     adapt: bool = True
-    """Whether fewer are shown where the browser is slow."""
+    """Whether a slow browser gets fewer points."""
     measurements: tuple[tuple[Position, ...], ...] = ()
     """One point each, or two, in the map [m]."""
 
@@ -81,14 +82,14 @@ class ViewState:
         return Range(*self.ranges[color_by]) if color_by in self.ranges else None
 
     def to_json(self) -> str:
-        """As text."""
+        """The view as JSON text."""
         return json.dumps(asdict(self))
 
 
 def view_from_json(text: str | None) -> ViewState | None:
     """The view a browser kept; None if there is none or it is not one of ours.
 
-    The text comes from outside: whatever does not fit is as good as nothing.
+    The text is untrusted: a malformed one counts as none.
     """
     try:
         record = json.loads(text or "")
@@ -100,7 +101,7 @@ def view_from_json(text: str | None) -> ViewState | None:
 def _view(record: dict[str, Any]) -> ViewState:
     return ViewState(
         color_by=_one_of(record["color_by"], COLOR_BY),
-        palette=_one_of(record["palette"], get_args(Palette)),
+        palette=_one_of(PALETTES.get(record["palette"], record["palette"]), get_args(Palette)),
         ranges={
             _one_of(name, COLOR_BY): (_number(low), _number(high))
             for name, (low, high) in record["ranges"].items()

@@ -1,4 +1,4 @@
-"""Brings the parts of the map that a camera needs to one screen, coarse ones first."""
+"""Sends the parts of the map that a camera needs to one screen, coarse ones first."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from app.viewer.cloud.parts import Cloud
 from app.viewer.scene.nodes import PointsNode
 
 BATCH_POINTS = 60_000
-"""So many are sent before looking whether the camera has moved on."""
+"""Points sent before checking whether the camera has moved."""
 COLOR_BATCH_POINTS = 400_000
 """The same where only colors are sent."""
 MOST_BEHIND = 2
@@ -41,16 +41,16 @@ class Detail:
         Args:
             screen: Where to draw.
             newer: Whether something newer is wanted.
-            over: Waits so many seconds; whether the person has left.
+            over: Waits for the given seconds; whether the client has left.
         """
         self._screen = screen
         self._newer, self._over = newer, over
         self._cloud: Cloud | None = None
         self.points = 0
-        """On screen, or on their way."""
+        """Points on screen, or being sent."""
 
     def refine(self, cloud: Cloud | None, view: ViewState, span: Range, *, budget: int) -> bool:
-        """Send what is missing; whether all of it was (not if something newer came up)."""
+        """Send the missing parts; whether all were sent (not if a newer request came)."""
         if cloud is not self._cloud:
             self._screen.forget_map()
             self._cloud, self.points = cloud, 0

@@ -15,15 +15,15 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import Array
 
 STRATA = 64
-"""So many samples of itself a tile of the map lies in (`recon4.mapping.tile`)."""
+"""Number of interleaved samples in which a tile of the map is stored (`recon4.mapping.tile`)."""
 STRATA_ENDS = (1, 2, 4, *range(8, STRATA + 1, 4))
-"""A chunk ends after so many of them; the larger ones stay below a 16th of the tile."""
+"""Sample counts at which chunks end; the larger ones stay below a 16th of the tile."""
 NEAREST_M = 0.5
 """A tile the camera is in is taken to be this far away [m]."""
 FINE_PX = 1.0
 """Points nearer to each other on screen than this need no more between them."""
 EDGE_WEIGHT = 0.4
-"""Detail at the rim of the picture, as a share of that in its middle."""
+"""Detail at the edge of the view, relative to that in its center."""
 
 Chunk = tuple[int, int]
 """Row of the tile, number of the chunk."""
@@ -46,7 +46,7 @@ class Rows:
 
 
 def base_step(points: int, most: int) -> int:
-    """Power of two such that every so-manieth point of the map makes at most ``most``."""
+    """Power of two ``n`` such that every n-th point of the map is at most ``most`` points."""
     step = 1
     while points > most * step:
         step *= 2
@@ -81,7 +81,7 @@ def chunks_of(count: int, step: int) -> tuple[Rows, ...]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Camera:
-    """Where one looks from."""
+    """A camera: pose and field of view."""
 
     position_m: Array
     """(3,)"""
@@ -94,7 +94,7 @@ class Camera:
 
     @property
     def aspect(self) -> float:
-        """Width by height of the picture."""
+        """Width by height of the image."""
         return self.width_px / max(self.height_px, 1)
 
     @property
@@ -175,7 +175,7 @@ def _distances_m(boxes: TileBoxes, camera: Camera) -> Array:
 
 
 def _weights(boxes: TileBoxes, camera: Camera) -> Array:
-    """1 for tiles in the middle of the picture, less towards its rim, (T,)."""
+    """1 for tiles in the center of the view, less towards its edge, (T,)."""
     to_middle = (boxes.low_m + boxes.high_m) / 2.0 - camera.position_m
     length = np.maximum(np.linalg.norm(to_middle, axis=1), 1e-9)
     ahead = to_middle @ camera.R_map_camera[:, 2] / length
@@ -184,6 +184,6 @@ def _weights(boxes: TileBoxes, camera: Camera) -> Array:
 
 
 def _spacing_px(boxes: TileBoxes, tile: int, chunks: int, scale_px: float) -> float:
-    """Distance of neighboring points on screen when so many chunks of a tile are shown."""
+    """Distance of neighboring points on screen with this number of chunks of a tile shown."""
     shown = max(int(boxes.sizes[tile][:chunks].sum()), 1)
     return float(np.sqrt(boxes.area_m2[tile] / shown) * scale_px)

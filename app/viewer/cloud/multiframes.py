@@ -19,15 +19,15 @@ from recon4.model.trajectory import Times, Trajectory
 from recon4.store.frames import FrameStore
 
 MOST_POINTS = 150_000
-"""A window of more points is thinned out."""
+"""A window with more points is thinned out."""
 SLACK_NS = 500_000_000
-"""A point may lie so far outside the trajectory in time [ns]."""
+"""Largest time of a point outside the trajectory [ns]."""
 HIGHLIGHT: Rgb = (255, 145, 0)
 """A multiframe over the map."""
 
 
 class Multiframes:
-    """The multiframes of a recording, to be looked at one by one."""
+    """The multiframes of a recording, to be shown one by one."""
 
     def __init__(self, frames: FrameStore) -> None:
         self._frames = frames
@@ -62,7 +62,7 @@ class Multiframes:
             return np.empty((0, 3))
 
     def read(self, moment: int, window_s: float, line: Trajectory) -> MultiframeWindow | None:
-        """The points of a window; None where the trajectory does not reach."""
+        """The points of a window; None outside the trajectory."""
         rows = self.window(moment, window_s)
         total = sum(len(self._frames[k]) for k in rows)
         step = max(1, -(-total // MOST_POINTS))

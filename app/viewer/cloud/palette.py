@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Rgb = tuple[int, int, int]
-Palette = Literal["viridis", "turbo", "grey"]
+Palette = Literal["viridis", "turbo", "gray"]
 
 SENSOR_COLORS: tuple[Rgb, ...] = (
     (86, 180, 233),
@@ -19,12 +19,12 @@ SENSOR_COLORS: tuple[Rgb, ...] = (
     (204, 121, 167),
     (240, 228, 66),
 )
-"""Told apart also by people who see few colors (Okabe and Ito 2008)."""
+"""Distinguishable with color vision deficiency (Okabe and Ito 2008)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Range:
-    """What the ends of a palette stand for."""
+    """Values at the ends of a palette."""
 
     low: float
     high: float
@@ -35,8 +35,7 @@ def table(palette: Palette) -> NDArray[np.uint8]:
     """256 colors, (256, 3)."""
     import matplotlib
 
-    name = "gray" if palette == "grey" else palette
-    rgba = matplotlib.colormaps[name](np.arange(256), bytes=True)
+    rgba = matplotlib.colormaps[palette](np.arange(256), bytes=True)
     return np.ascontiguousarray(rgba[:, :3])
 
 

@@ -30,9 +30,9 @@ from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import Tile, TileSet
 
 BASE_POINTS = 60_000
-"""The coarsest sample, sent first and always on screen, has at most so many."""
+"""Most points of the coarsest sample, which is sent first and always on screen."""
 PAINTED_POINTS = 6_000_000
-"""Colors of so many points are kept, for people who look at the same [3 bytes each]."""
+"""Points whose colors are cached, for clients with the same view [3 bytes each]."""
 SURFACE_M = 0.01
 """Distance of points on a surface in a map that was not thinned [m]."""
 
@@ -53,9 +53,9 @@ class CloudPart:
     """Points that are drawn together."""
 
     origin_m: Array
-    """Where its own coordinates begin in the map [m], (3,)."""
+    """Origin of its coordinates in the map [m], (3,)."""
     p_part: NDArray[np.float32]
-    """Points from there [m], (N, 3)."""
+    """Points relative to it [m], (N, 3)."""
 
     def __len__(self) -> int:
         return len(self.p_part)
@@ -89,12 +89,12 @@ class Cloud:
 
     @property
     def colors(self) -> tuple[ColorBy, ...]:
-        """What the points can be colored by."""
+        """Attributes by which the points can be colored."""
         return tuple(color for color in COLOR_BY if FIELD_OF[color] in self._columns)
 
     @cached_property
     def boxes(self) -> TileBoxes:
-        """What the choice of detail needs to know."""
+        """Input of the selection of detail."""
         tiles = self.tiles.tiles
         apart_m = float(self.tiles.facts.get("voxel_m") or SURFACE_M)
         low = np.array([tile.low_m for tile in tiles]).reshape(-1, 3)
@@ -128,7 +128,7 @@ class Cloud:
         return f"{'_'.join(map(str, self.tiles.tiles[chunk[0]].ijk))}/{chunk[1]}"
 
     def span(self, color_by: ColorBy) -> Range:
-        """What the ends of a palette stand for unless a person sets them."""
+        """Values at the ends of a palette unless a person sets them."""
         return usual_range(self._base_values(color_by))
 
     def painted(
@@ -188,7 +188,7 @@ def sensor_names(names: tuple[str, ...]) -> tuple[tuple[str, Rgb], ...]:
 
 
 class _Painted:
-    """Colors made lately, forgotten in the order of their last use."""
+    """Cache of colors; the least recently used are removed first."""
 
     def __init__(self, most: int) -> None:
         self._most = most
@@ -197,7 +197,7 @@ class _Painted:
         self._lock = threading.Lock()
 
     def get(self, key: Any, make: Any) -> NDArray[np.uint8]:
-        """The colors kept under a key, made when there are none."""
+        """The colors cached under a key, computed if missing."""
         with self._lock:
             if key in self._kept:
                 self._kept.move_to_end(key)

@@ -1,4 +1,4 @@
-"""What lies under a click: an edge of the graph, or the point of the whole map nearest to the ray.
+"""Picking: the edge of the graph, or the point of the whole map nearest to the ray of a click.
 
 Points are looked for among all of them, not among those on screen, and come back in float64.
 """
@@ -18,16 +18,16 @@ from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import Tile
 
 EDGE_PX = 7.0
-"""An edge is hit when the ray passes it so near on screen."""
+"""Largest distance on screen at which an edge is picked."""
 POINT_PX = (3.0, 12.0)
-"""A point is looked for so near to the ray, then farther off."""
+"""Search radii around the ray, tried in this order."""
 SAME_SURFACE_M = 0.05
-"""Points up to so much behind the first one hit lie on the same surface [m]."""
+"""Points up to this far behind the first hit are on the same surface [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Ray:
-    """A line of sight through a pixel."""
+    """The ray through a pixel."""
 
     origin_m: Array
     """(3,)"""
@@ -41,7 +41,7 @@ class Ray:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PickedPoint:
-    """A point of the map and all that is known of it."""
+    """A point of the map with all its attributes."""
 
     p_map: Position
     """[m]"""

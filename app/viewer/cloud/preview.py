@@ -1,7 +1,7 @@
-"""The walk in few points while there is no map: a multiframe a second, where it is believed to be.
+"""Preview of the walk while there is no map: one multiframe per second at its current pose.
 
-The points of some seconds are one node, so that a walk that grows sends its last seconds only.
-Where the poses change (a loop was closed, the walk was refined) a node is placed anew.
+The points of some seconds are one node, so that a growing walk sends only its last seconds. A node
+is placed again when its poses change (a loop closure, the refinement).
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ from recon4.geometry.se3 import Array
 from recon4.model.trajectory import Trajectory
 
 EVERY_S = 1.0
-"""A multiframe is shown of each so long [s]."""
+"""Interval of the multiframes shown [s]."""
 PIECE = 10
-"""So many of them are sent together."""
+"""Multiframes that are sent together."""
 MOST_POINTS = 150_000
-"""All of them together have at most so many points."""
+"""Most points in total."""
 MOST_OF_ONE = 2000
-"""One of them has at most so many."""
+"""Most points of one multiframe."""
 SAME_M = 0.02
-"""Poses that moved by less are still the same [m]."""
+"""Poses that moved by less count as unchanged [m]."""
 HEIGHTS = Range(-2.0, 1.0)
-"""Heights the ends of the palette stand for, above the body [m]. What is higher is left out:
-ceilings would hide the walk."""
+"""Heights above the body at the ends of the palette [m]. Higher points are left out: ceilings would
+hide the walk."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,7 +39,7 @@ class _Piece:
     rows: NDArray[np.intp]
     """Multiframes in it."""
     at: Array
-    """Where the body was at each, with its heading: what tells whether they moved, (K, 6)."""
+    """Position and heading of the body at each, to detect changed poses, (K, 6)."""
     origin_m: Array
     p_piece: NDArray[np.float32]
     """(N, 3)"""
@@ -48,7 +48,7 @@ class _Piece:
 
 
 class JobPreview:
-    """Keeps what was placed; safe to be used by several threads."""
+    """Caches the placed points; thread-safe."""
 
     def __init__(self, frames: Multiframes) -> None:
         self._frames = frames
@@ -61,7 +61,7 @@ class JobPreview:
     def nodes(self, line: Trajectory, *, palette: Palette, size_m: float) -> list[PointsNode]:
         """The points of the walk as far as a trajectory reaches, by height above the body."""
         t_ns = self._frames.t_mid_ns[self._rows]
-        # the last moments of a line that grows are still bent by what follows
+        # the end of a growing trajectory still changes
         reached = self._rows[(t_ns >= line.t_ns[0]) & (t_ns + 100_000_000 <= line.t_ns[-1])]
         with self._lock:
             return list(self._draw(reached, line, palette, size_m))

@@ -1,7 +1,7 @@
-"""What is to be seen beside the points: a project and a view in, nodes out. Knows no viser.
+"""The scene beside the points: builds nodes from a project's content and a view, without viser.
 
-Coordinates are those of the map frame. Whatever becomes float32 is first moved to the origin of
-its node, which stays float64: far from zero float32 steps by centimetres.
+Coordinates are in the map frame. Before conversion to float32 they are made relative to the origin
+of their node, which stays float64: far from zero the step of float32 is centimeters.
 
 Long lines are cut into pieces, so that a walk that grows resends its last piece only.
 """
@@ -38,7 +38,7 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.model.trajectory import Times, Trajectory
 
 CLOSED_M = 2.0
-"""Start and end nearer than this share a label [m]."""
+"""Start and end nearer than this have one label [m]."""
 MOST_FRAMES = 1000
 """More body frames than this are thinned out."""
 MOST_POSES = 20_000
@@ -54,14 +54,14 @@ CHI2_RANGE = Range(0.0, 20.0)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GnssMarks:
-    """Where a receiver said the antenna was: edges from the walk to a position on earth."""
+    """GNSS fixes and their residuals to the trajectory."""
 
     t_ns: Times
     """(M,)"""
     p_map: Array
-    """As the receiver said [m], (M, 3)."""
+    """Antenna position of the fix [m], (M, 3)."""
     p_antenna: Array
-    """As the walk has it at that time [m], (M, 3)."""
+    """Antenna position of the trajectory at that time [m], (M, 3)."""
     used: NDArray[np.bool_]
     """False = rejected as an outlier, (M,)."""
 
@@ -79,7 +79,7 @@ class Content:
 
     cloud: Cloud | None = None
     trajectory: Trajectory | None = None
-    """``T_map_body`` of the last finished stage, or as far as the running one has come."""
+    """``T_map_body`` of the last finished stage, or of the running one so far."""
     odometry: Trajectory | None = None
     """``T_odom_body``, before the graph."""
     edges: EdgeTable | None = None
@@ -90,16 +90,16 @@ class Content:
     """Names of the LiDARs."""
     gnss: GnssMarks | None = None
     crs: str = ""
-    """Name of the CRS the map lies in; empty = nowhere on earth."""
+    """Name of the CRS of the map; empty = not georeferenced."""
 
     @property
     def colors(self) -> tuple[ColorBy, ...]:
-        """What the points can be colored by."""
+        """Attributes by which the points can be colored."""
         return self.cloud.colors if self.cloud else ()
 
     @property
     def layers(self) -> tuple[Layer, ...]:
-        """What can be switched on and off."""
+        """Layers that can be switched on and off."""
         own = [
             (FINAL, self.trajectory is not None),
             (ODOMETRY, self.odometry is not None),
@@ -131,7 +131,7 @@ class Bounds:
 
 
 def describe(content: Content, view: ViewState) -> list[Node]:
-    """List what is on screen. A layer that is off is there and invisible: showing it is instant."""
+    """List the nodes on screen. A hidden layer is sent but invisible: showing it is instant."""
     box = bounds(content)
     nodes: list[Node] = []
     for layer, line in ((FINAL, content.trajectory), (ODOMETRY, content.odometry)):
@@ -152,7 +152,7 @@ def describe(content: Content, view: ViewState) -> list[Node]:
 def bounds(content: Content) -> Bounds:
     """The box around nearly all points and the trajectory; a room's when there is neither.
 
-    A hundredth of the points may lie outside: what was seen far away through doors and panes.
+    1 % of the points may be outside: measured far away through openings and windows.
     """
     corners: list[Array] = []
     if content.cloud is not None and len(content.cloud.base):
@@ -169,7 +169,7 @@ def bounds(content: Content) -> Bounds:
 
 
 def grid_cell_m(box: Bounds) -> float:
-    """A round length that divides the picture into 10 to 50 cells [m]."""
+    """A round length that divides the view into 10 to 50 cells [m]."""
     for cell_m in (1.0, 5.0, 10.0, 50.0):
         if box.size_m <= 50.0 * cell_m:
             return cell_m
@@ -240,11 +240,11 @@ def _edges(table: EdgeTable, view: ViewState) -> Iterator[LinesNode]:
 def _edge_colors(
     table: EdgeTable, rows: NDArray[np.intp], layer: Layer, view: ViewState
 ) -> NDArray[np.uint8] | None:
-    """Colors by a figure, grey where it is not known; None = the layer's own."""
+    """Colors by a value, gray where it is not known; None = the layer's own."""
     if view.edge_color == "verdict":
         return None
     by_error = view.edge_color == "error / limit"
-    values = (table.error_share if by_error else table.chi2)[rows]
+    values = (table.error_ratio if by_error else table.chi2)[rows]
     rgb = paint(values, ERROR_RANGE if by_error else CHI2_RANGE, "turbo")
     rgb[~np.isfinite(values)] = 110
     return rgb
@@ -257,7 +257,7 @@ def _frames(table: EdgeTable, view: ViewState) -> AxesNode:
 
 
 def _lidars(multiframes: Multiframes, line: Trajectory, view: ViewState) -> Iterator[Node]:
-    """Axes of each LiDAR, and of the body, where they were at the multiframe under the scrubber."""
+    """Axes of each LiDAR, and of the body, at the selected multiframe."""
     T_map_body = multiframes.pose(view.moment, line)
     if T_map_body is None:
         return
@@ -341,11 +341,11 @@ def _measurements(view: ViewState) -> Iterator[Node]:
             width_px=2.5,
             visible=True,
         )
-        yield _label(measured_words(number, points), p.mean(axis=0), True, key=f"m{number}")
+        yield _label(measurement_label(number, points), p.mean(axis=0), True, key=f"m{number}")
 
 
-def measured_words(number: int, points: tuple[Position, ...]) -> str:
-    """What a label says of a measurement."""
+def measurement_label(number: int, points: tuple[Position, ...]) -> str:
+    """Label of a measurement."""
     if len(points) == 1:
         x, y, z = points[0]
         return f"{number}: {x:.3f} {y:.3f} {z:.3f}"

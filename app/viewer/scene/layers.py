@@ -1,4 +1,4 @@
-"""What can be switched on and off in the viewer, and how the edges are sorted into it."""
+"""Layers of the viewer, and the assignment of edges to them."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
 
 @dataclass(frozen=True, slots=True)
 class Layer:
-    """A group of things that is shown or not."""
+    """A group of objects that is shown or hidden."""
 
     key: str
-    """Fit for a path of the scene."""
+    """Key, also part of a path in the scene."""
     words: str
     rgb: Rgb
     shown: bool = True
-    """Whether it is on at first."""
+    """Whether it is shown by default."""
     count: int = 0
-    """Things in it; 0 = not counted."""
+    """Number of objects; 0 = not counted."""
     width_px: float = 1.5
 
 
-KIND_WORDS = {
+KIND_LABELS = {
     EdgeKind.ODOMETRY: "odometry",
     EdgeKind.NEIGHBOR: "neighbor",
     EdgeKind.LOOP: "loop",
@@ -49,10 +49,10 @@ DECIDED_COLORS: dict[Verdict, Rgb] = {
     Verdict.UNVERIFIED: (206, 147, 216),
     Verdict.REJECTED: (255, 112, 190),
 }
-"""What a person decided."""
+"""Colors of edges that a person decided."""
 
 HIDDEN_AT_FIRST = {Reason.OVERLAP}
-"""Pairs that never overlapped are many and say little."""
+"""Candidates without overlap are many and not informative."""
 
 FINAL = Layer("trajectory", "Trajectory", (255, 179, 0))
 ODOMETRY = Layer("odometry", "Trajectory before the graph", (128, 110, 200), shown=False)
@@ -69,7 +69,7 @@ ORDER = {"decided": 0, "accepted": 1, "unverified": 2, "rejected": 3}
 
 def edge_layer(edge: Edge) -> Layer:
     """The layer an edge belongs to."""
-    kind = KIND_WORDS[edge.kind]
+    kind = KIND_LABELS[edge.kind]
     if edge.decided_by != "auto":
         verdict = "rejected" if edge.verdict is Verdict.REJECTED else "accepted"
         words = f"Operator's decisions, {verdict}"
@@ -89,7 +89,7 @@ def edge_layer(edge: Edge) -> Layer:
 
 
 def edge_layers(edges: Sequence[Edge]) -> tuple[Layer, ...]:
-    """The layers of all edges with their counts: a person's, accepted, unverified, rejected."""
+    """The layers of all edges with counts: decided by a person, accepted, unverified, rejected."""
     counts = Counter(edge_layer(edge) for edge in edges)
     rows = [replace(layer, count=count) for layer, count in counts.items()]
     return tuple(sorted(rows, key=lambda row: (ORDER[row.key.split("/")[0]], row.key)))
@@ -105,8 +105,8 @@ class EdgeTable:
     """Row in `layers` of each edge, (E,)."""
     ends: NDArray[np.intp]
     """Its nodes, (E, 2)."""
-    error_share: Array
-    """Error by its limit; NaN = not known, (E,)."""
+    error_ratio: Array
+    """Error divided by its limit; NaN = not known, (E,)."""
     chi2: Array
     """(E,)"""
 

@@ -1,6 +1,6 @@
-"""What a running job has found so far: a fold over the lines its worker writes.
+"""Trajectory and graph of a running job: a fold over the events its worker writes.
 
-A stage that is finished leaves an artifact, which then takes the place of all of this.
+A finished stage leaves an artifact, which then replaces this state.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
 from recon4.model.trajectory import Trajectory
 
 SILENT_S = 30.0
-"""A job whose worker has not stirred for so long is not followed [s]."""
+"""A job without a heartbeat for this long is not followed [s]."""
 
 ODOMETRY_EDGE = {"edge_kind": "odometry", "verdict": "accepted", "reason": ""}
-"""Nodes that follow each other always have one; nobody tells of it."""
+"""Consecutive nodes always have an odometry edge; there is no event for it."""
 
 Pair = tuple[int, int, str]
 
 
 class LiveGraph:
-    """The state of one run, fed with its events."""
+    """The state of one run, updated with its events."""
 
     def __init__(self) -> None:
         self._clear()
@@ -42,7 +42,7 @@ class LiveGraph:
         self._edges: dict[Pair, Edge] = {}
 
     def take(self, event: dict[str, Any]) -> None:
-        """Add one event; what is of no use here, or malformed, changes nothing."""
+        """Apply one event; unused or malformed events change nothing."""
         with contextlib.suppress(KeyError, ValueError, TypeError):
             self._take(event)
 
@@ -86,7 +86,7 @@ class LiveGraph:
 
     @property
     def trajectory(self) -> Trajectory | None:
-        """``T_odom_body`` as far as odometry has come."""
+        """``T_odom_body`` of the odometry so far."""
         if len(self._poses) < 2:
             return None
         t_ns = np.array([row[0] for row in self._poses], dtype=np.int64)
@@ -98,7 +98,7 @@ class LiveGraph:
 
     @property
     def graph(self) -> PoseGraph | None:
-        """Nodes where they are believed to be by now (without their rotations), and all edges."""
+        """Current positions of the nodes (without rotations), and all edges."""
         n = min(len(self._nodes_m), len(self._nodes_ns))
         if n == 0:
             return None
@@ -119,7 +119,7 @@ class JobWatch:
         self.live = LiveGraph()
 
     def changed(self) -> bool:
-        """Read on; whether there was anything new."""
+        """Read the new events; whether there were any."""
         job = self._running()
         path, _ = self._followed
         if job != path:

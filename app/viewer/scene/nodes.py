@@ -1,4 +1,4 @@
-"""What can be on screen, as plain records; `show` draws them."""
+"""Nodes of the scene as plain records; `show` draws them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from recon4.geometry.se3 import Array
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Node:
-    """Something on screen."""
+    """An object on screen."""
 
     path: str
     position_m: Array
@@ -66,7 +66,7 @@ class GridNode(Node):
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class LabelNode(Node):
-    """A word in space."""
+    """A text label in space."""
 
     text: str
 

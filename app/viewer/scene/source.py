@@ -1,4 +1,4 @@
-"""Reads what a project has to show: its finished artifacts, and what its running job finds."""
+"""Reads the content of a project: its finished artifacts, and the events of its running job."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ log = logging.getLogger(__name__)
 
 TRAJECTORY_STAGES = ("level", "refine", "carried")
 GRAPH_STAGES = ("level", "review", "verification", "graph")
-"""Stages that leave them, the last one first."""
-AFRESH = {"frames": (), "odometry": ("frames",), "graph": ("frames", "odometry")}
-"""While one of these runs, only those before it are shown: the others are of an earlier run."""
+"""Stages with these artifacts, the last one first."""
+SHOWN_WHILE_RUNNING = {"frames": (), "odometry": ("frames",), "graph": ("frames", "odometry")}
+"""Running stage -> stages that are shown; the other artifacts are of an earlier run."""
 
 
 class ProjectSource:
-    """The newest of a project; one thread looks for changes, many use what there is."""
+    """The newest content of a project; one thread checks for changes, many read it."""
 
     def __init__(self, project: Path, jobs: Path) -> None:
         self._project = project
@@ -47,14 +47,14 @@ class ProjectSource:
         self.changed()
 
     def changed(self) -> bool:
-        """Look again; whether there is anything new."""
+        """Check for changes; whether there are any."""
         news = self._watch.changed()
         try:
             found = read_artifacts(self._project)
         except Recon4Error as error:
             log.warning("%s", error)
             found = self._artifacts
-        shown = AFRESH.get(self._watch.live.stage)
+        shown = SHOWN_WHILE_RUNNING.get(self._watch.live.stage)
         if shown is not None:
             found = {stage: path for stage, path in found.items() if stage in shown}
         if found == self._artifacts and not news:
@@ -64,7 +64,7 @@ class ProjectSource:
         return True
 
     def crs_coordinates(self, p_map: Array) -> tuple[str, Array] | None:
-        """Name of the CRS and coordinates of points (N, 3) in it; None = nowhere on earth."""
+        """Name of the CRS and coordinates of points (N, 3) in it; None = not georeferenced."""
         if not self.content.crs:
             return None
         from recon4.georeference.stage import read_crs  # brings pyproj and much of scipy
@@ -94,7 +94,7 @@ class ProjectSource:
         )
 
     def _once(self, name: str, folder: Path, make: Any) -> Any:
-        """What is made of an artifact, made once; artifacts never change."""
+        """The object made from an artifact, cached; artifacts never change."""
         key = (name, folder)
         with self._lock:
             if key not in self._made:
@@ -164,7 +164,7 @@ class ProjectSource:
         return self._of_stage("level", read) or {}
 
     def _gnss(self, record: dict[str, Any], line: Trajectory | None) -> GnssMarks | None:
-        """Positions of the antenna as the receiver gave them: solved ones and their residuals."""
+        """GNSS fixes: antenna positions of the trajectory plus the residuals."""
         fixes = record.get("georeference") or {}
         frames = self._artifacts.get("frames")
         if line is None or frames is None or not fixes.get("georeferenced"):

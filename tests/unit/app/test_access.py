@@ -424,6 +424,6 @@ def test_a_certificate_and_a_key_that_do_not_fit_are_refused(tmp_path):
     assert own_certificate(one.chain, one.key).own
 
 
-def test_who_is_not_there_is_told(access):
+def test_a_missing_account_is_reported(access):
     with pytest.raises(NotFound, match="no account is named"):
         access.accounts.get("Anna")

@@ -129,7 +129,7 @@ def test_tokens_cannot_be_guessed_by_trying(pairings):
     token = pairings.invite(OTTO, Role.VIEWER)
     for _ in range(TRIES_A_MINUTE):
         with pytest.raises(Refused):
-            pairings.redeem("guess", "192.0.2.66")
+            pairings.redeem("attempt", "192.0.2.66")
 
     with pytest.raises(TooMany):
         pairings.redeem(token, "192.0.2.66")

@@ -21,7 +21,7 @@ from app.viewer.scene.build import (
     bounds,
     describe,
     grid_cell_m,
-    measured_words,
+    measurement_label,
 )
 from app.viewer.scene.layers import EdgeTable, edge_layer, edge_layers
 from app.viewer.scene.nodes import LinesNode
@@ -55,7 +55,7 @@ def all_on(content, **changes):
     return ViewState(chosen={layer.key: True for layer in content.layers}, **changes)
 
 
-def test_far_from_the_origin_points_keep_their_millimetres(tmp_path):
+def test_far_from_the_origin_points_keep_their_millimeters(tmp_path):
     p = np.array([[0.001, 0.002, 0.003], [9.999, 9.998, 2.0]] * 200)
     cloud = cloud_of(tmp_path / "map", p, ijk=(50_000, 540_000, 30))
 
@@ -96,14 +96,14 @@ def test_what_a_person_decided_has_a_layer_and_a_color_of_its_own(content):
     edge = content.edges.graph.edges[0]
 
     kept = edge_layer(edge.evolve(decided_by="Ada"))
-    turned_down = edge_layer(edge.evolve(decided_by="Ada", verdict=Verdict.REJECTED))
+    rejected = edge_layer(edge.evolve(decided_by="Ada", verdict=Verdict.REJECTED))
 
     others = {layer.rgb for layer in edge_layers(content.edges.graph.edges)}
-    assert kept.key == "decided/accepted" and turned_down.key == "decided/rejected"
-    assert len({kept.rgb, turned_down.rgb} - others) == 2
+    assert kept.key == "decided/accepted" and rejected.key == "decided/rejected"
+    assert len({kept.rgb, rejected.rgb} - others) == 2
 
 
-def test_edges_by_error_are_grey_where_no_error_is_known(content):
+def test_edges_by_error_are_gray_where_no_error_is_known(content):
     edges = list(content.edges.graph.edges)
     edges[0] = edges[0].evolve(error_m=0.05, limit_m=0.05)
     edges[1] = edges[1].evolve(error_m=0.0, limit_m=0.05)
@@ -158,11 +158,11 @@ def test_positions_of_a_receiver_are_edges_sorted_into_used_and_rejected():
 
 
 def test_a_position_picked_says_how_far_off_the_walk_it_is():
-    told = dict(gnss_facts(three_positions(), 1, began_ns=0).rows)
+    facts = dict(gnss_facts(three_positions(), 1, began_ns=0).rows)
 
-    assert told["Time"] == "2.0 s"
-    assert told["Verdict"].startswith("rejected")
-    assert told["Off the walk, east north up"] == "+0.000 +0.000 -0.500 m"
+    assert facts["Time"] == "2.0 s"
+    assert facts["Verdict"].startswith("rejected")
+    assert facts["Residual, east north up"] == "+0.000 +0.000 -0.500 m"
 
 
 def test_without_a_place_on_earth_there_is_no_north(content):
@@ -235,7 +235,7 @@ def test_a_distance_is_told_with_its_parts():
     assert rows == {"Distance": "13.0000 m", "Horizontal": "5.0000 m", "Vertical": "-12.0000 m"}
     assert table[1].endswith(",13.00000,5.00000,-12.00000")
     assert table[2] == "2,1.00000,2.00000,3.00000,,,,,,"
-    assert measured_words(1, points) == "1: 13.000 m"
+    assert measurement_label(1, points) == "1: 13.000 m"
 
 
 def test_the_source_notices_new_artifacts_once(tmp_path):

@@ -51,7 +51,7 @@ def loops(live):
     return [e for e in live.graph.edges if e.kind is EdgeKind.LOOP]
 
 
-def test_the_walk_grows_with_the_poses_told():
+def test_the_walk_grows_with_the_poses_reported():
     later = {**POSES, "t_ns": [300, 400]}
 
     live = fed(running("odometry"), POSES, later)
@@ -111,7 +111,7 @@ def job(tmp_path):
     writer.close()
 
 
-def told(writer, event):
+def append(writer, event):
     writer.event(event["kind"], **{k: v for k, v in event.items() if k != "kind"})
 
 
@@ -120,8 +120,8 @@ def test_the_events_of_the_projects_own_job_are_followed(tmp_path, job):
     watch = JobWatch(tmp_path / "office", tmp_path / "jobs")
     other = JobWatch(tmp_path / "street", tmp_path / "jobs")
 
-    told(writer, running("odometry"))
-    told(writer, POSES)
+    append(writer, running("odometry"))
+    append(writer, POSES)
 
     assert watch.changed() and not watch.changed()
     assert len(watch.live.trajectory) == 2
@@ -132,7 +132,7 @@ def test_the_events_of_the_projects_own_job_are_followed(tmp_path, job):
 def test_a_job_that_is_over_is_followed_no_more(tmp_path, job, how):
     folder, writer = job
     watch = JobWatch(tmp_path / "office", tmp_path / "jobs")
-    told(writer, running("odometry"))
+    append(writer, running("odometry"))
     watch.changed()
 
     if how == "outcome":
@@ -149,8 +149,8 @@ def test_while_odometry_runs_again_the_results_of_before_are_not_shown(tmp_path,
     source = ProjectSource(tmp_path / "office", tmp_path / "jobs")
     assert source.content.cloud is not None
 
-    told(job[1], running("odometry"))
-    told(job[1], POSES)
+    append(job[1], running("odometry"))
+    append(job[1], POSES)
 
     assert source.changed()
     assert source.content.cloud is None and source.content.edges is None
@@ -162,7 +162,7 @@ def test_edges_of_a_running_search_are_shown(tmp_path, job):
     source = ProjectSource(tmp_path / "office", tmp_path / "jobs")
 
     for event in (running("graph"), NODES, edge(verdict="rejected", reason="error > limit")):
-        told(job[1], event)
+        append(job[1], event)
 
     assert source.changed()
     assert "rejected/error-limit" in {layer.key for layer in source.content.edges.layers}
@@ -181,8 +181,8 @@ def test_what_real_stages_tell_makes_the_graph_they_leave(tmp_path):
     verify(searched, settings=VerificationSettings(limit_m=1e-4), progress=events)
     verified = verify(searched, settings=VerificationSettings(limit_m=1e-4)).graph
 
-    told = [{"kind": kind, **json.loads(json.dumps(facts))} for kind, facts in events.events]
-    live = fed(running("graph"), *told)
+    reported = [{"kind": kind, **json.loads(json.dumps(facts))} for kind, facts in events.events]
+    live = fed(running("graph"), *reported)
 
     assert len(live.trajectory) == 4  # every fifth pose of the first twenty
     np.testing.assert_allclose(live.graph.T_map_body.t, searched.T_map_body.t, atol=1e-3)

@@ -91,6 +91,6 @@ def test_a_project_has_a_preview_until_it_has_a_map(project, tmp_path):
     content = ProjectSource(project, tmp_path).content
 
     assert content.cloud is None
-    assert len(content.preview.nodes(content.trajectory, palette="grey", size_m=0.02)) == 6
+    assert len(content.preview.nodes(content.trajectory, palette="gray", size_m=0.02)) == 6
     build_project(project, points=100)
     assert ProjectSource(project, tmp_path).content.preview is None

@@ -1,4 +1,4 @@
-"""The view a browser keeps, and what comes back from it."""
+"""The view that a browser keeps as JSON."""
 
 import json
 
@@ -7,6 +7,7 @@ import pytest
 from app.viewer.client.view import ViewState, view_from_json
 from app.viewer.cloud.palette import Range
 from app.viewer.scene.layers import FINAL
+from recon4.store.earlier_names import PALETTES
 
 VIEW = ViewState(
     color_by="raw intensity",
@@ -24,8 +25,15 @@ VIEW = ViewState(
 )
 
 
-def test_a_view_survives_the_way_through_a_browser():
+def test_a_view_survives_a_round_trip_through_a_browser():
     assert view_from_json(VIEW.to_json()) == VIEW
+
+
+@pytest.mark.parametrize(("earlier", "palette"), PALETTES.items())
+def test_a_palette_of_an_earlier_version_is_kept(earlier, palette):
+    kept = json.dumps({**json.loads(VIEW.to_json()), "palette": earlier})
+
+    assert view_from_json(kept).palette == palette
 
 
 @pytest.mark.parametrize(
@@ -41,12 +49,12 @@ def test_a_view_survives_the_way_through_a_browser():
         {"chosen": 5},
     ],
 )
-def test_a_view_that_is_not_ours_is_as_good_as_none(changes):
+def test_a_malformed_view_is_none(changes):
     assert view_from_json(json.dumps({**json.loads(VIEW.to_json()), **changes})) is None
 
 
 @pytest.mark.parametrize("text", [None, "", "[]", "3", "{}", "[" * 100_000])
-def test_text_that_is_no_view_is_none(text):
+def test_malformed_text_is_none(text):
     assert view_from_json(text) is None
 
 
