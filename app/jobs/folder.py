@@ -30,6 +30,7 @@ import msgspec
 
 from app.jobs.model import Inputs
 from recon4.store.atomic import make_folders, write_json
+from recon4.store.atomic import sweep as sweep_unfinished
 
 KEPT_BYTES = 64 << 10
 MOST_LOG_BYTES = 256 << 10
@@ -71,6 +72,7 @@ class JobFolder:
         for path in self.path.iterdir():
             if path.is_dir() and not path.is_symlink():  # none of ours but the temporary files
                 shutil.rmtree(path)
+        sweep_unfinished(self.path)
         for name in ("pid", "heartbeat", "outcome.json"):
             (self.path / name).unlink(missing_ok=True)
         request = {"project": str(project), "inputs": asdict(inputs), "limits": asdict(limits)}
@@ -80,6 +82,7 @@ class JobFolder:
         """Remove the temporary files of a worker that has ended."""
         shutil.rmtree(self.temporary, ignore_errors=True)
         (self.path / "room").unlink(missing_ok=True)
+        sweep_unfinished(self.path)
 
     def request(self) -> tuple[Path, Inputs]:
         """Project folder and inputs."""

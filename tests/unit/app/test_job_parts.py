@@ -136,6 +136,7 @@ def test_nothing_temporary_is_left_of_a_worker_that_was_killed(tmp_path):
     folder.temporary.mkdir()
     (folder.temporary / "part").write_bytes(b"half")
     folder.keep_room()
+    (tmp_path / ".tmp-597a407518c9-request.json").write_text("{")
 
     folder.sweep()
 
