@@ -36,8 +36,8 @@ from recon4.store.seal import LOCK, OPEN, SEALS, TURN, Seal, read_seals, seals_t
 FORMAT = 1
 STATE = ".recon4"
 SECRETS = ("signing.key", "access.sqlite", "tls")
-"""Of the server's state: keys, passwords' hashes and sessions. Only taken when asked for."""
-_MADE_AGAIN = ("pictures", "slices", "viewers", "clones", "trash")
+"""Secret files of the server: keys, password hashes, sessions. Backed up only on request."""
+_DERIVED = ("thumbnails", "slices", "viewers", "clones", "trash")
 _TEMPORARY = re.compile(r"\.(tmp|slice|going)-.*|buckets-.*|\.lock|server\.lock|lock|pid|heartbeat")
 _BESIDE_SQLITE = ("-wal", "-shm", "-journal")
 _LIST = re.compile(r"\d{4}-\d{2}-\d{2}T\d{2}-\d{2}-\d{2}Z(-\d+)?\.json")
@@ -110,12 +110,12 @@ def restore(backup: Path, root: Path, *, with_keys: bool, progress: Progress) ->
         StoreError: If the backup is damaged, or the folder cannot be written.
     """
     path = newest(backup)
-    told = read_list(path)
+    listing = read_list(path)
     if root.exists() and any(root.iterdir()):
         raise ConfigError(f"{root} is not empty: a backup is restored into an empty folder")
-    if with_keys and not told["with_keys"]:
+    if with_keys and not listing["with_keys"]:
         raise ConfigError(f"{path.name} was made without keys: leave out --with-keys")
-    files = {n: e for n, e in told["files"].items() if with_keys or not _is_secret(n)}
+    files = {n: e for n, e in listing["files"].items() if with_keys or not _is_secret(n)}
     check_backup(path, progress)
     building = root.with_name(f".tmp-restore-{root.name}-{os.getpid()}")
     try:
@@ -150,17 +150,17 @@ def read_list(path: Path) -> dict[str, Any]:
     """The list of a backup.
 
     Raises:
-        StoreError: If it is damaged or of another version, or a name in it leads elsewhere.
+        StoreError: If it is damaged, has another format, or a name leads outside the backup.
     """
-    told = read_object(path, most_bytes=1 << 30)
-    body = {name: value for name, value in told.items() if name != "sha256"}
-    if told.get("format") != FORMAT or told.get("sha256") != hash_json(body):
-        raise StoreError(f"{path} is not the list of a backup, or was changed")
-    for name in told["files"]:
+    listing = read_object(path, most_bytes=1 << 30)
+    body = {name: value for name, value in listing.items() if name != "sha256"}
+    if listing.get("format") != FORMAT or listing.get("sha256") != hash_json(body):
+        raise StoreError(f"{path} is not the listing of a backup, or was changed")
+    for name in listing["files"]:
         parts = PurePosixPath(name).parts
         if name.startswith("/") or ".." in parts or not parts:
-            raise StoreError(f"{path}: the name {name[:100]!r} leads elsewhere")
-    return told
+            raise StoreError(f"{path}: the name {name[:100]!r} leads outside the backup")
+    return listing
 
 
 def check_backup(path: Path, progress: Progress) -> None:
@@ -201,7 +201,7 @@ def _names(root: Path, *, with_keys: bool) -> Iterator[str]:
 
 
 def _again(place: Path, folder: str) -> bool:
-    return place == Path(STATE) and folder in _MADE_AGAIN
+    return place == Path(STATE) and folder in _DERIVED
 
 
 def _is_beside(name: str) -> bool:

@@ -85,7 +85,7 @@ def process(
 
 
 def remake(out: Path, *, progress: Progress | None = None) -> Summary:
-    """Make the map of a project anew with the decisions of people that stand now.
+    """Make the map of a project again with the current decisions.
 
     The stages before them are kept as they are, so no recording is needed; the others run with the
     settings the map was made with.

@@ -10,7 +10,7 @@ Item = TypeVar("Item")
 
 
 class Progress(Protocol):
-    """What a stage tells whoever watches; a stage calls it often and cheaply."""
+    """Receives the progress of a stage; must be cheap, because stages call it often."""
 
     def start(self, what: str, total: int, unit: str) -> None:
         """Begin a piece of work of ``total`` units (0 = unknown)."""

@@ -56,7 +56,7 @@ class About:
 
 
 FORMAT = 2
-"""Of ``summary.json``; 2 renamed ``way_m`` to ``path_length_m`` and the settings of ``share``."""
+"""Format of ``summary.json``; 2 introduced ``path_length_m`` and ratios in the settings."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,7 +76,7 @@ class Summary:
     duration_s: float
     """Time covered by the trajectory [s]."""
     path_length_m: float
-    """Length of the way, in steps of half a second [m]."""
+    """Path length, in steps of half a second [m]."""
     multiframes: int
     lost: int
     """Multiframes the odometry could not place."""

@@ -45,7 +45,7 @@ class StopSignals:
 
     def __enter__(self) -> Self:
         if threading.current_thread() is not threading.main_thread():
-            return self  # signals go to the main thread, whoever runs there handles them
+            return self  # signals go to the main thread, whose code handles them
         for number in SIGNALS:
             if signal.getsignal(number) is not signal.SIG_IGN:  # nohup, jobs in the background
                 self._before[number] = signal.signal(number, self._stop)

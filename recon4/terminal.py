@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from rich.progress import ProgressColumn, Task, TaskID
 
 _LINE_EVERY_S = 5.0
-_TOLD = {
+_EVENTS = {
     "damaged": "an artifact was damaged and is made again",
     "warning": "warning",
     "repair": "repaired",
@@ -164,10 +164,10 @@ def describe_event(kind: str, facts: dict[str, object]) -> str:
     """A line for a person, or nothing if the event is none of his business just now."""
     if kind == "stage":
         return _describe_stage(facts)
-    if kind not in _TOLD:
+    if kind not in _EVENTS:
         return ""
     text = [str(v) if name == "text" else f"{name} {v}" for name, v in facts.items()]
-    return f"{_TOLD[kind]}: " + ", ".join(text)
+    return f"{_EVENTS[kind]}: " + ", ".join(text)
 
 
 def describe_summary(summary: Mapping[str, Any], folder: Path) -> str:

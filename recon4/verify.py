@@ -34,7 +34,7 @@ STATE_FILES = (
     "uploads",
     "backups",
 )
-"""What of the server's state is sealed when it ends; pictures and logs are made again."""
+"""Files of the server's state that are sealed when it ends; thumbnails and logs are not."""
 MOST_STATE_BYTES = 64 << 20
 """Larger files of the state are parts of uploads: the sender's checksum covers those."""
 _UNREADABLE = (Recon4Error, ValueError, KeyError, TypeError, AttributeError, OverflowError)

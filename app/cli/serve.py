@@ -30,7 +30,7 @@ def serve(  # noqa: PLR0913 - what a server can be started with
     tls_cert: Annotated[Path | None, typer.Option(help="Your certificate chain, PEM.")] = None,
     tls_key: Annotated[Path | None, typer.Option(help="Its key, PEM.")] = None,
     points: Annotated[
-        int, typer.Option(min=50_000, help="At most so many points of a map to one browser.")
+        int, typer.Option(min=50_000, help="Largest number of map points sent to one browser.")
     ] = 3_000_000,
     live_address: Annotated[
         str, typer.Option(help="Network card the sensors of a live capture send to; all.")

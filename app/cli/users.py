@@ -84,7 +84,7 @@ def password(name: NameArgument, root: RootOption = Path()) -> None:
 @users.command()
 def audit(
     root: RootOption = Path(),
-    last: Annotated[int, typer.Option(min=1, help="Show so many entries.")] = 50,
+    last: Annotated[int, typer.Option(min=1, help="Number of entries to show.")] = 50,
 ) -> None:
     """Show the audit log and check its chain of hashes; exit code 1 if it was tampered with."""
     with _access(root) as access:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(
     name="recon4",
-    help="From the recording of a LiDAR backpack to a verified, levelled, georeferenced map.",
+    help="From the recording of a LiDAR backpack to a verified, leveled, georeferenced map.",
     invoke_without_command=True,
     add_completion=False,
     pretty_exceptions_enable=False,

@@ -30,8 +30,8 @@ def cut_map(  # noqa: PLR0913 - options of a command
     line: Annotated[str, typer.Option(help="Vertical, through two points: X1,Y1,X2,Y2 in m.")] = "",
     plane: Annotated[str, typer.Option(help="Free: X,Y,Z,NX,NY,NZ (point and normal).")] = "",
     thickness: Annotated[float, typer.Option(help="Thickness in m.")] = 0.10,
-    count: Annotated[int, typer.Option(help="So many slices behind each other.")] = 1,
-    spacing: Annotated[float, typer.Option(help="Between repeated slices, in m.")] = 0.5,
+    count: Annotated[int, typer.Option(help="Number of slices, one behind the other.")] = 1,
+    spacing: Annotated[float, typer.Option(help="Distance between repeated slices, in m.")] = 0.5,
     color: Annotated[
         str, typer.Option(help="height, intensity, normalized, time or sensor.")
     ] = "height",
@@ -123,11 +123,11 @@ def _write(
     if ending not in {".png", ".svg", ".pdf", ".tif"}:
         raise ConfigError(f"a slice is written as png svg pdf tif dxf laz csv, got {file.name}")
     if len(cuts) > 1:
-        raise ConfigError("a picture holds one slice; take .dxf, .laz or .csv for several")
-    return _write_picture(tiles, cuts[0], file, frame, about=about)
+        raise ConfigError("an image has one slice; use .dxf, .laz or .csv for several")
+    return _write_image(tiles, cuts[0], file, frame, about=about)
 
 
-def _write_picture(
+def _write_image(
     tiles: TileSet, cut: Cut, file: Path, frame: MapFrame, *, about: dict[str, Any]
 ) -> int:
     from recon4.slices.colors import LABELS

@@ -112,7 +112,7 @@ def _header(tiles: TileSet, offset: NDArray[np.float64], crs: str | None) -> Any
     header.scales, header.offsets = np.full(3, SCALE_M), offset
     header.generating_software = f"recon4 {recon4.__version__}"
     header.system_identifier = "MERGE"
-    # The same map gives the same bytes: neither the day nor the name is drawn anew.
+    # The same map gives the same bytes: no random UUID and no date of the day.
     header.uuid = uuid.UUID(int=0)
     first_ns = int(tiles.facts["time_ns"][0])
     header.creation_date = day_of(max(first_ns, 0))

@@ -13,7 +13,7 @@ _UNWRITTEN = {
     ".compressed.ply": "a compressed splat",
     ".cog.tif": "a cloud optimized GeoTIFF",
 }
-"""Endings of formats that share their last part with one that recon4 writes."""
+"""Suffixes of formats whose last part equals that of a format recon4 writes."""
 
 
 def check_name(path: Path, ending: str) -> None:

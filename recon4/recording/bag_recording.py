@@ -30,7 +30,7 @@ from recon4.settings import IngestSettings
 Item = Shots | ImuSamples | GnssSamples | Trajectory
 
 _BATCH = 500
-"""Samples of the IMU are handed on so many at a time."""
+"""Number of IMU samples delivered at a time."""
 _PERIOD_NS = 100_000_000
 _PROBED_MESSAGES = 50
 """Messages of a topic that are tried to find out what it is."""

@@ -25,7 +25,7 @@ _BANDS = 64
 _ABSOLUTE = ((1e17, 1.0), (1e14, 1e3), (1e11, 1e6), (1e8, 1e9))
 """From this value on a time is absolute; nanoseconds of one unit."""
 _FLOAT_UNITS = ((2.0, 1e9), (2e3, 1e6), (2e6, 1e3), (2e9, 1.0))
-"""Up to this span a fractional time is in units of so many nanoseconds."""
+"""Largest span -> unit of a fractional time [ns]."""
 _OTHER_CLOCK_NS = 10_000_000_000
 _TURN_S = (0.01, 0.6)
 """A full revolution takes between these [s]: tells the unit of whole-number times."""
@@ -54,7 +54,7 @@ class CloudDecoder:
             sensor_row: Row in ``Rig.sensors``.
             name: What the sensor is called in the report.
             model: Its model, for rings that are not given.
-            report: Told what was worked out.
+            report: Receives what was detected.
             points_lead: Absolute times of points count, however far they are from the stamps
                 (file names in local time); otherwise the stamps do (one clock for a whole bag).
         """
@@ -269,7 +269,7 @@ def _relative_unit(dtype: np.dtype[Any], span: float, full_turn: bool) -> float:
 
 
 def _turn_from_order(azimuth: NDArray[np.floating]) -> tuple[NDArray[np.float64], str]:
-    """Share of the revolution at which each point was measured, 0..1, and how it was found."""
+    """Part of the revolution at which each point was measured, 0..1, and how it was detected."""
     swept = np.unwrap(azimuth.astype(np.float64))
     total = float(swept[-1] - swept[0])
     if np.deg2rad(270.0) < abs(total) < np.deg2rad(450.0):

@@ -153,7 +153,7 @@ def _multiframe(shots: Shots, frame_id: int, start_ns: int, period_ns: int) -> M
 
 def _cloud_files(folder: Path) -> list[Path]:
     found = [f for f in folder.iterdir() if f.suffix.lower() in CLOUD_SUFFIXES and f.is_file()]
-    # A damaged file among good ones must be counted, not overlooked: only BIN is told by content.
+    # A damaged file among good ones must be counted: only BIN is detected by content.
     return [f for f in found if f.suffix.lower() != ".bin" or is_cloud_file(f)]
 
 

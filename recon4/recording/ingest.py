@@ -108,9 +108,9 @@ def ingest(
         rig: Sensors and mountings; None = chosen from what is in the recording, and said.
         imu: IMU samples that replace the recording's.
         gnss: GNSS samples that replace the recording's.
-        settings: How to read.
-        progress: Told of multiframes written, gaps and warnings.
-        live: A capture that still goes on.
+        settings: Settings of the reader.
+        progress: Receives multiframes written, gaps and warnings.
+        live: A running capture; None = a finished recording.
 
     Raises:
         RecordingError: If the recording cannot be read or has no points.
@@ -199,7 +199,7 @@ def _imu(
     rig, span, jumps = about
     samples = join(given.imu or found.imu)
     if samples is None:
-        report.warn("no IMU: motion inside a frame is guessed from the points alone")
+        report.warn("no IMU: motion within a frame is estimated from the points alone")
         return None
     if given.imu and found.imu:
         report.derive("IMU samples are those of the CSV file, not the recording's")

@@ -73,18 +73,18 @@ class Recording:
     read: Callable[[], Iterator[Item]]
     """Shots are still to be assembled; multiframes are whole frames of files."""
     seconds: float = 0.0
-    """How long it is, roughly [s]; 0 = unknown."""
+    """Approximate duration [s]; 0 = unknown."""
     gaps: tuple[TimeGap, ...] = ()
-    """Those known before reading."""
+    """Gaps known before reading."""
     wait_s: float = LONGEST_WAIT_S
-    """How far one sensor's shots may come ahead of another's [s], see `Assembler`."""
+    """Largest lead of one sensor's shots over another's [s], see `Assembler`."""
 
 
 def recognize(path: Path) -> RecordingKind:
-    """Guess what a path is.
+    """Detect the kind of recording at a path.
 
     Raises:
-        UnknownFormat: If no reader knows it; the message lists the known kinds.
+        UnknownFormat: If no reader supports it; the message lists the supported kinds.
         EmptyRecording: If the file or folder is empty.
         RecordingError: If there is no such path.
     """
@@ -104,14 +104,14 @@ def open_recording(
     report: ImportReport,
     open_file: OpenFile = open_plain,
 ) -> Recording:
-    """Look at the head of a recording and settle its rig.
+    """Read the head of a recording and choose its rig.
 
     Args:
         paths: One recording, or several files of one kind that belong together.
         rig: The rig; None = chosen from what is in the recording.
-        settings: How to read.
-        report: Told what was found and worked out.
-        open_file: How to open capture files; that of a live capture still grows.
+        settings: Settings of the reader.
+        report: Receives what was found and detected.
+        open_file: Opens capture files; a live capture uses a tail file.
 
     Raises:
         RecordingError: If it cannot be read.

@@ -36,7 +36,7 @@ def allowed_environment(variables: Mapping[str, str]) -> dict[str, str]:
 def restart_with_one_thread() -> None:
     """Start this program again with one thread a library, if libraries started threads already.
 
-    `confine` must come before other threads; whoever starts us by hand need not know that.
+    `confine` must come before other threads; a process started by hand need not care.
     """
     if threads_of_this_process() > 1 and not ONE_THREAD.items() <= os.environ.items():
         os.environ |= ONE_THREAD

@@ -18,15 +18,15 @@ from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 
 _HEAD_NS = 1_000_000_000
-"""So much of every sensor is looked at before the first cut."""
+"""Data of every sensor inspected before the first cut [ns]."""
 _SLACK_NS = 20_000_000
-"""A sensor has passed a time once it is so far beyond: messages of one sensor may overlap."""
+"""Margin after which a sensor has passed a time, because messages of one sensor may overlap."""
 _CLOCKS_NS = 10_000_000_000
-_KEPT_SHARE = 0.2
-"""A first or last revolution with fewer than this share of the usual points is left out."""
+_KEPT_RATIO = 0.2
+"""A first or last revolution below this ratio of the usual number of points is left out."""
 _FALLBACK_HZ = 10.0
 LONGEST_WAIT_S = 10.0
-"""Readers may hand on several seconds of one sensor at a time."""
+"""Readers may deliver several seconds of one sensor at a time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,10 +55,10 @@ class _Stream:
 
 
 class Assembler:
-    """Takes shots, gives multiframes, each as soon as all sensors have passed its end.
+    """Assembles shots into multiframes, each as soon as all sensors have passed its end.
 
-    Times that go back by more than ``gap_s`` are carried on after the last good one (counted, and a
-    `TimeGap`); jumps forward stay and are a `TimeGap`; frames without any point are left out.
+    Times that go back by more than ``gap_s`` continue after the last good one (counted, and a
+    `TimeGap`); jumps forward stay and are a `TimeGap`; frames without points are left out.
     """
 
     def __init__(
@@ -73,13 +73,13 @@ class Assembler:
         """Start empty.
 
         Args:
-            rig: Its sensors are the rows that shots name.
-            settings: Rate, range limits and what a gap is.
-            report: Told of everything that is dropped.
-            wait_s: A sensor that is silent for so long while another delivers no longer holds the
-                frames up [s].
-            on_cut: Told of each multiframe at once: it is given out only when the next one is done,
-                as the very last may be a scrap.
+            rig: The sensors; shots refer to them by row.
+            settings: Rate, range limits and length of a gap.
+            report: Receives counts of everything dropped.
+            wait_s: A sensor that is silent for this time while another delivers no longer delays
+                the frames [s].
+            on_cut: Called with each multiframe at once; it is returned only when the next one is
+                complete, because the last one may be incomplete.
         """
         self._on_cut, self._begun = on_cut, False
         self._settings, self._report = settings, report
@@ -256,8 +256,8 @@ class Assembler:
         return self._release(before, frame) if before else []
 
     def _release(self, before: Multiframe, frame: Multiframe) -> list[Multiframe]:
-        """Give out the frame held back, unless it is a scrap at the very start."""
-        if before.frame_id == 0 and len(before) < _KEPT_SHARE * len(frame):
+        """Return the frame held back, unless it is an incomplete one at the start."""
+        if before.frame_id == 0 and len(before) < _KEPT_RATIO * len(frame):
             self._report.count("frames_incomplete_dropped")
             self._report.count("points_of_incomplete_frames", len(before))
             self._held = _renumbered(frame, 0)
@@ -270,7 +270,7 @@ class Assembler:
         return [before]
 
     def _too_small(self, frame: Multiframe) -> bool:
-        if len(frame) >= _KEPT_SHARE * self._usual:
+        if len(frame) >= _KEPT_RATIO * self._usual:
             return False
         self._report.count("frames_incomplete_dropped")
         self._report.count("points_of_incomplete_frames", len(frame))

@@ -266,7 +266,7 @@ def _native(column: NDArray[Any]) -> NDArray[Any]:
 
 
 def _read(file: BinaryIO, count: int, name: str) -> bytes:
-    """Exactly so many bytes; the file's size is known to suffice, or ``count`` is small."""
+    """Read exactly ``count`` bytes; the file is known to be large enough, or ``count`` is small."""
     left = _size(file) - file.tell()
     if left < count:
         raise CorruptFile(f"{name}: cut: {count} bytes promised, got {left}")

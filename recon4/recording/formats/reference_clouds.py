@@ -69,7 +69,7 @@ def _checked(chunks: Iterator[Array], name: str) -> Iterator[Array]:
             bad = int((~np.isfinite(chunk).all(axis=1)).sum())
             raise CorruptFile(f"{name}: {bad} points have coordinates that are not numbers")
         if len(chunk) and np.abs(chunk).max() > 1e8:
-            raise CorruptFile(f"{name}: coordinates beyond 100 000 km are not metres")
+            raise CorruptFile(f"{name}: coordinates beyond 100 000 km are not meters")
         count += len(chunk)
         if count > MOST_POINTS:
             raise RecordingError(f"{name} has more than {MOST_POINTS // 10**6} million points")

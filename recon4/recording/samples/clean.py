@@ -128,7 +128,7 @@ def _check_gravity(imu: ImuSamples, report: ImportReport) -> ImuSamples:
     force = np.linalg.norm(imu.accel_m_s2, axis=1)
     force = force[np.isfinite(force)]
     if not len(force):
-        report.warn("the IMU has no accelerometer: the map is levelled by its floor")
+        report.warn("the IMU has no accelerometer: the map is leveled by its floor")
         return imu
     usual = float(np.median(force))
     if 0.8 < usual < 1.25:

@@ -25,7 +25,7 @@ from recon4.recording.velodyne.position_packets import parse_fix
 from recon4.recording.velodyne.sensor_clock import SECOND_NS
 
 _UTC_WITHIN_NS = 5 * SECOND_NS // 2
-"""An NMEA time is believed if its arrival agrees with it as well as that."""
+"""Largest difference between an NMEA time and its arrival at which the time is used."""
 _GST_LASTS_NS = 3 * SECOND_NS
 
 

@@ -31,12 +31,12 @@ from recon4.recording.velodyne.streams import (
 from recon4.settings import IngestSettings
 
 WAIT_S = 1.0
-"""A sensor silent for so long holds the others' frames up no longer: datagrams are read in the
-order in which they came, a slot at a time (`in_slots`)."""
+"""A sensor that is silent for this time no longer delays the others' frames: datagrams are read in
+the order of arrival, one slot at a time (`in_slots`)."""
 _STREAMS_NAMED = 10
-_FOREIGN_SHARE = 0.2
-"""A stream with fewer packets than this share of the largest one's is of no sensor of the rig
-unless its port (and address) says so."""
+_FOREIGN_RATIO = 0.2
+"""A stream with fewer packets than this ratio of the largest one belongs to no sensor of the rig,
+unless its port (and address) matches one."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -272,4 +272,4 @@ def _full(
 ) -> list[tuple[PacketStream, ...]]:
     """Those that are no trickle beside the largest of others."""
     most = max((sum(s.packets for s in streams) for streams in all_of), default=0)
-    return [k for k in some if sum(s.packets for s in k) >= _FOREIGN_SHARE * most]
+    return [k for k in some if sum(s.packets for s in k) >= _FOREIGN_RATIO * most]

@@ -72,7 +72,7 @@ class VelodyneModel:
 
     @property
     def sequences_per_block(self) -> int:
-        """Firing sequences that share one azimuth on the wire: 2 for 16 beams, else 1."""
+        """Firing sequences per transmitted azimuth: 2 for 16 beams, else 1."""
         return CHANNELS // self.lasers
 
     @property

@@ -166,7 +166,7 @@ class PositionDecoder:
         Words are 12 bit two's complement: gyroscope, temperature, accelerometers X and Y of chips
         1 to 3 from byte 14. Gyroscopes 1, 2, 3 turn about +x, +y, +z of the sensor; X1 and X2 point
         along +z, Y1 and -X3 along +y, -Y2 and -Y3 along +x (found by comparing them with the motion
-        and the vibration of a car that the lasers see; the manual shows it in a picture only).
+        and the vibration of a car that the lasers see; the manual shows it in a figure only).
         """
         words = np.ascontiguousarray(payloads[:, 14:38]).view("<u2").reshape(-1, 3, 4)
         later = t_ns > np.maximum.accumulate(np.concatenate([[self._imu_ns], t_ns[:-1]]))

@@ -18,9 +18,9 @@ _JUMP_NS = SECOND_NS
 _FIRST = 500
 """Packets of the first batch that tell how far the two clocks are apart."""
 _CONFIRM = 8
-"""So many packets must agree on a jump; fewer are damaged packets and are dropped."""
+"""Packets that must agree on a jump; fewer count as damaged packets and are dropped."""
 _BLOCK = 64
-"""The clocks are compared after every so many packets, however they come in."""
+"""Packets between two comparisons of the clocks, however the packets arrive."""
 _PAUSE_NS = 60 * SECOND_NS
 _TRACK_NS = 10 * SECOND_NS
 _MAX_RATE = 2e-4
@@ -232,7 +232,7 @@ class SensorClock:
         return True
 
     def _jump(self, arrival: int, stamp: NDArray[np.integer], off_ns: int) -> None:
-        """Take the new relation of the two clocks; whichever went on evenly is believed."""
+        """Adopt the new offset of the clocks; the one that continued evenly counts as correct."""
         assert self._offset_ns is not None
         going_on = int(nearest_hour(stamp, self._last[1])[0])
         if abs(going_on - self._last[1]) < _JUMP_NS:

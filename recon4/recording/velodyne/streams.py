@@ -92,8 +92,8 @@ def scan_pcap(
 
     Args:
         path: A pcap or pcapng file.
-        max_packets: Stop after so many datagrams.
-        open_file: How to open it.
+        max_packets: Largest number of datagrams to read.
+        open_file: Opens the file.
 
     Raises:
         UnknownFormat: If it is not a capture file.
@@ -162,7 +162,7 @@ class _Head:
     payloads: Payloads
     """First 1206 bytes, (N, 1206)."""
     read_ratio: float
-    """Share of the file that was read, 1 = all."""
+    """Part of the file that was read, 0 to 1."""
 
 
 def _head(path: Path, max_packets: int, open_file: OpenFile) -> _Head:

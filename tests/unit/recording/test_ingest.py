@@ -60,7 +60,7 @@ def pcap(tmp_path_factory):
     return write_room_pcap(tmp_path_factory.mktemp("pcap") / "room.pcap", seconds=1.0)
 
 
-# -- the way through
+# -- from recording to frame store
 
 
 def test_a_pcap_becomes_frames_of_one_revolution(pcap, tmp_path):
@@ -142,7 +142,7 @@ def test_a_missing_second_sensor_is_counted(pcap, tmp_path):
     assert any("vertical" in text for text in store.report["warnings"])
 
 
-def test_progress_and_warnings_are_told(pcap, tmp_path):
+def test_progress_and_warnings_are_reported(pcap, tmp_path):
     class Watch(Silent):
         def start(self, what, total, unit):
             self.events.append(("start", {"what": what, "total": total, "unit": unit}))

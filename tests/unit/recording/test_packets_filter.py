@@ -150,7 +150,7 @@ def test_a_stranger_among_the_packets_is_dropped_by_its_product_byte(clean):
     assert len(shots["t_ns"]) == 190 * 384
 
 
-def test_a_wrong_product_byte_does_not_change_the_points_but_is_told(clean):
+def test_a_wrong_product_byte_does_not_change_the_points_but_is_reported(clean):
     t_ns, payloads, expected = clean
     payloads = payloads.copy()
     payloads[:, -1] = 0x21
