@@ -1,26 +1,33 @@
-"""Hot loop of placing every point by the pose at its own time."""
+"""Kernel of undistortion: place every point by the pose at its time."""
 
 from __future__ import annotations
 
-from typing import Any
-
+import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def place_sensor_points(
-    xyz: Any, sensor: Any, dt_ns: Any, knot_ns: Any, R: Any, t: Any, out_xyz: Any, out_origin: Any
+    xyz: NDArray[np.float32],
+    sensor: NDArray[np.uint8],
+    dt_ns: NDArray[np.int32],
+    knot_ns: NDArray[np.int64],
+    R: NDArray[np.float64],
+    t: NDArray[np.float64],
+    out_xyz: NDArray[np.float64],
+    out_origin: NDArray[np.float64],
 ) -> None:
     """Move points from their sensors into the map.
 
-    Between two knots, rotation matrices and positions are blended linearly; with knots 1 ms
-    apart a matrix so blended is off from the SLERP by less than 3e-6 at 250 deg/s. For whole
-    clouds; `recon4.kernels.imu.place_points` does the same exactly for samples and sparse knots.
+    Between two knots, rotation matrices and positions are interpolated linearly. With knots 1 ms
+    apart such a matrix differs from the SLERP by less than 3e-6 at 250 deg/s. For whole clouds;
+    `recon4.kernels.imu.place_points` is exact, for samples and sparse knots.
 
     Args:
         xyz: Points in the frames of their sensors [m], float32 (N, 3).
         sensor: Row of the sensor, uint8 (N,).
-        dt_ns: Times, int32 (N,); every one within the knots.
+        dt_ns: Times, int32 (N,); all within the knots.
         knot_ns: Increasing times on the same clock, int64 (K,), K >= 2.
         R: ``R_map_sensor`` at the knots, float64 (K, S, 3, 3).
         t: ``t_map_sensor`` at the knots [m], float64 (K, S, 3).
@@ -31,7 +38,7 @@ def place_sensor_points(
     last = len(knot_ns) - 2
     k = 0
     for n in range(len(xyz)):
-        # Points come in firing order, so the right knot is this one or the next one.
+        # Points are in firing order, so the knot is this one or the next one.
         while k < last and dt_ns[n] >= knot_ns[k + 1]:
             k += 1
         while k > 0 and dt_ns[n] < knot_ns[k]:

@@ -1,66 +1,65 @@
-"""Hot loops of the double-wall check: moments of patches by time, and their best split in two."""
+"""Kernels of the double-wall check: moments of patches by time, and their best split in two."""
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 COLUMNS = 12
-"""n, x y z, xx xy xz yy yz zz about the middle of the cell [m], first and last multiframe."""
+"""n, x y z, xx xy xz yy yz zz about the center of the cell [m], first and last multiframe."""
 _EMPTY = np.int64(-1)
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def middle_of(along: Any, a: Any, b: Any, depth: Any) -> Any:
-    """The cell in the middle of a long one, whose ends depend on its column (a, b)."""
+def middle_of(along: int, a: int, b: int, depth: int) -> int:
+    """The middle cell of a long one, whose ends depend on its column (a, b)."""
     shift = (a * 7 + b * 11) % depth
     return (along + shift) // depth * depth - shift + depth // 2
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def gather(
-    xyz: Any,
-    normal_bits: Any,
-    t_ns: Any,
-    frame_id: Any,
+    xyz: NDArray[np.float32],
+    normal_bits: NDArray[np.uint16],
+    t_ns: NDArray[np.int64],
+    frame_id: NDArray[np.uint32],
     first_ns: int,
     window_ns: int,
-    low: Any,
-    base: Any,
+    low: NDArray[np.float64],
+    base: NDArray[np.int64],
     cell_m: float,
     depth: int,
     side: int,
-    keys: Any,
-    sums: Any,
+    keys: NDArray[np.int64],
+    sums: NDArray[np.float64],
     used: int,
 ) -> int:
     """Add points to the moments of their patch: column, side they were seen from, time window.
 
-    The side is the largest component of the normal, which looks at the sensor: the two faces of
+    The side is the largest component of the normal, which points to the sensor: the two faces of
     a thin wall are two patches. A half float without its sign bit sorts like its magnitude. Along
-    that axis a cell is ``depth`` times as long, and where its ends lie differs from column to
-    column, so that no wall lies on the ends of all its cells.
+    that axis a cell is ``depth`` times as long. Its ends differ from column to column, so that no
+    wall lies on the ends of all its cells.
 
     Args:
         xyz: Points from the tile's origin [m], float32 (N, 3).
-        normal_bits: Normals, float16 seen as uint16 (N, 3); all zero = none, left out.
+        normal_bits: Normals, float16 viewed as uint16 (N, 3); points with all zero are skipped.
         t_ns: Times [ns], (N,).
         frame_id: Multiframes, (N,).
-        first_ns: Begin of the first time window.
-        window_ns: Length of one.
+        first_ns: Start of the first time window [ns].
+        window_ns: Length of a time window [ns].
         low: Corner of the box of cells, from the tile's origin [m], (3,).
-        base: Place of that corner in the map, in cells, so that tiles agree on the ends, (3,).
+        base: That corner in the map [cells], so that all tiles use the same ends, (3,).
         cell_m: Width of a column [m].
-        depth: Length of a cell in widths.
+        depth: Length of a cell [widths].
         side: Cells along an edge of the box.
         keys: Hash table, `_EMPTY` where free, int64 (2**k,).
         sums: Moments, (2**k, COLUMNS).
         used: Entries in the table.
 
     Returns:
-        Entries now; -1 = the table is too full, nothing can be relied on: double it, start anew.
+        Entries in the table; -1 = it is too full and invalid: double it and start again.
     """
     mask = np.uint64(len(keys) - 1)
     limit = len(keys) // 2
@@ -111,18 +110,24 @@ def gather(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def best_split(start: Any, n: Any, mean: Any, order: Any, split: Any) -> None:
-    """Split the time windows of each patch in two groups along the normal, as far apart as can be.
+def best_split(
+    start: NDArray[np.int64],
+    n: NDArray[np.float64],
+    mean: NDArray[np.float64],
+    order: NDArray[np.int64],
+    split: NDArray[np.int64],
+) -> None:
+    """Split the time windows of each patch into two groups with the largest distance.
 
-    Over the windows in the order of their means this maximizes the variance between the groups
-    ``n_a n_b / n (mean_b - mean_a)**2``: two-means in one dimension, exact.
+    Over the windows in the order of their means along the normal this maximizes the variance
+    between the groups ``n_a n_b / n (mean_b - mean_a)**2``: exact two-means in one dimension.
 
     Args:
-        start: First window of each patch, and behind the last, (P + 1,).
+        start: First window of each patch, and the end of the last, (P + 1,).
         n: Points of each window, (K,).
         mean: Mean distance along the patch's normal of each window [m], (K,).
         order: Windows of each patch by increasing mean, (K,).
-        split: Receives how many windows are in the lower group, 0 = one window only, (P,).
+        split: Receives the number of windows in the lower group, 0 = a single window, (P,).
     """
     for p in range(len(start) - 1):
         total, weighted = 0.0, 0.0

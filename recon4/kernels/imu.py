@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def rotation(w: Any) -> Any:
+def rotation(w: NDArray[np.float64]) -> NDArray[np.float64]:
     """Rotation matrix of a rotation vector [rad], (3,) -> (3, 3). Rodrigues' formula."""
     angle = np.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
     if angle < 1e-9:
@@ -32,15 +31,15 @@ def rotation(w: Any) -> Any:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def propagate(
-    t_s: Any,
-    gyro: Any,
-    accel: Any,
-    R0: Any,
-    state0: Any,
-    P0: Any,
-    noise: Any,
-) -> Any:
-    """Carry a state over the samples of one frame (midpoint rule between two samples).
+    t_s: NDArray[np.float64],
+    gyro: NDArray[np.float64],
+    accel: NDArray[np.float64],
+    R0: NDArray[np.float64],
+    state0: NDArray[np.float64],
+    P0: NDArray[np.float64],
+    noise: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], ...]:
+    """Propagate a state over the samples of one frame (midpoint rule between two samples).
 
     Args:
         t_s: Sample times, the first at the start, the last at the end of the frame [s], (K,).
@@ -100,8 +99,14 @@ def propagate(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def place_points(t_s: Any, R: Any, p: Any, t_points: Any, points: Any) -> Any:
-    """Points of the body, each at its own time, in the frame of the poses (V Eq. 2.8).
+def place_points(
+    t_s: NDArray[np.float64],
+    R: NDArray[np.float64],
+    p: NDArray[np.float64],
+    t_points: NDArray[np.float64],
+    points: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Undistort points: transform each from the body at its time to the poses' frame (V Eq. 2.8).
 
     Args:
         t_s: Times of the poses, increasing [s], (K,).

@@ -1,34 +1,37 @@
-"""Hot loops of intensity normalization."""
+"""Kernels of intensity normalization."""
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def bin_of(
-    incidence_rad: float, range_m: float, incidence_bin_rad: float, range_bin_m: float, shape: Any
+    incidence_rad: float,
+    range_m: float,
+    incidence_bin_rad: float,
+    range_bin_m: float,
+    shape: tuple[int, ...],
 ) -> tuple[int, int]:
-    """Bin of incidence (the last one: no normal) and of range (the last one: and farther)."""
+    """Bin of incidence (last: no normal) and of range (last: all farther points)."""
     if np.isnan(incidence_rad):
         i = shape[1] - 1
     else:
-        i = min(np.int64(incidence_rad / incidence_bin_rad), shape[1] - 2)
-    return i, min(np.int64(range_m / range_bin_m), shape[2] - 1)
+        i = min(int(incidence_rad / incidence_bin_rad), shape[1] - 2)
+    return i, min(int(range_m / range_bin_m), shape[2] - 1)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def accumulate(
-    intensity: Any,
-    channel: Any,
-    incidence_rad: Any,
-    range_m: Any,
+    intensity: NDArray[np.uint16],
+    channel: NDArray[np.int64],
+    incidence_rad: NDArray[np.float32],
+    range_m: NDArray[np.float32],
     incidence_bin_rad: float,
     range_bin_m: float,
-    sums: Any,
+    sums: NDArray[np.float64],
 ) -> None:
     """Add count, sum and sum of squares of the points to ``sums (C, I, R, 3)``."""
     for n in range(len(intensity)):
@@ -42,19 +45,19 @@ def accumulate(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def apply_table(
-    intensity: Any,
-    sensor: Any,
-    ring: Any,
-    incidence_rad: Any,
-    range_m: Any,
+    intensity: NDArray[np.uint16],
+    sensor: NDArray[np.uint8],
+    ring: NDArray[np.uint8],
+    incidence_rad: NDArray[np.float32],
+    range_m: NDArray[np.float32],
     incidence_bin_rad: float,
     range_bin_m: float,
-    gain: Any,
-    offset: Any,
+    gain: NDArray[np.float32],
+    offset: NDArray[np.float32],
     upper: float,
-    out: Any,
+    out: NDArray[np.float32],
 ) -> None:
-    """``gain * x + offset`` of each point's bin, clamped to 0..upper.
+    """Normalize intensities: ``gain * x + offset`` of each point's bin, clamped to 0..upper.
 
     Args:
         intensity: uint16 (N,).
@@ -66,7 +69,7 @@ def apply_table(
         range_bin_m: Width of a bin [m].
         gain: float32 (S, B, I, R).
         offset: float32 (S, B, I, R).
-        upper: Largest result.
+        upper: Largest normalized intensity.
         out: Receives the results, float32 (N,); a channel without a table keeps its values.
     """
     for n in range(len(intensity)):
@@ -82,17 +85,17 @@ def apply_table(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def bins_of(
-    channel: Any,
-    incidence_rad: Any,
-    range_m: Any,
+    channel: NDArray[np.int64],
+    incidence_rad: NDArray[np.float32],
+    range_m: NDArray[np.float32],
     incidence_bin_rad: float,
     range_bin_m: float,
-    shape: Any,
-    out: Any,
+    shape: tuple[int, ...],
+    out: NDArray[np.int32],
 ) -> None:
     """Channel, bin of incidence and bin of range of each point, ``out (N, 3)``.
 
-    ``shape`` counts channels, bins of incidence and of range, as in `accumulate`.
+    ``shape`` has the numbers of channels, bins of incidence and bins of range.
     """
     for n in range(len(channel)):
         i, r = bin_of(incidence_rad[n], range_m[n], incidence_bin_rad, range_bin_m, shape)
@@ -101,13 +104,18 @@ def bins_of(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def surface_equations(
-    starts: Any, parameters: Any, intensity: Any, theta: Any, H: Any, g: Any
+    starts: NDArray[np.int64],
+    parameters: NDArray[np.int32],
+    intensity: NDArray[np.float32],
+    theta: NDArray[np.float64],
+    H: NDArray[np.float64],
+    g: NDArray[np.float64],
 ) -> None:
     """Newton's equations of a log-linear model with an unknown brightness for each cell.
 
     The expected intensity of point n in cell c is ``b_c exp(theta_i + theta_j + theta_k)``. For
-    given theta the likeliest ``b_c`` is the sum of intensities over the sum of the exponentials;
-    it is put in, so that the equations hold theta only, however many cells there are.
+    given theta the most likely ``b_c`` is the sum of intensities over the sum of the exponentials.
+    It is substituted, so that the equations contain theta only, for any number of cells.
 
     Args:
         starts: First point of each cell and the number of points, (C + 1,).
@@ -141,8 +149,8 @@ def surface_equations(
                 for b in (i, j, k):
                     H[a, b] += m
         for a in touched[:used]:
-            share = sums[a] / seen
+            ratio = sums[a] / seen
             for b in touched[:used]:
-                H[a, b] -= share * sums[b]
+                H[a, b] -= ratio * sums[b]
         for a in touched[:used]:
             sums[a] = 0.0

@@ -1,26 +1,28 @@
-"""Hot loops of the live preview: which voxels are new, and what the rays have seen in plan."""
+"""Kernels of the live preview: new voxels, and the cells that rays pass in plan."""
 
 from __future__ import annotations
 
-from typing import Any
-
+import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 EMPTY = -(1 << 62)
-"""A free place of the table."""
+"""Free entry of the table."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def add_voxels(table: Any, voxels: Any, fresh: Any) -> int:
-    """Put voxels into a hash set and mark those that were not in it.
+def add_voxels(
+    table: NDArray[np.int64], voxels: NDArray[np.int64], fresh: NDArray[np.bool_]
+) -> int:
+    """Add voxels to a hash set and mark the new ones.
 
     Args:
         table: Keys or `EMPTY`, int64 (a power of two,); at most half full afterwards.
-        voxels: Whole coordinates, -2^20 to 2^20 - 1, int64 (N, 3).
+        voxels: Integer coordinates, -2^20 to 2^20 - 1, int64 (N, 3).
         fresh: Receives whether a voxel was added, bool (N,).
 
     Returns:
-        How many were added.
+        Number of voxels added.
     """
     mask = len(table) - 1
     added = 0
@@ -42,18 +44,24 @@ def add_voxels(table: Any, voxels: Any, fresh: Any) -> int:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def trace(
-    start: Any, ends: Any, ranges: Any, solid: Any, free: Any, hits: Any, nearest: Any
+    start: NDArray[np.float64],
+    ends: NDArray[np.float64],
+    ranges: NDArray[np.float64],
+    solid: NDArray[np.bool_],
+    free: NDArray[np.uint16],
+    hits: NDArray[np.uint16],
+    nearest: NDArray[np.float32],
 ) -> None:
-    """Walk the cells from the sensor to where its rays ended, in plan.
+    """Trace rays from the sensor to their ends through the cells of a plan.
 
     Args:
         start: Cell of the sensor, float64 (2,).
-        ends: Cells of the ends, float64 (N, 2); all inside of the grid, as is the start.
+        ends: Cells of the ends, float64 (N, 2); all inside the grid, like the start.
         ranges: Lengths of the rays [m], float64 (N,).
-        solid: Whether the ray ended at something that stands in the way, bool (N,).
-        free: Rays that passed a cell, uint16 (H, W), counted up to 65535.
-        hits: Rays that ended in a cell at something solid, uint16 (H, W).
-        nearest: Shortest ray that did [m], float32 (H, W).
+        solid: Whether the ray ended at an obstacle, bool (N,).
+        free: Number of rays that passed a cell, uint16 (H, W), limited to 65535.
+        hits: Number of rays that ended in a cell at an obstacle, uint16 (H, W).
+        nearest: Shortest of these rays [m], float32 (H, W).
     """
     for n in range(len(ends)):
         d0, d1 = ends[n, 0] - start[0], ends[n, 1] - start[1]

@@ -1,19 +1,18 @@
-"""Hot loops of surface normals: moments of small cells, and a plane through each neighborhood."""
+"""Kernels of surface normals: moments of small cells, and a plane through each neighborhood."""
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 _LINE = 1e-3
 """Middle over largest eigenvalue below which points lie on a line and have no normal."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def bounds(xyz: Any, low: Any, high: Any) -> None:
-    """Smallest and largest coordinates of points (N, 3), N >= 1, into two float64 (3,)."""
+def bounds(xyz: NDArray[np.floating], low: NDArray[np.float64], high: NDArray[np.float64]) -> None:
+    """Write the smallest and largest coordinates of points (N, 3), N >= 1, to two float64 (3,)."""
     low[:] = np.inf
     high[:] = -np.inf
     for n in range(len(xyz)):
@@ -23,11 +22,18 @@ def bounds(xyz: Any, low: Any, high: Any) -> None:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def cell_keys(xyz: Any, low: Any, shape: Any, cell_m: float, shift: int, out: Any) -> bool:
+def cell_keys(
+    xyz: NDArray[np.float32],
+    low: NDArray[np.int64],
+    shape: NDArray[np.int64],
+    cell_m: float,
+    shift: int,
+    out: NDArray[np.int64],
+) -> bool:
     """Cell of each point, with the point's row in the lower ``shift`` bits, int64 (N,).
 
     Returns:
-        Whether they are in order already.
+        Whether the keys are sorted already.
     """
     in_order = True
     for n in range(len(xyz)):
@@ -41,7 +47,14 @@ def cell_keys(xyz: Any, low: Any, shape: Any, cell_m: float, shift: int, out: An
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def cell_moments(
-    xyz: Any, order: Any, shift: int, low: Any, shape: Any, cell_m: float, cells: Any, moments: Any
+    xyz: NDArray[np.float32],
+    order: NDArray[np.int64],
+    shift: int,
+    low: NDArray[np.int64],
+    shape: NDArray[np.int64],
+    cell_m: float,
+    cells: NDArray[np.int64],
+    moments: NDArray[np.float64],
 ) -> int:
     """Sums over the points of each cell, about the cell's center.
 
@@ -56,7 +69,7 @@ def cell_moments(
         moments: Receives count, x, y, z, xx, xy, xz, yy, yz, zz, float64 (N, 10).
 
     Returns:
-        How many cells there are.
+        Number of cells.
     """
     count = -1
     mask = (np.int64(1) << shift) - 1
@@ -91,7 +104,13 @@ def cell_moments(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def window_normals(
-    cells: Any, moments: Any, shape: Any, cell_m: float, min_points: int, normals: Any, counts: Any
+    cells: NDArray[np.int64],
+    moments: NDArray[np.float64],
+    shape: NDArray[np.int64],
+    cell_m: float,
+    min_points: int,
+    normals: NDArray[np.float32],
+    counts: NDArray[np.int32],
 ) -> None:
     """Normal of the plane through the 3 x 3 x 3 cells around each cell.
 
@@ -110,7 +129,7 @@ def window_normals(
         for dk in range(-1, 2):
             for dj in range(-1, 2):
                 first = cells[c] + (dk * shape[1] + dj) * shape[0] - 1
-                # The window moves with the cell: each of its nine rows only ever goes forward.
+                # The window moves with the cell, so each of its nine rows only increases.
                 row = rows[3 * dk + dj + 4]
                 while row < len(cells) and cells[row] < first:
                     row += 1
@@ -143,12 +162,13 @@ def window_normals(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def smallest_eigenvector(
-    a: float, b: float, d: float, e: float, f: float, g: float, out: Any
+    a: float, b: float, d: float, e: float, f: float, g: float, out: NDArray[np.floating]
 ) -> None:
     """Unit eigenvector of the smallest eigenvalue of ``[[a e f] [e b g] [f g d]]``.
 
     Eigenvalues by the trigonometric solution of the cubic (Smith 1961), the vector as the largest
-    cross product of two rows of ``A - lambda I``. Points on a line or in one spot leave zeros.
+    cross product of two rows of ``A - lambda I``. For points on a line or at one position ``out``
+    is unchanged.
     """
     mean = (a + b + d) / 3.0
     off = e * e + f * f + g * g
@@ -181,9 +201,14 @@ def smallest_eigenvector(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def spread_to_points(
-    order: Any, shift: int, normals: Any, counts: Any, out_normals: Any, out_counts: Any
+    order: NDArray[np.int64],
+    shift: int,
+    normals: NDArray[np.float32],
+    counts: NDArray[np.int32],
+    out_normals: NDArray[np.float32],
+    out_counts: NDArray[np.int32],
 ) -> None:
-    """Give each point the normal and the count of its cell; ``order`` of `cell_moments`."""
+    """Copy the normal and the count of each cell to its points; ``order`` as in `cell_moments`."""
     cell = -1
     previous = np.int64(-1)
     mask = (np.int64(1) << shift) - 1

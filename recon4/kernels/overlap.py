@@ -1,15 +1,16 @@
-"""Spherical z-buffers."""
+"""Kernels of overlap: spherical z-buffers."""
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def _bin(x: Any, y: Any, z: Any, azimuth_bins: Any, elevation_bins: Any) -> Any:
+def _bin(
+    x: float, y: float, z: float, azimuth_bins: int, elevation_bins: int
+) -> tuple[int, int, float]:
     range_m = np.sqrt(x * x + y * y + z * z)
     if range_m < 1e-6:
         return -1, -1, range_m
@@ -19,7 +20,9 @@ def _bin(x: Any, y: Any, z: Any, azimuth_bins: Any, elevation_bins: Any) -> Any:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def nearest_ranges(p: Any, azimuth_bins: int, elevation_bins: int, min_points: int) -> Any:
+def nearest_ranges(
+    p: NDArray[np.float64], azimuth_bins: int, elevation_bins: int, min_points: int
+) -> NDArray[np.float32]:
     """Smallest range in each bin of azimuth and elevation [m]; 0 = fewer points than needed.
 
     Args:
@@ -40,8 +43,15 @@ def nearest_ranges(p: Any, azimuth_bins: int, elevation_bins: int, min_points: i
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def inside_ratio(buffer: Any, p: Any, R: Any, t: Any, relative: float, absolute_m: float) -> float:
-    """Share of points, moved by (R, t) into the buffer's frame, that its view volume holds."""
+def inside_ratio(
+    buffer: NDArray[np.float32],
+    p: NDArray[np.float64],
+    R: NDArray[np.float64],
+    t: NDArray[np.float64],
+    relative: float,
+    absolute_m: float,
+) -> float:
+    """Fraction of points, transformed by (R, t) to the buffer's frame, inside its view volume."""
     azimuth_bins, elevation_bins = buffer.shape
     inside = 0
     for k in range(len(p)):

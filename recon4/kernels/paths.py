@@ -1,15 +1,14 @@
-"""Alternative paths through a pose graph: hot loops of its verification."""
+"""Kernels of verification: alternative paths through a pose graph."""
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _grown(values: Any) -> Any:
+def _grown(values: NDArray[np.float64]) -> NDArray[np.float64]:
     out = np.empty(2 * len(values), dtype=values.dtype)
     out[: len(values)] = values
     return out
@@ -17,37 +16,37 @@ def _grown(values: Any) -> Any:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def path_medians(
-    rows: Any,
-    edge_i: Any,
-    edge_j: Any,
-    edge_t: Any,
-    start: Any,
-    neighbor: Any,
-    edge: Any,
-    slot_rotation: Any,
-    slot_translation: Any,
-    alive: Any,
+    rows: NDArray[np.int64],
+    edge_i: NDArray[np.int64],
+    edge_j: NDArray[np.int64],
+    edge_t: NDArray[np.float64],
+    start: NDArray[np.int64],
+    neighbor: NDArray[np.int64],
+    edge: NDArray[np.int64],
+    slot_rotation: NDArray[np.float64],
+    slot_translation: NDArray[np.float64],
+    alive: NDArray[np.bool_],
     max_edges: int,
     with_itself: bool,
-) -> Any:
-    """Median translation difference of edges to their alternative simple paths.
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Path discrepancy: median translation difference of edges to their alternative simple paths.
 
     Args:
-        rows: Edges asked about, (Q,) int64.
+        rows: Requested edges, (Q,) int64.
         edge_i: First nodes of all edges, (E,) int64.
         edge_j: Second nodes, (E,).
         edge_t: Translations of all edges [m], (E, 3).
         start: Slots of node n are ``start[n]:start[n + 1]``, (N + 1,) int64; sorted by neighbor.
         neighbor: Node at the other end of each slot, (2 E,) int64.
         edge: Edge of each slot, (2 E,) int64.
-        slot_rotation: Rotation of the edge walked from its slot's node onward, (2 E, 3, 3).
+        slot_rotation: Rotation of the edge, directed away from the slot's node, (2 E, 3, 3).
         slot_translation: Translation of the same [m], (2 E, 3).
-        alive: Edges that may be walked, (E,) bool.
+        alive: Edges that paths may use, (E,) bool.
         max_edges: Longest path, 1 to 3.
         with_itself: Count the edge as one path without error, as the author's code does.
 
     Returns:
-        Medians [m], NaN where there is no path, (Q,), and numbers of paths, (Q,).
+        Medians [m], NaN without a path, (Q,), and numbers of paths, (Q,).
 
     V Eq. 2.9-2.12. ``|trans(T_ij^-1 T_e)| = |t_e - t_ij|``, so only translations are composed.
     """
@@ -138,7 +137,14 @@ def path_medians(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _difference(R: Any, t: Any, x: float, y: float, z: float, expected: Any) -> float:
+def _difference(
+    R: NDArray[np.float64],
+    t: NDArray[np.float64],
+    x: float,
+    y: float,
+    z: float,
+    expected: NDArray[np.float64],
+) -> float:
     """``|R (x, y, z) + t - expected|``."""
     dx = R[0, 0] * x + R[0, 1] * y + R[0, 2] * z + t[0] - expected[0]
     dy = R[1, 0] * x + R[1, 1] * y + R[1, 2] * z + t[1] - expected[1]
@@ -149,21 +155,21 @@ def _difference(R: Any, t: Any, x: float, y: float, z: float, expected: Any) -> 
 @njit(cache=True, nogil=True, error_model="numpy")
 def mark_affected(
     e: int,
-    edge_i: Any,
-    edge_j: Any,
-    start: Any,
-    neighbor: Any,
-    edge: Any,
-    alive: Any,
-    hops: Any,
+    edge_i: NDArray[np.int64],
+    edge_j: NDArray[np.int64],
+    start: NDArray[np.int64],
+    neighbor: NDArray[np.int64],
+    edge: NDArray[np.int64],
+    alive: NDArray[np.bool_],
+    hops: NDArray[np.int64],
     max_edges: int,
-    marked: Any,
+    marked: NDArray[np.bool_],
 ) -> None:
     """Mark every edge with an alternative path of at most ``max_edges`` edges through edge ``e``.
 
-    A path from a to b through e = (u, v) leaves ``hops(a) + hops(b) <= max_edges - 1``, where
-    hops is the distance to u or v; all edges for which that holds are marked (some more than
-    needed, none too few).
+    For a path from a to b through e = (u, v), ``hops(a) + hops(b) <= max_edges - 1``, where hops
+    is the distance to u or v. All edges that satisfy this are marked (possibly too many, never too
+    few).
 
     Args:
         e: The edge.
@@ -175,7 +181,7 @@ def mark_affected(
         alive: As in `path_medians`.
         hops: Scratch, (N,) int64, all -1 before and after.
         max_edges: As in `path_medians`.
-        marked: Result, (E,) bool; only ever set.
+        marked: Result, (E,) bool; entries are set, never cleared.
     """
     ball = [edge_i[e], edge_j[e]]
     hops[edge_i[e]] = 0

@@ -1,16 +1,15 @@
-"""A map of small planes: points summed in cubes of several sizes, and how far points lie off.
+"""Kernels of the plane map: moments of points in cubes of several sizes, distances to planes.
 
-A cube's ten sums (count, first and second moments) can be added to and subtracted from exactly
-enough, so a map can forget a multiframe, or be asked about one that it holds but must not use.
-The tables are plain arrays: ``keys`` (C,), ``sums`` (C, 10), ``fits`` (C, 10), ``state`` (C,).
+The ten sums of a cube (count, first and second moments) can be added and subtracted with
+sufficient accuracy, so a multiframe can be removed from a map, for good or for a while.
+The tables are plain arrays: ``keys`` (C,), ``sums`` (C, 10), ``fits`` (C, 9), ``state`` (C,).
 """
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 EMPTY = np.int64(-1)
 DIRTY, PLANE, NO_PLANE = np.uint8(0), np.uint8(1), np.uint8(2)
@@ -19,7 +18,7 @@ _MASK = np.int64((1 << 20) - 1)
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def _key(level: Any, x: Any, y: Any, z: Any, size: Any) -> Any:
+def _key(level: int, x: float, y: float, z: float, size: float) -> np.int64:
     ix = (np.int64(np.floor(x / size)) + _OFFSET) & _MASK
     iy = (np.int64(np.floor(y / size)) + _OFFSET) & _MASK
     iz = (np.int64(np.floor(z / size)) + _OFFSET) & _MASK
@@ -27,8 +26,8 @@ def _key(level: Any, x: Any, y: Any, z: Any, size: Any) -> Any:
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def _slot(keys: Any, key: Any) -> Any:
-    """Where a key is, or the empty place where it would be."""
+def _slot(keys: NDArray[np.int64], key: np.int64) -> np.int64:
+    """Row of a key in the table, or the free row where it belongs."""
     mask = np.int64(len(keys) - 1)
     h = np.uint64(key) * np.uint64(0x9E3779B97F4A7C15)
     row = np.int64(h >> np.uint64(20)) & mask
@@ -39,11 +38,19 @@ def _slot(keys: Any, key: Any) -> Any:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def add_points(
-    keys: Any, sums: Any, state: Any, sizes: Any, p: Any, first: int, used: int, sign: float
-) -> Any:
-    """Add (``sign`` 1) or take away (-1) points, (N, 3), beginning with row ``first``.
+    keys: NDArray[np.int64],
+    sums: NDArray[np.float64],
+    state: NDArray[np.uint8],
+    sizes: NDArray[np.float64],
+    p: NDArray[np.float64],
+    first: int,
+    used: int,
+    sign: float,
+) -> tuple[int, int]:
+    """Add (``sign`` 1) or remove (-1) points, (N, 3), beginning with row ``first``.
 
-    Stops early when the tables are half full; returns the row to go on with and the cubes used.
+    Stops early if the tables are half full. Returns the row to continue with and the number of
+    cubes used.
     """
     levels = len(sizes)
     for k in range(first, len(p)):
@@ -57,7 +64,7 @@ def add_points(
             if keys[row] == EMPTY:
                 keys[row] = key
                 used += 1
-            # Moments about the cube's center: small numbers, so that taking away is exact enough.
+            # Moments about the cube's center are small numbers: removal stays accurate.
             x -= (np.floor(x / size) + 0.5) * size
             y -= (np.floor(y / size) + 0.5) * size
             z -= (np.floor(z / size) + 0.5) * size
@@ -77,8 +84,10 @@ def add_points(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def rehash(keys: Any, sums: Any, capacity: int) -> Any:
-    """The non-empty cubes in tables of another size (a power of two)."""
+def rehash(
+    keys: NDArray[np.int64], sums: NDArray[np.float64], capacity: int
+) -> tuple[NDArray[np.int64], NDArray[np.float64], int]:
+    """Copy the non-empty cubes to tables of another size (a power of two)."""
     new_keys = np.full(capacity, EMPTY, np.int64)
     new_sums = np.zeros((capacity, 10), np.float64)
     used = 0
@@ -92,7 +101,9 @@ def rehash(keys: Any, sums: Any, capacity: int) -> Any:
 
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
-def _eigen_sym3(a: Any, vals: Any, vecs: Any) -> None:
+def _eigen_sym3(
+    a: NDArray[np.float64], vals: NDArray[np.float64], vecs: NDArray[np.float64]
+) -> None:
     """Eigenvalues (ascending) and vectors (columns) of a symmetric 3x3 by Jacobi rotations."""
     for i in range(3):
         for j in range(3):
@@ -134,7 +145,15 @@ def _eigen_sym3(a: Any, vals: Any, vecs: Any) -> None:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _fit(key: Any, s: Any, size: Any, min_points: Any, max_sd: Any, f: Any, work: Any) -> Any:
+def _fit(
+    key: np.int64,
+    s: NDArray[np.float64],
+    size: float,
+    min_points: float,
+    max_sd: float,
+    f: NDArray[np.float64],
+    work: NDArray[np.float64],
+) -> np.uint8:
     """Fit the plane of one cube into ``f``: center, normal, variances across and along."""
     n = s[0]
     if n < min_points:
@@ -165,9 +184,15 @@ def _fit(key: Any, s: Any, size: Any, min_points: Any, max_sd: Any, f: Any, work
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def fit_all(
-    keys: Any, sums: Any, fits: Any, state: Any, sizes: Any, min_points: float, max_sd: float
+    keys: NDArray[np.int64],
+    sums: NDArray[np.float64],
+    fits: NDArray[np.float64],
+    state: NDArray[np.uint8],
+    sizes: NDArray[np.float64],
+    min_points: float,
+    max_sd: float,
 ) -> None:
-    """Fit every cube now, so that several threads may match without writing."""
+    """Fit the planes of all cubes, so that several threads can match without writing."""
     work = np.empty((7, 3))
     for row in range(len(keys)):
         if keys[row] != EMPTY and state[row] == DIRTY:
@@ -179,36 +204,36 @@ def fit_all(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def accumulate(
-    keys: Any,
-    sums: Any,
-    fits: Any,
-    state: Any,
-    sizes: Any,
-    q: Any,
-    fraction: Any,
-    center: Any,
+    keys: NDArray[np.int64],
+    sums: NDArray[np.float64],
+    fits: NDArray[np.float64],
+    state: NDArray[np.uint8],
+    sizes: NDArray[np.float64],
+    q: NDArray[np.float64],
+    fraction: NDArray[np.float64],
+    center: NDArray[np.float64],
     finest: int,
     gate: float,
     kernel: float,
     point_var: float,
     min_points: float,
     max_sd: float,
-    H: Any,
-    g: Any,
-    residual: Any,
-) -> Any:
-    """Normal equations of points against the planes of the finest cube that holds one.
+    H: NDArray[np.float64],
+    g: NDArray[np.float64],
+    residual: NDArray[np.float64],
+) -> tuple[int, float, float, NDArray[np.float64]]:
+    """Normal equations of points to the planes of the finest cube that has one.
 
-    A correction is a rotation about ``center`` and a shift, one at the start and one at the end
-    of the frame; a point at ``fraction`` s of the frame feels (1 - s) of the first and s of the
-    second. Cauchy weights on the distance, scaled by the variances of point and plane.
+    A correction is a rotation about ``center`` and a shift, one at the start and one at the end of
+    the frame. A point at ``fraction`` s of the frame moves by (1 - s) times the first and s times
+    the second. Cauchy weights on the distance, scaled by the variances of point and plane.
 
     Args:
         q: Points in the map frame [m], (N, 3).
         fraction: 0 at the start of the frame, 1 at its end, (N,).
         H: Receives the sum of w J^T J, (12, 12): rotation, shift at the start, then at the end.
         g: Receives the sum of w J^T r, (12,).
-        residual: Receives the distance of each point [m], NaN where there is no plane, (N,).
+        residual: Receives the distance of each point [m], NaN without a plane, (N,).
 
     Returns:
         Number of matches, sum of absolute distances, sum of w r², and the sum of n n^T (3, 3).

@@ -1,18 +1,19 @@
-"""Hot loops of the registration of two scans: normals, normal equations, a look from above."""
+"""Kernels of the registration of two scans: normals, normal equations, ground plans."""
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from recon4.kernels.normals import smallest_eigenvector
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def neighbor_normals(p: Any, rows: Any, normals: Any) -> None:
-    """Normal of the plane through the neighbors of each point; zeros where they lie on a line.
+def neighbor_normals(
+    p: NDArray[np.float64], rows: NDArray[np.int64], normals: NDArray[np.float64]
+) -> None:
+    """Normal of the plane through the neighbors of each point; zeros if they lie on a line.
 
     Args:
         p: Points [m], (N, 3).
@@ -43,40 +44,40 @@ def neighbor_normals(p: Any, rows: Any, normals: Any) -> None:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def accumulate_symmetric(
-    q: Any,
-    n_q: Any,
-    nearest: Any,
-    p: Any,
-    n_p: Any,
-    center: Any,
+    q: NDArray[np.float64],
+    n_q: NDArray[np.float64],
+    nearest: NDArray[np.int64],
+    p: NDArray[np.float64],
+    n_p: NDArray[np.float64],
+    center: NDArray[np.float64],
     kernel: float,
     inlier: float,
-    H: Any,
-    g: Any,
-    normals: Any,
-) -> Any:
+    H: NDArray[np.float64],
+    g: NDArray[np.float64],
+    normals: NDArray[np.float64],
+) -> tuple[int, int, float, float, float]:
     """Normal equations of the symmetric distance ``(q - p) . (n_q + n_p) / |n_q + n_p|``.
 
     Rusinkiewicz 2019 (symmetric ICP), each match weighted by ``(n_q . n_p)²`` and a Cauchy kernel.
 
     Args:
         q: Points of the source, placed in the target [m], (N, 3).
-        n_q: Their normals, turned along, (N, 3).
-        nearest: Row of the match of each in the target, its length = none, (N,).
+        n_q: Their normals, also rotated, (N, 3).
+        nearest: Row of the match of each in the target, M = none, (N,).
         p: Points of the target [m], (M, 3).
         n_p: Their normals, (M, 3).
         center: A correction rotates about this point [m], (3,).
         kernel: Scale of the Cauchy kernel [m].
-        inlier: A match this near whose normals agree within 30° counts as right [m].
+        inlier: Distance below which a match with normals within 30° is an inlier [m].
         H: Receives the sum of w J^T J, rotation first, (6, 6).
         g: Receives the sum of w J^T r, (6,).
         normals: Receives the sum of w n n^T, (3, 3).
 
     Returns:
-        Matches, right ones, sum of weights, sum of w |r| and of w r².
+        Matches, inliers, sum of weights, sum of w |r| and of w r².
     """
     J = np.empty(6)
-    matches = right = 0
+    matches = inliers = 0
     weights = total = squares = 0.0
     for k in range(len(q)):
         j = nearest[k]
@@ -105,22 +106,28 @@ def accumulate_symmetric(
                 normals[a, b] += w * J[3 + a] * J[3 + b]
         matches += 1
         if abs(r) < inlier and dot * dot > 0.75:
-            right += 1
+            inliers += 1
         weights += w
         total += w * abs(r)
         squares += w * r * r
-    return matches, right, weights, total, squares
+    return matches, inliers, weights, total, squares
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def count_from_above(xy: Any, yaw: Any, cell: float, most: float, out: Any) -> None:
-    """Points in the cells of a ground plan, the plan turned by each of several angles.
+def count_from_above(
+    xy: NDArray[np.float64],
+    yaw: NDArray[np.float64],
+    cell: float,
+    most: float,
+    out: NDArray[np.float32],
+) -> None:
+    """Count points in the cells of a ground plan, rotated by each of several angles.
 
     Args:
         xy: Points [m], (N, 2).
         yaw: Angles [rad], (Y,).
         cell: Edge of a cell [m].
-        most: A cell counts no more than this.
+        most: Limit of a count.
         out: Receives the counts, the origin in the middle, (Y, S, S).
     """
     size = out.shape[1]

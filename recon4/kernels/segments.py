@@ -1,20 +1,18 @@
-"""Drawing collar line segments: which two points make one."""
+"""Kernel of collar line segments: draw random pairs of points of neighboring rings."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 _RING_GAP = 3
-"""A ring that is empty in a cell is skipped, but no more than this far."""
+"""An empty ring of a cell is skipped; largest difference of the rings of a segment."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _next_random(state: Any) -> Any:
-    """Splitmix64 (Steele 2014): a stream that depends on nothing but its seed."""
+def _next_random(state: np.uint64) -> tuple[np.uint64, np.uint64]:
+    """Next state and value of Splitmix64 (Steele 2014): reproducible for a seed."""
     state = np.uint64(state + np.uint64(0x9E3779B97F4A7C15))
     z = state
     z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
@@ -23,8 +21,10 @@ def _next_random(state: Any) -> Any:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _sort_by_cell(xyz: Any, ring: Any, rings: int, bins: int) -> Any:
-    """Rows ordered by (azimuth bin, ring), and where each cell starts."""
+def _sort_by_cell(
+    xyz: NDArray[np.float32], ring: NDArray[np.uint8], rings: int, bins: int
+) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
+    """Rows ordered by (azimuth bin, ring), and the start of each cell."""
     count = len(xyz)
     cell = np.empty(count, np.int32)
     start = np.zeros(bins * rings + 1, np.int64)
@@ -54,12 +54,12 @@ def draw_pairs(
     preserved: int,
     max_length_per_range: float,
     seed: int,
-) -> Any:
+) -> NDArray[np.int32]:
     """Rows of the two ends of each collar line segment of one sensor (requirements A3.1, 1-2).
 
     In every azimuth bin and between every two neighboring rings ``generated`` random pairs are
-    drawn and the ``preserved`` shortest kept; one longer than its nearer end's range times
-    ``max_length_per_range`` bridges a depth edge and is dropped.
+    drawn and the ``preserved`` shortest are kept. A pair longer than the range of its nearer end
+    times ``max_length_per_range`` crosses a depth edge and is dropped.
 
     Args:
         xyz: Points of one sensor in its own frame, spin axis z [m], (N, 3).

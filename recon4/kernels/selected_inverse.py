@@ -1,25 +1,29 @@
-"""Entries of the inverse of a sparse symmetric matrix, without making all of it."""
+"""Selected entries of the inverse of a sparse symmetric matrix."""
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def selected_inverse(start: Any, row: Any, lower: Any, diagonal: Any) -> Any:
-    """Entries of ``A^-1`` where the factor of ``A = L D L^T`` has entries.
+def selected_inverse(
+    start: NDArray[np.integer],
+    row: NDArray[np.integer],
+    lower: NDArray[np.float64],
+    diagonal: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Entries of ``A^-1`` at the nonzero positions of the factor of ``A = L D L^T``.
 
     Args:
         start: Entries of column n are ``start[n]:start[n + 1]``, (N + 1,).
-        row: Row of each entry, growing within a column, the diagonal first, (K,).
+        row: Row of each entry, increasing within a column, the diagonal first, (K,).
         lower: Entries of the unit lower triangle ``L``, (K,).
         diagonal: ``D``, (N,).
 
     Returns:
-        Entries of the inverse at the same places, (K,).
+        Entries of the inverse at the same positions, (K,).
 
     Takahashi 1973: columns from the last to the first,
     ``Z_ij = -sum_k L_kj Z_ik`` and ``Z_jj = 1/D_j - sum_k L_kj Z_kj``.
@@ -51,15 +55,21 @@ def selected_inverse(start: Any, row: Any, lower: Any, diagonal: Any) -> Any:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def entries(start: Any, row: Any, values: Any, a: Any, b: Any) -> Any:
-    """Values of a symmetric matrix of which the lower triangle is stored; NaN where nothing is.
+def entries(
+    start: NDArray[np.integer],
+    row: NDArray[np.integer],
+    values: NDArray[np.float64],
+    a: NDArray[np.integer],
+    b: NDArray[np.integer],
+) -> NDArray[np.float64]:
+    """Entries of a symmetric matrix whose lower triangle is stored; NaN if not stored.
 
     Args:
         start: As for `selected_inverse`.
-        row: The same.
-        values: The same.
-        a: Rows asked for, (M,).
-        b: Columns asked for, (M,).
+        row: As for `selected_inverse`.
+        values: Stored entries, (K,).
+        a: Requested rows, (M,).
+        b: Requested columns, (M,).
 
     Returns:
         (M,).

@@ -1,24 +1,28 @@
-"""Hot loops of the simulation: poses of shots, rays, and what comes back along them."""
+"""Kernels of the simulation: poses of shots, rays, and returns."""
 
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def evaluate_polynomials(
-    coefficients: Any, step_s: float, t_s: Any, derivative: int, out: Any
+    coefficients: NDArray[np.float64],
+    step_s: float,
+    t_s: NDArray[np.float64],
+    derivative: int,
+    out: NDArray[np.float64],
 ) -> None:
-    """Piecewise polynomials around the middles of equal intervals.
+    """Evaluate piecewise polynomials around the middles of equal intervals.
 
     Args:
         coefficients: (intervals, degree + 1, K), ascending powers of the time from the middle.
         step_s: Length of an interval [s].
-        t_s: Times [s], (N,); outside they are extrapolated.
+        t_s: Times [s], (N,); the ends are extrapolated.
         derivative: 0, 1 or 2.
         out: (N, K), filled.
     """
@@ -37,7 +41,13 @@ def evaluate_polynomials(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def make_rays(state: Any, mount_R: Any, mount_t: Any, shot: Any, rays: Any) -> None:
+def make_rays(
+    state: NDArray[np.float64],
+    mount_R: NDArray[np.float64],
+    mount_t: NDArray[np.float64],
+    shot: NDArray[np.float64],
+    rays: NDArray[np.float32],
+) -> None:
     """Central and a second ray of each shot, in the map.
 
     Args:
@@ -79,8 +89,14 @@ def make_rays(state: Any, mount_R: Any, mount_t: Any, shot: Any, rays: Any) -> N
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def hits_carrier(shot: Any, mount_R: Any, mount_t: Any, carrier: Any, blocked: Any) -> None:
-    """Which shots hit the person: an upright cylinder in the body.
+def hits_carrier(
+    shot: NDArray[np.float64],
+    mount_R: NDArray[np.float64],
+    mount_t: NDArray[np.float64],
+    carrier: NDArray[np.float64],
+    blocked: NDArray[np.bool_],
+) -> None:
+    """Mark shots that hit the carrier: an upright cylinder in the body.
 
     Args:
         shot: As in `make_rays`, (N, 5).
@@ -110,20 +126,20 @@ def hits_carrier(shot: Any, mount_R: Any, mount_t: Any, carrier: Any, blocked: A
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def measure(
-    range_m: Any,
-    triangle: Any,
-    normal: Any,
-    rays: Any,
-    reflectivity: Any,
-    blocked: Any,
-    gain: Any,
-    noise: Any,
-    rules: Any,
-    distance: Any,
-    intensity: Any,
-    truth: Any,
+    range_m: NDArray[np.float32],
+    triangle: NDArray[np.uint32],
+    normal: NDArray[np.float32],
+    rays: NDArray[np.float32],
+    reflectivity: NDArray[np.float32],
+    blocked: NDArray[np.bool_],
+    gain: NDArray[np.float64],
+    noise: NDArray[np.float32],
+    rules: NDArray[np.float64],
+    distance: NDArray[np.uint16],
+    intensity: NDArray[np.uint8],
+    truth: NDArray[np.uint8],
 ) -> None:
-    """What the sensor says of each shot; see ``docs/simulation.md`` for the model.
+    """Simulate the measurement of each shot; the model is in ``docs/simulation.md``.
 
     Args:
         range_m: Hits of central and second rays, (2 N,).

@@ -1,18 +1,24 @@
-"""Hot loops of slices: which points lie in a cut, where on it, and the picture of them."""
+"""Kernels of slices: select points in a cut, project them, draw them as an image."""
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def select(xyz: Any, axes: Any, shift: Any, low: Any, high: Any, rows: Any) -> int:
+def select(
+    xyz: NDArray[np.float32],
+    axes: NDArray[np.float64],
+    shift: NDArray[np.float64],
+    low: NDArray[np.float64],
+    high: NDArray[np.float64],
+    rows: NDArray[np.int32],
+) -> int:
     """Rows of the points inside a box that lies along the axes of a cut.
 
-    The float32 points count from the origin of their tile; everything here is float64.
+    The float32 points are relative to the origin of their tile; all else is float64.
 
     Args:
         xyz: Points from the tile's origin [m], float32 (N, 3).
@@ -23,10 +29,10 @@ def select(xyz: Any, axes: Any, shift: Any, low: Any, high: Any, rows: Any) -> i
         rows: Receives the rows, increasing, int32 (N,).
 
     Returns:
-        How many there are.
+        Number of rows.
     """
     count = 0
-    # The normal is tested first: it turns most points away.
+    # The normal is tested first: it excludes most points.
     nx, ny, nz = axes[2, 0], axes[2, 1], axes[2, 2]
     low_d, high_d = low[2] - shift[2], high[2] - shift[2]
     for k in range(len(xyz)):
@@ -43,7 +49,13 @@ def select(xyz: Any, axes: Any, shift: Any, low: Any, high: Any, rows: Any) -> i
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def project(xyz: Any, rows: Any, axes: Any, shift: Any, uvd: Any) -> None:
+def project(
+    xyz: NDArray[np.float32],
+    rows: NDArray[np.int32],
+    axes: NDArray[np.float64],
+    shift: NDArray[np.float64],
+    uvd: NDArray[np.float64],
+) -> None:
     """Coordinates u, v and distance from the plane of some points [m], float64 (M, 3)."""
     for m in range(len(rows)):
         k = rows[m]
@@ -54,18 +66,24 @@ def project(xyz: Any, rows: Any, axes: Any, shift: Any, uvd: Any) -> None:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def splat(
-    uvd: Any, values: Any, corner: Any, pixel_m: float, radius: int, count: Any, total: Any
+    uvd: NDArray[np.float64],
+    values: NDArray[np.float32],
+    corner: NDArray[np.float64],
+    pixel_m: float,
+    radius: int,
+    count: NDArray[np.int32],
+    total: NDArray[np.float64],
 ) -> None:
-    """Add points to a picture: how many fall on each pixel and the sum of their values.
+    """Draw points into an image: the count of each pixel and the sum of their values.
 
     Args:
         uvd: Coordinates on the cut [m], (M, 3).
-        values: One a point, NaN = unknown (left out), float32 (M,).
+        values: One per point, NaN = unknown (skipped), float32 (M,).
         corner: u of the left and v of the upper edge [m], (2,).
         pixel_m: Size of a pixel [m].
         radius: A point covers a disc of this radius [px]; 0 = one pixel.
-        count: Points on each pixel, changed, int32 (H, W).
-        total: Sum of their values, changed, float64 (H, W).
+        count: Points of each pixel, updated, int32 (H, W).
+        total: Sum of their values, updated, float64 (H, W).
     """
     height, width = count.shape
     reach = (radius + 0.5) ** 2
@@ -83,17 +101,23 @@ def splat(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def first_of_pixels(uvd: Any, corner: Any, pixel_m: float, taken: Any, chosen: Any) -> int:
-    """Rows of the points that are the first to fall on their pixel, into int32 (M,); their number.
+def first_of_pixels(
+    uvd: NDArray[np.float64],
+    corner: NDArray[np.float64],
+    pixel_m: float,
+    taken: NDArray[np.bool_],
+    chosen: NDArray[np.int32],
+) -> int:
+    """Select the first point of each pixel; returns their number.
 
-    The points of a tile come as even samples of it, so the first is a fair one.
+    The points of a tile are ordered as even samples of it, so the first is representative.
 
     Args:
         uvd: Coordinates on the cut [m], (M, 3).
         corner: As for `splat`.
         pixel_m: As for `splat`.
-        taken: Which pixels have a point already, changed, bool (H, W).
-        chosen: Receives the rows.
+        taken: Pixels that have a point already, updated, bool (H, W).
+        chosen: Receives the rows of the points, int32 (M,).
     """
     height, width = taken.shape
     count = 0

@@ -1,26 +1,27 @@
-"""A stable sort of integers by some of their bits."""
+"""Kernel of a stable radix sort of integers by some of their bits."""
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 _DIGIT = 11
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def radix_sort(keys: Any, low_bit: int, high_bit: int, spare: Any) -> Any:
+def radix_sort(
+    keys: NDArray[np.int64], low_bit: int, high_bit: int, spare: NDArray[np.int64]
+) -> NDArray[np.int64]:
     """Sort by the bits ``low_bit`` to ``high_bit`` (not included), the least digit first.
 
-    Three times as fast as comparing, for some 30 bits.
+    Three times as fast as a comparison sort, for some 30 bits.
 
     Args:
-        keys: Not negative, int64 (N,); destroyed.
-        low_bit: First bit that counts.
-        high_bit: First bit above that does not.
-        spare: int64 (N,); destroyed.
+        keys: Not negative, int64 (N,); overwritten.
+        low_bit: First bit of the sort key.
+        high_bit: First bit above the sort key.
+        spare: Scratch, int64 (N,); overwritten.
 
     Returns:
         The sorted keys: one of the two arrays.

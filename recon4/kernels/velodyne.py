@@ -1,8 +1,6 @@
-"""Returns of Velodyne data packets to points, one packet after the other."""
+"""Kernel that decodes Velodyne data packets to points."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import numpy as np
 from numba import njit
@@ -19,14 +17,17 @@ SIN = np.sin(_CDEG * np.arange(36000)).astype(np.float32)
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def _word(payload: Any, at: Any) -> Any:
+def _word(payload: NDArray[np.uint8], at: int) -> np.int32:
     return np.int32(payload[at]) | (np.int32(payload[at + 1]) << 8)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _steps(payload: Any, pair: Any, steps: Any) -> Any:
-    """Turn during each block [0.01°]; ``pair`` = 2 if two blocks share a firing. Jumps seen."""
-    jumps, last, first = 0, 0, -1
+def _steps(payload: NDArray[np.uint8], pair: int, steps: NDArray[np.int32]) -> int:
+    """Write the rotation during each block [0.01°]; returns the number of azimuth jumps.
+
+    ``pair`` = 2 if two blocks belong to one firing.
+    """
+    jumps, last, first = 0, np.int32(0), -1
     for b in range(12):
         steps[b] = last
         if b + pair < 12:
@@ -59,8 +60,15 @@ def decode(
     ring: NDArray[np.uint8],
     cos: NDArray[np.float32],
     sin: NDArray[np.float32],
-) -> tuple[Any, Any, Any, Any, Any, Any]:
-    """Points of packets that passed the filter.
+) -> tuple[
+    NDArray[np.int64],
+    NDArray[np.float32],
+    NDArray[np.uint16],
+    NDArray[np.uint8],
+    NDArray[np.uint8],
+    NDArray[np.int64],
+]:
+    """Decode packets that passed the filter to points.
 
     Args:
         payloads: Data packets, (P, 1206).
@@ -70,10 +78,10 @@ def decode(
         limits: Smallest and largest distance kept [units], (2,).
         cos_el: Cosine of the elevation of each of the 32 channels of a block, (32,).
         sin_el: Sine of it, (32,).
-        height_m: How far above the center the beam starts [m], (32,).
+        height_m: Height of the beam's origin above the center [m], (32,).
         offset_cdeg: Added to the azimuth [0.01°], (32,).
-        fraction: Share of the block's time after which the channel fires, (32,).
-        time_ns: When each return is fired after the packet's time [ns], (12, 32).
+        fraction: Firing time of each channel as a fraction of the block's duration, (32,).
+        time_ns: Firing time of each return after the packet's time [ns], (12, 32).
         ring: Ring of each channel, (32,).
         cos: Cosines of 0, 0.01, … 359.99°, (36000,).
         sin: Sines of them.
@@ -105,7 +113,7 @@ def decode(
                 other, other_intensity = np.int32(0), np.uint8(0)
                 if pair == 2:
                     # Even block: last return. Odd block: strongest, or second strongest if the
-                    # last is the strongest; the same again if there was one return only.
+                    # last is the strongest; both are equal if there was a single return.
                     other, other_intensity = distance, intensity
                     distance = _word(payload, at + _BLOCK_BYTES)
                     intensity = payload[at + _BLOCK_BYTES + 2]

@@ -1,7 +1,7 @@
-"""Hot loops of the map: points into tiles, one point a voxel.
+"""Kernels of the map: distribute points to tiles, keep one point per voxel.
 
-`recon4.mapping.records.RECORD` says how a point lies in a record of 32 bytes; a kernel gets that
-memory as arrays of several types, one row a record.
+`recon4.mapping.records.RECORD` defines the record of 32 bytes per point; a kernel receives this
+memory as arrays of several types, one row per record.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 PER_METER = 250.0
 """Vectors to the sensor are stored as int16 in steps of 4 mm, so 131 m at most."""
@@ -17,29 +18,29 @@ PER_METER = 250.0
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def choose(
-    xyz: Any,
-    origin: Any,
-    sensor: Any,
-    enabled: Any,
+    xyz: NDArray[np.float64],
+    origin: NDArray[np.float64],
+    sensor: NDArray[np.uint8],
+    enabled: NDArray[np.bool_],
     max_range_m: float,
-    out: Any,
-    low: Any,
-    high: Any,
+    out: NDArray[np.bool_],
+    low: NDArray[np.float64],
+    high: NDArray[np.float64],
 ) -> int:
-    """Which points belong in the map: enabled sensor, near enough.
+    """Choose the points of the map: enabled sensor, within the largest range.
 
     Args:
         xyz: Points [m], float64 (N, 3).
         origin: Positions of the sensor [m], float64 (N, 3).
         sensor: uint8 (N,).
         enabled: bool (S,).
-        max_range_m: Farther points are left out, and so are those that are not finite [m].
+        max_range_m: Farther points are excluded, and those that are not finite [m].
         out: Receives the choice, bool (N,).
         low: Receives the smallest coordinates of the chosen, float64 (3,).
         high: Receives their largest coordinates, float64 (3,).
 
     Returns:
-        How many were chosen.
+        Number of chosen points.
     """
     count = 0
     low[:] = np.inf
@@ -58,8 +59,8 @@ def choose(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def tile_spread(x: float, tile_m: float, halo_m: float) -> Any:
-    """Tile of a coordinate, and the first and last tile it touches with its halo."""
+def tile_spread(x: float, tile_m: float, halo_m: float) -> tuple[np.int64, np.int64, np.int64]:
+    """Tile of a coordinate, and the first and last tile whose halo it is in."""
     tile = np.int64(np.floor(x / tile_m))
     inside = x - tile * tile_m
     first = tile - 1 if inside < halo_m else tile
@@ -68,8 +69,15 @@ def tile_spread(x: float, tile_m: float, halo_m: float) -> Any:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def count_tiles(xyz: Any, chosen: Any, tile_m: float, halo_m: float, low: Any, counts: Any) -> None:
-    """Add to ``counts (I, J, K)`` how many records each tile of a box will get."""
+def count_tiles(
+    xyz: NDArray[np.float64],
+    chosen: NDArray[np.bool_],
+    tile_m: float,
+    halo_m: float,
+    low: NDArray[np.int64],
+    counts: NDArray[np.int64],
+) -> None:
+    """Add to ``counts (I, J, K)`` the number of records of each tile of a box."""
     for n in range(len(xyz)):
         if not chosen[n]:
             continue
@@ -84,23 +92,23 @@ def count_tiles(xyz: Any, chosen: Any, tile_m: float, halo_m: float, low: Any, c
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def fill_tiles(
-    xyz: Any,
-    origin: Any,
-    chosen: Any,
-    bytes_in: Any,
-    intensity: Any,
-    dt_ns: Any,
+    xyz: NDArray[np.float64],
+    origin: NDArray[np.float64],
+    chosen: NDArray[np.bool_],
+    bytes_in: tuple[NDArray[np.uint8], NDArray[np.uint8], NDArray[np.uint8]],
+    intensity: NDArray[np.uint16],
+    dt_ns: NDArray[np.int32],
     frame: int,
     tile_m: float,
     halo_m: float,
-    low: Any,
-    ends: Any,
-    f4: Any,
-    i4: Any,
-    i2: Any,
-    u1: Any,
+    low: NDArray[np.int64],
+    ends: NDArray[np.int64],
+    f4: NDArray[np.float32],
+    i4: NDArray[np.int32],
+    i2: NDArray[np.int16],
+    u1: NDArray[np.uint8],
 ) -> None:
-    """Write the records, those of a tile behind each other.
+    """Write the records, tile by tile.
 
     Args:
         xyz: Points in the map [m], float64 (N, 3).
@@ -111,9 +119,9 @@ def fill_tiles(
         dt_ns: int32 (N,).
         frame: Row of the multiframe.
         tile_m: Edge of a tile [m].
-        halo_m: Points this near to a tile are written to it as well, marked as halo [m].
+        halo_m: Points this near to a tile are also written to it, marked as halo [m].
         low: First tile of the box, (3,).
-        ends: Where the next record of each tile goes, int64 (I, J, K); counted up.
+        ends: Row of the next record of each tile, int64 (I, J, K); incremented.
         f4: The records as float32, (M, 8).
         i4: The records as int32, (M, 8).
         i2: The records as int16, (M, 16).
@@ -145,7 +153,12 @@ def fill_tiles(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def voxel_keys(
-    f4: Any, voxel_m: float, cell_voxels: int, side_cells: int, shift: int, out: Any
+    f4: NDArray[np.float32],
+    voxel_m: float,
+    cell_voxels: int,
+    side_cells: int,
+    shift: int,
+    out: NDArray[np.int64],
 ) -> None:
     """Cell and voxel of each record, with its row in the lower ``shift`` bits, int64 (N,).
 
@@ -170,7 +183,9 @@ def voxel_keys(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def nearest_in_voxels(order: Any, shift: int, i2: Any, rows: Any) -> int:
+def nearest_in_voxels(
+    order: NDArray[np.int64], shift: int, i2: NDArray[np.int16], rows: NDArray[np.int64]
+) -> int:
     """Row of the record with the shortest range in each voxel; of equal ones the first.
 
     Args:
@@ -180,7 +195,7 @@ def nearest_in_voxels(order: Any, shift: int, i2: Any, rows: Any) -> int:
         rows: Receives the rows, voxel by voxel, int64 (N,).
 
     Returns:
-        How many voxels there are.
+        Number of voxels.
     """
     mask = (np.int64(1) << shift) - 1
     count = -1
@@ -202,7 +217,13 @@ def nearest_in_voxels(order: Any, shift: int, i2: Any, rows: Any) -> int:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def seen_from_far(xyz: Any, range_m: Any, cell_m: float, ratio: float, keep: Any) -> None:
+def seen_from_far(
+    xyz: NDArray[np.float32],
+    range_m: NDArray[np.float32],
+    cell_m: float,
+    ratio: float,
+    keep: NDArray[np.bool_],
+) -> None:
     """Clear ``keep`` where the range is over ``ratio`` times the shortest in a coarse cell.
 
     Args:
@@ -210,7 +231,7 @@ def seen_from_far(xyz: Any, range_m: Any, cell_m: float, ratio: float, keep: Any
         range_m: float32 (N,).
         cell_m: Edge of a coarse cell [m].
         ratio: Larger than 1.
-        keep: bool (N,); points with False neither count nor change.
+        keep: bool (N,); points with False are ignored.
     """
     size: Any = 1
     for n in range(len(xyz)):
@@ -236,8 +257,13 @@ def seen_from_far(xyz: Any, range_m: Any, cell_m: float, ratio: float, keep: Any
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def face_sensor(normals: Any, to_sensor: Any, range_m: Any, incidence: Any) -> None:
-    """Turn normals towards the sensor, in place; range and incidence angle of each point.
+def face_sensor(
+    normals: NDArray[np.float32],
+    to_sensor: NDArray[np.float32],
+    range_m: NDArray[np.float32],
+    incidence: NDArray[np.float32],
+) -> None:
+    """Flip normals towards the sensor, in place; compute range and incidence angle of each point.
 
     Args:
         normals: Unit normals or zeros, float32 (N, 3).
@@ -262,23 +288,23 @@ def face_sensor(normals: Any, to_sensor: Any, range_m: Any, incidence: Any) -> N
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def unpack(
-    rows: Any,
-    f4: Any,
-    i4: Any,
-    i2: Any,
-    u1: Any,
-    frame_ns: Any,
-    xyz: Any,
-    intensity: Any,
-    small: Any,
-    frame: Any,
-    t_ns: Any,
-    to_sensor: Any,
+    rows: NDArray[np.int64],
+    f4: NDArray[np.float32],
+    i4: NDArray[np.int32],
+    i2: NDArray[np.int16],
+    u1: NDArray[np.uint8],
+    frame_ns: NDArray[np.int64],
+    xyz: NDArray[np.float32],
+    intensity: NDArray[np.uint16],
+    small: tuple[NDArray[np.uint8], NDArray[np.uint8], NDArray[np.uint8]],
+    frame: NDArray[np.uint32],
+    t_ns: NDArray[np.int64],
+    to_sensor: NDArray[np.float32],
 ) -> None:
-    """Unpack some records into columns.
+    """Unpack records into columns.
 
     Args:
-        rows: Records wanted, in the order of the columns, (M,).
+        rows: Rows of the records, in the order of the columns, (M,).
         f4: The records as float32, (N, 8).
         i4: The records as int32, (N, 8).
         i2: The records as int16, (N, 16).

@@ -1,4 +1,4 @@
-"""A map that answers "how far is this point from the surface it lies on?"."""
+"""Local map of planes: distance of points from the plane at their position."""
 
 from __future__ import annotations
 
@@ -29,35 +29,35 @@ class Match:
     """Mean absolute distance [m]; NaN without a match."""
     chi2: float
     degeneracy: float
-    """Smallest eigenvalue of the mean of n n^T: 0 = free to slide, 1/3 = held alike all around."""
+    """Smallest eigenvalue of the mean of n n^T: 0 = unobservable direction, 1/3 = isotropic."""
 
     @property
     def match_ratio(self) -> float:
-        """Matched share of the points."""
+        """Part of the points that found a plane, 0..1."""
         return self.matches / max(len(self.residual_m), 1)
 
 
 class PlaneMap:
-    """Planes fitted to the points in cubes of several sizes; can take points back."""
+    """Planes fitted to the points in cubes of several sizes; points can be removed again."""
 
     def __init__(self, settings: PlaneSettings) -> None:
         self._settings = settings
-        self._sizes = settings.finest_m * 2.0 ** np.arange(settings.levels)
+        self._sizes: Array = settings.finest_m * np.exp2(np.arange(settings.levels))
         self._keys = np.full(_FIRST_CAPACITY, planes.EMPTY, np.int64)
         self._sums = np.zeros((_FIRST_CAPACITY, 10))
         self._used = 0
         self._make_room_for_fits()
 
     def add(self, p_map: Array) -> None:
-        """Take in points [m], (N, 3)."""
+        """Add points [m], (N, 3)."""
         self._sum(p_map, 1.0)
 
     def remove(self, p_map: Array) -> None:
-        """Take away points that were added before, bit for bit the same."""
+        """Remove points that were added before, with exactly the same coordinates."""
         self._sum(p_map, -1.0)
 
     def clear(self) -> None:
-        """Forget everything but keep the memory."""
+        """Remove all points; the memory stays allocated."""
         self._keys.fill(planes.EMPTY)
         self._sums.fill(0.0)
         self._state.fill(0)
@@ -101,7 +101,7 @@ class PlaneMap:
         finest: int,
         gate_m: float,
     ) -> Match:
-        """Hold points against the finest plane at their place.
+        """Match points to the finest plane at their position.
 
         Args:
             p_map: Points [m], (N, 3).

@@ -1,8 +1,8 @@
-"""Registration of two single scans, however sparse: symmetric point to plane, several starts.
+"""Registration of two single scans, also sparse ones: symmetric ICP with several initial poses.
 
-A map of small planes needs some scans to fill its cubes. Here every point brings the plane
-through its own neighbors, on both sides (symmetric ICP, Rusinkiewicz 2019), and where the guess
-proves wrong the ground plans of both scans are laid over each other at every turn and shift.
+A map of small planes needs several scans to fill its cubes. Here a plane is fitted to the
+neighbors of every point of both scans (symmetric ICP, Rusinkiewicz 2019). If the initial pose
+proves wrong, the ground plans of both scans are correlated over rotation and shift.
 """
 
 from __future__ import annotations
@@ -26,19 +26,19 @@ _STEP_ARM_M = 5.0
 _COARSE_POINTS = 1500
 _COARSE_ROUNDS = 10
 _WIDE = 3.0
-"""The first rounds reach this many gates far."""
+"""The gate of the first rounds is larger by this factor."""
 _YAWS = 120
 _PLAN = 160
 """Cells of a ground plan along each side."""
 _PLAN_CELL_M = 0.5
 _PLAN_MOST = 4.0
 _STEEP = 0.6
-"""Of the ground plan are points whose normal rises by less than this."""
+"""The ground plan has the points whose normal has a smaller z component than this."""
 
 
 @dataclass(frozen=True, eq=False)
 class Scan:
-    """Points of one scan, thinned, with the planes they lie on."""
+    """Points of one scan, thinned, with normals."""
 
     points: Array
     """(N, 3) [m]."""
@@ -51,13 +51,13 @@ class Scan:
 
     @cached_property
     def plan(self) -> Array:
-        """Where walls and trunks stand, seen from above [m], (M, 2)."""
+        """Ground plan: x and y of the points on steep surfaces [m], (M, 2)."""
         steep = np.abs(self.normals[:, 2]) < _STEEP
         return np.ascontiguousarray(self.points[steep, :2])
 
 
 def make_scan(points: Array, settings: ScanSettings) -> Scan:
-    """Thin points [m], (N, 3), to one a voxel (their mean) and fit a plane around each."""
+    """Thin points [m], (N, 3), to one per voxel (the mean) and fit a plane around each."""
     p = _thinned(points[np.isfinite(points).all(axis=1)], settings.voxel_m)
     tree = cKDTree(p, balanced_tree=False, compact_nodes=False)
     normals = np.zeros_like(p)
@@ -69,10 +69,10 @@ def make_scan(points: Array, settings: ScanSettings) -> Scan:
 def register_scans(
     target: Scan, source: Scan, *, initial: SE3, settings: ScanSettings
 ) -> Registration:
-    """Estimate ``T_target_source`` from a guess within a meter and some ten degrees.
+    """Estimate ``T_target_source`` from an initial pose within a meter and some ten degrees.
 
     Converged means that the steps became small and at least ``settings.min_inlier_ratio`` of the
-    source lies on the target's surfaces; an end elsewhere is reported as too few matches.
+    source lies on the target's surfaces; a smaller inlier ratio is reported as too few matches.
 
     Args:
         target: Scan to register to.
@@ -89,11 +89,11 @@ def register_scans(
 def search_scans(
     target: Scan, source: Scan, *, initial: SE3, settings: ScanSettings
 ) -> Registration:
-    """Estimate ``T_target_source`` although the guess may be wrong altogether.
+    """Estimate ``T_target_source`` although the initial pose may be completely wrong.
 
-    The guess is taken where it leads to a good match. Otherwise it competes with the best
-    overlays of the ground plans (upright scans, any turn, shifts up to 40 m), each
-    registered with some of the points; the one that puts most of them in place is refined.
+    The initial pose is used if it leads to a good match. Otherwise it is compared with the best
+    overlays of the ground plans (upright scans, any heading, shifts up to 40 m). Each one is
+    registered with some of the points; the one with the largest inlier ratio is refined.
 
     Args:
         target: Scan to register to.
@@ -123,7 +123,7 @@ def overlay_plans(target: Scan, source: Scan, *, count: int, height_m: float) ->
     Args:
         target: Upright scan.
         source: Upright scan.
-        count: How many; those next to a better one are left out.
+        count: Number of overlays; those next to a better one are omitted.
         height_m: ``z`` of the results [m].
     """
     yaw: Array = np.linspace(0.0, 2.0 * np.pi, _YAWS, endpoint=False)
@@ -138,7 +138,7 @@ def overlay_plans(target: Scan, source: Scan, *, count: int, height_m: float) ->
 
 
 def _start(score: NDArray[Any], yaw: Array, height_m: float) -> SE3:
-    """The best overlay; its surroundings are wiped so that the next call finds another."""
+    """Take the best overlay and clear its surroundings, so that the next call finds another."""
     m, i, j = np.unravel_index(int(score.argmax()), score.shape)
     near_yaw = np.arange(m - 2, m + 3) % len(score)
     near_i, near_j = np.arange(i - 2, i + 3) % _PLAN, np.arange(j - 2, j + 3) % _PLAN
@@ -166,7 +166,7 @@ def _descend(
         q = T @ p
         nearest = target.tree.query(q, distance_upper_bound=reach)[1]
         H, g, nn = np.zeros((6, 6)), np.zeros(6), np.zeros((3, 3))
-        matches, right, weight, total, squares = accumulate_symmetric(
+        matches, inliers, weight, total, squares = accumulate_symmetric(
             q, n @ T.R.T, nearest, target.points, target.normals, T.t,
             settings.kernel_m, settings.inlier_m, H, g, nn,
         )  # fmt: skip
@@ -177,7 +177,7 @@ def _descend(
         if done > 2 and _STEP_ARM_M * np.linalg.norm(step[:3]) + np.linalg.norm(step[3:]) < 1e-3:
             stop = StopReason.SMALL_STEP
             break
-    match_ratio = right / len(rows)
+    match_ratio = inliers / len(rows)
     if match_ratio < settings.min_inlier_ratio:
         stop = StopReason.TOO_FEW
     variance = max(squares / weight, 1e-4)
@@ -186,7 +186,7 @@ def _descend(
 
 
 def _some(scan: Scan, limit: int) -> NDArray[np.intp]:
-    """Rows of a scan, evenly, no more than a limit."""
+    """Rows of a scan, evenly spaced, at most ``limit``."""
     return np.linspace(0, len(scan) - 1, min(len(scan), limit)).astype(np.intp)
 
 
@@ -196,7 +196,7 @@ def _refused(T: SE3, rounds: int) -> Registration:
 
 
 def _thinned(p: Array, voxel_m: float) -> Array:
-    """Mean of the points in every voxel, (M, 3)."""
+    """Mean of the points in each voxel, (M, 3)."""
     if not len(p):
         return np.empty((0, 3))
     cell = np.floor(p / voxel_m).astype(np.int64)

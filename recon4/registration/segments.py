@@ -1,4 +1,4 @@
-"""Collar line segments of a multiframe: the samples every registration works with."""
+"""Collar line segments of a multiframe: the features of every registration."""
 
 from __future__ import annotations
 
@@ -61,7 +61,8 @@ def _of_sensor(
     first, second = pairs[:, 0], pairs[:, 1]
     a, b = xyz[first].astype(np.float64), xyz[second].astype(np.float64)
     nearer = np.sqrt(np.minimum(np.sum(a * a, axis=1), np.sum(b * b, axis=1)))
-    a_s, b_s = frame.dt_ns[rows[first]] * 1e-9, frame.dt_ns[rows[second]] * 1e-9
+    dt_s = frame.dt_ns[rows].astype(np.float64) * 1e-9
+    a_s, b_s = dt_s[first], dt_s[second]
     return sensor.T_body_sensor @ a, sensor.T_body_sensor @ b, a_s, b_s, nearer
 
 

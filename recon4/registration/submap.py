@@ -26,9 +26,9 @@ Ends = NDArray[np.float64]
 
 
 class Submaps:
-    """Makes the segments around nodes when asked; nearby frames stay in a small cache.
+    """Computes the segments around nodes on demand; the last frames stay in a small cache.
 
-    Not for use by several threads at once: each takes its own.
+    Not thread-safe: each thread creates its own.
     """
 
     def __init__(
@@ -53,14 +53,15 @@ class Submaps:
         parts = [self._ends_odom(k) for k in near if not self._skip[k]]
         ends = np.concatenate(parts) if parts else np.empty((0, 2, 3))
         T_odom_body = self._odometry.at(self._t_ns[node : node + 1])[0]
-        # Flat, because numpy multiplies a stack of 2 x 3 matrices one by one.
+        # Flattened: numpy multiplies a stack of 2 x 3 matrices one by one.
         return (T_odom_body.inverse() @ ends.reshape(-1, 3)).reshape(-1, 2, 3)
 
     def points_of(self, node: int) -> Array:
-        """All points of the node's own multiframe, each from its own time [m], (N, 3)."""
+        """All points of the node's multiframe, undistorted, in its body frame [m], (N, 3)."""
         frame, rig = self._frames[int(self._rows[node])], self._frames.rig
         part = _covering(self._odometry, frame.t_ns, frame.duration_ns)
-        t_s, dt_s = (part.t_ns - frame.t_ns) * 1e-9, frame.dt_ns * 1e-9
+        t_s = (part.t_ns - frame.t_ns).astype(np.float64) * 1e-9
+        dt_s = frame.dt_ns.astype(np.float64) * 1e-9
         placed = [np.empty((0, 3))]
         for row, sensor in enumerate(rig.sensors):
             of_sensor = frame.sensor == row
@@ -85,9 +86,9 @@ class Submaps:
 
 
 def place_segments(segments: Segments, t_ns: int, duration_ns: int, trajectory: Trajectory) -> Ends:
-    """Both ends of each segment by the pose at its own time, in the trajectory's frame."""
+    """Both ends of each segment, placed by the pose at their times, in the trajectory's frame."""
     part = _covering(trajectory, t_ns, duration_ns)
-    t_s = (part.t_ns - t_ns) * 1e-9
+    t_s = (part.t_ns - t_ns).astype(np.float64) * 1e-9
     T = part.T_a_b
     return np.stack(
         [
@@ -99,19 +100,19 @@ def place_segments(segments: Segments, t_ns: int, duration_ns: int, trajectory: 
 
 
 def _covering(trajectory: Trajectory, t_ns: int, duration_ns: int) -> Trajectory:
-    """The poses over one frame, with one more on either side."""
+    """The poses over one frame, with one more before and after."""
     first, last = np.searchsorted(trajectory.t_ns, [t_ns, t_ns + duration_ns])
     first = min(max(int(first) - 1, 0), len(trajectory) - 2)
     return trajectory[slice(first, max(int(last) + 1, first + 2))]
 
 
 class NodeRangeImages:
-    """What each node brings to a pair: some segments and its view volume, kept on disk.
+    """Segments and range image of each node, for the registration of pairs; kept on disk.
 
     Args:
-        count: How many nodes.
+        count: Number of nodes.
         settings: Uses graph and overlap.
-        scratch: Folder on the disk that is to hold them, nameless; an OSError says it is full.
+        scratch: Folder for the unnamed temporary files; a full disk raises OSError.
     """
 
     def __init__(self, count: int, settings: Settings, scratch: Path) -> None:
@@ -122,10 +123,10 @@ class NodeRangeImages:
         self._settings = settings
 
     def fill(self, submaps: Submaps, nodes: Sequence[int]) -> None:
-        """Make the views of some nodes."""
+        """Compute segments and range images of some nodes."""
         g = self._settings.graph
         for node in nodes:
-            # The bins of a view volume want more points than the segments of one multiframe have.
+            # The segments of one multiframe are too few points to fill the bins of a view volume.
             wide = (
                 submaps.around(node, g.target_reach).reshape(-1, 3)
                 if g.target_reach
@@ -138,7 +139,7 @@ class NodeRangeImages:
             self._nearest[node] = view.nearest_m
 
     def ends(self, node: int) -> Ends:
-        """Both ends of the node's own segments, thinned evenly [m], (M, 2, 3)."""
+        """Both ends of the node's segments, thinned evenly [m], (M, 2, 3)."""
         return self._ends[node, : self._size[node]].astype(np.float64)
 
     def nearest_m(self, node: int) -> NDArray[np.float32]:
@@ -153,9 +154,9 @@ def _thin(ends: Ends, limit: int) -> Ends:
 
 
 def _scratch(shape: tuple[int, ...], folder: Path) -> NDArray[np.float32]:
-    """An array the system may page out to a nameless file, gone with the array."""
+    """An array in an unnamed file that is removed with the array."""
     with tempfile.TemporaryFile(dir=folder) as file:
-        # A file without its blocks, written through memory, kills the process on a full disk.
+        # Writing a sparse file through a memory map kills the process if the disk is full.
         os.posix_fallocate(file.fileno(), 0, 4 * int(np.prod(shape)))
         return np.memmap(file, np.float32, "r+", shape=shape)
 

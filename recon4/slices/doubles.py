@@ -110,7 +110,7 @@ def _visits(tile: Tile, rule: DoubleRule, first_ns: int) -> _Visits:
     columns = tile.read(["xyz", "normal", "t_ns", "frame_id"])
     # One more layer of cells on all sides: cell centers may lie outside of the points.
     base = np.floor((np.array(tile.low_m) - 1e-4) / rule.cell_m).astype(np.int64) - rule.depth
-    low = base * rule.cell_m
+    low = base.astype(np.float64) * rule.cell_m
     side = int(np.ceil(np.max(np.array(tile.high_m) - low) / rule.cell_m)) + rule.depth + 1
     size, used = _FIRST_TABLE, -1
     while used < 0:

@@ -222,10 +222,9 @@ class LiveMap:
         rows = np.arange(0, len(frame), max(1, len(frame) // PREVIEW_POINTS))
         part = frame.take(rows)
         T_map_dense = self.tracker.T_map_odom @ step.T_dense
-        t_s = (step.t_ns - frame.t_ns) * 1e-9
-        p_map = place_points(
-            t_s, T_map_dense.R, T_map_dense.t, part.dt_ns * 1e-9, _in_body(part, self._rig)
-        )
+        t_s = (step.t_ns - frame.t_ns).astype(np.float64) * 1e-9
+        dt_s = part.dt_ns.astype(np.float64) * 1e-9
+        p_map = place_points(t_s, T_map_dense.R, T_map_dense.t, dt_s, _in_body(part, self._rig))
         range_m = np.linalg.norm(part.xyz, axis=1).astype(np.float64)
         values = self._intensity.normalize(part.intensity, part.sensor, part.ring, range_m)
         every = max(1, len(p_map) // COVERAGE_RAYS)
