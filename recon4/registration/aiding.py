@@ -1,7 +1,7 @@
-"""Outdoors: what GNSS/INS knows of the body, as a weak hold for odometry where LiDAR has none.
+"""GNSS aiding: position and heading of GNSS/INS as a weak measurement of odometry, outdoors.
 
-Over an open field the ground says nothing of how far one went. Fixes every tenth of a second keep
-odometry within decimeters there, and leave it alone wherever the LiDAR knows better.
+On an open field the LiDAR does not observe the horizontal position. Fixes every tenth of a second
+keep odometry within decimeters there. Where the LiDAR observes the motion they have little weight.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from recon4.geometry.se3 import SE3, Array, skew, so3_log
 from recon4.model.trajectory import Times
 
 _MAX_GAP_NS = 300_000_000
-"""Between two fixes farther apart than this nothing is known [ns]."""
+"""No position is interpolated between two fixes farther apart than this [ns]."""
 _OUTLIER_SD = 3.0
-"""Residual in standard deviations at which a fix counts half."""
+"""Residual in standard deviations at which a fix has half its weight."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,7 +37,7 @@ class GnssAiding:
     """Lever arm [m], (3,)."""
 
     def pose(self, t_ns: int) -> SE3 | None:
-        """``T_enu_body`` at a time; None without fixes around it."""
+        """``T_enu_body`` at a time; None without fixes before and after it."""
         found = self._around(t_ns)
         if found is None:
             return None
@@ -50,7 +50,7 @@ class GnssAiding:
     def pull(self, T_enu_body: SE3, t_ns: int) -> tuple[Array, Array]:
         """Information (6, 6) and gradient (6,) of a left correction about the body's origin.
 
-        A wild fix is held back by a Cauchy weight.
+        A Cauchy weight limits the influence of an outlier.
         """
         H, g = np.zeros((6, 6)), np.zeros(6)
         found = self._around(t_ns)

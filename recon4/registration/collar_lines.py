@@ -1,8 +1,8 @@
 """Registration of collar line segments, line against line (V §2.4, Velas 2016).
 
-Solver ``svd`` is the documents': closest points of matched lines, rigid fit in closed form.
-Solver ``common_normal`` moves along the common normal of two matched lines only, because where
-along a line the sensor happened to sample says nothing about its place.
+Solver ``svd`` is that of the documents: closest points of matched lines, rigid fit in closed form.
+Solver ``common_normal`` minimizes the distance along the common normal of two matched lines only,
+because the position of a sample along its line carries no information.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class LineTarget:
 
     @cached_property
     def tree(self) -> cKDTree:
-        """Midpoints. Unbalanced: three times faster to build, as fast to ask."""
+        """KD-tree of the midpoints. Unbalanced: three times faster to build, as fast to query."""
         return cKDTree(self.lines.mid, balanced_tree=False, compact_nodes=False)
 
 
@@ -49,7 +49,7 @@ def register_lines(
         target: Lines in the target frame.
         source: Lines in the source frame.
         initial: First ``T_target_source``.
-        portion: Share of nearest matches that is kept, 0..1 (the overlap, V §2.5).
+        portion: Fraction of nearest matches that is kept, 0..1 (the overlap, V §2.5).
         settings: Solver and stop rules.
     """
     if len(target.lines) < _MIN_MATCHES or len(source) < _MIN_MATCHES:
@@ -87,7 +87,7 @@ class _Step:
 def _match(
     tree: cKDTree, moved: Lines, portion: float, settings: RegistrationSettings
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Nearest target midpoint of each source midpoint, the best portion of them."""
+    """Rows of matched lines in target and source: nearest midpoints, the best portion of them."""
     bound_m = settings.max_distance_m if settings.solver == "common_normal" else np.inf
     distance_m, nearest = tree.query(moved.mid, distance_upper_bound=bound_m)
     found = np.flatnonzero(np.isfinite(distance_m))
@@ -143,7 +143,7 @@ def _normal_equations(p: Array, n: Array, r: Array, w: Array) -> tuple[Array, Ar
 
 
 def _stop(errors: list[float], step: _Step, settings: RegistrationSettings) -> StopReason | None:
-    """The rules of requirements A3.2 for ``svd``; a small step for ``common_normal``."""
+    """Stop reason, or None: rules of requirements A3.2 for ``svd``, else a small step."""
     if settings.solver == "common_normal":
         move_m = _STEP_ARM_M * float(step.T.angle()) + float(np.linalg.norm(step.T.t))
         return StopReason.SMALL_STEP if move_m < settings.converged_step_m else None

@@ -1,4 +1,4 @@
-"""Directions in which a match only seems to hold."""
+"""Observability: remove information that errors of the plane normals alone create."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ from recon4.registration.plane_map import Match
 
 
 def observable_directions(match: Match, normal_noise_rad: float) -> tuple[Array, Array]:
-    """Normal equations without what errors of the planes' normals alone would make of them.
+    """Normal equations reduced by the information that noise of the normals creates.
 
-    On flat ground every normal should be vertical; that they are a little off holds the body
-    sideways, and wrongly. Such errors add ``normal_noise_rad²`` a match to every direction, so
-    that much is taken away: a direction held by less counts as free (compare Zhang & Singh 2016).
+    On flat ground every normal should be vertical. Small errors of the normals seem to constrain
+    the horizontal position, wrongly. Such errors add ``normal_noise_rad²`` per match to every
+    direction; this amount is subtracted. A direction with less information counts as unobservable
+    (compare Zhang & Singh 2016).
 
     Args:
         match: Normal equations of a round.

@@ -1,4 +1,4 @@
-"""One frame held against the map of planes: the rounds of the iterated filter."""
+"""Registration of one frame to the plane map: the iterations of the error-state filter."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from recon4.registration.state import END_POSE, POSES, START, STATE
 from recon4.settings import OdometrySettings
 
 _GATES_M = (1.0, 0.5, 0.3, 0.2)
-"""How far from its plane a point may lie, round by round; the last one stays."""
+"""Largest distance of a point from its plane in each round [m]; the last one is for all further."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FrameFit:
-    """Outcome of the rounds for one frame."""
+    """Result of the registration of one frame."""
 
     T_dense: SE3
     delta: Array
@@ -30,7 +30,7 @@ class FrameFit:
     P: Array
     """Covariance of that correction, (24, 24)."""
     H_lidar: Array
-    """What the points alone say of the two poses: information, (12, 12)."""
+    """Information of the points alone about the poses at start and end, (12, 12)."""
     match: Match
     rounds: int
     converged: bool
@@ -38,19 +38,19 @@ class FrameFit:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FrameFitter:
-    """How frames are fitted: bounds and weights, the same for all frames."""
+    """Fits frames to the plane map with the same bounds and weights."""
 
     settings: OdometrySettings
     converged_step_m: float
     coarse: int
-    """Level of cubes to begin with, 0 = the finest: how far off the prediction may be."""
+    """First level of cubes, 0 = the finest. Larger cubes allow a larger prediction error."""
     aiding: GnssAiding | None = None
 
     def fit(self, target: PlaneMap, segments: Segments, prediction: Prediction) -> FrameFit:
-        """Correct a predicted motion until the segments' ends lie on the planes.
+        """Correct a predicted motion until the ends of the segments lie on the planes.
 
-        Both ends count, not the midpoint: a plane is fitted to ends, and only its own points lie
-        on it evenly; at rest that halves the scatter of the pose.
+        Both ends of a segment are used, not its midpoint: planes are fitted to ends. While
+        stationary this halves the scatter of the pose.
         """
         information = np.linalg.inv(prediction.prior + 1e-12 * np.eye(24))
         center = prediction.T_odom_body.t[-1]
@@ -91,7 +91,7 @@ class FrameFitter:
 
 
 def _correct(prediction: Prediction, delta: Array, center: Array) -> SE3:
-    """The predicted poses moved by a correction that grows linearly over the frame."""
+    """Apply a correction to the predicted poses, interpolated linearly over the frame."""
     s = (prediction.t_s / prediction.t_s[-1])[:, None]
     start, end = delta[START], delta[END_POSE]
     omega = (1.0 - s) * start[STATE.rotation] + s * end[STATE.rotation]

@@ -1,4 +1,4 @@
-"""Whether the IMU and the LiDARs tell of the same motion; if not, how to make them."""
+"""Consistency check of the IMU against the LiDARs, with a correction of the gyroscope bias."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from recon4.store.frames import FrameStore
 _FRAMES = 10
 """Multiframes of one trial."""
 _REST_NS = 500_000_000
-"""The zero of a gyroscope is its mean over so long from the start, if the body stands then."""
+"""The gyroscope bias is its mean over this time from the start, if the body is stationary [ns]."""
 _ZERO_RAD_S = 0.06
-"""A smaller offset is found by the odometry itself (its prior is a third of this)."""
+"""Odometry estimates a smaller bias itself (its prior is a third of this)."""
 _CLEARLY = 0.75
-"""Another way must bring the error below this share to be taken."""
+"""An alternative is used if its error is below this fraction of the best one's …"""
 _CLEARLY_M = 0.002
-"""… and gain at least this [m]."""
+"""… and smaller by at least this [m]."""
 _TYPICAL = 0.8
-"""Share of the frames whose error counts: one bad frame must not decide."""
+"""Quantile of the errors that is compared: a single bad frame has no influence."""
 _NEVER_M = 1.0
 """The error of a trial that found no match [m]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """What some multiframes said of one way of using the IMU."""
+    """Result of registering some multiframes with one variant of the IMU samples."""
 
     lost: int
     error_m: float
@@ -46,19 +46,19 @@ class Trial:
 
 
 def consistent_imu(frames: FrameStore, settings: Settings) -> tuple[ImuSamples | None, str]:
-    """The IMU as recorded, with the zero of its gyroscope taken off, or none.
+    """The IMU samples as recorded, with the gyroscope bias removed, or None.
 
-    The LiDARs decide: the first multiframes and those of the fastest turn are registered in each
-    way, and another way than the recorded one is taken if it fits clearly better. A gyroscope may
-    have a zero of tens of degrees a second (HDL-32E), its axes may be named wrongly, its clock may
-    be off.
+    The first multiframes and those of the fastest turn are registered with each variant. A variant
+    other than the recorded samples is used if it fits the LiDAR clearly better. A gyroscope may
+    have a bias of tens of degrees a second (HDL-32E), its axes may be swapped, its clock may be
+    offset.
 
     Args:
         frames: The multiframes with their rig and IMU.
-        settings: Of the odometry to come.
+        settings: Settings of the odometry.
 
     Returns:
-        The samples to use, and what a person should know about them (empty = nothing).
+        The samples to use, and a warning for the user (empty = none).
     """
     imu = frames.imu
     planes = settings.registration.solver == "planes"
@@ -73,15 +73,15 @@ def consistent_imu(frames: FrameStore, settings: Settings) -> tuple[ImuSamples |
         if found.clearly_better(best):
             text = ", ".join(f"{value:.1f}" for value in np.rad2deg(zero_rad_s))
             best = found
-            chosen = zeroed, f"gyroscope: its zero at the start ({text} deg/s) was taken off"
+            chosen = zeroed, f"gyroscope bias at the start ({text} deg/s) was subtracted"
     found = _try(frames, None, settings)
     if found.clearly_better(best):
         chosen = (
             None,
             (
                 "the IMU contradicts the LiDARs and is not used for the motion: "
-                f"segments lie {100 * best.error_m:.1f} cm off with it, "
-                f"{100 * found.error_m:.1f} cm without; "
+                f"the mean residual of the segments is {100 * best.error_m:.1f} cm with it, "
+                f"{100 * found.error_m:.1f} cm without it; "
                 "check its axes, units and clock"
             ),
         )

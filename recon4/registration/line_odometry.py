@@ -1,4 +1,4 @@
-"""Multi-frame CLS odometry as the documents have it (V §2.4-2.6, Velas 2016 Alg. 1)."""
+"""Multi-frame CLS odometry as in the documents (V §2.4-2.6, Velas 2016 Alg. 1)."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from recon4.registration.segments import Segments, sample_segments
 from recon4.settings import Settings
 
 _PREDICTOR = 3
-"""Motions the linear predictor looks back on (requirements A3.2)."""
+"""Number of past motions the linear predictor uses (requirements A3.2)."""
 _PASSES = 2
-"""Correct the rolling shutter, register, correct again (V §2.6)."""
+"""Undistort, register, undistort again (V §2.6)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,10 +43,10 @@ class _HistoryFrame:
 class LineOdometry:
     """Registers each multiframe against the lines of the last ones.
 
-    The motion from the middle of one multiframe to the middle of the next is predicted by the
-    linear predictor, its rotation by the gyroscope if there is one and the settings allow it. The
-    same motion undistorts the frame (V Eq. 2.8); the registration moves the whole frame, which
-    tells the motion better, and so once more. The share of matches kept is the overlap (V §2.5).
+    The linear predictor predicts the motion from the middle of one multiframe to the middle of the
+    next; the gyroscope predicts its rotation if there is one and the settings allow it. This
+    motion undistorts the frame (V Eq. 2.8). The registration moves the whole frame and improves
+    the motion; then both steps are repeated. The fraction of matches kept is the overlap (V §2.5).
     """
 
     def __init__(self, rig: Rig, settings: Settings, imu: ImuSamples | None = None) -> None:
@@ -85,7 +85,10 @@ class LineOdometry:
         return self._step(frame, motion, found, prediction_offset_m=prediction_offset_m, lost=lost)
 
     def _predicted_motion(self, frame: Multiframe) -> SE3:
-        """Over one multiframe: newest motion heaviest, weights N…1 over their sum."""
+        """Predicted motion over one multiframe: mean of the last ones, weights 1…N over their sum.
+
+        The newest motion has the largest weight.
+        """
         motion = SE3.identity()
         if self._motions:
             w = np.arange(1, len(self._motions) + 1, dtype=np.float64)
@@ -97,7 +100,7 @@ class LineOdometry:
         return motion
 
     def _lines(self, segments: Segments, frame: Multiframe, T_odom_body: SE3, motion: SE3) -> Lines:
-        """Lines in odom; inside the frame the body moves on as it did up to its middle."""
+        """Lines in odom, undistorted with a constant motion over the frame."""
         t_s = np.array([0.0, frame.duration_ns * 1e-9])
         T = T_odom_body @ SE3.stack([_times(motion, -0.5), _times(motion, 0.5)])
         a = place_points(t_s, T.R, T.t, segments.a_s, segments.a_body)
@@ -106,8 +109,8 @@ class LineOdometry:
         return Lines.through(a[apart], b[apart])
 
     def _register(self, lines: Lines, view: RangeImage, T_odom_body: SE3) -> Registration:
-        """The whole frame against the history: all of it joined, or the mean over its frames."""
-        shares = [
+        """Register the frame to the joined history, or to each of its frames and average."""
+        overlaps = [
             overlap(
                 observed.view,
                 view,
@@ -121,18 +124,18 @@ class LineOdometry:
             return averaged(
                 [
                     self._register_to(target, lines, overlap_ratio)
-                    for target, overlap_ratio in zip(targets, shares, strict=True)
+                    for target, overlap_ratio in zip(targets, overlaps, strict=True)
                 ]
             )
         joined = Lines(
             np.concatenate([observed.target.lines.mid for observed in self._history]),
             np.concatenate([observed.target.lines.dir for observed in self._history]),
         )
-        return self._register_to(LineTarget(joined), lines, max(shares))
+        return self._register_to(LineTarget(joined), lines, max(overlaps))
 
     def _register_to(self, target: LineTarget, lines: Lines, overlap_ratio: float) -> Registration:
         settings = self._settings.registration
-        # A scan too sparse to fill the bins of a view volume seems to overlap with nothing.
+        # A scan too sparse to fill the bins of a view volume has an overlap of 0.
         overlap_ratio = max(overlap_ratio, settings.portion)
         return register_lines(
             target, lines, initial=SE3.identity(), portion=overlap_ratio, settings=settings
@@ -170,12 +173,12 @@ class LineOdometry:
 
 
 def _times(motion: SE3, factor: float) -> SE3:
-    """A part of a motion, or more of it (V Eq. 2.8)."""
+    """Scale a motion by a factor (V Eq. 2.8)."""
     return interpolate(SE3.identity(), motion, np.array([factor]))[0]
 
 
 def averaged(found: list[Registration]) -> Registration:
-    """The simple mean of the poses that converged (V §3.1); rotations after Markley."""
+    """Mean of the poses that converged (V §3.1); rotations after Markley."""
     good = [one for one in found if one.converged]
     if not good:
         return found[-1]

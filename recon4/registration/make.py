@@ -1,4 +1,4 @@
-"""Which odometry the settings ask for."""
+"""Create the odometry that the settings select."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from recon4.settings import Settings
 def make_odometry(
     rig: Rig, settings: Settings, imu: ImuSamples | None, *, aiding: GnssAiding | None = None
 ) -> Odometry | LineOdometry:
-    """An object with ``push(multiframe)``: planes (ours), or lines (the documents')."""
+    """Odometry by planes (this project's method) or by lines (the documents' method)."""
     if settings.registration.solver == "planes":
         return Odometry(rig, settings, imu, aiding=aiding)
     return LineOdometry(rig, settings, imu)

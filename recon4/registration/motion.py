@@ -1,4 +1,4 @@
-"""What the body does between two registrations: the IMU's word, or constant velocity."""
+"""Prediction of the motion between two registrations: by IMU, or with constant velocity."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _FREE_SD = (0.01, 0.05, 0.3, 0.3)
 """Standard deviation of a state between two scans: turn [rad], place [m], velocity [m/s], turn
 rate [rad/s]."""
 _REST_NS = 500_000_000
-"""Samples so near to a time tell which way is up then [ns]; if there is none, the nearest does."""
+"""The vertical is averaged over samples this near in time [ns]; if there is none, the nearest."""
 _KEPT_NS = 60_000_000_000
-"""Of an IMU that is still measuring, samples are kept for so long [ns]."""
+"""During live capture IMU samples are kept for this time [ns]."""
 _SLOT_S = 0.02
 """Without an IMU the motion is sampled this often [s]."""
 
@@ -68,7 +68,7 @@ class MotionState:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Prediction:
-    """Motion over one frame, before the LiDAR has its say."""
+    """Predicted motion over one frame, before the LiDAR is used."""
 
     t_s: Array
     """Times after the start of the frame [s], from 0 to its end, (K,)."""
@@ -93,7 +93,7 @@ class ImuMotion:
             self._noise[1] = s.free_accel
 
     def extend(self, imu: ImuSamples) -> None:
-        """Take samples that follow, of a capture that goes on; old ones are forgotten."""
+        """Append newer samples of a live capture; drop samples older than a minute."""
         gyro, accel = _in_body(imu, self._rig)
         kept = self._t_ns > imu.t_ns[-1] - _KEPT_NS
         self._t_ns = np.concatenate([self._t_ns[kept], imu.t_ns])
@@ -101,7 +101,7 @@ class ImuMotion:
         self._accel = np.concatenate([self._accel[kept], accel])
 
     def covers(self, start_ns: int, end_ns: int) -> bool:
-        """Whether there are samples all through a time, without a hole of more than 50 ms."""
+        """Whether there are samples over a whole time span, without a gap of more than 50 ms."""
         first, last = np.searchsorted(self._t_ns, [start_ns, end_ns])
         first, last = max(first - 1, 0), min(last, len(self._t_ns) - 1)
         times = self._t_ns[first : last + 1]
@@ -109,7 +109,7 @@ class ImuMotion:
         return len(times) > 1 and not outside and bool(np.diff(times).max() <= 50_000_000)
 
     def initial(self, t_ns: int) -> MotionState:
-        """At rest or walking at ``t_ns``: roll and pitch from the mean specific force."""
+        """Initial state at ``t_ns``: roll and pitch from the mean specific force."""
         away_ns = np.abs(self._t_ns - t_ns)
         near = away_ns <= max(_REST_NS, int(away_ns.min()))
         up_body = self._accel[near].mean(axis=0) if self._has_accel else np.array([0, 0, 1.0])
@@ -127,7 +127,7 @@ class ImuMotion:
         return self.predict(state, end_ns).end.R
 
     def predict(self, state: MotionState, end_ns: int) -> Prediction:
-        """Integrate from the state's time to ``end_ns``."""
+        """Integrate the IMU samples from the state's time to ``end_ns``."""
         first, last = np.searchsorted(self._t_ns, [state.t_ns + 1, end_ns])
         times = np.concatenate([[state.t_ns], self._t_ns[first:last], [end_ns]])
         gyro, accel = (_at(times, self._t_ns, v) for v in (self._gyro, self._accel))
@@ -139,23 +139,23 @@ class ImuMotion:
 class FreeMotion:
     """Constant velocity and constant turn rate, when there is no IMU.
 
-    The same filter with silent sensors: a gyroscope that reads 0 has the bias minus the turn rate.
+    The same filter with sensors that read 0: the gyroscope bias is then the negative turn rate.
     """
 
     def __init__(self, settings: OdometrySettings) -> None:
         self._noise = np.array([1e-3, settings.free_accel, settings.free_turn_walk, 1e-9])
 
     def covers(self, start_ns: int, end_ns: int) -> bool:
-        """Always."""
+        """Whether the span is not empty: this model needs no samples."""
         return end_ns > start_ns
 
     def initial(self, t_ns: int) -> MotionState:
-        """At rest at the origin, not knowing it."""
+        """State at rest at the origin, with a large covariance."""
         sd = np.repeat([1e-4, 1e-4, 1.0, 0.5, 1e-9, 1e-9], 3)
         return MotionState(t_ns, np.eye(3), np.zeros(15), np.diag(sd**2))
 
     def between(self, T_odom_body: SE3, t_ns: tuple[int, int], start_ns: int) -> MotionState:
-        """The state at ``start_ns`` of a steady motion through two poses (a batch of 2)."""
+        """State at ``start_ns`` of a motion of constant velocity through two poses (batch of 2)."""
         span_s = (t_ns[1] - t_ns[0]) * 1e-9
         velocity = (T_odom_body.t[1] - T_odom_body.t[0]) / span_s
         turn_rate = so3_log(T_odom_body.R[0].T @ T_odom_body.R[1]) / span_s
@@ -168,18 +168,18 @@ class FreeMotion:
         return MotionState(start_ns, R, vector, np.diag(sd**2))
 
     def coasting(self, state: MotionState) -> MotionState:
-        """The state of an IMU that fell silent: no gravity, no biases, the turn rate unknown."""
+        """State without IMU after a gap began: no gravity, no biases, the turn rate unknown."""
         sd = np.repeat([_FREE_SD[-1], 1e-9, 1e-9], 3)
         return state.with_biases(np.zeros(9), np.diag(sd**2))
 
     def at_rest(self, state: MotionState, t_ns: int) -> MotionState:
-        """The state held still until ``t_ns``: what a lost body did is not known."""
+        """Stationary state at ``t_ns`` at the last position, because the motion is unknown."""
         vector = np.zeros(15)
         vector[VECTOR.position] = state.vector[VECTOR.position]
         return replace(self.initial(t_ns), R=state.R, vector=vector)
 
     def predict(self, state: MotionState, end_ns: int) -> Prediction:
-        """Go on as before until ``end_ns``."""
+        """Continue with constant velocity until ``end_ns``."""
         slots = max(2, round((end_ns - state.t_ns) * 1e-9 / _SLOT_S) + 1)
         times = np.linspace(state.t_ns, end_ns, slots).astype(np.int64)
         silent = np.zeros((slots, 3))
@@ -213,8 +213,8 @@ def _in_body(imu: ImuSamples, rig: Rig) -> tuple[Array, Array]:
 
 
 def _at(t_ns: Times, sample_t_ns: Times, values: Array) -> Array:
-    """Linear interpolation of samples (N, 3) at other times, the ends held."""
-    # float64 holds nanoseconds exactly only after taking the start away.
+    """Linear interpolation of samples (N, 3) at other times, constant beyond the ends."""
+    # float64 represents nanoseconds exactly only after the start is subtracted.
     t = (t_ns - t_ns[0]).astype(np.float64)
     first, last = np.searchsorted(sample_t_ns, [t_ns[0], t_ns[-1]])
     rows = slice(max(first - 1, 0), last + 1)
@@ -223,7 +223,7 @@ def _at(t_ns: Times, sample_t_ns: Times, values: Array) -> Array:
 
 
 def _level(up_body: Array) -> Array:
-    """The rotation without heading that turns a direction of the body straight up."""
+    """Rotation without heading that maps a direction of the body to the vertical."""
     up = up_body / np.linalg.norm(up_body)
     axis = np.cross(up, [0.0, 0.0, 1.0])
     sine = np.linalg.norm(axis)

@@ -1,4 +1,4 @@
-"""Pose of each multiframe from the ones before: one object for files and for live capture."""
+"""Odometry by planes: the pose of each multiframe from the ones before, for files and live."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from recon4.settings import Settings
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OdometryStep:
-    """What became of one multiframe. Being lost is an outcome, not an error."""
+    """Result of odometry for one multiframe. Lost tracking is a result, not an error."""
 
     frame_id: int
     t_mid_ns: int
@@ -39,7 +39,7 @@ class OdometryStep:
     error_m: float
     """Mean distance of the matched segments from the local map [m]; NaN without a match."""
     match_ratio: float
-    """Matched share of the segments."""
+    """Part of the segments that found a plane, 0..1."""
     rounds: int
     converged: bool
     degeneracy: float
@@ -54,11 +54,11 @@ class OdometryStep:
 class Odometry:
     """Registers multiframes one after the other against a local map of keyframes.
 
-    Each frame is undistorted with the predicted motion, its collar line segments are held against
-    planes of the last keyframes, and pose, velocity and IMU biases are updated together (an
-    iterated error-state Kalman filter over the pose at the start and the state at the end of the
-    frame). Without an IMU the same filter starts every frame where the registration to the last
-    scan puts it (`ScanChain`); where that fails the frame is lost.
+    Each frame is undistorted with the predicted motion and its collar line segments are matched to
+    planes of the last keyframes. An iterated error-state Kalman filter over the pose at the start
+    and the state at the end of the frame updates pose, velocity and IMU biases together. Without
+    an IMU the registration to the last scan (`ScanChain`) predicts the pose of every frame; if it
+    fails, the frame is lost.
     """
 
     def __init__(
@@ -78,7 +78,7 @@ class Odometry:
         self._chain = None if with_imu else ScanChain(settings.scans)
         self._state: MotionState | None = None
         self._before_hole: MotionState | None = None
-        """While the IMU is silent: the last state it spoke for, whose biases still hold."""
+        """During a gap in the IMU samples: the last state before it, with the IMU biases."""
         self._fitter = FrameFitter(
             settings.odometry,
             settings.registration.converged_step_m,
@@ -91,9 +91,7 @@ class Odometry:
         self._lost_frames = 0
 
     def extend_imu(self, imu: ImuSamples) -> None:
-        """Take IMU samples that follow those given at first; a capture that goes on has them
-        only now. Nothing happens if there was no IMU at first.
-        """
+        """Append newer IMU samples of a live capture. Without an IMU at first this does nothing."""
         if isinstance(self._motion, ImuMotion):
             self._motion.extend(imu)
 
@@ -118,9 +116,9 @@ class Odometry:
         return step
 
     def _count_lost(self, *, lost: bool) -> None:
-        """With an IMU: after a while in a place the map does not know, begin a new map there.
+        """Count lost frames; with an IMU reset the map after ``odometry.restart_after`` of them.
 
-        The IMU alone has carried the body so far; the pose graph gets a weak edge across it.
+        Only the IMU determined the motion meanwhile, so the edge of the pose graph is weak.
         """
         self._lost_frames = self._lost_frames + 1 if lost else 0
         if self._chain is None and self._lost_frames >= self._settings.odometry.restart_after:
@@ -129,7 +127,11 @@ class Odometry:
             self._lost_frames = 0
 
     def _place(self, frame: Multiframe) -> bool:
-        """Without an IMU: start the frame where the last good scan says it is, if it can tell."""
+        """Without an IMU: predict the frame by registration to the last good scan.
+
+        Returns:
+            Whether the registration succeeded.
+        """
         if self._chain is None:
             return True
         found = self._chain.locate(body_points(frame, self._rig))
@@ -166,7 +168,7 @@ class Odometry:
         return self._free.predict(state, end_ns)
 
     def _initial(self, t_ns: int) -> MotionState:
-        """Where the aid says, else at the origin."""
+        """Initial state at the pose of the GNSS aiding, else at the origin."""
         state = self._motion.initial(t_ns)
         T_enu_body = self._aiding.pose(t_ns) if self._aiding else None
         if self._aiding is None or T_enu_body is None:

@@ -1,4 +1,4 @@
-"""How much two multiframes see of each other (V §2.5, requirements A4)."""
+"""Overlap of the view volumes of two multiframes (V §2.5, requirements A4)."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ def make_range_image(points: Array, settings: OverlapSettings) -> RangeImage:
 def overlap(
     source: RangeImage, target: RangeImage, T_source_target: SE3, settings: OverlapSettings
 ) -> float:
-    """Share of points in the other's view volume, 0..1 (V Eq. 2.6, read as A0 no. 2).
+    """Fraction of points in the other's view volume, 0..1 (V Eq. 2.6, read as A0 no. 2).
 
     Args:
-        source: The view whose volume is asked (mode ``target``, the text's).
+        source: The view whose volume is used (mode ``target``, that of the text).
         target: The view whose points are tested.
         T_source_target: Maps points of the target into the source.
         settings: Tolerances and mode.

@@ -1,4 +1,4 @@
-"""Outcome of a registration, whatever solved it."""
+"""Result of a registration, common to all solvers."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ class StopReason(StrEnum):
     STEADY_ERROR = "error no longer changes"
     LIMIT = "limit of rounds reached"
     TOO_FEW = "too few matches"
-    UNSTABLE = "solution left the area around the guess"
+    UNSTABLE = "solution left the area around the initial pose"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Registration:
-    """Not converging is an outcome, not an error."""
+    """Result of a registration. Failing to converge is a result, not an error."""
 
     T_target_source: SE3
     """Maps points of the source into the target."""
@@ -30,17 +30,17 @@ class Registration:
     error_m: float
     """Mean distance of the matches kept, after the last step [m]; NaN without any."""
     error_sd_m: float
-    """Standard deviation of that error over the last rounds [m] (0 where it is not kept)."""
+    """Standard deviation of that error over the last rounds [m] (0 if not computed)."""
     match_ratio: float
-    """Matched share of the source."""
+    """Part of the source that found a match, 0..1."""
     information: Array
     """Inverse covariance of a left correction in the target (rotation first), (6, 6)."""
     degeneracy: float
-    """Smallest eigenvalue of the mean of n n^T, 0..1/3: 0 = free to slide along a direction."""
+    """Smallest eigenvalue of the mean of n n^T: 0 = unobservable direction, 1/3 = isotropic."""
 
     @property
     def converged(self) -> bool:
-        """Stopped for a good reason, not for a limit (requirements A3.2)."""
+        """Whether the stop reason is convergence, not a limit (requirements A3.2)."""
         return self.stop in {
             StopReason.SMALL_STEP,
             StopReason.SMALL_ERROR,

@@ -1,4 +1,4 @@
-"""Where a frame is, told by the last good scan alone: the first guess without an IMU."""
+"""Pose of a frame relative to the last good scan: the prediction of odometry without an IMU."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from recon4.registration.result import StopReason
 from recon4.registration.scans import Scan, make_scan, search_scans
 from recon4.settings import ScanSettings
 
-_GUESS_POINTS = 3000
-"""Of a new scan so many points are used: the planes of the map say the rest."""
+_SOURCE_POINTS = 3000
+"""Number of points of a new scan; the registration to the plane map uses all segments."""
 
 
 class ScanChain:
-    """Registers each scan to the last one whose pose is known, wherever it may be.
+    """Registers each scan to the last one with a known pose, without a pose prior.
 
-    Scans are taken as they were measured: two that follow each other are skewed alike. As long as
-    frames are lost the last good scan stays the target, so that coming back to it ends that.
+    Scans are not undistorted: two consecutive ones are distorted alike. While frames are lost, the
+    last good scan stays the target, so that returning to it ends the loss.
     """
 
     def __init__(self, settings: ScanSettings) -> None:
-        self._settings = replace(settings, source_points=_GUESS_POINTS)
+        self._settings = replace(settings, source_points=_SOURCE_POINTS)
         self._scan: Scan | None = None
         self._now: Scan | None = None
         self._T_odom_body, self._t_ns = SE3.identity(), 0
@@ -33,7 +33,7 @@ class ScanChain:
 
     @property
     def located(self) -> SE3:
-        """The pose of the newest scan in the last good one, as `locate` found it."""
+        """Pose of the newest scan in the last good one, as estimated by `locate`."""
         return self._located
 
     @property
@@ -42,24 +42,24 @@ class ScanChain:
         return self._T_odom_body, self._t_ns
 
     def locate(self, points: Array) -> SE3 | None:
-        """The pose in the last good scan of a new one, points in the body [m], (N, 3)."""
+        """Pose of a new scan in the last good one, or None; points in the body [m], (N, 3)."""
         self._now = make_scan(points, self._settings)
         if self._scan is None:
             return None
         found = search_scans(self._scan, self._now, initial=self._motion, settings=self._settings)
         self._located = found.T_target_source
-        # Of two skewed scans the matches may go to and fro for ever: what lies in place decides.
+        # With two distorted scans the matches may oscillate: the inlier ratio decides.
         return None if found.stop is StopReason.TOO_FEW else found.T_target_source
 
     def keep(self, T_odom_body: SE3, t_ns: int) -> None:
-        """The scan just located is a good one, at this pose and time [ns]."""
+        """Make the scan just located the last good one, with its pose and time [ns]."""
         if self._scan is not None:
             self._motion = self._T_odom_body.inverse() @ T_odom_body
         self._scan, self._T_odom_body, self._t_ns = self._now, T_odom_body, t_ns
 
 
 def body_points(frame: Multiframe, rig: Rig) -> Array:
-    """Points of the sensors in use, in the body [m], (N, 3)."""
+    """Points of the enabled sensors, in the body [m], (N, 3)."""
     parts = [np.empty((0, 3))]
     for row, sensor in enumerate(rig.sensors):
         if sensor.enabled:

@@ -1,4 +1,4 @@
-"""The stage ``odometry``: all multiframes through one `Odometry`."""
+"""The stage ``odometry``: estimate the pose of all multiframes with one `Odometry`."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from recon4.settings import Settings
 from recon4.store.arrays import save_trajectory
 from recon4.store.frames import FrameStore
 
-_TOLD_EVERY, _TOLD_AT_ONCE = 5, 4
-"""The pose of every so-manieth multiframe is told while it runs, some at a time."""
+_REPORT_EVERY, _REPORT_AT_ONCE = 5, 4
+"""The pose of every n-th multiframe is reported while the stage runs, some per event."""
 _DENSE_NS = 9_000_000
 """Poses of the dense trajectory are at least this far apart [ns] (at most about 100 Hz)."""
 
@@ -51,8 +51,8 @@ def run_odometry(
         if step.lost:
             progress.event("lost", frame_id=step.frame_id, t_ns=step.t_mid_ns)
         steps.append(step)
-        if len(steps) % (_TOLD_EVERY * _TOLD_AT_ONCE) == 0:
-            _report_poses(steps[-_TOLD_EVERY * _TOLD_AT_ONCE :: _TOLD_EVERY], progress)
+        if len(steps) % (_REPORT_EVERY * _REPORT_AT_ONCE) == 0:
+            _report_poses(steps[-_REPORT_EVERY * _REPORT_AT_ONCE :: _REPORT_EVERY], progress)
     save_trajectory(out / "trajectory.npz", dense_trajectory(steps))
     _save_steps(out / "steps.npz", steps)
     lost = sum(step.lost for step in steps)
@@ -66,7 +66,7 @@ def run_odometry(
 
 
 def _report_poses(steps: list[OdometryStep], progress: Progress) -> None:
-    """Some poses, for whoever watches the walk grow."""
+    """Report some poses as an event, for a display of the growing trajectory."""
     T = SE3.stack(step.T_odom_body for step in steps)
     progress.event(
         "poses",
@@ -77,11 +77,11 @@ def _report_poses(steps: list[OdometryStep], progress: Progress) -> None:
 
 
 def dense_trajectory(steps: list[OdometryStep]) -> Trajectory:
-    """The dense poses of all steps on one time line, at most about 100 Hz."""
+    """The dense poses of all steps as one trajectory, at most about 100 Hz."""
     t_ns = np.concatenate([step.t_ns for step in steps])
     R = np.concatenate([step.T_dense.R for step in steps])
     t_m = np.concatenate([step.T_dense.t for step in steps])
-    # The first pose of a frame is the newer word on the last pose of the frame before.
+    # The first pose of a frame updates the last pose of the frame before.
     newest = len(t_ns) - 1 - np.unique(t_ns[::-1], return_index=True)[1]
     t_ns, R, t_m = t_ns[newest], R[newest], t_m[newest]
     slot = (t_ns - t_ns[0]) // _DENSE_NS

@@ -1,4 +1,4 @@
-"""Without an IMU: a body that did not move is held still, so that standing is not drifting."""
+"""Zero-velocity update without an IMU: a stationary body does not drift."""
 
 from __future__ import annotations
 
@@ -12,30 +12,30 @@ from recon4.registration.motion import Prediction
 from recon4.registration.state import END_MOTION, POSES, VECTOR
 
 _STILL_M = 0.01
-"""Two scans that follow each other agree to this [m] …"""
+"""While stationary two consecutive scans agree to this [m] …"""
 _STILL_RAD = 0.0035
-"""… and this [rad] while the body stands."""
+"""… and this [rad]."""
 _STILL_CHI2 = 1.0
-"""Standing explains the points as well as the best motion if that gains less than this.
-Measured at rest: up to 0.6; 4 mm or 0.1° of true motion pass it."""
+"""The body is stationary if the best motion reduces chi-square by less than this.
+Measured at rest: up to 0.6; 4 mm or 0.1° of true motion exceed it."""
 
 
 def is_stationary(T_scan_scan: SE3) -> bool:
-    """Whether the motion from one scan to the next is no more than its own noise."""
+    """Whether the motion between two consecutive scans is within its noise."""
     small = np.linalg.norm(T_scan_scan.t) < _STILL_M and T_scan_scan.angle() < _STILL_RAD
     return bool(small)
 
 
 def zero_velocity_update(fit: FrameFit, prediction: Prediction, T_odom_body: SE3) -> FrameFit:
-    """The fit with the body standing at an earlier pose, if the points do not speak against it.
+    """The fit with the body stationary at an earlier pose, if the points are consistent with it.
 
-    The hypothesis costs ``d^T H d``, ``d`` being its distance from the fit and ``H`` the
-    information of the points. It is always held against the same pose, so errors do not add up.
+    The chi-square of the hypothesis is ``d^T H d``: ``d`` is its difference from the fit and ``H``
+    the information of the points. The reference pose stays the same, so errors do not accumulate.
 
     Args:
-        fit: The frame, free to move.
-        prediction: What the fit corrects.
-        T_odom_body: The pose at which the body may still stand.
+        fit: The fit without the hypothesis.
+        prediction: The motion that the fit corrects.
+        T_odom_body: The pose at which the body may still be.
     """
     delta = _standing(fit, prediction, T_odom_body)
     d = (delta - fit.delta)[POSES]
@@ -46,7 +46,7 @@ def zero_velocity_update(fit: FrameFit, prediction: Prediction, T_odom_body: SE3
 
 
 def _standing(fit: FrameFit, prediction: Prediction, T_odom_body: SE3) -> Array:
-    """The correction that makes a predicted motion stand at a pose, (24,)."""
+    """Correction that makes a predicted motion stationary at a pose, (24,)."""
     delta = fit.delta.copy()
     predicted, end = prediction.T_odom_body, prediction.end
     center = predicted.t[-1]

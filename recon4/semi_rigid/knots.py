@@ -24,11 +24,11 @@ class KnotSystem:
 def solve_knots(system: KnotSystem, done: Array, *, step_sd: Array, total_sd: Array) -> Array:
     """Steps of the corrections at all knots.
 
-    Two neighboring knots are held together, because odometry knows the motion between them well,
-    and all of them weakly to where they began, because nothing else fixes the map as a whole.
+    A strong prior binds neighboring knots, because odometry determines the motion between them
+    well. A weak prior binds each knot to its start, because nothing else constrains the whole map.
 
     Args:
-        system: What the matches say.
+        system: Normal equations of the matches.
         done: Corrections applied in earlier rounds, (N + 1, 6).
         step_sd: Standard deviation of the difference of neighboring corrections, (6,).
         total_sd: Standard deviation of a correction, (6,).
@@ -50,7 +50,7 @@ def solve_knots(system: KnotSystem, done: Array, *, step_sd: Array, total_sd: Ar
 
 
 def _lower_band(diagonal: Array, lower: Array) -> Array:
-    """Block-tridiagonal matrix in the form scipy wants: ``out[r - c, c]``, (12, 6 M)."""
+    """Block-tridiagonal matrix in the form of scipy: ``out[r - c, c]``, (12, 6 M)."""
     knots = len(diagonal)
     out = np.zeros((12, 6 * knots))
     for row in range(6):
@@ -62,10 +62,10 @@ def _lower_band(diagonal: Array, lower: Array) -> Array:
 
 
 def apply_knots(trajectory: Trajectory, knot_ns: Times, correction: Array) -> Trajectory:
-    """Turn and shift each pose by the correction interpolated at its time.
+    """Correct each pose by the correction interpolated at its time.
 
     Args:
-        trajectory: Poses at any times; before the first and after the last knot these hold.
+        trajectory: Poses at any times; the first and last knot also apply beyond their times.
         knot_ns: Times of the knots [ns], (M,).
         correction: Rotation about the pose's own position, then shift, in the map's axes, (M, 6).
     """

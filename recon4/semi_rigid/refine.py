@@ -1,8 +1,8 @@
-"""Semi-rigid refinement: every multiframe moves, and bends, onto the map that all of them make.
+"""Semi-rigid refinement: correct every multiframe over time, so that it fits the common map.
 
-The pose graph corrected nodes; between them only odometry spoke. Here all segments of the walk
-make one map of planes, each multiframe is held against it, and one banded system moves all of
-them at once (requirements A12 L-4: global matching in sections, continuous in time).
+The pose graph corrects nodes; between them odometry alone determines the motion. Here all segments
+of the walk make one plane map, each multiframe is matched to it, and one banded system corrects
+all of them together (requirements A12 L-4: global matching in sections, continuous in time).
 """
 
 from __future__ import annotations
@@ -34,20 +34,20 @@ from recon4.store.frames import FrameStore
 Result = TypeVar("Result")
 
 _CHUNK = 16
-"""Multiframes a thread takes at a time."""
+"""Number of multiframes that are processed in parallel."""
 
 _SHORT = 3
-"""In a recording shorter than so many gaps in time there is little else than what is near."""
+"""A recording shorter than this many time gaps is matched without a gap."""
 
 
 @dataclass(frozen=True, slots=True)
 class Round:
-    """How one round went."""
+    """Result of one round."""
 
     mean_m: float
     """Mean distance of the matched segments from the planes [m], before the step."""
     match_ratio: float
-    """Matched share."""
+    """Part of the segment ends that found a plane, 0..1."""
     largest_step_m: float
     """Largest shift of a multiframe in this round [m]."""
 
@@ -61,7 +61,7 @@ def refine(
     settings: Settings,
     progress: Progress,
 ) -> dict[str, object]:
-    """The stage ``refine``.
+    """Run the stage ``refine``.
 
     Args:
         frames: The multiframes.
@@ -78,13 +78,13 @@ def refine(
     if settings.graph.mode == "beyond":
         start, done = refine_trajectory(frames, start, lost, settings=settings, progress=progress)
     save_trajectory(out / "trajectory.npz", start)
-    facts: dict[str, object] = {"rounds": [asdict(one) for one in done]}
-    (out / "refine.json").write_text(json.dumps(facts, indent=1))
-    return facts
+    record: dict[str, object] = {"rounds": [asdict(one) for one in done]}
+    (out / "refine.json").write_text(json.dumps(record, indent=1))
+    return record
 
 
 def corrected_by_graph(odometry: Trajectory, graph: PoseGraph) -> Trajectory:
-    """The dense odometry moved along with the nodes of the graph: ``T_map_body``."""
+    """Dense odometry corrected by the nodes of the graph: ``T_map_body``."""
     before = odometry.at(graph.t_ns)
     return apply_corrections(odometry, graph.t_ns, T_before=before, T_after=graph.T_map_body)
 
@@ -97,12 +97,12 @@ def refine_trajectory(
     settings: Settings,
     progress: Progress,
 ) -> tuple[Trajectory, list[Round]]:
-    """Rounds of building the map of planes and moving all multiframes onto it.
+    """Build the plane map and correct all multiframes to fit it, in several rounds.
 
     Args:
         frames: The multiframes.
         start: ``T_map_body``, dense.
-        lost: Multiframes that must not take part, (number of multiframes,).
+        lost: Multiframes that are excluded, (number of multiframes,).
         settings: Uses segments, planes and refine.
         progress: Counts multiframes, twice a round.
     """
@@ -145,7 +145,7 @@ class _Sweep:
         self._settings, self._progress = settings, progress
 
     def build(self) -> PlaneMap:
-        """All segments of the walk in one map; added in order, so always the same map."""
+        """Plane map of all segments of the walk; added in order, so that it is reproducible."""
         planes = PlaneMap(self._settings.planes)
         for placed in self._in_order(self._ends, self._settings.refine.map_stride):
             if placed is not None:
@@ -154,15 +154,15 @@ class _Sweep:
         return planes
 
     def match(self, planes: PlaneMap) -> tuple[KnotSystem, float, float]:
-        """Normal equations of every multiframe against the map; a share of 0 if nothing matches.
+        """Normal equations of every multiframe, mean distance [m] and match ratio.
 
-        With ``refine.min_gap_s`` the map is made to forget what lies nearer in time than that to
-        the multiframes being matched, and is given it back afterwards.
+        With ``refine.min_gap_s`` multiframes nearer in time than that to those being matched are
+        removed from the map meanwhile. The match ratio is 0 if nothing matches.
         """
         count = len(self._frames)
         H, g = np.zeros((count, 12, 12)), np.zeros((count, 12))
         distances: list[float] = []
-        shares: list[float] = []
+        ratios: list[float] = []
         absent = _Absent(planes, self._gap_rows(), self._settings.refine.map_stride)
 
         def forget(chunk: range) -> None:
@@ -173,10 +173,10 @@ class _Sweep:
             if found is not None:
                 H[row], g[row], mean_m, match_ratio = found
                 distances.append(mean_m)
-                shares.append(match_ratio)
-        if not shares:
+                ratios.append(match_ratio)
+        if not ratios:
             return KnotSystem(H, g), float("nan"), 0.0
-        return KnotSystem(H, g), float(np.mean(distances)), float(np.mean(shares))
+        return KnotSystem(H, g), float(np.mean(distances)), float(np.mean(ratios))
 
     def _ends(self, row: int) -> Array | None:
         if self._lost[row]:
@@ -207,7 +207,7 @@ class _Sweep:
         return scale * found.H, scale * found.g, found.mean_m, found.match_ratio
 
     def _gap_rows(self) -> int:
-        """Multiframes within the gap; 0 = a multiframe may match its own points."""
+        """Number of multiframes within the gap; 0 = a multiframe may match its own points."""
         durations = self._frames.index["duration_ns"]
         rows = int(np.ceil(self._settings.refine.min_gap_s * 1e9 / max(1, int(durations.min()))))
         return rows if len(self._frames) >= _SHORT * rows else 0
@@ -219,9 +219,9 @@ class _Sweep:
         *,
         before: Callable[[range], None] = lambda _: None,
     ) -> Iterator[Result]:
-        """What ``work`` makes of the multiframes, a few at a time on several threads.
+        """Results of ``work`` for the multiframes in order, a chunk at a time on several threads.
 
-        ``before`` is called with the rows of these few, while no thread works.
+        ``before`` is called with the rows of a chunk while no thread is working.
         """
         rows = range(0, len(self._frames), stride)
         with ThreadPoolExecutor(self._settings.graph.workers) as pool:
@@ -233,7 +233,7 @@ class _Sweep:
 
 
 class _Absent:
-    """Multiframes that the map has forgotten for a while, and their points to give back."""
+    """Multiframes removed from the map for a while, with their points to add again."""
 
     def __init__(self, planes: PlaneMap, gap_rows: int, stride: int) -> None:
         self._planes, self._gap_rows, self._stride = planes, gap_rows, stride
@@ -241,7 +241,7 @@ class _Absent:
         self._next = 0
 
     def move_to(self, rows: range, ends: Callable[[int], Array | None], count: int) -> None:
-        """Take out what is near in time to some rows, later than those of the call before."""
+        """Remove what is near in time to ``rows`` and add the rest again; rows only increase."""
         if self._gap_rows == 0:
             return
         first, last = rows[0] - self._gap_rows, rows[-1] + self._gap_rows

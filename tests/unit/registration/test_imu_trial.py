@@ -1,4 +1,4 @@
-"""An IMU is believed if the LiDARs agree with it."""
+"""The IMU is used if it is consistent with the LiDARs."""
 
 from dataclasses import replace
 
@@ -47,21 +47,21 @@ def altered(frames, turn=lambda gyro: gyro, late_ns=0, force=1.0):
     return ImuSamples(imu.t_ns + late_ns, turn(imu.gyro_rad_s), force * imu.accel_m_s2)
 
 
-def test_an_imu_that_agrees_is_taken_as_it_is(frames):
+def test_a_consistent_imu_is_used_unchanged(frames):
     imu, remark = consistent_imu(frames, SETTINGS)
 
     assert imu is frames.imu
     assert remark == ""
 
 
-def test_the_zero_of_a_gyroscope_is_taken_off(frames):
-    zero_rad_s = np.deg2rad([20.0, -5.0, -30.0])
-    walk = Walk(frames, altered(frames, lambda gyro: gyro + zero_rad_s))
+def test_the_bias_of_a_gyroscope_is_subtracted(frames):
+    bias_rad_s = np.deg2rad([20.0, -5.0, -30.0])
+    walk = Walk(frames, altered(frames, lambda gyro: gyro + bias_rad_s))
 
     imu, remark = consistent_imu(walk, SETTINGS)
 
     assert np.allclose(imu.gyro_rad_s, frames.imu.gyro_rad_s, atol=np.deg2rad(1.0))
-    assert "zero" in remark
+    assert "bias" in remark
 
 
 @pytest.mark.parametrize(
@@ -81,7 +81,7 @@ def test_an_imu_that_contradicts_the_lidars_is_not_used(frames, fault):
     assert "contradicts the LiDARs" in remark
 
 
-def test_without_an_imu_or_the_wish_to_use_it_nothing_is_tried(frames):
+def test_without_an_imu_or_with_use_imu_off_no_trial_runs(frames):
     never = replace(SETTINGS, odometry=OdometrySettings(use_imu=False))
 
     assert consistent_imu(Walk(frames, None), SETTINGS) == (None, "")

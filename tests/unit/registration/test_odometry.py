@@ -204,7 +204,7 @@ def test_another_start_of_the_clock_gives_the_same_motion(stroll):
     np.testing.assert_allclose(poses(moved).t, poses(steps).t, atol=1e-9)
 
 
-def test_how_far_the_points_moved_the_prediction_is_told(stroll):
+def test_a_step_has_the_prediction_offset(stroll):
     biased = replace(stroll.imu, gyro_rad_s=stroll.imu.gyro_rad_s + np.array([0.0, 0.0, 0.02]))
 
     good = push_all(Odometry(stroll.rig, Settings(), stroll.imu), stroll)
@@ -240,7 +240,7 @@ def test_lines_follow_a_slow_motion(mode):
     steps = push_all(LineOdometry(recording.rig, settings), recording)
 
     T, truth = poses(steps), recording.true_poses()
-    # The way is 11 cm long: near surfaces alone would hold the lines back by most of it.
+    # The path is 11 cm long: near surfaces alone would suppress most of the motion of the lines.
     assert worst_from_start(T, truth) < 0.01
     assert all(step.converged for step in steps)
     np.testing.assert_array_equal(steps[3].t_ns, T0_NS + np.array([30, 35, 40]) * FRAME_NS // 10)

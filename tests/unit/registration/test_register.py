@@ -20,7 +20,7 @@ from tests.scanned_room import RIG, scan, standing, walk
 PLANES = PlaneSettings()
 T_TRUE = SE3.from_rpy(0.01, -0.02, 0.06, [0.25, -0.10, 0.04])
 SOLVERS = ("planes", "common_normal", "svd")
-# Lines are sampled anew in each frame: without a plane between them they agree less well.
+# Lines are sampled again in each frame: without a plane between them they agree less well.
 TOLERANCE_M = {"planes": 0.004, "common_normal": 0.012, "svd": 0.06}
 
 
@@ -171,8 +171,8 @@ def test_the_limit_of_rounds_is_not_convergence(solver, target_ends, source_ends
     assert not found.converged
 
 
-class Told(PlaneMap):
-    """A map of planes that remembers how it was asked."""
+class RecordingMap(PlaneMap):
+    """A map of planes that records the parameters of its matches."""
 
     def __init__(self, settings):
         super().__init__(settings)
@@ -184,8 +184,8 @@ class Told(PlaneMap):
         return super().match(*args, finest=finest, gate_m=gate_m, **more)
 
 
-def test_large_cubes_and_a_wide_gate_come_first_and_the_narrow_gate_has_its_turn(target_ends):
-    planes = Told(PLANES)
+def test_large_cubes_and_a_wide_gate_come_first_and_all_gates_are_used(target_ends):
+    planes = RecordingMap(PLANES)
     planes.add(np.ascontiguousarray(target_ends.reshape(-1, 3)))
 
     found = register_to_planes(
@@ -196,7 +196,7 @@ def test_large_cubes_and_a_wide_gate_come_first_and_the_narrow_gate_has_its_turn
     rounds = slice(found.iterations)
     assert planes.finest[:4] == [3, 2, 1, 0]
     assert planes.gate_m[rounds] == sorted(planes.gate_m[rounds], reverse=True)
-    # The guess is the truth: steps are small from the first round on, yet all gates are tried.
+    # The initial pose is the truth: all steps are small, yet all gates are used.
     assert (planes.gate_m[0], planes.gate_m[rounds][-1]) == (1.0, 0.15)
 
 
