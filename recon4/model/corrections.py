@@ -1,4 +1,4 @@
-"""Carrying corrections of some poses over to a dense trajectory."""
+"""Apply corrections of some poses to a dense trajectory."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from recon4.model.trajectory import Times, Trajectory
 
 
 def apply_corrections(dense: Trajectory, t_ns: Times, *, T_before: SE3, T_after: SE3) -> Trajectory:
-    """Move a dense trajectory along with nodes that were moved.
+    """Correct a dense trajectory by the corrections of its nodes.
 
-    Between two nodes each pose is moved rigidly with either of them, and the two results are
-    interpolated (lerp, SLERP); so the result does not depend on where the origin is. Before the
-    first and after the last node the nearest node's motion is taken as it is.
+    Between two nodes each pose is corrected rigidly with either of them, and the two results are
+    interpolated (lerp, SLERP); so the result does not depend on the origin. Before the first and
+    after the last node the correction of the nearest node applies.
 
     Args:
         dense: Poses ``T_a_b`` at any times.

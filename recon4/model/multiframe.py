@@ -1,4 +1,4 @@
-"""One revolution of all LiDARs on one clock: the unit everything downstream works with."""
+"""Multiframe: the points of all LiDARs during one revolution, on one clock."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ COLUMNS: dict[str, tuple[str, int]] = {
     "echo": ("|u1", 1),
     "dt_ns": ("<i4", 1),
 }
-"""Column name -> (dtype, width): the one declaration of how points lie on disk and in memory."""
+"""Column name -> (dtype, width): the layout of points on disk and in memory."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Multiframe:
-    """Points of one revolution, sensor by sensor and inside a sensor in firing order."""
+    """Points of one revolution, ordered by sensor and within a sensor by firing order."""
 
     frame_id: int
-    """Counts from 0 without holes inside a recording."""
+    """Counts from 0 without gaps within a recording."""
     t_ns: int
     """Start of the frame [ns]; frames follow each other every ``duration_ns``."""
     duration_ns: int

@@ -1,4 +1,4 @@
-"""Poses, and every relation between two of them that was ever tried."""
+"""Pose graph: nodes with poses, and all edges between them, accepted or not."""
 
 from __future__ import annotations
 
@@ -22,26 +22,26 @@ class EdgeKind(StrEnum):
     """Where an edge comes from."""
 
     ODOMETRY = "odometry"
-    """Between consecutive nodes: protected, the graph must not fall apart."""
+    """Between consecutive nodes: protected, so that the graph stays connected."""
     NEIGHBOR = "neighbor"
     """Between nodes a few steps apart in time."""
     LOOP = "loop"
-    """A place seen again."""
+    """Loop closure: a place seen again."""
     MANUAL = "manual"
     """Made by an operator."""
 
 
 class Verdict(StrEnum):
-    """What became of an edge."""
+    """Whether an edge is used."""
 
     ACCEPTED = "accepted"
     REJECTED = "rejected"
     UNVERIFIED = "unverified"
-    """Accepted by its own error, but no alternative path confirms it: in the graph, shown grey."""
+    """Accepted by its own error, but no alternative path confirms it: in the graph, shown gray."""
 
 
 class Reason(StrEnum):
-    """Why an edge was turned down; the value is shown to people."""
+    """Why an edge was rejected; the value is shown to users."""
 
     NONE = ""
     OVERLAP = "overlap < t_o"
@@ -56,7 +56,7 @@ class Reason(StrEnum):
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Edge:
-    """One pair of nodes that was tried."""
+    """A measured relative pose of two nodes."""
 
     i: int
     """Row of the first node."""
@@ -68,11 +68,11 @@ class Edge:
     verdict: Verdict
     reason: Reason = Reason.NONE
     overlap: float = float("nan")
-    """Share of points of ``j`` inside the view volume of ``i``, 0..1 (V Eq. 2.6)."""
+    """Fraction of points of ``j`` inside the view volume of ``i``, 0..1 (V Eq. 2.6)."""
     error_m: float = float("nan")
     """Mean distance of matched lines after the last step [m]."""
     limit_m: float = float("nan")
-    """Largest error accepted, ``median_range * t_r + t_a`` [m] (V Eq. 2.7)."""
+    """Acceptance limit of the error, ``median_range * t_r + t_a`` [m] (V Eq. 2.7)."""
     information: Array = field(default_factory=lambda: np.eye(6))
     """Inverse covariance of the tangent of ``T_i_j``, rotation first, (6, 6)."""
     degeneracy: float = float("nan")
@@ -82,7 +82,7 @@ class Edge:
     verification_m: float = float("nan")
     """Median translation difference to the alternative paths [m]; NaN = no path (V Eq. 2.12)."""
     paths: int = 0
-    """How many alternative paths of at most three edges there were."""
+    """Number of alternative paths of at most three edges."""
     chi2: float = float("nan")
     """Squared Mahalanobis residual in the final graph."""
     decided_by: str = "auto"
@@ -100,7 +100,7 @@ class Edge:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Relations:
-    """Edges as arrays, one row an edge, in the order of ``PoseGraph.edges``."""
+    """Edges as arrays, one row per edge, in the order of ``PoseGraph.edges``."""
 
     i: Rows
     """First node, (E,)."""
@@ -120,7 +120,7 @@ class Relations:
 
 
 def relations_of(edges: Sequence[Edge]) -> Relations:
-    """Edges as arrays; of a graph use `PoseGraph.relations`."""
+    """Convert edges to arrays; for a graph use `PoseGraph.relations`."""
     return Relations(
         i=np.array([edge.i for edge in edges], dtype=np.intp),
         j=np.array([edge.j for edge in edges], dtype=np.intp),
@@ -137,7 +137,7 @@ def _is_protected(edge: Edge) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class PoseGraph:
-    """Nodes with their poses, and all edges tried, whatever became of them."""
+    """Nodes with their poses, and all edges with any verdict."""
 
     frame_ids: Times
     """Multiframe of each node, (N,)."""
@@ -152,7 +152,7 @@ class PoseGraph:
 
     @cached_property
     def relations(self) -> Relations:
-        """The edges as arrays, made when they are first asked for."""
+        """The edges as arrays, created on first access."""
         return relations_of(self.edges)
 
     def with_edges(self, edges: tuple[Edge, ...]) -> PoseGraph:

@@ -1,4 +1,4 @@
-"""What is mounted on the backpack, and where."""
+"""Rig: the sensors of a backpack, their mounting, and rig files."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array
 
 IMU_PORT, GNSS_PORT = 8309, 8310
-"""Next to Velodyne's 2368 (data) and 8308 (positions)."""
+"""Default UDP ports, next to Velodyne's 2368 (data) and 8308 (positions)."""
 MOST_RIG_BYTES = 128 * 1024
-"""A rig file has some hundred bytes a sensor."""
+"""A rig file has some hundred bytes per sensor."""
 MOST_SENSORS = 64
 _MOST_TEXT = 1000
 _MOST_DOTS = 100
@@ -36,7 +36,7 @@ class Sensor:
     name: str
     """Unique within the rig, for example ``horizontal``."""
     model: str
-    """One of `SENSOR_MODELS`; it pins the packet decoder."""
+    """One of `SENSOR_MODELS`; it selects the packet decoder."""
     T_body_sensor: SE3
     """Mounting: maps points of the sensor into the body."""
     time_offset_s: float = 0.0
@@ -46,14 +46,14 @@ class Sensor:
     port: int = 2368
     """UDP port its data packets go to."""
     topic: str = ""
-    """Topic in a bag; empty = guessed."""
+    """Topic in a bag; empty = detected."""
     enabled: bool = True
-    """Off = its points are read and stored but not registered nor mapped (V §3.4)."""
+    """Off = its points are read and stored but neither registered nor mapped (V §3.4)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Rig:
-    """All sensors with their places on the body (x forward, y left, z up)."""
+    """All sensors with their poses in the body frame (x forward, y left, z up)."""
 
     name: str
     sensors: tuple[Sensor, ...]
@@ -66,9 +66,9 @@ class Rig:
     gnss_time_offset_s: float
     """Added to the GNSS time stamps to get rig time [s]."""
     imu_port: int = IMU_PORT
-    """UDP port its IMU's datagrams go to (``docs/live.md``); 0 = none."""
+    """UDP port of the IMU's datagrams (``docs/live.md``); 0 = none."""
     gnss_port: int = GNSS_PORT
-    """UDP port its GNSS receiver's datagrams go to; 0 = none."""
+    """UDP port of the GNSS receiver's datagrams; 0 = none."""
     gnss_serial: str = ""
     """Serial device of the receiver, for example ``/dev/ttyUSB0:115200``; empty = none."""
 
@@ -94,7 +94,7 @@ def load_rig(name_or_path: str | Path) -> Rig:
     """
     path = Path(name_or_path)
     if not path.suffix:
-        if str(name_or_path) not in rig_presets():  # a path would lead out of their folder
+        if str(name_or_path) not in rig_presets():  # prevents paths outside of the folder
             raise ConfigError(
                 f"no rig named {str(name_or_path)[:200]!r}; shipped: {', '.join(rig_presets())}; "
                 "or give the path of a .toml file"
@@ -112,7 +112,7 @@ def parse_rig(text: str, *, where: str) -> Rig:
     """Read a rig from TOML text (see ``docs/rig.md``).
 
     Raises:
-        ConfigError: Naming the place, what was expected and what was found.
+        ConfigError: Names the key, the expected and the found value.
     """
     table = _toml(text, where)
     _refuse_unknown(table, {"name", "sensor", "imu", "gnss"}, where)
@@ -145,9 +145,9 @@ def parse_rig(text: str, *, where: str) -> Rig:
 
 
 def _toml(text: str, where: str) -> dict[str, Any]:
-    """Parse TOML whose size, nesting and length of keys are bounded.
+    """Parse TOML with bounded size, nesting and length of keys.
 
-    tomllib walks a dotted key once for each of its parts, and nested arrays by recursion.
+    tomllib needs quadratic time for dotted keys, and recursion for nested arrays.
     """
     if len(text) > MOST_RIG_BYTES:
         raise ConfigError(f"{where}: expected at most {MOST_RIG_BYTES} characters, got {len(text)}")
@@ -163,12 +163,12 @@ def _toml(text: str, where: str) -> dict[str, Any]:
 
 
 def _quoted(text: str) -> str:
-    """A basic string of TOML: JSON's escapes are TOML's, but for the delete character."""
+    """A basic string of TOML: the escapes of JSON, and the delete character."""
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def format_rig(rig: Rig) -> str:
-    """The rig as TOML text that `parse_rig` reads back."""
+    """Format a rig as TOML text; the inverse of `parse_rig`."""
     lines = [f"name = {_quoted(rig.name)}", ""]
     for sensor in rig.sensors:
         lines += [

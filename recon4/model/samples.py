@@ -1,4 +1,4 @@
-"""What the other sensors measured: structures of arrays, one row a sample."""
+"""IMU and GNSS samples: structures of arrays, one row per sample."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class GnssQuality(IntEnum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GnssSamples:
-    """Positions of the antenna in WGS 84 / ETRS89, ellipsoidal heights; attitudes if there are."""
+    """Positions of the antenna in WGS 84 / ETRS89, ellipsoidal heights; optional attitudes."""
 
     t_ns: Times
     """Absolute times [ns], strictly increasing, (N,)."""

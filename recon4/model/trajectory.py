@@ -1,4 +1,4 @@
-"""Where the body was, as a function of time."""
+"""Trajectory: poses as a function of time."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ class Trajectory:
         return Trajectory(self.t_ns[rows], self.T_a_b[rows])
 
     def at(self, t_ns: Times, *, slack_ns: int = 0) -> SE3:
-        """Poses at any times covered.
+        """Interpolated poses at any covered times.
 
         Args:
             t_ns: Times [ns], (M,).
-            slack_ns: How far outside the covered time the first or last motion is extrapolated.
+            slack_ns: Largest extrapolation of the first or last motion outside the covered time.
 
         Raises:
-            OutOfRange: If a time lies further outside, or there is no pose at all.
+            OutOfRange: If a time lies farther outside, or the trajectory is empty.
         """
         t = np.asarray(t_ns, dtype=np.int64)
         if len(self.t_ns) == 0:

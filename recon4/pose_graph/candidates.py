@@ -1,4 +1,4 @@
-"""Which pairs of nodes are worth a try (V §2.7, Algorithm 2.1)."""
+"""Candidate pairs of nodes for registration (V §2.7, Algorithm 2.1)."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from recon4.pose_graph.pairs import Pair
 from recon4.settings import GraphSettings
 
 _RUN_GAP = 2
-"""Nodes on either side of a chosen one that add nothing new."""
+"""Nodes before and after a chosen one that are skipped, because they see the same."""
 _ARM_M = 5.0
-"""A rotation moves points at this distance [m]."""
+"""Distance at which a rotation is converted to a shift [m]."""
 
 Ends = tuple[int, int]
 """Nodes ``(i, j)`` of a pair."""
@@ -25,7 +25,7 @@ Selection = Callable[[PoseGraph], list[Pair]]
 
 
 def rounds(nodes: int, settings: GraphSettings) -> list[Selection]:
-    """What each round tries, given the graph so far."""
+    """Selections of pairs, one per round; each is applied to the graph so far."""
     if settings.exhaustive and settings.mode != "10":
         farthest = nodes // 2 if settings.closed_trajectory else nodes - 1
         schedule = distance_schedule(farthest)
@@ -38,7 +38,7 @@ def rounds(nodes: int, settings: GraphSettings) -> list[Selection]:
 
 
 def neighbor_pairs(graph: PoseGraph, settings: GraphSettings) -> list[Pair]:
-    """Each node with the few after it; in mode ``10`` those within one second."""
+    """Pairs of each node with the next few; in mode ``10`` with those within one second."""
     within_second = max(10 // settings.node_stride, 1)
     farthest = within_second if settings.mode == "10" else settings.neighbors
     distances = range(1, farthest + 1)
@@ -63,10 +63,10 @@ def pairs_at_distances(
 
 
 def distance_schedule(farthest: int) -> list[range]:
-    """Distances 1 to the farthest in growing batches, the graph being optimized after each.
+    """Distances 1 to the farthest in growing batches; the graph is optimized after each.
 
-    N/2 is enough where pairs wrap around (Algorithm 2.1); an open walk of N nodes needs N - 1, or
-    its start would never be compared with its end.
+    N/2 is enough if pairs wrap around (Algorithm 2.1). An open walk of N nodes needs N - 1, so that
+    its start is compared with its end.
     """
     batches, d = [], 1
     while d <= farthest:
@@ -77,10 +77,10 @@ def distance_schedule(farthest: int) -> list[range]:
 
 
 def revisit_pairs(graph: PoseGraph, *, settings: GraphSettings, limit: int) -> list[Pair]:
-    """Each node with at most ``limit`` earlier nodes of the same place, spread over its visits.
+    """Pairs of each node with at most ``limit`` earlier nodes of the place, spread over visits.
 
-    Only nodes close by are looked at, so the work grows with the walk and not with its square.
-    How far off the poses may be is allowed for by the distance walked in between.
+    Only nodes close by are considered, so the work is linear in the path length, not quadratic.
+    The search radius grows with the path length in between, to allow for drift.
     """
     t = graph.T_map_body.t
     walked_m = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(t, axis=0), axis=1))])
@@ -103,7 +103,7 @@ def revisit_pairs(graph: PoseGraph, *, settings: GraphSettings, limit: int) -> l
 
 
 def _spread(nodes: NDArray[np.int64], distance_m: Array, limit: int) -> list[int]:
-    """The nearest node of each visit (a run of nodes), then the nearest of halves of the runs."""
+    """The nearest node of each visit (a run of nodes), then the nearest of the split runs."""
     runs = np.split(np.arange(len(nodes)), np.flatnonzero(np.diff(nodes) > 1) + 1)
     chosen: list[int] = []
     while runs and len(chosen) < limit:
@@ -121,16 +121,16 @@ def _spread(nodes: NDArray[np.int64], distance_m: Array, limit: int) -> list[int
 
 
 def retry_pairs(graph: PoseGraph, expected: Mapping[Ends, SE3], *, move_m: float) -> list[Pair]:
-    """Pairs turned down whose expected pose is no longer the one they were tried from.
+    """Rejected pairs whose predicted pose has moved since their last registration.
 
     Args:
-        graph: With its poses of now.
-        expected: ``T_i_j`` each pair was tried from last.
-        move_m: Moves up to this do not count [m, rotation as at 5 m].
+        graph: The graph with its current poses.
+        expected: Initial ``T_i_j`` of the last registration of each pair.
+        move_m: Smaller moves are ignored [m, rotation as at 5 m].
     """
-    refused = [e for e in graph.edges if not e.in_graph and (e.i, e.j) in expected]
+    rejected = [e for e in graph.edges if not e.in_graph and (e.i, e.j) in expected]
     pairs = []
-    for edge in refused:
+    for edge in rejected:
         T_i_j = graph.T_map_body[edge.i].inverse() @ graph.T_map_body[edge.j]
         moved = expected[edge.i, edge.j].inverse() @ T_i_j
         if np.linalg.norm(moved.t) + _ARM_M * moved.angle() > move_m:

@@ -1,6 +1,6 @@
-"""What must hold before a graph goes to the optimizer.
+"""Validity checks of a graph before it is optimized.
 
-gtsam answers a graph with a NaN, or one that falls apart, with the initial poses and no error.
+For a graph with a NaN, or one that is not connected, gtsam returns the initial poses and no error.
 """
 
 from __future__ import annotations
@@ -17,19 +17,19 @@ _ROTATION_TOLERANCE = 1e-6
 
 
 def check_graph(graph: PoseGraph) -> list[tuple[int, int]]:
-    """Refuse a graph that cannot be solved.
+    """Check that a graph can be solved.
 
     Returns:
-        Pairs of nodes joined by more than one edge of the graph: allowed, but worth a word.
+        Pairs of nodes joined by more than one edge of the graph: allowed, but reported.
 
     Raises:
-        GraphError: Naming the node or the edge and what is wrong with it.
+        GraphError: Names the node or the edge and its defect.
     """
     return check_relations(graph.T_map_body, graph.relations)
 
 
 def check_relations(T_map_body: SE3, of: Relations) -> list[tuple[int, int]]:
-    """`check_graph` for who has the arrays already."""
+    """`check_graph` of poses and edges given as arrays."""
     if len(T_map_body) == 0:
         raise GraphError("the graph has no node")
     bad_nodes = ~_is_motion(T_map_body)

@@ -1,4 +1,4 @@
-"""A pose graph on disk: exact (``graph.npz``), for people (``edges.json``)."""
+"""Pose graph files: ``graph.npz`` (exact) and ``edges.json`` (readable)."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _EDGES = ("i", "j", "edge_R", "edge_t", "information", "converged")
 
 
 def save_graph(folder: Path, graph: PoseGraph) -> None:
-    """Write ``graph.npz`` (everything, bit for bit) and ``edges.json`` (every pair tried)."""
+    """Write ``graph.npz`` (all data, exact) and ``edges.json`` (every registered pair)."""
     of = graph.relations
     columns: dict[str, Any] = {
         "frame_ids": graph.frame_ids,
@@ -44,7 +44,7 @@ def save_graph(folder: Path, graph: PoseGraph) -> None:
 
 
 def load_graph(folder: Path) -> PoseGraph:
-    """Read what `save_graph` wrote.
+    """Read the ``graph.npz`` that `save_graph` wrote.
 
     Raises:
         StoreError: If the file is missing, damaged or its columns do not fit together.
@@ -66,8 +66,8 @@ def load_graph(folder: Path) -> PoseGraph:
 
 
 def _edge(columns: dict[str, Any], row: int) -> Edge:
-    facts: dict[str, Any] = {name: float(columns[name][row]) for name in _NUMBERS}
-    facts |= {name: int(columns[name][row]) for name in _COUNTS}
+    fields: dict[str, Any] = {name: float(columns[name][row]) for name in _NUMBERS}
+    fields |= {name: int(columns[name][row]) for name in _COUNTS}
     return Edge(
         i=int(columns["i"][row]),
         j=int(columns["j"][row]),
@@ -78,12 +78,12 @@ def _edge(columns: dict[str, Any], row: int) -> Edge:
         information=columns["information"][row],
         converged=bool(columns["converged"][row]),
         decided_by=str(columns["decided_by"][row]),
-        **facts,
+        **fields,
     )
 
 
 def write_edges_json(path: Path, graph: PoseGraph) -> None:
-    """Write every pair tried as JSON, one line a pair; a number nobody knows is ``null``."""
+    """Write every registered pair as JSON, one line per pair; an unknown number is ``null``."""
     lines = ",\n".join(json.dumps(edge_record(graph, edge)) for edge in graph.edges)
     head = json.dumps(
         {

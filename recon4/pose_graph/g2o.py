@@ -17,7 +17,7 @@ from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
 from recon4.pose_graph.relations import reverse
 
 _FIELDS = {"VERTEX_SE3:QUAT": 9, "EDGE_SE3:QUAT": 31, "VERTEX_SE2": 5, "EDGE_SE2": 12, "FIX": 2}
-"""How many words a line of each kind has."""
+"""Number of fields in a line of each kind, its tag included."""
 _MOST_BYTES = 1 << 30
 _MOST_LINE_BYTES = 4096
 _MOST_ID = 1 << 53
@@ -25,7 +25,7 @@ _MOST_ID = 1 << 53
 _LENGTH_TOLERANCE = 1e-2
 _ROTATION_FIRST = [3, 4, 5, 0, 1, 2]
 _PLANAR_SD = 1e-3
-"""A 2-D relation knows height [m], roll and pitch [rad] this well once it is lifted to 3-D."""
+"""Standard deviation of height [m], roll and pitch [rad] of a 2-D relation lifted to 3-D."""
 
 
 def write_g2o(path: Path, graph: PoseGraph) -> None:

@@ -1,4 +1,4 @@
-"""Trying one pair of nodes: overlap, registration, acceptance."""
+"""Registration of pairs of nodes: overlap, registration, acceptance."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from recon4.registration.submap import Ends, NodeRangeImages, Submaps, median_ra
 from recon4.settings import Settings
 
 _CHUNK = 8
-"""Target nodes a worker takes at a time; neighbors share their multiframes."""
+"""Target nodes per task of a thread; neighbors share their multiframes."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """Two nodes to be tried, with the pose that is believed so far."""
+    """Two nodes to register, with the predicted relative pose."""
 
     i: int
     j: int
@@ -38,7 +38,7 @@ SubmapFactory = Callable[[], Submaps]
 
 
 class PairRegistrar:
-    """Tries pairs on several threads; the answer does not depend on how many."""
+    """Registers pairs on several threads; the result does not depend on their number."""
 
     def __init__(
         self, make_submaps: SubmapFactory, views: NodeRangeImages, settings: Settings
@@ -46,7 +46,7 @@ class PairRegistrar:
         self._make_submaps, self._views, self._settings = make_submaps, views, settings
 
     def prepare(self, nodes: int, progress: Progress) -> None:
-        """Make the views of all nodes."""
+        """Compute segments and range images of all nodes."""
         progress.start("view volumes", nodes, "node")
         chunks = [range(k, min(k + _CHUNK, nodes)) for k in range(0, nodes, _CHUNK)]
         with ThreadPoolExecutor(self._settings.graph.workers) as pool:
@@ -55,7 +55,7 @@ class PairRegistrar:
                 progress.advance(len(chunk))
 
     def register(self, pairs: Sequence[Pair], progress: Progress) -> list[Edge]:
-        """Try pairs, each an event when it is done; edges come back in the order of the pairs."""
+        """Register pairs; each sends an event. Edges are returned in the order of the pairs."""
         order = sorted(range(len(pairs)), key=lambda k: (pairs[k].i, pairs[k].j, k))
         groups = _by_target(order, pairs)
         chunks = [groups[k : k + _CHUNK] for k in range(0, len(groups), _CHUNK)]
@@ -65,7 +65,7 @@ class PairRegistrar:
             for done in pool.map(lambda chunk: self._try_chunk(chunk, pairs), chunks):
                 edges.update(done)
                 for edge in done.values():
-                    progress.event("edge", **edge_facts(edge))
+                    progress.event("edge", **edge_event(edge))
                 progress.advance(len(done))
         return [edges[k] for k in range(len(pairs))]
 
@@ -77,7 +77,7 @@ class PairRegistrar:
     def _try_group(
         self, submaps: Submaps, planes: PlaneMap, group: list[int], pairs: Sequence[Pair]
     ) -> list[tuple[int, Edge]]:
-        """All pairs of one target node; its map is built at most once, if any pair needs it."""
+        """Register all pairs of one target node; its map is built once, if a pair needs it."""
         target: PlaneMap | LineTarget | None = None
         out = []
         reach = self._settings.graph.target_reach
@@ -153,8 +153,8 @@ class PairRegistrar:
         )
 
 
-def edge_facts(edge: Edge) -> dict[str, object]:
-    """What a watcher is told of an edge, as plain JSON values."""
+def edge_event(edge: Edge) -> dict[str, object]:
+    """Fields of the event ``edge``, as plain JSON values."""
     return {
         "i": edge.i,
         "j": edge.j,
@@ -168,7 +168,7 @@ def edge_facts(edge: Edge) -> dict[str, object]:
 
 
 def _or_null(figure: float) -> float | None:
-    """A figure for JSON, which has no word for NaN; five digits are enough to look at."""
+    """A number for JSON, which has no NaN, rounded to five digits for display."""
     return float(f"{figure:.5g}") if np.isfinite(figure) else None
 
 
@@ -181,10 +181,10 @@ def _edge(pair: Pair, overlap_ratio: float, reason: Reason) -> Edge:
 
 
 def _information(found: Registration, settings: Settings) -> Array:
-    """Inverse covariance of the tangent of ``T_i_j``: what the matches say, no better than a floor.
+    """Inverse covariance of the tangent of ``T_i_j`` by the matches, with a smallest covariance.
 
     A correction (omega, v) on the left about the source's origin is (R^T omega, R^T v) on the
-    right, so the normal equations are turned into the source's axes.
+    right, so the normal equations are rotated into the source's axes.
     """
     g = settings.graph
     floor = np.diag(np.repeat([g.loop_sd_rad, g.loop_sd_m], 3) ** 2)

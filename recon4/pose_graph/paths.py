@@ -15,18 +15,18 @@ from recon4.model.pose_graph import Flags, Relations
 
 @dataclass(slots=True, eq=False)
 class PathIndex:
-    """Median disagreement of every edge with its alternative paths (V Eq. 2.9-2.12).
+    """Path discrepancy of every edge: median to its alternative paths (V Eq. 2.9-2.12).
 
-    Not frozen: removing an edge recomputes only those whose paths may have run through it.
+    Not frozen: removing an edge recomputes only edges whose paths may contain it.
     """
 
     of: Relations
     alive: Flags
-    """Edges that may be walked, (E,)."""
+    """Edges that paths may use, (E,)."""
     median_m: Array
     """Median translation difference [m], NaN without a path, (E,). Of removed edges: the last."""
     count: NDArray[np.int64]
-    """How many alternative paths, (E,)."""
+    """Number of alternative paths, (E,)."""
     max_edges: int
     with_itself: bool
     start: NDArray[np.int64]
@@ -58,7 +58,7 @@ class PathIndex:
         return index
 
     def remove(self, rows: Any) -> None:
-        """Take edges out and bring the medians of those that used them up to date."""
+        """Remove edges and update the medians of edges whose paths used them."""
         stale = np.zeros(len(self.of), dtype=np.bool_)
         for row in rows:
             self.mark_affected(int(row), stale)
@@ -87,8 +87,8 @@ class PathIndex:
 def reject_worst_first(paths: PathIndex, *, free: Flags, limit_m: float) -> list[list[int]]:
     """Remove free edges above the limit until there is none (V §2.8, last paragraph; A0 no. 1).
 
-    A round takes the worst edge, then the next worst whose paths cannot have run through one
-    already taken, and so on. Ties go to the earlier edge.
+    A round removes the worst edge, then the next worst whose paths cannot contain a removed one,
+    and so on. Of equal edges the earlier one is removed.
 
     Returns:
         The rows removed in each round.

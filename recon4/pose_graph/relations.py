@@ -1,4 +1,4 @@
-"""Residuals of edges at given poses, and edges seen from the other end."""
+"""Residuals of edges at given poses, and reversal of edges."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ def squared_residuals(T_map_body: SE3, of: Relations) -> Array:
 
 
 def with_residuals(graph: PoseGraph) -> PoseGraph:
-    """The graph with ``chi2`` of every edge at the poses it has now, also of those not used."""
+    """The graph with ``chi2`` of every edge at its current poses, also of those not used."""
     chi2 = squared_residuals(graph.T_map_body, graph.relations).tolist()
     edges = (edge.evolve(chi2=value) for edge, value in zip(graph.edges, chi2, strict=True))
     return graph.with_edges(tuple(edges))
 
 
 def adjoint(T_a_b: SE3) -> Array:
-    """Matrices that carry twists of ``b`` over to ``a``, rotation first, (..., 6, 6)."""
+    """Adjoint matrices that map twists of ``b`` to ``a``, rotation first, (..., 6, 6)."""
     out = np.zeros((*T_a_b.t.shape[:-1], 6, 6))
     out[..., :3, :3] = out[..., 3:, 3:] = T_a_b.R
     out[..., 3:, :3] = skew(T_a_b.t) @ T_a_b.R
@@ -31,7 +31,7 @@ def adjoint(T_a_b: SE3) -> Array:
 
 
 def reverse(T_i_j: SE3, information: Array) -> tuple[SE3, Array]:
-    """The same relation seen from the other end: ``T_j_i`` and its information.
+    """Reverse a relation: ``T_j_i`` and its information.
 
     The squared residual stays exactly the same: the two tangents differ by ``-Ad(T_i_j)``.
     """

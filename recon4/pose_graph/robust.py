@@ -1,7 +1,7 @@
-"""The robust solve: every edge counts fully or not at all.
+"""The robust solve: truncated least squares, where every edge has the weight 0 or 1.
 
-What is minimized is the truncated sum of squares: the squared residuals, none above a limit.
-That is not convex, so several starts compete and the lowest sum wins.
+The cost is the sum of squared residuals, each limited to a maximum. It is not convex, so the solve
+begins at several starting points and keeps the lowest cost.
 """
 
 from __future__ import annotations
@@ -20,20 +20,20 @@ from recon4.pose_graph.relations import squared_residuals
 from recon4.pose_graph.solve import FactorProblem, Priors, Solution, solved
 
 _STEP = 2.0
-"""Growth of GNC's control parameter a round; gtsam takes 1.4."""
+"""Growth of GNC's control parameter per round; gtsam uses 1.4."""
 _INNER_ITERATIONS = 3
-"""Iterations a round; gtsam goes on to convergence."""
+"""Iterations per round; gtsam iterates to convergence."""
 _MAX_ROUNDS = 60
 _MAX_SETTLING = 10
 _MAX_NOISE = 10.0
-"""Edges may be this much noisier (in variance) than they say before they count as outliers."""
+"""Largest factor by which the variance of edges may exceed the stated one."""
 LOOP_NODES = 10
-"""Edges across fewer nodes are no loops."""
+"""Edges across fewer nodes are not loops."""
 _GROUP_NODES = 3
-"""Loops whose ends lie at most so many nodes apart form a group."""
+"""Loops whose ends lie at most this many nodes apart form a group."""
 _MAX_GROUPS = 4
 _FEW_OUTLIERS = 0.05
-"""If the first start turns down no larger share of the loops, there is no need for others."""
+"""If the first start rejects at most this fraction of the loops, no other start is tried."""
 
 
 def optimize_gnc(
@@ -45,18 +45,17 @@ def optimize_gnc(
 ) -> Solution:
     """Truncated least squares: poses, and weights that are 0 or 1.
 
-    The first start is a Cauchy solve (with positions: the walk without its loops, laid over them).
-    If that turns down more than a few loops, others compete:
-    graduated non-convexity from the convex problem (Yang 2020, eqs. 12-14), and the odometry with
-    only one of the largest groups of neighboring loops, which is what finds the truth when loops
-    are few, alone and mostly false. Protected edges always count. The same graph gives the same
-    bits.
+    The first start is a Cauchy solve (with positions: the walk without its loops, aligned to them).
+    If it rejects more than a few loops, further starts are tried: graduated non-convexity from the
+    convex problem (Yang 2020, eqs. 12-14), and the odometry with only one of the largest groups of
+    neighboring loops. The latter finds the correct solution if loops are few, isolated and mostly
+    false. Protected edges always have the weight 1. The result is reproducible bit for bit.
 
     Args:
         graph: As for `solve.optimize`.
         fixed: As for `solve.optimize`.
         priors: As for `solve.optimize`.
-        probability: Share of correct edges that stay if their information is true.
+        probability: Fraction of correct edges that are kept if their information is true.
 
     Raises:
         GraphError: As `solve.optimize`.
@@ -83,8 +82,8 @@ def optimize_gnc(
 def outlier_limit(edge_chi2: Array, *, probability: float) -> float:
     """Squared residual beyond which an edge is an outlier.
 
-    The chi-square quantile of six numbers, times how much larger than stated the variance of these
-    edges is (from their median, at most tenfold): registrations tend to promise too much.
+    The chi-square quantile with six degrees of freedom, times the ratio of actual to stated
+    variance of these edges (from their median, 1 to 10): registrations tend to be overconfident.
     """
     ratio = float(np.median(edge_chi2)) / chi2_distribution.median(6) if len(edge_chi2) else 1.0
     return float(chi2_distribution.ppf(probability, 6) * np.clip(ratio, 1.0, _MAX_NOISE))
@@ -95,7 +94,7 @@ def _starts(
 ) -> Iterator[SE3]:
     of = problem.of
     short = of.in_graph & (of.protected | (np.abs(of.j - of.i) < LOOP_NODES))
-    if problem.positions:  # they hold the walk without its loops, so they speak first
+    if problem.positions:  # they constrain the walk without its loops, so this start is first
         yield problem.solve(T_map_body, weights=short.astype(np.float64))[0]
     yield T_cauchy
     yield _graduate(problem, T_map_body, limit=limit)
@@ -105,7 +104,7 @@ def _starts(
 
 
 def _graduate(problem: FactorProblem, T_map_body: SE3, *, limit: float) -> SE3:
-    """Harden the convex problem round by round; each goes on from the one before."""
+    """Graduated non-convexity: from the convex problem to the truncated one, round by round."""
     of = problem.of
     free, weights, mu = of.in_graph & ~of.protected, of.in_graph.astype(np.float64), 0.0
     for _ in range(_MAX_ROUNDS):
@@ -120,14 +119,14 @@ def _graduate(problem: FactorProblem, T_map_body: SE3, *, limit: float) -> SE3:
 
 
 def _truncated_weights(chi2: Array, *, limit: float, mu: float) -> Array:
-    """Yang 2020, eq. 14."""
+    """Weights of GNC with truncated least squares (Yang 2020, eq. 14)."""
     middle = np.sqrt(limit * mu * (mu + 1.0) / np.maximum(chi2, 1e-300)) - mu
     certain = np.where(chi2 <= limit * mu / (mu + 1.0), 1.0, middle)
     return np.where(chi2 >= limit * (mu + 1.0) / mu, 0.0, np.clip(certain, 0.0, 1.0))
 
 
 def _settle(problem: FactorProblem, T_map_body: SE3, *, limit: float) -> tuple[SE3, Array, int]:
-    """Solve with the edges below the limit until they are the same as before."""
+    """Solve with the edges below the limit until this set no longer changes."""
     of = problem.of
     weights, iterations = np.zeros(len(of)), 0
     for _ in range(_MAX_SETTLING):
@@ -146,7 +145,7 @@ def _truncated_cost(of: Relations, chi2: Array, *, limit: float) -> float:
 
 
 def _is_plain(of: Relations, weights: Array) -> bool:
-    """Whether nearly all loops agree, so that no other start can do better."""
+    """Whether nearly all loops are inliers, so that no other start can be better."""
     loops = of.in_graph & (np.abs(of.j - of.i) >= LOOP_NODES)
     return bool((loops & (weights == 0.0)).sum() <= _FEW_OUTLIERS * loops.sum())
 

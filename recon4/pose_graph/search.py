@@ -1,8 +1,8 @@
-"""The progressive search for pairs that see the same place (V §2.7, Algorithm 2.1).
+"""The progressive search for pairs of nodes at the same place (V §2.7, Algorithm 2.1).
 
-Pairs are tried near ones first; after each round the graph is optimized, so that later, farther
-pairs start from better poses. At the end those turned down whose expected pose has moved since are
-tried again. Every pair tried is kept with its verdict, that of its last try.
+Near pairs are registered first. The graph is optimized after each round, so that farther pairs
+start from better poses. At the end, rejected pairs whose predicted pose has moved are registered
+again. Every pair is kept with the verdict of its last registration.
 """
 
 from __future__ import annotations
@@ -27,20 +27,20 @@ from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
 
 _LOST_SD_FACTOR = 200.0
-"""How much less an odometry edge across a lost multiframe is worth."""
+"""Factor on the standard deviation of an odometry edge across a lost multiframe."""
 
 
 def build_graph(
     frames: FrameStore, odometry: Path, out: Path, *, settings: Settings, progress: Progress
 ) -> dict[str, object]:
-    """The stage ``graph``: nodes, odometry edges and every pair tried.
+    """Run the stage ``graph``: create nodes and odometry edges, search for loop closures.
 
     Args:
         frames: The multiframes.
         odometry: Folder of the stage ``odometry``.
         out: Receives ``graph.npz`` and ``edges.json``.
         settings: Uses nearly all groups of registration.
-        progress: Counts pairs; each edge is an event.
+        progress: Counts pairs and receives an event for each edge.
     """
     steps = load_arrays(odometry / "steps.npz", ["lost", "motion_cov"])
     graph = search(
@@ -70,7 +70,7 @@ def search(
     progress: Progress,
     scratch: Path,
 ) -> PoseGraph:
-    """The graph after all rounds, poses optimized (Cauchy kernel), not yet verified.
+    """Search for loop closures in all rounds; poses are optimized (Cauchy kernel), not verified.
 
     Args:
         frames: The multiframes.
@@ -78,8 +78,8 @@ def search(
         lost: Multiframes where odometry was lost, (number of multiframes,).
         motion_cov: `OdometryStep.motion_cov` of each, (number of multiframes, 6, 6).
         settings: Uses segments, overlap, registration, planes, graph.
-        progress: Counts pairs; each try is an event.
-        scratch: Folder for nameless files of 0.2 MB a node.
+        progress: Counts pairs and receives an event for each registration.
+        scratch: Folder for unnamed temporary files of 0.2 MB per node.
     """
     g = settings.graph
     rows = node_rows(frames.t_mid_ns, g.node_stride, lost)
@@ -110,10 +110,10 @@ def odometry_edges(
     motion_cov: Array,
     settings: GraphSettings,
 ) -> tuple[Edge, ...]:
-    """Edges between consecutive nodes, as certain as odometry itself was of the motion between.
+    """Edges between consecutive nodes with the covariance of the odometry in between.
 
-    The errors of consecutive multiframes are alike, so their deviations add up, not their
-    variances. Across multiframes where tracking was lost an edge is weak.
+    The errors of consecutive multiframes are correlated, so their standard deviations add up, not
+    their variances. An edge across multiframes with lost tracking is weak.
     """
     T_i_j = T_odom_body[:-1].inverse() @ T_odom_body[1:]
     floor = np.diag(np.repeat([settings.odometry_sd_rad, settings.odometry_sd_m], 3) ** 2)
@@ -146,7 +146,7 @@ def _try(
     expected: dict[Ends, SE3],
     progress: Progress,
 ) -> PoseGraph:
-    """Try pairs and optimize; ``expected`` receives the pose each of them started from."""
+    """Register pairs and optimize; ``expected`` receives the initial pose of each pair."""
     if not pairs:
         return graph
     expected.update({(pair.i, pair.j): pair.T_i_j for pair in pairs})
@@ -158,7 +158,7 @@ def _try(
 
 
 def _newest(edges: tuple[Edge, ...], tried: list[Edge]) -> tuple[Edge, ...]:
-    """One edge a pair: what was tried again takes the place of the try before."""
+    """One edge per pair: a new registration replaces the one before."""
     newest = {(edge.i, edge.j): edge for edge in tried}
     kept = [
         edge if edge.kind is EdgeKind.ODOMETRY else newest.pop((edge.i, edge.j), edge)

@@ -1,4 +1,4 @@
-"""Poses that agree best with the edges of a graph. The only place that knows gtsam."""
+"""Pose graph optimization. The only module that uses gtsam."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ deviations have a length of 2.4."""
 CAUCHY_POSITION_SD = 3.0
 """The same for an absolute position (1.7)."""
 _GAUGE = 1e6
-"""How much better than the best edge a fixed node is known."""
+"""Ratio of the information of a fixed node to that of the best edge."""
 MAX_ITERATIONS = 100
 _RELATIVE_DECREASE = 1e-7
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PosePriors:
-    """Nodes whose pose is known from elsewhere."""
+    """Priors on poses of nodes."""
 
     node: Rows
     """Rows of the nodes, (M,)."""
@@ -42,14 +42,14 @@ class PosePriors:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PositionPriors:
-    """Positions of a point of the body, as GNSS gives them."""
+    """Priors on positions of a point of the body, for example of a GNSS antenna."""
 
     node: Rows
     """Rows of the nodes, (M,)."""
     p_map: Array
     """Measured positions [m], (M, 3)."""
     p_body: Array
-    """Where on the body each was measured (lever arm) [m], (M, 3)."""
+    """Measured point in the body (lever arm) [m], (M, 3)."""
     sd_m: Array
     """Standard deviations along the axes of the map [m], (M, 3)."""
 
@@ -59,21 +59,21 @@ Priors = PosePriors | PositionPriors
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Solution:
-    """What the optimizer found."""
+    """Result of the optimization."""
 
     T_map_body: SE3
     """Poses of the nodes, a batch of N."""
     chi2: float
-    """Sum of the squared residuals over edges used; no weight, no kernel."""
+    """Sum of the squared residuals over edges used, without weights and kernel."""
     chi2_before: float
-    """The same before."""
+    """The same before the optimization."""
     edge_chi2: Array
     """Squared residual of each edge, also of those not used, (E,)."""
     weights: Array
-    """What each edge counted for in the end, 0..1; 0 for edges not used, (E,)."""
+    """Final weight of each edge, 0..1; 0 for edges not used, (E,)."""
     iterations: int
     converged: bool
-    """Stopped because nothing got better any more."""
+    """Whether the cost no longer decreased before the limit of iterations."""
 
 
 def optimize(
@@ -83,16 +83,16 @@ def optimize(
     fixed: Sequence[int] = (0,),
     priors: Sequence[Priors] = (),
 ) -> Solution:
-    """Levenberg-Marquardt from the current poses.
+    """Optimize the poses by Levenberg-Marquardt, starting at the current ones.
 
     Args:
-        graph: Edges with a verdict of rejected are left out.
-        kernel: ``cauchy`` makes gross errors of free edges and of positions pull little.
-        fixed: Rows of nodes that stay where they are. Empty only if the priors hold the map.
-        priors: Poses and positions known from elsewhere.
+        graph: Edges with the verdict rejected are not used.
+        kernel: ``cauchy`` limits the influence of gross errors of free edges and of positions.
+        fixed: Rows of fixed nodes. Empty only if the priors fix the gauge.
+        priors: Priors on poses and positions.
 
     Raises:
-        GraphError: If the graph cannot be solved (`checks`), or nothing holds it.
+        GraphError: If the graph cannot be solved (`checks`), or its gauge is free.
     """
     of = graph.relations
     problem = FactorProblem.check(graph.T_map_body, of, fixed=fixed, priors=priors)
@@ -108,7 +108,7 @@ def optimize(
 def solved(
     graph: PoseGraph, of: Relations, T_map_body: SE3, *, weights: Array, iterations: int
 ) -> Solution:
-    """A solution with its residuals."""
+    """Make a `Solution` with its residuals."""
     edge_chi2 = squared_residuals(T_map_body, of)
     return Solution(
         T_map_body=T_map_body,
@@ -124,7 +124,7 @@ def solved(
 def initialize(graph: PoseGraph) -> SE3:
     """Poses from the edges alone: chordal relaxation of the rotations, then the translations.
 
-    For graphs whose own poses are too far off (files of others, an odometry that got lost).
+    For graphs whose poses are too wrong as a start (foreign files, odometry that lost tracking).
 
     Raises:
         GraphError: If the graph cannot be solved (`checks`).
@@ -132,7 +132,7 @@ def initialize(graph: PoseGraph) -> SE3:
     of = graph.relations
     problem = FactorProblem.check(graph.T_map_body, of, fixed=(0,), priors=())
     factors = problem.factors(of.in_graph.astype(np.float64), kernel="none")
-    # The chordal method wants a prior as its anchor; it is the last factor of the graph.
+    # The chordal method requires a prior as its anchor; it is the last factor of the graph.
     values = gtsam.InitializePose3.initialize(factors)
     T_free_body = _poses(values, len(graph))
     return graph.T_map_body[0] @ T_free_body[0].inverse() @ T_free_body
@@ -140,7 +140,7 @@ def initialize(graph: PoseGraph) -> SE3:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FactorProblem:
-    """A checked graph in gtsam's terms; built once, solved with changing weights."""
+    """A checked graph as gtsam objects; built once, solved with changing weights."""
 
     of: Relations
     measured: list[Any]
@@ -157,7 +157,7 @@ class FactorProblem:
     ) -> FactorProblem:
         check_relations(T_map_body, of)
         if not len(fixed) and not priors:
-            raise GraphError("nothing holds the graph: no fixed node and no prior")
+            raise GraphError("the gauge is free: expected a fixed node or a prior, got none")
         best = float(of.information[of.in_graph].max(initial=1.0))
         always = [
             gtsam.PriorFactorPose3(int(node), _pose(T_map_body, node), _gauge(best))
@@ -182,13 +182,13 @@ class FactorProblem:
         kernel: Kernel = "none",
         max_iterations: int = MAX_ITERATIONS,
     ) -> tuple[SE3, int]:
-        """Poses found from ``T_map_body``, and how many iterations it took.
+        """Optimize from ``T_map_body``; returns the poses and the number of iterations.
 
         Args:
-            T_map_body: Where to start.
+            T_map_body: Initial poses.
             weights: Factor on the information of each edge, (E,); 0 = not used.
             kernel: As in `optimize`.
-            max_iterations: Stop there, wherever it is.
+            max_iterations: Limit of iterations.
 
         Raises:
             GraphError: If a number is not finite.
@@ -202,13 +202,13 @@ class FactorProblem:
             self.factors(weights, kernel=kernel), values, parameters
         )
         found = _poses(optimizer.optimize(), self.nodes)
-        # A NaN inside gtsam leaves the poses alone and shows in the error only.
+        # With a NaN inside, gtsam leaves the poses unchanged; only the error shows it.
         if not np.isfinite(optimizer.error()) or not np.isfinite(found.t).all():
             raise GraphError("the optimizer met a number that is not finite")
         return found, int(optimizer.iterations())
 
     def prior_chi2(self, T_map_body: SE3) -> float:
-        """Sum of the squared residuals of what is known from elsewhere: no edge, no kernel."""
+        """Sum of the squared residuals of the priors, without edges and kernel."""
         nothing = self.factors(np.zeros(len(self.of)), kernel="none")
         return 2.0 * float(nothing.error(self._values(T_map_body)))
 
@@ -219,7 +219,7 @@ class FactorProblem:
         return values
 
     def factors(self, weights: Array, *, kernel: Kernel) -> Any:
-        """The ``gtsam.NonlinearFactorGraph`` of the edges that count."""
+        """The ``gtsam.NonlinearFactorGraph`` of the edges with a weight, and of the priors."""
         out = gtsam.NonlinearFactorGraph()
         of, robust = self.of, kernel == "cauchy"
         scaled = of.information * weights[:, None, None]
@@ -247,7 +247,7 @@ def _check_prior(prior: Priors, *, nodes: int) -> None:
     else:
         numbers = [prior.p_map, prior.p_body, prior.sd_m]
         if np.any(prior.sd_m <= 0.0):
-            raise GraphError("a prior has a standard deviation that is not above zero")
+            raise GraphError("a prior has a standard deviation that is not positive")
     if not all(np.isfinite(values).all() for values in numbers):
         raise GraphError("a prior is not finite")
 
@@ -274,7 +274,7 @@ def _pose(T_a_b: SE3, row: int) -> Any:
 
 
 def _poses(values: Any, nodes: int) -> SE3:
-    """Poses of keys 0 to N-1; renormalized, as products of rotations drift."""
+    """Poses of keys 0 to N-1; renormalized, because products of rotations drift."""
     rows = gtsam.utilities.extractPose3(values)
     assert len(rows) == nodes
     T_map_body = SE3(rows[:, :9].reshape(-1, 3, 3), rows[:, 9:])

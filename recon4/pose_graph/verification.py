@@ -22,22 +22,22 @@ _REVISED = (Reason.VERIFICATION, Reason.ROBUST)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Verification:
-    """A verified graph and how it came about; edges are rows of ``graph.edges``."""
+    """A verified graph and the rejected edges; edges are rows of ``graph.edges``."""
 
     graph: PoseGraph
-    """Poses solved again; verdicts, ``verification_m``, ``paths`` and ``chi2`` filled in."""
+    """Optimized poses; edges with verdict, ``verification_m``, ``paths`` and ``chi2``."""
     rounds: tuple[tuple[int, ...], ...]
     """Edges rejected by their alternative paths, round by round, worst first."""
     flagged: tuple[int, ...]
-    """Protected edges that disagree with their paths: kept, but worth a look."""
+    """Protected edges with a path discrepancy above the limit: kept, but to be reviewed."""
     outliers: tuple[int, ...]
     """Edges rejected by the robust solve."""
     duplicates: tuple[tuple[int, int], ...]
     """Pairs of nodes joined by more than one edge."""
     chi2_before: float
-    """Of all edges that came in, at the poses that came in."""
+    """Of all input edges, at the input poses."""
     chi2_after: float
-    """Of the edges that stayed, at the poses found."""
+    """Of the edges kept, at the optimized poses."""
 
     def to_json(self) -> dict[str, Any]:
         """Plain JSON values for ``verification.json``."""
@@ -62,16 +62,16 @@ def verify(
     """Reject edges that contradict the rest of the graph, and solve for the poses.
 
     First each edge is compared with all simple paths of at most three other edges between its
-    nodes; while the median difference of any edge is above the limit, the worst goes (and in the
-    same round others that share no path with it). Then the robust solve looks at the whole graph:
-    it finds what no path reached.
+    nodes. While the path discrepancy of any edge is above the limit, the worst edge is rejected
+    (and in the same round others that have no path in common with it). Then the robust solve of
+    the whole graph finds outliers that no path reaches.
 
-    Odometry and what a person decided stays as it is. Automatic decisions of an earlier
-    verification are taken back first, so that verifying twice is the same as verifying once.
+    Odometry and decisions of a person are never changed. Automatic decisions of an earlier
+    verification are undone first, so that verifying twice is the same as verifying once.
 
     Raises:
         GraphError: If the graph cannot be solved.
-        Cancelled: If the watcher asked to stop.
+        Cancelled: If the caller requested to stop.
     """
     watcher = progress or Silent()
     graph = graph.with_edges(tuple(_as_before(edge) for edge in graph.edges))
@@ -105,10 +105,10 @@ def verify(
 
 
 def confirmed_again(graph: PoseGraph, *, settings: VerificationSettings) -> PoseGraph:
-    """A verified graph some edges of which were turned down since: who is still confirmed?
+    """Update the alternative paths of a verified graph after further edges were rejected.
 
-    Paths through these edges are gone. An edge whose last path went with them stays in the graph
-    and is unverified from now on; odometry and what a person decided are treated as in `verify`.
+    Paths through rejected edges do not count. An edge without any path left stays in the graph and
+    becomes unverified. Odometry and decisions of a person are treated as in `verify`.
     """
     paths = _index(graph.relations, nodes=len(graph), settings=settings)
     edges = list(graph.edges)
@@ -147,7 +147,7 @@ def _with_rejected(graph: PoseGraph, rows: list[int], reason: Reason) -> PoseGra
 
 
 def _solve(graph: PoseGraph, settings: VerificationSettings) -> tuple[Solution, list[int]]:
-    """The final poses, and the edges that do not fit them."""
+    """The final poses, and the rows of the outliers."""
     if settings.robust == "none":
         return optimize(graph, kernel="none"), []
     of = graph.relations
@@ -163,7 +163,7 @@ def _solve(graph: PoseGraph, settings: VerificationSettings) -> tuple[Solution, 
 
 
 def _with_figures(edges: tuple[Edge, ...], paths: PathIndex, edge_chi2: Array) -> tuple[Edge, ...]:
-    """Edges with what was measured on them; the unconfirmed ones named as such."""
+    """Edges with path discrepancy, path count and chi-square; unconfirmed ones are unverified."""
     out = []
     for row, edge in enumerate(edges):
         verdict = edge.verdict
@@ -181,7 +181,7 @@ def _with_figures(edges: tuple[Edge, ...], paths: PathIndex, edge_chi2: Array) -
 
 
 def _report_verdicts(edges: tuple[Edge, ...], rows: list[int], watcher: Progress) -> None:
-    """What became of some edges, for whoever watches them while the job runs."""
+    """Report the verdicts of some edges as an event, for the display of a running job."""
     if rows:
         record = [
             [e.i, e.j, e.kind.value, e.verdict.value, e.reason.value]

@@ -17,7 +17,7 @@ from recon4.pose_graph.candidates import (
     rounds,
 )
 from recon4.pose_graph.files import load_graph, save_graph
-from recon4.pose_graph.pairs import edge_facts
+from recon4.pose_graph.pairs import edge_event
 from recon4.pose_graph.search import build_graph, odometry_edges, search
 from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
@@ -224,8 +224,8 @@ def test_the_number_of_pairs_grows_with_the_walk_and_not_with_its_square():
     assert count[2] / count[1] < 2.15
 
 
-def test_drift_not_yet_closed_is_allowed_for():
-    # Back at the start after 800 m, 7 m off: more than 4 m, less than 4 m + 0.5 % of the way.
+def test_the_revisit_radius_grows_with_the_path_length():
+    # Back at the start after 800 m, 7 m off: more than 4 m, less than 4 m + 0.5 % of the path.
     out, back = np.linspace(0, 400, 400), np.linspace(400, 0, 400)
     t_m = np.zeros((800, 3))
     t_m[:, 0] = np.concatenate([out, back])
@@ -238,7 +238,7 @@ def test_drift_not_yet_closed_is_allowed_for():
     assert 799 not in [j for _, j in ends(strict)]
 
 
-def test_a_single_node_has_nobody_to_pair_with():
+def test_a_single_node_has_no_pairs():
     settings = GraphSettings()
 
     assert neighbor_pairs(line(1), settings) == []
@@ -353,16 +353,16 @@ def gaps_m(T, T_true):
     return np.linalg.norm(delta.t, axis=1)
 
 
-def test_the_stage_keeps_every_pair_tried_and_tells_of_each(searched):
-    folder, facts, watch = searched
+def test_the_stage_keeps_and_reports_every_registered_pair(searched):
+    folder, figures, watch = searched
     graph = load_graph(folder / "graph")
 
-    assert facts["nodes"] == len(graph) == 8
+    assert figures["nodes"] == len(graph) == 8
     tried = [(e.i, e.j) for e in graph.edges if e.kind is not EdgeKind.ODOMETRY]
     assert len(tried) == len(set(tried))
-    told = [facts for kind, facts in watch.events if kind == "edge"]
-    assert sorted((f["i"], f["j"]) for f in told) == sorted(tried)
-    json.loads(json.dumps(told, allow_nan=False))
+    reported = [fields for kind, fields in watch.events if kind == "edge"]
+    assert sorted((f["i"], f["j"]) for f in reported) == sorted(tried)
+    json.loads(json.dumps(reported, allow_nan=False))
 
 
 def test_the_poses_of_the_graph_are_true(searched, stroll):
@@ -376,13 +376,13 @@ def test_the_poses_of_the_graph_are_true(searched, stroll):
             assert np.linalg.norm(off.t) < 0.02
 
 
-def test_an_edge_never_registered_has_no_error_to_tell():
+def test_the_event_of_an_edge_never_registered_has_no_error():
     edge = Edge(
         i=0, j=1, T_i_j=SE3.identity(), kind=EdgeKind.LOOP, verdict=Verdict.REJECTED, overlap=0.1
     )
 
-    assert edge_facts(edge)["error_m"] is None
-    assert edge_facts(edge.evolve(error_m=0.02))["error_m"] == 0.02
+    assert edge_event(edge)["error_m"] is None
+    assert edge_event(edge.evolve(error_m=0.02))["error_m"] == 0.02
 
 
 def test_two_threads_find_the_same_edges_as_one(searched, stroll):
@@ -443,7 +443,7 @@ def test_a_pair_turned_down_is_tried_again_once_its_poses_have_moved():
 
 
 def drifting_search(stroll, folder, watch, *assignments):
-    """Odometry drifts by 12 cm a node; only guesses within 30 cm converge."""
+    """Odometry drifts by 12 cm per node; only initial poses within 30 cm converge."""
     t_s = (stroll.truth.t_ns - stroll.truth.t_ns[0]) * 1e-9
     drift = 0.4 * t_s[:, None] * [1.0, 0.0, 0.0]
     T = stroll.truth.T_a_b
@@ -461,7 +461,7 @@ def drifting_search(stroll, folder, watch, *assignments):
     )
 
 
-def test_a_search_tries_again_what_a_poor_pose_made_it_turn_down(stroll, tmp_path):
+def test_pairs_rejected_because_of_a_poor_pose_are_registered_again(stroll, tmp_path):
     watch = Silent()
     once = drifting_search(stroll, tmp_path, Silent(), "graph.retry_rounds=0")
     again = drifting_search(stroll, tmp_path, watch)
@@ -469,12 +469,12 @@ def test_a_search_tries_again_what_a_poor_pose_made_it_turn_down(stroll, tmp_pat
     assert sum(e.reason is Reason.NOT_CONVERGED for e in once.edges) >= 5
     assert not any(e.reason is Reason.NOT_CONVERGED for e in again.edges)
     assert sum(e.in_graph for e in again.edges) > sum(e.in_graph for e in once.edges)
-    # One edge a pair, that of the last try; every try was told.
+    # One edge per pair, that of the last registration; every registration was reported.
     pairs = [(e.i, e.j) for e in again.edges if e.kind is not EdgeKind.ODOMETRY]
     assert len(pairs) == len(set(pairs)) == len(once.edges) - len(once) + 1
-    told = [(f["i"], f["j"]) for kind, f in watch.events if kind == "edge"]
-    assert len(told) > len(pairs)
-    assert set(told) == set(pairs)
+    reported = [(f["i"], f["j"]) for kind, f in watch.events if kind == "edge"]
+    assert len(reported) > len(pairs)
+    assert set(reported) == set(pairs)
 
 
 def test_the_scratch_of_a_search_lies_in_its_own_folder_and_is_gone_after(

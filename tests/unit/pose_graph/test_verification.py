@@ -15,7 +15,7 @@ PATHS_ONLY = VerificationSettings(robust="none")
 
 
 def line(*loops: tuple[int, int, float], nodes: int = 6, turn: float = 0.0) -> PoseGraph:
-    """Steps of 1 m along x, and loops that are wrong by so many metres sideways."""
+    """Steps of 1 m along x, and loops with the given lateral errors [m]."""
     steps = [SE3.from_rpy(0, 0, turn, [1.0, 0.0, 0.0])] * (nodes - 1)
     poses = [SE3.identity()]
     for step in steps:
@@ -293,10 +293,10 @@ def test_the_cycle_variant_knows_triangles_only() -> None:
 def test_the_record_is_plain_json_and_names_the_rejected() -> None:
     import json
 
-    told = json.loads(json.dumps(verify(line((0, 2, 0.3)), settings=PATHS_ONLY).to_json()))
+    record = json.loads(json.dumps(verify(line((0, 2, 0.3)), settings=PATHS_ONLY).to_json()))
 
-    assert told["edges"] == {"accepted": 0, "rejected": 1, "unverified": 5}
-    assert told["rounds"][0][0]["nodes"] == [0, 2]
+    assert record["edges"] == {"accepted": 0, "rejected": 1, "unverified": 5}
+    assert record["rounds"][0][0]["nodes"] == [0, 2]
 
 
 def test_a_graph_without_loops_is_fine() -> None:
