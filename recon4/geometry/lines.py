@@ -35,7 +35,7 @@ class Lines:
         return Lines(self.mid[rows], self.dir[rows])
 
     def moved(self, T_a_b: SE3) -> Lines:
-        """The same lines (held in frame ``b``) expressed in frame ``a``."""
+        """Transform the lines from frame ``b`` to frame ``a``."""
         return Lines(T_a_b @ self.mid, self.dir @ T_a_b.R.T)
 
 
@@ -48,7 +48,7 @@ def closest_points(a: Lines, b: Lines) -> tuple[Array, Array]:
 
     Returns:
         The point on each line of ``a`` and its partner on ``b`` [m], (N, 3) each.
-        A parallel pair has no unique answer and yields NaN: the caller drops it.
+        A parallel pair has no unique solution and yields NaN: the caller drops it.
 
     Velas 2016, eqs. (8)-(13), with unit directions.
     """

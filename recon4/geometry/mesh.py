@@ -1,4 +1,4 @@
-"""Triangle meshes with a reflectivity per triangle, and the bricks the worlds are built of."""
+"""Triangle meshes with a reflectivity per triangle, and shapes to build simulated worlds."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _BOX_TRIANGLES = np.array(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WorldMesh:
-    """What the lasers can hit."""
+    """Triangle mesh of a simulated world."""
 
     vertices_m: NDArray[np.float32]
     """Corners in the map [m], (V, 3)."""
@@ -29,7 +29,7 @@ class WorldMesh:
     """Rows of ``vertices_m``, counter-clockwise from outside where there is one, (T, 3)."""
     reflectivity: NDArray[np.float32]
     """Diffuse reflectivity 0..1 of each triangle, (T,). Above 1: retro-reflective.
-    Below `GLASS`: a pane that answers only when hit nearly square."""
+    Below `GLASS`: a pane that reflects only at nearly perpendicular incidence."""
 
 
 GLASS = 0.02
@@ -37,7 +37,7 @@ GLASS = 0.02
 
 @dataclass(slots=True)
 class MeshBuilder:
-    """Collects bricks; `mesh` makes one mesh of them."""
+    """Collects shapes and merges them to one mesh."""
 
     _vertices: list[Array] = field(default_factory=list)
     _triangles: list[NDArray[np.int64]] = field(default_factory=list)
@@ -52,7 +52,7 @@ class MeshBuilder:
         self._count += len(vertices_m)
 
     def place(self, other: MeshBuilder, shift_m: ArrayLike) -> None:
-        """Add what another builder collected, moved by (3,) [m]."""
+        """Add the shapes of another builder, moved by (3,) [m]."""
         mesh = other.mesh()
         moved = mesh.vertices_m.astype(np.float64) + np.asarray(shift_m, dtype=np.float64)
         self.add(moved, mesh.triangles.astype(np.int64), mesh.reflectivity)
@@ -145,7 +145,7 @@ class MeshBuilder:
 
 
 def _grid_triangles(rows: int, columns: int, *, wrap: bool) -> NDArray[np.int64]:
-    """Two triangles a cell of a grid of corners, cell by cell."""
+    """Two triangles per cell of a grid of corners, cell by cell."""
     r, c = np.mgrid[0 : rows - 1, 0 : columns if wrap else columns - 1]
     right = (c + 1) % columns
     a, b = r * columns + c, r * columns + right

@@ -1,4 +1,4 @@
-"""Rays against triangles: the one place that knows Open3D."""
+"""Ray casting on triangle meshes: the only module that uses Open3D."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _NEAREST_BATCH = 1_000_000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Hits:
-    """What each ray meets first."""
+    """First hit of each ray."""
 
     range_m: NDArray[np.float32]
     """Distance along the unit direction [m], inf = nothing, (N,)."""
@@ -27,7 +27,7 @@ class Hits:
 
 
 class Scene:
-    """A mesh made ready for rays."""
+    """A mesh prepared for ray casting."""
 
     def __init__(self, mesh: WorldMesh) -> None:
         self._scene = _scene(mesh)

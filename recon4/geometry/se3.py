@@ -1,4 +1,4 @@
-"""Rigid motions, one or many at a time."""
+"""Rotations and rigid motions (SO(3), SE(3)), one or a batch."""
 
 from __future__ import annotations
 
@@ -91,9 +91,9 @@ def matrix_from_quat(quat_xyzw: ArrayLike) -> Array:
 
 
 def proper(R: Array) -> Array:
-    """The rotations that nearly orthonormal matrices mean, (..., 3, 3).
+    """Orthonormalize rotation matrices, (..., 3, 3).
 
-    Products of rotations drift off slowly, and a loop that feeds them back drifts off fast.
+    Products of rotations drift slowly from SO(3), and fast in a loop that feeds them back.
     """
     return matrix_from_quat(quat_from_matrix(R))
 
@@ -248,7 +248,7 @@ def align_points(p_a: Array, p_b: Array, weights: Array | None = None) -> SE3:
     Args:
         p_a: Points in frame ``a`` [m], (N, 3).
         p_b: The same points in frame ``b`` [m], (N, 3).
-        weights: Non-negative, (N,); None = all alike.
+        weights: Non-negative, (N,); None = equal.
 
     Returns:
         ``T_a_b``. Always a proper rotation, also for planar point sets.

@@ -1,4 +1,4 @@
-"""From the local frame of a map to a coordinate reference system, and back (requirements A10)."""
+"""Transformation of the local frame of a map to a coordinate reference system (A10), and back."""
 
 from __future__ import annotations
 
@@ -11,21 +11,14 @@ import numpy as np
 from recon4.errors import GeoreferenceError
 from recon4.geometry.se3 import Array
 
-_ENU_OF_NED = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
-
 
 @dataclass(frozen=True, slots=True)
 class GeodeticOrigin:
-    """Where a local frame (x east, y north, z up) touches the earth: WGS 84, ellipsoidal."""
+    """Origin of a local frame (x east, y north, z up) in WGS 84, with ellipsoidal height."""
 
     lat_rad: float
     lon_rad: float
     height_m: float
-
-
-def enu_of_ned(v: Array) -> Array:
-    """North-east-down as east-north-up (and back: it is its own inverse), (..., 3)."""
-    return v @ _ENU_OF_NED.T
 
 
 def to_enu(origin: GeodeticOrigin, lat_rad: Array, lon_rad: Array, *, height_m: Array) -> Array:
@@ -43,28 +36,28 @@ def to_geodetic(origin: GeodeticOrigin, p_enu: Array) -> tuple[Array, Array, Arr
 
 
 def default_crs(origin: GeodeticOrigin) -> str:
-    """UTM zone of the place on WGS 84; heights stay ellipsoidal."""
+    """UTM zone of a position on WGS 84; heights stay ellipsoidal."""
     zone = int((np.rad2deg(origin.lon_rad) + 180.0) // 6.0) % 60 + 1
     return f"EPSG:{32600 + zone if origin.lat_rad >= 0.0 else 32700 + zone}"
 
 
 class CrsTransform:
-    """Carries points of the map into a coordinate reference system.
+    """Transforms points of the map to a coordinate reference system.
 
-    A horizontal system alone leaves heights ellipsoidal; with a vertical one (``EPSG:5514+8357``)
-    heights follow its quasi-geoid. Easting comes first whatever the system's own order.
+    With a horizontal system only, heights stay ellipsoidal; with a vertical one
+    (``EPSG:5514+8357``) they refer to its quasi-geoid. Easting is always first.
     """
 
     def __init__(self, origin: GeodeticOrigin, crs: str = "") -> None:
-        """Find the best operation at this place.
+        """Find the best transformation at this position.
 
         Args:
-            origin: Of the map's local frame.
+            origin: Origin of the map's local frame.
             crs: EPSG code or codes; empty = `default_crs`.
 
         Raises:
-            GeoreferenceError: If there is no such system, or the operation it takes needs a grid
-                that is not installed (PROJ would silently leave the height out).
+            GeoreferenceError: If there is no such system, or the transformation needs a grid that
+                is not installed (PROJ would silently ignore the height).
         """
         self.origin = origin
         self.crs = crs or default_crs(origin)
@@ -73,32 +66,32 @@ class CrsTransform:
         self._transformer = _best_transformer(origin, self._target, self.crs)
         here = self.to_crs(np.zeros((1, 3)))[0]
         self.offset = np.round(here / 1000.0) * 1000.0
-        """Multiple of 1 000 m near the origin: what files subtract to keep small numbers, (3,)."""
+        """Multiple of 1 000 m near the origin; files subtract it to keep numbers small, (3,)."""
 
     @property
     def wkt(self) -> str:
-        """The system as WKT 1, which LAS 1.4 asks for."""
+        """The system as WKT 1, as LAS 1.4 requires."""
         return str(self._target.to_wkt("WKT1_GDAL"))
 
     @property
     def operation(self) -> str:
-        """What PROJ does, in words."""
+        """Description of the transformation by PROJ."""
         return str(self._transformer.description)
 
     @property
     def accuracy_m(self) -> float:
-        """What the operation promises [m]; NaN if it promises nothing."""
+        """Stated accuracy of the transformation [m]; NaN if unknown."""
         accuracy = self._transformer.accuracy
         return float(accuracy) if accuracy >= 0.0 else float("nan")
 
     def to_crs(self, p_map: Array) -> Array:
         """Easting, northing, height of points of the map [m], (N, 3) -> (N, 3).
 
-        Each point for itself, so the projection's scale is in it; about 1 us a point. Call it
-        tile by tile.
+        Each point is projected, so the scale of the projection is included; about 1 us per point.
+        Call it tile by tile.
 
         Raises:
-            GeoreferenceError: If a point lies outside what the system covers.
+            GeoreferenceError: If a point lies outside the area of the system.
         """
         lat, lon, height = to_geodetic(self.origin, p_map)
         if self.has_heights:
@@ -130,9 +123,9 @@ def _system(name: str) -> Any:
     except CRSError as error:
         raise GeoreferenceError(f"no coordinate reference system {name!r}: {error}") from error
     if not (system.is_projected or (system.is_compound and system.sub_crs_list[0].is_projected)):
-        raise GeoreferenceError(f"{name} is not a map projection in metres: {system.name}")
+        raise GeoreferenceError(f"{name} is not a map projection in meters: {system.name}")
     if any(axis.unit_name != "metre" for axis in system.axis_info):
-        raise GeoreferenceError(f"{name} is not in metres")
+        raise GeoreferenceError(f"{name} is not in meters")
     return system
 
 
@@ -144,7 +137,7 @@ def _best_transformer(origin: GeodeticOrigin, target: Any, name: str) -> Any:
     place: Any = AreaOfInterest(lon - 0.01, lat - 0.01, lon + 0.01, lat + 0.01)
     source = "EPSG:4979" if len(target.axis_info) == 3 else "EPSG:4326"
     with warnings.catch_warnings():
-        # The missing grid is our own error below; pyproj only warns of it.
+        # A missing grid is an error below; pyproj only warns.
         warnings.simplefilter("ignore", UserWarning)
         group = TransformerGroup(
             source,

@@ -1,4 +1,4 @@
-"""Levelling by the dominant floor, for recordings without an IMU (requirements A8)."""
+"""Leveling by the dominant floor, for recordings without an IMU (requirements A8)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from recon4.georeference.level import NOT_LEVELED, Leveling, tilt_to
 _CELL_M = 0.4
 _MIN_POINTS = 12
 _BELOW_M = 0.3
-"""Floor lies at least this far below the sensor."""
+"""The floor lies at least this far below the sensor [m]."""
 _NEAR_M = 8.0
 _MAX_TILT_RAD = np.deg2rad(30.0)
 _FLATNESS_M = 0.03
@@ -21,15 +21,15 @@ _MAX_CANDIDATES = 500
 
 
 def level_by_floor(p_odom: Array, origin_odom: Array) -> Leveling:
-    """The direction most horizontal patches below the sensor agree on.
+    """Level by the direction that most horizontal patches below the sensor have in common.
 
-    Only directions are compared, so storeys, landings and stair treads all help, and ramps are
-    outvoted.
+    Only directions are compared: stories, landings and stair treads contribute, ramps are
+    outliers.
 
     Args:
         p_odom: Points of the map, a sample [m], (N, 3).
-        origin_odom: Where the body was when each was measured [m], (N, 3). Its z axis must be up
-            within 30 degrees.
+        origin_odom: Position of the body when each was measured [m], (N, 3). Its z axis must be
+            up within 30 degrees.
 
     Returns:
         ``source == "none"`` if fewer than five patches agree.
@@ -67,6 +67,6 @@ def _patch_normals(p_odom: Array) -> Array:
             cov[:, a, b] = np.bincount(patch, d[:, a] * d[:, b]) / count
     variance, axes = np.linalg.eigh(cov[count >= _MIN_POINTS])
     normal = axes[:, :, 0] * np.sign(axes[:, 2:3, 0])
-    # A strip (one scan line) has no normal: the second extent must be a surface's.
+    # A strip (one scan line) has no normal: the second extent must be that of a surface.
     flat = (variance[:, 0] < _FLATNESS_M**2) & (variance[:, 1] > (_CELL_M / 8.0) ** 2)
     return normal[flat & (normal[:, 2] > np.cos(_MAX_TILT_RAD))]

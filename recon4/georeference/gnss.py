@@ -1,4 +1,4 @@
-"""A pose graph laid over GNSS positions (V §2.7, Fig. 2.10b; requirements A10)."""
+"""Georeferencing of a pose graph by GNSS priors (V §2.7, Fig. 2.10b; requirements A10)."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ _OUTLIER_SD = 5.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GeoreferenceResult:
-    """A graph in the local frame at `origin`, or the graph as it was and the reason why."""
+    """A graph in the local frame at `origin`, or the unchanged graph and the reason why."""
 
     graph: PoseGraph
     """``T_map_body`` with x east, y north, z up at the origin, if there is one."""
     origin: GeodeticOrigin | None
-    """None: the map stays in a local frame of its own and has no place on earth."""
+    """None: the map stays in its own local frame and is not georeferenced."""
     reason: str
     """Why there is no origin; empty if there is one."""
     T_enu_map: SE3
-    """First, rigid alignment: heading and shift only."""
+    """Initial rigid alignment: heading and shift only."""
     t_ns: Times
     """Times of the usable fixes [ns], (M,)."""
     residual_m: Array
@@ -48,9 +48,9 @@ class GeoreferenceResult:
     used: NDArray[np.bool_]
     """False: outlier, (M,)."""
     samples: int
-    """How many fixes there were in the recording."""
+    """Number of fixes in the recording."""
     rejected: tuple[int, ...] = ()
-    """Rows of edges turned down because they contradict the positions."""
+    """Rows of edges rejected because they contradict the GNSS priors."""
 
     @property
     def rmse_m(self) -> Array:
@@ -90,24 +90,26 @@ def georeference(
     *,
     settings: GnssSettings,
 ) -> GeoreferenceResult:
-    """Lay a levelled graph over its GNSS positions.
+    """Georeference a leveled graph by its GNSS positions.
 
-    A rigid alignment (heading and shift, most fixes agreeing) leaves out gross outliers; then
+    A rigid alignment (heading and shift, by consensus of the fixes) excludes gross errors. Then
     every fix becomes a factor on its node, with the lever arm, a Cauchy kernel and a standard
-    deviation that leaves frame-to-frame motion to SLAM; fixes that do not fit are left out and
-    the graph is solved once more. The fixes hold position and heading, the levelling the tilt.
-    Then the edges are judged again: where a walk goes around once, only positions can tell that a
-    loop is false. Those turned down get `Reason.ROBUST`; odometry and a person's decisions stay.
+    deviation that leaves frame-to-frame motion to SLAM. Outliers are excluded and the graph is
+    solved again. The fixes determine position and heading, the leveling determines the tilt.
+
+    Edges that contradict the positions are rejected first: if a walk has a single loop, only
+    positions show that it is false. These edges get `Reason.ROBUST`; odometry and decisions of a
+    person stay.
 
     Args:
-        graph: Verified and levelled (z up).
+        graph: Verified and leveled (z up).
         trajectory: Dense poses of the body in any frame, covering the walk.
         gnss: Positions, or None.
         rig: Lever arm and time offset of the antenna.
         settings: Qualities, gates and weights.
 
     Returns:
-        Without enough agreeing positions the graph comes back as it was, with the reason.
+        Without enough consistent positions the unchanged graph, with the reason.
 
     Raises:
         GraphError: If the graph itself cannot be solved.
@@ -143,10 +145,10 @@ def georeference(
 def align_heading(
     p_map: Array, gnss_priors: GnssPriors, *, settings: GnssSettings
 ) -> tuple[SE3, NDArray[np.bool_]]:
-    """Heading and shift that most fixes agree with.
+    """Heading and shift with the largest consensus of fixes (RANSAC).
 
     Args:
-        p_map: Antenna in the levelled map at each fix [m], (M, 3).
+        p_map: Antenna in the leveled map at each fix [m], (M, 3).
         gnss_priors: The same in the local frame on earth.
         settings: Gate and seed.
 
@@ -197,7 +199,7 @@ def _near(T_enu_map: SE3, p_map: Array, gnss_priors: GnssPriors, gate: Array) ->
 def _solve(
     graph: PoseGraph, gnss_priors: GnssPriors, near: NDArray[np.bool_], *, settings: GnssSettings
 ) -> tuple[PoseGraph, NDArray[np.bool_]]:
-    """Solve with the fixes near, then once more without those that do not fit."""
+    """Solve with the fixes inside the gate, then again without the outliers."""
     used, tilt = near, _tilt_priors(graph, sd_rad=settings.tilt_sd_rad)
     for _ in range(2):
         priors = (_positions(gnss_priors.take(used), settings), tilt)
@@ -212,10 +214,10 @@ def _solve(
 def _contradicting(
     graph: PoseGraph, gnss_priors: GnssPriors, near: NDArray[np.bool_], *, settings: GnssSettings
 ) -> list[int]:
-    """Rows of edges that the robust solve turns down once positions hold the map.
+    """Rows of edges that the robust solve with GNSS priors rejects.
 
-    Which fixes are outliers is asked of the walk without its loops: else loops that are wrong
-    together would turn the fixes down that contradict them.
+    Outliers of the fixes are found by the walk without its loops: otherwise several wrong loops
+    would reject the fixes that contradict them.
     """
     if not settings.judge_edges:
         return []
@@ -242,16 +244,16 @@ def _positions(gnss_priors: GnssPriors, settings: GnssSettings) -> PositionPrior
 
 
 def _tilt_priors(graph: PoseGraph, *, sd_rad: float) -> PosePriors:
-    """Keep the map as level as it is: all nodes together count as one measurement of the tilt.
+    """Priors that keep the tilt of the map: all nodes together count as one measurement.
 
-    Without it a straight track could roll about itself, as no position would notice.
+    Without them the roll of a straight track about itself would be unobservable.
     """
     R = graph.T_map_body.R
     up = R[:, 2, :]
     information = np.zeros((len(graph), 6, 6))
     weight = 1.0 / (sd_rad**2 * len(graph))
     information[:, :3, :3] = weight * (np.eye(3) - np.einsum("ni,nj->nij", up, up))
-    # Heading and position stay free; gtsam wants a positive definite matrix.
+    # Heading and position stay free; gtsam requires a positive definite matrix.
     information += 1e-6 * weight * np.eye(6)
     information[:, 3:, 3:] = 1e-9 * np.eye(3)
     return PosePriors(np.arange(len(graph)), graph.T_map_body, information)

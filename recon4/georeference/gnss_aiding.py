@@ -1,4 +1,4 @@
-"""Fixes of a GNSS/INS made ready to aid odometry."""
+"""Prepare fixes of a GNSS/INS for the aiding of odometry."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from recon4.settings import OdometrySettings
 
 _R_ENU_NED = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
 _R_DOWN_UP = np.diag([1.0, -1.0, -1.0])
-"""A body with x forward and z down, from one with z up."""
+"""Rotation from a body frame with z up to one with x forward and z down."""
 
 
 def make_gnss_aiding(
     gnss: GnssSamples | None, rig: Rig, settings: OdometrySettings
 ) -> GnssAiding | None:
-    """RTK fixes that carry a heading; None if there are fewer than two.
+    """GNSS aiding by RTK fixes with heading; None if there are fewer than two.
 
     Args:
         gnss: Positions and attitudes of the INS.

@@ -1,4 +1,4 @@
-"""GNSS fixes made ready: which are usable, how good they are, where on the track they belong."""
+"""GNSS priors: usable fixes with their standard deviations and nodes."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ _RANKS: dict[int, int] = {
     GnssQuality.RTK_FLOAT: 3,
     GnssQuality.RTK_FIXED: 4,
 }
-"""How good a quality is; what is missing here (invalid, dead reckoning) is never used."""
+"""Rank of each fix quality; others (invalid, dead reckoning) are never used."""
 _ASKED = {"single": 1, "differential": 2, "float": 3, "fixed": 4}
 _DEFAULT_SD_M = np.array(
     [[np.nan] * 3, [3.0, 3.0, 6.0], [1.0, 1.0, 2.0], [0.3, 0.3, 0.6], [0.02, 0.02, 0.03]]
 )
-"""Standard deviations where the receiver gives none, by rank."""
+"""Standard deviations by rank, if the receiver reports none [m]."""
 _FROZEN_M = 0.5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GnssPriors:
-    """Usable fixes, each tied to a node of the graph."""
+    """Usable fixes, each assigned to a node of the graph."""
 
     t_ns: Times
     """Time in the rig's clock [ns], (M,)."""
@@ -46,31 +46,31 @@ class GnssPriors:
     node: Rows
     """Nearest node in time, (M,)."""
     p_node_antenna: Array
-    """Where the antenna was at that time, in the body frame of that node [m], (M, 3)."""
+    """Position of the antenna at that time in the body frame of that node [m], (M, 3)."""
 
     def __len__(self) -> int:
         return len(self.t_ns)
 
     def take(self, rows: Any) -> GnssPriors:
-        """Some of them."""
+        """The priors of some rows."""
         return GnssPriors(*(getattr(self, name)[rows] for name in GnssPriors.__slots__))
 
 
 def usable_gnss_priors(
     graph: PoseGraph, trajectory: Trajectory, gnss: GnssSamples, rig: Rig, *, settings: GnssSettings
 ) -> tuple[GnssPriors, GeodeticOrigin | None]:
-    """Fixes with a position, of the quality asked for, inside the walk, not frozen.
+    """Select fixes with a position, of sufficient quality, during the walk and not frozen.
 
     Args:
-        graph: Its nodes' times say which node a fix belongs to.
-        trajectory: Dense poses of the body; only motion between a fix and its node is read.
-        gnss: What the receiver gave.
+        graph: A fix belongs to the node nearest in time.
+        trajectory: Dense poses of the body; only motion between a fix and its node is used.
+        gnss: Samples of the receiver.
         rig: Lever arm and time offset.
-        settings: What is good enough.
+        settings: Required quality, smallest standard deviation.
 
     Returns:
-        The fixes and the origin of their local frame: the first of the best ones. None of them
-        and no origin if there is no usable fix.
+        The priors and the origin of their local frame: the first fix of the best quality. Without
+        a usable fix no priors, and None as origin.
     """
     t_ns = gnss.t_ns
     rank = np.array([_RANKS.get(int(quality), 0) for quality in gnss.quality], dtype=np.intp)
@@ -107,17 +107,17 @@ def usable_gnss_priors(
 
 
 def one_prior_per_node(gnss_priors: GnssPriors) -> GnssPriors:
-    """The best fix of each node: more would only say the same again."""
+    """The best fix of each node; further ones are redundant."""
     order = np.lexsort((gnss_priors.t_ns, gnss_priors.sd_m.sum(1), gnss_priors.node))
     first = np.r_[True, np.diff(gnss_priors.node[order]) > 0] if len(order) else order
     return gnss_priors.take(np.sort(order[first]))
 
 
 def correlated_sd(gnss_priors: GnssPriors, *, correlation_s: float) -> Array:
-    """Standard deviations for fixes that err alike [m], (M, 3).
+    """Standard deviations of fixes with correlated errors [m], (M, 3).
 
-    ``n`` fixes within the correlation time know no more than one; each gets ``sqrt(n)`` times its
-    standard deviation, so that from one to the next SLAM decides.
+    ``n`` fixes within the correlation time have the information of one: the standard deviation of
+    each is multiplied by ``sqrt(n)``, so that SLAM determines the motion between them.
     """
     half = correlation_s * 0.5e9
     left = np.searchsorted(gnss_priors.t_ns, gnss_priors.t_ns - half, side="left")
@@ -133,7 +133,7 @@ def _positioned(gnss: GnssSamples) -> NDArray[np.bool_]:
 
 
 def _frozen(gnss: GnssSamples, rows: Rows, p_antenna: Array) -> NDArray[np.bool_]:
-    """Fixes that repeat one before to the last digit although the walk went on."""
+    """Fixes that repeat an earlier one to the last digit although the body moved."""
     frozen = np.zeros(len(rows), dtype=np.bool_)
     since = 0
     for k in range(1, len(rows)):

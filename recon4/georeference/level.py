@@ -1,4 +1,4 @@
-"""Horizontal alignment: which way is up in a map (V §2.9, requirements A8)."""
+"""Leveling: the vertical direction of a map by INS or accelerometer (V §2.9, A8)."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory
 
 _WINDOW_NS = 1_000_000_000
-"""Accelerations are averaged over this: half a dozen steps of a walk."""
+"""Window over which accelerations are averaged [ns]: half a dozen steps of a walk."""
 _SPEED_NS = 200_000_000
-"""Speed at the border of a window is taken over this to either side."""
+"""Speed at the border of a window is measured over this time before and after [ns]."""
 _WINDOW_SD_M_S2 = 0.1
 _BIAS_SD_M_S2 = 0.1
-"""How far an accelerometer's bias may be from zero."""
+"""Standard deviation of an accelerometer's bias [m/s²]."""
 _TRIM = 4.0
-"""Pairs farther off than this many robust standard deviations are left out."""
+"""Residual in robust standard deviations above which a pair is an outlier."""
 _MIN_PAIRS = 3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Leveling:
-    """How a map has to be tilted to be horizontal."""
+    """Rotation that levels a map, with its quality."""
 
     T_level_odom: SE3
     """A rotation about a horizontal axis: no heading, no shift."""
@@ -35,13 +35,13 @@ class Leveling:
     pairs: int
     """Measurements used: (SLAM, IMU) pairs, or patches of floor."""
     trimmed: int
-    """Measurements left out as outliers."""
+    """Measurements excluded as outliers."""
     spread_rad: float
-    """Root mean square angle of a single measurement against the result; NaN without any."""
+    """Root mean square angle between a measurement and the result [rad]; NaN without any."""
 
     @property
     def tilt_rad(self) -> float:
-        """How far the map was from horizontal [rad]."""
+        """Tilt of the map before leveling [rad]."""
         return float(np.arccos(np.clip(self.T_level_odom.R[2, 2], -1.0, 1.0)))
 
     def to_json(self) -> dict[str, Any]:
@@ -64,9 +64,9 @@ NOT_LEVELED = Leveling(SE3.identity(), "none", 0, 0, float("nan"))
 def level(
     trajectory: Trajectory, imu: ImuSamples | None, rig: Rig, *, gnss: GnssSamples | None = None
 ) -> Leveling:
-    """Level a map by what the IMU says, or say that it cannot (``source == "none"``).
+    """Level a map by IMU; ``source == "none"`` if that is not possible.
 
-    Attitudes of an INS come first, then the accelerometer. Without either, ask
+    Attitudes of an INS are preferred to the accelerometer. Without either, use
     `floor.level_by_floor`.
 
     Args:
@@ -76,13 +76,13 @@ def level(
         gnss: May hold attitudes.
     """
     if gnss is not None:
-        levelling = level_by_attitude(trajectory, gnss, rig)
-        if levelling.pairs >= _MIN_PAIRS:
-            return levelling
+        leveling = level_by_attitude(trajectory, gnss, rig)
+        if leveling.pairs >= _MIN_PAIRS:
+            return leveling
     if imu is not None:
-        levelling = level_by_gravity(trajectory, imu, rig)
-        if levelling.pairs >= _MIN_PAIRS:
-            return levelling
+        leveling = level_by_gravity(trajectory, imu, rig)
+        if leveling.pairs >= _MIN_PAIRS:
+            return leveling
     return NOT_LEVELED
 
 
@@ -97,8 +97,8 @@ def tilt_to(up_odom: Array) -> SE3:
 def level_by_attitude(trajectory: Trajectory, gnss: GnssSamples, rig: Rig) -> Leveling:
     """Average roll and pitch of an INS over the walk (V Eq. 2.13-2.16).
 
-    The heading is that of the SLAM pose; as it has to be read in the levelled frame, it is taken
-    again after each average until the tilt stays (A0, A8).
+    The heading is that of the SLAM pose in the leveled frame; it is computed again after each
+    average until the tilt converges (A0, A8).
     """
     t_ns = gnss.t_ns
     rows = _covered(trajectory, t_ns) & np.isfinite(gnss.rpy_ned_rad[:, :2]).all(1)
@@ -106,7 +106,7 @@ def level_by_attitude(trajectory: Trajectory, gnss: GnssSamples, rig: Rig) -> Le
         return NOT_LEVELED
     R_odom_imu = trajectory.at(t_ns[rows]).R @ rig.T_body_imu.R
     roll, pitch = gnss.rpy_ned_rad[rows, 0], gnss.rpy_ned_rad[rows, 1]
-    # Seen with y left and z up, a pitch about y right (nose up) turns the other way.
+    # With y left and z up, a pitch about y right (nose up) has the opposite sign.
     R_flat_imu = so3_exp(_about(1, -pitch)) @ so3_exp(_about(0, roll))
     T_level_odom, kept = SE3.identity(), np.ones(len(roll), dtype=np.bool_)
     for _ in range(20):
@@ -122,10 +122,10 @@ def level_by_attitude(trajectory: Trajectory, gnss: GnssSamples, rig: Rig) -> Le
 
 
 def level_by_gravity(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> Leveling:
-    """Gravity from the accelerometer, freed of the walker's own acceleration.
+    """Level by the accelerometer, with the acceleration of the walker removed.
 
-    Over each second the mean specific force, turned into the odometry's frame, is gravity's
-    reaction plus the change of speed (known from the odometry) plus the bias in the IMU's frame:
+    Over each second the mean specific force in the odometry's frame is the reaction to gravity
+    plus the change of speed (known from odometry) plus the bias in the IMU's frame:
 
         mean(R f) - (v1 - v0) / dt  =  g up  +  mean(R) b
 
@@ -149,7 +149,7 @@ def level_by_gravity(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> Level
 
 
 def _windows(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> tuple[Array, Array] | None:
-    """Mean force without motion [m/s²], (W, 3), and mean rotation, (W, 3, 3), of each second."""
+    """Mean force without acceleration [m/s²], (W, 3), and mean rotation, (W, 3, 3), by second."""
     t_ns = imu.t_ns
     rows = np.flatnonzero(_covered(trajectory, t_ns) & np.isfinite(imu.accel_m_s2).all(1))
     if len(rows) == 0:

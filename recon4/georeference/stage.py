@@ -1,4 +1,4 @@
-"""The stage ``level``: a horizontal map and, with GNSS, one that has its place on earth."""
+"""The stage ``level``: level the map and, with GNSS, georeference it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from recon4.store.frames import FrameStore
 
 _FLOOR_FRAMES = 200
 _FLOOR_POINTS = 2000
-"""So many points of so many multiframes, evenly chosen, show where the floor is."""
+"""Numbers of multiframes, and of points of each, that are sampled to find the floor."""
 
 _MOST_JSON_BYTES = 16 << 20
 
@@ -42,24 +42,24 @@ def run_level(
     settings: Settings,
     progress: Progress,
 ) -> dict[str, Any]:
-    """Level and, where positions allow, georeference a finished trajectory.
+    """Level a finished trajectory and, if there are GNSS positions, georeference it.
 
     Args:
         frames: The multiframes with IMU and GNSS.
         refined: Folder with ``trajectory.npz``, dense.
         graph: Folder of the verified graph.
         out: Receives ``trajectory.npz``, the graph's files and ``georeference.json``. The
-            residuals of the edges are those of the final poses; what only edges turned down by
-            the positions had confirmed is unverified.
+            residuals of the edges are those of the final poses. Edges that were confirmed only by
+            edges rejected here become unverified.
         settings: Uses level, gnss and verification.
         progress: Counts the steps.
     """
     progress.start("level", 2, "steps")
     dense, nodes = load_trajectory(refined / "trajectory.npz"), load_graph(graph)
     nodes = nodes.with_poses(dense.at(nodes.t_ns))
-    levelling = find_level(frames, dense, source=settings.level.source)
-    dense = Trajectory(dense.t_ns, levelling.T_level_odom @ dense.T_a_b)
-    nodes = nodes.with_poses(levelling.T_level_odom @ nodes.T_map_body)
+    leveling = find_level(frames, dense, source=settings.level.source)
+    dense = Trajectory(dense.t_ns, leveling.T_level_odom @ dense.T_a_b)
+    nodes = nodes.with_poses(leveling.T_level_odom @ nodes.T_map_body)
     progress.advance()
     placed = georeference(nodes, dense, frames.gnss, frames.rig, settings=settings.gnss)
     dense = apply_corrections(
@@ -71,12 +71,12 @@ def run_level(
     if placed.rejected:
         judged = confirmed_again(judged, settings=settings.verification)
     save_graph(out, with_residuals(judged))
-    told = {"levelling": levelling.to_json(), "georeference": placed.to_json(), "crs": crs}
-    write_json(out / "georeference.json", null_for_nan(told))
+    record = {"levelling": leveling.to_json(), "georeference": placed.to_json(), "crs": crs}
+    write_json(out / "georeference.json", null_for_nan(record))
     progress.advance()
     return {
-        "levelled_by": levelling.source,
-        "tilt_deg": round(float(np.rad2deg(levelling.tilt_rad)), 4),
+        "levelled_by": leveling.source,
+        "tilt_deg": round(float(np.rad2deg(leveling.tilt_rad)), 4),
         "crs": crs.get("name", ""),
         "local": placed.reason,
         "edges_rejected": len(placed.rejected),
@@ -84,7 +84,7 @@ def run_level(
 
 
 def find_level(frames: FrameStore, trajectory: Trajectory, *, source: str) -> Leveling:
-    """The levelling that `LevelSettings.source` asks for; the floor is the last resort of ``auto``.
+    """Leveling by the source that the settings select; ``auto`` uses the floor last.
 
     Args:
         frames: The multiframes with IMU and GNSS.
@@ -101,29 +101,29 @@ def find_level(frames: FrameStore, trajectory: Trajectory, *, source: str) -> Le
 
 
 def read_crs(artifact: Path, crs: str = "") -> CrsTransform | None:
-    """The CRS of the artifact of the stage ``level``; None if the map has no place on earth.
+    """Read the CRS from the artifact of the stage ``level``; None if not georeferenced.
 
     Args:
         artifact: Folder of the stage.
         crs: Code of another CRS; empty = the one chosen by the settings.
 
     Raises:
-        GeoreferenceError: If another CRS is asked for and the map has no place on earth.
+        GeoreferenceError: If another CRS is requested and the map is not georeferenced.
         StoreError: If ``georeference.json`` is missing or damaged.
     """
     path = artifact / "georeference.json"
     try:
-        told = read_json_object(path, _MOST_JSON_BYTES, failure=StoreError)
-        if not told["crs"]:
+        record = read_json_object(path, _MOST_JSON_BYTES, failure=StoreError)
+        if not record["crs"]:
             if crs:
                 raise GeoreferenceError(
-                    f"the map cannot be put into {crs}: {told['georeference']['reason']}"
+                    f"the map cannot be put into {crs}: {record['georeference']['reason']}"
                 )
             return None
-        origin = told["georeference"]["origin"]
+        origin = record["georeference"]["origin"]
         lat_rad, lon_rad = np.deg2rad([origin["lat_deg"], origin["lon_deg"]]).tolist()
         return CrsTransform(
-            GeodeticOrigin(lat_rad, lon_rad, origin["height_m"]), crs or told["crs"]["name"]
+            GeodeticOrigin(lat_rad, lon_rad, origin["height_m"]), crs or record["crs"]["name"]
         )
     except (ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
         raise StoreError(f"{path} cannot be read: {error!r}") from error
@@ -141,7 +141,7 @@ def _describe_crs(origin: GeodeticOrigin, name: str) -> dict[str, Any]:
 
 
 def _sample_points(frames: FrameStore, trajectory: Trajectory) -> tuple[Array, Array]:
-    """Some points of the map and where their sensor was [m], (N, 3) each."""
+    """A sample of the map's points and the sensor positions [m], (N, 3) each."""
     rows = np.unique(np.linspace(0, len(frames) - 1, _FLOOR_FRAMES).astype(int))
     points, origins = [], []
     for k in rows.tolist():

@@ -55,7 +55,7 @@ def _horizontal(length_m: float, angle_rad: float) -> list[float]:
 
 
 class Walk:
-    """A processed walk, judged anew."""
+    """A processed walk whose edges are verified again."""
 
     def __init__(self, project: Path) -> None:
         at = read_artifacts(project)
@@ -73,10 +73,10 @@ class Walk:
         dense = apply_corrections(
             self.odometry, verified.t_ns, T_before=T_odom, T_after=verified.T_map_body
         )
-        levelling = find_level(self.frames, dense, source="auto")
-        dense = replace(dense, T_a_b=levelling.T_level_odom @ dense.T_a_b)
+        leveling = find_level(self.frames, dense, source="auto")
+        dense = replace(dense, T_a_b=leveling.T_level_odom @ dense.T_a_b)
         placed = georeference(
-            verified.with_poses(levelling.T_level_odom @ verified.T_map_body),
+            verified.with_poses(leveling.T_level_odom @ verified.T_map_body),
             Trajectory(dense.t_ns, dense.T_a_b), self.frames.gnss, self.frames.rig,
             settings=GnssSettings(),
         )  # fmt: skip

@@ -46,7 +46,7 @@ def test_a_quarter_turn_about_z_takes_x_to_y():
 
 
 def test_the_exponential_of_a_turning_walk_is_a_quarter_circle():
-    # One metre per radian ahead while turning left by 90°: a circle of radius 1.
+    # One meter per radian ahead while turning left by 90°: a circle of radius 1.
     T = SE3.exp([0.0, 0.0, np.pi / 2, np.pi / 2, 0.0, 0.0])
 
     assert np.allclose(T.t, [1.0, 1.0, 0.0])

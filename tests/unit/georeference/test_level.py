@@ -90,12 +90,12 @@ def test_gravity_is_found_under_steps_turns_noise_and_bias() -> None:
     rig, true = load_rig("4recon"), walk()
     imu = imu_of(true, rig, bias=np.array([0.05, -0.04, 0.03]), noise=0.05)
 
-    levelling = level_by_gravity(tilted(true), imu, rig)
+    leveling = level_by_gravity(tilted(true), imu, rig)
 
-    assert tilt_error_deg(levelling.T_level_odom) < 0.05
-    assert levelling.source == "imu"
-    assert 50 <= levelling.pairs + levelling.trimmed <= 60
-    assert np.rad2deg(levelling.spread_rad) < 1.0
+    assert tilt_error_deg(leveling.T_level_odom) < 0.05
+    assert leveling.source == "imu"
+    assert 50 <= leveling.pairs + leveling.trimmed <= 60
+    assert np.rad2deg(leveling.spread_rad) < 1.0
 
 
 def test_a_speed_change_is_not_taken_for_gravity() -> None:
@@ -104,9 +104,9 @@ def test_a_speed_change_is_not_taken_for_gravity() -> None:
     p = np.stack([0.25 * t**2, 0 * t, 0 * t], 1)  # 0.5 m/s² for 20 s would tilt by 2.9 degrees
     true = Trajectory((t * 1e9).astype(np.int64), SE3(np.tile(np.eye(3), (len(t), 1, 1)), p))
 
-    levelling = level_by_gravity(true, imu_of(true, rig, bias=np.zeros(3)), rig)
+    leveling = level_by_gravity(true, imu_of(true, rig, bias=np.zeros(3)), rig)
 
-    assert np.rad2deg(levelling.tilt_rad) < 0.3
+    assert np.rad2deg(leveling.tilt_rad) < 0.3
 
 
 def test_shaken_seconds_are_trimmed() -> None:
@@ -114,10 +114,10 @@ def test_shaken_seconds_are_trimmed() -> None:
     imu = imu_of(true, rig, bias=np.zeros(3), noise=0.02)
     imu.accel_m_s2[1000:1400] += [30.0, 0.0, 0.0]
 
-    levelling = level_by_gravity(tilted(true), imu, rig)
+    leveling = level_by_gravity(tilted(true), imu, rig)
 
-    assert tilt_error_deg(levelling.T_level_odom) < 0.1
-    assert levelling.trimmed >= 4
+    assert tilt_error_deg(leveling.T_level_odom) < 0.1
+    assert leveling.trimmed >= 4
 
 
 def test_a_turned_imu_levels_all_the_same() -> None:
@@ -126,9 +126,9 @@ def test_a_turned_imu_levels_all_the_same() -> None:
     rig = replace(load_rig("4recon"), T_body_imu=SE3.from_rpy(np.pi, 0.2, 0.7, [0.1, 0.0, -0.2]))
     true = walk()
 
-    levelling = level_by_gravity(tilted(true), imu_of(true, rig, bias=np.zeros(3)), rig)
+    leveling = level_by_gravity(tilted(true), imu_of(true, rig, bias=np.zeros(3)), rig)
 
-    assert tilt_error_deg(levelling.T_level_odom) < 0.05
+    assert tilt_error_deg(leveling.T_level_odom) < 0.05
 
 
 def test_attitudes_of_an_ins_level_by_the_texts_equations() -> None:
@@ -138,11 +138,11 @@ def test_attitudes_of_an_ins_level_by_the_texts_equations() -> None:
     rpy[:, 2] = rng.uniform(-3, 3, len(true))  # indoors the heading means nothing
     rpy[::7] = np.nan
 
-    levelling = level_by_attitude(tilted(true), gnss_of(true, rpy), rig)
+    leveling = level_by_attitude(tilted(true), gnss_of(true, rpy), rig)
 
-    assert tilt_error_deg(levelling.T_level_odom) < 0.1
-    assert levelling.source == "ins"
-    assert np.rad2deg(levelling.spread_rad) == pytest.approx(np.sqrt(2.0), rel=0.1)
+    assert tilt_error_deg(leveling.T_level_odom) < 0.1
+    assert leveling.source == "ins"
+    assert np.rad2deg(leveling.spread_rad) == pytest.approx(np.sqrt(2.0), rel=0.1)
 
 
 def test_without_any_source_nothing_is_turned() -> None:
@@ -150,11 +150,11 @@ def test_without_any_source_nothing_is_turned() -> None:
     silent = ImuSamples(true.t_ns, np.zeros((len(true), 3)), np.full((len(true), 3), np.nan))
 
     for imu in (None, silent):
-        levelling = level(true, imu, rig)
+        leveling = level(true, imu, rig)
 
-        assert levelling.source == "none"
-        assert levelling.tilt_rad == 0.0
-        assert levelling.to_json()["spread_deg"] is None
+        assert leveling.source == "none"
+        assert leveling.tilt_rad == 0.0
+        assert leveling.to_json()["spread_deg"] is None
 
 
 def floor_points(rng: np.random.Generator, tilt: SE3) -> tuple[Array, Array]:
@@ -176,10 +176,10 @@ def test_the_dominant_floor_levels_a_map_without_imu() -> None:
     tilt = SE3.from_rpy(np.deg2rad(3.0), np.deg2rad(-2.0), 0.5, [1.0, 2.0, 3.0])
     p, origin = floor_points(np.random.default_rng(3), tilt)
 
-    levelling = level_by_floor(p, origin)
+    leveling = level_by_floor(p, origin)
 
-    assert tilt_error_deg(levelling.T_level_odom, tilt) < 0.1
-    assert levelling.source == "floor"
+    assert tilt_error_deg(leveling.T_level_odom, tilt) < 0.1
+    assert leveling.source == "floor"
 
 
 def test_without_floor_nothing_is_turned() -> None:
