@@ -1,4 +1,7 @@
-"""What intensity depends on, before and after normalization (V Fig. 2.13)."""
+"""Dependency of intensity on channel, range and incidence, before and after normalization.
+
+V Fig. 2.13.
+"""
 
 from __future__ import annotations
 
@@ -20,11 +23,11 @@ class Diagnostics:
     """Count, mean and deviation of intensity by channel, by range and by incidence angle.
 
     Channel ``c`` is beam ``c % rings`` of sensor ``c // rings``. Bins without points hold NaN.
-    They are made of multiframes the table was not learned from; the clamp is not applied.
+    The multiframes differ from those the table was learned from; the clamp is not applied.
     """
 
     rings: Array
-    """Beams a sensor, ()."""
+    """Beams per sensor, ()."""
     range_m: Array
     """Middle of each bin [m], (R,)."""
     incidence_deg: Array
@@ -46,8 +49,8 @@ class Diagnostics:
     all_after: Array
     channel_same_count: Array
     channel_same: Array
-    """Intensity over that of the same surface by channel: raw, then normalized, (2, C); 1 = as
-    bright as all other points of these surfaces."""
+    """Intensity relative to the same surface by channel: raw, then normalized, (2, C); 1 = equal
+    to all other points of these surfaces."""
     range_same_count: Array
     range_same: Array
     """The same by range, (2, R)."""
@@ -61,7 +64,7 @@ class Diagnostics:
 
     @staticmethod
     def load(path: Path) -> Diagnostics:
-        """Read what `save` wrote.
+        """Read ``diagnostics.npz``.
 
         Raises:
             StoreError: If the file is missing or damaged.
@@ -70,7 +73,7 @@ class Diagnostics:
 
 
 def spread(count: Array, curve: Array, *, min_count: int = 1) -> float:
-    """Largest minus smallest mean of a dependency curve (2, N), sparse bins left out."""
+    """Largest minus smallest mean of a dependency curve (2, N), without sparse bins."""
     means = curve[0, count >= min_count]
     return float(means.max() - means.min()) if len(means) else 0.0
 
@@ -78,16 +81,16 @@ def spread(count: Array, curve: Array, *, min_count: int = 1) -> float:
 def diagnose(
     table: IntensityTable, sums: Array, surfaces: Surfaces, seen: Observations
 ) -> Diagnostics:
-    """Dependency curves of some points under a table.
+    """Dependency curves of some points before and after normalization by a table.
 
-    The curves of means also show that near and far are different things; those of the same
-    surface do not.
+    The curves of means also depend on which objects are near and far; those of the same surface do
+    not.
 
     Args:
-        table: What normalizes.
+        table: The normalization.
         sums: Count, sum and sum of squares of each bin's raw intensities, (S, B, I, R, 3).
-        surfaces: How bright places are.
-        seen: Points to compare with the places they lie at.
+        surfaces: Brightness of the surfaces.
+        seen: Points to compare with their surfaces.
     """
     after = _normalized_sums(table, sums)
     curves: dict[str, Array] = {}
@@ -113,7 +116,7 @@ def diagnose(
 def _same_surface(
     table: IntensityTable, surfaces: Surfaces, seen: Observations
 ) -> dict[str, Array]:
-    """Curves of intensity over brightness, and the points they rest on."""
+    """Curves of intensity over brightness, and their point counts."""
     brightness = surfaces.brightness_of(seen.cell)
     rows = np.flatnonzero(brightness > 0.0)
     channel, incidence, ranges = seen.bins[rows].T
@@ -137,7 +140,7 @@ def _same_surface(
 
 
 def _over(seen: NDArray[Any], due: NDArray[Any]) -> Array:
-    """Ratio of two sums a bin, relative to the ratio of all; NaN without points, (N,)."""
+    """Ratio of two sums per bin, relative to the ratio of all; NaN without points, (N,)."""
     whole = seen.sum() / due.sum() if due.sum() > 0.0 else 1.0
     return np.asarray(seen / np.where(due > 0.0, due, np.nan) / (whole or 1.0))
 

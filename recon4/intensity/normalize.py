@@ -1,4 +1,4 @@
-"""The stage ``intensity``: learn the table from samples of the walk, and show what it does."""
+"""The stage ``intensity``: learn the table from samples of the walk, with diagnostics."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ SAMPLES = 10
 STRIDE = 10
 """Multiframes from one sample to the next: a window is 10 s long."""
 HELD_OUT = 5
-"""Every so many-th sample is not learned from; the diagnostics are made of these."""
+"""Every n-th sample is held out from learning and used for the diagnostics."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class IntensitySample:
-    """Points of which everything is known that their intensity depends on."""
+    """Points with the quantities that their intensity depends on."""
 
     intensity: NDArray[np.uint16]
     sensor: NDArray[np.uint8]
@@ -51,16 +51,16 @@ def learn_intensity(
     settings: IntensitySettings,
     progress: Progress | None = None,
 ) -> tuple[IntensityTable, Diagnostics]:
-    """The table of a walk, and what intensity depends on before and after it.
+    """Learn the table of a walk and compute its diagnostics.
 
-    Some windows of ten seconds are sampled, ten multiframes each; normals come from the points of
-    a window together. Memory follows the window and ``settings.surface_points``.
+    Some windows of ten seconds are sampled, ten multiframes each; normals are computed from all
+    points of a window. Memory depends on the window and ``settings.surface_points``.
 
     Args:
         frames: The points in the frames of their sensors.
         trajectory: ``T_map_body``, dense.
-        settings: Bins and how much is sampled.
-        progress: Who watches.
+        settings: Bins and number of samples.
+        progress: Receives the progress.
 
     Raises:
         ConfigError: If there are no points to learn from.
@@ -75,7 +75,7 @@ def learn_intensity(
         samples = _sample(frames, trajectory, window, settings)
         for k, sample in enumerate(samples):
             (held_out if k % HELD_OUT == HELD_OUT - 1 else learned).add(sample)
-    seen = learned.sightings()
+    seen = learned.observations()
     surfaces = learn_surfaces(seen, shape, settings=settings)
     largest = max(learned.largest, held_out.largest)
     if settings.method == "surfaces":
@@ -84,7 +84,7 @@ def learn_intensity(
     else:
         table = IntensityTable.of_sums(learned.sums, settings=settings, largest=largest)
     shown = held_out if held_out.sums[..., 0].any() else learned
-    return table, diagnose(table, shown.sums, surfaces, shown.sightings())
+    return table, diagnose(table, shown.sums, surfaces, shown.observations())
 
 
 def write_intensity(
@@ -95,7 +95,7 @@ def write_intensity(
     settings: IntensitySettings,
     progress: Progress | None = None,
 ) -> None:
-    """Write ``table.npz`` and ``diagnostics.npz``: the stage as the pipeline runs it."""
+    """Run the stage ``intensity``: write ``table.npz`` and ``diagnostics.npz``."""
     table, diagnostics = learn_intensity(frames, trajectory, settings=settings, progress=progress)
     table.save(out / "table.npz")
     diagnostics.save(out / "diagnostics.npz")
@@ -135,7 +135,7 @@ def _shape(
 
 
 class _SampleAccumulator:
-    """What samples add up to, and about ``few`` points of each of them."""
+    """Sums over samples, and about ``few`` points of each sample."""
 
     def __init__(
         self, shape: tuple[int, int, int, int], few: float, settings: IntensitySettings
@@ -147,7 +147,7 @@ class _SampleAccumulator:
         self.largest = 0.0
 
     def add(self, sample: IntensitySample) -> None:
-        """Take in the points of a multiframe."""
+        """Add the points of a multiframe."""
         add_sample(self.sums, sample, self._settings)
         self.largest = max(self.largest, float(sample.intensity.max(initial=0)))
         rows = np.flatnonzero(self._rng.random(len(sample.cell)) * len(sample.cell) < self._few)
@@ -164,7 +164,7 @@ class _SampleAccumulator:
             )
         )
 
-    def sightings(self) -> Observations:
+    def observations(self) -> Observations:
         """Some points of all multiframes; the same ones in every run."""
         return Observations.joined(self._seen)
 

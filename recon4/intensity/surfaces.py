@@ -1,9 +1,9 @@
-"""What beam, incidence and range do to intensity, learned from surfaces seen in several ways.
+"""Effect of beam, incidence and range on intensity, learned from surfaces seen repeatedly.
 
-Floors are near and walls far, so the mean of a bin says as much about what is there as about the
-sensor. A small cube of the map that is seen by many beams, from near and far, has one brightness:
-how its points differ is the sensor's doing. Both are estimated together, as Poisson regression
-with a fixed effect a cube (Hausman, Hall, Griliches 1984).
+Floors are near and walls far, so the mean of a bin depends on the objects as much as on the
+sensor. A small cube of the map that many beams see, from near and far, has one brightness; the
+differences of its points are effects of the sensor. Both are estimated together by Poisson
+regression with a fixed effect per cube (Hausman, Hall, Griliches 1984).
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from recon4.kernels.intensity import bins_of, surface_equations
 from recon4.settings import IntensitySettings
 
 ROUNDS = 12
-"""Newton's method ends after so many rounds; five are usual."""
+"""Limit of iterations of Newton's method; five are usual."""
 CONVERGED = 1e-4
-"""It ends when no factor changes by more than this share."""
+"""Relative change of a factor below which it has converged."""
 LONGEST_STEP = 1.0
-"""A round changes the logarithm of a factor by at most this."""
+"""Largest change of the logarithm of a factor in one iteration."""
 GAUGE = 1e-3
-"""Weight that holds what no point determines: the three groups of factors share one scale."""
+"""Weight of the prior on unobservable factors: the three groups have a common scale."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Observations:
-    """Points with the place they lie at and the bins they fall into."""
+    """Points with their cubes of the map and their bins."""
 
     cell: NDArray[np.int64]
     """Cube of the map, `cells_of`, (N,)."""
@@ -44,7 +44,7 @@ class Observations:
 
     @staticmethod
     def joined(parts: Sequence[Observations]) -> Observations:
-        """All of some sightings."""
+        """Concatenate observations."""
         return Observations(
             np.concatenate([np.empty(0, np.int64), *(p.cell for p in parts)]),
             np.concatenate([np.empty((0, 3), np.int32), *(p.bins for p in parts)]),
@@ -54,19 +54,19 @@ class Observations:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Surfaces:
-    """What was learned: the factor of every bin and the brightness of every cube."""
+    """Result of learning: the factor of every bin and the brightness of every cube."""
 
     factor: Array
     """Raw over normalized intensity of a bin, (S, B, I, R)."""
     count: Array
-    """Points each of them rests on, (S, B, I, R)."""
+    """Number of points of each bin, (S, B, I, R)."""
     cell: NDArray[np.int64]
     """Cubes, ascending, (C,)."""
     brightness: Array
     """Normalized intensity of each, (C,)."""
 
     def brightness_of(self, cell: NDArray[np.int64]) -> Array:
-        """Normalized intensity that points in cubes should have; 0 = cube unknown, (N,)."""
+        """Expected normalized intensity of points in cubes; 0 = unknown cube, (N,)."""
         if len(self.cell) == 0:
             return np.zeros(len(cell))
         row = np.minimum(np.searchsorted(self.cell, cell), len(self.cell) - 1)
@@ -74,7 +74,7 @@ class Surfaces:
 
 
 def cells_of(xyz_m: Array, cell_m: float) -> NDArray[np.int64]:
-    """A number for the cube of each point; 21 bits an axis, (N, 3) -> (N,)."""
+    """Key of the cube of each point; 21 bits per axis, (N, 3) -> (N,)."""
     at = np.floor(xyz_m / cell_m).astype(np.int64) & 0x1FFFFF
     return np.asarray(at[:, 0] << 42 | at[:, 1] << 21 | at[:, 2], dtype=np.int64)
 
@@ -97,23 +97,23 @@ def observations_of(
 
 
 def learn_surfaces(
-    sightings: Observations, shape: tuple[int, int, int, int], *, settings: IntensitySettings
+    seen: Observations, shape: tuple[int, int, int, int], *, settings: IntensitySettings
 ) -> Surfaces:
-    """Estimate factors and brightnesses.
+    """Estimate the factors of bins and the brightness of cubes.
 
-    A factor is that of the beam times that of the incidence times that of the range, and each bin
-    differs from this product as far as its points say so: they count against
-    ``settings.min_count`` points that say it does not.
+    The factor of a bin is the product of the factors of beam, incidence and range. A bin deviates
+    from this product as far as its points require: they are weighted against a prior of
+    ``settings.min_count`` points without deviation.
 
     Args:
-        sightings: To learn from.
+        seen: Points to learn from.
         shape: Sensors, beams, bins of incidence (last: no normal), bins of range.
         settings: Uses ``min_count``.
     """
-    order = np.argsort(sightings.cell, kind="stable")
-    cell, first = np.unique(sightings.cell[order], return_index=True)
+    order = np.argsort(seen.cell, kind="stable")
+    cell, first = np.unique(seen.cell[order], return_index=True)
     starts = np.append(first, len(order))
-    bins, intensity = sightings.bins[order], sightings.intensity[order]
+    bins, intensity = seen.bins[order], seen.intensity[order]
     groups = (shape[0] * shape[1], shape[2], shape[3])
     parts = _log_factors(starts, bins, intensity, groups, weight=float(settings.min_count))
     factor = np.exp(parts[0][:, None, None] + parts[1][:, None] + parts[2])
@@ -123,10 +123,10 @@ def learn_surfaces(
     brightness = _brightness(starts, intensity, of_point)
     expected = np.repeat(brightness, np.diff(starts)) * of_point
     prior = settings.min_count * float(intensity.mean()) if len(intensity) else 0.0
-    seen, due = (
+    found, due = (
         np.bincount(flat, v, factor.size).reshape(factor.shape) for v in (intensity, expected)
     )
-    factor *= (seen + prior) / (due + prior) if prior else 1.0
+    factor *= (found + prior) / (due + prior) if prior else 1.0
 
     of_point = factor.ravel()[flat]
     total = float(intensity.sum())
@@ -140,7 +140,7 @@ def learn_surfaces(
 
 
 def _brightness(starts: NDArray[np.int64], intensity: NDArray[np.float32], factor: Array) -> Array:
-    """Likeliest brightness of each cube: sum of intensities over sum of factors."""
+    """Maximum-likelihood brightness of each cube: sum of intensities over sum of factors."""
     if len(starts) == 1:
         return np.empty(0)
     seen = np.add.reduceat(intensity.astype(np.float64), starts[:-1])
@@ -155,7 +155,7 @@ def _log_factors(
     *,
     weight: float,
 ) -> list[Array]:
-    """Logarithms of the factors of channel, incidence and range; 0 = nothing is known."""
+    """Logarithms of the factors of channel, incidence and range; 0 without data."""
     ends = np.cumsum(groups)
     parameters = bins + np.array([0, ends[0], ends[1]], np.int32)
     prior = _prior(groups, weight)
@@ -172,7 +172,7 @@ def _log_factors(
 
 
 def _prior(groups: tuple[int, int, int], weight: float) -> Array:
-    """Neighboring angles and ranges are alike, as sure as ``weight`` points can make it."""
+    """Information of the smoothness prior: neighboring bins are equal, worth ``weight`` points."""
     out = GAUGE * np.eye(sum(groups))
     channels, incidences, ranges = groups
     for first, size in ((channels, incidences - 1), (channels + incidences, ranges)):

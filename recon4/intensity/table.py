@@ -19,7 +19,7 @@ SHIFT_ONLY = 0.01
 """Bins with a smaller deviation are shifted, not scaled."""
 
 COARSER: tuple[tuple[int, int], ...] = ((1, 1), (5, 1), (5, 5), (15, 10), (0, 5), (0, 0))
-"""Bins of incidence and of range that are merged, from fine to coarse; 0 = all of them."""
+"""Numbers of bins of incidence and of range that are merged, from fine to coarse; 0 = all."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -29,21 +29,21 @@ class IntensityTable:
     mean: NDArray[np.float32]
     """Mean raw intensity by sensor, ring, incidence (last: no normal), range, (S, B, I, R)."""
     std: NDArray[np.float32]
-    """Standard deviation that is divided by, (S, B, I, R)."""
+    """Standard deviation of raw intensity, the divisor, (S, B, I, R)."""
     level: NDArray[np.uint8]
-    """Row of `COARSER` whose bin served, (S, B, I, R); one past the last = all points. Of a table
-    learned from surfaces: 0 = the bin itself, 1 = mostly the factors, one past the last = a beam
-    without points."""
+    """Row of `COARSER` whose bin was used, (S, B, I, R); one past the last = all points. In a
+    table learned from surfaces: 0 = the bin itself, 1 = mostly the factors, one past the last = a
+    beam without points."""
     target_mean: float
     target_std: float
     upper: float
-    """Results are clamped to 0 and this."""
+    """Upper limit of normalized intensities; the lower one is 0."""
     incidence_bin_rad: float
     range_bin_m: float
 
     @staticmethod
     def of_sums(sums: Array, *, settings: IntensitySettings, largest: float) -> IntensityTable:
-        """Make the table.
+        """Make the table of means and deviations of bins (V Eq. 2.17).
 
         Args:
             sums: Count, sum and sum of squares of each bin, (S, B, I, R, 3).
@@ -51,7 +51,7 @@ class IntensityTable:
             largest: Largest raw intensity.
 
         Raises:
-            ConfigError: If there are no points at all.
+            ConfigError: If there are no points.
         """
         total = sums.sum(axis=(0, 1, 2, 3))
         _require_points(total)
@@ -82,7 +82,7 @@ class IntensityTable:
     def of_surfaces(
         surfaces: Surfaces, total: Array, *, settings: IntensitySettings, largest: float
     ) -> IntensityTable:
-        """Make the table of what each bin would hold had it seen all surfaces of the walk.
+        """Make the table as if each bin had seen all surfaces of the walk.
 
         Args:
             surfaces: Factors of the bins: mean and deviation of a bin are those of all points
@@ -92,7 +92,7 @@ class IntensityTable:
             largest: Largest raw intensity.
 
         Raises:
-            ConfigError: If there are no points at all.
+            ConfigError: If there are no points.
         """
         _require_points(total)
         target_mean, target_std = (float(v) for v in _moments(total))
@@ -111,7 +111,7 @@ class IntensityTable:
 
     @property
     def gain(self) -> NDArray[np.float32]:
-        """Factor of each bin; 1 where the deviation is too small to divide by, (S, B, I, R)."""
+        """Factor of each bin; 1 if the deviation is too small as a divisor, (S, B, I, R)."""
         safe = np.where(self.std < SHIFT_ONLY, np.float32(self.target_std or 1.0), self.std)
         return np.asarray((self.target_std or 1.0) / safe, dtype=np.float32)
 
@@ -164,7 +164,7 @@ class IntensityTable:
 
     @staticmethod
     def load(path: Path) -> IntensityTable:
-        """Read what `save` wrote.
+        """Read ``table.npz``.
 
         Raises:
             StoreError: If the file is missing or damaged.
@@ -200,9 +200,9 @@ def _moments(sums: Array) -> tuple[Array, Array]:
 
 
 def _merged(sums: Array, incidences: int, ranges: int) -> Array:
-    """Sums of blocks of bins, given to each bin of the block, shape as ``sums``.
+    """Replace each bin by the sum of its block of bins, shape as ``sums``.
 
-    The bin without a normal is merged with others only when all incidences are.
+    The bin without a normal is merged with others only if all incidences are merged.
     """
     size = sums.shape[2]
     if incidences == 0:

@@ -1,4 +1,4 @@
-"""Records of each tile collected on disk: written in bursts, thinned before each of them."""
+"""Buckets: the records of each tile, collected on disk, thinned before each write."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ BURST = 6_000_000
 
 
 class TileBuckets:
-    """One file a tile in a folder; holds at most `BURST` records in memory."""
+    """Writes one file per tile into a folder; holds at most `BURST` records in memory."""
 
     def __init__(self, folder: Path, grid: Grid, *, burst: int = BURST) -> None:
         self._folder = folder
@@ -27,7 +27,7 @@ class TileBuckets:
         self._tiles: set[Tile] = set()
 
     def add(self, parts: dict[Tile, Records], pool: ThreadPoolExecutor) -> None:
-        """Take the records of a multiframe; write when enough have come together."""
+        """Add the records of a multiframe; write all when `BURST` is reached."""
         for tile, records in parts.items():
             self._pending.setdefault(tile, []).append(records)
             self._held += len(records)
@@ -35,7 +35,7 @@ class TileBuckets:
             self.flush(pool)
 
     def flush(self, pool: ThreadPoolExecutor) -> None:
-        """Thin what is held and write it."""
+        """Thin and write the records held in memory."""
         pending, self._pending, self._held = self._pending, {}, 0
         for tile, records in zip(pending, pool.map(self._thinned, pending.values()), strict=True):
             self._tiles.add(tile)
@@ -49,7 +49,7 @@ class TileBuckets:
     def read(self, tile: Tile) -> Records:
         """All records of a tile in the order of their voxels, thinned.
 
-        Read and thinned part by part: memory follows what stays, not how often a place was seen.
+        Read and thinned in parts: memory depends on the thinned tile, not on all its points.
         """
         part = max(1, self._burst // 3)
         kept: list[Records] = []
@@ -64,7 +64,7 @@ class TileBuckets:
         return in_voxel_order(records, self._grid)
 
     def drop(self, tile: Tile) -> None:
-        """Remove the file of a tile that is done."""
+        """Remove the file of a finished tile."""
         self._path(tile).unlink()
 
     def _thinned(self, parts: list[Records]) -> Records:

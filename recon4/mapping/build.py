@@ -1,4 +1,4 @@
-"""The stage ``map``: every point in its place, thinned, described, stored in tiles."""
+"""The stage ``map``: place all points, thin them, compute their fields, store them in tiles."""
 
 from __future__ import annotations
 
@@ -43,19 +43,19 @@ def build_map(
 ) -> TileSet:
     """Write ``tiles/`` and ``tiles.json`` into a folder.
 
-    First every multiframe is placed and its points are dealt out to the tiles, on disk; then each
-    tile is thinned, cleaned and described on its own. Memory follows the largest tile, not the
-    walk.
+    First every multiframe is placed and its points are distributed to the tiles, on disk. Then
+    each tile is thinned and cleaned, and its fields are computed. Memory depends on the largest
+    tile, not on the walk.
 
     Args:
         frames: The points in the frames of their sensors.
         trajectory: ``T_map_body``, dense.
-        intensity: Normalizes intensities; None = the map gets no normalized ones.
-        out: The stage's folder; needs room for 32 bytes a point placed.
-        settings: Of the map.
-        crs: Where the map lies, when that is known.
-        progress: Who watches.
-        burst: Points dealt out before a write; for tests.
+        intensity: Normalizes intensities; None = the map has no normalized ones.
+        out: The stage's folder; needs 32 bytes of disk space per point.
+        settings: Settings of the map.
+        crs: CRS of the map, if it is georeferenced.
+        progress: Receives the progress.
+        burst: Points collected before a write; for tests.
 
     Raises:
         OutOfRange: If the trajectory does not cover the frames.
@@ -72,7 +72,7 @@ def build_map(
         TileWriter(out, fields, tile_m=grid.tile_m) as writer,
     ):
         buckets = TileBuckets(Path(folder), grid, burst=burst)
-        _deal_out(frames, trajectory, buckets, settings=settings, pool=pool, progress=progress)
+        _distribute(frames, trajectory, buckets, settings=settings, pool=pool, progress=progress)
         removed = _finish_tiles(buckets, recipe, writer, pool=pool, progress=progress)
         writer.facts = {
             "voxel_m": settings.voxel_m,
@@ -85,7 +85,7 @@ def build_map(
     return made
 
 
-def _deal_out(
+def _distribute(
     frames: Frames,
     trajectory: Trajectory,
     buckets: TileBuckets,
@@ -136,7 +136,7 @@ def _finish_tiles(
 def _in_order(
     pool: ThreadPoolExecutor, work: Callable[[Item], Made], items: Iterable[Item]
 ) -> Iterator[Made]:
-    """Results in the order of the items, at most one item a worker ahead."""
+    """Results in the order of the items, at most one item per worker ahead."""
     waiting: deque[Future[Made]] = deque()
     try:
         for item in items:

@@ -1,4 +1,4 @@
-"""What a map is made of."""
+"""Interface of the multiframes a map is built from."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from recon4.model.rig import Rig
 
 
 class Frames(Protocol):
-    """Multiframes read one at a time; a `recon4.store.frames.FrameStore` is one."""
+    """Multiframes that are read one at a time, for example a `recon4.store.frames.FrameStore`."""
 
     @property
     def rig(self) -> Rig:
-        """The sensors and where they are."""
+        """The sensors and their poses."""
 
     def __len__(self) -> int: ...
     def __getitem__(self, k: int) -> Multiframe: ...

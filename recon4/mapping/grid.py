@@ -1,4 +1,4 @@
-"""How space is cut: voxels make cells, cells make tiles, without a rest."""
+"""Grid of the map: voxels form cells, cells form tiles, without remainder."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ class Grid:
     """Edge lengths; every cell border is a voxel border and every tile border a cell border."""
 
     voxel_m: float
-    """Edge of a voxel [m]. When all points are kept it only sorts them."""
+    """Edge of a voxel [m]. If all points are kept, voxels only sort them."""
     cell_voxels: int
     """Voxels along a cell."""
     tile_cells: int
     """Cells along a tile."""
     thin: bool
-    """Whether one point a voxel is kept, or all."""
+    """Whether one point per voxel is kept, or all."""
 
     @staticmethod
     def of(settings: MapSettings) -> Grid:
@@ -45,5 +45,5 @@ class Grid:
 
     @property
     def key_bits(self) -> int:
-        """Bits of the number of a voxel in a tile with its halo."""
+        """Bits of the index of a voxel in a tile with its halo."""
         return int((self.cell_voxels * self.side_cells) ** 3).bit_length()

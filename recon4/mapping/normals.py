@@ -17,7 +17,7 @@ MIN_POINTS = 6
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Normals:
-    """Normals of points, with how many points each rests on."""
+    """Normals of points, with the number of points each is computed from."""
 
     normal: NDArray[np.float32]
     """Unit vectors of arbitrary sign; zeros where there is none, (N, 3)."""
@@ -28,8 +28,8 @@ class Normals:
 def local_normals(xyz_m: NDArray[np.float32], cell_m: float) -> Normals:
     """Normals of the planes through the 3 x 3 x 3 cells around each point's cell.
 
-    All points of a cell share one normal, so the cost is a sort and a sum, not a search for
-    neighbors: cells of 5 cm look at neighborhoods of 15 cm.
+    All points of a cell have the same normal, so the cost is a sort and a sum, not a search for
+    neighbors: cells of 5 cm use neighborhoods of 15 cm.
 
     Args:
         xyz_m: Points near the origin, finite [m], (N, 3).
@@ -39,7 +39,7 @@ def local_normals(xyz_m: NDArray[np.float32], cell_m: float) -> Normals:
     out = Normals(np.zeros((n, 3), np.float32), np.zeros(n, np.int32))
     if n == 0:
         return out
-    # An empty layer all around keeps the window of the outermost cells inside the box.
+    # A border of empty cells keeps the window of the outermost cells inside the box.
     least, most = np.empty(3), np.empty(3)
     bounds(xyz_m, least, most)
     low = np.floor(least / cell_m).astype(np.int64) - 1

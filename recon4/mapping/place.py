@@ -1,4 +1,4 @@
-"""Every point by the pose at its own time (V §2.6, Eq. 2.8; requirements A5)."""
+"""Undistortion: place every point by the pose at its time (V §2.6, Eq. 2.8; A5)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from recon4.model.rig import Rig
 from recon4.model.trajectory import Times, Trajectory
 
 KNOT_NS = 1_000_000
-"""Poses are interpolated exactly this often [ns], and at every pose of the trajectory."""
+"""Interval of exactly interpolated poses [ns]; the poses of the trajectory are added."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -24,20 +24,21 @@ class Placed:
     xyz_m: Array
     """Points [m], (N, 3)."""
     origin_m: Array
-    """Where the sensor was when it measured each of them [m], (N, 3)."""
+    """Position of the sensor at the time of each point [m], (N, 3)."""
 
 
 def place(
     frame: Multiframe, trajectory: Trajectory, rig: Rig, *, slack_ns: int | None = None
 ) -> Array:
-    """Points of a multiframe in the frame ``a`` of the trajectory, rolling shutter undone.
+    """Undistort a multiframe: its points in the frame ``a`` of the trajectory.
 
     Args:
         frame: Points in the frames of their sensors.
         trajectory: ``T_a_body``.
-        rig: Where the sensors are on the body.
-        slack_ns: How far outside the trajectory a point may lie in time (the first or last motion
-            goes on); None = the duration of the frame, as a trajectory with one pose a frame needs.
+        rig: Poses of the sensors in the body.
+        slack_ns: Largest time of a point before or after the trajectory; the first or last motion
+            is extrapolated. None = the duration of the frame, which a trajectory with one pose
+            per frame requires.
 
     Returns:
         Points [m], float64 (N, 3).
@@ -54,7 +55,7 @@ def place(
 def place_with_origins(
     frame: Multiframe, trajectory: Trajectory, rig: Rig, *, slack_ns: int | None = None
 ) -> Placed:
-    """As `place`, with the position of the sensor at each point's time."""
+    """Undistort a multiframe as `place` does; also the position of the sensor for each point."""
     placed = Placed(np.empty((len(frame), 3)), np.empty((len(frame), 3)))
     _place(frame, trajectory, rig, out=placed.xyz_m, origin=placed.origin_m, slack_ns=slack_ns)
     return placed

@@ -1,4 +1,4 @@
-"""A point on its way into the map: 32 bytes, sorted into tiles, thinned voxel by voxel."""
+"""Records of 32 bytes per point while the map is built: sorted into tiles, thinned by voxel."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class Views:
 def split_into_tiles(
     frame: Multiframe, placed: Placed, grid: Grid, *, enabled: NDArray[np.bool_], max_range_m: float
 ) -> dict[Tile, Records]:
-    """Records of a multiframe's points, tile by tile, halos included."""
+    """Records of a multiframe's points by tile, halos included."""
     chosen = np.empty(len(frame), np.bool_)
     least, most = np.empty(3), np.empty(3)
     xyz, origin = placed.xyz_m, placed.origin_m
@@ -98,9 +98,9 @@ def split_into_tiles(
 
 
 def in_voxel_order(records: Records, grid: Grid) -> Records:
-    """The records sorted by voxel and, when thinning, only the nearest of each voxel.
+    """Sort records by voxel and, when thinning, keep only the nearest of each voxel.
 
-    Thinning a part first, and the whole later, gives the same as thinning the whole at once.
+    Thinning a part first and the whole later gives the same result as thinning the whole.
     """
     n = len(records)
     if n == 0:
@@ -119,5 +119,5 @@ def in_voxel_order(records: Records, grid: Grid) -> Records:
 
 
 def to_sensor_m(records: Records) -> NDArray[np.float32]:
-    """Vectors from the points to the sensor [m], (N, 3), to 2 mm."""
+    """Vectors from the points to the sensor [m], (N, 3), exact to 2 mm."""
     return records["to_sensor"].astype(np.float32) / np.float32(PER_METER)

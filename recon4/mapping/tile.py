@@ -1,4 +1,4 @@
-"""From the records of one tile to its columns in the map."""
+"""Convert the records of one tile to its columns in the map."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ FIELDS: dict[str, tuple[str, int]] = {
     "range_m": ("<f4", 1),
     "incidence_rad": ("<f4", 1),
 }
-"""Name -> (dtype, width). ``intensity_normalized`` is there only when there was a table."""
+"""Name -> (dtype, width). ``intensity_normalized`` exists only with an intensity table."""
 
 STRATA = 64
-"""A tile is stored as so many uniform samples of itself, one behind the other."""
+"""Number of uniform samples of itself in which a tile is stored, one after the other."""
 FAR_CELL_M = 1.0
 """Size of the cubes of ``MapSettings.far_ratio`` [m]."""
 
@@ -42,7 +42,7 @@ Columns = dict[str, NDArray[Any]]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Recipe:
-    """What every tile is made with."""
+    """Parameters that are the same for all tiles."""
 
     grid: Grid
     settings: MapSettings
@@ -53,18 +53,18 @@ class Recipe:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MadeTile:
-    """Columns of a tile in the order they are stored, and what was left out."""
+    """Columns of a tile in the stored order, and counts of removed points by reason."""
 
     columns: Columns
     removed: Counter[str]
 
 
 def make_tile(records: Records, recipe: Recipe) -> MadeTile:
-    """Clean the records of a tile and describe what stays.
+    """Remove noise from the records of a tile and compute the columns of the rest.
 
     Args:
         records: In the order of their voxels, thinned, with the halo.
-        recipe: How.
+        recipe: Parameters.
     """
     settings = recipe.settings
     removed: Counter[str] = Counter()
@@ -89,15 +89,15 @@ def _without_far(records: Records, ratio: float) -> tuple[Records, int]:
 def progressive(rows: NDArray[np.intp]) -> NDArray[np.intp]:
     """Reorder rows given in spatial order so that every prefix samples all of them evenly.
 
-    Stratum ``s`` holds every 64th row from the ``s``-th on, and the strata follow each other in
-    bit-reversed order, so that halves, quarters and eighths are regular samples too. Inside a
-    stratum the order stays spatial, which compresses well. `spatial_order` undoes it.
+    Stratum ``s`` has every 64th row from the ``s``-th on. The strata are in bit-reversed order, so
+    that halves, quarters and eighths are regular samples too. Within a stratum the order stays
+    spatial, which compresses well. `spatial_order` is the inverse.
     """
     return rows[np.concatenate([np.arange(s, len(rows), STRATA) for s in _strata()])]
 
 
 def spatial_order(count: int) -> NDArray[np.intp]:
-    """Places of the points of a tile of ``count`` points in spatial order."""
+    """Rows of a tile of ``count`` points in spatial order, the inverse of `progressive`."""
     inverse = np.empty(count, np.intp)
     inverse[progressive(np.arange(count))] = np.arange(count)
     return inverse

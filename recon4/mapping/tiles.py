@@ -1,7 +1,7 @@
-"""The map on disk: one ``.npy`` file a field, tile behind tile, and ``tiles.json``.
+"""The map on disk: one ``.npy`` file per field, tile after tile, and ``tiles.json``.
 
-    tiles.json           what there is: fields, bounds, CRS, and rows and origin of each tile
-    tiles/<field>.npy    one row a point
+    tiles.json           fields, bounds, CRS, and rows and origin of each tile
+    tiles/<field>.npy    one row per point
 
 Rows ``start`` to ``stop`` belong to a tile; any first part of them is an even sample of the tile.
 """
@@ -29,12 +29,12 @@ FORMAT = 1
 Number = TypeVar("Number", int, float)
 _HEADER_BYTES = 128
 _MOST_FACTS_BYTES = 256 << 20
-"""``tiles.json`` has some 300 bytes a tile."""
+"""``tiles.json`` has some 300 bytes per tile."""
 
 
 @dataclass(frozen=True, slots=True)
 class MapCrs:
-    """Where the map's frame lies on Earth."""
+    """Coordinate reference system of the map."""
 
     wkt: str
     """The CRS as WKT."""
@@ -47,12 +47,12 @@ class Tile:
     """One cube of the map."""
 
     folder: Path
-    """Where the columns lie."""
+    """Folder of the columns."""
     fields: tuple[str, ...]
     ijk: tuple[int, int, int]
-    """Its place among the tiles."""
+    """Index in the grid of tiles."""
     origin_m: tuple[float, float, float]
-    """Its corner in the map [m]; ``xyz`` counts from there."""
+    """Corner in the map [m]; ``xyz`` is relative to it."""
     start: int
     stop: int
     low_m: tuple[float, float, float]
@@ -60,20 +60,20 @@ class Tile:
     high_m: tuple[float, float, float]
     """Largest coordinates of its points in the map [m]."""
     checked: CheckedArtifact | None = None
-    """What is read is compared with these hashes first; None = it is taken as it is."""
+    """Hashes that bytes must match before they are used; None = not checked."""
 
     def __len__(self) -> int:
         return self.stop - self.start
 
     def read(self, fields: Sequence[str], *, limit: int | None = None) -> Columns:
-        """Some fields, memory-mapped and read-only.
+        """Read some fields, memory-mapped and read-only.
 
         Args:
             fields: Names of `FIELDS`.
-            limit: At most so many points, an even sample of the tile; None = all.
+            limit: Largest number of points, an even sample of the tile; None = all.
 
         Raises:
-            Altered: If the tile is checked and its bytes are not those that were approved.
+            Altered: If the tile is checked and its bytes do not match the hashes.
             StoreError: If the map does not have a field, or a file is damaged.
         """
         unknown = sorted(set(fields) - set(self.fields))
@@ -98,7 +98,7 @@ class Tile:
         return self.read(["xyz"], limit=limit)["xyz"].astype(np.float64) + self.origin_m
 
     def spatial_order(self) -> NDArray[np.intp]:
-        """Rows of the tile such that neighbors follow each other, (N,)."""
+        """Rows of the tile in spatial order, (N,)."""
         return spatial_order(len(self))
 
 
@@ -118,7 +118,7 @@ class TileSet:
 
         Args:
             folder: The artifact.
-            checked: Hashes that everything read from it must have; None = nothing is compared.
+            checked: Hashes that all bytes read must match; None = not checked.
 
         Raises:
             Altered: If ``checked`` is given and ``tiles.json`` was changed.
@@ -158,7 +158,7 @@ class TileSet:
 
 
 class TileWriter:
-    """Writes tiles behind each other; ``tiles.json`` comes last, when the block ends well."""
+    """Writes tiles one after the other; ``tiles.json`` last, if the block ends without error."""
 
     def __init__(self, folder: Path, fields: Sequence[str], *, tile_m: float) -> None:
         self._folder = folder
@@ -168,7 +168,7 @@ class TileWriter:
         self._points = 0
         self._files: dict[str, BinaryIO] = {}
         self.facts: dict[str, Any] = {}
-        """More to write into ``tiles.json``."""
+        """Further entries of ``tiles.json``."""
 
     def __enter__(self) -> Self:
         (self._folder / "tiles").mkdir(parents=True)
@@ -192,7 +192,7 @@ class TileWriter:
             self._write_list()
 
     def append(self, ijk: tuple[int, int, int], columns: Columns) -> None:
-        """Write the points of one tile, in the order given; an empty tile is left out."""
+        """Write the points of one tile in the given order; an empty tile is omitted."""
         count = len(columns["xyz"])
         if count == 0:
             return
@@ -251,10 +251,10 @@ def _tile(
 
 
 def _triple(values: Any, kind: type[Number]) -> tuple[Number, Number, Number]:
-    """Three finite numbers.
+    """Convert to three finite numbers.
 
     Raises:
-        TypeError, ValueError, OverflowError: If they are something else.
+        TypeError, ValueError, OverflowError: If that is not possible.
     """
     x, y, z = (kind(value) for value in values)
     if not all(map(math.isfinite, (x, y, z))):
@@ -263,7 +263,7 @@ def _triple(values: Any, kind: type[Number]) -> tuple[Number, Number, Number]:
 
 
 def _check_rows(tiles: Sequence[Tile], points: int, name: str) -> None:
-    """Tiles follow each other without a gap and are all of the points."""
+    """Check that tiles follow each other without a gap and contain all points."""
     at = 0
     for tile in tiles:
         if tile.start != at or tile.stop < at:
@@ -283,7 +283,7 @@ def _shape(name: str, rows: int) -> tuple[int, ...]:
 
 
 def _header(name: str, rows: int) -> bytes:
-    """The header of a version 1.0 ``.npy`` file, always of the same size so it can be patched."""
+    """Header of a version 1.0 ``.npy`` file, of constant size so that it can be rewritten."""
     shape = _shape(name, rows)
     text = f"{{'descr': '{FIELDS[name][0]}', 'fortran_order': False, 'shape': {shape}, }}"
     body = text.encode("latin1").ljust(_HEADER_BYTES - 11) + b"\n"
@@ -291,7 +291,7 @@ def _header(name: str, rows: int) -> bytes:
 
 
 def _row_offset(name: str, row: int) -> tuple[int, int]:
-    """Where a row begins in its file, and how long it is [bytes]."""
+    """Offset of a row in its file, and the size of a row [bytes]."""
     row_bytes = np.dtype(FIELDS[name][0]).itemsize * FIELDS[name][1]
     return _HEADER_BYTES + row * row_bytes, row_bytes
 
