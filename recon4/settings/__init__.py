@@ -1,7 +1,7 @@
-"""Every setting of the pipeline, declared once, one file a stage.
+"""All settings of the pipeline, each declared once, one file per stage.
 
-Code, command line, API and docs are made from these declarations. A stage receives only its own
-group, so that a changed setting reruns only what depends on it.
+Code, command line, API and docs are generated from these declarations. A stage receives only its
+own groups, so that a changed setting reruns only the stages that depend on it.
 """
 
 from recon4.settings.assign import canonical, override, to_json

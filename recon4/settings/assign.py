@@ -13,10 +13,10 @@ from recon4.settings.renamed import RENAMED
 
 
 def override(settings: Settings, assignments: list[str]) -> Settings:
-    """Apply ``group.field=value`` texts; of two for one field the later counts.
+    """Apply assignments ``group.field=value``; the last one of a field counts.
 
     Raises:
-        WrongSettings: Naming every wrong one, what was expected and what was given.
+        WrongSettings: Names every wrong setting with the expected and the given value.
     """
     problems: dict[str, str] = {}
     values: dict[str, dict[str, Any]] = {}
@@ -37,7 +37,7 @@ def override(settings: Settings, assignments: list[str]) -> Settings:
 
 
 def _find(settings: Settings, text: str) -> tuple[str, str, Any]:
-    """Group, name and type of the setting a text assigns."""
+    """Group, name and type of the setting of an assignment."""
     path, sign, _ = text.partition("=")
     group_name, dot, name = path.strip().partition(".")
     if not sign or not dot:
@@ -54,17 +54,17 @@ def _find(settings: Settings, text: str) -> tuple[str, str, Any]:
 
 
 def _replaced(group: Any, name: str, values: dict[str, Any], problems: dict[str, str]) -> Any:
-    """The group with other values; those it refuses are left out and told."""
+    """The group with other values; invalid ones are skipped and added to ``problems``."""
     left = dict(values)
     while left:
         try:
             return replace(group, **left)
         except ConfigError as error:
-            # A rule may speak of two fields: blame those given, the first named first.
-            words = str(error)
-            blamed = [field for field in re.findall(r"\w+", words) if field in left]
-            wrong = blamed[0] if blamed else next(iter(left))
-            problems[f"{name}.{wrong}"] = words
+            # A rule may name two fields: the error is assigned to the first given one.
+            message = str(error)
+            named = [field for field in re.findall(r"\w+", message) if field in left]
+            wrong = named[0] if named else next(iter(left))
+            problems[f"{name}.{wrong}"] = message
             del left[wrong]
     return group
 
@@ -76,7 +76,7 @@ def to_json(settings: object) -> dict[str, Any]:
 
 
 def canonical(settings: object) -> str:
-    """One text for equal settings: what a stage's key is hashed from."""
+    """Canonical JSON of settings: equal settings give equal text. Stage keys are hashed from it."""
     return json.dumps(to_json(settings), sort_keys=True, separators=(",", ":"))
 
 

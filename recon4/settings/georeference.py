@@ -10,7 +10,7 @@ from recon4.settings.require import require
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LevelSettings:
-    """Horizontal alignment (V §2.9, requirements A8)."""
+    """Leveling (V §2.9, requirements A8)."""
 
     source: Literal["auto", "imu", "floor", "none"] = "auto"
     """``auto``: the IMU if there is one, else the dominant floor."""
@@ -21,30 +21,30 @@ class GnssSettings:
     """Georeferencing by GNSS/INS (requirements A10)."""
 
     enabled: bool = True
-    """Use the positions when the recording has them."""
+    """Use GNSS positions if the recording has any."""
     crs: str = ""
     """EPSG code of the map's horizontal (and vertical) CRS, as ``EPSG:5514+8357``.
-    Empty = UTM zone of the place with ellipsoidal heights."""
+    Empty = UTM zone of the position with ellipsoidal heights."""
     min_quality: Literal["single", "differential", "float", "fixed"] = "single"
     """Fixes of lower quality are not used."""
     correlation_s: float = 5.0
-    """Errors of fixes nearer in time than this are alike; so many count as one [s]. Larger leaves
-    more of the shape of the map to SLAM."""
+    """Correlation time of the errors of fixes [s]: fixes within it count as one. A larger value
+    gives SLAM more influence on the shape of the map."""
     min_sd_m: float = 0.01
-    """No fix is better than this, whatever it promises [m]."""
+    """Smallest standard deviation of a fix, whatever the receiver reports [m]."""
     gate_m: float = 1.0
-    """A fix farther than this plus ``gate_relative`` from the track laid rigidly over all fixes is
-    an outlier [m]."""
+    """A fix farther than this plus ``gate_relative`` from the rigidly aligned trajectory is an
+    outlier [m]."""
     gate_relative: float = 0.02
-    """Drift of SLAM that may hide in that distance, per metre of track."""
+    """Allowance for the drift of SLAM in that distance, per meter of path length."""
     tilt_sd_rad: float = 0.005
-    """How well the levelled map is horizontal [rad]."""
+    """Standard deviation of the tilt of the leveled map [rad]."""
     judge_edges: bool = True
-    """Turn down edges of the graph that contradict the positions."""
+    """Reject edges of the graph that contradict the GNSS positions."""
     min_extent_m: float = 3.0
-    """Fixes must span at least this for a heading [m]."""
+    """Smallest extent of the fixes for which a heading is estimated [m]."""
     seed: int = 4
-    """Seed of the draws that find the first alignment."""
+    """Seed of the random draws of the initial alignment."""
 
     def __post_init__(self) -> None:
         require(self.correlation_s >= 0.0, "correlation_s must be 0 or more", self.correlation_s)

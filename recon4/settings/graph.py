@@ -13,38 +13,38 @@ class GraphSettings:
     """Progressive pose graph (V §2.7, Algorithm 2.1, requirements A6)."""
 
     mode: Literal["10", "overlap", "verification", "beyond"] = "beyond"
-    """What V Table 3.2 compares, and our own."""
+    """The modes that V Table 3.2 compares, and ``beyond``, with semi-rigid refinement."""
     node_stride: int = 5
-    """A node every so many multiframes."""
+    """Number of multiframes per node."""
     closed_trajectory: bool = False
-    """The walk ends where it began: pairs may wrap around (A0 no. 5)."""
+    """The walk ends at its start: pairs may wrap around (A0 no. 5)."""
     exhaustive: bool = False
-    """Test all pairs as the thesis does: quadratic in the walk."""
+    """Test all pairs as the thesis does; the work is quadratic in the path length."""
     neighbors: int = 4
-    """Pairs with the nodes before, at growing distance."""
+    """Number of preceding nodes that each node is paired with."""
     revisits: int = 6
-    """At most so many pairs of a node with earlier visits of the same place."""
+    """Largest number of pairs of a node with earlier visits of the same place."""
     revisit_radius_m: float = 4.0
     """Nodes farther apart are not revisits of one place [m] …"""
     drift_ratio: float = 0.005
-    """… plus this ratio of the distance walked in between, for the drift not yet closed."""
+    """… plus this ratio of the path length in between, to allow for drift."""
     retry_rounds: int = 2
-    """So many times pairs turned down are tried again from better poses; 0 = never."""
+    """Number of rounds in which rejected pairs are registered again from better poses; 0 = none."""
     retry_move_m: float = 0.2
-    """A pair is tried again if its expected pose moved by more than this since [m, rotation as at
-    5 m]."""
+    """A rejected pair is registered again if its predicted pose has moved by more than this [m,
+    rotation as at 5 m]."""
     source_reach: int = 2
-    """Multiframes before and after a node that it brings to a pair."""
+    """Multiframes before and after the source node whose segments are registered."""
     source_segments: int = 6000
-    """Segments of them that are used."""
+    """Largest number of these segments."""
     target_reach: int = 5
-    """Multiframes before and after the other node that make the target."""
+    """Multiframes before and after the target node that form the target map."""
     workers: int = 2
     """Threads that register pairs; the result does not depend on it."""
     min_match_ratio: float = 0.4
-    """A pair with a smaller ratio of matched segments is rejected."""
+    """A pair with a smaller match ratio is rejected."""
     min_degeneracy: float = 0.005
-    """A pair held less than this along one direction is rejected (0 = free, 1/3 = held alike)."""
+    """A pair with a smaller degeneracy is rejected (0 = unobservable, 1/3 = isotropic)."""
     error_relative: float = 0.01
     """t_r of the acceptance limit ``median_range * t_r + t_a`` (A0 no. 12)."""
     error_absolute_m: float = 0.05
@@ -73,17 +73,17 @@ class VerificationSettings:
     """Verification by alternative paths (V §2.8, requirements A7)."""
 
     variant: Literal["paths", "cycle"] = "paths"
-    """``paths`` is the text; ``cycle`` takes triangles only and counts the edge itself as a path
-    without error, as the author's code does."""
+    """``paths``: as in the text. ``cycle``: triangles only, with the edge itself as a path without
+    error, as in the author's code."""
     max_path_edges: int = 3
     """Longest alternative path, 2 or 3 edges."""
     limit_m: float = 0.1
-    """An edge whose median disagreement is above this is rejected [m] (A0 no. 1)."""
+    """An edge with a larger path discrepancy is rejected [m] (A0 no. 1)."""
     robust: Literal["gnc", "cauchy", "none"] = "gnc"
-    """The final solve after verification: ``gnc`` and ``cauchy`` also reject edges that do not fit
-    the whole graph, ``none`` is the text."""
+    """The final solve after verification: ``gnc`` and ``cauchy`` also reject outliers of the whole
+    graph, ``none`` is as in the text."""
     inlier_probability: float = 0.999
-    """Share of correct edges that the robust solve keeps if their information is true."""
+    """Fraction of correct edges that the robust solve keeps if their information is true."""
 
     def __post_init__(self) -> None:
         require(2 <= self.max_path_edges <= 3, "max_path_edges must be 2 or 3", self.max_path_edges)

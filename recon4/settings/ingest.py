@@ -12,11 +12,11 @@ class IngestSettings:
     """Reading a recording into multiframes."""
 
     rate_hz: float = 0.0
-    """Multiframes per second. 0 = one a revolution of the slowest LiDAR, as measured."""
+    """Multiframes per second. 0 = one per measured revolution of the slowest LiDAR."""
     reorder_window_s: float = 0.2
-    """Packets out of order by at most this are put back in order [s]."""
+    """Packets out of order by at most this are sorted [s]."""
     min_range_m: float = 0.7
-    """Nearer returns are the carrier and are dropped [m]."""
+    """Nearer returns are of the carrier and are dropped [m]."""
     max_range_m: float = 120.0
     """Farther returns are dropped [m]."""
     gap_s: float = 0.2

@@ -13,29 +13,29 @@ class IntensitySettings:
     """Intensity normalization (V §2.10, Eq. 2.17, requirements A9)."""
 
     method: Literal["surfaces", "bins"] = "surfaces"
-    """``surfaces`` compares points of the same place, so that near floors and far walls are not
-    taken for an effect of range; ``bins`` is the text: the plain mean of each bin."""
+    """``surfaces`` compares points of the same surface, so that near floors and far walls are not
+    mistaken for an effect of range. ``bins``: as in the text, the plain mean of each bin."""
     surface_cell_m: float = 0.25
     """Points in a cube of this edge lie on one surface [m] (``surfaces``)."""
     surface_points: int = 500_000
-    """About so many of the sampled points are compared (``surfaces``)."""
+    """Approximate number of sampled points that are compared (``surfaces``)."""
     range_bin_m: float = 0.2
     """Width of a bin of range [m]."""
     incidence_bin_deg: float = 1.0
     """Width of a bin of incidence angle [deg]."""
     max_range_m: float = 60.0
-    """Farther points share the last bin of range [m]."""
+    """Farther points belong to the last bin of range [m]."""
     min_count: int = 200
     """Bins with fewer points fall back to a coarser bin, or to the product of the factors of beam,
     incidence and range (``surfaces``)."""
     min_contrast: float = 0.5
-    """With ``bins``: a bin's deviation counts as at least this share of what its mean lets
-    expect, so that a bin of one material is not stretched to the contrast of all; 0 = Eq. 2.17 as
-    it stands."""
+    """With ``bins``: lower limit of a bin's deviation as a fraction of the value expected from its
+    mean, so that a bin of one material is not stretched to the contrast of all; 0 = plain
+    Eq. 2.17."""
     normal_cell_m: float = 0.15
-    """Normals come from neighborhoods of three of these cells [m]."""
+    """Edge of a cell for normals [m]; a neighborhood has three cells along each axis."""
     windows: int = 40
-    """At most so many stretches of the walk, ten multiframes each, are sampled."""
+    """Largest number of sampled sections of the walk, ten multiframes each."""
     upper: Literal["raw", "twice_mean"] = "raw"
     """Normalized values are clamped to 0 and the largest raw value, or twice the target mean as in
     the author's code, which clips reflectors."""

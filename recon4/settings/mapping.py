@@ -9,21 +9,21 @@ from recon4.settings.require import require
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapSettings:
-    """The point map and what is written of it."""
+    """The point map."""
 
     voxel_m: float = 0.01
-    """Keep at most one point in a cube of this size, that with the shortest range [m]; 0 = all."""
+    """Edge of a voxel [m]; the point with the shortest range in each is kept; 0 = keep all."""
     max_range_m: float = 60.0
-    """Points farther from the sensor are left out of the map [m]."""
+    """Points farther from the sensor are not in the map [m]."""
     tile_m: float = 5.0
-    """Edge length of the tiles in which the map is made and stored [m]."""
+    """Edge of the tiles in which the map is built and stored [m]."""
     normal_cell_m: float = 0.05
-    """Normals come from neighborhoods of three of these cells [m]."""
+    """Edge of a cell for normals [m]; a neighborhood has three cells along each axis."""
     min_neighborhood: int = 2
     """Points with fewer points in that neighborhood, themselves included, are noise; 1 = keep."""
     far_ratio: float = 0.0
-    """Points measured from more than so many times the shortest range in their cubic meter are
-    left out (requirements A13 O-9: 2); 0 = keep."""
+    """Points with a range of more than this factor times the shortest one in their cubic meter are
+    removed (requirements A13 O-9: 2); 0 = keep."""
 
     def __post_init__(self) -> None:
         require(0.0 <= self.voxel_m <= 1.0, "voxel_m must be 0 to 1", self.voxel_m)

@@ -11,30 +11,30 @@ class OdometrySettings:
     """Pose of each multiframe from the ones before (V §2.4, requirements A3, A5)."""
 
     history: int = 10
-    """Keyframes in the local map; multiframes that line odometry looks back on."""
+    """Keyframes in the local map; for line odometry the number of past multiframes."""
     history_mode: Literal["joined", "averaged"] = "joined"
-    """Line odometry: ``joined`` registers to the lines of the history together, ``averaged`` to
-    each of them, the mean of the poses being taken (V Table 3.1, multi-frame; as many times the
-    work)."""
+    """Line odometry: ``joined`` registers to the lines of the whole history, ``averaged`` to each
+    of its multiframes with the mean of the poses (V Table 3.1, multi-frame; the work grows by
+    their number)."""
     keyframe_m: float = 0.3
-    """A multiframe joins the local map once the body moved so far [m] …"""
+    """A multiframe becomes a keyframe if the body moved by this [m] …"""
     keyframe_rad: float = 0.26
-    """… or turned so far [rad] since the last that did."""
+    """… or turned by this [rad] since the last keyframe."""
     rounds: int = 8
     """Upper bound on match-and-solve rounds."""
     information_scale: float = 0.02
-    """Share of the matches counted as independent: neighbors see the same plane's error."""
+    """Fraction of the matches that counts as independent: neighbors have the same plane error."""
     use_imu: bool = True
-    """Predict and undistort with the IMU when the recording has one."""
+    """Predict and undistort by the IMU if the recording has one."""
     use_gnss: bool = True
-    """Let GNSS/INS with heading hold odometry where the LiDAR cannot."""
+    """Aid odometry by GNSS/INS with heading where the LiDAR does not determine the motion."""
     gnss_sd_m: float = 0.1
-    """Smallest standard deviation given to a fix [m]: its errors are alike for seconds."""
+    """Smallest standard deviation of a fix [m]: its errors are correlated over seconds."""
     heading_sd_rad: float = 0.01
-    """Standard deviation given to a heading of the INS [rad]."""
+    """Standard deviation of the INS heading [rad]."""
     normal_noise_rad: float = 0.03
-    """Error of a plane's normal [rad]: directions that are held no better than by such errors
-    count as free."""
+    """Error of a plane's normal [rad]: directions with no more information than such errors create
+    count as unobservable."""
     gyro_noise: float = 3e-4
     """Noise density of the gyroscope [rad/s/sqrt(Hz)]."""
     accel_noise: float = 1e-2
@@ -52,23 +52,23 @@ class OdometrySettings:
     line_sd_rad: float = 0.002
     """… and of its rotation [rad]."""
     restart_after: int = 10
-    """With an IMU: after so many lost multiframes a new local map is begun."""
+    """With an IMU: number of lost multiframes after which the local map is reset."""
     lost_error_m: float = 0.1
-    """A larger error means lost [m]."""
+    """With a larger error tracking is lost [m]."""
     lost_match_ratio: float = 0.3
-    """With a smaller ratio of matched segments tracking is lost."""
+    """With a smaller match ratio tracking is lost."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScanSettings:
-    """Registration of two single scans: the first guess and the recovery without an IMU."""
+    """Registration of two single scans: prediction and relocalization without an IMU."""
 
     voxel_m: float = 0.25
-    """Scans are thinned to one point in a cube of this edge [m]."""
+    """Edge of the voxels to which scans are thinned [m]."""
     neighbors: int = 12
-    """Points whose plane gives a point its normal, itself included."""
+    """Number of points from which a normal is computed, the point itself included."""
     source_points: int = 20_000
-    """Of the source no more points than this are used."""
+    """Largest number of points of the source."""
     gate_m: float = 0.7
     """Points farther apart never match [m]; three times as far in the first two rounds."""
     kernel_m: float = 0.3
@@ -76,10 +76,10 @@ class ScanSettings:
     rounds: int = 30
     """Upper bound on match-and-solve rounds."""
     inlier_m: float = 0.1
-    """A point this near to its plane lies on it [m]."""
+    """Largest distance of an inlier from its plane [m]."""
     min_inlier_ratio: float = 0.3
-    """With a smaller ratio of inliers the registration has not converged."""
+    """With a smaller inlier ratio the registration has not converged."""
     confident_inlier_ratio: float = 0.45
-    """With a smaller ratio of inliers other initial poses are tried."""
+    """With a smaller inlier ratio other initial poses are tried."""
     starts: int = 10
-    """Overlays of the ground plans that are tried."""
+    """Number of overlays of the ground plans that are tried."""

@@ -22,7 +22,7 @@ from recon4.settings.registration import (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Settings:
-    """All of them. A preset is one of these; ``--set group.field=value`` changes one field."""
+    """All groups of settings. ``--set group.field=value`` changes one field of a preset."""
 
     ingest: IngestSettings = field(default_factory=IngestSettings)
     segments: SegmentSettings = field(default_factory=SegmentSettings)

@@ -15,12 +15,12 @@ class SegmentSettings:
     azimuth_bins: int = 36
     """Cells around the spin axis."""
     generated: int = 20
-    """Random segments drawn in a cell between two neighboring rings."""
+    """Number of random segments per cell between two neighboring rings."""
     preserved: int = 5
-    """Shortest of them that are kept."""
+    """Number of the shortest of them that are kept."""
     max_length_per_range: float = 0.34
-    """A segment longer than this times its nearer end's range bridges a depth edge and is dropped
-    (a third: 2° between beams, at least 6° of incidence)."""
+    """A segment longer than this times the range of its nearer end crosses a depth edge and is
+    dropped (a third: 2° between beams, at least 6° of incidence)."""
     seed: int = 4
     """Seed of the random draws; combined with the frame id."""
 
@@ -48,7 +48,7 @@ class OverlapSettings:
     threshold: float = 0.5
     """t_o: pairs that overlap less are rejected."""
     mode: Literal["target", "source", "min", "harmonic"] = "target"
-    """Whose points are tested in whose buffer; ``target`` is the text."""
+    """Which points are tested in which buffer; ``target`` is as in the text."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,20 +56,20 @@ class RegistrationSettings:
     """Registration of two sets of collar line segments (V §2.4, requirements A3)."""
 
     solver: Literal["planes", "common_normal", "svd"] = "planes"
-    """``svd`` is the documents' closed form on closest points of lines, ``common_normal`` moves
-    along the common normals of lines, ``planes`` holds segments against a map of small planes."""
+    """``svd``: closed form on closest points of lines, as in the documents. ``common_normal``:
+    distance along the common normals of lines. ``planes``: distance from a map of small planes."""
     max_iterations: int = 20
     """Upper bound on match-and-solve rounds (thesis: 500)."""
     max_move_m: float = 2.5
-    """A solution farther from its guess counts as not converged [m, rotation as at 5 m]."""
+    """A solution farther from its initial pose has not converged [m, rotation as at 5 m]."""
     converged_step_m: float = 5e-4
-    """Stop once a round moves a point at 5 m by less than this [m] (``common_normal``)."""
+    """Stop if a round moves a point at 5 m by less than this [m] (``common_normal``)."""
     max_distance_m: float = 1.0
     """Midpoints farther apart never match [m] (``common_normal``)."""
     kernel_m: float = 0.05
     """Scale of the Cauchy kernel on the line distance [m] (``common_normal``)."""
     portion: float = 0.5
-    """Share of nearest matches that odometry keeps at least, however small the overlap seems
+    """Smallest fraction of nearest matches that odometry keeps, even if the overlap is smaller
     (``svd``, ``common_normal``)."""
     error_window: int = 20
     """Rounds over which the error must not change (``svd``)."""
@@ -90,16 +90,16 @@ class RegistrationSettings:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlaneSettings:
-    """The map of small planes that solver ``planes`` registers segments to."""
+    """Map of small planes to which the solver ``planes`` registers segments."""
 
     finest_m: float = 0.2
     """Edge of the smallest cubes [m]."""
     levels: int = 4
-    """Sizes of cubes, each twice the one before."""
+    """Number of sizes of cubes; each is twice the one before."""
     min_points: int = 8
     """A cube with fewer points has no plane."""
     max_sd_m: float = 0.03
-    """Points of one plane scatter by at most this across it [m]."""
+    """Largest standard deviation of the points of a plane across it [m]."""
     point_sd_m: float = 0.02
     """Standard deviation of one measured point [m]."""
     kernel_m: float = 0.02

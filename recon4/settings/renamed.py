@@ -1,4 +1,4 @@
-"""Settings that were renamed, so that files and commands of earlier versions are understood."""
+"""Renamed settings, so that files and commands of earlier versions stay readable."""
 
 RENAMED = {
     ("odometry", "lost_share"): "lost_match_ratio",
@@ -7,9 +7,9 @@ RENAMED = {
     ("graph", "drift_share"): "drift_ratio",
     ("graph", "min_share"): "min_match_ratio",
 }
-"""Group and name in format 1 -> name now."""
+"""Group and name in format 1 -> current name."""
 
 
 def current_name(group: str, name: str) -> str:
-    """Today's name of a setting that a file of any version names."""
+    """Current name of a setting in a file of any version."""
     return RENAMED.get((group, name), name)

@@ -1,15 +1,15 @@
-"""How a group of settings refuses a value."""
+"""Validation of the values of settings."""
 
 from __future__ import annotations
 
 from recon4.errors import ConfigError
 
 
-def require(holds: bool, rule: str, value: object) -> None:
-    """Refuse a value that breaks a rule.
+def require(valid: bool, rule: str, value: object) -> None:
+    """Raise an error for an invalid value.
 
     Raises:
-        ConfigError: With the rule and the value, unless the rule holds.
+        ConfigError: Names the rule and the value.
     """
-    if not holds:
+    if not valid:
         raise ConfigError(f"{rule}, got {value}")
