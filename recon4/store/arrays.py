@@ -22,10 +22,10 @@ from recon4.model.trajectory import Trajectory
 Record = TypeVar("Record")
 
 MOST_ARRAY_BYTES = 1 << 30
-"""Of all arrays that are read from one file together [bytes]."""
+"""Limit of the size of all arrays that are read from one file [bytes]."""
 _MOST_RATIO = 200
 _FREE_BYTES = 64 << 20
-"""Small files may be packed as well as they like: a table of intensities is mostly zeros."""
+"""Size below which any compression ratio is allowed: an intensity table is mostly zeros [bytes]."""
 _HEADERS = {
     (1, 0): np.lib.format.read_array_header_1_0,
     (2, 0): np.lib.format.read_array_header_2_0,
@@ -35,7 +35,7 @@ _DAMAGED = (
     *(zipfile.BadZipFile, zlib.error, tokenize.TokenError, RuntimeError, SyntaxError),
     *(AttributeError, IndexError),
 )
-"""What numpy and zipfile raise over a file that is missing, cut off, altered or something else."""
+"""Errors that numpy and zipfile raise for a file that is missing, truncated, altered or foreign."""
 
 
 def save_record(path: Path, record: Any) -> None:
@@ -44,7 +44,7 @@ def save_record(path: Path, record: Any) -> None:
 
 
 def load_record(path: Path, kind: type[Record]) -> Record:
-    """Read what `save_record` wrote.
+    """Read a dataclass of arrays written by `save_record`.
 
     Raises:
         StoreError: If the file is missing, damaged or of another kind.
@@ -59,7 +59,7 @@ def save_trajectory(path: Path, trajectory: Trajectory) -> None:
 
 
 def load_trajectory(path: Path) -> Trajectory:
-    """Read what `save_trajectory` wrote.
+    """Read a trajectory written by `save_trajectory`.
 
     Raises:
         StoreError: If the file is missing, damaged or of another kind.
@@ -69,7 +69,7 @@ def load_trajectory(path: Path) -> Trajectory:
 
 
 def load_arrays(path: Path, names: list[str] | None = None) -> dict[str, Any]:
-    """Named arrays of an ``.npz`` file, or all of them.
+    """Read named arrays of an ``.npz`` file, or all of them.
 
     Raises:
         StoreError: If the file is missing, damaged, lacks one of the names, or its arrays are
@@ -84,7 +84,7 @@ def load_arrays(path: Path, names: list[str] | None = None) -> dict[str, Any]:
 
 
 def load_array(path: Path, dtype: np.dtype[Any]) -> NDArray[Any]:
-    """The rows of an ``.npy`` file of one dimension and a known type.
+    """Read an ``.npy`` file of one dimension and a known type.
 
     Raises:
         StoreError: If the file is missing, damaged, of another type or length.
@@ -115,13 +115,13 @@ def _members(archive: zipfile.ZipFile, names: list[str] | None, where: str) -> d
     out = {}
     for name, info in chosen.items():
         with archive.open(info) as member:
-            # One byte more than promised would not be read either: the size is a claim.
+            # The stated size is not trusted: no more bytes than that are read.
             out[name] = _array(member.read(info.file_size), f"{where}: {name}", None)
     return out
 
 
 def _array(data: bytes, where: str, dtype: np.dtype[Any] | None) -> NDArray[Any]:
-    """The array of an ``.npy`` file; its header must fit its size before anything is allocated."""
+    """Parse an ``.npy`` file; its header must match its size before memory is allocated."""
     file = io.BytesIO(data)
     version = np.lib.format.read_magic(file)
     if version not in _HEADERS:

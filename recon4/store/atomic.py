@@ -1,7 +1,7 @@
-"""Files and folders that are there completely or not at all.
+"""Atomic writes of files and folders.
 
-Written under a temporary name beside their place, fsynced, renamed, and the folder fsynced:
-after a crash at any moment the old state or the new one is there, never half of it.
+A file is written under a temporary name in the same folder, fsynced and renamed, and the folder is
+fsynced. After a crash at any time either the old or the new state exists, never a partial one.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ from recon4.errors import NoSpace, StoreError
 _TEMPORARY = re.compile(r"\.tmp-[0-9a-f]{12}-.+")
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 _NUMPY_SHORT_WRITE = re.compile(r"\d+ requested and \d+ written")
-"""What numpy says, without an error number, when the disk fills under ``ndarray.tofile``."""
+"""Message of numpy, without an error number, if the disk becomes full in ``ndarray.tofile``."""
 
 
 @contextmanager
 def atomic_file(path: Path) -> Iterator[Path]:
-    """Yield a temporary path with the same suffix; the file appears as ``path`` at the end.
+    """Yield a temporary path with the same suffix; at the end it is renamed to ``path``.
 
-    If the block raises, nothing of it stays and an older ``path`` is untouched.
+    If the block raises, the temporary file is removed and an older ``path`` is unchanged.
 
     Raises:
         NoSpace: If the disk is full.
-        StoreError: If the place cannot be written.
+        StoreError: If the path cannot be written.
     """
     temporary = _temporary_beside(path)
     try:
@@ -50,19 +50,19 @@ def atomic_file(path: Path) -> Iterator[Path]:
         raise_if_full(error, path)
         raise
     finally:
-        with suppress(OSError):  # gone when renamed; what cannot be removed is swept later
+        with suppress(OSError):  # already renamed, or removed later by `sweep`
             temporary.unlink()
 
 
 @contextmanager
 def atomic_folder(path: Path) -> Iterator[Path]:
-    """Yield an empty temporary folder; it appears as ``path`` at the end.
+    """Yield an empty temporary folder; at the end it is renamed to ``path``.
 
-    If the block raises, nothing of it stays. ``path`` must not exist yet.
+    If the block raises, the temporary folder is removed. ``path`` must not exist yet.
 
     Raises:
         NoSpace: If the disk is full.
-        StoreError: If the place cannot be written.
+        StoreError: If the path cannot be written.
     """
     temporary = _temporary_beside(path)
     try:
@@ -83,17 +83,17 @@ def atomic_folder(path: Path) -> Iterator[Path]:
 
 
 def make_folders(path: Path, mode: int = 0o777) -> None:
-    """Make a folder and those above it, as ``mkdir -p``, durable when this returns.
+    """Create a folder and its parents, as ``mkdir -p``, durable when this returns.
 
-    Without the fsync of the folder above, a power cut takes a new folder away with all that was
-    fsynced inside it.
+    Without the fsync of the parent, a power failure removes a new folder with all fsynced files in
+    it.
 
     Args:
-        path: The folder; nothing happens if it is there.
-        mode: Of ``path``; those above it get the usual one.
+        path: The folder; nothing happens if it exists.
+        mode: Mode of ``path``; its parents get the default one.
 
     Raises:
-        OSError: If one cannot be made.
+        OSError: If a folder cannot be created.
     """
     if path.is_dir():
         return
@@ -103,18 +103,18 @@ def make_folders(path: Path, mode: int = 0o777) -> None:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text file, completely or not at all."""
+    """Write a text file atomically."""
     with atomic_file(path) as temporary:
         temporary.write_text(text, "utf-8")
 
 
 def write_json(path: Path, value: object) -> None:
-    """Write a JSON file for people and programs: indented, keys as given, no NaN."""
+    """Write a JSON file atomically: indented, keys in the given order, no NaN."""
     write_text(path, json.dumps(value, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
 
 
 def null_for_nan(value: Any) -> Any:
-    """A JSON value in which what is not a finite number is null: JSON has no NaN."""
+    """Replace numbers that are not finite by null: JSON has no NaN."""
     if isinstance(value, dict):
         return {name: null_for_nan(item) for name, item in value.items()}
     if isinstance(value, list | tuple):
@@ -123,15 +123,15 @@ def null_for_nan(value: Any) -> Any:
 
 
 def copy_file(source: Path, target: Path) -> None:
-    """Copy a file, completely or not at all."""
+    """Copy a file atomically."""
     with atomic_file(target) as temporary:
         shutil.copyfile(source, temporary)
 
 
 def sweep(folder: Path) -> list[str]:
-    """Remove what a killed process of ours left unfinished in a folder; nothing else.
+    """Remove temporary files and folders of killed recon4 processes; nothing else.
 
-    Only one process at a time writes in a project, so whatever bears our temporary name is dead.
+    Only one process at a time writes in a project, so every temporary name is an orphan.
 
     Returns:
         The names removed.
@@ -146,7 +146,7 @@ def sweep(folder: Path) -> list[str]:
 
 
 def raise_if_full(error: BaseException, path: Path) -> None:
-    """Turn an error that a full disk caused into one that says so.
+    """Raise `NoSpace` if an error was caused by a full disk.
 
     Raises:
         NoSpace: If the error, or one it came from, is a full disk (or quota, or size limit).

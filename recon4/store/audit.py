@@ -1,4 +1,4 @@
-"""Is a project still what was written? Every byte is read again."""
+"""Audit of a project: compare every byte with the stored hashes."""
 
 from __future__ import annotations
 
@@ -32,20 +32,20 @@ _JOURNAL = "decisions.sqlite"
 
 @dataclass(frozen=True, slots=True)
 class Audit:
-    """What re-hashing found."""
+    """Result of an audit."""
 
     checked: int
-    """Artifacts, results and sealed files whose bytes were compared."""
+    """Number of artifacts, results and sealed files whose bytes were compared."""
     damaged: tuple[str, ...]
-    """What differs, in words; empty = all is well."""
+    """Messages about differences; empty = no damage."""
     unknown: tuple[str, ...]
-    """Entries below ``artifacts/`` that no stage accounts for; they are left alone."""
+    """Entries below ``artifacts/`` that belong to no stage; they are ignored."""
     notes: tuple[str, ...] = ()
-    """Files that could be compared by their content only, and why."""
+    """Messages about files of which only the content could be checked, and why."""
 
 
 def audit(root: Path, progress: Progress) -> Audit:
-    """Compare every artifact, result and sealed file of a project with the hashes kept of it.
+    """Compare every artifact, result and sealed file of a project with its stored hash.
 
     Raises:
         StoreError: If the folder is not a project.
@@ -71,21 +71,21 @@ def audit(root: Path, progress: Progress) -> Audit:
 
 
 def audit_seals(root: Path, expected: list[str]) -> tuple[int, list[str], list[str]]:
-    """Compare what is sealed.
+    """Compare sealed files with their seals.
 
     Args:
         root: The folder that has the seals.
         expected: Files that should have one.
 
     Returns:
-        How many files were compared, what differs, and which files have no seal at the moment.
+        Number of compared files, messages about differences, and notes on files without a seal.
     """
     try:
         seals = read_seals(root)
         found = list(compare_all(root))
     except Altered as error:
         return 0, [str(error)], []
-    damaged = [words for _, words in found if words]
+    damaged = [message for _, message in found if message]
     notes = []
     for name in sorted({*expected, *seals}):
         seal = seals.get(name)
@@ -100,12 +100,12 @@ def audit_seals(root: Path, expected: list[str]) -> tuple[int, list[str], list[s
 
 
 def content_damage(path: Path) -> list[str]:
-    """What can be seen without a hash: that a file reads as what it is."""
+    """Check the content of a file that has no hash: integrity of SQLite, syntax of JSON."""
     try:
         if path.suffix == ".sqlite" and path.exists():
             with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as db:
-                words = [str(row[0]) for row in db.execute("PRAGMA integrity_check(5)")]
-            return [] if words == ["ok"] else [f"{path.name}: {words[0]}"]
+                messages = [str(row[0]) for row in db.execute("PRAGMA integrity_check(5)")]
+            return [] if messages == ["ok"] else [f"{path.name}: {messages[0]}"]
         if path.suffix == ".json" and path.exists():
             read_object(path)
     except (sqlite3.Error, StoreError) as error:
@@ -114,7 +114,7 @@ def content_damage(path: Path) -> list[str]:
 
 
 def _later_files(root: Path) -> Iterator[str]:
-    """Files that people's work leaves beside a run."""
+    """Files that are written after a run: decisions and slices."""
     if (root / _JOURNAL).exists():
         yield _JOURNAL
     if (root / "slices").is_dir():
@@ -138,7 +138,7 @@ def _stage_damage(root: Path, row: FinishedStage) -> list[str]:
     damage = damage_of(folder, hashes=True)
     try:
         if read_manifest(folder)["done"] != asdict(row):
-            damage.append(f"{LEDGER} and manifest.json tell different things of it")
+            damage.append(f"{LEDGER} and manifest.json have different records of it")
     except StoreError as error:
         damage.append(str(error))
     return damage

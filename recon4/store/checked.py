@@ -1,8 +1,9 @@
-"""Artifacts whose bytes are compared with the hashes in their manifest before they are used.
+"""Checked artifacts: bytes are compared with the hashes in the manifest before they are used.
 
-What carries an approval is made of such artifacts only. A part is checked alone, block by block
-(`recon4.store.hashing.BLOCK_BYTES`), so a slice costs the hashing of what it reads, once a process:
-a block that was checked is not read again as long as the file has the same inode, size, and times.
+Results with an approval are made of such artifacts only. Blocks
+(`recon4.store.hashing.BLOCK_BYTES`) are checked one by one, so a slice costs the hashing of the
+blocks it reads, once per process: a checked block is not read again as long as the file has the
+same inode, size and times.
 """
 
 from __future__ import annotations
@@ -20,19 +21,19 @@ from recon4.errors import StoreError
 from recon4.store.hashing import BLOCK_BYTES, FileDigest, files_below
 
 MOST_FILES = 4096
-"""Files whose checked blocks are remembered."""
+"""Number of files whose checked blocks are remembered."""
 _Identity = tuple[int, int, int, int, int, str]
 _checked: OrderedDict[_Identity, bytearray] = OrderedDict()
 _lock = threading.Lock()
 
 
 class Altered(StoreError):
-    """Bytes are not those that were written or approved."""
+    """Bytes differ from those that were written or approved."""
 
 
 @dataclass(frozen=True, slots=True)
 class CheckedArtifact:
-    """The files of an artifact and what they must hash to."""
+    """The files of an artifact with their expected hashes."""
 
     folder: Path
     files: Mapping[str, FileDigest]
@@ -43,11 +44,11 @@ class CheckedArtifact:
 
         Args:
             folder: The artifact.
-            manifest_sha256: Hash the manifest must have; empty = an approval of an earlier version
-                of recon4, which does not name it: then the manifest is trusted.
+            manifest_sha256: Expected hash of the manifest; empty = trust the manifest (approvals
+                of earlier versions of recon4 do not have its hash).
 
         Raises:
-            Altered: If the manifest is missing, or not the one that was approved.
+            Altered: If the manifest is missing or differs from the approved one.
         """
         path = folder / "manifest.json"
         try:
@@ -65,12 +66,12 @@ class CheckedArtifact:
         return CheckedArtifact(folder, files)
 
     def check(self, name: str, start: int = 0, stop: int | None = None) -> None:
-        """Compare the blocks of a file that hold some bytes; those checked before are not read.
+        """Compare the blocks of a byte range of a file; blocks checked before are not read.
 
         Args:
             name: Relative name of the file, with forward slashes.
             start: First byte.
-            stop: Byte behind the last; None = to the end.
+            stop: Byte after the last; None = to the end.
 
         Raises:
             Altered: If the file is missing, has another size, or a block has other bytes.
@@ -81,7 +82,7 @@ class CheckedArtifact:
         check_file(self.folder / name, expected, start, stop)
 
     def check_all(self) -> None:
-        """Compare every file, and see that there are no others.
+        """Compare every file, and check that there are no others.
 
         Raises:
             Altered: If anything differs.
@@ -102,14 +103,14 @@ def check_file(
     *,
     remembered: bool = True,
 ) -> None:
-    """Compare the blocks of a file that hold some bytes with their hashes.
+    """Compare the blocks of a byte range of a file with their hashes.
 
     Args:
         path: The file.
         expected: Its size and hashes.
         start: First byte.
-        stop: Byte behind the last; None = to the end.
-        remembered: Do not read again what was compared before in this process.
+        stop: Byte after the last; None = to the end.
+        remembered: Skip blocks that were compared before in this process.
 
     Raises:
         Altered: If the file is missing, has another size, or a block has other bytes.
@@ -136,7 +137,7 @@ def check_file(
 
 
 def _check_whole(descriptor: int, path: Path, expected: FileDigest, flags: bytearray) -> None:
-    """Of a small file, or of one whose manifest has no block hashes."""
+    """Compare a whole file: a small one, or one without block hashes in its manifest."""
     if flags[0]:
         return
     digest, offset = hashlib.sha256(), 0
@@ -158,7 +159,7 @@ def _check_block(descriptor: int, path: Path, expected: FileDigest, number: int)
 
 
 def _flags(descriptor: int, expected: FileDigest) -> bytearray:
-    """Which blocks of exactly this file were checked; the change time cannot be set back."""
+    """Flags of the checked blocks of exactly this file; a change time cannot be forged."""
     status = os.fstat(descriptor)
     times = (status.st_mtime_ns, status.st_ctime_ns)
     identity = (status.st_dev, status.st_ino, status.st_size, *times, expected.sha256)
@@ -175,7 +176,7 @@ def _no_flags(expected: FileDigest) -> bytearray:
 
 
 def _short(path: Path) -> str:
-    """Enough of a path to find it: from the folder that holds artifacts or versions on."""
+    """Part of a path for messages, from the folder ``artifacts`` or ``versions`` on."""
     parts = path.parts
     for name in ("artifacts", "versions"):
         if name in parts:

@@ -1,7 +1,7 @@
-"""Names in files of format 1, and what they are called now.
+"""Names in files of format 1 and their current names.
 
-Since format 2 of ``summary.json`` every name is that of ``docs/glossary.md``. Files of format 1 are
-never rewritten: their readers translate.
+Since format 2 of ``summary.json`` all names are those of ``docs/glossary.md``. Files of format 1
+are never rewritten: their readers translate.
 """
 
 from __future__ import annotations
@@ -20,5 +20,5 @@ Value = TypeVar("Value")
 
 
 def current_names(record: Mapping[str, Value], renamed: Mapping[str, str]) -> dict[str, Value]:
-    """The same values under today's names."""
+    """The same values under their current names."""
     return {renamed.get(name, name): value for name, value in record.items()}

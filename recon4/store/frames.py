@@ -1,8 +1,8 @@
-"""The columnar store of multiframes: one ``.npy`` file a column, streamed out, memory-mapped in.
+"""Columnar store of multiframes: one ``.npy`` file per column, streamed out, memory-mapped in.
 
-    xyz.npy intensity.npy ring.npy sensor.npy echo.npy dt_ns.npy    one row a point
-    index.npy                                                       one row a multiframe
-    imu.npz gnss.npz                                                when there are any
+    xyz.npy intensity.npy ring.npy sensor.npy echo.npy dt_ns.npy    one row per point
+    index.npy                                                       one row per multiframe
+    imu.npz gnss.npz                                                if there are any
     rig.toml report.json
 
 Points of frame ``k`` are rows ``index["start"][k]`` to ``index["stop"][k]`` of every column.
@@ -48,10 +48,10 @@ _NO_SPACE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 class FrameWriter:
-    """Appends multiframes to a folder; holds one multiframe in memory, however long the walk.
+    """Appends multiframes to a folder, with one multiframe in memory.
 
-    The columns' headers get their length when the ``with`` block ends without an error.
-    A folder left by an error has no ``index.npy`` and is refused by `FrameStore`.
+    The headers of the columns get their length when the ``with`` block ends without an error.
+    After an error the folder has no ``index.npy`` and `FrameStore` rejects it.
     """
 
     def __init__(self, folder: Path, rig: Rig) -> None:
@@ -93,7 +93,7 @@ class FrameWriter:
         return self._points
 
     def append(self, frame: Multiframe) -> None:
-        """Write one multiframe behind the others.
+        """Write the next multiframe.
 
         Raises:
             StoreError: If it cannot be written (`NoSpace` when the disk is full).
@@ -114,7 +114,7 @@ class FrameWriter:
         gnss: GnssSamples | None = None,
         report: dict[str, Any] | None = None,
     ) -> None:
-        """Write what belongs to the recording beside its points."""
+        """Write IMU samples, GNSS samples and the report of the recording."""
         with _storing(self._folder):
             if imu is not None:
                 save_record(self._folder / "imu.npz", imu)
@@ -141,8 +141,8 @@ class FrameWriter:
 class FrameStore:
     """The multiframes of a recording, read on demand.
 
-    ``store[k]`` maps frame ``k`` only, and the mapping goes with the frame: memory follows what is
-    held, not the walk. The arrays are private copies on write; the files are never changed.
+    ``store[k]`` maps frame ``k`` only, and the mapping ends with the frame: memory depends on the
+    frames in use, not on the walk. The arrays are copied on write; the files never change.
     """
 
     folder: Path
@@ -213,7 +213,7 @@ def _shape(name: str, rows: int) -> tuple[int, ...]:
 
 
 def _header(name: str, rows: int) -> bytes:
-    """The header of a version 1.0 ``.npy`` file, always of the same size so it can be patched."""
+    """Header of a version 1.0 ``.npy`` file, of constant size so that it can be rewritten."""
     shape = _shape(name, rows)
     text = f"{{'descr': '{COLUMNS[name][0]}', 'fortran_order': False, 'shape': {shape}, }}"
     body = text.encode("latin1").ljust(_HEADER_BYTES - 11) + b"\n"
@@ -227,7 +227,7 @@ def _map_rows(folder: Path, name: str, start: int, stop: int) -> NDArray[Any]:
     offset = _HEADER_BYTES + start * dtype.itemsize * COLUMNS[name][1]
     shape = _shape(name, stop - start)
     try:
-        # "c" rather than "r": a writable array, for which Numba needs no second compilation.
+        # "c" instead of "r": Numba needs no second compilation for a writable array.
         mapped = np.memmap(folder / f"{name}.npy", dtype, mode="c", offset=offset, shape=shape)
     except (OSError, ValueError, OverflowError) as error:
         raise StoreError(f"{folder.name}/{name}.npy cannot be read: {error}") from error
@@ -235,7 +235,7 @@ def _map_rows(folder: Path, name: str, start: int, stop: int) -> NDArray[Any]:
 
 
 def _check_index(folder: Path, index: NDArray[np.void]) -> None:
-    """Frames count from 0, and each has the points behind those of the one before."""
+    """Check that frames count from 0 and their points follow each other."""
     if not len(index):
         return
     stops = np.concatenate([[0], index["stop"]])
@@ -280,7 +280,7 @@ def _storing(folder: Path) -> Iterator[None]:
 
 
 def _close_quietly(file: BinaryIO) -> None:
-    """Close; buffered bytes that no longer fit belong to an error already on its way."""
+    """Close a file; a full disk is not reported again, because it has raised an error before."""
     try:
         file.close()
     except OSError as error:

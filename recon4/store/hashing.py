@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 BLOCK_BYTES = 1 << 20
-"""Files are hashed as a whole and in blocks of this size, so that a part can be checked alone."""
+"""Files are hashed as a whole and in blocks of this size, so that parts can be checked [bytes]."""
 _DIGEST_BYTES = 32
 
 
@@ -25,11 +25,11 @@ class FileDigest:
     sha256: str
     """Of the whole file, as hex."""
     blocks: bytes
-    """SHA-256 of every block, one behind the other; empty for a file of at most one block."""
+    """SHA-256 of all blocks, concatenated; empty for a file of at most one block."""
 
     @staticmethod
     def of(path: Path, seen: Callable[[int], None] = lambda length: None) -> FileDigest:
-        """Read a file once; ``seen`` is called with the length of every block read [bytes]."""
+        """Hash a file; ``seen`` is called with the length of every block read [bytes]."""
         whole, blocks, size = hashlib.sha256(), bytearray(), 0
         with path.open("rb") as file:
             while block := file.read(BLOCK_BYTES):
@@ -41,10 +41,10 @@ class FileDigest:
 
     @staticmethod
     def from_json(value: dict[str, Any]) -> FileDigest:
-        """What `to_json` made; manifests of earlier versions have no blocks.
+        """Parse the result of `to_json`; manifests of earlier versions have no blocks.
 
         Raises:
-            KeyError, TypeError, ValueError: If it is something else.
+            KeyError, TypeError, ValueError: If the value is invalid.
         """
         blocks = base64.b64decode(value.get("blocks", ""), validate=True)
         size, sha256 = int(value["bytes"]), str(value["sha256"])
@@ -53,9 +53,11 @@ class FileDigest:
         return FileDigest(size, sha256, blocks)
 
     def to_json(self) -> dict[str, Any]:
-        """Plain JSON values; the blocks as base64, 44 characters a MiB."""
-        told: dict[str, Any] = {"bytes": self.size, "sha256": self.sha256}
-        return told | ({"blocks": base64.b64encode(self.blocks).decode()} if self.blocks else {})
+        """Plain JSON values; the blocks as base64, 44 characters per MiB."""
+        record: dict[str, Any] = {"bytes": self.size, "sha256": self.sha256}
+        if self.blocks:
+            record["blocks"] = base64.b64encode(self.blocks).decode()
+        return record
 
     def block(self, number: int) -> bytes:
         """SHA-256 of one block."""
@@ -69,7 +71,7 @@ def hash_file(path: Path, seen: Callable[[int], None] | None = None) -> str:
 
     Args:
         path: The file.
-        seen: Told the length of every block read [bytes].
+        seen: Called with the length of every block read [bytes].
     """
     digest = hashlib.sha256()
     with path.open("rb") as file:
@@ -81,7 +83,7 @@ def hash_file(path: Path, seen: Callable[[int], None] | None = None) -> str:
 
 
 def hash_json(value: object) -> str:
-    """SHA-256 of a JSON value: equal values have equal hashes, whatever their key order."""
+    """SHA-256 of a JSON value, independent of the order of keys."""
     text = json.dumps(value, sort_keys=True, separators=(",", ":"), allow_nan=False)
     return hashlib.sha256(text.encode()).hexdigest()
 

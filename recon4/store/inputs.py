@@ -1,4 +1,4 @@
-"""Recordings and other files from outside, as inputs of stages: keyed by what is in them."""
+"""External files, such as recordings, as inputs of stages: keyed by their content."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from recon4.store.stage import Input
 
 
 def input_file(path: Path, ledger: Ledger, progress: Progress) -> Input:
-    """One file or folder, keyed by its content; the value is its path.
+    """Input of one file or folder, keyed by its content; the value is its path.
 
     A folder (a bag, a folder of frames) is keyed by the names and contents of its files.
 
@@ -24,7 +24,7 @@ def input_file(path: Path, ledger: Ledger, progress: Progress) -> Input:
 
 
 def input_files(paths: Sequence[Path], ledger: Ledger, progress: Progress) -> Input:
-    """Several of them, in order; the value is the tuple of paths.
+    """Input of several files or folders, in order; the value is the tuple of paths.
 
     Raises:
         RecordingError: If one is missing or cannot be read.

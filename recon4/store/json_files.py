@@ -1,7 +1,7 @@
-"""JSON objects of unknown condition in files of a project: read within limits, or refused in words.
+"""Read JSON objects of untrusted files of a project within limits.
 
-Python's parser takes more than JSON: NaN, lone surrogates, nesting until the stack ends. Each of
-these would break whoever writes the value out again.
+Python's parser accepts more than JSON: NaN, lone surrogates, nesting until the stack overflows.
+Writing such a value as JSON again would fail, so it is rejected here.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from recon4.bounded import parse_json, read_bytes_limited
 from recon4.errors import StoreError
 
 MOST_BYTES = 64 << 20
-"""Larger files are not read: none of ours comes near."""
+"""Larger files are not read; files of recon4 are much smaller [bytes]."""
 
 
 def read_object(path: Path, *, most_bytes: int = MOST_BYTES) -> dict[str, Any]:
-    """The object in a JSON file.
+    """Read the object in a JSON file.
 
     Raises:
         StoreError: If the file cannot be read, is too large, or is no JSON object in UTF-8.
@@ -30,14 +30,15 @@ def read_object(path: Path, *, most_bytes: int = MOST_BYTES) -> dict[str, Any]:
 
 
 def parse_object(data: bytes | str, what: str) -> dict[str, Any]:
-    """The object that a JSON text holds.
+    """Parse a JSON object.
 
     Args:
         data: The text; bytes are UTF-8.
-        what: What it is, for the error.
+        what: Name of the data for error messages.
 
     Raises:
-        StoreError: If it is no JSON object, nests too deep, or holds what JSON has no word for.
+        StoreError: If it is not a JSON object, is nested too deeply, or has values that JSON does
+            not define.
     """
     found = parse_json(data, f"{what} cannot be read", failure=StoreError, finite=True)
     if not isinstance(found, dict):

@@ -1,4 +1,4 @@
-"""What is finished, in one SQLite file: durable when a call returns, whatever happens next."""
+"""Ledger of finished stages in a SQLite file; changes are durable when a call returns."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ CREATE TABLE hashes (
 
 @dataclass(frozen=True, slots=True)
 class FinishedStage:
-    """One row: a stage that ran to its end and whose artifact is in place."""
+    """Record of a finished stage with a complete artifact."""
 
     key: str
     """Name of its folder below ``artifacts/``."""
@@ -52,15 +52,15 @@ class FinishedStage:
 
 
 class Ledger:
-    """The ledger of a project. One process writes; any number may read meanwhile (WAL)."""
+    """The ledger of a project. One process writes; any number may read concurrently (WAL)."""
 
     def __init__(self, path: Path, *, read_only: bool = False) -> None:
-        """Open, or create.
+        """Open or create a ledger.
 
         Args:
             path: The file.
-            read_only: Write nothing, not even SQLite's own files beside it, so that a process
-                that may not write the project can read; a missing file reads as an empty one.
+            read_only: Write nothing, not even SQLite's own files, so that a process without write
+                permission can read; a missing file reads as an empty one.
 
         Raises:
             StoreError: If the file is damaged, of another version, or cannot be opened.
@@ -113,7 +113,7 @@ class Ledger:
     # -- stages
 
     def add(self, row: FinishedStage) -> None:
-        """Remember a finished stage, durably."""
+        """Record a finished stage."""
         with self._errors():
             self._db.execute("INSERT OR REPLACE INTO stages VALUES (?,?,?,?,?,?,?)", astuple(row))
 
@@ -124,7 +124,7 @@ class Ledger:
         return FinishedStage(*row) if row else None
 
     def forget(self, key: str) -> None:
-        """Drop a stage whose artifact is gone."""
+        """Delete the record of a stage whose artifact no longer exists."""
         with self._errors():
             self._db.execute("DELETE FROM current WHERE key = ?", (key,))
             self._db.execute("DELETE FROM stages WHERE key = ?", (key,))
@@ -136,12 +136,12 @@ class Ledger:
         return [FinishedStage(*row) for row in rows]
 
     def set_current(self, stage: str, key: str) -> None:
-        """Say which artifact of a stage belongs to the latest run."""
+        """Set which artifact of a stage belongs to the latest run."""
         with self._errors():
             self._db.execute("INSERT OR REPLACE INTO current VALUES (?,?)", (stage, key))
 
     def clear_current(self, stage: str) -> None:
-        """Say that the latest run has no artifact of a stage."""
+        """Record that the latest run has no artifact of a stage."""
         with self._errors():
             self._db.execute("DELETE FROM current WHERE stage = ?", (stage,))
 
@@ -153,7 +153,7 @@ class Ledger:
     # -- hashes of input files
 
     def cached_hash(self, path: Path) -> str | None:
-        """SHA-256 of an input file hashed before, if size and change time are still the same."""
+        """Stored SHA-256 of an input file with unchanged size and modification time, or None."""
         status = path.stat()
         with self._errors():
             row = self._db.execute(
@@ -163,7 +163,7 @@ class Ledger:
         return row[0] if row else None
 
     def remember_hash(self, path: Path, sha256: str) -> None:
-        """Keep the hash of an input file, so that a large recording is read once."""
+        """Store the hash of an input file, so that a large recording is hashed once."""
         status = path.stat()
         with self._errors():
             self._db.execute(
@@ -174,7 +174,7 @@ class Ledger:
     # -- closing
 
     def settle(self) -> bool:
-        """Move what is in the write-ahead log into the file itself; False = a reader kept us."""
+        """Move the write-ahead log into the file; False = a reader prevented it."""
         with self._errors():
             (busy, _, _) = self._db.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()
         return not busy
@@ -204,7 +204,7 @@ def _connect(name: str) -> sqlite3.Connection:
 
 
 def _read_only(path: Path) -> sqlite3.Connection:
-    """A connection that makes no file; without a writer's log the file is at rest (immutable)."""
+    """A connection that creates no file; without a write-ahead log it opens it as immutable."""
     if not path.exists():
         return _connect(":memory:")
     written = path.with_name(f"{path.name}-wal").exists()

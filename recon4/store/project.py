@@ -20,14 +20,14 @@ FORMAT = 1
 LEDGER = "ledger.sqlite"
 SUMMARY = "summary.json"
 SEALED = ("project.json", LEDGER)
-"""What changes while a project is open, and is sealed when it is closed."""
+"""Files that change while a project is open and are sealed when it is closed."""
 MOST_DESCRIPTION_BYTES = 4 << 20
 
 
 class Project:
     """An open project folder; while it is open no other process can open it.
 
-    Layout and rules are in ``docs/stages.md``. Who only looks needs no lock: `read_project`.
+    Layout and rules are in ``docs/stages.md``. Reading needs no lock: `read_description`.
     """
 
     def __init__(self, root: Path, ledger: Ledger, lock: int) -> None:
@@ -37,13 +37,13 @@ class Project:
 
     @staticmethod
     def open(root: Path) -> Project:
-        """Open a project, or make one of an empty or missing folder.
+        """Open a project, or create one in an empty or missing folder.
 
-        What a killed run left unfinished is removed; folders we do not know are left alone.
+        Temporary files of a killed run are removed; unknown folders are ignored.
 
         Raises:
             NoSpace: If the disk is full.
-            StoreError: If the folder is something else, in use, damaged or not writable.
+            StoreError: If the folder is not a project, in use, damaged or not writable.
         """
         _make_folder(root)
         lock = _lock(root / ".lock")
@@ -61,23 +61,23 @@ class Project:
         """Folder of the finished stages."""
         return self.root / "artifacts"
 
-    def describe(self, **facts: Any) -> None:
-        """Add facts to ``project.json`` (name, rig, preset, what was imported)."""
-        write_json(self.root / "project.json", read_description(self.root) | facts)
+    def describe(self, **fields: Any) -> None:
+        """Add fields to ``project.json`` (name, rig, preset, what was imported)."""
+        write_json(self.root / "project.json", read_description(self.root) | fields)
 
     def close(self) -> None:
-        """Close the ledger, seal what was written, and let others in."""
+        """Close the ledger, seal the changed files and release the lock."""
         try:
             whole = self._settle()
             end_change(self.root, SEALED, left_open=() if whole else (LEDGER,))
             adopt(self.root, loose_files(self.root))
         except NoSpace:
-            return  # the files stay marked as open: verify says so, and the next run seals them
+            return  # the files stay marked as open: verify reports it, and the next run seals them
         finally:
             os.close(self._lock)
 
     def _settle(self) -> bool:
-        """Close the ledger; whether all of it is in its file now."""
+        """Close the ledger; returns whether the file is complete without a write-ahead log."""
         try:
             return self.ledger.settle()
         except NoSpace:
@@ -103,7 +103,7 @@ def is_project(root: Path) -> bool:
 
 
 def read_description(root: Path) -> dict[str, Any]:
-    """``project.json``, without opening the project.
+    """Read ``project.json`` without opening the project.
 
     Raises:
         StoreError: If it is missing or damaged.
@@ -118,7 +118,7 @@ def read_description(root: Path) -> dict[str, Any]:
 
 
 def read_stages(root: Path) -> list[FinishedStage]:
-    """Finished stages of a project that another process may have open.
+    """Read the finished stages of a project, which another process may have open.
 
     Raises:
         StoreError: If the folder is not a project or its ledger is damaged.
@@ -128,7 +128,7 @@ def read_stages(root: Path) -> list[FinishedStage]:
 
 
 def read_artifacts(root: Path) -> dict[str, Path]:
-    """Stage name -> folder of its artifact in the latest run, open or not.
+    """Read stage name -> folder of its artifact in the latest run; the project may be open.
 
     Raises:
         StoreError: If the folder is not a project or its ledger is damaged.
@@ -143,7 +143,7 @@ def _reading(root: Path) -> Ledger:
 
 
 def loose_files(root: Path) -> Iterator[str]:
-    """Files of a project that a run leaves and that no hash of another file covers."""
+    """Files written by a run whose hash is in no other file."""
     for pattern in ("project.json", SUMMARY, LEDGER, "artifacts/*/manifest.json"):
         yield from (path.relative_to(root).as_posix() for path in sorted(root.glob(pattern)))
     for path in sorted(root.glob("versions/[0-9]*/approval.json")):

@@ -1,4 +1,4 @@
-"""With which settings finished stages were made."""
+"""Settings with which the artifacts of finished stages were made."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from recon4.store.stage import read_manifest
 
 
 def check_recipes(artifacts: Iterable[Path]) -> None:
-    """Compare the manifests of artifacts with their seals, before settings are taken from them.
+    """Compare the manifests of artifacts with their seals, before their settings are used.
 
     Raises:
         Altered: If one was changed.
@@ -23,10 +23,10 @@ def check_recipes(artifacts: Iterable[Path]) -> None:
 
 
 def settings_in(artifacts: Iterable[Path]) -> Settings:
-    """The settings artifacts were made with, the last of them counting; the rest are the defaults.
+    """Settings with which artifacts were made; the last artifact counts, the rest are defaults.
 
-    Names that an older or newer recon4 wrote are left out. `check_recipes` comes before it, where
-    the seals can be read.
+    Unknown names of older or newer versions are ignored. Call `check_recipes` first if the seals
+    can be read.
 
     Args:
         artifacts: Their folders.

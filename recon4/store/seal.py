@@ -1,12 +1,12 @@
 """Seals: SHA-256 of the files of a folder that no manifest and no signature covers.
 
-``seals.json`` names every such file with its size and hash, and carries its own hash. A file is
-marked ``open`` before it changes and sealed again afterwards, so that a killed process leaves a
-file that is known to have been in change, never one that merely looks altered. A whole file is
-hashed: of a SQLite file its unused pages too.
+``seals.json`` has the size and hash of every such file, and its own hash. A file is marked
+``open`` before it changes and sealed again afterwards: after a killed process it is known that the
+file was being changed, not altered. The whole file is hashed, also the unused pages of a SQLite
+file.
 
-Seals find damage and careless edits. They are no signature: who can write the folder can write
-them anew. What was approved is signed (`recon4.review.approved`).
+Seals detect damage and careless edits. They are not a signature: a person who can write the folder
+can rewrite them. Approvals are signed (`recon4.review.approved`).
 """
 
 from __future__ import annotations
@@ -30,16 +30,16 @@ LOCK = ".seals.lock"
 TURN = ".changes.lock"
 FORMAT = 1
 OPEN: dict[str, Any] = {"open": True}
-"""In place of size and hash: the file was about to change."""
+"""Entry instead of size and hash: the file is being changed."""
 
 Seal = Mapping[str, Any]
 
 
 def read_seals(root: Path) -> dict[str, Seal]:
-    """File name -> ``bytes`` and ``sha256``, or `OPEN`; none before anything was sealed.
+    """Read file name -> ``bytes`` and ``sha256``, or `OPEN`; empty without ``seals.json``.
 
     Raises:
-        Altered: If the list itself was changed.
+        Altered: If ``seals.json`` was changed.
     """
     path = root / SEALS
     try:
@@ -63,11 +63,11 @@ def read_seals(root: Path) -> dict[str, Seal]:
 def check_sealed(root: Path, name: str) -> None:
     """Compare a file, or all files below a folder, with their seals before they are used.
 
-    What has no seal, or is open, is taken as it is; what was compared before and has the same
-    inode, size and times is not read again.
+    Files without a seal, or open ones, are not checked. Files that were compared before and have
+    the same inode, size and times are not read again.
 
     Raises:
-        Altered: If a file, or the list of seals, was changed.
+        Altered: If a file, or ``seals.json``, was changed.
     """
     seals = read_seals(root)
     for one in _below(seals, (name,)):
@@ -75,10 +75,10 @@ def check_sealed(root: Path, name: str) -> None:
 
 
 def compare_all(root: Path) -> Iterator[tuple[str, str]]:
-    """Every sealed name, and what is wrong with the file in words; empty = nothing.
+    """Every sealed name with a message about its damage; empty = no damage.
 
     Raises:
-        Altered: If the list of seals was changed.
+        Altered: If ``seals.json`` was changed.
     """
     for name, seal in sorted(read_seals(root).items()):
         try:
@@ -98,10 +98,10 @@ def changing(root: Path, *names: str, compared: bool = True) -> Iterator[None]:
     Args:
         root: The folder that has the seals.
         names: Files and folders below it, with forward slashes; they need not exist.
-        compared: Refuse if one is not what was sealed; False = it is written anew as a whole.
+        compared: Check the seals first; False = the files are rewritten completely.
 
     Raises:
-        Altered: If a file is not what was sealed; nothing was changed.
+        Altered: If a file does not match its seal; nothing was changed.
         StoreError: If the folder cannot be written.
     """
     with _locked(root / TURN):
@@ -120,8 +120,8 @@ def begin_change(
     Args:
         root: The folder that has the seals.
         names: Files and folders below it.
-        compared: Refuse if one is not what was sealed.
-        missing_allowed: A file that people may move away; it is made again.
+        compared: Check the seals first.
+        missing_allowed: A file that may be missing; it is created again.
     """
     with _locked(root / LOCK):
         seals = read_seals(root)
@@ -140,13 +140,13 @@ def end_change(
     left_open: tuple[str, ...] = (),
     most_bytes: int | None = None,
 ) -> None:
-    """Seal files as they are now, and forget those that are gone.
+    """Seal files as they are now, and remove the seals of missing files.
 
     Args:
         root: The folder that has the seals.
         names: Files and folders below it.
-        left_open: Files that may still change; they get no seal.
-        most_bytes: Larger files get no seal; None = every file gets one.
+        left_open: Files that may still change; they stay open.
+        most_bytes: Larger files get no seal; None = no limit.
     """
     with _locked(root / LOCK):
         seals = read_seals(root)
@@ -171,7 +171,7 @@ def _is_sealable(path: Path, most_bytes: int | None) -> bool:
 
 
 def adopt(root: Path, names: Iterator[str] | list[str]) -> None:
-    """Seal files that have no seal yet; those that have one keep it."""
+    """Seal files that have no seal yet; existing seals are kept."""
     with _locked(root / LOCK):
         seals = read_seals(root)
         fresh = {name: seal_of(root / name) for name in names if name not in seals}
@@ -196,12 +196,12 @@ def _compare(
     except (KeyError, ValueError, TypeError) as error:
         raise Altered(f"{SEALS}: the entry {name} makes no sense: {error!r}") from error
     except Altered as error:
-        words = f"{name} is not what recon4 wrote: {error}"
+        message = f"{name} is not what recon4 wrote: {error}"
         more = (
             f"; put it back from a backup, or take it as it is (recon4 verify --accept {root}); "
             "if it is the ledger, move it away: finished stages are found by their artifacts"
         )
-        raise Altered(words + more if advice else words) from error
+        raise Altered(message + more if advice else message) from error
 
 
 def _below(seals: Mapping[str, Seal], names: tuple[str, ...]) -> list[str]:
@@ -218,7 +218,7 @@ def _value(seals: Mapping[str, Seal]) -> dict[str, Any]:
 
 
 def seals_text(seals: Mapping[str, Seal]) -> str:
-    """What ``seals.json`` holds for these seals."""
+    """Content of ``seals.json`` for these seals."""
     return json.dumps(_value(seals), indent=1, allow_nan=False, ensure_ascii=False) + "\n"
 
 

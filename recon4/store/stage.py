@@ -1,4 +1,4 @@
-"""Run a stage once: same inputs, settings and code version find the finished artifact again."""
+"""Run stages; equal inputs, settings and code version reuse the finished artifact."""
 
 from __future__ import annotations
 
@@ -25,19 +25,19 @@ from recon4.store.seal import changing, check_sealed
 from recon4.store.usage import Meter
 
 SAVING = "save"
-"""The piece of work in which an artifact is hashed and brought to the disk."""
+"""Name of the task in which an artifact is hashed and written to disk."""
 _KEY_PACKAGES = ("numpy", "scipy", "numba", "gtsam", "laspy", "pyproj")
 
 
 @dataclass(frozen=True, slots=True)
 class Stage:
-    """What a stage is: a pure function of its inputs and of some groups of settings."""
+    """A stage: a pure function of its inputs and of some groups of settings."""
 
     name: str
     version: int
-    """Raised whenever the same inputs give another result than before."""
+    """Increased whenever the same inputs give another result than before."""
     groups: tuple[str, ...]
-    """Groups of `Settings` it reads; the others are not there when it runs."""
+    """Groups of `Settings` it reads; the others are None when it runs."""
     function: Callable[..., Mapping[str, Any] | None]
     """``function(out=folder, settings=…, progress=…, **inputs)``. Writes into the empty folder
     ``out``; may return figures for the manifest as plain JSON values."""
@@ -45,12 +45,12 @@ class Stage:
 
 @dataclass(frozen=True, slots=True)
 class Input:
-    """Something from outside the project that a stage reads."""
+    """External input of a stage."""
 
     key: str
     """Hash of its content."""
     value: Any
-    """What the stage's function is given."""
+    """Argument of the stage's function."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,11 +63,11 @@ class Artifact:
 
     @property
     def value(self) -> Path:
-        """What a stage reading it is given: its folder."""
+        """Argument of a stage that reads it: its folder."""
         return self.folder
 
     def manifest(self) -> dict[str, Any]:
-        """What it is made of, of which version, what it took and the hashes of its files.
+        """Read its manifest: recipe, versions, resources used and hashes of its files.
 
         Raises:
             StoreError: If it cannot be read.
@@ -77,37 +77,37 @@ class Artifact:
 
 @dataclass(frozen=True, slots=True)
 class StageRun:
-    """How a stage went in this run."""
+    """Result of a stage in this run."""
 
     artifact: Artifact
     done: FinishedStage
-    """What it took when it really ran."""
+    """Record of the run that made the artifact."""
     reused: bool
-    """Found finished, not run."""
+    """Whether a finished artifact was reused."""
     figures: Mapping[str, Any]
-    """What its function returned."""
+    """Return value of its function."""
 
 
 class StageRunner:
-    """Runs stages of a project in the order it is told, each at most once for the same inputs."""
+    """Runs the stages of a project in the given order, each at most once for the same inputs."""
 
     def __init__(self, project: Project, settings: Settings, progress: Progress) -> None:
         self.runs: dict[str, StageRun] = {}
-        """Stage name -> how it went, in order."""
+        """Stage name -> result, in order."""
         self._project = project
         self._settings = settings
         self._progress = progress
 
     def run(self, stage: Stage, **inputs: Input | Artifact | None) -> Artifact:
-        """The artifact of a stage, made now unless it is there already.
+        """Run a stage, or reuse its finished artifact.
 
         Args:
-            stage: What to run.
+            stage: The stage.
             inputs: Keyword arguments of its function; None stays None.
 
         Raises:
-            NoSpace: If the disk is full; nothing half-written stays.
-            Recon4Error: Whatever the stage raises.
+            NoSpace: If the disk is full; no partial artifact remains.
+            Recon4Error: An error of the stage.
         """
         key = stage_key(stage, self._settings, inputs)
         artifact = Artifact(stage.name, key, self._project.artifacts / key)
@@ -119,7 +119,7 @@ class StageRunner:
         return self._took(artifact, done, reused=reused)
 
     def keep(self, name: str) -> Artifact:
-        """The artifact of a stage in the latest run as it is, whatever it was made of.
+        """Reuse the artifact of a stage in the latest run without a check of its recipe.
 
         Raises:
             StoreError: If there is none, or it is damaged.
@@ -145,18 +145,18 @@ class StageRunner:
         return artifact
 
     def skip(self, stage: Stage) -> None:
-        """This run does without the stage: an artifact of an earlier run is not its own."""
+        """Omit a stage in this run: an artifact of an earlier run does not belong to it."""
         self._project.ledger.clear_current(stage.name)
 
     def _finished(self, artifact: Artifact) -> FinishedStage | None:
-        """Its row, if the artifact is there and whole; a damaged one is set aside, not deleted."""
+        """Record of a complete artifact, or None; a damaged one is renamed, not deleted."""
         ledger = self._project.ledger
         row = ledger.find(artifact.key)
         if not artifact.folder.exists():
             if row is not None:
                 ledger.forget(artifact.key)
             return None
-        # No row: killed between the rename and the commit, or the ledger was lost. Trust nothing.
+        # No record: killed between rename and commit, or the ledger was lost. Check all hashes.
         damage = damage_of(artifact.folder, hashes=row is None)
         try:
             check_sealed(self._project.root, f"artifacts/{artifact.key}/manifest.json")
@@ -208,21 +208,21 @@ class StageRunner:
 def stage_key(
     stage: Stage, settings: Settings, inputs: Mapping[str, Input | Artifact | None]
 ) -> str:
-    """SHA-256 of the stage's name and version, the settings it reads and its inputs' keys."""
+    """Key of a stage: SHA-256 of its name and version, its settings and the keys of its inputs."""
     return hash_json(_recipe(stage, settings, inputs))
 
 
 def only(settings: Settings, groups: tuple[str, ...]) -> Settings:
-    """The settings with all other groups missing (None).
+    """The settings with all other groups set to None.
 
-    A stage that reads a group it did not declare fails at once instead of being cached wrongly.
+    A stage that reads a group it did not declare fails immediately instead of being cached wrongly.
     """
     missing: dict[str, Any] = {f.name: None for f in fields(settings) if f.name not in groups}
     return replace(settings, **missing)
 
 
 def read_manifest(folder: Path) -> dict[str, Any]:
-    """``manifest.json`` of an artifact.
+    """Read ``manifest.json`` of an artifact.
 
     Raises:
         StoreError: If it is missing or damaged.
@@ -236,11 +236,11 @@ def read_manifest(folder: Path) -> dict[str, Any]:
 
 
 def damage_of(folder: Path, *, hashes: bool) -> list[str]:
-    """What is wrong with an artifact, in words; empty = as it was written.
+    """Messages about damage of an artifact; empty = no damage.
 
     Args:
         folder: The artifact.
-        hashes: Also read and hash every byte; otherwise only names and sizes are compared.
+        hashes: Also hash every byte; otherwise only names and sizes are compared.
     """
     try:
         found = read_manifest(folder)["files"].items()
@@ -261,7 +261,7 @@ def damage_of(folder: Path, *, hashes: bool) -> list[str]:
 
 
 def versions() -> dict[str, str]:
-    """Versions of recon4, Python and the packages whose numbers end up in a result."""
+    """Versions of recon4, Python and the packages that influence results."""
     found = {"recon4": recon4.__version__, "python": platform.python_version()}
     for name in _KEY_PACKAGES:
         try:

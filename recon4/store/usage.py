@@ -1,4 +1,4 @@
-"""What a piece of work took: seconds, processor seconds, peak memory."""
+"""Measure resources used: seconds, processor seconds, peak memory."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ _CLEAR = Path("/proc/self/clear_refs")
 
 
 class Meter:
-    """Measures from its creation on.
+    """Measures resources used since its creation.
 
     Peak memory is the largest resident set of this process since then, or of a child that ended,
-    with the pages of memory-mapped frames counted in. Where the system cannot reset
-    its peak (not Linux), it is the peak since the process began.
+    including the pages of memory-mapped frames. If the system cannot reset its peak (not Linux),
+    it is the peak since the process started.
     """
 
     def __init__(self) -> None:

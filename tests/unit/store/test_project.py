@@ -53,7 +53,7 @@ def test_who_only_looks_is_not_locked_out(tmp_path):
 
 
 def test_a_folder_of_something_else_is_refused_and_untouched(tmp_path):
-    (tmp_path / "holiday.jpg").write_bytes(b"picture")
+    (tmp_path / "holiday.jpg").write_bytes(b"photo")
 
     with pytest.raises(StoreError, match=r"not a recon4 project \(it holds 'holiday.jpg'\)"):
         Project.open(tmp_path)
