@@ -1,4 +1,4 @@
-"""How long one person's small picture takes beside six whole-map exports of another.
+"""Latency of one user's small image while another user runs six whole-map exports.
 
     python -m tests.benchmarks.fair_exports PROJECT
 

@@ -90,7 +90,7 @@ def inject_random(graph: PoseGraph, rng: np.random.Generator, count: int = 20) -
 
 
 def inject_shifted(graph: PoseGraph, rng: np.random.Generator, count: int = 20) -> PoseGraph:
-    """True loops registered 0.3 to 1.5 m wrong, as along a corridor or a row of equal desks."""
+    """True loops registered 0.3 to 1.5 m wrong, as along a corridor or a row of equal tables."""
     loops, false = _loops(graph), []
     for row in rng.choice(len(loops), count, replace=len(loops) < count):
         angle, length = rng.uniform(0, 2 * np.pi), rng.uniform(0.3, 1.5)

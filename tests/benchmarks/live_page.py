@@ -1,8 +1,8 @@
-"""Frames a second of the operator's page in Chromium with software rendering, at phone size.
+"""Frame rate of the operator's page in Chromium with software rendering, at phone size.
 
-``python -m tests.benchmarks.live_page [--points 400000] [--seconds 5]`` opens ``/live`` on a server
-of its own. In the page a made-up stream tells of a building of so many points, of its plan and way,
-and of a pose ten times a second. A finger then moves the map all the time, from above and in 3-D.
+``python -m tests.benchmarks.live_page [--points 400000] [--seconds 5]`` starts a server and opens
+``/live``. In the page a simulated stream sends a building of n points, its plan and path, and ten
+poses per second. A finger moves the map all the time, from above and in 3-D.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ STREAM = """(() => {
     new Uint8Array(data, 6 * count).forEach((_, k, all) => (all[k] = 256 * Math.random()));
     return data;
   };
-  const way = Array.from({ length: 4000 }, (_, k) =>
+  const path = Array.from({ length: 4000 }, (_, k) =>
     [40 + 35 * Math.sin(k / 100), 20 + 15 * Math.sin(k / 77), 1.4]);
   const plan = async () => {
     const seen = new Uint8Array(along / cell * across / cell).map(() => 4 * Math.random());
@@ -40,19 +40,19 @@ STREAM = """(() => {
     constructor() { super(); setTimeout(() => this.begin()); }
     send() {}
     close() {}
-    tell(data) { this.dispatchEvent(new MessageEvent("message", { data })); }
-    say(told) { this.tell(JSON.stringify(told)); }
+    deliver(data) { this.dispatchEvent(new MessageEvent("message", { data })); }
+    deliverJson(message) { this.deliver(JSON.stringify(message)); }
     async begin() {
       this.dispatchEvent(new Event("open"));
-      this.say({ project: "walk", state: "recording", words: [], plan: await plan(),
-        path: { start: 0, points: way } });
+      this.deliverJson({ project: "walk", state: "recording", words: [], plan: await plan(),
+        path: { start: 0, points: path } });
       for (let start = 0; start < ALL; start += chunk) {
         const count = left(ALL, start);
-        this.say({ points: { generation: 0, start, count, voxel_m: voxel, total: ALL } });
-        this.tell(points(count));
+        this.deliverJson({ points: { generation: 0, start, count, voxel_m: voxel, total: ALL } });
+        this.deliver(points(count));
       }
       const pose = () => ({ p: [40, 20, 1.4], yaw: Date.now() / 1000, lost: false });
-      setInterval(() => this.say({ pose: pose() }), 100);
+      setInterval(() => this.deliverJson({ pose: pose() }), 100);
     }
   };
 })()"""

@@ -61,11 +61,11 @@ class Phone:
                 if isinstance(data, bytes):
                     self.first_points_s = np.fmin(self.first_points_s, self.bytes[-1][0])
                 else:
-                    self._receive_line(json.loads(data))
+                    self._receive_message(json.loads(data))
 
-    def _receive_line(self, told: dict[str, Any]) -> None:
-        if "pose" in told:
-            self.ages_s.append(time.time() - told["pose"]["t_ns"] / 1e9)
+    def _receive_message(self, message: dict[str, Any]) -> None:
+        if "pose" in message:
+            self.ages_s.append(time.time() - message["pose"]["t_ns"] / 1e9)
 
     def figures(self) -> dict[str, float]:
         """Percentiles [ms] and rates after the first five seconds."""

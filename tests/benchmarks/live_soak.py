@@ -60,17 +60,17 @@ class Heard:
     words: set[str] = field(default_factory=set)
     """Warnings, N for every number."""
 
-    def hear(self, data: str | bytes) -> None:
+    def receive(self, data: str | bytes) -> None:
         """Take one message."""
         self.bytes += len(data)
         if isinstance(data, bytes):
             return
-        told = json.loads(data)
-        self.newest |= told
-        self.words |= {re.sub(r"\d+(\.\d+)?", "N", w["text"]) for w in told.get("words", [])}
-        if "pose" in told:
+        message = json.loads(data)
+        self.newest |= message
+        self.words |= {re.sub(r"\d+(\.\d+)?", "N", w["text"]) for w in message.get("words", [])}
+        if "pose" in message:
             now_ns = stretched(time.time_ns(), self.speed)
-            self.ages_s.append((now_ns - told["pose"]["t_ns"]) / 1e9 / self.speed)
+            self.ages_s.append((now_ns - message["pose"]["t_ns"]) / 1e9 / self.speed)
 
     def taken(self) -> tuple[list[float], int]:
         """Ages and bytes since the last time."""
@@ -93,7 +93,7 @@ async def look(url: str, heard: Heard, *, for_s: float) -> None:
                     if isinstance(data, bytes) and not points:
                         points = True
                         heard.first_points_s.append(time.monotonic() - began_s)
-                    heard.hear(data)
+                    heard.receive(data)
 
 
 def processes(project: Path, server: int) -> dict[str, psutil.Process]:

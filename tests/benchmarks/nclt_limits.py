@@ -21,7 +21,7 @@ _SIGMA_PER_MAD = 1.4826
 
 
 def chain(align: Align, scans: list[Array], hypotheses: SE3 | None) -> SE3:
-    """``T_k_k+1`` of all consecutive pairs, started at guesses or at the motion before."""
+    """``T_k_k+1`` of all consecutive pairs, started at hypotheses or at the motion before."""
     found = [SE3.identity()]
     for k in range(len(scans) - 1):
         initial = found[-1] if hypotheses is None else hypotheses[k]

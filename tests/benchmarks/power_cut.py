@@ -197,7 +197,7 @@ def check_project(project: Path, marks: list[str]) -> list[str]:
     if decided and len(read_rows(project)) < max(decided):
         problems.append("an acknowledged decision is lost")
     reviewed = audit_review(project, Silent())
-    unfinished = "in no row of the journal"  # an approval nobody was told of; the next moves it
+    unfinished = "in no row of the journal"  # an approval without response; the next moves it
     problems += [f"review: {what}" for what in reviewed.damaged if unfinished not in what]
     if "approved" in marks and not reviewed.approvals:
         problems.append("an acknowledged approval is lost")

@@ -37,7 +37,7 @@ _SHARPNESS_FRAMES = 60
 _KNOTS = 20
 
 Align = Callable[[Array, Array, SE3], tuple[SE3, bool, float]]
-"""Points of target and source (N, 3), a guess -> ``T_target_source``, converged, seconds."""
+"""Points of target and source (N, 3), initial pose -> ``T_target_source``, converged, seconds."""
 
 
 def corridor(folder: Path) -> list[Multiframe]:
@@ -66,7 +66,7 @@ def corridor(folder: Path) -> list[Multiframe]:
 
 
 def ours(settings: ScanSettings) -> Align:
-    """`search_scans`: whatever the guess."""
+    """`search_scans`: independent of the initial pose."""
 
     def align(target: Array, source: Array, initial: SE3) -> tuple[SE3, bool, float]:
         b = make_scan(source, settings)
@@ -129,7 +129,7 @@ def nclt_table(every: int) -> str:
                  f"{int(gross.sum())} of {len(found)}", str(silent),
                  number(1e3 * np.median(found[:, 3]), 0))
             )  # fmt: skip
-    header = ("pairs", "guess", "cm median", "deg median", "cm p95", "gross", "silent", "ms")
+    header = ("pairs", "initial", "cm median", "deg median", "cm p95", "gross", "silent", "ms")
     return text_table(header, rows)
 
 

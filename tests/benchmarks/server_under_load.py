@@ -1,7 +1,7 @@
 """Phones, clients and a job at once: ``… server_under_load.py RECORDING [--imu CSV] [--rig RIG]``.
 
 A real server processes the recording again and again. Meanwhile the recording is replayed into a
-live capture that phones look at, clients read pages, pictures and the API, and others look at a
+live capture that phones look at, clients read pages, images and the API, and others look at a
 map in the viewer. A process of its own asks for ``/healthz`` on new and on kept connections.
 Printed: errors, percentiles of ``/healthz`` and of each kind of request, memory of the server.
 """
@@ -300,7 +300,7 @@ async def move(socket: Any, number: int) -> None:
 
 
 async def reader(url: str, number: int, until_s: float, tally: Tally) -> None:
-    """Read pages, pictures and the API, one after the other."""
+    """Read pages, images and the API, one after the other."""
     async with httpx.AsyncClient(base_url=url, timeout=30.0) as client:
         turn = number
         while time.monotonic() < until_s:

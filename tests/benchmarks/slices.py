@@ -1,6 +1,6 @@
 """Slices of a large map: ``python -m tests.benchmarks.slices PROJECT`` (see ``large_map``).
 
-Says seconds (and, for a busy machine, processor seconds) of pictures of 1600 x 1200 pixels, cold
+Prints seconds (and, for a busy machine, processor seconds) of images of 1600 x 1200 pixels, cold
 (files dropped from the page cache) and warm, of the check for double walls, and the memory.
 """
 
@@ -33,21 +33,22 @@ def main(project: Path) -> None:
         "free, 10 cm": free((x, y, z), (0.3, 0.5, 0.8)),
         "all points": horizontal(z, thickness_m=99.0),
     }
-    picture(tiles, cuts["horizontal, 2 cm"], "height")  # compile, import
+    time_image(tiles, cuts["horizontal, 2 cm"], "height")  # compile, import
     print(f"{len(tiles)} points")
     for name, cut in cuts.items():
         dropped = drop(folder)
-        cold = picture(tiles, cut, "normalized")
-        warm = [picture(tiles, cut, color) for color in ("normalized", "height", "sensor", "time")]
-        words = f"cold {cold[0]:.2f} s, " if dropped else ""
+        cold = time_image(tiles, cut, "normalized")
+        colors = ("normalized", "height", "sensor", "time")
+        warm = [time_image(tiles, cut, color) for color in colors]
+        text = f"cold {cold[0]:.2f} s, " if dropped else ""
         slowest = max(warm)
-        words += f"warm {slowest[0]:.2f} s ({slowest[1]:.2f} s of processor)"
-        print(f"{name:20} {warm[0][2]:>10} points  {words}")
+        text += f"warm {slowest[0]:.2f} s ({slowest[1]:.2f} s of processor)"
+        print(f"{name:20} {warm[0][2]:>10} points  {text}")
     began, used = time.perf_counter(), time.process_time()
     found = find_double_walls(tiles)
     seconds = time.perf_counter() - began
-    words = f"{seconds:.1f} s ({time.process_time() - used:.1f} s of processor)"
-    print(f"double walls: {words}, {found.patches} patches, {len(found.walls)} places")
+    text = f"{seconds:.1f} s ({time.process_time() - used:.1f} s of processor)"
+    print(f"double walls: {text}, {found.patches} patches, {len(found.walls)} places")
     anonymous = [
         line for line in Path("/proc/self/status").read_text().splitlines() if "RssAnon" in line
     ]
@@ -55,8 +56,8 @@ def main(project: Path) -> None:
     print(f"peak resident {peak_kb / 1e6:.2f} GB, {' '.join(anonymous[0].split())} at the end")
 
 
-def picture(tiles: TileSet, cut: Cut, color: str) -> tuple[float, float, int]:
-    """Seconds of a picture, PNG included, those of the processor, and its points."""
+def time_image(tiles: TileSet, cut: Cut, color: str) -> tuple[float, float, int]:
+    """Seconds of an image, PNG included, processor seconds, and its number of points."""
     began, used = time.perf_counter(), time.process_time()
     seen: SliceWindow = extent(tiles, cut)
     pixel_m = max((seen.right - seen.left) / 1600.0, (seen.top - seen.bottom) / 1200.0)
@@ -66,7 +67,7 @@ def picture(tiles: TileSet, cut: Cut, color: str) -> tuple[float, float, int]:
 
 
 def drop(folder: Path) -> bool:
-    """Put the map's files out of the page cache."""
+    """Drop the map's files from the page cache."""
     for path in (folder / "tiles").iterdir():
         descriptor = os.open(path, os.O_RDONLY)
         try:

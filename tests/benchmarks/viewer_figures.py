@@ -162,10 +162,10 @@ def one_stalls(server: Running, pid: int) -> None:
 
 
 def toggle_s(client: ViserClient) -> float:
-    """Seconds until the other intensity is told to be on screen."""
-    words = "normalized" if "by raw" in client.html() else "raw"
+    """Seconds until the legend shows the other intensity."""
+    name = "normalized" if "by raw" in client.html() else "raw"
     client.press("Raw or normalized")
-    return client.until(lambda c: f"Points by {words}" in c.html())
+    return client.until(lambda c: f"Points by {name}" in c.html())
 
 
 def together(jobs: list[Callable[[], None]]) -> None:

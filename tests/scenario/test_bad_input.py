@@ -89,10 +89,10 @@ def counts(tmp_path, out="project"):
 
 
 def assert_warned(summary, *words):
-    """Summary and report name it in one warning."""
-    told = [text for text in summary["warnings"] if all(word in text for word in words)]
-    assert told, summary["warnings"]
-    assert told[0] in summary["report"]
+    """One warning contains all words, in the summary and in the report."""
+    found = [text for text in summary["warnings"] if all(word in text for word in words)]
+    assert found, summary["warnings"]
+    assert found[0] in summary["report"]
 
 
 def write_pcap(path, t_ns, payloads):

@@ -44,7 +44,7 @@ def doubles(root):
 
 
 def accept_one_loop_off(root):
-    """The widest loop 5 cm off, sure of itself; the others of the corridor turned down."""
+    """Offset the widest loop by 5 cm with a high information; reject the others of the corridor."""
     graph = load_graph(read_artifacts(root)["verification"])
     t_s = 1e-9 * (graph.t_ns - graph.t_ns[0])
     over = [
@@ -99,6 +99,6 @@ def test_a_wall_doubled_by_one_wrong_loop_is_found_and_a_good_map_is_not_accused
     assert abs(widest.normal[1]) > 0.9
     on_corridor = [wall for wall in found.walls if abs(abs(wall.middle_m[1]) - 0.8) < 0.1]
     assert len(on_corridor) > 3 and -1.0 < widest.middle_m[0] < 6.0
-    for wall in found.walls:  # seen on the way out and on the way back
+    for wall in found.walls:  # seen while walking out and while walking back
         (_, out_s), (back_s, _) = sorted(wall.spans_s)
         assert out_s <= 10.0 and back_s >= 15.0

@@ -45,7 +45,7 @@ def test_the_ring_with_twenty_false_loops_is_the_ring_without(
     optimum = optimize(ring, kernel="none").T_map_body
     attacked = ATTACKS[attack](ring, np.random.default_rng(seed))
 
-    # The set's own odometry errs by 5 cm a step: its triangles close to decimetres only.
+    # The odometry of the set has errors of 5 cm per step: its triangles close to decimeters only.
     got = score(attacked, 20, settings=VerificationSettings(limit_m=1.0), truth=optimum)
 
     assert (got.false_rejected, got.good_lost) == (20, 0)

@@ -77,13 +77,13 @@ def test_a_damaged_backup_is_refused_and_leaves_nothing(server, tmp_path, spoil)
     elif spoil == "remove":
         objects[0].unlink()
     else:
-        told = json.loads(made.path.read_text())
-        name = next(iter(told["files"]))
-        told["files"]["../out" if spoil == "name" else f"{name}x"] = told["files"].pop(name)
-        body = {key: value for key, value in told.items() if key != "sha256"}
+        record = json.loads(made.path.read_text())
+        name = next(iter(record["files"]))
+        record["files"]["../out" if spoil == "name" else f"{name}x"] = record["files"].pop(name)
+        body = {key: value for key, value in record.items() if key != "sha256"}
         if spoil == "name":  # the list's own hash fits: only the name itself is wrong
-            told["sha256"] = hash_json(body)
-        made.path.write_text(json.dumps(told))
+            record["sha256"] = hash_json(body)
+        made.path.write_text(json.dumps(record))
 
     with pytest.raises(StoreError):
         restore(made.path, tmp_path / "new", with_keys=True, progress=Silent())

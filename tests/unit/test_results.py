@@ -8,11 +8,11 @@ from tests.benchmarks.false_loops import office_graph
 
 def test_edges_are_counted_as_the_finished_graph_has_them(tmp_path):
     graph, _ = office_graph(np.random.default_rng(1), nodes=12)
-    turned_down = [
+    rejected = [
         edge.evolve(verdict=Verdict.REJECTED, reason=Reason.ROBUST) for edge in graph.edges[-3:]
     ]
     unverified = graph.edges[-4].evolve(verdict=Verdict.UNVERIFIED)
-    save_graph(tmp_path, graph.with_edges((*graph.edges[:-4], unverified, *turned_down)))
+    save_graph(tmp_path, graph.with_edges((*graph.edges[:-4], unverified, *rejected)))
 
     assert edges_by_verdict(tmp_path) == {
         "accepted": len(graph.edges) - 4, "rejected": 3, "unverified": 1
