@@ -70,7 +70,7 @@ def test_lever_arm_and_time_offsets_are_kept():
     [
         ("", r"x: a rig needs at least one \[\[sensor\]\]"),
         ("sensor = [", "x: not a TOML file"),
-        (ONE + "tint = 1", r"x: sensor 0: unknown \['colour'\]; known: "),
+        (ONE + "tint = 1", r"x: sensor 0: unknown \['tint'\]; known: "),
         ('[[sensor]]\nname = "a"\nmodel = "VLP-17"', "model must be one of .*got 'VLP-17'"),
         ("[[sensor]]\nport = 1", "x: sensor 0: name must be a text, got None"),
         (ONE + ONE, "sensor names must differ"),
