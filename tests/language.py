@@ -43,7 +43,7 @@ RETIRED = {
 }
 IN_FOLDER = {r"\bdoors?\b": ("app/", "web/"), r"\bhear[ds]?\b": ("app/", "recon4/live/")}
 """Words with a meaning of their own elsewhere."""
-FOREIGN = ('found["guesses"]', '"levelling"')
+FOREIGN = ('found["guesses"]', '"levelling"', '"levelled_by"', '"metre"', "node a; metres;")
 """Names of other libraries, and keys of stored files."""
 
 
