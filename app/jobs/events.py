@@ -1,10 +1,6 @@
-"""``events.jsonl``: the progress and events of a worker, one JSON object per line.
+"""``events.jsonl``: the events of a worker (`recon4.model.events`), one JSON object per line.
 
-    {"t": s, "kind": "run"}                                     a worker began
-    {"t": s, "kind": "progress", "what", "done", "total", "unit", "seconds"}
-    {"t": s, "kind": EVENT, …}                                  any event of a stage, with its facts
-
-``t`` is in seconds since 1970. The file is appended to and not needed to resume.
+The file is appended to and not needed to resume.
 """
 
 from __future__ import annotations
@@ -13,20 +9,22 @@ import contextlib
 import json
 import logging
 import time
+from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+
+import msgspec
 
 from recon4.errors import Cancelled, StoreError
+from recon4.model.events import KINDS, Event, RunStarted, WorkProgress
 from recon4.store.json_files import parse_object
 
 log = logging.getLogger("recon4.job")
 
 MANY = frozenset({"edge", "nodes", "poses", "verdicts"})
-"""Events the viewer draws; the log would drown in them."""
+"""Events the viewer draws; they are too many for the text log."""
 EVERY_S = 0.25
-"""Counts are written, and the wish to stop is read, at most this often [s]."""
-
-
+"""Shortest interval of writing progress and of checking for a request to stop [s]."""
 MOST_BYTES = 4 << 20
 """Read at a time."""
 
@@ -34,8 +32,7 @@ MOST_BYTES = 4 << 20
 class EventWriter:
     """A `recon4.progress.Progress` that writes lines, and stops the run once a file appears.
 
-    It touches the heartbeat when work advances and at no other time: a worker whose work hangs
-    must look hung from outside.
+    It touches the heartbeat only when work advances, so that a worker whose work hangs is found.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -46,7 +43,7 @@ class EventWriter:
         self._what, self._unit = "", ""
         self._done, self._total = 0, 0
         self._began_s = self._due_s = 0.0
-        self._write("run", {})
+        self._write_record(RunStarted())
 
     def start(self, what: str, total: int, unit: str) -> None:
         """Begin a piece of work of ``total`` units (0 = unknown)."""
@@ -54,22 +51,22 @@ class EventWriter:
         self._began_s = time.monotonic()
         log.info("%s: %s %s", what, total or "?", unit)
         self._beat()
-        self._tell()
+        self._report()
 
     def advance(self, done: int = 1) -> None:
-        """Say that ``done`` more units are finished.
+        """Count ``done`` more finished units.
 
         Raises:
-            Cancelled: If the server asked to stop.
+            Cancelled: If the server requested to stop.
         """
         self._done += done
         if done > 0:
             self._beat()
         if time.monotonic() >= self._due_s or self._done == self._total:
-            self._tell()
+            self._report()
 
     def event(self, kind: str, **facts: object) -> None:
-        """Say what was found."""
+        """Write an event of a stage."""
         self._beat()
         if kind not in MANY:
             log.info(
@@ -90,23 +87,36 @@ class EventWriter:
             with contextlib.suppress(OSError):  # the work itself reports a full disk
                 self._heartbeat.touch()
 
-    def _tell(self) -> None:
+    def _report(self) -> None:
         now_s = time.monotonic()
         self._due_s = now_s + EVERY_S
-        facts = {"what": self._what, "done": self._done, "total": self._total, "unit": self._unit}
-        self._write("progress", {**facts, "seconds": round(now_s - self._began_s, 3)})
+        self._write_record(
+            WorkProgress(
+                what=self._what,
+                done=self._done,
+                total=self._total,
+                unit=self._unit,
+                seconds=round(now_s - self._began_s, 3),
+            )
+        )
         if self._stop.exists():
             raise Cancelled("stopped on request; finished stages are kept")
 
-    def _write(self, kind: str, facts: dict[str, Any]) -> None:
-        line = json.dumps({"t": round(time.time(), 3), **facts, "kind": kind}, default=str)
+    def _write_record(self, record: Event) -> None:
+        fields = asdict(record)
+        del fields["t"]  # the time of writing
+        self._write(record.kind, fields)
+
+    def _write(self, kind: str, fields: Mapping[str, object]) -> None:
+        line = json.dumps({"t": round(time.time(), 3), **fields, "kind": kind}, default=str)
         self._file.write(line.encode() + b"\n")
 
 
-def read_events(path: Path, offset: int) -> tuple[list[dict[str, Any]], int]:
-    """Events written since a byte offset, and the offset to ask from next time.
+def read_events(path: Path, offset: int) -> tuple[list[Event], int]:
+    """Events written since a byte offset, and the offset for the next call.
 
-    A line still being written is left for the next call; one cut by a kill is skipped.
+    A line still being written is left for the next call. Lines that a kill has cut, malformed ones
+    and unknown kinds are skipped.
     """
     try:
         with path.open("rb") as file:
@@ -117,12 +127,23 @@ def read_events(path: Path, offset: int) -> tuple[list[dict[str, Any]], int]:
     whole = data[: data.rfind(b"\n") + 1]
     if not whole and len(data) == MOST_BYTES:
         whole = data  # a line longer than any of ours
-    found = (_event(line) for line in whole.splitlines())
+    found = (_parse(line) for line in whole.splitlines())
     return [event for event in found if event is not None], offset + len(whole)
 
 
-def _event(line: bytes) -> dict[str, Any] | None:
+def _parse(line: bytes) -> Event | None:
     try:
-        return parse_object(line, "an event")
+        return event_of(parse_object(line, "an event"))
     except StoreError:
+        return None
+
+
+def event_of(fields: Mapping[str, object]) -> Event | None:
+    """The record of an event's JSON object; None if it is malformed or of an unknown kind."""
+    record = KINDS.get(str(fields.get("kind")))
+    if record is None:
+        return None
+    try:
+        return msgspec.convert(fields, record)
+    except msgspec.ValidationError:
         return None

@@ -7,7 +7,8 @@ processors; a piece of work within it likewise.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+
+from recon4.model.events import Event, RunStarted, StageChanged, WorkProgress
 
 BEFORE, AFTER = "hash", "results"
 """Work outside of any stage: hashing the recording, copying the results."""
@@ -76,19 +77,19 @@ def stage_weight(stage: str) -> float:
     return STAGE_PERCENT.get(stage, 0.0) / sum(STAGE_PERCENT.values())
 
 
-def after(progress: RunProgress, event: dict[str, Any]) -> RunProgress:
+def after(progress: RunProgress, event: Event) -> RunProgress:
     """The progress after one more event."""
-    t_s = float(event.get("t", progress.now_s))
+    t_s = progress.now_s if event.t is None else event.t
     progress = replace(progress, now_s=t_s)
     match event:
-        case {"kind": "run"}:
+        case RunStarted():
             return RunProgress(began_s=t_s, now_s=t_s)
-        case {"kind": "stage", "stage": str(stage), "state": "running"}:
+        case StageChanged(stage=stage, state="running"):
             return _next(progress, stage)
-        case {"kind": "stage", "stage": str(stage), "state": str(state)}:
+        case StageChanged(stage=stage, state=state):
             reused = progress.reused + (stage_weight(stage) if state == "reused" else 0.0)
             return replace(progress, reached=1.0, reused=reused)
-        case {"kind": "progress", "what": str(what), "done": done, "total": total}:
+        case WorkProgress(what=what, done=done, total=total):
             if what == AFTER and progress.stage != AFTER:
                 progress = _next(progress, AFTER)
             return _piece(progress, what, done / total if total else 0.0)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+
+from recon4.model.events import Event, RunStarted, StageChanged, WorkProgress
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,19 +49,24 @@ class Status:
         return min(self.done / self.total, 1.0) if self.total else None
 
 
-def after(status: Status, event: dict[str, Any]) -> Status:
-    """The status after one more event; unknown events change nothing."""
+def after(status: Status, event: Event) -> Status:
+    """The status after one more event; other events change nothing."""
     match event:
-        case {"kind": "run"}:
+        case RunStarted():
             return Status()
-        case {"kind": "stage", "stage": str(stage), "state": str(state)}:
-            fresh = StageStatus(stage=stage, state=state, seconds=event.get("seconds"))
-            others = tuple(row for row in status.stages if row.stage != stage)
-            return Status(stages=(*others, fresh))
-        case {"kind": "progress", "what": what, "done": done, "total": total, "seconds": seconds}:
-            rate = done / seconds if seconds > 0.0 else 0.0
-            eta = (total - done) / rate if total and rate > 0.0 else None
-            unit = str(event.get("unit", ""))
-            counts = {"done": done, "total": total, "rate_per_s": rate, "eta_s": eta}
-            return replace(status, what=what, unit=unit, **counts)
+        case StageChanged():
+            row = StageStatus(stage=event.stage, state=event.state, seconds=event.seconds)
+            others = tuple(other for other in status.stages if other.stage != event.stage)
+            return Status(stages=(*others, row))
+        case WorkProgress():
+            rate = event.done / event.seconds if event.seconds > 0.0 else 0.0
+            return replace(
+                status,
+                what=event.what,
+                unit=event.unit,
+                done=event.done,
+                total=event.total,
+                rate_per_s=rate,
+                eta_s=(event.total - event.done) / rate if event.total and rate > 0.0 else None,
+            )
     return status

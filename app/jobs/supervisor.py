@@ -43,7 +43,7 @@ class Tail:
         self.status = Status()
         self.overall = RunProgress()
         self.unreadable = 0
-        """Number of malformed events."""
+        """Number of events with numbers out of range."""
         self._path = folder.path / "events.jsonl"
         self._offset = 0
 
@@ -54,7 +54,7 @@ class Tail:
         for event in events:
             try:
                 status, overall = after(self.status, event), progress_after(self.overall, event)
-            except (TypeError, ValueError, ArithmeticError, LookupError, AttributeError):
+            except ArithmeticError:
                 self.unreadable += 1  # a worker that a hostile file took over may write anything
             else:
                 self.status, self.overall = status, overall

@@ -83,5 +83,5 @@ def test_events_that_are_none_are_skipped_and_a_flood_is_read_in_pieces(tmp_path
         found += events
         reads += 1
 
-    assert [event["kind"] for event in found] == ["run"]
+    assert [event.kind for event in found] == ["run"]
     assert reads >= 3

@@ -9,20 +9,28 @@ import contextlib
 import json
 import time
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from app.jobs.events import read_events
 from recon4.geometry.se3 import SE3
+from recon4.model.events import (
+    EdgeTried,
+    Event,
+    NodesPlaced,
+    PosesAdded,
+    Position,
+    Quaternion,
+    RunStarted,
+    StageChanged,
+    VerdictsChanged,
+    WorkProgress,
+)
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
 from recon4.model.trajectory import Trajectory
 
 SILENT_S = 30.0
 """A job without a heartbeat for this long is not followed [s]."""
-
-ODOMETRY_EDGE = {"edge_kind": "odometry", "verdict": "accepted", "reason": ""}
-"""Consecutive nodes always have an odometry edge; there is no event for it."""
 
 Pair = tuple[int, int, str]
 
@@ -36,35 +44,43 @@ class LiveGraph:
     def _clear(self) -> None:
         self.stage = ""
         """The stage that runs; empty = none."""
-        self._poses: list[tuple[int, list[float], list[float]]] = []
-        self._nodes_ns: list[int] = []
-        self._nodes_m: list[list[float]] = []
+        self._poses: list[tuple[int, Position, Quaternion]] = []
+        self._nodes_ns: tuple[int, ...] = ()
+        self._nodes_m: tuple[Position, ...] = ()
         self._edges: dict[Pair, Edge] = {}
 
-    def take(self, event: dict[str, Any]) -> None:
-        """Apply one event; unused or malformed events change nothing."""
-        with contextlib.suppress(KeyError, ValueError, TypeError):
-            self._take(event)
-
-    def _take(self, event: dict[str, Any]) -> None:
-        match event["kind"]:
-            case "run":
+    def take(self, event: Event) -> None:
+        """Apply one event; unused events, and poses of unequal number, change nothing."""
+        match event:
+            case RunStarted():
                 self._clear()
-            case "stage":
-                self._turn_to(str(event["stage"]), running=event["state"] == "running")
-            case "poses":
-                self._poses += zip(event["t_ns"], event["t_m"], event["quat_xyzw"], strict=True)
-            case "nodes":
-                self._nodes_m = event["t_m"]
-                if event.get("t_ns"):
-                    self._nodes_ns = event["t_ns"]
-                    for k in range(len(self._nodes_ns) - 1):
-                        self._add({"i": k, "j": k + 1, **ODOMETRY_EDGE})
-            case "edge":
+            case StageChanged():
+                self._turn_to(event.stage, running=event.state == "running")
+            case PosesAdded():
+                with contextlib.suppress(ValueError):
+                    self._poses += zip(event.t_ns, event.t_m, event.quat_xyzw, strict=True)
+            case NodesPlaced():
+                self._place(event)
+            case EdgeTried():
                 self._add(event)
-            case "verdicts":
-                for i, j, kind, verdict, reason in event["edges"]:
-                    self._judge((i, j, kind), Verdict(verdict), Reason(reason))
+            case VerdictsChanged():
+                for i, j, kind, verdict, reason in event.edges:
+                    self._judge((i, j, kind), verdict, reason)
+
+    def _place(self, nodes: NodesPlaced) -> None:
+        self._nodes_m = nodes.t_m
+        if nodes.t_ns:
+            self._nodes_ns = nodes.t_ns
+            for k in range(len(self._nodes_ns) - 1):  # there is no event for odometry edges
+                self._add(
+                    EdgeTried(
+                        i=k,
+                        j=k + 1,
+                        edge_kind=EdgeKind.ODOMETRY,
+                        verdict=Verdict.ACCEPTED,
+                        reason=Reason.NONE,
+                    )
+                )
 
     def _turn_to(self, stage: str, *, running: bool) -> None:
         if running:
@@ -72,11 +88,11 @@ class LiveGraph:
             if stage == "odometry":
                 self._poses = []
             if stage == "graph":
-                self._nodes_ns, self._nodes_m, self._edges = [], [], {}
+                self._nodes_ns, self._nodes_m, self._edges = (), (), {}
         elif self.stage == stage:
             self.stage = ""
 
-    def _add(self, event: dict[str, Any]) -> None:
+    def _add(self, event: EdgeTried) -> None:
         edge = _edge(event)
         self._edges[edge.i, edge.j, edge.kind.value] = edge
 
@@ -131,7 +147,7 @@ class JobWatch:
         self._followed = (job, after)
         for event in events:
             self.live.take(event)
-        return job != path or any(event.get("kind") != "progress" for event in events)
+        return job != path or any(not isinstance(event, WorkProgress) for event in events)
 
     def _running(self) -> Path | None:
         """The project's job with the latest heartbeat, while it has no outcome."""
@@ -156,19 +172,19 @@ class JobWatch:
         return self._of[job]
 
 
-def _edge(event: dict[str, Any]) -> Edge:
-    def number(name: str) -> float:
-        value = event.get(name)
-        return float("nan") if value is None else float(value)
-
+def _edge(event: EdgeTried) -> Edge:
     return Edge(
-        i=int(event["i"]),
-        j=int(event["j"]),
+        i=event.i,
+        j=event.j,
         T_i_j=SE3.identity(),
-        kind=EdgeKind(event["edge_kind"]),
-        verdict=Verdict(event["verdict"]),
-        reason=Reason(event["reason"]),
-        overlap=number("overlap"),
-        error_m=number("error_m"),
-        limit_m=number("limit_m"),
+        kind=event.edge_kind,
+        verdict=event.verdict,
+        reason=event.reason,
+        overlap=_nan_for_none(event.overlap),
+        error_m=_nan_for_none(event.error_m),
+        limit_m=_nan_for_none(event.limit_m),
     )
+
+
+def _nan_for_none(value: float | None) -> float:
+    return float("nan") if value is None else value

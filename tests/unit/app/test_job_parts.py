@@ -5,12 +5,13 @@ import sqlite3
 import pytest
 
 from app.errors import Conflict, IllegalTransition, NotFound
-from app.jobs.events import EventWriter, read_events
+from app.jobs.events import EventWriter, event_of, read_events
 from app.jobs.folder import JobFolder
 from app.jobs.model import TRANSITIONS, Inputs, Job, JobState
 from app.jobs.status import Status, after
 from app.jobs.store import JobStore
 from recon4.errors import Cancelled
+from recon4.model.events import NodesPlaced, RunStarted, StageChanged
 
 
 @pytest.fixture
@@ -83,7 +84,7 @@ def test_what_is_over_stays_over(state):
 def test_rate_and_remaining_time_follow_from_an_event():
     event = {"kind": "progress", "what": "odometry", "done": 25, "total": 100, "unit": "frames"}
 
-    status = after(Status(), {**event, "seconds": 5.0})
+    status = after(Status(), event_of({**event, "seconds": 5.0}))
 
     assert status.fraction == 0.25
     assert status.rate_per_s == 5.0
@@ -91,21 +92,41 @@ def test_rate_and_remaining_time_follow_from_an_event():
 
 
 def test_a_new_worker_begins_with_nothing_done():
-    status = after(Status(), {"kind": "stage", "stage": "frames", "state": "done", "seconds": 1.0})
+    status = after(Status(), StageChanged(stage="frames", state="done", seconds=1.0))
 
     assert len(status.stages) == 1
-    assert after(status, {"kind": "run"}) == Status()
+    assert after(status, RunStarted()) == Status()
 
 
-def test_unknown_events_change_nothing():
-    assert after(Status(), {"kind": "edge", "i": 1}) == Status()
-    assert after(Status(), {}) == Status()
+def test_other_events_change_nothing():
+    assert after(Status(), NodesPlaced(t_m=())) == Status()
+
+
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {},
+        {"kind": "new"},
+        {"kind": ["run"]},
+        {"kind": "edge", "i": 1},
+        {"kind": "progress", "what": "a", "done": "1", "total": 2, "seconds": 1.0},
+        {"kind": "poses", "t_ns": [1], "t_m": [[0.0, 0.0]], "quat_xyzw": [[0.0, 0.0, 0.0, 1.0]]},
+    ],
+)
+def test_malformed_and_unknown_events_have_no_record(fields):
+    assert event_of(fields) is None
+
+
+def test_an_event_of_a_later_version_is_read_without_its_new_fields():
+    fields = {"kind": "stage", "stage": "map", "state": "done", "seconds": 2, "new": 1, "t": 5}
+
+    assert event_of(fields) == StageChanged(stage="map", state="done", seconds=2.0, t=5.0)
 
 
 def test_events_are_read_as_they_come_and_a_line_cut_by_a_kill_is_skipped(tmp_path):
     path = tmp_path / "events.jsonl"
     first = EventWriter(tmp_path)
-    first.event("edge", i=1)
+    first.event("nodes", t_m=[[0, 0, 0]])
     first.close()
     events, offset = read_events(path, 0)
     with path.open("ab") as file:
@@ -115,9 +136,9 @@ def test_events_are_read_as_they_come_and_a_line_cut_by_a_kill_is_skipped(tmp_pa
     second.close()
     rest, _ = read_events(path, offset)
 
-    assert [event["kind"] for event in events] == ["run", "edge"]
+    assert [event.kind for event in events] == ["run", "nodes"]
     assert half == []
-    assert [event["kind"] for event in rest] == ["run"]
+    assert [event.kind for event in rest] == ["run"]
 
 
 def test_a_run_stops_once_asked(tmp_path):

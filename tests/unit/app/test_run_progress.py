@@ -2,6 +2,7 @@
 
 import pytest
 
+from app.jobs.events import event_of
 from app.jobs.exit_reasons import exit_reason
 from app.jobs.run_progress import RunProgress, after, stage_weight
 
@@ -9,7 +10,7 @@ from app.jobs.run_progress import RunProgress, after, stage_weight
 def fold(*events):
     progress = RunProgress()
     for event in events:
-        progress = after(progress, event)
+        progress = after(progress, event_of(event))
     return progress
 
 

@@ -1,4 +1,4 @@
-"""What a running job has found, from the very events its stages tell."""
+"""Trajectory and graph of a running job, from the events of its stages."""
 
 import json
 import os
@@ -7,7 +7,7 @@ import time
 import numpy as np
 import pytest
 
-from app.jobs.events import EventWriter
+from app.jobs.events import EventWriter, event_of
 from app.viewer.scene.live import JobWatch, LiveGraph
 from app.viewer.scene.source import ProjectSource
 from recon4.model.pose_graph import EdgeKind, Reason, Verdict
@@ -42,8 +42,9 @@ def running(stage):
 
 def fed(*events):
     live = LiveGraph()
-    for event in events:
-        live.take(event)
+    for fields in events:
+        if (event := event_of(fields)) is not None:
+            live.take(event)
     return live
 
 
@@ -93,7 +94,7 @@ def test_a_new_run_forgets_the_one_before():
     "event",
     [{}, {"kind": "edge"}, {**edge(), "verdict": "?"}, {**POSES, "t_ns": [1]}, {"kind": "new"}],
 )
-def test_an_event_that_makes_no_sense_changes_nothing(event):
+def test_a_malformed_event_changes_nothing(event):
     live = fed(running("graph"), NODES, event)
 
     assert loops(live) == []
@@ -168,7 +169,7 @@ def test_edges_of_a_running_search_are_shown(tmp_path, job):
     assert "rejected/error-limit" in {layer.key for layer in source.content.edges.layers}
 
 
-def test_what_real_stages_tell_makes_the_graph_they_leave(tmp_path):
+def test_events_of_real_stages_make_the_graph_they_leave(tmp_path):
     frames, events = walk(strolling, 24), Silent()
     settings = override(Settings(), ["graph.workers=1", "graph.node_stride=3"])
     for name in ("odometry", "graph"):
@@ -184,6 +185,8 @@ def test_what_real_stages_tell_makes_the_graph_they_leave(tmp_path):
     reported = [{"kind": kind, **json.loads(json.dumps(facts))} for kind, facts in events.events]
     live = fed(running("graph"), *reported)
 
+    read = {"nodes", "poses", "edge", "verdicts"}
+    assert all(event_of(fields) for fields in reported if fields["kind"] in read)
     assert len(live.trajectory) == 4  # every fifth pose of the first twenty
     np.testing.assert_allclose(live.graph.T_map_body.t, searched.T_map_body.t, atol=1e-3)
     verdicts = {(e.i, e.j, e.kind): (e.verdict, e.reason) for e in verified.edges}
