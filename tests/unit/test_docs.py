@@ -1,22 +1,38 @@
-"""The pages of the documentation: what they name is there, what they tell to type is understood."""
+"""The pages of the documentation: links, paths, modules, routes, settings and commands exist."""
 
 import re
 import shlex
+from dataclasses import fields
 from pathlib import Path
 
 import pytest
 from rich.text import Text
 from typer.main import get_command
 
+from app.access.routes_check import declared
+from app.main import create_app
+from app.settings import ServerSettings
 from recon4.cli.main import app
 from recon4.model.rig import parse_rig
+from recon4.settings import Settings
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 COMMANDS = get_command(app)
 
+SOURCES = [
+    f"/{path.relative_to(ROOT)}"
+    for top in ("recon4", "app", "tests", "docs")
+    for path in (ROOT / top).rglob("*.py")
+]
+
 LINK = re.compile(r"\]\(([^)\s]+)\)|<img src=\"([^\"]+)\"")
-OUR_FILE = re.compile(r"`((?:recon4|app|web|tests|docs)/[\w./-]+)`")
+REPOSITORY_PATH = re.compile(r"(?<![\w./-])(?:recon4|app|web|tests|docs)/[\w./{},*-]*\w[}/]?")
+PYTHON_FILE = re.compile(r"(?<![\w./*{},-])[\w/]+\.py\b")
+MODULE = re.compile(r"`((?:recon4|app)(?:\.\w+)+)")
+ROUTE = re.compile(r"(?:^|`)(GET|HEAD|POST|PUT|PATCH|DELETE) +(/api[\w/<>{}-]*)", re.MULTILINE)
+SETTING = re.compile(r"`(?:--set )?(\w+)\.(\w+)(?: ?=[^`]*)?`")
+SUFFIXES = {"json", "npz", "npy", "g2o", "laz", "csv", "tum", "toml", "py", "las"}
 CODE = re.compile(r"^```\w*\n(.*?)^```|`([^`\n]+)`|^ {4}(\S[^\n]*)$", re.MULTILINE | re.DOTALL)
 TYPED = re.compile(r"^recon4 ([a-z][^\n#]*)", re.MULTILINE)
 BENCHMARK = re.compile(r"python -m (tests\.benchmarks\.\w+)|python (tests/\S+\.py|docs/\S+\.py)")
@@ -48,10 +64,80 @@ def headings_of(path):
     return headings(path) if path.suffix == ".md" else set()
 
 
-def test_files_a_page_names_are_there(page):
-    named = OUR_FILE.findall(page.read_text("utf-8"))
+def test_paths_a_page_names_exist(page):
+    code = " ".join("".join(found) for found in CODE.findall(page.read_text("utf-8")))
+    paths = [path for text in REPOSITORY_PATH.findall(code) for path in expanded(text)]
 
-    assert [name for name in named if not (ROOT / name).exists()] == []
+    assert [path for path in paths if not any(ROOT.glob(path))] == []
+
+
+def expanded(path):
+    """``a/{b,c}.py`` as the paths it stands for: ``a/b.py`` and ``a/c.py``."""
+    before, brace, rest = path.partition("{")
+    choices, _, after = rest.partition("}")
+    return [before + one + after for one in choices.split(",")] if brace else [path]
+
+
+def test_python_files_a_page_names_exist(page):
+    named = [
+        name
+        for code in re.findall(r"`([^`\n]+)`", page.read_text("utf-8"))
+        for name in PYTHON_FILE.findall(code)
+    ]
+
+    assert [name for name in named if not any(file.endswith(f"/{name}") for file in SOURCES)] == []
+
+
+def test_modules_and_their_names_a_page_names_exist(page):
+    named = MODULE.findall(page.read_text("utf-8"))
+
+    assert [name for name in named if not is_module(name) and not is_defined(name)] == []
+
+
+def is_module(name):
+    path = ROOT.joinpath(*name.split("."))
+    return path.is_dir() or path.with_suffix(".py").is_file()
+
+
+def is_defined(name):
+    """Whether a module defines the last part of a dotted name at its top level."""
+    module, _, last = name.rpartition(".")
+    file = ROOT.joinpath(*module.split(".")).with_suffix(".py")
+    defined = rf"^(?:def |class |async def )?{last}\b"
+    return file.is_file() and re.search(defined, file.read_text("utf-8"), re.MULTILINE) is not None
+
+
+def test_settings_a_page_names_exist(page):
+    groups = {group.name: group for group in fields(Settings)}
+    named = {
+        (group, name)
+        for group, name in SETTING.findall(page.read_text("utf-8"))
+        if group in groups and name not in SUFFIXES
+    }
+    defaults = Settings()
+
+    assert [found for found in named if not hasattr(getattr(defaults, found[0]), found[1])] == []
+
+
+@pytest.fixture(scope="module")
+def routes(tmp_path_factory):
+    """Method and path of every route of the server, names of parameters left out."""
+    server = create_app(ServerSettings(root=tmp_path_factory.mktemp("nothing")))
+    return {
+        (method, unnamed(route.path))
+        for route in declared(server)
+        for method in route.methods or {"GET"}
+    }
+
+
+def unnamed(path):
+    return re.sub(r"<[^>]*>|\{[^}]*\}", "{}", path)
+
+
+def test_routes_a_page_names_exist(page, routes):
+    named = ROUTE.findall(page.read_text("utf-8"))
+
+    assert [found for found in named if (found[0], unnamed(found[1])) not in routes] == []
 
 
 def test_programs_a_page_tells_to_run_are_there(page):
@@ -110,10 +196,30 @@ def test_no_word_of_a_help_text_is_taken_for_markup():
     assert [text for text in texts if Text.from_markup(text).plain != text] == []
 
 
-def test_the_tests_own_eye_is_sharp():
+def test_the_patterns_of_these_tests_find_what_they_should():
     assert known("slice walk cut.png --z 1.5")
     assert known("users add NAME --role admin --root ROOT")
     assert not known("slize walk cut.png")
     assert not known("slice walk cut.png --height 1.5")
     assert typed("a `recon4 fly` and\n    recon4 walk  # x\nrecon4 reads") == ["fly", "walk  "]
     assert typed("```sh\nrecon4 run\n```\nrecon4 reads") == ["run"]
+    assert REPOSITORY_PATH.findall("see recon4/geometry/{se3,mesh}.py, app/live/ and /app/x") == [
+        "recon4/geometry/{se3,mesh}.py",
+        "app/live/",
+    ]
+    assert expanded("recon4/{a,b}.py") == ["recon4/a.py", "recon4/b.py"]
+    assert PYTHON_FILE.findall("se3.py, velodyne/models.py; test_x*.py") == [
+        "se3.py",
+        "velodyne/models.py",
+    ]
+    assert is_module("recon4.pipeline") and is_defined("recon4.pipeline.process")
+    assert not is_module("recon4.pipelines") and not is_defined("recon4.pipeline.processes")
+    assert ROUTE.findall("| `POST /api/a/<id>` | x\nGET    /api/b?c=d") == [
+        ("POST", "/api/a/<id>"),
+        ("GET", "/api/b"),
+    ]
+    assert SETTING.findall("`map.voxel_m=0.05`, `--set a.b=c`, `graph.mode`") == [
+        ("map", "voxel_m"),
+        ("a", "b"),
+        ("graph", "mode"),
+    ]
