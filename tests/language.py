@@ -30,18 +30,22 @@ RETIRED = {
     r"\bwild\b": "outlier, gross error",
     r"\bshares? of\b|\b(?:a|an|the|this|that|which|matched|smaller|larger|same) share\b"
     r"|_shares?\b|\bshare_(?!button|tunnel)": "ratio, fraction",
-    r"\bdesks?\b|\bdoorkeeper\b|\bpatience\b|\bseats?\b": "the glossary's web terms",
+    r"\bdoorkeeper\b|\bpatience\b|\bseats?\b": "the glossary's web terms",
     r"\bguess(?:es|ed|ing)?\b|_guess(?:es)?\b|\bguess_": "prediction, hypothesis, detect",
     r"\bbeliev\w*|\bunbeliev\w*": "consistent, plausible, accepted, trusted",
     r"\blet(?:s|ting)? (?:somebody |them |it |him |in )?in\b": "sign in, admit, accept",
     r"\bpictures?\b|_pictures?\b|\bpictures?_|\w+Picture\b": "preview, thumbnail, image, chart",
-    r"\blevell\w*|\bmetres?\b|\b\w*metres\b|\bcolour\w*|\bnormalis\w*|\bgrey\w*|\bcentre\w*"
+    r"(?<!\")\blevell\w*|\bmetres?\b|\b\w*metres\b|\bcolour\w*|\bnormalis\w*|\bgrey\w*|\bcentre\w*"
     r"|\bneighbour\w*|\bbehaviour\w*|\banalys(?:e|ed|es|ing)\b": "American spelling",
     r"\bway_m\b|\bthe way\b(?! (?:to|it|they|that|a|in which)\b)|\bof way\b": "path, path length",
     r"\bwhoever\b": "the person who, anyone who",
     r"\b(?:so-manieth|seems_still|hold_still|gap_m)\b": "the glossary's terms",
 }
-IN_FOLDER = {r"\bdoors?\b": ("app/", "web/"), r"\bhear[ds]?\b": ("app/", "recon4/live/")}
+IN_FOLDER = {
+    r"\bdesks?\b": ("app/", "web/"),
+    r"\bdoors?\b": ("app/", "web/"),
+    r"\bhear[ds]?\b": ("app/", "recon4/live/"),
+}
 """Words with a meaning of their own elsewhere."""
 FOREIGN = ('found["guesses"]', '"levelling"', '"levelled_by"', '"metre"', "node a; metres;")
 """Names of other libraries, and keys of stored files."""

@@ -1,4 +1,4 @@
-"""Reading what the stages left behind, as far as it is there."""
+"""Reads the artifacts of a run for the report; missing ones are left out."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _MOST_JSON_BYTES = 64 << 20
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Results:
-    """The artifacts of a run in memory, without points. None or empty = not there."""
+    """The artifacts of a run in memory, without points. None or empty = missing."""
 
     imported: dict[str, Any] = field(default_factory=dict)
     """``report.json`` of the frames."""
@@ -32,7 +32,7 @@ class Results:
     steps: dict[str, NDArray[Any]] = field(default_factory=dict)
     """Columns of ``steps.npz``."""
     graph: PoseGraph | None = None
-    """The latest graph: levelled, else reviewed, else verified, else as searched."""
+    """The latest graph: leveled, else reviewed, else verified, else as searched."""
     verification: dict[str, Any] = field(default_factory=dict)
     final: Trajectory | None = None
     """The latest trajectory after the odometry."""
@@ -43,10 +43,10 @@ class Results:
 
 
 def read_results(artifacts: Mapping[str, Path]) -> Results:
-    """Read what there is.
+    """Read the existing artifacts.
 
     Raises:
-        StoreError: If a file is there but damaged.
+        StoreError: If a file is damaged.
     """
     return Results(
         imported=_json(artifacts, "frames", "report.json"),
@@ -62,9 +62,9 @@ def read_results(artifacts: Mapping[str, Path]) -> Results:
 
 
 def path_length_m(trajectory: Trajectory) -> Array:
-    """Way covered before each pose [m], (N,), from positions half a second apart or more.
+    """Path length before each pose [m], (N,), from positions at least 0.5 s apart.
 
-    Shorter steps would add the body's sway and the noise of the poses to the way.
+    Shorter steps would add the sway of the body and the noise of the poses.
     """
     t_s = (trajectory.t_ns - trajectory.t_ns[0]) / 1e9
     knots = np.unique(np.append(np.arange(0.0, t_s[-1], 0.5), t_s[-1]))

@@ -1,4 +1,4 @@
-"""The pictures of the report, section by section."""
+"""Figures of the report, section by section."""
 
 from __future__ import annotations
 
@@ -18,35 +18,35 @@ from recon4.report.plan import Path, frame_around, plan_svg
 
 @dataclass(frozen=True, slots=True)
 class ChartFigure:
-    """A figure with what is to be seen in it."""
+    """A figure with caption, legend and color scale."""
 
     svg: Markup
     caption: str
     legend: tuple[tuple[str, str], ...] = ()
-    """Class of the line in the style sheet, and what it means."""
+    """CSS class of each line, and its meaning."""
     scale: tuple[str, str, str] = ("", "", "")
-    """Class of the color bar, and the numbers at its ends."""
+    """CSS class of the color bar, and the numbers at its ends."""
 
 
-def maps_pictures(rasters: list[Raster]) -> list[ChartFigure]:
+def map_figures(rasters: list[Raster]) -> list[ChartFigure]:
     """The map from above and from the sides."""
     out: list[ChartFigure] = []
     for raster in rasters:
-        words = f"The map {raster.view.name}. Pixel {raster.frame.pixel_m * 100:g} cm."
+        caption = f"The map {raster.view.name}. Pixel {raster.frame.pixel_m * 100:g} cm."
         if raster.view is ABOVE:
             ink = plan_svg(ink_png(raster), raster.view, raster.frame, css="ink")
-            out.append(ChartFigure(Markup(ink), f"{words} Dark: many points, so walls are lines."))
+            out.append(ChartFigure(Markup(ink), f"{caption} Dark: many points."))
         png, (low, high) = height_png(raster)
         svg = plan_svg(png, raster.view, raster.frame)
         bar = ("viridis", f"{low:.1f} m", f"{high:.1f} m")
-        out.append(ChartFigure(Markup(svg), f"{words} Color: mean height.", scale=bar))
+        out.append(ChartFigure(Markup(svg), f"{caption} Color: mean height.", scale=bar))
     return out
 
 
-def walk_pictures(
+def trajectory_figures(
     results: Results, drift: DriftClosed | None, rasters: list[Raster]
 ) -> list[ChartFigure]:
-    """The walk over the map, and what happened along it."""
+    """The trajectory over the map, and charts along it."""
     final = results.final or results.odometry
     out: list[ChartFigure] = []
     if final is None or len(final) < 2:
@@ -56,7 +56,7 @@ def walk_pictures(
     if drift is not None and results.odometry is not None:
         moved = drift.T_map_odom @ results.odometry.T_a_b
         curves.insert(0, Path("line-odometry", (moved.t,)))
-        legend.insert(1, ("line-odometry", "odometry before the loops were closed"))
+        legend.insert(1, ("line-odometry", "odometry before loop closure"))
     marks = (("mark-start", final.T_a_b.t[0]), ("mark-end", final.T_a_b.t[-1]))
     shown = [raster for raster in rasters if raster.view in {ABOVE, FRONT}]
     for raster in shown:
@@ -68,17 +68,17 @@ def walk_pictures(
             css="ink faint",
             marks=marks,
         )
-        out.append(ChartFigure(Markup(svg), f"The walk {raster.view.name}.", tuple(legend)))
+        out.append(ChartFigure(Markup(svg), f"Trajectory {raster.view.name}.", tuple(legend)))
     if not shown:
         svg = plan_svg(
             None, ABOVE, frame_around(final.T_a_b.t, ABOVE), paths=tuple(curves), marks=marks
         )
-        out.append(ChartFigure(Markup(svg), "The walk from above.", tuple(legend)))
+        out.append(ChartFigure(Markup(svg), "Trajectory from above.", tuple(legend)))
     return out + _framed(charts.walk_charts(final, results.steps, drift))
 
 
-def edges_pictures(results: Results, rasters: list[Raster]) -> list[ChartFigure]:
-    """Every pair that was tried, and how good it is."""
+def edge_figures(results: Results, rasters: list[Raster]) -> list[ChartFigure]:
+    """Every registered pair, and its quality."""
     graph = results.graph
     if graph is None or not len(graph):
         return []
@@ -89,25 +89,23 @@ def edges_pictures(results: Results, rasters: list[Raster]) -> list[ChartFigure]
     legend = (
         ("edge-accepted", "accepted"),
         ("edge-unverified", "unverified: no alternative path"),
-        ("edge-rejected", "rejected by overlap, error or convergence"),
-        ("edge-verification", "rejected by verification or the robust solution"),
+        ("edge-rejected", "rejected automatically: overlap, error or convergence"),
+        ("edge-verification", "rejected automatically: verification or robust solve"),
     )
     svg = plan_svg(png, ABOVE, frame, paths=paths, css="ink faint")
-    words = (
-        "Every pair that was tried, from above. Where there are very many, an even sample is drawn."
-    )
-    out = [ChartFigure(Markup(svg), words, legend)]
+    caption = "Every candidate pair, from above. Of very many pairs an even sample is drawn."
+    out = [ChartFigure(Markup(svg), caption, legend)]
     return out + _framed(charts.edge_charts(graph))
 
 
-def accuracy_pictures(facts: ReportFacts) -> list[ChartFigure]:
-    """Errors against the truth."""
+def accuracy_figures(facts: ReportFacts) -> list[ChartFigure]:
+    """Errors against the ground truth."""
     if facts.evaluation is None:
         return []
     return _framed(charts.accuracy_charts(facts.evaluation))
 
 
-def intensity_pictures(results: Results, rasters: list[Raster]) -> list[ChartFigure]:
+def intensity_figures(results: Results, rasters: list[Raster]) -> list[ChartFigure]:
     """Intensity before and after normalization."""
     out: list[ChartFigure] = []
     for after in (False, True):
@@ -116,15 +114,17 @@ def intensity_pictures(results: Results, rasters: list[Raster]) -> list[ChartFig
             continue
         png, (low, high) = intensity_png(above, normalized=after)
         svg = plan_svg(png, above.view, above.frame)
-        words = "Mean intensity a pixel, " + ("after normalization." if after else "as measured.")
-        out.append(ChartFigure(Markup(svg), words, scale=("greys", f"{low:.0f}", f"{high:.0f}")))
+        caption = "Mean intensity per pixel, " + (
+            "after normalization." if after else "as measured."
+        )
+        out.append(ChartFigure(Markup(svg), caption, scale=("grays", f"{low:.0f}", f"{high:.0f}")))
     return out + _framed(charts.intensity_charts(dependencies(results.intensity)))
 
 
-def georeference_pictures(results: Results) -> list[ChartFigure]:
+def georeference_figures(results: Results) -> list[ChartFigure]:
     """Residuals at the GNSS positions."""
     return _framed(charts.gnss_charts(results.georeference))
 
 
 def _framed(drawn: charts.Charts) -> list[ChartFigure]:
-    return [ChartFigure(Markup(svg), words) for svg, words in drawn]
+    return [ChartFigure(Markup(svg), caption) for svg, caption in drawn]

@@ -1,4 +1,4 @@
-"""Which charts the report shows, each with a sentence saying what to look for."""
+"""Charts of the report, each with a caption."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from recon4.model.pose_graph import PoseGraph, Verdict
 from recon4.model.trajectory import Trajectory
 from recon4.report.drift import DriftClosed
 from recon4.report.edges import by_verdict, spanning
-from recon4.report.figures import BLUE, GREEN, GREY, ORANGE, PINK, cumulative, histogram, lines
+from recon4.report.figures import BLUE, GRAY, GREEN, ORANGE, PINK, cumulative, histogram, lines
 from recon4.report.intensity import Dependency
 
 Charts = list[tuple[str, str]]
 """SVG and caption of each chart."""
-_COLORS = {Verdict.ACCEPTED: BLUE, Verdict.REJECTED: ORANGE, Verdict.UNVERIFIED: GREY}
+_COLORS = {Verdict.ACCEPTED: BLUE, Verdict.REJECTED: ORANGE, Verdict.UNVERIFIED: GRAY}
 
 
 def walk_charts(
@@ -32,14 +32,16 @@ def walk_charts(
     if drift is not None:
         series = [("", drift.t_s, 100.0 * drift.moved_m, BLUE)]
         svg = lines("drift", series, labels=(time, "final − odometry [cm]"), least=1.0)
-        out.append((svg, "How far the final trajectory lies from the odometry."))
+        out.append((svg, "Distance between the final trajectory and the odometry."))
     if drift is not None and len(drift.loop_before_m):
         groups = [
             ("odometry", 100.0 * drift.loop_before_m, ORANGE),
             ("final", 100.0 * drift.loop_after_m, BLUE),
         ]
-        svg = histogram("loops", groups, labels=("disagreement of a loop [cm]", "loops"), log=True)
-        out.append((svg, "Accepted loops against the odometry and against the final poses."))
+        svg = histogram(
+            "loops", groups, labels=("residual of a loop closure [cm]", "loop closures"), log=True
+        )
+        out.append((svg, "Residuals of accepted loop closures to odometry and final poses."))
     series = [("", t_s, final.T_a_b.t[:, 2], BLUE)]
     svg = lines("height", series, labels=(time, "height [m]"), least=0.1)
     out.append((svg, "Height of the body."))
@@ -48,7 +50,7 @@ def walk_charts(
 
 
 def edge_charts(graph: PoseGraph) -> Charts:
-    """Errors over their limits, verification, overlap, and how well the walk is tied together."""
+    """Errors relative to their limits, path discrepancy, overlap, and edges spanning each time."""
     out: Charts = []
     ratio = by_verdict(graph, lambda edge: edge.error_m / edge.limit_m if edge.limit_m else np.nan)
     if _any(ratio):
@@ -59,45 +61,45 @@ def edge_charts(graph: PoseGraph) -> Charts:
             limit=(1.0, "limit"),
             log=True,
         )
-        out.append((svg, "Registration error of each pair over its limit (V Eq. 2.7)."))
+        out.append((svg, "Registration error of each pair over its acceptance limit (V Eq. 2.7)."))
     median = by_verdict(graph, lambda edge: 100.0 * edge.verification_m)
     if _any(median):
         svg = histogram(
             "verification",
             _groups(median),
-            labels=("median disagreement with alternative paths [cm]", "edges"),
+            labels=("path discrepancy [cm]", "edges"),
             limit=(10.0, "10 cm (V §2.8)"),
             log=True,
         )
         out.append(
-            (svg, "Median disagreement of each edge with alternative paths between its nodes.")
+            (svg, "Path discrepancy: median distance between each edge and its alternative paths.")
         )
     overlap = by_verdict(graph, lambda edge: 100.0 * edge.overlap)
     if _any(overlap):
         svg = histogram("overlap", _groups(overlap), labels=("overlap [%]", "edges"))
-        out.append((svg, "Overlap of the two views of each pair."))
+        out.append((svg, "Overlap of each pair."))
     if len(graph) > 1:
         t_s = (graph.t_ns[:-1] - graph.t_ns[0]) / 1e9
         series = [("", t_s, spanning(graph).astype(np.float64), GREEN)]
         svg = lines("span", series, labels=("time from the start [s]", "edges spanning"))
         out.append(
-            (svg, "How many edges hold the walk together at each moment; 1 = odometry alone.")
+            (svg, "Number of edges that span each time of the trajectory; 1 = odometry only.")
         )
     return out
 
 
 def accuracy_charts(found: Evaluation) -> Charts:
-    """Errors against the truth."""
+    """Errors against the ground truth."""
     out: Charts = []
     errors = found.aligned.position_errors_m
     groups = [("poses", 100.0 * errors, BLUE)]
     svg = histogram("ate", groups, labels=("position error after SVD alignment [cm]", "poses"))
-    out.append((svg, "Distance of the poses from the truth."))
+    out.append((svg, "Distance of the poses from the ground truth."))
     if found.relative is not None and found.relative.histogram.any():
         counts = found.relative.histogram.astype(np.float64)
         distance_m = np.linspace(HISTOGRAM_STEP_M, len(counts) * HISTOGRAM_STEP_M, len(counts))
         svg = cumulative("er", distance_m, counts, marks_m=(0.02, 0.05))
-        out.append((svg, "Share of the points in the slices nearer to the model (V Fig. 3.2)."))
+        out.append((svg, "Ratio of the slice points within a distance of the model (V Fig. 3.2)."))
     return out
 
 
@@ -115,23 +117,24 @@ def gnss_charts(placed: dict[str, Any]) -> Charts:
     names = (("east", BLUE), ("north", ORANGE), ("up", GREEN))
     series = [(name, t_s, residual_cm[used, k], color) for k, (name, color) in enumerate(names)]
     svg = lines("gnss", series, labels=("time from the first fix [s]", "measured − solved [cm]"))
-    return [(svg, f"Residuals of the {used.sum()} fixes used; {(~used).sum()} were left out.")]
+    count, unused = used.sum(), (~used).sum()
+    return [(svg, f"Residuals of the {count} fixes used as GNSS priors; {unused} were not used.")]
 
 
 def intensity_charts(curves: tuple[Dependency, ...]) -> Charts:
-    """Dependency curves; they must become flat (V Fig. 2.13)."""
+    """Dependency curves of the intensity; normalization makes them flat (V Fig. 2.13)."""
     out: Charts = []
     for curve in curves:
         series = [
-            ("as measured", curve.mean.x, curve.mean.raw, GREY),
+            ("as measured", curve.mean.x, curve.mean.raw, GRAY),
             ("normalized", curve.mean.x, curve.mean.normalized, BLUE),
         ]
         svg = lines(f"intensity-{curve.name}", series, labels=(curve.label, "mean intensity"))
-        words = (
+        caption = (
             f"Mean intensity by {curve.name}: the curve's deviation was "
             f"{curve.mean.spread_raw:.2f} and is {curve.mean.spread_normalized:.2f}."
         )
-        out.append((svg, words))
+        out.append((svg, caption))
         out += _same_surface_chart(curve)
     return out
 
@@ -141,17 +144,17 @@ def _same_surface_chart(curve: Dependency) -> Charts:
     if same is None:
         return []
     series = [
-        ("as measured", same.x, same.raw, GREY),
+        ("as measured", same.x, same.raw, GRAY),
         ("normalized", same.x, same.normalized, BLUE),
     ]
     label = "over that of the same surface"
     svg = lines(f"intensity-same-{curve.name}", series, labels=(curve.label, label))
-    words = (
-        f"The same, each point over the intensity of its own surface, so that it does not count "
-        f"what lies where: the deviation falls from {100.0 * same.spread_raw:.1f} % to "
+    caption = (
+        f"The same, each intensity divided by the mean of its surface, without the effect of the "
+        f"scene: the deviation falls from {100.0 * same.spread_raw:.1f} % to "
         f"{100.0 * same.spread_normalized:.1f} %."
     )
-    return [(svg, words)]
+    return [(svg, caption)]
 
 
 def _tracking_charts(steps: dict[str, NDArray[Any]], time: str) -> Charts:
@@ -168,13 +171,13 @@ def _tracking_charts(steps: dict[str, NDArray[Any]], time: str) -> Charts:
         matched = 100.0 * steps["match_ratio"].astype(np.float64)
         matched[0] = np.nan  # the first has nothing to match
         series = [("", t_s, matched, GREEN)]
-        svg = lines("tracking-share", series, labels=(time, "matched [%]"))
-        out.append((svg, "Odometry: share of the segments that found a partner."))
+        svg = lines("match-ratio", series, labels=(time, "match ratio [%]"))
+        out.append((svg, "Odometry: match ratio, the segments with a partner in the local map."))
     return out
 
 
 def _holding(key: str, facts: dict[str, Any]) -> dict[str, Any] | None:
-    """The first table, this one or one inside it, that has a key."""
+    """The first mapping that has a key: this one or a nested one."""
     if key in facts:
         return facts
     inner = [_holding(key, value) for value in facts.values() if isinstance(value, dict)]

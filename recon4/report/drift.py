@@ -1,4 +1,4 @@
-"""How far the odometry had drifted, and what the loops made of it."""
+"""Drift of the odometry, and its correction by loop closures."""
 
 from __future__ import annotations
 
@@ -15,34 +15,34 @@ _LOOPS = {EdgeKind.LOOP, EdgeKind.MANUAL}
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DriftClosed:
-    """Odometry against the final trajectory, first poses made equal."""
+    """Odometry compared with the final trajectory, aligned at the first pose."""
 
     t_s: Array
     """Times from the start of the walk [s], (N,)."""
     moved_m: Array
-    """How far the final position lies from the odometry's [m], (N,)."""
+    """Distance between final and odometry positions [m], (N,)."""
     T_map_odom: SE3
-    """Makes the first poses equal."""
+    """Aligns the first poses."""
     loop_before_m: Array
-    """Disagreement of each accepted loop with the odometry [m], (L,)."""
+    """Residual of each accepted loop closure to the odometry [m], (L,)."""
     loop_after_m: Array
-    """Disagreement of the same loops with the final poses [m], (L,)."""
+    """Residual of the same loop closures to the final poses [m], (L,)."""
 
     @property
     def end_m(self) -> float:
-        """How far the end of the walk moved [m]."""
+        """Correction of the last pose [m]."""
         return float(self.moved_m[-1])
 
     @property
     def largest_m(self) -> float:
-        """The largest move [m]."""
+        """The largest correction [m]."""
         return float(self.moved_m.max())
 
 
 def drift_closed(
     odometry: Trajectory, final: Trajectory, graph: PoseGraph | None
 ) -> DriftClosed | None:
-    """Compare them at the final times that the odometry covers; None if there are none."""
+    """Compare both at the final times covered by the odometry; None if there are none."""
     covered = (final.t_ns >= odometry.t_ns[0]) & (final.t_ns <= odometry.t_ns[-1])
     if not covered.any():
         return None
@@ -55,13 +55,13 @@ def drift_closed(
         t_s=(final.t_ns - final.t_ns[0]) / 1e9,
         moved_m=moved_m,
         T_map_odom=T_map_odom,
-        loop_before_m=_disagreement(edges, graph, odometry),
-        loop_after_m=_disagreement(edges, graph, final),
+        loop_before_m=_residuals(edges, graph, odometry),
+        loop_after_m=_residuals(edges, graph, final),
     )
 
 
 def accepted_loops(graph: PoseGraph, within: Trajectory) -> list[Edge]:
-    """Loops in the graph between nodes that the trajectory covers."""
+    """Accepted loop closures between nodes covered by the trajectory."""
     inside = (graph.t_ns >= within.t_ns[0]) & (graph.t_ns <= within.t_ns[-1])
     return [
         edge
@@ -72,7 +72,7 @@ def accepted_loops(graph: PoseGraph, within: Trajectory) -> list[Edge]:
     ]
 
 
-def _disagreement(edges: list[Edge], graph: PoseGraph | None, trajectory: Trajectory) -> Array:
+def _residuals(edges: list[Edge], graph: PoseGraph | None, trajectory: Trajectory) -> Array:
     """``|trans(T_ij^-1 T_i^-1 T_j)|`` of each edge [m], (L,)."""
     if graph is None or not edges:
         return np.empty(0)

@@ -1,4 +1,4 @@
-"""What became of the pairs that were tried."""
+"""Verdicts of the registered pairs."""
 
 from __future__ import annotations
 
@@ -14,11 +14,19 @@ from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
 from recon4.report.plan import Path
 
 _MOST_DRAWN = 4000
+_REASONS = {
+    Reason.ERROR: "error > acceptance limit",
+    Reason.NOT_CONVERGED: "no convergence",
+    Reason.FEW_MATCHES: "too few matches",
+    Reason.ROBUST: "outlier of the robust solve",
+    Reason.OPERATOR: "decision of the operator",
+}
+"""Text of each reason; others are shown as they are."""
 
 
 @dataclass(frozen=True, slots=True)
 class EdgeRow:
-    """One line of the table: a verdict with its reason, and how many edges of each kind."""
+    """A row of the table: a verdict with its reason, and the number of edges of each kind."""
 
     verdict: str
     reason: str
@@ -31,15 +39,35 @@ class EdgeRow:
         return sum(self.counts)
 
 
-def edge_rows(graph: PoseGraph) -> list[EdgeRow]:
-    """Edges by verdict and reason, in the order of the enums; rows without edges are left out."""
+def edge_rows(graph: PoseGraph, *, limit_m: float) -> list[EdgeRow]:
+    """Edges by verdict and reason, in the order of the enums; rows without edges are left out.
+
+    Args:
+        graph: Its edges are counted.
+        limit_m: Largest path discrepancy that verification accepts [m].
+    """
     count = Counter((edge.verdict, edge.reason, edge.kind) for edge in graph.edges)
     rows = [
-        EdgeRow(str(verdict), str(reason), tuple(count[verdict, reason, kind] for kind in EdgeKind))
+        EdgeRow(
+            _verdict_text(verdict, reason),
+            _reason_text(reason, limit_m),
+            tuple(count[verdict, reason, kind] for kind in EdgeKind),
+        )
         for verdict in Verdict
         for reason in Reason
     ]
     return [row for row in rows if row.total]
+
+
+def _verdict_text(verdict: Verdict, reason: Reason) -> str:
+    automatic = verdict is Verdict.REJECTED and reason is not Reason.OPERATOR
+    return "rejected automatically" if automatic else str(verdict)
+
+
+def _reason_text(reason: Reason, limit_m: float) -> str:
+    if reason is Reason.VERIFICATION:
+        return f"path discrepancy > {100.0 * limit_m:g} cm"
+    return _REASONS.get(reason, str(reason))
 
 
 def edge_paths(graph: PoseGraph) -> tuple[Path, ...]:
@@ -61,9 +89,9 @@ def edge_paths(graph: PoseGraph) -> tuple[Path, ...]:
 
 
 def spanning(graph: PoseGraph) -> NDArray[np.int64]:
-    """How many edges in the graph span each step between consecutive nodes, (N - 1,).
+    """Number of edges in the graph that span each step between consecutive nodes, (N - 1,).
 
-    One = only the odometry holds the map together there.
+    1 = the step depends on the odometry only.
     """
     change = np.zeros(len(graph) + 1, dtype=np.int64)
     for edge in graph.edges:
@@ -74,7 +102,7 @@ def spanning(graph: PoseGraph) -> NDArray[np.int64]:
 
 
 def by_verdict(graph: PoseGraph, value: Callable[[Edge], float]) -> dict[Verdict, Array]:
-    """Some number of each edge, by verdict."""
+    """A value of each edge, grouped by verdict."""
     return {
         verdict: np.array([value(e) for e in graph.edges if e.verdict is verdict], dtype=np.float64)
         for verdict in Verdict

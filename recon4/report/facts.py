@@ -1,4 +1,4 @@
-"""What the pipeline tells the report."""
+"""Facts that the pipeline passes to the report."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from recon4.settings import Settings
 
 @dataclass(frozen=True, slots=True)
 class StageTiming:
-    """What one stage took."""
+    """Time and memory of a stage."""
 
     stage: str
     seconds: float
@@ -22,12 +22,12 @@ class StageTiming:
     peak_bytes: int
     """Largest resident memory [bytes]."""
     reused: bool = False
-    """Found finished from an earlier run."""
+    """Result of an earlier run was reused."""
 
 
 @dataclass(frozen=True, slots=True)
 class InputFile:
-    """A file the result was made from."""
+    """An input file of the run."""
 
     name: str
     size_bytes: int
@@ -36,12 +36,12 @@ class InputFile:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class ReportFacts:
-    """Everything the report is written from. What is missing is left out of the report."""
+    """Input of the report. Sections without facts are left out."""
 
     title: str
     """Name of the recording or project; shown escaped."""
     created: str
-    """When the result was made, ISO 8601 UTC."""
+    """Time of the run, ISO 8601 UTC."""
     preset: str
     """Name of the preset the settings started from."""
     settings: Settings
@@ -55,8 +55,8 @@ class ReportFacts:
     rig: str = ""
     """Name of the rig."""
     crs: str = ""
-    """The map's CRS in words or as ``EPSG:…``; empty = a local frame."""
+    """Name of the map's CRS or ``EPSG:…``; empty = a local frame."""
     evaluation: Evaluation | None = None
-    """Figures against a truth, when there is one."""
+    """Evaluation against ground truth; None = there is none."""
     warnings: tuple[str, ...] = ()
-    """Further things a person should know, in words."""
+    """Further warnings for the operator."""

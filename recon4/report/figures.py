@@ -11,10 +11,10 @@ import numpy as np
 
 from recon4.geometry.se3 import Array
 
-BLUE, ORANGE, GREEN, GREY, PINK = "#0072b2", "#d55e00", "#009e73", "#999999", "#cc79a7"
-"""Okabe & Ito 2008: told apart by color-blind readers."""
+BLUE, ORANGE, GREEN, GRAY, PINK = "#0072b2", "#d55e00", "#009e73", "#999999", "#cc79a7"
+"""Okabe & Ito 2008: distinguishable for color-blind readers."""
 _INK = "#010203"
-"""Stands for the page's text color until the SVG is written."""
+"""Placeholder of the page's text color until the SVG is written."""
 _STYLE: dict[Any, Any] = {
     "svg.fonttype": "none",
     "font.family": ["sans-serif"],
@@ -37,7 +37,7 @@ _STYLE: dict[Any, Any] = {
 
 
 class Chart:
-    """One pair of axes; `svg` gives the finished picture."""
+    """One pair of axes; `svg` returns the finished chart."""
 
     def __init__(self, name: str, *, height: float = 2.7) -> None:
         import matplotlib
@@ -52,7 +52,7 @@ class Chart:
             self.axes: Any = self.figure.subplots()
 
     def svg(self, *, legend: bool = True) -> str:
-        """The picture, its text in the page's color."""
+        """The chart as SVG, with its text in the page's color."""
         import matplotlib
 
         with matplotlib.rc_context({**_STYLE, "svg.hashsalt": f"recon4 {self._name}"}):
@@ -79,7 +79,7 @@ def lines(
 ) -> str:
     """Curves ``(label, x, y, color)`` with axes named ``labels``.
 
-    The vertical axis spans at least ``least``: what is smaller is nothing, and must look like it.
+    The vertical axis spans at least ``least``, so that negligible values look small.
     """
     chart = Chart(name)
     for label, x, y, color in series:
@@ -138,12 +138,12 @@ def histogram(
 
 
 def cumulative(name: str, distance_m: Array, counts: Array, *, marks_m: Sequence[float]) -> str:
-    """Share of points nearer than a distance (V Fig. 3.2)."""
+    """Cumulative ratio of points within a distance (V Fig. 3.2)."""
     chart = Chart(name)
-    share = 100.0 * np.cumsum(counts) / max(counts.sum(), 1)
-    chart.axes.plot(100.0 * distance_m, share, color=BLUE, lw=1.6)
+    ratio = 100.0 * np.cumsum(counts) / max(counts.sum(), 1)
+    chart.axes.plot(100.0 * distance_m, ratio, color=BLUE, lw=1.6)
     for mark in marks_m:
-        at = float(np.interp(mark, distance_m, share))
+        at = float(np.interp(mark, distance_m, ratio))
         chart.axes.plot([100 * mark] * 2, [0, at], color=ORANGE, lw=1.0, ls="--")
         chart.axes.annotate(
             f"{at:.1f} %", (100 * mark, at), xytext=(4, -12), textcoords="offset points"
@@ -155,7 +155,7 @@ def cumulative(name: str, distance_m: Array, counts: Array, *, marks_m: Sequence
 
 
 def broken_at_holes(x: Array, y: Array) -> tuple[Array, Array]:
-    """A curve with NaN where three times the usual step is missing, so that no line bridges it."""
+    """Insert NaN into gaps of three times the usual step, so that no line bridges them."""
     if len(x) < 3:
         return x, y
     step = np.diff(x)
@@ -164,5 +164,5 @@ def broken_at_holes(x: Array, y: Array) -> tuple[Array, Array]:
 
 
 def thinned(count: int, most: int = 1500) -> Any:
-    """Rows that draw a long curve with few points; the last one is among them."""
+    """Rows of an even sample of a long curve, including the last one."""
     return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))

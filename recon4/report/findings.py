@@ -1,4 +1,4 @@
-"""The verdict in words: what a person must know before using the map."""
+"""Findings of the report: what the operator must know before using the map."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from recon4.report.drift import DriftClosed
 from recon4.report.facts import ReportFacts
 
 _GOAL_M = 0.05
-"""Relative error that V §3 demands [m]."""
+"""Required relative error, V §3 [m]."""
 _MOST_WARNINGS = 12
 
 
 class Level(IntEnum):
-    """How bad a finding is."""
+    """Severity of a finding."""
 
     GOOD = 0
     NOTE = 1
@@ -29,16 +29,16 @@ class Level(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One sentence."""
+    """A finding, one sentence."""
 
     level: Level
     text: str
 
 
 _HEADLINES = {
-    Level.GOOD: "Nothing stands out.",
+    Level.GOOD: "No problems found.",
     Level.NOTE: "Usable; see the notes.",
-    Level.WARNING: "Look at the warnings before you use this map.",
+    Level.WARNING: "Check the warnings before you use this map.",
     Level.BAD: "Do not use this map without checking the points below.",
 }
 
@@ -50,9 +50,9 @@ def headline(findings: list[Finding]) -> tuple[Level, str]:
 
 
 def find(facts: ReportFacts, results: Results, drift: DriftClosed | None) -> list[Finding]:
-    """Everything worth saying, worst first."""
+    """All findings, worst first."""
     found = [*_tracking(results), *_loops(results.graph), *_closed(drift)]
-    found += [*_levelled(results), *_contradicted(results)]
+    found += [*_leveled(results), *_contradicted(results)]
     found += [*_imported(results), *_accuracy(facts)]
     found += [Finding(Level.WARNING, text) for text in facts.warnings]
     return sorted(found, key=lambda finding: -finding.level)
@@ -63,7 +63,7 @@ def _tracking(results: Results) -> list[Finding]:
     if not len(lost):
         return []
     if not lost.any():
-        return [Finding(Level.GOOD, f"Tracking held in all {len(lost)} multiframes.")]
+        return [Finding(Level.GOOD, f"Tracking was not lost in any of {len(lost)} multiframes.")]
     t_ns = results.steps.get("t_mid_ns")
     where = ""
     if t_ns is not None:
@@ -79,19 +79,17 @@ def _loops(graph: PoseGraph | None) -> list[Finding]:
     accepted = sum(edge.verdict is Verdict.ACCEPTED for edge in loops)
     out = []
     if accepted:
-        out.append(Finding(Level.GOOD, f"{accepted} loops hold the map together."))
+        out.append(Finding(Level.GOOD, f"{accepted} loop closures accepted."))
     else:
-        text = "No loop was accepted: the drift of the odometry could be neither seen nor closed."
+        text = "No loop closure was accepted: the drift of the odometry is not corrected."
         out.append(Finding(Level.WARNING, text))
     unverified = sum(edge.verdict is Verdict.UNVERIFIED for edge in loops)
     if unverified > accepted:
-        text = f"{unverified} loops could not be confirmed by an alternative path."
+        text = f"{unverified} loop closures are unverified: they have no alternative path."
         out.append(Finding(Level.WARNING, text))
     broken = sum(e.kind is EdgeKind.ODOMETRY and not e.in_graph for e in graph.edges)
     if broken:
-        text = (
-            f"{broken} edges between consecutive nodes were rejected: the walk may be torn there."
-        )
+        text = f"{broken} odometry edges were rejected: the trajectory may be discontinuous there."
         out.append(Finding(Level.BAD, text))
     return out
 
@@ -100,24 +98,22 @@ def _closed(drift: DriftClosed | None) -> list[Finding]:
     if drift is None:
         return []
     out = []
-    text = (
-        f"The pose graph moved the end of the walk by {_cm(drift.end_m)} and no pose by more than "
-    )
-    # Without a loop a small move says nothing about the drift.
+    text = f"The pose graph moved the last pose by {_cm(drift.end_m)} and no pose by more than "
+    # Without a loop closure a small correction is no evidence of small drift.
     fine = drift.largest_m <= 1.0 and len(drift.loop_after_m) > 0
     out.append(Finding(Level.GOOD if fine else Level.NOTE, text + _cm(drift.largest_m) + "."))
     if len(drift.loop_after_m) and np.percentile(drift.loop_after_m, 95) > 0.10:
-        text = "One accepted loop in twenty still disagrees with the map by more than "
+        text = "5 % of the accepted loop closures have a residual to the map above "
         out.append(
             Finding(Level.WARNING, text + _cm(float(np.percentile(drift.loop_after_m, 95))) + ".")
         )
     return out
 
 
-def _levelled(results: Results) -> list[Finding]:
+def _leveled(results: Results) -> list[Finding]:
     if results.georeference.get("levelling", {}).get("source") != "none":
         return []
-    text = "The map is not levelled: heights and slopes in it are those of the sensor's first pose."
+    text = "The map is not leveled: its heights and slopes are relative to the first sensor pose."
     return [Finding(Level.WARNING, text)]
 
 
@@ -125,7 +121,7 @@ def _contradicted(results: Results) -> list[Finding]:
     count = len(results.georeference.get("georeference", {}).get("edges_rejected", []))
     if not count:
         return []
-    text = f"Positions turned down {count} of the pairs that verification had passed."
+    text = f"Rejected automatically: {count} verified loop closures contradict the GNSS priors."
     return [Finding(Level.NOTE, text)]
 
 
@@ -138,7 +134,7 @@ def _imported(results: Results) -> list[Finding]:
     warnings = [str(text) for text in imported.get("warnings", [])]
     out += [Finding(Level.WARNING, text) for text in warnings[:_MOST_WARNINGS]]
     if len(warnings) > _MOST_WARNINGS:
-        text = f"{len(warnings) - _MOST_WARNINGS} more remarks under Import."
+        text = f"{len(warnings) - _MOST_WARNINGS} more warnings under Import."
         out.append(Finding(Level.WARNING, text))
     return out
 
@@ -155,9 +151,9 @@ def _accuracy(facts: ReportFacts) -> list[Finding]:
         out.append(Finding(level, f"e_r is {_cm(e_r)}: {goal} the goal of {_cm(_GOAL_M)}."))
     rmse = found.aligned.position_m.rmse
     level = Level.GOOD if rmse <= _GOAL_M else Level.NOTE
-    out.append(Finding(level, f"The trajectory is off by {_cm(rmse)} (RMSE, SVD-aligned)."))
+    out.append(Finding(level, f"The absolute trajectory error is {_cm(rmse)} (RMSE, SVD-aligned)."))
     if found.coverage_ratio < 0.95:
-        text = f"The truth covers only {percentage(found.coverage_ratio)} of the poses."
+        text = f"The ground truth covers only {percentage(found.coverage_ratio)} of the poses."
         out.append(Finding(Level.WARNING, text))
     return out
 

@@ -1,4 +1,4 @@
-"""The quality report: one HTML file that needs nothing else (no scripts, no network)."""
+"""The quality report: one self-contained HTML file (no scripts, no network)."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from recon4.evaluation.table import number, percentage
 from recon4.mapping.tiles import TileSet
 from recon4.model.pose_graph import EdgeKind
-from recon4.report import chart_groups as pictures
+from recon4.report import chart_groups
 from recon4.report.approval import draft_block
 from recon4.report.artifacts import Results, path_length_m, read_results
 from recon4.report.drift import DriftClosed, drift_closed
-from recon4.report.edges import edge_rows
+from recon4.report.edges import EdgeRow, edge_rows
 from recon4.report.facts import ReportFacts
 from recon4.report.findings import find, headline
 from recon4.report.maps import map_chunks, rasterize
@@ -31,7 +31,7 @@ def write_report(path: Path, *, facts: ReportFacts) -> None:
 
     Args:
         path: The ``.html`` file; replaced only when the new one is complete.
-        facts: What the pipeline knows; what is missing is left out of the report.
+        facts: Facts from the pipeline; sections without facts are left out.
 
     Raises:
         StoreError: If an artifact is damaged or the file cannot be written.
@@ -40,7 +40,7 @@ def write_report(path: Path, *, facts: ReportFacts) -> None:
 
 
 def render(facts: ReportFacts) -> str:
-    """The report as HTML text; everything that a person or a file named is escaped."""
+    """The report as HTML text; all names are escaped."""
     results = read_results(facts.artifacts)
     drift = None
     if results.odometry is not None and results.final is not None and len(results.odometry):
@@ -70,15 +70,15 @@ def render(facts: ReportFacts) -> str:
         level=level.name.lower(),
         verdict=verdict,
         key_figures=_key_figures(facts, results, drift, tiles),
-        maps=pictures.maps_pictures(rasters),
-        walk=pictures.walk_pictures(results, drift, rasters),
-        edges=pictures.edges_pictures(results, rasters),
+        maps=chart_groups.map_figures(rasters),
+        walk=chart_groups.trajectory_figures(results, drift, rasters),
+        edges=chart_groups.edge_figures(results, rasters),
         edge_kinds=[str(kind) for kind in EdgeKind],
-        edge_rows=edge_rows(results.graph) if results.graph is not None else [],
-        accuracy=pictures.accuracy_pictures(facts),
-        intensity=pictures.intensity_pictures(results, rasters),
+        edge_rows=_edge_rows(facts, results),
+        accuracy=chart_groups.accuracy_figures(facts),
+        intensity=chart_groups.intensity_figures(results, rasters),
         placed=placed_rows(results.georeference),
-        placed_charts=pictures.georeference_pictures(results),
+        placed_charts=chart_groups.georeference_figures(results),
         imported=imported_rows(results.imported),
         changed=changed_settings(facts.settings, facts.preset),
         all_settings=_flat(asdict(facts.settings)),
@@ -86,15 +86,21 @@ def render(facts: ReportFacts) -> str:
         total_s=sum(stage.seconds for stage in facts.stages),
         peak_bytes=max((stage.peak_bytes for stage in facts.stages), default=0),
     )
-    return page.encode("utf-8", errors="replace").decode("utf-8")  # names that are not text
+    return page.encode("utf-8", errors="replace").decode("utf-8")  # invalid file names
+
+
+def _edge_rows(facts: ReportFacts, results: Results) -> list[EdgeRow]:
+    if results.graph is None:
+        return []
+    return edge_rows(results.graph, limit_m=facts.settings.verification.limit_m)
 
 
 def _frame(facts: ReportFacts, results: Results) -> str:
-    """What the coordinates mean."""
+    """Frame and unit of the coordinates."""
     if facts.crs:
-        return f"{facts.crs} (metres)"
-    levelled = results.georeference.get("levelling", {}).get("source") != "none"
-    return f"local map frame, {'z up' if levelled else 'not levelled'} (metres)"
+        return f"{facts.crs} (meters)"
+    leveled = results.georeference.get("levelling", {}).get("source") != "none"
+    return f"local map frame, {'z up' if leveled else 'not leveled'} (meters)"
 
 
 def changed_settings(settings: Settings, preset_name: str) -> list[tuple[str, str, str]]:
@@ -112,7 +118,7 @@ def _key_figures(
     if walk is not None and len(walk) > 1:
         seconds = (walk.t_ns[-1] - walk.t_ns[0]) / 1e9
         out.append(("duration", _duration(seconds), "min:s"))
-        out.append(("way", number(float(path_length_m(walk)[-1]), 1), "m"))
+        out.append(("path length", number(float(path_length_m(walk)[-1]), 1), "m"))
     if "lost" in results.steps:
         out.append(("multiframes", _grouped(len(results.steps["lost"])), ""))
     if tiles is not None:
@@ -120,10 +126,14 @@ def _key_figures(
     if results.graph is not None:
         kept = sum(edge.in_graph for edge in results.graph.edges)
         out.append(
-            ("edges kept / tried", f"{_grouped(kept)} / {_grouped(len(results.graph.edges))}", "")
+            (
+                "edges accepted / registered",
+                f"{_grouped(kept)} / {_grouped(len(results.graph.edges))}",
+                "",
+            )
         )
     if drift is not None:
-        name = "largest drift closed" if len(drift.loop_after_m) else "largest correction"
+        name = "largest drift corrected" if len(drift.loop_after_m) else "largest correction"
         out.append((name, number(drift.largest_m, 1, 100.0), "cm"))
     if facts.evaluation is not None and facts.evaluation.relative is not None:
         e_r = facts.evaluation.relative.point_weighted.mean_m

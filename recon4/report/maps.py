@@ -1,4 +1,4 @@
-"""Pictures of the map: points summed into pixels, in two passes with little memory."""
+"""Images of the map: points summed into pixels, in two passes with little memory."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from recon4.mapping.tiles import TileSet
 
 MAX_PIXELS = 1300
 _LEVELS = 48
-"""Shades of a picture: fewer compress better, more nobody sees."""
+"""Shades of an image: fewer compress better, more are not visible."""
 _BIN_M = 0.25
 _TRIM = 0.001
-"""Share of points left outside the picture at either end: reflections far away."""
+"""Fraction of points cut off at either end of the image: reflections far away."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,14 +28,14 @@ class MapChunk:
     xyz_m: Array
     """Points in the frame of the map [m], (N, 3)."""
     intensity: NDArray[np.integer]
-    """As the sensor gave it, (N,)."""
+    """As measured by the sensor, (N,)."""
     normalized: NDArray[np.floating] | None = None
-    """After normalization, (N,); None = was not made."""
+    """After normalization, (N,); None = not normalized."""
 
 
 @dataclass(frozen=True, slots=True)
 class MapProjection:
-    """From where the map is looked at."""
+    """Direction of view on the map."""
 
     name: str
     right: int
@@ -54,7 +54,7 @@ PROJECTIONS = (ABOVE, FRONT, SIDE)
 
 @dataclass(frozen=True, slots=True)
 class ImageFrame:
-    """Which part of the plane a picture shows."""
+    """Part of the plane that an image shows."""
 
     left_m: float
     bottom_m: float
@@ -68,7 +68,7 @@ class ImageFrame:
 
 @dataclass(slots=True, eq=False)
 class Raster:
-    """Sums over the points in each pixel; row 0 is the top of the picture."""
+    """Sums over the points in each pixel; row 0 is the top of the image."""
 
     view: MapProjection
     frame: ImageFrame
@@ -117,7 +117,7 @@ class Raster:
 
 
 def map_chunks(tiles: TileSet, *, points: int = 8_000_000) -> Iterator[MapChunk]:
-    """The points of a map, or an even sample of them where there are more than so many."""
+    """The points of a map, or an even sample of at most this many."""
     ratio = min(1.0, points / max(len(tiles), 1))
     normalized = "intensity_normalized" in tiles.fields
     for tile in tiles:
@@ -132,14 +132,14 @@ def map_chunks(tiles: TileSet, *, points: int = 8_000_000) -> Iterator[MapChunk]
 def rasterize(
     chunks: Callable[[], Iterable[MapChunk]], views: tuple[MapProjection, ...] = PROJECTIONS
 ) -> list[Raster]:
-    """Sum the points of a map into pictures, one a view, all of one scale.
+    """Sum the points of a map into images, one per view, all of one scale.
 
     Args:
         chunks: Makes a pass over the map; called twice.
-        views: From where to look.
+        views: Directions of view.
 
     Returns:
-        Nothing if the map has no points.
+        Empty if the map has no points.
     """
     bounds = _bounds(chunks())
     if bounds is None:
@@ -154,7 +154,7 @@ def rasterize(
 
 
 def ink_png(raster: Raster) -> bytes:
-    """Black where the points are many: walls seen along themselves are lines."""
+    """Image of the point density: walls seen from above are dark lines."""
     shade = _steps(raster.density**1.3)
     rgba = np.zeros((*shade.shape, 4))
     rgba[..., 3] = shade
@@ -162,7 +162,7 @@ def ink_png(raster: Raster) -> bytes:
 
 
 def height_png(raster: Raster) -> tuple[bytes, tuple[float, float]]:
-    """Color by height, paler where the points are few; with the heights at both ends [m]."""
+    """Image of the mean height, paler where points are few; with the ends of its scale [m]."""
     from matplotlib import colormaps
 
     z_m = raster.mean(raster.z_sum)
@@ -173,7 +173,7 @@ def height_png(raster: Raster) -> tuple[bytes, tuple[float, float]]:
 
 
 def intensity_png(raster: Raster, *, normalized: bool) -> tuple[bytes, tuple[float, float]]:
-    """Grey by mean intensity; with the intensities shown black and white."""
+    """Gray image of the mean intensity; with the intensities of black and white."""
     mean = raster.mean(raster.normalized_sum if normalized else raster.intensity_sum)
     low, high = _ends(mean, 2.0, 98.0)
     shade = _steps((mean - low) / (high - low))
@@ -182,7 +182,7 @@ def intensity_png(raster: Raster, *, normalized: bool) -> tuple[bytes, tuple[flo
 
 
 def _bounds(chunks: Iterable[MapChunk]) -> tuple[Array, Array] | None:
-    """Where all but a thousandth of the points lie, a quarter of a metre exact."""
+    """Bounds of all but a thousandth of the points, in steps of 0.25 m."""
     bins: list[Counter[int]] = [Counter(), Counter(), Counter()]
     for chunk in chunks:
         if not len(chunk.xyz_m):
@@ -207,7 +207,7 @@ def _trimmed(counter: Counter[int]) -> tuple[float, float]:
 
 
 def _pixel_m(extent_m: float) -> float:
-    """1, 2 or 5 times a power of ten, so that the extent fits into the picture."""
+    """1, 2 or 5 times a power of ten, so that the extent fits into the image."""
     wanted = max(extent_m / MAX_PIXELS, 0.01)
     power = 10.0 ** np.floor(np.log10(wanted))
     return float(next(step * power for step in (1, 2, 5, 10) if step * power >= wanted * 0.999))

@@ -1,4 +1,4 @@
-"""A picture of the map with lines on it, a scale bar and coordinates, as inline SVG."""
+"""Plan of the map with lines, a scale bar and coordinates, as inline SVG."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from recon4.report.figures import thinned
 from recon4.report.maps import ImageFrame, MapProjection
 
 _LONGEST = 1000.0
-"""Units of the longer side: a tall picture is shown smaller, and its letters must not shrink."""
+"""Units of the longer side: a tall image is scaled down, and its text must stay readable."""
 _TICKS = 6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Path:
-    """One curve, or many separate pieces."""
+    """A curve, or many separate pieces."""
 
     css: str
-    """Class in the page's style sheet; ours, never a person's text."""
+    """CSS class; a constant, never user input."""
     pieces: tuple[Array, ...]
     """Points in the frame of the map [m], (N, 3) each."""
 
@@ -35,15 +35,15 @@ def plan_svg(
     css: str = "",
     marks: tuple[tuple[str, Array], ...] = (),
 ) -> str:
-    """Draw a picture of the map.
+    """Draw a plan of the map.
 
     Args:
         png: The map; None = lines only.
-        view: From where it is looked at.
-        frame: What part of the plane the picture shows.
+        view: Direction of view.
+        frame: Part of the plane that the image shows.
         paths: Curves, later ones above earlier ones.
-        css: Class of the picture of the map (``ink`` is turned white on dark pages).
-        marks: Places to mark: class and point (3,).
+        css: CSS class of the image (``ink`` is inverted on dark pages).
+        marks: Points to mark: CSS class and position (3,).
     """
     scale = _LONGEST / (max(frame.width, frame.height) * frame.pixel_m)
     width, height = (scale * n * frame.pixel_m for n in (frame.width, frame.height))

@@ -1,4 +1,4 @@
-"""What the stages wrote down, in words and units for the tables of the report."""
+"""Rows of the report's tables: recorded facts with labels and units."""
 
 from __future__ import annotations
 
@@ -10,36 +10,36 @@ from recon4.evaluation.table import number
 
 Rows = list[tuple[str, str]]
 _SOURCES = {
-    "imu": "gravity felt by the IMU",
+    "imu": "gravity measured by the IMU",
     "ins": "orientations of the INS",
     "floor": "the dominant floor",
-    "none": "not levelled: neither IMU nor floor says what is level",
+    "none": "not leveled: neither an IMU nor a floor was available",
 }
 _NO_ROW = {"t_ns", "used", "residual_enu_m", "wkt", "warnings", "derived", "outcome"}
-"""Shown as charts, as lists of their own, or too long for a row."""
+"""Shown as charts or separate lists, or too long for a row."""
 
 
 def placed_rows(georeference: Mapping[str, Any]) -> Rows:
-    """Rows of ``georeference.json``: how the map lies."""
+    """Rows of ``georeference.json``: leveling and georeference."""
     level = dict(georeference.get("levelling", {}))
     out: Rows = []
     source = level.pop("source", None)
     if source is not None:
-        out.append(("levelled by", _SOURCES.get(source, str(source))))
+        out.append(("leveled by", _SOURCES.get(source, str(source))))
     if source != "none":
-        out += _rows(level, "levelling: ")
+        out += _rows(level, "leveling: ")
     inner = dict(georeference.get("georeference", {}))
     if "georeferenced" in inner:
         out.append(("georeferenced", "yes" if inner.pop("georeferenced") else "no"))
     if "edges_rejected" in inner:
-        out.append(("pairs turned down by the positions", str(len(inner.pop("edges_rejected")))))
+        out.append(("loop closures rejected by GNSS priors", str(len(inner.pop("edges_rejected")))))
     out += _rows(inner, "") + _rows(georeference.get("crs") or {}, "CRS: ")
     rest = {k: v for k, v in georeference.items() if k not in {"levelling", "georeference", "crs"}}
     return out + _rows(rest, "")
 
 
 def imported_rows(report: Mapping[str, Any]) -> Rows:
-    """Rows of ``report.json``: what was read."""
+    """Rows of ``report.json``: the import."""
     out: Rows = []
     for name, value in report.items():
         if name == "sensors":
@@ -59,23 +59,23 @@ def imported_rows(report: Mapping[str, Any]) -> Rows:
 
 def quantity(name: str, value: Any) -> tuple[str, str]:
     """A name without its unit, and the value with it."""
-    words = name.replace("_", " ")
+    label = name.replace("_", " ")
     if name.endswith("_ns") and isinstance(value, int):
         if value < _FIRST_DATE_NS:
-            return words.removesuffix(" ns"), f"{value / 1e9:.3f} s (a clock without a date)"
-        moment = datetime.fromtimestamp(value / 1e9, UTC)
-        text = moment.isoformat(timespec="milliseconds").replace("+00:00", "")
-        return words.removesuffix(" ns"), f"{text.replace('T', ' ')} (sensor's clock, UTC)"
+            return label.removesuffix(" ns"), f"{value / 1e9:.3f} s (a clock without a date)"
+        time = datetime.fromtimestamp(value / 1e9, UTC)
+        text = time.isoformat(timespec="milliseconds").replace("+00:00", "")
+        return label.removesuffix(" ns"), f"{text.replace('T', ' ')} (sensor's clock, UTC)"
     for ending, unit, digits in _UNITS:
         if name.endswith(ending):
-            return words.removesuffix(ending.replace("_", " ")), _text(value, digits) + (
+            return label.removesuffix(ending.replace("_", " ")), _text(value, digits) + (
                 f" {unit}" if value is not None else ""
             )
-    return words, _text(value, 3)
+    return label, _text(value, 3)
 
 
 _FIRST_DATE_NS = 365 * 86_400 * 10**9
-"""Times of the first year of the epoch were counted from some start, not read off a calendar."""
+"""Earlier times are relative to the start of the clock, not dates."""
 
 _UNITS = (
     ("lat_deg", "°", 8),
@@ -96,8 +96,8 @@ def _rows(values: Mapping[str, Any], prefix: str) -> Rows:
         if isinstance(value, Mapping):
             out += _rows(value, f"{prefix}{name.replace('_', ' ')} ")
         else:
-            words, text = quantity(name, value)
-            out.append((prefix + (words or name), text))
+            label, text = quantity(name, value)
+            out.append((prefix + (label or name), text))
     return out
 
 

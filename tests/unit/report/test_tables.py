@@ -1,4 +1,4 @@
-"""Tables of the report: words and units instead of names of fields."""
+"""Tables of the report: labels and units instead of field names."""
 
 from pathlib import Path
 
@@ -12,7 +12,7 @@ from recon4.report.html import render
 from recon4.report.rows import imported_rows, placed_rows, quantity
 from tests.unit.report.test_report import facts  # noqa: F401
 
-MOMENT = ("t first", "2014-11-04 02:46:49.554 (sensor's clock, UTC)")
+TIME = ("t first", "2014-11-04 02:46:49.554 (sensor's clock, UTC)")
 
 
 @pytest.mark.parametrize(
@@ -25,7 +25,7 @@ MOMENT = ("t first", "2014-11-04 02:46:49.554 (sensor's clock, UTC)")
         ("spread_deg", None, ("spread", "–")),
         ("points_near", 12_345, ("points near", "12\u202f345")),
         ("usable", True, ("usable", "yes")),
-        ("t_first_ns", 1415069209554522896, MOMENT),
+        ("t_first_ns", 1415069209554522896, TIME),
         ("t_last_ns", 2_200_000_000, ("t last", "2.200 s (a clock without a date)")),
     ],
 )  # fmt: skip
@@ -33,7 +33,7 @@ def test_quantities_have_their_unit(name, value, row):
     assert quantity(name, value) == row
 
 
-def test_a_map_that_nothing_levelled_says_so_and_lists_no_angles():
+def test_a_map_that_is_not_leveled_has_no_angles():
     placed = {
         "levelling": {"source": "none", "roll_deg": 0.0, "spread_deg": None},
         "georeference": {"georeferenced": False, "reason": "no GNSS in the recording"},
@@ -41,24 +41,25 @@ def test_a_map_that_nothing_levelled_says_so_and_lists_no_angles():
 
     rows = dict(placed_rows(placed))
 
-    assert rows["levelled by"].startswith("not levelled")
+    assert rows["leveled by"].startswith("not leveled")
     assert rows["georeferenced"] == "no"
     assert rows["reason"] == "no GNSS in the recording"
     assert not [name for name in rows if "roll" in name]
 
 
-def test_pairs_that_the_positions_turned_down_are_counted_and_not_listed(facts):  # noqa: F811
-    told = {"georeferenced": True, "edges_rejected": [12, 40]}
-    nothing = told | {"edges_rejected": []}
+def test_loop_closures_that_contradict_gnss_are_counted_and_not_listed(facts):  # noqa: F811
+    georeference = {"georeferenced": True, "edges_rejected": [12, 40]}
+    nothing = georeference | {"edges_rejected": []}
 
-    rows = dict(placed_rows({"georeference": told}))
-    found = find(facts, Results(georeference={"georeference": told}), None)
+    rows = dict(placed_rows({"georeference": georeference}))
+    found = find(facts, Results(georeference={"georeference": georeference}), None)
     none = find(facts, Results(georeference={"georeference": nothing}), None)
 
-    assert rows["pairs turned down by the positions"] == "2"
+    assert rows["loop closures rejected by GNSS priors"] == "2"
     assert "edges rejected" not in rows
-    assert [f.level for f in found if "Positions turned down 2 " in f.text] == [Level.NOTE]
-    assert not [f for f in none if "turned down" in f.text]
+    start = "Rejected automatically: 2 "
+    assert [f.level for f in found if f.text.startswith(start)] == [Level.NOTE]
+    assert not [f for f in none if "Rejected automatically" in f.text]
 
 
 def test_import_names_each_sensor_and_what_is_missing():
@@ -89,8 +90,8 @@ def test_a_map_that_is_not_level_is_a_warning_and_not_called_z_up(facts, tmp_pat
     page = render(facts)
     found = find(facts, Results(georeference={"levelling": {"source": "none"}}), None)
 
-    assert "local map frame, not levelled (metres)" in page
-    assert [f for f in found if f.level is Level.WARNING and "not levelled" in f.text]
+    assert "local map frame, not leveled (meters)" in page
+    assert [f for f in found if f.level is Level.WARNING and "not leveled" in f.text]
     assert not find(facts, Results(georeference={"levelling": {"source": "imu"}}), None)
 
 
