@@ -3,6 +3,7 @@
 import re
 import shlex
 from dataclasses import fields
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -32,6 +33,9 @@ PYTHON_FILE = re.compile(r"(?<![\w./*{},-])[\w/]+\.py\b")
 MODULE = re.compile(r"`((?:recon4|app)(?:\.\w+)+)")
 ROUTE = re.compile(r"(?:^|`)(GET|HEAD|POST|PUT|PATCH|DELETE) +(/api[\w/<>{}-]*)", re.MULTILINE)
 SETTING = re.compile(r"`(?:--set )?(\w+)\.(\w+)(?: ?=[^`]*)?`")
+IDENTIFIER = re.compile(r"`([A-Za-z_][\w.]*(?:\([^`\n]*)?)`")
+INVENTED = {"run_x", "g_beam", "H_k", "g_k"}
+"""Names that stand for others: an example, symbols of equations."""
 SUFFIXES = {"json", "npz", "npy", "g2o", "laz", "csv", "tum", "toml", "py", "las"}
 CODE = re.compile(r"^```\w*\n(.*?)^```|`([^`\n]+)`|^ {4}(\S[^\n]*)$", re.MULTILINE | re.DOTALL)
 TYPED = re.compile(r"^recon4 ([a-z][^\n#]*)", re.MULTILINE)
@@ -117,6 +121,26 @@ def test_settings_a_page_names_exist(page):
     defaults = Settings()
 
     assert [found for found in named if not hasattr(getattr(defaults, found[0]), found[1])] == []
+
+
+def test_names_of_the_code_in_a_page_exist(page):
+    named = {
+        name
+        for code in IDENTIFIER.findall(page.read_text("utf-8"))
+        if code.rpartition(".")[2] not in SUFFIXES
+        for name in re.findall(r"\w+", code.partition("(")[0])
+        if "_" in name.strip("_") or re.search("[a-z][A-Z]", name)
+    }
+
+    assert sorted(name for name in named - INVENTED if name not in all_code()) == []
+
+
+@cache
+def all_code():
+    """The Python and JavaScript files of the repository as one text."""
+    tops = [ROOT / top for top in ("recon4", "app", "web", "tests")]
+    files = [path for top in tops for path in top.rglob("*") if path.suffix in {".py", ".js"}]
+    return "".join(path.read_text("utf-8") for path in files if path.name != "test_docs.py")
 
 
 @pytest.fixture(scope="module")
@@ -218,6 +242,7 @@ def test_the_patterns_of_these_tests_find_what_they_should():
         ("POST", "/api/a/<id>"),
         ("GET", "/api/b"),
     ]
+    assert IDENTIFIER.findall("`a.b_c(d)`, `e_f` and `g h`") == ["a.b_c(d)", "e_f"]
     assert SETTING.findall("`map.voxel_m=0.05`, `--set a.b=c`, `graph.mode`") == [
         ("map", "voxel_m"),
         ("a", "b"),
