@@ -4,7 +4,7 @@
 #   make demo [HEADLESS=1]   simulate a walk, map it, serve it in the browser
 #   make test                everything that has to hold; `make unit`, `make lint`, … are its parts
 #   make bench               benchmarks, by hand: they need a quiet machine
-#   make docs                write the generated pages of docs/
+#   make docs                write what is generated: docs/settings.md, web/shared/http_types.d.ts
 #   make constraints         pin the versions that are installed now
 #   make lock                write requirements/*.lock: every file of every version, with its hash
 #   make audit               known vulnerabilities of what is locked (needs the network)
@@ -48,9 +48,7 @@ e2e: $(VENV)/installed-dev
 	$(BIN)/python -m pytest -m e2e --durations=10
 
 web:
-	@if command -v node >/dev/null; then \
-		find web -name '*.js' -exec node --check {} \; && node --test tests/web/*.test.js; \
-	else echo 'recon4: no node here: the pages are checked in the browser only'; fi
+	.ci/web
 
 bench: $(VENV)/installed-dev
 	@for name in decode false_loops real_sequences; do \
@@ -60,6 +58,7 @@ bench: $(VENV)/installed-dev
 
 docs: $(VENV)/installed-dev
 	$(BIN)/recon4 settings --markdown > docs/settings.md
+	$(BIN)/python -m tests.http_types
 
 constraints: $(VENV)/installed-dev
 	$(BIN)/pip freeze --all --exclude-editable | grep '==' > constraints.txt

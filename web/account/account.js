@@ -1,13 +1,12 @@
 // One's own account: sessions and password.
 
 import { changePassword, endMySession, listMySessions, readMe } from "../shared/api.js";
-import { attempt } from "../shared/dom.js";
+import { attempt, byId, fields } from "../shared/dom.js";
 import "../shared/page_head.js";
 import "./session_list.js";
 
-const byId = (id) => document.getElementById(id);
 const list = document.querySelector("session-list");
-const form = byId("password");
+const form = byId("password", HTMLFormElement);
 
 const me = await attempt(byId("message"), readMe);
 if (me) byId("title").textContent = me.login ? `${me.name}, ${me.role}` : "There is no login here";
@@ -17,7 +16,7 @@ list.source = { read: listMySessions, end: endMySession };
 form.addEventListener("submit", async (event) => {
   event.preventDefault();
   byId("password-done").textContent = "";
-  const { old, fresh } = form.elements;
+  const { old, fresh } = fields(form);
   if (!(await attempt(byId("password-message"), () => changePassword(old.value, fresh.value))))
     return;
   form.reset();

@@ -1,9 +1,11 @@
 // The login, and the first admin of a server nobody can sign in to yet.
 
 import { isSignedIn, setUp, signIn } from "../shared/api.js";
+import { byId, fields, targetOf } from "../shared/dom.js";
 
-const byId = (id) => document.getElementById(id);
-const form = byId("login");
+const form = byId("login", HTMLFormElement);
+const controls = fields(form);
+const go = byId("go", HTMLButtonElement);
 const given = new URLSearchParams(location.hash.slice(1));
 const setup = given.get("setup");
 history.replaceState(null, "", location.pathname); // the one-time link stays in no history
@@ -19,32 +21,32 @@ function offerSetup() {
   document.title = "First admin · recon4";
   byId("title").textContent = "Make the first admin";
   byId("words").textContent = "Nobody can sign in to this server yet. This link works once";
-  byId("go").textContent = "Make admin and sign in";
+  go.textContent = "Make admin and sign in";
   byId("words").hidden = byId("hint").hidden = false;
-  form.elements.password.autocomplete = "new-password";
-  form.elements.password.minLength = 12;
+  controls.password.autocomplete = "new-password";
+  controls.password.minLength = 12;
 }
 
 async function submit(event) {
   event.preventDefault();
   const message = byId("message");
   message.textContent = "";
-  byId("go").disabled = true;
+  go.disabled = true;
   try {
-    const [name, password] = [form.elements.name.value, form.elements.password.value];
+    const [name, password] = [controls.name.value, controls.password.value];
     await (setup ? setUp(setup, name, password) : signIn(name, password));
     location.replace(next());
   } catch (error) {
     message.textContent = error.message;
-    byId("go").disabled = false;
-    form.elements.password.select();
+    go.disabled = false;
+    controls.password.select();
   }
 }
 
 form.addEventListener("submit", submit);
 byId("show").addEventListener("change", (event) => {
-  form.elements.password.type = event.target.checked ? "text" : "password";
+  controls.password.type = targetOf(event).checked ? "text" : "password";
 });
 if (setup) offerSetup();
 else if (await isSignedIn()) location.replace(next());
-form.elements.name.focus();
+controls.name.focus();

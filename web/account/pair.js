@@ -1,10 +1,15 @@
 // The phone's side of pairing: uses the one-time link, or shows six digits and waits to be let in.
 
-import { askToPair, claimPairing, isSignedIn, liveUrl, redeemInvitation } from "../shared/api.js";
-import { attempt } from "../shared/dom.js";
+import {
+  requestPairing,
+  claimPairing,
+  isSignedIn,
+  liveUrl,
+  redeemInvitation,
+} from "../shared/api.js";
+import { attempt, byId, fields } from "../shared/dom.js";
 
 const CLAIM_EVERY_MS = 2000;
-const byId = (id) => document.getElementById(id);
 const AGAIN = "again"; // the session has ended
 const token = location.hash.slice(1);
 history.replaceState(null, "", location.pathname); // the one-time link stays in no history
@@ -20,7 +25,9 @@ async function useInvitation() {
 
 async function ask(event) {
   event.preventDefault();
-  const asked = await attempt(byId("message"), () => askToPair(event.target.elements.phone.value));
+  const asked = await attempt(byId("message"), () =>
+    requestPairing(fields(event.target).phone.value),
+  );
   if (!asked) return;
   byId("ask").hidden = byId("else").hidden = true;
   byId("words").textContent = "Somebody who is signed in types this code on the page Phone";

@@ -9,13 +9,12 @@ import {
   readAudit,
   readMe,
 } from "../shared/api.js";
-import { attempt, make } from "../shared/dom.js";
+import { attempt, byId, fields, make } from "../shared/dom.js";
 import { when } from "../shared/format.js";
 import "../shared/page_head.js";
 import "./session_list.js";
 import { withPassword } from "./recent_login.js";
 
-const byId = (id) => document.getElementById(id);
 const ROLES = {
   viewer: "Viewer: looks and measures",
   operator: "Operator: records and processes",
@@ -109,13 +108,13 @@ async function readLog(before) {
 }
 
 const sessions = document.querySelector("session-list");
-const form = byId("add");
-form.elements.role.append(
+const form = byId("add", HTMLFormElement);
+fields(form).role.append(
   ...Object.entries(ROLES).map(([value, words]) => make("option", { value }, words)),
 );
 form.addEventListener("submit", async (event) => {
   event.preventDefault();
-  const { who, role, password } = form.elements;
+  const { who, role, password } = fields(form);
   const fresh = { name: who.value, role: role.value, password: password.value };
   if (!(await attempt(byId("add-message"), () => withPassword(() => addPerson(fresh))))) return;
   form.reset();

@@ -1,14 +1,14 @@
 // The laptop's side of pairing: a QR code for one phone, or the digits a phone shows.
 
 import { approvePhone, invitePhone, readPairing } from "../shared/api.js";
-import { attempt, make } from "../shared/dom.js";
+import { attempt, byId, fields, make } from "../shared/dom.js";
 import "../shared/page_head.js";
 
 const MAY = { operator: "look, and start, mark and stop", viewer: "look only" };
-const byId = (id) => document.getElementById(id);
 let timer = null;
 
-const role = () => document.querySelector("input[name=role]:checked").value;
+const role = () =>
+  /** @type {HTMLInputElement} */ (document.querySelector("input[name=role]:checked")).value;
 
 function showRoles(roles) {
   const one = (value, k) => {
@@ -40,8 +40,8 @@ async function invite() {
   const invitation = await attempt(byId("message"), () => invitePhone(role()));
   if (!invitation) return;
   const show = () => {
-    const link = invitation.links[byId("host").selectedIndex];
-    byId("qr").src = link.qr;
+    const link = invitation.links[byId("host", HTMLSelectElement).selectedIndex];
+    byId("qr", HTMLImageElement).src = link.qr;
     byId("pair-url").textContent = link.url.split("#")[0];
   };
   byId("host").replaceChildren(...invitation.links.map(({ host }) => make("option", {}, host)));
@@ -74,7 +74,7 @@ function hideCode() {
 async function approve(event) {
   event.preventDefault();
   byId("approved").textContent = "";
-  const code = event.target.elements.code.value.replace(/\s/g, "");
+  const code = fields(event.target).code.value.replace(/\s/g, "");
   const phone = await attempt(byId("approve-message"), () => approvePhone(code, role()));
   if (!phone) return;
   event.target.reset();

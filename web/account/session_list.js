@@ -16,7 +16,7 @@ export function device(agent) {
     : agent.slice(0, 40) || "Unknown program";
 }
 
-class SessionList extends HTMLElement {
+export class SessionList extends HTMLElement {
   #source;
   #message = make("p", { className: "error", role: "alert" });
   #body = make("tbody");

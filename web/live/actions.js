@@ -7,24 +7,23 @@ import {
   startCapture,
   steerCapture,
 } from "../shared/api.js";
-import { attempt, make } from "../shared/dom.js";
-
-const byId = (id) => document.getElementById(id);
+import { attempt, byId, make } from "../shared/dom.js";
 
 const LONGEST_NOTE_S = 600;
 
 /** A dialog with a form; it closes when `act(form)` succeeds. */
 function dialog(id, act) {
-  const element = byId(id);
+  const element = byId(id, HTMLDialogElement);
   const form = element.querySelector("form");
   const message = element.querySelector(".error");
   form.querySelector(".cancel")?.addEventListener("click", () => element.close());
   form.addEventListener("submit", async (event) => {
-    if (event.submitter?.value === "cancel") return;
+    const submitter = /** @type {HTMLButtonElement | null} */ (event.submitter);
+    if (submitter?.value === "cancel") return;
     event.preventDefault();
-    if (event.submitter) event.submitter.disabled = true;
+    if (submitter) submitter.disabled = true;
     const done = await attempt(message, () => act(form));
-    if (event.submitter) event.submitter.disabled = false;
+    if (submitter) submitter.disabled = false;
     if (done !== undefined) element.close();
   });
   return () => {
@@ -86,12 +85,12 @@ async function begin() {
 }
 
 export function mark() {
-  if (!byId("note").open) touched = performance.now();
+  if (!byId("note", HTMLDialogElement).open) touched = performance.now();
   byId("note").querySelector("form").reset();
   showMark();
 }
 
-export const nameThePlace = () => (byId("more").close(), showName());
+export const nameThePlace = () => (byId("more", HTMLDialogElement).close(), showName());
 
 function stop(text) {
   byId("ending-words").textContent = text;

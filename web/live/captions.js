@@ -80,7 +80,10 @@ const rateChip = (name, rate) =>
     ? { text: `${name} silent`, error: true, silent: name }
     : { text: `${name} ${Math.round(rate)}/s` };
 
-/** All values of sensors and supplies: [[name, value], …]; LiDARs have a separate table. */
+/**
+ * All values of sensors and supplies: [[name, value], …]; LiDARs have a separate table.
+ * @param {Record<string, any>} newest
+ */
 export function supplies({ rates = {}, fix, status, battery, notes }, phone) {
   if (!status) return [];
   const { free_bytes: free, left_s: left } = status.disk;
@@ -140,7 +143,12 @@ function fixText({ quality, sd_m: sd }) {
 const duration = (s) =>
   s > 7200 ? `${Math.floor(s / 3600)} h` : `${Math.max(0, Math.floor(s / 60))} min`;
 
-/** What the operator should do next. */
+/**
+ * What the operator should do next.
+ * @param {string} state
+ * @param {Record<string, any>} newest
+ * @param {{mayCapture: boolean | null, mapped: boolean}} page
+ */
 export function hint(state, { loop }, { mayCapture, mapped }) {
   if (state === "none")
     return mayCapture

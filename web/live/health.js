@@ -1,9 +1,8 @@
 // Sensors, disk, batteries and warnings: in brief on the page, all values in a sheet.
 
-import { make } from "../shared/dom.js";
+import { byId, make } from "../shared/dom.js";
 import { chips, lidarRow, linkLost, supplies } from "./captions.js";
 
-const byId = (id) => document.getElementById(id);
 const shown = new Map();
 const NO_POINTS = {
   level: "info",
@@ -33,7 +32,7 @@ export function drawHealth({ scene, linked, battery, drawsPoints }) {
     ? [...(newest.words ?? []), ...(drawsPoints ? [] : [NO_POINTS])]
     : [linkLost(state, scene.silentS)];
   drawWarnings(warnings);
-  if (byId("health").open) drawSheet(newest, warnings, battery);
+  if (byId("health", HTMLDialogElement).open) drawSheet(newest, warnings, battery);
 }
 
 function drawWarnings(warnings) {
@@ -63,7 +62,7 @@ function vibrateOnNew(errors) {
 
 /** Opens the sheet. */
 export function showHealth({ scene, battery }) {
-  byId("health").showModal();
+  byId("health", HTMLDialogElement).showModal();
   drawSheet(scene.newest, scene.newest.words ?? [], battery);
 }
 

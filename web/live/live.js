@@ -2,7 +2,7 @@
 
 import { readMe } from "../shared/api.js";
 import { CloudCanvas } from "../shared/cloud_canvas.js";
-import { attempt } from "../shared/dom.js";
+import { attempt, byId, targetOf } from "../shared/dom.js";
 import { drawActions, mark, nameThePlace } from "./actions.js";
 import { Camera, moveByPointer } from "./camera.js";
 import { drawHealth, showHealth } from "./health.js";
@@ -14,10 +14,9 @@ const HEAD_M = 0.5;
 const LEAST_FREE_PX = 80;
 const COLORS = ["path", "gap", "me", "ink", "sky", "accent", "well", "poor"];
 const SUN = "recon4.live.sun";
-const byId = (id) => document.getElementById(id);
 const cloud = new CloudCanvas(byId("points"));
 const camera = new Camera();
-const overlay = byId("overlay").getContext("2d");
+const overlay = byId("overlay", HTMLCanvasElement).getContext("2d");
 const dark = matchMedia("(prefers-color-scheme: dark)");
 let [follow, byHeight, ceiling, linked, due] = [true, false, false, true, false];
 let chosen = -1; // index of the chosen gap
@@ -95,6 +94,7 @@ function showWhole() {
   const pick = (best, corner, axis) => best(...boxes.map((box) => box[corner][axis]));
   const { map, free } = space();
   const right = document.querySelector(".views").getBoundingClientRect().left - map.left;
+  /** @type {[[number, number], [number, number]]} */
   const box = [
     [pick(Math.min, 0, 0), pick(Math.min, 0, 1)],
     [pick(Math.max, 1, 0), pick(Math.max, 1, 1)],
@@ -115,7 +115,7 @@ function draw() {
     free,
     middle,
   } = space();
-  for (const canvas of [byId("points"), byId("overlay")])
+  for (const canvas of [byId("points", HTMLCanvasElement), byId("overlay", HTMLCanvasElement)])
     if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio))
       [canvas.width, canvas.height] = [Math.round(width * ratio), Math.round(height * ratio)];
   if (follow && scene.me) camera.target = [...scene.me.p];
@@ -166,7 +166,7 @@ function drawTexts() {
 }
 
 function drawCoverage() {
-  byId("map").dataset.points = cloud.count;
+  byId("map").dataset.points = String(cloud.count);
   const { newest, state } = scene;
   byId("coverage").hidden = !newest.gaps || newest.gaps.well === null || state === "none";
   if (chosen >= (newest.gaps?.gaps.length ?? 0)) chosen = -1;
@@ -174,7 +174,7 @@ function drawCoverage() {
   write("well", well);
   write("poor", poor);
   write("gap-words", text);
-  byId("gap").disabled = count === 0;
+  byId("gap", HTMLButtonElement).disabled = count === 0;
   byId("gap").ariaLabel = all;
   write(
     "hint",
@@ -231,7 +231,7 @@ for (const [id, act] of Object.entries(views))
   byId(id).addEventListener("click", () => (act(), redraw()));
 
 function showAll(yes) {
-  byId("ceiling").checked = ceiling = yes;
+  byId("ceiling", HTMLInputElement).checked = ceiling = yes;
   redraw();
 }
 
@@ -240,7 +240,7 @@ function help() {
     ? `${me.login ? `Signed in as ${me.name}, ${me.role}. ` : ""}${scene.total.toLocaleString("en")} points on this phone.`
     : "";
   byId("name-it").hidden = !me?.may.includes("capture") || !records(scene.state);
-  byId("more").showModal();
+  byId("more", HTMLDialogElement).showModal();
 }
 
 const sensors = () => records(scene.state) && showHealth({ scene, battery });
@@ -248,7 +248,7 @@ const sensors = () => records(scene.state) && showHealth({ scene, battery });
 byId("help").addEventListener("click", help);
 byId("sensors").addEventListener("click", sensors);
 byId("name-it").addEventListener("click", nameThePlace);
-byId("ceiling").addEventListener("change", (event) => showAll(event.target.checked));
+byId("ceiling").addEventListener("change", (event) => showAll(targetOf(event).checked));
 
 const KEYS = {
   t: views.tilt,
@@ -272,7 +272,7 @@ const KEYS = {
   ArrowDown: () => byHand(() => camera.pan(0, -60)),
 };
 addEventListener("keydown", (event) => {
-  const typing = event.target.closest?.("input, select, dialog");
+  const typing = targetOf(event).closest?.("input, select, dialog");
   const act = KEYS[event.key] ?? KEYS[event.key.toLowerCase()];
   if (!act || typing || event.ctrlKey || event.metaKey || event.altKey) return;
   event.preventDefault();

@@ -4,7 +4,7 @@ import { browse } from "../shared/api.js";
 import { attempt, make } from "../shared/dom.js";
 import { bytes } from "../shared/format.js";
 
-class FolderBrowser extends HTMLElement {
+export class FolderBrowser extends HTMLElement {
   #list = make("div", { className: "folder" });
   #message = make("p", { className: "error", role: "alert" });
 

@@ -11,7 +11,7 @@ import {
   restoreProject,
   watchJobs,
 } from "../shared/api.js";
-import { attempt, fill, make } from "../shared/dom.js";
+import { attempt, byId, fill, make } from "../shared/dom.js";
 import { stateOf, when } from "../shared/format.js";
 import { headline } from "../shared/figures.js";
 import { badge } from "./job_status.js";
@@ -19,7 +19,6 @@ import "./new_job.js";
 import "../shared/page_head.js";
 
 const MANY = 12;
-const byId = (id) => document.getElementById(id);
 const cards = new Map();
 const jobs = new Map();
 let projects = [];
@@ -70,7 +69,7 @@ function draw(id, project = projects.find((one) => one.id === id)) {
 function drawAll() {
   const known = new Set(projects.map((one) => one.id));
   const waiting = [...jobs.keys()].filter((id) => !known.has(id) && !jobs.get(id).job.finished);
-  const wanted = byId("find").value.trim().toLowerCase();
+  const wanted = byId("find", HTMLInputElement).value.trim().toLowerCase();
   const fits = (project) => `${project.name} ${project.id}`.toLowerCase().includes(wanted);
   const roots = [
     ...waiting.map((id) => draw(id)),

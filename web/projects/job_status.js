@@ -14,7 +14,7 @@ export function badge(state) {
   );
 }
 
-class JobStatus extends HTMLElement {
+export class JobStatus extends HTMLElement {
   #view;
   #line = make("div", { className: "job-line" });
   #bar = make("progress", { max: 1, ariaLabel: "Progress of the whole run" });

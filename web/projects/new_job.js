@@ -23,7 +23,7 @@ const slug = (path) =>
 const text = (name, more = {}) =>
   make("input", { name, autocomplete: "off", spellcheck: false, ...more });
 
-class NewJob extends HTMLElement {
+export class NewJob extends HTMLElement {
   #recording = text("recording", { required: true, onchange: () => this.#look() });
   #browser = make("folder-browser", { onpick: (event) => this.#choose(event.detail) });
   #found = make("recording-look");
@@ -140,7 +140,10 @@ class NewJob extends HTMLElement {
     if (found) this.#suggest(found);
   }
 
-  /** Puts values into the fields no person has filled in. */
+  /**
+   * Puts values into the fields that the person has not filled in.
+   * @param {{project?: string, preset?: string, rig?: string, imu?: string, gnss?: string}} values
+   */
   #suggest({ project, preset, rig, imu, gnss }) {
     const put = (name, input, value) => {
       if (value === undefined || this.#touched.has(name)) return;

@@ -9,7 +9,7 @@ import {
   viewerUrl,
   watchJobs,
 } from "../shared/api.js";
-import { fill, make } from "../shared/dom.js";
+import { byId, fill, make } from "../shared/dom.js";
 import { figures } from "../shared/figures.js";
 import { bytes, seconds, stateOf, when } from "../shared/format.js";
 import { badge } from "./job_status.js";
@@ -17,7 +17,6 @@ import "../shared/page_head.js";
 import "./project_tools.js";
 
 const id = decodeURIComponent(location.pathname.split("/")[2]);
-const byId = (name) => document.getElementById(name);
 const status = document.querySelector("job-status");
 const log = document.querySelector("job-log");
 const STAGE_WORDS = { done: "✓ Done", reused: "✓ Kept from before", running: "▶ Running" };
@@ -139,7 +138,7 @@ function onJob(fresh) {
 }
 
 document.querySelector("project-tools").addEventListener("renamed", (event) => {
-  project = event.detail;
+  project = /** @type {CustomEvent} */ (event).detail;
   draw();
 });
 /** The newest job, with its log, also when it succeeded: the stream tells of the others only. */

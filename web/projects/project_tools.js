@@ -13,7 +13,7 @@ import "./new_job.js";
 
 const MOST_LETTERS = 200_000;
 
-class ProjectTools extends HTMLElement {
+export class ProjectTools extends HTMLElement {
   #id = decodeURIComponent(location.pathname.split("/")[2]);
   #again = make("details", {}, make("summary", {}, "Run again, with other settings"));
   #name = make("input", { name: "name", maxLength: 100, required: true, autocomplete: "off" });
@@ -93,7 +93,7 @@ class ProjectTools extends HTMLElement {
 }
 
 /** <job-log>: the log of a job as it grows; read only while it is open. */
-class JobLog extends HTMLElement {
+export class JobLog extends HTMLElement {
   #pre = make("pre", { tabIndex: 0, ariaLabel: "Log" });
   #link = make("a", { download: "" }, "Download the log");
   #details = make("details", {}, make("summary", {}, "Log"), this.#pre, this.#link);

@@ -4,7 +4,7 @@ import { lookAt } from "../shared/api.js";
 import { make } from "../shared/dom.js";
 import { bytes, count, seconds } from "../shared/format.js";
 
-class RecordingLook extends HTMLElement {
+export class RecordingLook extends HTMLElement {
   #asked = 0;
 
   connectedCallback() {

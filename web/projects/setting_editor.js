@@ -7,7 +7,7 @@ import { attempt, make } from "../shared/dom.js";
 const TYPES = { int: "whole number", float: "number", text: "text" };
 let numbers = 0;
 
-class SettingEditor extends HTMLElement {
+export class SettingEditor extends HTMLElement {
   #preset = "";
   #rows = new Map(); // path -> {input, value, error, row}
   #wanted = new Map(); // path -> text, of settings not shown yet

@@ -16,7 +16,7 @@ const STATES = {
   done: "On the server",
 };
 
-class UploadBox extends HTMLElement {
+export class UploadBox extends HTMLElement {
   #sending = null;
   #file = make("input", {
     type: "file",

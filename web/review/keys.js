@@ -1,5 +1,7 @@
 // The keyboard of the review page. A key held down counts once, except where it moves, turns or zooms.
 
+import { targetOf } from "../shared/dom.js";
+
 const TURN = Math.PI / 180;
 const REPEATING = new Set(["[", "]", "+", "-"]);
 const DECIDING = new Set(["a", "r", "enter"]);
@@ -31,14 +33,14 @@ function onUndoKey(event, actions) {
 
 function onMoveKey(event, actions) {
   const move = actions.moves[event.code] ?? actions.moves[event.key];
-  if (!move || event.target.matches("input") || !actions.canMove()) return false;
+  if (!move || targetOf(event).matches("input") || !actions.canMove()) return false;
   event.preventDefault();
   move(...stepOf(event));
   return true;
 }
 
 function onPressKey(event, { press }) {
-  const onControl = event.target.matches("button, summary, a");
+  const onControl = targetOf(event).matches("button, summary, a");
   const held = isHeld(event);
   if (onControl && held) event.preventDefault(); // a held Enter would press the button again and again
   if (event.key === "Enter" && onControl) return;
@@ -55,9 +57,9 @@ function onPressKey(event, { press }) {
 export function listenToKeys(actions) {
   document.addEventListener("keydown", (event) => {
     if (document.querySelector("dialog[open]")) return;
-    if (event.target.matches("input:not([type=checkbox], [type=range]), select")) {
+    if (targetOf(event).matches("input:not([type=checkbox], [type=range]), select")) {
       if (event.key === "Escape" || (event.key === "Enter" && event.target === actions.reason))
-        event.target.blur();
+        targetOf(event).blur();
       return;
     }
     if (event.ctrlKey || event.metaKey) onUndoKey(event, actions);

@@ -39,7 +39,7 @@ export const apply = (pose, p) => {
   return [q[0] + pose[0], q[1] + pose[1], q[2] + pose[2]];
 };
 
-function product([ax, ay, az, aw], [bx, by, bz, bw]) {
+function product(/** @type {number[]} */ [ax, ay, az, aw], [bx, by, bz, bw]) {
   return [
     aw * bx + ax * bw + ay * bz - az * by,
     aw * by - ax * bz + ay * bw + az * bx,
@@ -48,7 +48,10 @@ function product([ax, ay, az, aw], [bx, by, bz, bw]) {
   ];
 }
 
-/** The pose moved by `shift` and turned by `angle` about `axis` through its own place, all in the frame it maps into. */
+/**
+ * The pose moved by `shift` and rotated by `angle` about `axis` through its own position, all in the
+ * frame it maps into.
+ */
 export function nudged(pose, shift, axis, angle) {
   const s = Math.sin(angle / 2);
   const length = Math.hypot(...axis) || 1;

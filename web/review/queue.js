@@ -14,7 +14,7 @@ const SHOW = {
 };
 const PAGE = 300; // rows in the list at a time
 
-class ReviewQueue extends HTMLElement {
+export class ReviewQueue extends HTMLElement {
   #rows = [];
   #byKey = new Map();
   #shown = [];

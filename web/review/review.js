@@ -13,11 +13,11 @@ import {
   readReview,
   readWalk,
   remakeMap,
-  stepBack,
-  stepForth,
+  undoDecision,
+  redoDecision,
   watchJobs,
 } from "../shared/api.js";
-import { attempt, make } from "../shared/dom.js";
+import { attempt, byId, make } from "../shared/dom.js";
 import { apart } from "./math.js";
 import { askForMoments, askToSign, showKeys } from "./dialogs.js";
 import { listenToKeys } from "./keys.js";
@@ -29,7 +29,6 @@ import "./queue.js";
 import "./view.js";
 
 const id = decodeURIComponent(location.pathname.split("/")[2]);
-const byId = (name) => document.getElementById(name);
 const queue = document.querySelector("review-queue");
 const view = document.querySelector("pair-view");
 const message = byId("message");
@@ -229,7 +228,7 @@ function become(fresh) {
   showSigning(byId("signing"), state, { remake, approve });
   drawHand();
   if (seqBefore !== state.seq) look();
-  if (byId("journal").open) drawJournal();
+  if (byId("journal", HTMLDetailsElement).open) drawJournal();
 }
 
 /** Looks whether others decided something, or a job made another map or another graph. */
@@ -300,8 +299,8 @@ function step(through) {
   });
 }
 
-const undo = () => step(stepBack);
-const redo = () => step(stepForth);
+const undo = () => step(undoDecision);
+const redo = () => step(redoDecision);
 
 /** Register from where it lies; once registered and not moved since, make it an edge. */
 async function enter() {
@@ -512,7 +511,7 @@ let allRows = [];
 let began_ns = 0;
 
 queue.addEventListener("chosen", (event) => {
-  const row = queue.get(event.detail);
+  const row = queue.get(/** @type {CustomEvent} */ (event).detail);
   take([row.frame_i, row.frame_j]);
 });
 view.addEventListener("laid", () => {

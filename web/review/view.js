@@ -12,7 +12,7 @@ const HANDLE_PX = 22;
 const RING_PX = 66;
 const PICK_PX = 14;
 
-class PairView extends HTMLElement {
+export class PairView extends HTMLElement {
   camera = new Camera();
   #view = "above";
   #shown = "after";

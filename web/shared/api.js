@@ -1,149 +1,75 @@
-// The only module that talks to the server.
+// What the pages request of the server, one function for each operation.
 
-export class ApiError extends Error {
-  constructor(status, { error, detail, problems = {} }) {
-    super(detail);
-    this.name = error ?? "Invalid";
-    this.status = status;
-    this.problems = problems;
-  }
-}
+import { ApiError, NO_RESPONSE, become, name, request, tus, urlOf } from "./http.js";
 
-async function request(method, path, body) {
-  const options = { method, headers: await changeHeaders(method) };
-  if (body !== undefined) {
-    options.body = JSON.stringify(body);
-    options.headers["Content-Type"] = "application/json";
-  }
-  let response;
-  try {
-    response = await fetch(path, options);
-  } catch {
-    throw new ApiError(0, {
-      error: "Offline",
-      detail: "The server does not answer. Is it still running?",
-    });
-  }
-  const json =
-    response.status !== 204 && response.headers.get("Content-Type")?.startsWith("application/json");
-  const answer = json ? await response.json() : await response.text();
-  if (response.ok) return answer;
-  const error = new ApiError(response.status, json ? answer : { detail: answer });
-  if (error.name === "Unknown") leaveForLogin();
-  if (error.name === "StaleToken") whoami = null;
-  throw error;
-}
+export { ApiError, LIVE_URL as liveUrl, changeHeaders, isSignedIn, readMe } from "./http.js";
 
-// -- who asks
-
-let whoami = null;
-
-/** Who is signed in: {name, role, may, login, token}; asked once a page, or `again`. */
-export const readMe = (again = false) =>
-  again ? request("GET", "/api/me") : (whoami ??= request("GET", "/api/me"));
-
-/** Whether somebody is signed in already; for the login page. */
-export const isSignedIn = async () => (await fetch("/api/me")).ok;
-
-const BEFORE_LOGIN = ["/login", "/pair"];
-
-/** Headers a request that changes something must carry; for those that do not go through here. */
-export async function changeHeaders(method = "POST") {
-  if (method === "GET" || BEFORE_LOGIN.includes(location.pathname)) return {};
-  const { token } = await readMe();
-  return token ? { "X-Recon4-Token": token } : {};
-}
-
-function leaveForLogin() {
-  if (BEFORE_LOGIN.includes(location.pathname)) return;
-  const paired = location.pathname === liveUrl; // a phone may have no password: the page of pairing has both
-  location.assign(paired ? "/pair#again" : `/login#next=${encodeURIComponent(location.pathname)}`);
-}
-
-/** Keeps who is signed in from an answer that tells: the token has changed. */
-async function become(answer) {
-  const me = await answer;
-  whoami = Promise.resolve(me);
-  return me;
-}
+// -- people and sessions
 
 export const signIn = (who, password) =>
-  become(request("POST", "/api/login", { name: who, password }));
+  become(request("POST /api/login", { body: { name: who, password } }));
 export const setUp = (token, who, password) =>
-  become(request("POST", "/api/setup", { token, name: who, password }));
-export const signInAgain = (password) => become(request("POST", "/api/login/again", { password }));
-export const signOut = () => request("POST", "/api/logout");
+  become(request("POST /api/setup", { body: { token, name: who, password } }));
+export const signInAgain = (password) =>
+  become(request("POST /api/login/again", { body: { password } }));
+export const signOut = () => request("POST /api/logout");
 export const changePassword = (old, fresh) =>
-  become(request("POST", "/api/me/password", { old, new: fresh }));
-export const listMySessions = () => request("GET", "/api/me/sessions");
-export const endMySession = (id) => request("DELETE", `/api/me/sessions/${name(id)}`);
-export const listPeople = () => request("GET", "/api/people");
-export const addPerson = (person) => request("POST", "/api/people", person);
-export const changePerson = (who, changes) => request("PATCH", `/api/people/${name(who)}`, changes);
-export const listSessions = () => request("GET", "/api/sessions");
-export const endSession = (id) => request("DELETE", `/api/sessions/${name(id)}`);
-export const readAudit = (before) =>
-  request("GET", `/api/audit?most=25${before ? `&before=${before}` : ""}`);
+  become(request("POST /api/me/password", { body: { old, new: fresh } }));
+export const listMySessions = () => request("GET /api/me/sessions");
+export const endMySession = (session_id) =>
+  request("DELETE /api/me/sessions/{session_id}", { path: { session_id } });
+export const listPeople = () => request("GET /api/people");
+export const addPerson = (person) => request("POST /api/people", { body: person });
+export const changePerson = (who, changes) =>
+  request("PATCH /api/people/{name}", { path: { name: who }, body: changes });
+export const listSessions = () => request("GET /api/sessions");
+export const endSession = (session_id) =>
+  request("DELETE /api/sessions/{session_id}", { path: { session_id } });
+export const readAudit = (before) => request("GET /api/audit", { query: { most: 25, before } });
 
-const name = encodeURIComponent;
+// -- projects and jobs
 
-export const listProjects = () => request("GET", "/api/projects");
-export const readProject = (id) => request("GET", `/api/projects/${name(id)}`);
-export const readChoices = () => request("GET", "/api/choices");
-export const browse = (folder) => request("GET", `/api/recordings?folder=${name(folder)}`);
-export const addJob = (job) => request("POST", "/api/jobs", job);
-export const cancelJob = (id) => request("POST", `/api/jobs/${name(id)}/cancel`);
-export const retryJob = (id) => request("POST", `/api/jobs/${name(id)}/retry`);
-export const readLog = (id, offset) =>
-  request("GET", `/api/jobs/${name(id)}/log/since?offset=${offset}`);
+export const listProjects = () => request("GET /api/projects");
+export const readProject = (project_id) =>
+  request("GET /api/projects/{project_id}", { path: { project_id } });
+export const readChoices = () => request("GET /api/choices");
+export const browse = (folder) => request("GET /api/recordings", { query: { folder } });
+export const addJob = (job) => request("POST /api/jobs", { body: job });
+export const cancelJob = (job_id) =>
+  request("POST /api/jobs/{job_id}/cancel", { path: { job_id } });
+export const retryJob = (job_id) => request("POST /api/jobs/{job_id}/retry", { path: { job_id } });
+export const readLog = (job_id, offset) =>
+  request("GET /api/jobs/{job_id}/log/since", { path: { job_id }, query: { offset } });
 export const logUrl = (id) => `/api/jobs/${name(id)}/log/file`;
-export const readJob = (id) => request("GET", `/api/jobs/${name(id)}`);
-export const listJobsOf = (id) => request("GET", `/api/projects/${name(id)}/jobs`);
-export const lookAt = (path) => request("GET", `/api/look?path=${name(path)}`);
-export const readSettings = (preset) => request("GET", `/api/settings?of=${name(preset)}`);
+export const readJob = (job_id) => request("GET /api/jobs/{job_id}", { path: { job_id } });
+export const listJobsOf = (project_id) =>
+  request("GET /api/projects/{project_id}/jobs", { path: { project_id } });
+export const lookAt = (path) => request("GET /api/look", { query: { path } });
+export const readSettings = (preset) => request("GET /api/settings", { query: { of: preset } });
 export const checkSettings = (preset, settings) =>
-  request("POST", "/api/settings/check", { preset, settings });
-export const renameProject = (id, words) =>
-  request("PATCH", `/api/projects/${name(id)}`, { name: words });
-export const deleteProject = (id) => request("DELETE", `/api/projects/${name(id)}`);
-export const listTrash = () => request("GET", "/api/trash");
-export const restoreProject = (id) => request("POST", `/api/trash/${name(id)}/restore`);
-export const removeProject = (id) => request("DELETE", `/api/trash/${name(id)}`);
-export const readServer = () => request("GET", "/api/server");
-export const readOpenApi = () => request("GET", "/openapi.json");
+  request("POST /api/settings/check", { body: { preset, settings } });
+export const renameProject = (project_id, title) =>
+  request("PATCH /api/projects/{project_id}", { path: { project_id }, body: { name: title } });
+export const deleteProject = (project_id) =>
+  request("DELETE /api/projects/{project_id}", { path: { project_id } });
+export const listTrash = () => request("GET /api/trash");
+export const restoreProject = (deleted_id) =>
+  request("POST /api/trash/{deleted_id}/restore", { path: { deleted_id } });
+export const removeProject = (deleted_id) =>
+  request("DELETE /api/trash/{deleted_id}", { path: { deleted_id } });
+export const readServer = () => request("GET /api/server");
+export const readOpenApi = async () => (await fetch("/openapi.json")).json();
 
 // -- uploads: JSON for what is sent, tus 1.0 for the bytes
 
-export const listUploads = () => request("GET", "/api/uploads");
-export const readUpload = (id) => request("GET", `/api/uploads/${name(id)}`);
-export const beginUpload = (upload) => request("POST", "/api/uploads", upload);
-export const listUploadFiles = (id) => request("GET", `/api/uploads/${name(id)}/files`);
-export const removeUpload = (id) => request("DELETE", `/api/uploads/${name(id)}`);
-
-async function tus(method, path, { headers = {}, body, signal } = {}) {
-  let response;
-  try {
-    const all = {
-      "Tus-Resumable": "1.0.0",
-      ...(method === "HEAD" ? {} : await changeHeaders(method)),
-      ...headers,
-    };
-    response = await fetch(path, { method, headers: all, body, signal, cache: "no-store" });
-  } catch (error) {
-    if (error.name === "AbortError") throw error;
-    throw new ApiError(0, { error: "Offline", detail: "The server does not answer" });
-  }
-  if (response.ok) return response;
-  const text = await response.text();
-  let answer = { detail: text || `The server says ${response.status}` };
-  try {
-    answer = JSON.parse(text);
-  } catch {
-    // not ours: a proxy in between, or the answer to HEAD, which has no body
-  }
-  if (response.status === 401) leaveForLogin();
-  throw new ApiError(response.status, answer);
-}
+export const listUploads = () => request("GET /api/uploads");
+export const readUpload = (upload_id) =>
+  request("GET /api/uploads/{upload_id}", { path: { upload_id } });
+export const beginUpload = (upload) => request("POST /api/uploads", { body: upload });
+export const listUploadFiles = (upload_id) =>
+  request("GET /api/uploads/{upload_id}/files", { path: { upload_id } });
+export const removeUpload = (upload_id) =>
+  request("DELETE /api/uploads/{upload_id}", { path: { upload_id } });
 
 async function bytesHeaders(bytes) {
   const type = { "Content-Type": "application/offset+octet-stream" };
@@ -161,18 +87,18 @@ export async function createFile(upload, path, length, bytes, signal) {
     "Upload-Metadata": `upload ${base64(upload)},relativePath ${base64(path)}`,
     ...(await bytesHeaders(bytes)),
   };
-  const answer = await tus("POST", "/api/uploads/files", { headers, body: bytes, signal });
+  const response = await tus("POST", "/api/uploads/files", { headers, body: bytes, signal });
   return {
-    url: answer.headers.get("Location"),
-    offset: Number(answer.headers.get("Upload-Offset")),
+    url: response.headers.get("Location"),
+    offset: Number(response.headers.get("Upload-Offset")),
   };
 }
 
 /** Sends bytes of a file; gives the offset the server has now. */
 export async function sendBytes(url, offset, bytes, signal) {
   const headers = { "Upload-Offset": String(offset), ...(await bytesHeaders(bytes)) };
-  const answer = await tus("PATCH", url, { headers, body: bytes, signal });
-  return Number(answer.headers.get("Upload-Offset"));
+  const response = await tus("PATCH", url, { headers, body: bytes, signal });
+  return Number(response.headers.get("Upload-Offset"));
 }
 
 export const readOffset = async (url) =>
@@ -185,45 +111,45 @@ export const thumbnailUrl = (id, version) =>
   `/api/projects/${name(id)}/thumbnail?v=${name(version)}`;
 export const fileUrl = (id, file) => `/api/projects/${name(id)}/files/${name(file)}`;
 
-const ANEW_MS = 3000;
+const RECONNECT_MS = 3000;
 
 /**
  * Calls `onJob` with every job now and at each change, `onLink` with whether the server answers.
- * The stream tells nothing of jobs that succeeded while it was cut: those are asked for.
+ * The stream does not repeat jobs that finished while it was cut: those are requested.
  */
 export function watchJobs(onJob, onLink) {
-  const newest = new Map(); // project -> its newest job, as far as it was told
-  const tell = (view) => {
+  const newest = new Map(); // project -> its newest job among those received
+  const receive = (view) => {
     const { job } = view;
     const known = newest.get(job.project);
     if (known && known.id !== job.id && known.created > job.created) return;
     newest.set(job.project, job);
     onJob(view);
   };
-  const askAgain = async ({ id }) => {
+  const requestAgain = async ({ id }) => {
     const view = await readJob(id);
-    if (view.job.finished) tell(view);
+    if (view.job.finished) receive(view);
   };
   const connect = () => {
     const source = new EventSource("/api/events");
     let givenUp = false;
-    const anew = () => {
+    const reconnect = () => {
       if (givenUp) return;
       givenUp = true;
       source.close();
       onLink(false);
-      setTimeout(connect, ANEW_MS);
+      setTimeout(connect, RECONNECT_MS);
     };
-    source.addEventListener("job", (event) => tell(JSON.parse(event.data)));
+    source.addEventListener("job", (event) => receive(JSON.parse(event.data)));
     source.addEventListener("open", () => {
-      const asked = [...newest.values()].filter((job) => !job.finished).map(askAgain);
-      Promise.all(asked).then(() => onLink(source.readyState === EventSource.OPEN), anew);
+      const requested = [...newest.values()].filter((job) => !job.finished).map(requestAgain);
+      Promise.all(requested).then(() => onLink(source.readyState === EventSource.OPEN), reconnect);
     });
     source.addEventListener("error", () => {
       onLink(false);
-      if (source.readyState !== EventSource.CLOSED) return; // it tries again by itself
-      request("GET", "/api/me").catch(() => {}); // signed out?
-      anew();
+      if (source.readyState !== EventSource.CLOSED) return; // the browser reconnects
+      request("GET /api/me").catch(() => {}); // signed out?
+      reconnect();
     });
   };
   connect();
@@ -231,28 +157,61 @@ export function watchJobs(onJob, onLink) {
 
 // -- review
 
-const review = (id, path = "") => `/api/projects/${name(id)}/review${path}`;
-const ofPair = ([i, j]) => `frame_i=${i}&frame_j=${j}`;
-
-export const readReview = (id) => request("GET", review(id));
-export const readQueue = (id) => request("GET", review(id, "/queue"));
-export const readWalk = (id) => request("GET", review(id, "/walk"));
-export const readPair = (id, pair) => request("GET", review(id, `/pair?${ofPair(pair)}`));
-export const readEffect = (id) => request("GET", review(id, "/effect"));
-export const readJournal = (id) => request("GET", review(id, "/journal"));
-export const decide = (id, decision) => request("POST", review(id, "/decisions"), decision);
-export const stepBack = (id, seq) => request("POST", review(id, "/undo"), { after_seq: seq });
-export const stepForth = (id, seq) => request("POST", review(id, "/redo"), { after_seq: seq });
-export const alignPair = (id, [i, j], guess) =>
-  request("POST", review(id, "/align"), { frame_i: i, frame_j: j, T_i_j: guess });
-export const fitPoints = (id, p_i, p_j) => request("POST", review(id, "/fit"), { p_i, p_j });
-export const remakeMap = (id) => request("POST", `/api/projects/${name(id)}/remake`);
-export const approveMap = (id, signed) => request("POST", review(id, "/approve"), signed);
+export const readReview = (project_id) =>
+  request("GET /api/projects/{project_id}/review", { path: { project_id } });
+export const readQueue = (project_id) =>
+  request("GET /api/projects/{project_id}/review/queue", { path: { project_id } });
+export const readWalk = (project_id) =>
+  request("GET /api/projects/{project_id}/review/walk", { path: { project_id } });
+export const readPair = (project_id, [frame_i, frame_j]) =>
+  request("GET /api/projects/{project_id}/review/pair", {
+    path: { project_id },
+    query: { frame_i, frame_j },
+  });
+export const readEffect = (project_id) =>
+  request("GET /api/projects/{project_id}/review/effect", { path: { project_id } });
+export const readJournal = (project_id) =>
+  request("GET /api/projects/{project_id}/review/journal", { path: { project_id } });
+export const decide = (project_id, decision) =>
+  request("POST /api/projects/{project_id}/review/decisions", {
+    path: { project_id },
+    body: decision,
+  });
+export const undoDecision = (project_id, after_seq) =>
+  request("POST /api/projects/{project_id}/review/undo", {
+    path: { project_id },
+    body: { after_seq },
+  });
+export const redoDecision = (project_id, after_seq) =>
+  request("POST /api/projects/{project_id}/review/redo", {
+    path: { project_id },
+    body: { after_seq },
+  });
+export const alignPair = (project_id, [frame_i, frame_j], T_i_j) =>
+  request("POST /api/projects/{project_id}/review/align", {
+    path: { project_id },
+    body: { frame_i, frame_j, T_i_j },
+  });
+export const fitPoints = (project_id, p_i, p_j) =>
+  request("POST /api/projects/{project_id}/review/fit", {
+    path: { project_id },
+    body: { p_i, p_j },
+  });
+export const remakeMap = (project_id) =>
+  request("POST /api/projects/{project_id}/remake", { path: { project_id } });
+export const approveMap = (project_id, approval) =>
+  request("POST /api/projects/{project_id}/review/approve", {
+    path: { project_id },
+    body: approval,
+  });
 
 /** Points of both places of a pair, {i, j}: Float32Array of x y z in the body frame of each [m]. */
-export async function readPoints(id, pair, reach) {
-  const response = await fetch(review(id, `/points?${ofPair(pair)}&reach=${reach}`)).catch(() => {
-    throw new ApiError(0, { detail: "The server does not answer. Is it still running?" });
+export async function readPoints(project_id, [frame_i, frame_j], reach) {
+  const path = { project_id };
+  const query = { frame_i, frame_j, reach };
+  const url = urlOf("/api/projects/{project_id}/review/points", path, query);
+  const response = await fetch(url).catch(() => {
+    throw new ApiError(0, { detail: NO_RESPONSE });
   });
   if (!response.ok) throw new ApiError(response.status, await response.json());
   const data = await response.arrayBuffer();
@@ -266,24 +225,26 @@ export async function readPoints(id, pair, reach) {
 
 // -- phones
 
-export const readPairing = () => request("GET", "/api/pairing");
-export const invitePhone = (role) => request("POST", "/api/pairing/invitations", { role });
-export const approvePhone = (code, role) => request("POST", "/api/pairing/approve", { code, role });
-export const redeemInvitation = (token) => request("POST", "/api/pairing/redeem", { token });
-export const askToPair = (phone) => request("POST", "/api/pairing/requests", { name: phone });
-export const claimPairing = (token) => request("POST", "/api/pairing/claim", { token });
+export const readPairing = () => request("GET /api/pairing");
+export const invitePhone = (role) => request("POST /api/pairing/invitations", { body: { role } });
+export const approvePhone = (code, role) =>
+  request("POST /api/pairing/approve", { body: { code, role } });
+export const redeemInvitation = (token) => request("POST /api/pairing/redeem", { body: { token } });
+export const requestPairing = (phone) =>
+  request("POST /api/pairing/requests", { body: { name: phone } });
+export const claimPairing = (token) => request("POST /api/pairing/claim", { body: { token } });
 
 // -- live capture
 
-export const liveUrl = "/live";
 /** The capture that runs or the last one; null if there was none. */
-export const readCapture = () => request("GET", "/api/live");
-export const readCaptureChoices = () => request("GET", "/api/live/choices");
-export const startCapture = (capture) => request("POST", "/api/live", capture);
-export const steerCapture = (what) => request("POST", `/api/live/${name(what)}`);
-export const markHere = (mark) => request("POST", "/api/live/marks", mark);
+export const readCapture = () => request("GET /api/live");
+export const readCaptureChoices = () => request("GET /api/live/choices");
+export const startCapture = (capture) => request("POST /api/live", { body: capture });
+/** @param {"stop" | "pause" | "resume" | "process"} what */
+export const steerCapture = (what) => request(`POST /api/live/${what}`);
+export const markHere = (mark) => request("POST /api/live/marks", { body: mark });
 
-/** Opens the stream of a capture; tell it what this page has, it tells what is new. */
+/** Opens the stream of a capture; `have` is what this page has, the server sends what is new. */
 export function openLiveStream(have, { onMessage, onPoints, onClose }) {
   const socket = new WebSocket(
     `${location.protocol.replace("http", "ws")}//${location.host}/api/live/stream`,
@@ -300,28 +261,58 @@ export function openLiveStream(have, { onMessage, onPoints, onClose }) {
 // -- slices
 
 const slices = (id) => `/api/projects/${name(id)}/slices`;
-const asked = (ask) => name(JSON.stringify(ask));
+const asQuery = (settings) => name(JSON.stringify(settings));
 
-export const readSliceFacts = (id, source = "") =>
-  request("GET", `${slices(id)}?source=${name(source)}`);
-export const readSlice = (id, ask) => request("POST", `${slices(id)}/image`, ask);
+export const readSliceFacts = (project_id, source = "") =>
+  request("GET /api/projects/{project_id}/slices", { path: { project_id }, query: { source } });
+export const readSlice = (project_id, settings) =>
+  request("POST /api/projects/{project_id}/slices/image", { path: { project_id }, body: settings });
 export const aboveUrl = (id, version) => `${slices(id)}/overview?v=${name(version)}`;
-export const readAboveWindow = (id) => request("GET", `${slices(id)}/overview/window`);
-export const pickOnSlice = (id, ask) => request("POST", `${slices(id)}/pick`, ask);
-export const readDoubleWalls = (id, source = "") =>
-  request("GET", `${slices(id)}/doubles?source=${name(source)}`);
-export const compareSlices = (id, ask) => request("POST", `${slices(id)}/compare`, ask);
-export const compareCsvUrl = (id, ask) => `${slices(id)}/compare.csv?ask=${asked(ask)}`;
-export const sliceFileUrl = (id, ending, ask) => `${slices(id)}/export.${ending}?ask=${asked(ask)}`;
-export const addReference = (id, add) => request("POST", `${slices(id)}/references`, add);
-export const removeReference = (id, one) =>
-  request("DELETE", `${slices(id)}/references/${name(one)}`);
-export const alignReference = (id, one, ask) =>
-  request("POST", `${slices(id)}/references/${name(one)}/align`, ask);
-export const lookAtControl = (id, file) => request("POST", `${slices(id)}/control/preview`, file);
-export const readControl = (id) => request("GET", `${slices(id)}/control`);
-export const keepControl = (id, state) => request("PUT", `${slices(id)}/control`, state);
-export const readControlReport = (id) => request("GET", `${slices(id)}/control/report`);
+export const readAboveWindow = (project_id) =>
+  request("GET /api/projects/{project_id}/slices/overview/window", { path: { project_id } });
+export const pickOnSlice = (project_id, pick) =>
+  request("POST /api/projects/{project_id}/slices/pick", { path: { project_id }, body: pick });
+export const readDoubleWalls = (project_id, source = "") =>
+  request("GET /api/projects/{project_id}/slices/doubles", {
+    path: { project_id },
+    query: { source },
+  });
+export const compareSlices = (project_id, settings) =>
+  request("POST /api/projects/{project_id}/slices/compare", {
+    path: { project_id },
+    body: settings,
+  });
+export const compareCsvUrl = (id, settings) => `${slices(id)}/compare.csv?ask=${asQuery(settings)}`;
+export const sliceFileUrl = (id, ending, settings) =>
+  `${slices(id)}/export.${ending}?ask=${asQuery(settings)}`;
+export const addReference = (project_id, reference) =>
+  request("POST /api/projects/{project_id}/slices/references", {
+    path: { project_id },
+    body: reference,
+  });
+export const removeReference = (project_id, reference_id) =>
+  request("DELETE /api/projects/{project_id}/slices/references/{reference_id}", {
+    path: { project_id, reference_id },
+  });
+export const alignReference = (project_id, reference_id, settings) =>
+  request("POST /api/projects/{project_id}/slices/references/{reference_id}/align", {
+    path: { project_id, reference_id },
+    body: settings,
+  });
+export const previewControl = (project_id, file) =>
+  request("POST /api/projects/{project_id}/slices/control/preview", {
+    path: { project_id },
+    body: file,
+  });
+export const readControl = (project_id) =>
+  request("GET /api/projects/{project_id}/slices/control", { path: { project_id } });
+export const keepControl = (project_id, state) =>
+  request("PUT /api/projects/{project_id}/slices/control", { path: { project_id }, body: state });
+export const readControlReport = (project_id) =>
+  request("GET /api/projects/{project_id}/slices/control/report", { path: { project_id } });
 export const controlFileUrl = (id, ending) => `${slices(id)}/control/report.${ending}`;
-export const readSurface = (id, point) =>
-  request("GET", `${slices(id)}/control/surface?point=${name(point)}`);
+export const readSurface = (project_id, point) =>
+  request("GET /api/projects/{project_id}/slices/control/surface", {
+    path: { project_id },
+    query: { point },
+  });

@@ -1,11 +1,10 @@
 // The API as a page, made from openapi.json: works without internet.
 
 import { readMe, readOpenApi } from "./api.js";
-import { attempt, make } from "./dom.js";
+import { attempt, byId, make } from "./dom.js";
 import { example, limits, typeWords } from "../projects/schema.js";
 import "./page_head.js";
 
-const byId = (id) => document.getElementById(id);
 const api = await attempt(byId("message"), readOpenApi);
 const me = await readMe();
 const schemas = api?.components?.schemas ?? {};
@@ -237,7 +236,7 @@ byId("paths").append(
 function openNamed() {
   const named = document.getElementById(decodeURIComponent(location.hash.slice(1)));
   if (!named) return;
-  if (named.localName === "details") named.open = true;
+  if (named instanceof HTMLDetailsElement) named.open = true;
   named.scrollIntoView();
 }
 addEventListener("hashchange", openNamed);

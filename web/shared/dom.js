@@ -1,5 +1,25 @@
 // Small helpers to make elements; text is always text, never HTML.
 
+/**
+ * The element with an id, of a class if one is given.
+ * @template {HTMLElement} [E=HTMLElement]
+ * @param {string} id
+ * @param {new () => E} [kind]
+ * @returns {E}
+ */
+export function byId(id, kind = /** @type {any} */ (HTMLElement)) {
+  const element = document.getElementById(id);
+  if (!(element instanceof kind)) throw new Error(`${kind.name} #${id} expected, got ${element}`);
+  return element;
+}
+
+/** The controls of a form by name. */
+export const fields = (form) => /** @type {Record<string, HTMLInputElement>} */ (form.elements);
+
+/** The element an event began at. */
+export const targetOf = (event) => /** @type {HTMLInputElement} */ (event.target);
+
+/** A new element: properties or attributes, `on…` listeners, children. */
 export function make(tag, props = {}, ...children) {
   const element = document.createElement(tag);
   for (const [key, value] of Object.entries(props)) {
@@ -11,13 +31,13 @@ export function make(tag, props = {}, ...children) {
   return element;
 }
 
-/** Replaces the children only if that changes what is seen, so that focus and selection stay. */
+/** Replaces the children only if that changes the content, so that focus and selection stay. */
 export function fill(element, ...children) {
   const fresh = make(element.localName, {}, ...children);
   if (fresh.innerHTML !== element.innerHTML) element.replaceChildren(...fresh.childNodes);
 }
 
-/** Runs an action of a button; a refusal is shown in words beside it. */
+/** Runs an action and returns its result; an error is shown in `message`, the result is undefined. */
 export async function attempt(message, action) {
   message.textContent = "";
   try {

@@ -2,6 +2,7 @@
 
 import { bytes, count, seconds } from "./format.js";
 
+/** @type {Array<[string, string, (value: any) => string]>} */
 const ROWS = [
   ["Path length", "path_length_m", (m) => `${m.toFixed(1)} m`],
   ["Points in the map", "points", count],

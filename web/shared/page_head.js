@@ -9,7 +9,7 @@ const PAGES = [
   ["slices/", "Slices"],
 ];
 
-class PageHead extends HTMLElement {
+export class PageHead extends HTMLElement {
   #name = make("b");
   #link = make("span", { className: "link-state", role: "status" });
   #account = make("span", { className: "account" });

@@ -7,7 +7,7 @@ import { normalOf, roundStep } from "./state.js";
 
 const GRIP_PX = 22;
 
-class SliceAbove extends HTMLElement {
+export class SliceAbove extends HTMLElement {
   #canvas = make("canvas", { tabIndex: -1 });
   #image = null;
   #window = null;
@@ -56,12 +56,12 @@ class SliceAbove extends HTMLElement {
     return { width, height, scale, u: (w.left + w.right) / 2, v: (w.bottom + w.top) / 2 };
   }
 
-  #toPx([x, y]) {
+  #toPx(/** @type {number[]} */ [x, y]) {
     const { width, height, scale, u, v } = this.#fit();
     return [width / 2 + (x - u) * scale, height / 2 - (y - v) * scale];
   }
 
-  #toMap([x, y]) {
+  #toMap(/** @type {number[]} */ [x, y]) {
     const { width, height, scale, u, v } = this.#fit();
     return [u + (x - width / 2) / scale, v - (y - height / 2) / scale];
   }

@@ -3,7 +3,7 @@
 import {
   controlFileUrl,
   keepControl,
-  lookAtControl,
+  previewControl,
   readControl,
   readControlReport,
   readSurface,
@@ -18,6 +18,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
   const preview = make("div", {});
   const table = make("div", {});
   const file = make("input", { type: "file", accept: ".csv,.txt", ariaLabel: "Survey file" });
+  /** @type {import("../shared/http_types").ControlState} */
   let kept = { points: [], frame: "map", picks: {}, version: 0 };
   let last = Promise.resolve();
   let georeferenced = false;
@@ -33,7 +34,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
       throw new Error("The file has more than 600 kB; a list of points is smaller");
     let binary = "";
     for (const one of data) binary += String.fromCharCode(one);
-    const found = await lookAtControl(id, { name: chosen.name, base64: btoa(binary), order });
+    const found = await previewControl(id, { name: chosen.name, base64: btoa(binary), order });
     const rows = found.points
       .slice(0, 5)
       .map((one) =>
@@ -113,7 +114,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
       );
       return;
     }
-    const found = await readControlReport(id);
+    const found = /** @type {any} */ (await readControlReport(id));
     const residuals = new Map(found.rows.map((one) => [one.id, one]));
     const earlier = new Set(found.outdated);
     const head = ["Point", "Role", "dE", "dN", "dU", "2D", "3D [cm]", ""].map((words, k) =>

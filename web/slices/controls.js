@@ -3,6 +3,7 @@
 import { fill, make } from "../shared/dom.js";
 import { anglesOf, COLORS, normalFrom } from "./state.js";
 
+/** @type {Array<[string, string, string]>} */
 const KINDS = [
   ["horizontal", "Horizontal", "H"],
   ["vertical", "Vertical", "V"],
@@ -37,7 +38,7 @@ function select(options, value, onValue) {
 }
 
 /** Fills the panel; `show(state)` and `facts(facts)` keep it true. */
-export function controls(root, { change, step, toKind }) {
+export function controls(root, { change, toKind }) {
   const kinds = make("div", { className: "kinds", role: "group", ariaLabel: "Kind of cut" });
   const where = make("div", { className: "where" });
   const how = make("div", { className: "how" });
@@ -180,11 +181,7 @@ export function controls(root, { change, step, toKind }) {
     if (!where.contains(document.activeElement) || where.dataset.kind !== state.kind)
       where.replaceChildren(...places(state));
     where.dataset.kind = state.kind;
-    if (
-      !how.contains(document.activeElement) ||
-      document.activeElement.type === undefined ||
-      document.activeElement.localName === "button"
-    )
+    if (!how.contains(document.activeElement) || !document.activeElement.matches("input, select"))
       how.replaceChildren(...looks(state).filter(Boolean));
     const sources = [["", "This map"], ...(facts?.sources ?? []).map((one) => [one.id, one.words])];
     options(besideMap, sources, state.beside);

@@ -49,7 +49,8 @@ export function exportPanel({ id, change, state, ask }) {
   const links = KINDS.map(([ending, name]) => [ending, make("a", { download: "" }, name)]);
 
   function wanted() {
-    const { width, height, ground, window, ...look } = ask();
+    const { window, ...look } = ask();
+    for (const key of ["width", "height", "ground"]) delete look[key]; // of the screen
     return {
       ...look,
       window: part.value === "seen" ? (window ?? null) : null,

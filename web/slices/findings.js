@@ -8,6 +8,7 @@ import { referencePanel } from "./reference.js";
 
 /** Fills the section; what it returns is told of every change. */
 export function findings(root, page) {
+  /** @type {Array<[string, any]>} */
   const panels = [
     ["Double walls", doublesPanel(page)],
     ["Compare with a reference", referencePanel(page)],

@@ -9,7 +9,7 @@ import {
   readSlice,
   readSliceFacts,
 } from "../shared/api.js";
-import { fill, make } from "../shared/dom.js";
+import { byId, fill, make, targetOf } from "../shared/dom.js";
 import { count } from "../shared/format.js";
 import { controls } from "./controls.js";
 import { findings } from "./findings.js";
@@ -21,7 +21,6 @@ import "./above.js";
 import "./view.js";
 
 const id = decodeURIComponent(location.pathname.split("/")[2]);
-const byId = (name) => document.getElementById(name);
 const dark = matchMedia("(prefers-color-scheme: dark)");
 const above = make("slice-above");
 const first = make("slice-view");
@@ -269,7 +268,7 @@ const KEYS = {
   m: () => measure(),
   0: () => change(unframed(state), { keep: true }),
   Escape: () => measure(false),
-  "?": () => byId("help").showModal(),
+  "?": () => byId("help", HTMLDialogElement).showModal(),
 };
 
 const thicker = (times) =>
@@ -291,7 +290,7 @@ function nextColor() {
 }
 
 addEventListener("keydown", (event) => {
-  const typing = event.target.closest?.("input:not([type=range]), select, textarea, dialog");
+  const typing = targetOf(event).closest?.("input:not([type=range]), select, textarea, dialog");
   if (typing || event.ctrlKey || event.metaKey || event.altKey || !facts) return;
   const action = KEYS[event.key.length === 1 ? event.key.toLowerCase() : event.key];
   if (!action) return;
@@ -302,7 +301,7 @@ addEventListener("keydown", (event) => {
 // -- begin
 
 const tab = Math.random().toString(36).slice(2, 12);
-const panel = controls(byId("controls"), { change, step, toKind, unframed });
+const panel = controls(byId("controls"), { change, toKind });
 const found = findings(byId("findings"), {
   id,
   change,
@@ -349,7 +348,10 @@ function tools() {
       mode("Split", "split"),
       mode("Swipe", "swipe"),
     ),
-    button("?", () => byId("help").showModal(), { ariaLabel: "Help", title: "Keys  ?" }),
+    button("?", () => byId("help", HTMLDialogElement).showModal(), {
+      ariaLabel: "Help",
+      title: "Keys  ?",
+    }),
   );
   byId("views").dataset.mode = "split";
   byId("views").replaceChildren(

@@ -9,7 +9,7 @@ const EDGE = { left: 56, bottom: 26 };
 const FINEST_M = 0.0002;
 const COARSEST_M = 50;
 
-class SliceView extends HTMLElement {
+export class SliceView extends HTMLElement {
   #canvas = make("canvas", { tabIndex: 0 });
   #center = null;
   #metersPerPx = 0.01;
@@ -110,7 +110,7 @@ class SliceView extends HTMLElement {
     return { width: Math.max(16, width), height: Math.max(16, height) };
   }
 
-  #toPx([u, v]) {
+  #toPx(/** @type {number[]} */ [u, v]) {
     const { width, height } = this.#size();
     return [
       width / 2 + (u - this.#center[0]) / this.#metersPerPx,
@@ -118,7 +118,7 @@ class SliceView extends HTMLElement {
     ];
   }
 
-  #toPlane([x, y]) {
+  #toPlane(/** @type {number[]} */ [x, y]) {
     const { width, height } = this.#size();
     return [
       this.#center[0] + (x - width / 2) * this.#metersPerPx,

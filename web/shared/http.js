@@ -1,0 +1,137 @@
+// Requests to the server: a typed one for each operation, and tus for the bytes of uploads.
+
+export const NO_RESPONSE = "The server does not answer. Is it still running?";
+
+export class ApiError extends Error {
+  /**
+   * @param {number} status HTTP status, 0 if there was no response
+   * @param {{error?: string, detail: string, problems?: Record<string, string>}} problem
+   */
+  constructor(status, { error, detail, problems = {} }) {
+    super(detail);
+    this.name = error ?? "Invalid";
+    this.status = status;
+    this.problems = problems;
+  }
+}
+
+/** @typedef {import("./http_types").Operations} Operations */
+/**
+ * What goes with a request: path and query parameters and the body, as far as the operation has them.
+ * @template {keyof Operations} K
+ * @typedef {Omit<Operations[K], "response">} Parts
+ */
+
+/**
+ * Requests an operation of the server and returns its record; every failure is an `ApiError`.
+ * @template {keyof Operations} K
+ * @param {K} operation
+ * @param {{} extends Parts<K> ? [Parts<K>?] : [Parts<K>]} parts
+ * @returns {Promise<Operations[K]["response"]>}
+ */
+export async function request(operation, ...parts) {
+  const { path = {}, query = {}, body } = /** @type {any} */ (parts[0] ?? {});
+  const [method, template] = operation.split(" ");
+  const url = urlOf(template, path, query);
+  /** @type {RequestInit & {headers: Record<string, string>}} */
+  const options = { method, headers: await changeHeaders(method) };
+  if (body !== undefined) {
+    options.body = JSON.stringify(body);
+    options.headers["Content-Type"] = "application/json";
+  }
+  let response;
+  try {
+    response = await fetch(url, options);
+  } catch {
+    throw new ApiError(0, {
+      error: "Offline",
+      detail: NO_RESPONSE,
+    });
+  }
+  const json =
+    response.status !== 204 && response.headers.get("Content-Type")?.startsWith("application/json");
+  const content = json ? await response.json() : await response.text();
+  if (response.ok) return content;
+  const error = new ApiError(response.status, json ? content : { detail: content });
+  if (error.name === "Unknown") leaveForLogin();
+  if (error.name === "StaleToken") whoami = null;
+  throw error;
+}
+
+export const name = encodeURIComponent;
+
+/** The URL of a path template, `{x}` filled from `path`; parameters that are undefined are left out. */
+export function urlOf(template, path, query = {}) {
+  const given = Object.entries(query).filter(([, value]) => value !== undefined);
+  const search = given.map(([key, value]) => `${key}=${name(value)}`).join("&");
+  const url = template.replace(/\{(\w+)\}/g, (_, key) => name(path[key]));
+  return search ? `${url}?${search}` : url;
+}
+
+// -- who is signed in
+
+/** @type {Promise<import("./http_types").Me> | null} */
+let whoami = null;
+
+/** Who is signed in, requested once a page, or `again`. */
+export const readMe = (again = false) =>
+  again ? request("GET /api/me") : (whoami ??= request("GET /api/me"));
+
+/** Whether this browser is signed in already; for the login page. */
+export const isSignedIn = async () => (await fetch("/api/me")).ok;
+
+export const LIVE_URL = "/live";
+const BEFORE_LOGIN = ["/login", "/pair"];
+
+/** Headers of a request that changes something; exported for requests made elsewhere. */
+export async function changeHeaders(method = "POST") {
+  if (method === "GET" || BEFORE_LOGIN.includes(location.pathname)) return {};
+  const { token } = await readMe();
+  return token ? { "X-Recon4-Token": token } : {};
+}
+
+function leaveForLogin() {
+  if (BEFORE_LOGIN.includes(location.pathname)) return;
+  const paired = location.pathname === LIVE_URL; // a phone may have no password; the pairing page offers both
+  location.assign(paired ? "/pair#again" : `/login#next=${encodeURIComponent(location.pathname)}`);
+}
+
+/** Keeps who is signed in from a response that contains it: the token has changed. */
+export async function become(response) {
+  const me = await response;
+  whoami = Promise.resolve(me);
+  return me;
+}
+
+// -- uploads
+
+/**
+ * Sends a request of tus 1.0, which is not JSON.
+ * @param {string} method
+ * @param {string} path
+ * @param {RequestInit} options
+ */
+export async function tus(method, path, { headers = {}, body, signal } = {}) {
+  let response;
+  try {
+    const all = {
+      "Tus-Resumable": "1.0.0",
+      ...(method === "HEAD" ? {} : await changeHeaders(method)),
+      ...headers,
+    };
+    response = await fetch(path, { method, headers: all, body, signal, cache: "no-store" });
+  } catch (error) {
+    if (error.name === "AbortError") throw error;
+    throw new ApiError(0, { error: "Offline", detail: NO_RESPONSE });
+  }
+  if (response.ok) return response;
+  const text = await response.text();
+  let problem = { detail: text || `The server returned ${response.status}` };
+  try {
+    problem = JSON.parse(text);
+  } catch {
+    // from a proxy in between, or the response to HEAD, which has no body
+  }
+  if (response.status === 401) leaveForLogin();
+  throw new ApiError(response.status, problem);
+}

@@ -1,0 +1,994 @@
+// Generated from the server's OpenAPI description by `make docs`; do not edit.
+
+export interface Account {
+  name: string;
+  role: Role;
+  disabled: boolean;
+  created: string;
+}
+
+export interface AddReference {
+  path: string;
+  name?: string;
+  frame?: "map" | "crs";
+}
+
+export interface AlignRequest {
+  how: "none" | "icp" | "pairs";
+  p_map?: Array<[number, number, number]>;
+  p_reference?: Array<[number, number, number]>;
+}
+
+export interface AlignmentView {
+  measurement: string;
+  T_i_j: Array<number>;
+  converged: boolean;
+  reason: string;
+  overlap: number | null;
+  error_m: number | null;
+  limit_m: number | null;
+  degeneracy: number | null;
+  iterations: number;
+}
+
+export interface Approve {
+  why?: string;
+  confirmed?: boolean;
+  after_seq?: number | null;
+  graph?: string | null;
+}
+
+export interface Approved {
+  name: string;
+  address: string;
+}
+
+export interface Assignments {
+  preset?: string;
+  settings?: Array<string>;
+}
+
+export interface CaptureChoices {
+  presets: Array<string>;
+  rigs: Array<RigChoice>;
+}
+
+export interface CaptureView {
+  project: string;
+  state: string;
+  words: Array<Record<string, string>>;
+  rates: Record<string, number>;
+  phones: number;
+  may_capture: boolean;
+}
+
+export interface Chain {
+  entries: number;
+  broken_at: number | null;
+  newest: string;
+}
+
+export interface Changes {
+  role?: Role | null;
+  disabled?: boolean | null;
+  password?: string | null;
+}
+
+export interface Choices {
+  presets: Array<string>;
+  rigs: Array<string>;
+}
+
+export interface CompareRequest {
+  reference: string;
+  method?: "plane" | "point";
+  cuts?: Array<CutSpec>;
+  source?: string;
+}
+
+export interface ControlFile {
+  name?: string;
+  base64: string;
+  order?: "EN" | "NE" | null;
+}
+
+export interface ControlSpec {
+  id: string;
+  xyz_m: [number, number, number];
+  role?: "control" | "check";
+  radius_m?: number;
+}
+
+export interface ControlState {
+  points?: Array<ControlSpec>;
+  frame?: "map" | "crs";
+  picks?: Record<string, [number, number, number]>;
+  found_in?: Record<string, string>;
+  version?: number | null;
+}
+
+export interface Credentials {
+  name: string;
+  password: string;
+}
+
+export interface CutSpec {
+  kind: "horizontal" | "vertical" | "free";
+  z_m?: number;
+  a_m?: [number, number];
+  b_m?: [number, number];
+  origin_m?: [number, number, number];
+  normal?: [number, number, number];
+  thickness_m?: number;
+}
+
+export interface Deleted {
+  id: string;
+  project: string;
+  deleted: string;
+  goes: string;
+}
+
+export interface Entry {
+  number: number;
+  time: string;
+  person: string;
+  address: string;
+  action: string;
+  object: string;
+  outcome: string;
+  hash: string;
+}
+
+export interface FileView {
+  name: string;
+  bytes: number;
+  offset: number;
+  url: string;
+}
+
+export interface FirstAdmin {
+  name: string;
+  password: string;
+  token: string;
+}
+
+export interface FolderEntry {
+  name: string;
+  path: string;
+  folder: boolean;
+  bytes: number;
+}
+
+export interface GroupView {
+  name: string;
+  text: string;
+  settings: Array<SettingView>;
+}
+
+export interface Guess {
+  frame_i: number;
+  frame_j: number;
+  T_i_j: Array<number>;
+}
+
+export interface Inputs {
+  recordings: Array<string>;
+  preset: string;
+  rig: string;
+  imu: string;
+  gnss: string;
+  settings: Array<string>;
+  remake: boolean;
+}
+
+export interface InvitationView {
+  links: Array<PairingLink>;
+  seconds: number;
+  role: Role;
+}
+
+export interface Job {
+  id: string;
+  project: string;
+  inputs: Inputs;
+  created: string;
+  state: JobState;
+  attempt: number;
+  started: string;
+  finished: string;
+  note: string;
+}
+
+export type JobState = "queued" | "running" | "succeeded" | "failed" | "cancelled";
+
+export interface JobView {
+  job: Job;
+  status: Status;
+  fraction: number | null;
+  overall: number;
+  overall_eta_s: number | null;
+}
+
+export interface Log {
+  entries: Array<Entry>;
+  chain: Chain;
+}
+
+export interface LogPiece {
+  text: string;
+  next: number;
+}
+
+export interface Me {
+  name: string;
+  role: Role;
+  may: Array<Permission>;
+  login: boolean;
+  token: string;
+}
+
+export interface NewCapture {
+  project: string;
+  rig?: string;
+  preset?: string;
+  place?: string;
+}
+
+export interface NewDecision {
+  kind: "accept" | "reject" | "restore" | "replace" | "add";
+  frame_i: number;
+  frame_j: number;
+  why?: string;
+  T_i_j?: Array<number>;
+  measurement?: string;
+}
+
+export interface NewInvitation {
+  role: Role;
+}
+
+export interface NewJob {
+  project: string;
+  recordings: Array<string>;
+  preset?: string;
+  rig?: string;
+  imu?: string;
+  gnss?: string;
+  settings?: Array<string>;
+  clone_of?: string;
+  only_new?: boolean;
+}
+
+export interface NewMark {
+  what?: "point" | "place";
+  text?: string;
+  ago_s?: number;
+}
+
+export interface NewPassword {
+  old: string;
+  new: string;
+}
+
+export interface NewPerson {
+  name: string;
+  role: Role;
+  password: string;
+}
+
+export interface NewRequest {
+  name?: string;
+}
+
+export interface NewUpload {
+  name: string;
+  files: number;
+  bytes: number;
+  fingerprint?: string;
+}
+
+export interface PairingApproval {
+  code: string;
+  role: Role;
+}
+
+export interface PairingLink {
+  host: string;
+  url: string;
+  qr: string;
+}
+
+export interface PairingRequestView {
+  code: string;
+  token: string;
+  seconds: number;
+}
+
+export interface PairingView {
+  login: boolean;
+  roles: Array<Role>;
+  fingerprint: string;
+}
+
+export interface PasswordConfirmation {
+  password: string;
+}
+
+export type Permission = "look" | "review" | "process" | "capture" | "administer";
+
+export interface PickRequest {
+  cut: CutSpec;
+  uv: [number, number];
+  radius_m?: number;
+  source?: string;
+}
+
+export interface PickView {
+  found: boolean;
+  p_map: [number, number, number];
+  p_crs: [number, number, number] | null;
+  uv: [number, number];
+  about: Record<string, number>;
+}
+
+export interface PointPairs {
+  p_i: Array<Array<number>>;
+  p_j: Array<Array<number>>;
+}
+
+export interface ProblemDetail {
+  error: string;
+  detail: string;
+  problems: Record<string, string>;
+}
+
+export interface ProjectCard {
+  id: string;
+  name: string;
+  finished: boolean;
+  updated: string;
+  preset: string;
+  rig: string;
+  has_map: boolean;
+  path_length_m: number | null;
+  points: number | null;
+  problem: string;
+}
+
+export interface ProjectView {
+  id: string;
+  name: string;
+  finished: boolean;
+  updated: string;
+  bytes: number;
+  preset: string;
+  rig: string;
+  files: Array<ResultFile>;
+  stages: Array<StageView>;
+  viewable: boolean;
+  has_map: boolean;
+  summary: Record<string, any>;
+  problem: string;
+}
+
+export interface RecordingSummary {
+  path: string;
+  kind: string;
+  bytes: number;
+  seconds: number;
+  estimated: boolean;
+  sensors: Array<SensorSummary>;
+  samples: Array<string>;
+  derived: Array<string>;
+  missing: Array<string>;
+  warnings: Array<string>;
+  project: string;
+  preset: string;
+  rig: string;
+  imu: string;
+  gnss: string;
+}
+
+export interface Rename {
+  name: string;
+}
+
+export interface Restored {
+  project: string;
+}
+
+export interface ResultFile {
+  name: string;
+  words: string;
+  bytes: number;
+}
+
+export interface ReviewView {
+  seq: number;
+  key: string;
+  graph: string;
+  undoable: number;
+  redoable: number;
+  standing: Array<StandingView>;
+  in_map: boolean;
+  finished: boolean;
+  busy: boolean;
+  may_review: boolean;
+  may_process: boolean;
+  approval: Record<string, any> | null;
+}
+
+export interface RigChoice {
+  rig: string;
+  name: string;
+  sensors: Array<string>;
+  problem: string;
+}
+
+export type Role = "nobody" | "viewer" | "operator" | "reviewer" | "admin";
+
+export interface RowView {
+  seq: number;
+  time: string;
+  who: string;
+  kind: string;
+  frame_i: number | null;
+  frame_j: number | null;
+  why: string;
+  hash: string;
+}
+
+export interface SensorSummary {
+  label: string;
+  model: string;
+  content: string;
+  count: number;
+  rate_hz: number | null;
+}
+
+export interface ServerView {
+  version: string;
+  free_bytes: number;
+  disk_bytes: number;
+  reserve_bytes: number;
+  notices: Array<string>;
+}
+
+export interface Session {
+  id: string;
+  person: string;
+  role: Role;
+  began_s: number;
+  proved_s: number;
+  seen_s: number;
+  address: string;
+  agent: string;
+  phone: boolean;
+}
+
+export interface SessionView {
+  session: Session;
+  current: boolean;
+}
+
+export interface SettingView {
+  path: string;
+  name: string;
+  kind: string;
+  choices: Array<string>;
+  unit: string;
+  text: string;
+  default: any;
+  value: any;
+}
+
+export interface SettingsCheck {
+  problems: Record<string, string>;
+}
+
+export interface SliceFacts {
+  points: number;
+  bounds_m: [[number, number, number], [number, number, number]];
+  fields: Array<string>;
+  sensors: Array<string>;
+  seconds: number;
+  key: string;
+  crs: string;
+  frame: string;
+  approval: string;
+  references: Array<Record<string, any>>;
+  sources: Array<Record<string, string>>;
+}
+
+export interface SliceImageRequest {
+  cut: CutSpec;
+  window?: WindowSpec | null;
+  color?: "height" | "intensity" | "normalized" | "time" | "sensor" | "distance";
+  low?: number | null;
+  high?: number | null;
+  reference?: string;
+  method?: "plane" | "point";
+  source?: string;
+  width: number;
+  height: number;
+  ground?: "light" | "dark";
+  page?: string;
+  turn?: number;
+}
+
+export interface SliceImageView {
+  png: string;
+  window: WindowSpec;
+  pixel_m: number;
+  points: number;
+  name: string;
+  low: number;
+  high: number;
+  colors: Array<string>;
+  axes: [string, string];
+  origin_m: [number, number, number];
+  u: [number, number, number];
+  v: [number, number, number];
+  offset_m: number;
+  seconds: number;
+}
+
+export interface StageStatus {
+  stage: string;
+  state: string;
+  seconds: number | null;
+}
+
+export interface StageView {
+  stage: string;
+  seconds: number;
+  peak_bytes: number;
+  finished: string;
+}
+
+export interface StandingView {
+  frame_i: number;
+  frame_j: number;
+  accepted: boolean;
+  who: string;
+  why: string;
+  measured: boolean;
+  T_i_j: Array<number>;
+}
+
+export interface Status {
+  what: string;
+  unit: string;
+  done: number;
+  total: number;
+  rate_per_s: number;
+  eta_s: number | null;
+  stages: Array<StageStatus>;
+}
+
+export interface Step {
+  after_seq?: number | null;
+  why?: string;
+}
+
+export interface Token {
+  token: string;
+}
+
+export interface UploadView {
+  id: string;
+  name: string;
+  files: number;
+  bytes: number;
+  received: number;
+  fingerprint: string;
+  by: string;
+  created: string;
+  expires: string;
+  finished: boolean;
+  recording: string;
+}
+
+export interface WindowSpec {
+  left: number;
+  bottom: number;
+  right: number;
+  top: number;
+}
+
+export interface Operations {
+  "DELETE /api/me/sessions/{session_id}": {
+    path: { session_id: string };
+    response: string;
+  };
+  "DELETE /api/projects/{project_id}": {
+    path: { project_id: string };
+    response: Deleted;
+  };
+  "DELETE /api/projects/{project_id}/slices/references/{reference_id}": {
+    path: { project_id: string; reference_id: string };
+    response: string;
+  };
+  "DELETE /api/sessions/{session_id}": {
+    path: { session_id: string };
+    response: string;
+  };
+  "DELETE /api/trash/{deleted_id}": {
+    path: { deleted_id: string };
+    response: string;
+  };
+  "DELETE /api/uploads/files/{file_id}": {
+    path: { file_id: string };
+    response: string;
+  };
+  "DELETE /api/uploads/{upload_id}": {
+    path: { upload_id: string };
+    response: string;
+  };
+  "GET /api/audit": {
+    query?: { most?: number; before?: number | null };
+    response: Log;
+  };
+  "GET /api/choices": {
+    response: Choices;
+  };
+  "GET /api/events": {
+    response: string;
+  };
+  "GET /api/jobs": {
+    response: Array<JobView>;
+  };
+  "GET /api/jobs/{job_id}": {
+    path: { job_id: string };
+    response: JobView;
+  };
+  "GET /api/jobs/{job_id}/log": {
+    path: { job_id: string };
+    query?: { lines?: number };
+    response: string;
+  };
+  "GET /api/jobs/{job_id}/log/file": {
+    path: { job_id: string };
+    response: string;
+  };
+  "GET /api/jobs/{job_id}/log/since": {
+    path: { job_id: string };
+    query?: { offset?: number };
+    response: LogPiece;
+  };
+  "GET /api/live": {
+    response: CaptureView | null;
+  };
+  "GET /api/live/choices": {
+    response: CaptureChoices;
+  };
+  "GET /api/look": {
+    query: { path: string };
+    response: RecordingSummary;
+  };
+  "GET /api/me": {
+    response: Me;
+  };
+  "GET /api/me/sessions": {
+    response: Array<SessionView>;
+  };
+  "GET /api/pairing": {
+    response: PairingView;
+  };
+  "GET /api/people": {
+    response: Array<Account>;
+  };
+  "GET /api/projects": {
+    response: Array<ProjectCard>;
+  };
+  "GET /api/projects/{project_id}": {
+    path: { project_id: string };
+    response: ProjectView;
+  };
+  "GET /api/projects/{project_id}/files/{name}": {
+    path: { project_id: string; name: string };
+    response: string;
+  };
+  "GET /api/projects/{project_id}/jobs": {
+    path: { project_id: string };
+    response: Array<JobView>;
+  };
+  "GET /api/projects/{project_id}/report": {
+    path: { project_id: string };
+    response: string;
+  };
+  "GET /api/projects/{project_id}/review": {
+    path: { project_id: string };
+    response: ReviewView;
+  };
+  "GET /api/projects/{project_id}/review/effect": {
+    path: { project_id: string };
+    response: Record<string, any>;
+  };
+  "GET /api/projects/{project_id}/review/journal": {
+    path: { project_id: string };
+    query?: { most?: number };
+    response: Array<RowView>;
+  };
+  "GET /api/projects/{project_id}/review/pair": {
+    path: { project_id: string };
+    query: { frame_i: number; frame_j: number };
+    response: Record<string, any>;
+  };
+  "GET /api/projects/{project_id}/review/points": {
+    path: { project_id: string };
+    query: { frame_i: number; frame_j: number; reach?: number };
+    response: any;
+  };
+  "GET /api/projects/{project_id}/review/queue": {
+    path: { project_id: string };
+    response: any;
+  };
+  "GET /api/projects/{project_id}/review/walk": {
+    path: { project_id: string };
+    response: Record<string, any>;
+  };
+  "GET /api/projects/{project_id}/slices": {
+    path: { project_id: string };
+    query?: { source?: string };
+    response: SliceFacts;
+  };
+  "GET /api/projects/{project_id}/slices/compare.csv": {
+    path: { project_id: string };
+    query: { ask: string };
+    response: string;
+  };
+  "GET /api/projects/{project_id}/slices/control": {
+    path: { project_id: string };
+    response: ControlState;
+  };
+  "GET /api/projects/{project_id}/slices/control/report": {
+    path: { project_id: string };
+    response: Record<string, any>;
+  };
+  "GET /api/projects/{project_id}/slices/control/report.{ending}": {
+    path: { project_id: string; ending: string };
+    response: any;
+  };
+  "GET /api/projects/{project_id}/slices/control/surface": {
+    path: { project_id: string };
+    query: { point: string };
+    response: Record<string, any>;
+  };
+  "GET /api/projects/{project_id}/slices/doubles": {
+    path: { project_id: string };
+    query?: { source?: string };
+    response: Record<string, any>;
+  };
+  "GET /api/projects/{project_id}/slices/export.{ending}": {
+    path: { project_id: string; ending: string };
+    query: { ask: string };
+    response: string;
+  };
+  "GET /api/projects/{project_id}/slices/overview": {
+    path: { project_id: string };
+    query?: { source?: string };
+    response: string;
+  };
+  "GET /api/projects/{project_id}/slices/overview/window": {
+    path: { project_id: string };
+    query?: { source?: string };
+    response: Record<string, any>;
+  };
+  "GET /api/projects/{project_id}/thumbnail": {
+    path: { project_id: string };
+    response: string;
+  };
+  "GET /api/recordings": {
+    query?: { folder?: string };
+    response: Array<FolderEntry>;
+  };
+  "GET /api/server": {
+    response: ServerView;
+  };
+  "GET /api/sessions": {
+    response: Array<SessionView>;
+  };
+  "GET /api/settings": {
+    query?: { of?: string };
+    response: Array<GroupView>;
+  };
+  "GET /api/trash": {
+    response: Array<Deleted>;
+  };
+  "GET /api/uploads": {
+    response: Array<UploadView>;
+  };
+  "GET /api/uploads/{upload_id}": {
+    path: { upload_id: string };
+    response: UploadView;
+  };
+  "GET /api/uploads/{upload_id}/files": {
+    path: { upload_id: string };
+    response: Array<FileView>;
+  };
+  "GET /healthz": {
+    response: Record<string, string>;
+  };
+  "HEAD /api/uploads/files/{file_id}": {
+    path: { file_id: string };
+    response: any;
+  };
+  "OPTIONS /api/uploads/files": {
+    response: string;
+  };
+  "PATCH /api/people/{name}": {
+    path: { name: string };
+    body: Changes;
+    response: Account;
+  };
+  "PATCH /api/projects/{project_id}": {
+    path: { project_id: string };
+    body: Rename;
+    response: ProjectView;
+  };
+  "PATCH /api/uploads/files/{file_id}": {
+    path: { file_id: string };
+    response: string;
+  };
+  "POST /api/jobs": {
+    body: NewJob;
+    response: JobView;
+  };
+  "POST /api/jobs/{job_id}/cancel": {
+    path: { job_id: string };
+    response: JobView;
+  };
+  "POST /api/jobs/{job_id}/retry": {
+    path: { job_id: string };
+    response: JobView;
+  };
+  "POST /api/live": {
+    body: NewCapture;
+    response: CaptureView;
+  };
+  "POST /api/live/marks": {
+    body: NewMark;
+    response: Record<string, string>;
+  };
+  "POST /api/live/pause": {
+    response: CaptureView;
+  };
+  "POST /api/live/process": {
+    response: JobView;
+  };
+  "POST /api/live/resume": {
+    response: CaptureView;
+  };
+  "POST /api/live/stop": {
+    response: CaptureView;
+  };
+  "POST /api/login": {
+    body: Credentials;
+    response: Me;
+  };
+  "POST /api/login/again": {
+    body: PasswordConfirmation;
+    response: Me;
+  };
+  "POST /api/logout": {
+    response: string;
+  };
+  "POST /api/me/password": {
+    body: NewPassword;
+    response: Me;
+  };
+  "POST /api/pairing/approve": {
+    body: PairingApproval;
+    response: Approved;
+  };
+  "POST /api/pairing/claim": {
+    body: Token;
+    response: Me | null;
+  };
+  "POST /api/pairing/invitations": {
+    body: NewInvitation;
+    response: InvitationView;
+  };
+  "POST /api/pairing/redeem": {
+    body: Token;
+    response: Me;
+  };
+  "POST /api/pairing/requests": {
+    body: NewRequest;
+    response: PairingRequestView;
+  };
+  "POST /api/people": {
+    body: NewPerson;
+    response: Account;
+  };
+  "POST /api/projects/{project_id}/remake": {
+    path: { project_id: string };
+    response: JobView;
+  };
+  "POST /api/projects/{project_id}/review/align": {
+    path: { project_id: string };
+    body: Guess;
+    response: AlignmentView;
+  };
+  "POST /api/projects/{project_id}/review/approve": {
+    path: { project_id: string };
+    body: Approve;
+    response: ReviewView;
+  };
+  "POST /api/projects/{project_id}/review/decisions": {
+    path: { project_id: string };
+    body: NewDecision;
+    response: ReviewView;
+  };
+  "POST /api/projects/{project_id}/review/fit": {
+    path: { project_id: string };
+    body: PointPairs;
+    response: Array<number>;
+  };
+  "POST /api/projects/{project_id}/review/redo": {
+    path: { project_id: string };
+    body: Step;
+    response: ReviewView;
+  };
+  "POST /api/projects/{project_id}/review/undo": {
+    path: { project_id: string };
+    body: Step;
+    response: ReviewView;
+  };
+  "POST /api/projects/{project_id}/slices/compare": {
+    path: { project_id: string };
+    body: CompareRequest;
+    response: Record<string, any>;
+  };
+  "POST /api/projects/{project_id}/slices/control/preview": {
+    path: { project_id: string };
+    body: ControlFile;
+    response: Record<string, any>;
+  };
+  "POST /api/projects/{project_id}/slices/image": {
+    path: { project_id: string };
+    body: SliceImageRequest;
+    response: SliceImageView;
+  };
+  "POST /api/projects/{project_id}/slices/pick": {
+    path: { project_id: string };
+    body: PickRequest;
+    response: PickView;
+  };
+  "POST /api/projects/{project_id}/slices/references": {
+    path: { project_id: string };
+    body: AddReference;
+    response: Record<string, any>;
+  };
+  "POST /api/projects/{project_id}/slices/references/{reference_id}/align": {
+    path: { project_id: string; reference_id: string };
+    body: AlignRequest;
+    response: Record<string, any>;
+  };
+  "POST /api/settings/check": {
+    body: Assignments;
+    response: SettingsCheck;
+  };
+  "POST /api/setup": {
+    body: FirstAdmin;
+    response: Me;
+  };
+  "POST /api/trash/{deleted_id}/restore": {
+    path: { deleted_id: string };
+    response: Restored;
+  };
+  "POST /api/uploads": {
+    body: NewUpload;
+    response: UploadView;
+  };
+  "POST /api/uploads/files": {
+    response: any;
+  };
+  "PUT /api/projects/{project_id}/slices/control": {
+    path: { project_id: string };
+    body: ControlState;
+    response: ControlState;
+  };
+}
