@@ -26,7 +26,7 @@ EXPECTED_NOISE = (
 
 @pytest.fixture(autouse=True)
 def room_on_the_disk(monkeypatch):
-    """The disk of whoever runs the tests is no part of the pages."""
+    """The free space of the machine that runs the tests does not matter."""
     monkeypatch.setattr("app.server_routes.LITTLE_ROOM", 0.0)
 
 
@@ -98,7 +98,7 @@ SHORTEN_PATHS = r"""() => {
     .filter((field) => made.test(field.value)).map((field) => [field, field.value]);
   for (const [field, path] of window.shortened) field.value = path.replace(made, "/data");
 }"""
-"""Where a test keeps its files is nobody's business in a picture."""
+"""Where a test keeps its files is left out of a screenshot."""
 
 
 @cache
@@ -110,7 +110,7 @@ def pages() -> str:
 
 
 @pytest.fixture
-def picture(look):
+def screenshot(look):
     """Keeps a screenshot when ``RECON4_SCREENSHOTS=1``.
 
     Those that a page of the documentation shows lie beside it, the others in ``out/screenshots``.

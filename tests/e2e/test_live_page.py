@@ -136,7 +136,7 @@ def fits(page, inside="main"):
     assert wrong == []
 
 
-def test_a_capture_from_its_start_to_the_map(server, link, walk, page, picture, tmp_path):
+def test_a_capture_from_its_start_to_the_map(server, link, walk, page, screenshot, tmp_path):
     begin(page, link.url)
     with sending(server, walk):
         wait_for_points(page, 3000)
@@ -150,7 +150,7 @@ def test_a_capture_from_its_start_to_the_map(server, link, walk, page, picture, 
         sensors_are_shown(page)
         if SCREENSHOTS:
             wait_for_points(page, 40_000)
-        picture(page, "live")
+        screenshot(page, "live")
         mark(page, "crack in the wall")
         cut_and_restore(page, link)
     wait_for_points(page, early + 1000)

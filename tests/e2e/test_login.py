@@ -63,7 +63,7 @@ def fits(page):
     assert small == []
 
 
-def test_one_is_led_to_the_login_and_back_to_where_one_wanted_to_go(server, page, picture):
+def test_one_is_led_to_the_login_and_back_to_where_one_wanted_to_go(server, page, screenshot):
     page.goto(f"{server.url}/projects/office/")
     expect(page.get_by_role("heading", name="Sign in")).to_be_visible()
     expect(page.get_by_label("Name")).to_be_focused()
@@ -74,7 +74,7 @@ def test_one_is_led_to_the_login_and_back_to_where_one_wanted_to_go(server, page
     page.get_by_role("button", name="Sign in").click()
     expect(page.get_by_role("alert")).to_have_text("wrong name or password")
     fits(page)
-    picture(page, "login")
+    screenshot(page, "login")
 
     page.get_by_label("Password", exact=True).fill(PASSWORD)
     page.get_by_role("button", name="Sign in").click()
@@ -126,7 +126,7 @@ def test_the_viewer_works_behind_the_login(server, page):
     page.frames[-1].wait_for_function("window.__viserMutable?.canvas")
 
 
-def test_an_admin_adds_a_person_changes_a_role_and_reads_the_log(server, page, look, picture):
+def test_an_admin_adds_a_person_changes_a_role_and_reads_the_log(server, page, look, screenshot):
     screen, scheme = look
     name = f"Žofie {screen} {scheme}"
     sign_in(page, server, "anna", "/people")
@@ -146,21 +146,21 @@ def test_an_admin_adds_a_person_changes_a_role_and_reads_the_log(server, page, l
     expect(page.locator("#audit tr").first).to_contain_text("set role")
     row.get_by_role("button", name=f"Disable {name}").click()
     expect(row).to_contain_text("Disabled")
-    expect(page.locator("#chain")).to_contain_text("chain whole")
+    expect(page.locator("#chain")).to_contain_text("hash chain intact")
     expect(page.locator("session-list")).to_contain_text("This one")
     fits(page)
     page.evaluate("scrollTo(0, 0)")
-    picture(page, "people")
+    screenshot(page, "people")
 
 
-def test_ones_own_sessions_are_listed_and_another_is_ended(server, page, picture):
+def test_ones_own_sessions_are_listed_and_another_is_ended(server, page, screenshot):
     with server.signed_in("otto"):
         sign_in(page, server, "otto", "/account")
         expect(page.get_by_role("heading", name="otto, operator")).to_be_visible()
         rows = page.locator("session-list tbody tr")
         expect(rows.filter(has_text="This one")).to_have_count(1)
         fits(page)
-        picture(page, "account")
+        screenshot(page, "account")
         before = rows.count()
 
         rows.filter(has_not_text="This one").first.get_by_role("button").click()
@@ -168,7 +168,7 @@ def test_ones_own_sessions_are_listed_and_another_is_ended(server, page, picture
         expect(rows).to_have_count(before - 1)
 
 
-def test_what_is_signed_with_a_name_asks_for_the_password_again(server, page, look, picture):
+def test_what_is_signed_with_a_name_asks_for_the_password_again(server, page, look, screenshot):
     if look[1] != "dark":
         pytest.skip("one color is enough")
     sign_in(page, server, "anna", "/people")
@@ -180,7 +180,7 @@ def test_what_is_signed_with_a_name_asks_for_the_password_again(server, page, lo
         row.get_by_label("Role of rita").select_option("reviewer")
         dialog = page.get_by_role("dialog", name="Your password again")
         expect(dialog.get_by_label("Password")).to_be_focused()
-        picture(page, "password-again")
+        screenshot(page, "password-again")
         page.keyboard.type("wrong wrong wrong")
         page.keyboard.press("Enter")
         expect(dialog.get_by_role("alert")).to_have_text("wrong name or password")
@@ -192,19 +192,19 @@ def test_what_is_signed_with_a_name_asks_for_the_password_again(server, page, lo
         access.sessions._clock = clock
 
 
-def test_the_first_admin_is_made_in_the_browser(tmp_path, page, look, picture):
+def test_the_first_admin_is_made_in_the_browser(tmp_path, page, look, screenshot):
     if look[1] != "light":
         pytest.skip("one color is enough")
     with server_thread(tmp_path, lan=True) as running:
         token = running.app.state.parts.access.logins.open_setup()
         page.goto(f"{running.url}/login#setup={token}")
-        expect(page.get_by_role("heading", name="Make the first admin")).to_be_visible()
+        expect(page.get_by_role("heading", name="Create the first admin")).to_be_visible()
         assert token not in page.url
         fits(page)
-        picture(page, "setup")
+        screenshot(page, "setup")
         page.get_by_label("Name").fill("Anna")
         page.get_by_label("Password", exact=True).fill(PASSWORD)
-        page.get_by_role("button", name="Make admin and sign in").click()
+        page.get_by_role("button", name="Create admin and sign in").click()
 
         expect(page.get_by_role("link", name="People")).to_be_visible()
         page.goto("about:blank")  # else its event stream is cut by the end of the server

@@ -31,7 +31,7 @@ def server(tmp_path):
 
 @pytest.fixture(scope="module")
 def real():
-    """Projects made from recordings, for the pictures in the documentation."""
+    """Projects made from recordings, for the screenshots in the documentation."""
     folder = os.environ.get("RECON4_PROJECTS")
     if not folder:
         pytest.skip("needs finished projects in RECON4_PROJECTS")
@@ -58,7 +58,7 @@ def fits(page):
     assert small == []
 
 
-def test_the_list_shows_projects_with_state_and_picture(finished, page, picture):
+def test_the_list_shows_projects_with_state_and_thumbnail(finished, page, screenshot):
     page.goto(finished.url)
 
     card = page.get_by_role("listitem").filter(has_text="office")
@@ -66,10 +66,10 @@ def test_the_list_shows_projects_with_state_and_picture(finished, page, picture)
     expect(card.locator("img")).to_have_js_property("complete", True)
     expect(page.get_by_role("listitem").filter(has_text="half")).to_contain_text("Not finished")
     fits(page)
-    picture(page, "projects")
+    screenshot(page, "projects")
 
 
-def test_a_project_shows_its_map_figures_and_results(finished, page, picture):
+def test_a_project_shows_its_map_figures_and_results(finished, page, screenshot):
     page.goto(finished.url)
 
     page.get_by_role("link", name="office").click()
@@ -82,21 +82,21 @@ def test_a_project_shows_its_map_figures_and_results(finished, page, picture):
     expect(viewer.get_by_text("Points by normalized intensity")).to_be_attached()
     drawn(page)
     fits(page)
-    picture(page, "project")
+    screenshot(page, "project")
 
 
-def test_real_projects_look_as_they_should(real, page, picture):
+def test_real_projects_look_as_they_should(real, page, screenshot):
     page.goto(real.url)
-    card = page.get_by_role("listitem").filter(has_text="of way").first
+    card = page.get_by_role("listitem").filter(has_text="m path").first
     expect(card.locator("img")).to_have_js_property("complete", True)
-    picture(page, "projects")
+    screenshot(page, "projects")
 
     card.get_by_role("link").click()
     viewer = page.frame_locator("iframe")
     expect(viewer.get_by_text("Points by normalized intensity")).to_be_attached()
     drawn(page)
     fits(page)
-    picture(page, "project")
+    screenshot(page, "project")
 
 
 @looks("desktop dark")
@@ -126,7 +126,7 @@ def test_a_download_and_the_report_open(finished, page):
     expect(report.value.get_by_role("heading", name="Report")).to_be_visible()
 
 
-def test_a_job_is_started_watched_cancelled_and_resumed(server, page, tmp_path, look, picture):
+def test_a_job_is_started_watched_cancelled_and_resumed(server, page, tmp_path, look, screenshot):
     recording = recording_with_gate(tmp_path / "morning walk")
     page.goto(server.url)
 
@@ -136,7 +136,7 @@ def test_a_job_is_started_watched_cancelled_and_resumed(server, page, tmp_path, 
     page.get_by_role("button", name="Use this folder").click()
     expect(page.get_by_label("Project name")).to_have_value("morning-walk")
     fits(page)
-    picture(page, "new-project")
+    screenshot(page, "new-project")
     page.get_by_role("button", name="Start").click()
 
     expect(page.get_by_role("heading", name="morning-walk")).to_be_visible()
@@ -146,13 +146,13 @@ def test_a_job_is_started_watched_cancelled_and_resumed(server, page, tmp_path, 
     expect(page.locator("job-log pre")).to_contain_text("Odometry")
     expect(page.locator("job-status")).to_contain_text("% of the run")
     fits(page)
-    picture(page, "running")
+    screenshot(page, "running")
     page.get_by_role("button", name="Cancel").click()
     expect(page.locator("job-status")).to_contain_text("Cancelled")
     expect(page.locator("job-status")).to_contain_text("finished stages are kept")
 
     page.get_by_role("button", name="Resume").click()
-    expect(page.get_by_role("row").filter(has_text="frames")).to_contain_text("Kept from before")
+    expect(page.get_by_role("row").filter(has_text="frames")).to_contain_text("Reused")
     gate = open_gate(recording)
     expect(page.locator("#state")).to_contain_text("Finished")
     os.close(gate)
@@ -218,7 +218,7 @@ def test_a_hostile_link_to_the_viewer_stays_with_our_server(finished, page):
     expect(page.get_by_text("Connected", exact=True)).to_be_visible()
 
 
-def test_the_api_is_described_without_internet(finished, page, look, picture):
+def test_the_api_is_described_without_internet(finished, page, look, screenshot):
     page.goto(f"{finished.url}/api")
 
     route = page.locator("#post-api-jobs")
@@ -228,4 +228,4 @@ def test_the_api_is_described_without_internet(finished, page, look, picture):
     expect(route.get_by_role("row").filter(has_text="recordings")).to_contain_text("list of string")
     expect(route.locator(".copy pre")).to_contain_text("curl -X POST -H 'Content-Type")
     fits(page)
-    picture(page, "api")
+    screenshot(page, "api")

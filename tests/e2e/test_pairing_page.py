@@ -54,14 +54,14 @@ def sign_in(page, server, path):
     page.wait_for_url(server.url + path)
 
 
-def test_a_phone_scans_the_code_and_is_in_and_the_token_is_nowhere(server, laptop, phone, picture):
+def test_a_phone_scans_the_code_and_is_in_and_the_token_is_nowhere(server, laptop, phone, screenshot):
     sign_in(laptop, server, "/")
     laptop.get_by_role("link", name="Phone").click()
     with laptop.expect_response("**/api/pairing/invitations") as answered:
         laptop.get_by_role("button", name="Show QR code").click()
     expect(laptop.get_by_role("img", name="QR code for one phone")).to_be_visible()
     token = urlsplit(answered.value.json()["links"][0]["url"]).fragment
-    picture(laptop, "pairing")
+    screenshot(laptop, "pairing")
 
     phone.goto(f"{server.url}/pair#{token}")
     phone.wait_for_url(f"{server.url}/live")
@@ -102,7 +102,7 @@ def test_six_digits_let_the_phone_in_and_when_its_session_ends_it_can_ask_again(
     sign_in(laptop, server, "/phone")
 
     laptop.get_by_label("Six digits").fill(phone.locator("#digits").inner_text())
-    laptop.get_by_role("button", name="Let it in").click()
+    laptop.get_by_role("button", name="Approve").click()
 
     expect(laptop.get_by_text("✓ Otto's phone")).to_be_visible()
     phone.wait_for_url(f"{server.url}/live")

@@ -1,4 +1,4 @@
-"""Whoever processes recordings: upload, look, settings, run again, delete, in a real browser."""
+"""Processing recordings in a real browser: upload, summary, settings, run again, delete."""
 
 import os
 import random
@@ -34,7 +34,7 @@ def chooser(page, *, folder=False):
     return page.locator("upload-box input[type=file]").nth(1 if folder else 0)
 
 
-def test_a_recording_is_uploaded_looked_into_and_suits_the_form(server, page, capture, picture):
+def test_a_recording_is_uploaded_looked_into_and_suits_the_form(server, page, capture, screenshot):
     page.goto(server.url)
 
     chooser(page).set_input_files(capture)
@@ -42,7 +42,7 @@ def test_a_recording_is_uploaded_looked_into_and_suits_the_form(server, page, ca
     expect(page.locator("upload-box")).to_contain_text("On the server")
     expect(page.locator("recording-look")).to_contain_text("VLP-16")
     expect(page.get_by_label("Project name")).to_have_value("ranni-pochuzka")
-    picture(page, "upload")
+    screenshot(page, "upload")
     page.get_by_text("All settings").click()
     page.get_by_label("Find a setting").fill("voxel")
     field = (
@@ -55,7 +55,7 @@ def test_a_recording_is_uploaded_looked_into_and_suits_the_form(server, page, ca
     expect(page.locator("setting-editor")).to_contain_text("voxel_m must be 0 to 1, got 7")
     fits(page)
     page.get_by_role("button", name="Start").click()
-    expect(page.get_by_text("Some settings are wrong, see above")).to_be_visible()
+    expect(page.get_by_text("Some settings are invalid, see above")).to_be_visible()
     expect(field).to_be_focused()
 
 
@@ -80,7 +80,7 @@ def test_an_upload_goes_on_after_the_page_was_closed(server, page, tmp_path):
     page.reload()
 
     left = page.get_by_role("list", name="Unfinished uploads")
-    expect(left).to_contain_text("MB of 40 MB are here. Choose the same file again")
+    expect(left).to_contain_text("MB of 40 MB received. Select the same file again")
     chooser(page).set_input_files(walk)
 
     expect(page.locator("upload-box")).to_contain_text("On the server")
@@ -166,7 +166,7 @@ def test_a_project_is_run_again_as_a_clone_renamed_deleted_and_brought_back(serv
     expect(page.get_by_role("link", name="office")).to_be_visible()
     expect(page.get_by_role("link", name="Kancelář")).to_have_count(0)
     page.get_by_text("Recently deleted").click()
-    page.get_by_role("button", name="Bring back office-thin").click()
+    page.get_by_role("button", name="Restore office-thin").click()
 
     expect(page.get_by_role("link", name="Kancelář")).to_be_visible()
     os.close(gate)

@@ -1,4 +1,4 @@
-"""Loops decided about by keyboard, by mouse and by touch; a map made anew, approved, exported."""
+"""Loop closures decided by keyboard, mouse and touch; a new map made, approved, exported."""
 
 import json
 import shutil
@@ -43,14 +43,14 @@ def opened(running, root, page):
 
 
 def settled(page):
-    """The points of the pair in hand are there."""
+    """The points of the selected pair are drawn."""
     expect(page.locator(".view-empty")).to_be_empty()
     expect(page.locator("#pair dl")).to_be_visible()
     expect(page.locator("#decision").get_by_role("button", name="Reject")).to_be_enabled()
 
 
 def fits(page):
-    """Nothing sticks out to the side, and everything to press is large enough."""
+    """Nothing overflows to the side, and every control is large enough."""
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
     small = page.evaluate(
         """[...document.querySelectorAll('button:not(.link), select, summary, .check, .bar a')]
@@ -103,7 +103,7 @@ PRESSES = """async (key) => {
     await new Promise((later) => setTimeout(later, 10));
   }
 }"""
-"""A key pressed and let go a hundred times a second; images of a busy computer may take longer
+"""A key pressed and released a hundred times a second; a busy computer may draw images more slowly
 than the pause after which a press counts as a new one."""
 
 
@@ -120,7 +120,7 @@ def only_one_decision(page, root, key):
 
 
 def decidable(page):
-    """The points of the pair in hand are drawn and nobody at this page has decided about it."""
+    """The points of the selected pair are drawn, and it is not decided on this page."""
     expect(page.locator("#decision").get_by_role("button", name="Reject")).to_be_enabled()
 
 
@@ -141,7 +141,7 @@ def test_forty_loops_are_reviewed_without_the_mouse(opened, root):
     assert len({(row.frame_i, row.frame_j) for row in rows}) == 40
     assert broken(rows) == []
     expect(page.locator("#effect")).not_to_contain_text("solving")
-    expect(page.locator("#effect")).to_contain_text("chi²")
+    expect(page.locator("#effect")).to_contain_text("Chi-square")
     for _ in range(3):
         page.keyboard.press("Control+z")
     expect(page.locator("review-queue")).to_contain_text("37 decided by people")
@@ -230,7 +230,7 @@ def test_nothing_is_decided_before_the_points_are_drawn(opened, root):
 
 
 @looks("desktop light")
-def test_after_a_decision_keys_rest_until_another_pair_is_drawn(opened, root):
+def test_after_a_decision_keys_do_nothing_until_another_pair_is_drawn(opened, root):
     page = opened
     page.keyboard.press("j")
     decidable(page)
@@ -263,28 +263,30 @@ def test_going_on_after_a_decision_is_off_at_first_and_remembered(opened):
     expect(onwards).to_be_checked()
 
 
-def test_the_page_says_what_a_decision_does(opened, look, picture):
+def test_the_page_shows_the_effect_of_a_decision(opened, look, screenshot):
     page = opened
     page.keyboard.press("j")
     settled(page)
-    expect(page.locator("#pair")).to_contain_text("outlier in the robust solution")
+    expect(page.locator("#pair")).to_contain_text(
+        "Rejected automatically: outlier in the robust solution"
+    )
     red, green, _ = colored(page)
     assert min(red, green) > 500
     fits(page)
-    picture(page, "review")
+    screenshot(page, "review")
 
     page.keyboard.press("a")
 
     expect(page.locator("#effect")).to_contain_text("Accepted, but does not fit")
     expect(page.locator("#effect")).to_contain_text("Largest moves of the last decision")
-    expect(page.locator("#signing")).to_contain_text("does not know the last decisions")
+    expect(page.locator("#signing")).to_contain_text("decisions are not in the map")
     expect(page.get_by_role("button", name="Approve verification…")).to_be_disabled()
     fits(page)
-    picture(page, "review-effect")
+    screenshot(page, "review-effect")
 
 
 @looks("desktop dark", "phone light")
-def test_views_and_comparison_show_other_pictures(opened):
+def test_views_and_comparison_show_different_images(opened):
     page = opened
     page.keyboard.press("j")
     settled(page)
@@ -303,7 +305,7 @@ def test_views_and_comparison_show_other_pictures(opened):
 
 
 @looks("desktop dark")
-def test_a_wrong_loop_is_laid_right_by_keys_and_becomes_an_edge(opened, root, picture):
+def test_a_wrong_loop_closure_is_aligned_by_keys_and_becomes_an_edge(opened, root, screenshot):
     page = opened
     page.keyboard.press("j")
     settled(page)
@@ -315,19 +317,19 @@ def test_a_wrong_loop_is_laid_right_by_keys_and_becomes_an_edge(opened, root, pi
     page.keyboard.press("Enter")
     expect(page.locator("#said")).to_contain_text("Enter creates the edge")
     page.wait_for_timeout(200)
-    picture(page, "review-aligned")
+    screenshot(page, "review-aligned")
     _, _, after = colored(page)
     page.keyboard.press("w")
-    page.keyboard.type("was off by half a metre")
+    page.keyboard.type("was off by half a meter")
     page.keyboard.press("Escape")
     page.keyboard.press("Enter")
 
     expect(page.locator("review-queue")).to_contain_text("1 decided by people")
     (row,) = read_rows(root)
-    assert (row.kind, row.why) == ("replace", "was off by half a metre")
+    assert (row.kind, row.why) == ("replace", "was off by half a meter")
     assert row.decision().measurement.error_m < 0.03
     assert after > 1.5 * before
-    expect(page.locator("#effect")).to_contain_text("chi²")
+    expect(page.locator("#effect")).to_contain_text("Chi-square")
     expect(page.locator("#effect .bad")).to_have_count(0)
 
 
@@ -364,7 +366,7 @@ def test_a_place_is_dragged_turned_and_dropped_again(opened):
 
 
 @looks("desktop light")
-def test_three_picked_pairs_lay_the_second_place(opened):
+def test_three_picked_pairs_align_the_second_place(opened):
     page = opened
     page.keyboard.press("j")
     settled(page)
@@ -382,15 +384,15 @@ def test_three_picked_pairs_lay_the_second_place(opened):
 
 
 @looks("desktop dark", "phone light")
-def test_a_loop_is_added_between_two_moments(opened, root, picture):
+def test_a_loop_closure_is_added_between_two_multiframes(opened, root, screenshot):
     page = opened
 
     page.get_by_role("button", name="Add loop").click()
     dialog = page.get_by_role("dialog")
     expect(dialog).to_contain_text("multiframe 119")
-    picture(page, "review-moments")
-    page.get_by_label("Second moment (green)").fill("62")
-    page.get_by_label("First moment (red)").fill("31")
+    screenshot(page, "review-moments")
+    page.get_by_label("Second multiframe (green)").fill("62")
+    page.get_by_label("First multiframe (red)").fill("31")
     page.get_by_role("button", name="Look at this pair").click()
     settled(page)
     expect(page.locator("#pair")).to_contain_text("Multiframes 31 and 62")
@@ -404,17 +406,17 @@ def test_a_loop_is_added_between_two_moments(opened, root, picture):
 
 
 @looks("desktop light")
-def test_the_help_sheet_lists_the_keys(opened, picture):
+def test_the_help_sheet_lists_the_keys(opened, screenshot):
     opened.keyboard.press("?")
 
     expect(opened.get_by_role("dialog")).to_contain_text("Undo")
-    picture(opened, "review-keys")
+    screenshot(opened, "review-keys")
     opened.keyboard.press("Escape")
     expect(opened.get_by_role("dialog")).to_have_count(0)
 
 
 @looks("phone dark")
-def test_what_others_decide_is_seen_without_a_click(opened, root):
+def test_decisions_of_others_appear_without_a_click(opened, root):
     page = opened
 
     append(root, Decision(kind=DecisionKind.REJECT, who="Eva", why="glass", pair=(17, 77)))
@@ -427,12 +429,12 @@ def test_what_others_decide_is_seen_without_a_click(opened, root):
 
 
 @looks("desktop dark")
-def test_decide_make_a_new_map_approve_export(opened, root, picture):
+def test_decide_make_a_new_map_approve_export(opened, root, screenshot):
     page = opened
     page.keyboard.press("j")
     settled(page)
     page.keyboard.press("r")
-    expect(page.locator("#signing")).to_contain_text("does not know the last decisions")
+    expect(page.locator("#signing")).to_contain_text("decisions are not in the map")
 
     page.get_by_role("button", name="Make a new map").click()
     signing = page.locator("#signing")
@@ -444,7 +446,7 @@ def test_decide_make_a_new_map_approve_export(opened, root, picture):
     expect(page.locator("#signing")).to_contain_text("Approved: version 1 by local")
     page.get_by_text("Journal", exact=True).click()
     expect(page.locator("#journal")).to_contain_text("approved the map")
-    picture(page, "review-approved")
+    screenshot(page, "review-approved")
     approval = json.loads((root / "versions" / "1" / "approval.json").read_text())
     with page.expect_popup() as report:
         page.evaluate(f"open('/api/projects/{root.name}/report')")

@@ -32,7 +32,7 @@ def rested(page):
     expect(page.locator("body.drawing")).to_have_count(0)
 
 
-def test_a_slice_is_shown_with_frame_units_and_legend(server, page, picture):
+def test_a_slice_is_shown_with_frame_units_and_legend(server, page, screenshot):
     opened(page, server, "?kind=horizontal&z=1.5&color=intensity")
 
     expect(page.locator(".facing")).to_contain_text("z = 1.500 m")
@@ -40,7 +40,7 @@ def test_a_slice_is_shown_with_frame_units_and_legend(server, page, picture):
     expect(page.get_by_role("img", name=re.compile("Slice z = 1.500 m, .* points"))).to_be_visible()
     expect(page.get_by_label("Low end of the colors")).to_be_visible()
     fits(page)
-    picture(page, "slices")
+    screenshot(page, "slices")
 
 
 def test_keys_step_turn_and_thicken_and_the_address_keeps_it(server, page):
@@ -69,7 +69,7 @@ def test_keys_step_turn_and_thicken_and_the_address_keeps_it(server, page):
     expect(page.locator(".facing")).to_contain_text("5 cm thick")
 
 
-def test_a_drag_on_the_map_from_above_cuts_there(server, page, picture):
+def test_a_drag_on_the_map_from_above_cuts_there(server, page, screenshot):
     opened(page, server)
     above = page.locator("slice-above:not([aria-busy])")
     above.scroll_into_view_if_needed()
@@ -84,7 +84,7 @@ def test_a_drag_on_the_map_from_above_cuts_there(server, page, picture):
 
     expect(page.locator(".facing")).to_contain_text(re.compile(r"azimuth (89\.[5-9]|90\.[0-5])°"))
     rested(page)
-    picture(page, "slices-vertical")
+    screenshot(page, "slices-vertical")
 
 
 def test_a_distance_is_measured_between_two_points_of_the_map(server, page):
@@ -107,7 +107,7 @@ def test_a_distance_is_measured_between_two_points_of_the_map(server, page):
     assert horizontal == pytest.approx(10.0, abs=0.5)
 
 
-def test_two_slices_stand_side_by_side_and_move_together(server, page, picture):
+def test_two_slices_stand_side_by_side_and_move_together(server, page, screenshot):
     opened(page, server, "?kind=horizontal&z=1.5")
 
     page.get_by_label("Map beside").select_option("project:earlier")
@@ -115,7 +115,7 @@ def test_two_slices_stand_side_by_side_and_move_together(server, page, picture):
     expect(second).to_be_visible()
     expect(page.locator(".caption.second")).to_contain_text("Project earlier")
     rested(page)
-    picture(page, "slices-beside")
+    screenshot(page, "slices-beside")
     page.get_by_role("button", name="Swipe").click()
 
     expect(page.get_by_label("Swipe between the two slices")).to_be_visible()
@@ -128,7 +128,7 @@ def test_no_double_wall_is_found_where_there_is_none(server, page):
     opened(page, server)
 
     page.get_by_text("Double walls", exact=True).click()
-    page.get_by_role("button", name="Look for double walls").click()
+    page.get_by_role("button", name="Find double walls").click()
 
     expect(page.locator(".verdict")).to_contain_text(re.compile("No double wall|Not checked"))
 
@@ -141,7 +141,7 @@ def test_what_is_found_is_found_in_the_map_that_is_shown(server, page):
 
     page.get_by_text("Double walls", exact=True).click()
     with page.expect_request(re.compile("doubles.*source=project%3Aearlier")):
-        page.get_by_role("button", name="Look for double walls").click()
+        page.get_by_role("button", name="Find double walls").click()
     expect(page.locator(".verdict")).to_be_visible()
     page.get_by_text("Compare with a reference").click()
     page.get_by_label("Path of the reference").fill(str(server.root / "wall.xyz"))
@@ -156,7 +156,7 @@ def test_what_is_found_is_found_in_the_map_that_is_shown(server, page):
     assert asked.value.post_data_json["source"] == "project:earlier"
 
 
-def test_a_reference_is_compared_and_shown(server, page, picture):
+def test_a_reference_is_compared_and_shown(server, page, screenshot):
     path = server.root / "walls.xyz"
     rows = [
         f"{x} {y / 20:.2f} {z / 10:.1f}"
@@ -178,7 +178,7 @@ def test_a_reference_is_compared_and_shown(server, page, picture):
     expect(page.get_by_role("link", name="Download CSV")).to_be_visible()
     fits(page)
     page.get_by_role("link", name="Download CSV").scroll_into_view_if_needed()
-    picture(page, "slices-reference")
+    screenshot(page, "slices-reference")
     page.get_by_role("button", name="Remove").click()
     expect(page.get_by_role("button", name="Remove")).to_have_count(0)
 
@@ -236,7 +236,7 @@ def test_a_double_wall_belongs_to_the_slices_near_it(server, page):
     assert found == pytest.approx([0.5, 4.0, 2.0])
 
 
-def test_a_survey_is_imported_judged_and_taken_away(server, page, picture):
+def test_a_survey_is_imported_judged_and_taken_away(server, page, screenshot):
     opened(page, server)
 
     page.get_by_text("Control and check points").click()
@@ -245,7 +245,7 @@ def test_a_survey_is_imported_judged_and_taken_away(server, page, picture):
     page.get_by_label("Survey file").set_input_files(survey)
     expect(page.get_by_text("is 0.020 the easting")).to_be_visible()
     page.get_by_role("button", name="Use, in the map's frame").click()
-    expect(page.locator(".verdict")).to_contain_text("Nothing checked yet · 4 not found yet")
+    expect(page.locator(".verdict")).to_contain_text("No check point measured yet · 4 not measured yet")
     page.get_by_role("button", name="A on the nearest surface").click()
     expect(page.get_by_role("row", name=re.compile("^A "))).to_contain_text("-2.0")
     page.get_by_role("button", name="All on the nearest surface").click()
@@ -253,12 +253,12 @@ def test_a_survey_is_imported_judged_and_taken_away(server, page, picture):
     expect(
         page.get_by_role("alert").filter(has_text="No surface within 30 cm of D")
     ).to_be_visible()
-    expect(page.locator(".verdict")).to_contain_text("✕ The map does not keep the limits")
+    expect(page.locator(".verdict")).to_contain_text("✕ Outside the limits")
     expect(page.get_by_role("row", name="mean horizontal")).to_contain_text("✓ holds")
     expect(page.get_by_role("row", name="distances")).to_contain_text("✕ exceeded")
     fits(page)
     page.locator(".verdict").scroll_into_view_if_needed()
-    picture(page, "slices-control")
+    screenshot(page, "slices-control")
     with page.expect_popup() as sheet:
         page.get_by_role("link", name="Sheet to print and sign").click()
     expect(sheet.value.get_by_text("does not keep the limits at 3 check points")).to_be_visible()
@@ -273,16 +273,16 @@ def test_two_tabs_judge_control_points_and_neither_undoes_the_other(server, page
     page.get_by_text("Control and check points").click()
     page.get_by_label("Survey file").set_input_files(survey)
     page.get_by_role("button", name="Use, in the map's frame").click()
-    expect(page.locator(".verdict")).to_contain_text("2 not found yet")
+    expect(page.locator(".verdict")).to_contain_text("2 not measured yet")
     opened(other, server, "?kind=horizontal&z=1.5")
     other.get_by_text("Control and check points").click()
-    expect(other.locator(".verdict")).to_contain_text("2 not found yet")
+    expect(other.locator(".verdict")).to_contain_text("2 not measured yet")
 
     page.get_by_role("button", name="A on the nearest surface").click()
-    expect(page.locator(".verdict")).to_contain_text("1 not found yet")
+    expect(page.locator(".verdict")).to_contain_text("1 not measured yet")
     other.get_by_role("button", name="B on the nearest surface").click()
 
-    expect(other.locator(".verdict")).not_to_contain_text("not found yet")
+    expect(other.locator(".verdict")).not_to_contain_text("not measured yet")
     expect(other.get_by_role("row", name=re.compile("^A "))).to_contain_text("-2.0")
     other.close()
 

@@ -72,7 +72,7 @@ def touch(page, look, at):
 
 
 def test_a_click_or_tap_on_a_rejected_edge_says_why_and_leads_to_its_review(
-    finished, viewer, look, picture
+    finished, viewer, look, screenshot
 ):
     graph = verified_graph(loop_walk())
     edge = next(e for e in graph.edges if e.reason is Reason.VERIFICATION)
@@ -83,11 +83,11 @@ def test_a_click_or_tap_on_a_rejected_edge_says_why_and_leads_to_its_review(
     link = viewer.get_by_role("link", name="Open in review", include_hidden=True)
     expect(link).to_have_attribute("href", f"/projects/office/review/?edge={edge.i}-{edge.j}")
     expect(viewer.get_by_text("verification median > limit", exact=True)).to_be_attached()
-    picture(viewer, "viewer-edge")
+    screenshot(viewer, "viewer-edge")
 
 
 @looks("desktop dark")
-def test_keys_toggle_the_intensity_and_measure_the_room(finished, viewer, picture):
+def test_keys_toggle_the_intensity_and_measure_the_room(finished, viewer, screenshot):
     viewer.keyboard.press("n")
     expect(viewer.get_by_text("Points by raw intensity")).to_be_visible()
 
@@ -98,14 +98,14 @@ def test_keys_toggle_the_intensity_and_measure_the_room(finished, viewer, pictur
         expect(viewer.get_by_text("x y z, m")).to_be_attached()
         viewer.wait_for_timeout(500)
     expect(viewer.get_by_text("Horizontal", exact=True)).to_be_attached()
-    told = viewer.locator("tr").filter(has_text="Distance").last.inner_text()
+    row = viewer.locator("tr").filter(has_text="Distance").last.inner_text()
 
-    assert abs(float(told.split()[1]) - 12.0) < 0.5
-    picture(viewer, "viewer-measure")
+    assert abs(float(row.split()[1]) - 12.0) < 0.5
+    screenshot(viewer, "viewer-measure")
 
 
 @looks("desktop light")
-def test_the_scrubber_shows_single_multiframes(viewer, picture):
+def test_the_scrubber_shows_single_multiframes(viewer, screenshot):
     viewer.get_by_role("combobox", name="Show").click()
     viewer.get_by_role("option", name="map and multiframe").click()
     expect(viewer.get_by_text("Multiframe 0 of 599, at 0.0 s")).to_be_visible()
@@ -114,7 +114,7 @@ def test_the_scrubber_shows_single_multiframes(viewer, picture):
     expect(viewer.get_by_text(re.compile(r"Multiframe [1-9]\d* of 599, at"))).to_be_visible()
     viewer.keyboard.press("p")
 
-    picture(viewer, "viewer-multiframe")
+    screenshot(viewer, "viewer-multiframe")
 
 
 @looks("desktop dark")

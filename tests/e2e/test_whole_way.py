@@ -51,22 +51,22 @@ def look():
     return "desktop", "light"
 
 
-def test_a_recording_becomes_a_map_somebody_signed(server, walk, page, picture, browser):
+def test_a_recording_becomes_a_map_somebody_signed(server, walk, page, screenshot, browser):
     page.goto(server.url)
     upload(page, walk)
-    picture(page, "tour-upload")
+    screenshot(page, "tour-upload")
     start(page)
     root = server.root / "office-walk"
-    watch(page, picture)
+    watch(page, screenshot)
     toggle_in_the_viewer(page)
-    picture(page, "tour-map")
+    screenshot(page, "tour-map")
     page.get_by_role("link", name="Review", exact=True).click()
-    decide(page, root, picture)
+    decide(page, root, screenshot)
     make_a_new_map(page)
-    cut(page, picture)
+    cut(page, screenshot)
     page.get_by_role("link", name="Review", exact=True).click()
     approve(page)
-    picture(page, "tour-approved")
+    screenshot(page, "tour-approved")
     take_away(page, root)
     signed = hashes(root / "versions" / "1")
     page.get_by_role("link", name="Review", exact=True).click()
@@ -81,7 +81,7 @@ def upload(page, walk):
     page.locator("upload-box input[type=file]").nth(1).set_input_files(walk)
     expect(page.locator("upload-box")).to_contain_text("On the server")
     expect(page.locator("recording-look")).to_contain_text("VLP-16")
-    expect(page.locator("recording-look")).to_contain_text("imu.csv, beside it")
+    expect(page.locator("recording-look")).to_contain_text("imu.csv, next to it")
     expect(page.locator("recording-look")).not_to_contain_text("no rig given")
     expect(page.get_by_label("Project name")).to_have_value("office-walk")
     expect(page.get_by_label("Preset")).to_have_value("indoor")
@@ -97,7 +97,7 @@ def start(page):
     expect(page.get_by_role("heading", name="office-walk")).to_be_visible()
 
 
-def watch(page, picture):
+def watch(page, screenshot):
     """Stages come one after the other, and the trajectory while the job still runs."""
     row = page.get_by_role("row")
     expect(row.filter(has_text="frames")).to_contain_text("Done", timeout=WORK_MS)
@@ -106,7 +106,7 @@ def watch(page, picture):
     expect(page.locator("job-status")).to_contain_text("% of the run")
     drawn(page)
     wait_for(lambda: lines_seen(page) > 50, "the trajectory is not drawn while the job runs")
-    picture(page, "tour-running")
+    screenshot(page, "tour-running")
     expect(page.locator("#state")).to_contain_text("Finished", timeout=WORK_MS)
     expect(row.filter(has_text="map")).to_contain_text("Done")
 
@@ -127,7 +127,7 @@ def toggle_in_the_viewer(page):
     expect(viewer.get_by_text("Points by normalized intensity")).to_be_visible()
 
 
-def in_hand(page):
+def select_next(page):
     """The next pair, with its points."""
     page.keyboard.press("j")
     expect(page.locator(".view-empty")).to_be_empty()
@@ -135,28 +135,28 @@ def in_hand(page):
     expect(page.locator("#decision").get_by_role("button", name="Reject")).to_be_enabled()
 
 
-def decide(page, root, picture):
-    """By keys alone: a mistake is named and taken back, a kept loop taken out."""
+def decide(page, root, screenshot):
+    """By keys alone: a wrong acceptance is reported and undone, an accepted loop closure is rejected."""
     expect(page.locator("review-queue li").first).to_be_visible()
     expect(page.get_by_label("Go on to the next pair after a decision")).not_to_be_checked()
     page.get_by_label("Which pairs").select_option("doubt")
     page.evaluate("document.activeElement.blur()")
-    in_hand(page)
+    select_next(page)
     decided(page, "a", 1)
     expect(page.locator("#effect")).to_contain_text("Accepted, but does not fit")
-    picture(page, "tour-review")
+    screenshot(page, "tour-review")
     decided(page, "Control+z", 0)
     expect(page.locator("#effect")).not_to_contain_text("does not fit")
     page.get_by_label("Which pairs").select_option("kept")
     page.evaluate("document.activeElement.blur()")
-    in_hand(page)
+    select_next(page)
     decided(page, "r", 1)
 
-    chi2 = page.locator("#effect div").filter(has_text="chi², all decisions").locator("dd")
+    chi2 = page.locator("#effect div").filter(has_text="Chi-square, all decisions").locator("dd")
     expect(chi2).to_contain_text("→")
     before, after = (float(x) for x in chi2.inner_text().split("→"))
     assert after < before
-    expect(page.locator("#signing")).to_contain_text("does not know the last decisions")
+    expect(page.locator("#signing")).to_contain_text("decisions are not in the map")
     expect(page.get_by_role("button", name="Approve verification…")).to_be_disabled()
     rows = read_rows(root)
     assert [row.kind for row in rows] == ["accept", "undo", "reject"]
@@ -175,12 +175,12 @@ def make_a_new_map(page):
     expect(page.locator("#signing")).to_contain_text("A job waits or runs")
     page.get_by_role("link", name="Map", exact=True).click()
     row = page.get_by_role("row")
-    expect(row.filter(has_text="graph")).to_contain_text("Kept from before")
+    expect(row.filter(has_text="graph")).to_contain_text("Reused")
     expect(row.filter(has_text="review")).to_contain_text("Done", timeout=WORK_MS)
     expect(page.locator("#state")).to_contain_text("Finished", timeout=WORK_MS)
 
 
-def cut(page, picture):
+def cut(page, screenshot):
     """Slices: a step, raw and normalized intensity, no wall twice."""
     page.get_by_role("link", name="Slices", exact=True).click()
     facing = page.locator(".facing")
@@ -195,9 +195,9 @@ def cut(page, picture):
     expect(page.locator("#legend")).to_contain_text("ormalized")
     expect(page.locator("body.drawing")).to_have_count(0)
     expect(facing).to_contain_text("Not approved")
-    picture(page, "tour-slice")
+    screenshot(page, "tour-slice")
     page.locator("summary").get_by_text("Double walls").click()
-    page.get_by_role("button", name="Look for double walls").click()
+    page.get_by_role("button", name="Find double walls").click()
     expect(page.locator(".verdict")).to_contain_text("No double wall found")
     expect(page.get_by_role("row").filter(has_text="✓ single").first).to_be_visible()
 
@@ -239,9 +239,9 @@ def approval_in(laz: Path) -> str:
 def decide_again(page):
     """What was signed was another state: this one is a draft."""
     expect(page.locator("#signing")).to_contain_text("✓ Approved")
-    in_hand(page)
+    select_next(page)
     page.keyboard.press("r")
-    expect(page.locator("#signing")).to_contain_text("A draft again")
+    expect(page.locator("#signing")).to_contain_text("Draft: decisions were made after")
     expect(page.get_by_role("button", name="Approve verification…")).to_be_disabled()
 
 

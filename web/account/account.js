@@ -1,4 +1,4 @@
-// One's own account: sessions and password.
+// The account of the signed-in person: sessions and password.
 
 import { changePassword, endMySession, listMySessions, readMe } from "../shared/api.js";
 import { attempt, byId, fields } from "../shared/dom.js";
@@ -9,7 +9,8 @@ const list = document.querySelector("session-list");
 const form = byId("password", HTMLFormElement);
 
 const me = await attempt(byId("message"), readMe);
-if (me) byId("title").textContent = me.login ? `${me.name}, ${me.role}` : "There is no login here";
+if (me)
+  byId("title").textContent = me.login ? `${me.name}, ${me.role}` : "This server has no login";
 for (const section of document.querySelectorAll("section")) section.hidden = !me?.login;
 list.source = { read: listMySessions, end: endMySession };
 

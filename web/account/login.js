@@ -1,4 +1,4 @@
-// The login, and the first admin of a server nobody can sign in to yet.
+// The login, and the first admin of a server without accounts.
 
 import { isSignedIn, setUp, signIn } from "../shared/api.js";
 import { byId, fields, targetOf } from "../shared/dom.js";
@@ -19,9 +19,9 @@ function next() {
 
 function offerSetup() {
   document.title = "First admin · recon4";
-  byId("title").textContent = "Make the first admin";
-  byId("words").textContent = "Nobody can sign in to this server yet. This link works once";
-  go.textContent = "Make admin and sign in";
+  byId("title").textContent = "Create the first admin";
+  byId("words").textContent = "This server has no accounts yet. This link works once";
+  go.textContent = "Create admin and sign in";
   byId("words").hidden = byId("hint").hidden = false;
   controls.password.autocomplete = "new-password";
   controls.password.minLength = 12;

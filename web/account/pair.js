@@ -1,4 +1,4 @@
-// The phone's side of pairing: uses the one-time link, or shows six digits and waits to be let in.
+// The phone's side of pairing: uses the one-time link, or shows six digits and waits for approval.
 
 import {
   requestPairing,
@@ -16,10 +16,10 @@ history.replaceState(null, "", location.pathname); // the one-time link stays in
 
 async function useInvitation() {
   byId("ask").hidden = true;
-  byId("words").textContent = "One moment";
+  byId("words").textContent = "Signing in…";
   if (await attempt(byId("message"), () => redeemInvitation(token)))
     return location.replace(liveUrl);
-  byId("words").textContent = "Make a new QR code on the laptop, or ask to be let in with a code";
+  byId("words").textContent = "Make a new QR code on the laptop, or sign in with a code";
   byId("ask").hidden = false;
 }
 
@@ -30,7 +30,8 @@ async function ask(event) {
   );
   if (!asked) return;
   byId("ask").hidden = byId("else").hidden = true;
-  byId("words").textContent = "Somebody who is signed in types this code on the page Phone";
+  byId("words").textContent =
+    "On a computer that is signed in, open the page Phone and enter this code";
   byId("digits").textContent = `${asked.code.slice(0, 3)} ${asked.code.slice(3)}`;
   byId("digits").hidden = byId("left").hidden = false;
   await wait(asked, performance.now() + 1000 * asked.seconds);
@@ -55,13 +56,14 @@ function over(words) {
   byId("ask").hidden = byId("else").hidden = false;
 }
 
-/** Whether this browser is in already; without a link it is not known, and the page can be used. */
+/** Whether this browser is signed in; false without a link, so that the page can be used. */
 const isIn = () => isSignedIn().catch(() => false);
 
 byId("ask").addEventListener("submit", ask);
-const ended = token === AGAIN ? "The session of this phone has ended; what runs goes on. " : "";
+const ended =
+  token === AGAIN ? "The session of this phone has ended; a running capture goes on. " : "";
 if (await isIn()) location.replace(liveUrl);
 else if (token && !ended) await useInvitation();
 else
   byId("words").textContent =
-    `${ended}Scan the QR code on the laptop (page Phone), or ask to be let in with a code`;
+    `${ended}Scan the QR code on the laptop (page Phone), or sign in with a code`;

@@ -1,4 +1,4 @@
-// For admins: people, everybody's sessions, the audit log.
+// For admins: accounts, all sessions, the audit log.
 
 import {
   addPerson,
@@ -100,9 +100,9 @@ async function readLog(before) {
       ? make(
           "b",
           { className: "bad" },
-          `✕ Entry ${broken} does not follow from the one before: tampered with`,
+          `✕ Entry ${broken} does not match the hash of the one before: the log was altered`,
         )
-      : make("b", { className: "good" }, `✓ ${entries} entries, chain whole`),
+      : make("b", { className: "good" }, `✓ ${entries} entries, hash chain intact`),
     make("code", {}, newest),
   );
 }

@@ -30,10 +30,10 @@ function showRoles(roles) {
   chose();
 }
 
-/** A code that is shown is for the role that was chosen then. */
+/** Hides the code: it is for the role that was selected before. */
 function chose() {
   hideCode();
-  byId("let-in").textContent = `Let it in as ${role()}`;
+  byId("approve-phone").textContent = `Approve as ${role()}`;
 }
 
 async function invite() {
@@ -48,7 +48,7 @@ async function invite() {
   byId("host").onchange = show;
   byId("address").hidden = invitation.links.length < 2;
   byId("shown").hidden = false;
-  byId("invite").textContent = "Show another";
+  byId("invite").textContent = "Show a new code";
   show();
   countDown(performance.now() + 1000 * invitation.seconds, invitation.role);
 }
@@ -78,7 +78,7 @@ async function approve(event) {
   const phone = await attempt(byId("approve-message"), () => approvePhone(code, role()));
   if (!phone) return;
   event.target.reset();
-  byId("approved").textContent = `✓ ${phone.name} at ${phone.address} is in as ${role()}`;
+  byId("approved").textContent = `✓ ${phone.name} at ${phone.address} is signed in as ${role()}`;
 }
 
 byId("invite").addEventListener("click", invite);

@@ -1,4 +1,4 @@
-// <folder-browser>: folders of the server a recording may be picked from. Tells "pick" with a path.
+// <folder-browser>: folders of the server with recordings. Event "pick" has a path.
 
 import { browse } from "../shared/api.js";
 import { attempt, make } from "../shared/dom.js";
@@ -24,7 +24,9 @@ export class FolderBrowser extends HTMLElement {
   }
 
   async #open(path) {
+    this.#list.inert = true; // no choice in a folder that is being left
     const entries = await attempt(this.#message, () => browse(path));
+    this.#list.inert = false;
     if (!entries) return;
     const up = path.split("/").slice(0, -1).join("/");
     const row = (words, note, onclick) =>

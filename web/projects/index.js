@@ -37,7 +37,7 @@ function draw(id, project = projects.find((one) => one.id === id)) {
   const view = jobs.get(id);
   const { root, facts, status } = card(id);
   const open = view && view.job.state !== "succeeded";
-  const picture = project?.has_map
+  const thumbnail = project?.has_map
     ? make("img", {
         src: thumbnailUrl(id, project.updated),
         alt: "",
@@ -54,7 +54,7 @@ function draw(id, project = projects.find((one) => one.id === id)) {
     make(
       "a",
       { href: projectUrl(id), className: "cover" },
-      picture,
+      thumbnail,
       make("strong", {}, project?.name ?? id),
     ),
     open ? null : badge(stateOf(project, view)),
@@ -111,25 +111,25 @@ async function showTrash() {
         "div",
         {},
         make("strong", {}, project),
-        make("small", {}, ` goes for good on ${when(goes)}`),
+        make("small", {}, ` is deleted permanently on ${when(goes)}`),
       ),
       make(
         "button",
         {
           type: "button",
           onclick: act(() => restoreProject(id)),
-          ariaLabel: `Bring back ${project}`,
+          ariaLabel: `Restore ${project}`,
         },
-        "Bring back",
+        "Restore",
       ),
       make(
         "button",
         {
           type: "button",
           onclick: act(() => removeProject(id)),
-          ariaLabel: `Remove ${project} for good`,
+          ariaLabel: `Delete ${project} permanently`,
         },
-        "Remove now",
+        "Delete now",
       ),
     );
   byId("trash").hidden = deleted.length === 0;

@@ -1,5 +1,5 @@
 // <new-job>: the form that starts a job: a recording, a name, a preset, settings.
-// With `again` it starts one like another: in the same project, or as a new one that keeps finished stages.
+// With `again` it repeats a job: in the same project, or in a new one that reuses finished stages.
 
 import { addJob, listProjects, projectUrl, readChoices } from "../shared/api.js";
 import { attempt, make } from "../shared/dom.js";
@@ -43,16 +43,16 @@ export class NewJob extends HTMLElement {
   #rig = make(
     "select",
     { name: "rig", onchange: () => this.#touched.add("rig") },
-    make("option", { value: "" }, "Guess from the recording"),
+    make("option", { value: "" }, "Detect from the recording"),
   );
   #imu = text("imu", { oninput: () => this.#touched.add("imu") });
   #gnss = text("gnss", { oninput: () => this.#touched.add("gnss") });
   #editor = make("setting-editor");
   #settings = make("details", {}, make("summary", {}, "All settings"), this.#editor);
   #message = make("p", { className: "error", role: "alert" });
-  #touched = new Set(); // fields a person filled in: no suggestion overwrites them
-  #taken = new Set(); // names of the projects there are: a new one gets another
-  #others = []; // recordings of the job that is done again, beside the first
+  #touched = new Set(); // fields the person filled in: no suggestion overwrites them
+  #taken = new Set(); // names of the existing projects: a new one gets another
+  #others = []; // recordings of the repeated job after the first
   #again = null;
 
   async connectedCallback() {
@@ -80,7 +80,7 @@ export class NewJob extends HTMLElement {
           "Project name",
           this.#project,
           this.#again
-            ? "The same name: run again in this project. Another: a new project. Finished stages that the change does not touch are kept."
+            ? "The same name runs again in this project, another name makes a new one. Finished stages with unchanged inputs are reused."
             : "",
         ),
         field("Preset", this.#preset),
@@ -89,8 +89,8 @@ export class NewJob extends HTMLElement {
           "details",
           {},
           make("summary", {}, "IMU and GNSS files"),
-          field("IMU, CSV", this.#imu, "Empty: what the recording has"),
-          field("GNSS, CSV", this.#gnss, "Empty: what the recording has"),
+          field("IMU, CSV", this.#imu, "Empty: from the recording"),
+          field("GNSS, CSV", this.#gnss, "Empty: from the recording"),
         ),
         this.#settings,
         make("button", { className: "primary" }, "Start"),
@@ -112,7 +112,7 @@ export class NewJob extends HTMLElement {
     if (this.#again) this.#fill(this.#again);
   }
 
-  /** A job to do again; set before the form is shown. */
+  /** A job to repeat; set before the form is shown. */
   set again(job) {
     this.#again = job;
   }
@@ -193,7 +193,7 @@ export class NewJob extends HTMLElement {
         this.#settings.open = true;
         await this.#editor.show(this.#preset.value);
         if (this.#editor.complain(error.problems))
-          throw new Error("Some settings are wrong, see above");
+          throw new Error("Some settings are invalid, see above");
       }
       throw error;
     }

@@ -19,7 +19,7 @@ import "./project_tools.js";
 const id = decodeURIComponent(location.pathname.split("/")[2]);
 const status = document.querySelector("job-status");
 const log = document.querySelector("job-log");
-const STAGE_WORDS = { done: "✓ Done", reused: "✓ Kept from before", running: "▶ Running" };
+const STAGE_WORDS = { done: "✓ Done", reused: "✓ Reused", running: "▶ Running" };
 let project = null;
 let view = null;
 let lacking = null;
@@ -120,7 +120,7 @@ async function reload() {
   draw();
 }
 
-/** Why there is no project; that of a job which waits, or ended before it made one, has no folder. */
+/** Shows why there is no project; before its job made a folder, that is expected. */
 function drawMessage() {
   const expected = lacking instanceof ApiError && lacking.status === 404 && view;
   const damage = project?.problem ? `Damaged: ${project.problem}` : "";
@@ -141,7 +141,7 @@ document.querySelector("project-tools").addEventListener("renamed", (event) => {
   project = /** @type {CustomEvent} */ (event).detail;
   draw();
 });
-/** The newest job, with its log, also when it succeeded: the stream tells of the others only. */
+/** Finds the newest job, with its log, also when it succeeded: the stream sends only the others. */
 async function findJob() {
   const [newest] = await listJobsOf(id);
   if (newest && !view) onJob(newest);

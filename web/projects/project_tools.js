@@ -1,4 +1,4 @@
-// <project-tools>: what can be done to a project: run again, rename, delete. And its log.
+// <project-tools>: run a project again, rename it, delete it. <job-log>: the log of a job.
 
 import {
   deleteProject,
@@ -49,8 +49,8 @@ export class ProjectTools extends HTMLElement {
   }
 
   /** The project's name as it is. */
-  set name(words) {
-    if (document.activeElement !== this.#name) this.#name.value = words;
+  set name(text) {
+    if (document.activeElement !== this.#name) this.#name.value = text;
   }
 
   async #form() {
@@ -79,7 +79,7 @@ export class ProjectTools extends HTMLElement {
       make(
         "p",
         {},
-        "It can be brought back from the list of projects for a week. The recording stays.",
+        "It can be restored from the list of projects for a week. The recording is not deleted.",
       ),
       make(
         "div",
@@ -114,7 +114,7 @@ export class JobLog extends HTMLElement {
     this.hidden = false;
   }
 
-  /** Takes in what was said since. */
+  /** Reads what was appended since. */
   async read() {
     if (!this.#job || !this.#details.open || this.#busy) return;
     this.#busy = true;

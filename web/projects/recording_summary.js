@@ -1,4 +1,4 @@
-// <recording-look>: what is inside a recording, in words.
+// <recording-look>: the contents of a recording as a list.
 
 import { lookAt } from "../shared/api.js";
 import { make } from "../shared/dom.js";
@@ -12,12 +12,12 @@ export class RecordingLook extends HTMLElement {
     this.hidden = true;
   }
 
-  /** Looks at a recording; gives what was found, null if it cannot be read or another was asked for. */
+  /** Reads the summary of a recording; null if it cannot be read or another was requested meanwhile. */
   async look(path) {
     const mine = (this.#asked += 1);
     this.hidden = !path;
     if (!path) return null;
-    this.replaceChildren(make("p", { className: "quiet" }, "Looking into it…"));
+    this.replaceChildren(make("p", { className: "quiet" }, "Reading the recording…"));
     try {
       const found = await lookAt(path);
       if (mine !== this.#asked) return null;
@@ -38,7 +38,7 @@ export class RecordingLook extends HTMLElement {
       ...(found.seconds > 0 ? [`${about}${seconds(found.seconds)}`] : []),
     ];
     const sensor = (one) => {
-      const rate = one.rate_hz === null ? "" : `, ${one.rate_hz.toFixed(1)} a second`;
+      const rate = one.rate_hz === null ? "" : `, ${one.rate_hz.toFixed(1)}/s`;
       return [
         "LiDAR",
         `${one.model} (${one.label}): ${about}${count(one.count)} ${one.content}${rate}`,
@@ -47,9 +47,9 @@ export class RecordingLook extends HTMLElement {
     const rows = [
       ...found.sensors.map(sensor),
       ...found.samples.map((text) => ["Samples", text]),
-      ...(found.rig ? [["Rig", `${file(found.rig)}, beside it`]] : []),
-      ...(found.imu ? [["IMU", `${file(found.imu)}, beside it`]] : []),
-      ...(found.gnss ? [["GNSS", `${file(found.gnss)}, beside it`]] : []),
+      ...(found.rig ? [["Rig", `${file(found.rig)}, next to it`]] : []),
+      ...(found.imu ? [["IMU", `${file(found.imu)}, next to it`]] : []),
+      ...(found.gnss ? [["GNSS", `${file(found.gnss)}, next to it`]] : []),
       ...found.derived.map((text) => ["Derived", text]),
       ...found.missing.map((text) => ["Missing", text]),
     ];

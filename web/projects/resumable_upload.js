@@ -1,4 +1,4 @@
-// Sends the files of one recording, goes on after any break, and says how far it is. No DOM.
+// Sends the files of one recording, resumes after an interruption, reports progress. No DOM.
 
 import {
   beginUpload,
@@ -16,12 +16,12 @@ const SMALLEST_CHUNK = 512 << 10;
 const AT_ONCE = 3;
 const RATE_OVER_S = 10;
 const LONGEST_WAIT_S = 30;
-const FOR_NOBODY = new Set(["Thumbs.db", "desktop.ini"]);
+const SYSTEM_FILES = new Set(["Thumbs.db", "desktop.ini"]);
 
 /** Of picked or dropped {file, name} the name of the whole, the files with names below it, and how many were left out. */
 export function sorted(picked) {
   const meant = picked.filter(({ name }) =>
-    name.split("/").every((part) => !part.startsWith(".") && !FOR_NOBODY.has(part)),
+    name.split("/").every((part) => !part.startsWith(".") && !SYSTEM_FILES.has(part)),
   );
   const tops = new Set(meant.map(({ name }) => name.split("/")[0]));
   const folder = tops.size === 1 && meant.every(({ name }) => name.includes("/"));
@@ -32,7 +32,7 @@ export function sorted(picked) {
   return { name, files, leftOut: picked.length - meant.length };
 }
 
-/** What the same files are recognized by after a break. */
+/** A key by which the same files are recognized after an interruption. */
 export async function fingerprint(files) {
   const words = JSON.stringify(files.map(({ file, name }) => [name, file.size, file.lastModified]));
   const digest = await crypto.subtle?.digest("SHA-256", new TextEncoder().encode(words));
@@ -59,7 +59,7 @@ export class Sending extends EventTarget {
     this.total = files.reduce((sum, { file }) => sum + file.size, 0);
   }
 
-  /** Bytes a second lately; 0 = not known. */
+  /** Recent bytes per second; 0 = not known. */
   get rate() {
     const [first, last] = [this.#samples[0], this.#samples.at(-1)];
     return last && last.t > first.t ? (last.sent - first.sent) / (last.t - first.t) : 0;
@@ -69,7 +69,7 @@ export class Sending extends EventTarget {
     return this.rate > 0 ? (this.total - this.sent) / this.rate : null;
   }
 
-  /** Sends what is not there yet. */
+  /** Sends what is not on the server yet. */
   start() {
     const stop = new AbortController();
     const before = this.#run;
@@ -160,7 +160,7 @@ export class Sending extends EventTarget {
     else if (tookS < 1) this.#chunk = Math.min(this.#chunk * 2, CHUNK);
   }
 
-  /** Tries until it goes, as long as another try can help. */
+  /** Tries again as long as another try can help. */
   async #again(signal, action) {
     for (let wait = 1, again = false; ; wait = Math.min(wait * 2, LONGEST_WAIT_S), again = true) {
       if (signal.aborted) throw new Error("stopped");
@@ -196,7 +196,7 @@ async function readBytes(blob, name) {
   try {
     return await blob.arrayBuffer();
   } catch {
-    throw new Error(`${name} cannot be read any more; choose it again`);
+    throw new Error(`${name} cannot be read any more; select it again`);
   }
 }
 

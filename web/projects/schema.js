@@ -1,8 +1,8 @@
-// JSON schemas of openapi.json in words and as examples. No DOM, no network.
+// JSON schemas of openapi.json as short texts and as examples. No DOM, no network.
 
 const nameOf = (ref) => ref.split("/").at(-1);
 
-/** A type in few words: `string`, `list of JobView`, `number or null`. */
+/** A type as a short text: `string`, `list of JobView`, `number or null`. */
 export function typeWords(schema = {}) {
   if (schema.$ref) return nameOf(schema.$ref);
   if (schema.anyOf) return schema.anyOf.map(typeWords).join(" or ");
@@ -15,7 +15,7 @@ export function typeWords(schema = {}) {
   return schema.type ?? "anything";
 }
 
-/** What a value is held to: `1 to 200 letters`, `at least 1`. */
+/** Limits of a value: `1 to 200 letters`, `at least 1`. */
 export function limits({
   minimum,
   maximum,
@@ -45,7 +45,7 @@ export function limits({
     .join(", ");
 }
 
-const GUESSES = {
+const EXAMPLES = {
   project: "office",
   recordings: ["/data/walk.pcap"],
   settings: ["map.voxel_m=0.05"],
@@ -66,7 +66,7 @@ const GUESSES = {
 
 /** An example of a value. */
 export function example(schema, schemas, key = "", depth = 0) {
-  if (key in GUESSES && !schema.$ref) return GUESSES[key];
+  if (key in EXAMPLES && !schema.$ref) return EXAMPLES[key];
   if (schema.example !== undefined) return schema.example;
   if (schema.default !== undefined) return schema.default;
   if (schema.$ref)

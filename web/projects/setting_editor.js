@@ -1,5 +1,5 @@
 // <setting-editor>: every setting of a preset, made from what the server declares.
-// Only what differs from the preset is handed out; mistakes are shown at the field.
+// Returns only what differs from the preset; problems are shown at the field.
 
 import { checkSettings, readSettings } from "../shared/api.js";
 import { attempt, make } from "../shared/dom.js";
@@ -32,7 +32,7 @@ export class SettingEditor extends HTMLElement {
     );
   }
 
-  /** Shows a preset; what was changed before stays changed. */
+  /** Shows a preset; changes made before are kept. */
   async show(preset) {
     if (preset === this.#preset) return;
     const kept = new Map(
@@ -51,14 +51,14 @@ export class SettingEditor extends HTMLElement {
     this.#filter();
   }
 
-  /** What differs from the preset: `group.field=value` texts. */
+  /** The changes to the preset, as `group.field=value` texts. */
   texts() {
     const changed = [...this.#rows].filter(([, row]) => row.input.value !== row.value);
     const unseen = [...this.#wanted].map(([path, value]) => `${path}=${value}`);
     return [...unseen, ...changed.map(([path, row]) => `${path}=${row.input.value}`)];
   }
 
-  /** Takes over what another job differed in; before or after `show`. */
+  /** Applies the changes of another job; before or after `show`. */
   set(texts) {
     for (const text of texts) {
       const [path, value] = [
@@ -72,7 +72,7 @@ export class SettingEditor extends HTMLElement {
     this.#filter();
   }
 
-  /** Shows what the server says is wrong, each at its field; gives whether there was anything. */
+  /** Shows the problems the server found, each at its field; returns whether there are any. */
   complain(problems) {
     for (const [path, row] of this.#rows) {
       row.error.textContent = problems[path] ?? "";
@@ -172,7 +172,7 @@ export class SettingEditor extends HTMLElement {
       if (words || this.#only.checked) group.open = !group.hidden;
     }
     const n = this.texts().length;
-    this.#words.textContent = n ? `${n} changed` : "As the preset has them";
+    this.#words.textContent = n ? `${n} changed` : "None changed";
   }
 }
 

@@ -1,5 +1,5 @@
-// <upload-box>: drop or choose a file or folder, send it, see how far it is.
-// Tells "recording" with the path on the server once everything is there.
+// <upload-box>: drop or choose a file or folder, send it, show progress.
+// Event "recording" has the path on the server once everything is there.
 
 import { listUploads, removeUpload } from "../shared/api.js";
 import { attempt, fill, make } from "../shared/dom.js";
@@ -72,7 +72,7 @@ export class UploadBox extends HTMLElement {
   }
 
   #pick(input) {
-    input.value = ""; // the same file may be chosen again
+    input.value = ""; // so that the same file can be chosen again
     input.click();
   }
 
@@ -89,9 +89,9 @@ export class UploadBox extends HTMLElement {
 
   #take(picked) {
     const { name, files, leftOut } = sorted(picked);
-    this.#message.textContent = leftOut ? `${leftOut} hidden files are left out` : "";
+    this.#message.textContent = leftOut ? `${leftOut} hidden files are skipped` : "";
     if (files.length === 0) {
-      this.#message.textContent = "There is no file in it";
+      this.#message.textContent = "It contains no file";
       return;
     }
     this.#sending?.pause();
@@ -141,7 +141,7 @@ export class UploadBox extends HTMLElement {
     );
   }
 
-  /** What was begun and is not whole, perhaps before this page was opened. */
+  /** Lists unfinished uploads, also those begun before this page was opened. */
   async #listOpen() {
     const uploads = (await attempt(this.#message, listUploads)) ?? [];
     const mine =
@@ -168,7 +168,7 @@ export class UploadBox extends HTMLElement {
         make(
           "small",
           {},
-          ` ${bytes(received)} of ${bytes(total)} are here. Choose the same ${name.includes(".") ? "file" : "folder"} again to go on, until ${when(expires)}`,
+          ` ${bytes(received)} of ${bytes(total)} received. Select the same ${name.includes(".") ? "file" : "folder"} again to continue, until ${when(expires)}`,
         ),
       ),
       make(

@@ -1,4 +1,4 @@
-// Words and units of the review page, and its keys. No DOM, no network.
+// Captions and units of the review page, and its keys. No DOM, no network.
 
 export const VERDICTS = {
   accepted: { mark: "✓", word: "Accepted" },
@@ -9,8 +9,8 @@ export const VERDICTS = {
 export const KINDS = {
   accept: "accepted",
   reject: "rejected",
-  restore: "left to the program",
-  replace: "measured anew",
+  restore: "restored the automatic decision on",
+  replace: "registered again",
   add: "added",
   undo: "undid",
   redo: "redid",
@@ -23,7 +23,7 @@ export const KEYS = [
   ["K", "Previous pair"],
   ["A", "Accept, once the points of this pair are drawn"],
   ["R", "Reject, once the points of this pair are drawn"],
-  ["U or Backspace", "Leave it to the program again"],
+  ["U or Backspace", "Restore the automatic decision"],
   ["Ctrl Z", "Undo"],
   ["Ctrl Y", "Redo"],
   ["Arrows", "Move the second place by 5 cm (Shift: 1 cm, Alt: 50 cm)"],
@@ -31,8 +31,8 @@ export const KEYS = [
   ["Page up, Page down", "Lift it, lower it"],
   ["P", "Pick the same three points in both places"],
   ["Enter", "Refine from here; once more: create the edge"],
-  ["Escape", "Drop the alignment in hand"],
-  ["L", "Add a loop between any two moments"],
+  ["Escape", "Drop the new alignment"],
+  ["L", "Add a loop closure between any two multiframes"],
   ["V", "Next view: above, side, free, cut"],
   ["B", "Compare: odometry, graph, aligned"],
   ["[ and ]", "Move the cut"],
@@ -41,7 +41,7 @@ export const KEYS = [
   ["?", "This list"],
   [
     "A key held down",
-    "Counts once, except for moving, turning, the cut and zoom. After a decision A and R rest until another pair is drawn",
+    "Acts once, except for moving, turning, cut and zoom. After a decision A and R act again once another pair is drawn",
   ],
 ];
 
@@ -56,7 +56,7 @@ export function length(m) {
   return m < 0.995 ? `${(m * 100).toFixed(0)} cm` : `${m.toFixed(2)} m`;
 }
 
-export const share = (v) => (v === null || v === undefined ? "–" : `${Math.round(v * 100)} %`);
+export const percent = (v) => (v === null || v === undefined ? "–" : `${Math.round(v * 100)} %`);
 export const plain = (v, digits = 3) =>
   v === null || v === undefined ? "–" : Number(v.toPrecision(digits)).toString();
 export const keyOf = ([i, j]) => `${i}-${j}`;

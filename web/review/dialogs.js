@@ -1,7 +1,6 @@
-// Dialogs of the review: the keys, signing, and a loop between any two moments.
+// Dialogs of the review: the keys, signing, and a loop closure between any two multiframes.
 
-import { make } from "../shared/dom.js";
-import { attempt } from "../shared/dom.js";
+import { attempt, make } from "../shared/dom.js";
 import { KEYS, seconds } from "./captions.js";
 
 function open(title, ...children) {
@@ -59,7 +58,7 @@ export function askToSign(conflicts, sign) {
           "label",
           { className: "check" },
           confirmed,
-          make("span", {}, `${conflicts} accepted pairs do not fit the graph; sign all the same`),
+          make("span", {}, `${conflicts} accepted loop closures do not fit the graph; sign anyway`),
         )
       : null,
     message,
@@ -73,8 +72,8 @@ export function askToSign(conflicts, sign) {
   const dialog = open("Approve verification", form);
 }
 
-/** Chooses two moments of the walk by sliders or on its plan; `look([frame_i, frame_j])`. */
-export function askForMoments(walk, chosen, look) {
+/** Asks for two multiframes by sliders or on the plan of the walk; `look([frame_i, frame_j])`. */
+export function askForFrames(walk, chosen, look) {
   const most = walk.frames.length - 1;
   const nodeOf = (frame) =>
     Math.max(
@@ -89,7 +88,7 @@ export function askForMoments(walk, chosen, look) {
       value: chosen ? nodeOf(chosen[k]) : k ? most : 0,
     }),
   );
-  const said = sliders.map(() => make("output"));
+  const captions = sliders.map(() => make("output"));
   const message = make("p", { className: "error", role: "alert" });
   const plan = make("canvas", {
     width: 640,
@@ -104,7 +103,7 @@ export function askForMoments(walk, chosen, look) {
     const nodes = sliders.map((one) => Number(one.value));
     nodes.forEach(
       (node, k) =>
-        (said[k].textContent = `${seconds(walk.t_s[node])}, multiframe ${walk.frames[node]}`),
+        (captions[k].textContent = `${seconds(walk.t_s[node])}, multiframe ${walk.frames[node]}`),
     );
     place.draw(nodes);
   };
@@ -123,14 +122,14 @@ export function askForMoments(walk, chosen, look) {
       onsubmit(event) {
         event.preventDefault();
         const pair = sliders.map((one) => walk.frames[Number(one.value)]).sort((a, b) => a - b);
-        if (pair[0] === pair[1]) return (message.textContent = "These are the same moment");
+        if (pair[0] === pair[1]) return (message.textContent = "Both are the same multiframe");
         dialog.close();
         look(pair);
       },
     },
     plan,
-    make("label", {}, make("span", {}, "First moment (red)"), sliders[0], said[0]),
-    make("label", {}, make("span", {}, "Second moment (green)"), sliders[1], said[1]),
+    make("label", {}, make("span", {}, "First multiframe (red)"), sliders[0], captions[0]),
+    make("label", {}, make("span", {}, "Second multiframe (green)"), sliders[1], captions[1]),
     message,
     make(
       "div",
@@ -139,7 +138,7 @@ export function askForMoments(walk, chosen, look) {
       make("button", { className: "primary" }, "Look at this pair"),
     ),
   );
-  const dialog = open("A loop between two moments", form);
+  const dialog = open("Add a loop closure", form);
   draw();
 }
 

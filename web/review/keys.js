@@ -1,14 +1,14 @@
-// The keyboard of the review page. A key held down counts once, except where it moves, turns or zooms.
+// The keyboard of the review page. A key held down acts once, except where it moves, turns or zooms.
 
 import { targetOf } from "../shared/dom.js";
 
 const TURN = Math.PI / 180;
 const REPEATING = new Set(["[", "]", "+", "-"]);
 const DECIDING = new Set(["a", "r", "enter"]);
-const QUIET_MS = 300; // remote desktops send a held key as presses; nobody looks at a pair for less
+const QUIET_MS = 300; // remote desktops send a held key as presses; a person looks longer at a pair
 let last = { key: "", at: -Infinity };
 
-/** Whether a key is held down, by the browser's word or because it came again at once. */
+/** Whether a key is held down: the browser reports a repeat, or the press follows at once. */
 function isHeld(event) {
   const key = event.key.toLowerCase();
   const again = DECIDING.has(key) && key === last.key && event.timeStamp - last.at < QUIET_MS;

@@ -71,7 +71,7 @@ export function apart(a, b) {
 export class Camera {
   yaw = 0;
   pitch = Math.PI / 2;
-  scale = 40; // pixels a metre
+  scale = 40; // pixels per meter
   center = [0, 0, 0];
 
   /** Axes of the screen in the upright frame: right, up, and towards the eye. */

@@ -1,65 +1,93 @@
-// The figures of a pair, what the decisions do, and the journal. Takes data, makes elements.
+// The figures of a pair, the effect of the decisions, and the journal. Takes data, makes elements.
 
 import { fill, make } from "../shared/dom.js";
 import { when } from "../shared/format.js";
-import { KINDS, length, plain, seconds, share } from "./captions.js";
+import { KINDS, length, plain, seconds, percent } from "./captions.js";
 
 const put = (panel, ...children) => panel.replaceChildren(...children.filter(Boolean));
-const fact = (words, value, hint) =>
+/** A row of a list of figures; `note` stands beside the value, `title` explains the term. */
+const fact = (term, value, note = "", title = "") =>
   make(
     "div",
-    {},
-    make("dt", {}, words),
-    make("dd", {}, value, hint ? make("small", {}, ` ${hint}`) : null),
+    { title },
+    make("dt", {}, term),
+    make("dd", {}, value, note ? make("small", {}, ` ${note}`) : null),
   );
 const over = (row) => row.error_m !== null && row.limit_m !== null && row.error_m > row.limit_m;
+const CONTRADICTED = "verification median > limit"; // a reason as the server stores it
 
-/** The pair in hand: figures of the program and what a person found anew. */
+/** How the program or a person came to the edge, with the figure that decided it. */
+function verdict(row, limit_m) {
+  if (row.kind === "manual") return "Created by a person";
+  if (!row.reason) return "Accepted automatically";
+  const reason =
+    row.reason === CONTRADICTED && row.verification_m !== null
+      ? `path discrepancy ${length(row.verification_m)} > ${length(limit_m)}`
+      : row.reason;
+  return `Rejected automatically: ${reason}`;
+}
+
+/** The selected pair: figures of the program, and of a registration made on this page. */
 export function showPair(panel, row, facts, found, limit_m) {
   if (!row)
     return put(
       panel,
-      make("h2", {}, "No pair chosen"),
-      make("p", { className: "quiet" }, "J takes the first one"),
+      make("h2", {}, "No pair selected"),
+      make("p", { className: "quiet" }, "J shows the first one"),
     );
-  const bad = (yes, words) => (yes ? make("span", { className: "bad" }, "✕ ", words) : words);
+  const checked = (bad, text) => (bad ? make("span", { className: "bad" }, "✕ ", text) : text);
   const figures = found ?? row;
   const contradicted = row.verification_m !== null && row.verification_m > limit_m;
   put(
     panel,
     make("h2", {}, row.title),
-    make(
-      "p",
-      {},
-      row.reason
-        ? make("span", {}, "Turned down by the program: ", row.reason)
-        : row.kind === "manual"
-          ? "Made by a person"
-          : "Kept by the program",
-    ),
+    make("p", {}, verdict(row, limit_m)),
     make(
       "dl",
       {},
-      fact("Influence", length(row.influence_m), "if it changed sides"),
-      fact("Overlap", share(figures.overlap)),
       fact(
-        "Error",
-        bad(over(figures), length(figures.error_m)),
+        "Influence on the map",
+        length(row.influence_m),
+        "",
+        "How far the map moves if this edge is rejected instead of accepted, or the reverse",
+      ),
+      fact(
+        "Overlap",
+        percent(figures.overlap),
+        "",
+        "Part of the view volume of the first place that the second one sees too",
+      ),
+      fact(
+        "Registration error",
+        checked(over(figures), length(figures.error_m)),
         figures.limit_m === null ? "" : `limit ${length(figures.limit_m)}`,
+        "Mean distance of the matched features",
       ),
-      fact("Held against sliding", plain(figures.degeneracy, 2), "0 free … 0.33"),
       fact(
-        "Other ways round",
-        bad(contradicted, length(row.verification_m)),
-        `median of ${row.paths ?? 0}`,
+        "Degeneracy",
+        plain(figures.degeneracy, 2),
+        "0 unobservable, 0.33 isotropic",
+        "Smallest eigenvalue of the normalized information: near 0 the places can slide along each other",
       ),
-      fact("Share of chi²", plain(row.chi2)),
       fact(
-        "Off the graph by",
+        "Path discrepancy",
+        checked(contradicted, length(row.verification_m)),
+        `median of ${row.paths ?? 0} alternative paths`,
+        "Distance between this edge and the other paths through the graph between its ends",
+      ),
+      fact(
+        "Chi-square contribution",
+        plain(row.chi2),
+        "",
+        "Squared residual of this edge, weighted by its information",
+      ),
+      fact(
+        "Residual to the graph",
         facts ? length(facts.apart_m) : "…",
         facts ? `${((facts.apart_rad * 180) / Math.PI).toFixed(2)}°` : "",
+        "Difference between this edge and the relative pose in the optimized graph",
       ),
-      fact("Decided by", row.who || "the program", row.why),
+      fact("Decided by", row.who || "program", row.why),
     ),
     facts?.paths.length ? paths(facts) : null,
   );
@@ -81,13 +109,13 @@ function paths(facts) {
   );
 }
 
-/** What the decisions do to the graph. */
+/** The effect of the decisions on the graph. */
 export function showEffect(panel, effect, { working, choose }) {
   if (!effect)
     return put(
       panel,
       make("h2", {}, "Effect"),
-      make("p", { className: "quiet" }, working ? "Solving the graph…" : "Nothing decided yet"),
+      make("p", { className: "quiet" }, working ? "Solving the graph…" : "No decisions yet"),
     );
   const { last, all } = effect;
   const pair = (p) =>
@@ -116,33 +144,39 @@ export function showEffect(panel, effect, { working, choose }) {
     make(
       "dl",
       {},
-      fact("chi², last decision", `${plain(last.chi2_before, 4)} → ${plain(last.chi2_after, 4)}`),
+      fact(
+        "Chi-square, last decision",
+        `${plain(last.chi2_before, 4)} → ${plain(last.chi2_after, 4)}`,
+      ),
       fact("Edges in the graph", `${last.edges_before} → ${last.edges_after}`),
-      fact("chi², all decisions", `${plain(all.chi2_before, 4)} → ${plain(all.chi2_after, 4)}`),
-      fact("Largest move in all", length(all.moves[0]?.moved_m ?? 0)),
+      fact(
+        "Chi-square, all decisions",
+        `${plain(all.chi2_before, 4)} → ${plain(all.chi2_after, 4)}`,
+      ),
+      fact("Largest move, all decisions", length(all.moves[0]?.moved_m ?? 0)),
     ),
     list(
-      "✕ Accepted, but does not fit",
+      "✕ Accepted, but does not fit the graph",
       effect.conflicts.map((one) => [
         pair(one.pair),
-        ` off by ${length(one.residual_m)}, ${((one.residual_rad * 180) / Math.PI).toFixed(1)}°, by ${one.who}`,
+        ` residual ${length(one.residual_m)}, ${((one.residual_rad * 180) / Math.PI).toFixed(1)}°, by ${one.who}`,
       ]),
       "bad",
     ),
     list(
-      "Without effect: not in this graph, or never registered",
+      "Without effect: not in this graph, or not registered",
       effect.missing.map((p) => [pair(p)]),
     ),
     list(
-      "Measures something else than was seen",
+      "Measured again since the decision",
       effect.changed.map((p) => [pair(p)]),
     ),
     list(
-      "Dropped by the program as a consequence",
+      "Rejected automatically as a consequence",
       all.rejected_automatically.map((p) => [pair(p)]),
     ),
     list(
-      "Taken in again as a consequence",
+      "Accepted automatically as a consequence",
       all.accepted_automatically.map((p) => [pair(p)]),
     ),
     list(
@@ -156,44 +190,44 @@ export function showEffect(panel, effect, { working, choose }) {
   );
 }
 
-/** Who approved what; a decision after the approval makes a draft again. */
-function approvalWords({ approval, in_map }) {
-  if (!approval) return "Not approved, a draft";
+/** Who approved which version; a decision after the approval makes the map a draft again. */
+function approvalText({ approval, in_map }) {
+  if (!approval) return "Draft, not approved";
   const version = `version ${approval.version} by ${approval.who}, ${when(approval.time)}`;
   if (approval.check === "altered") return `✗ Altered since the approval: ${approval.altered}`;
-  if (!approval.current) return `A draft. An earlier map was approved: ${version}`;
+  if (!approval.current) return `Draft. An earlier map was approved: ${version}`;
   if (in_map && approval.check === "checking")
     return `Approved: ${version}; the bytes are being compared with the signature`;
   return in_map
     ? `✓ Approved: ${version}`
-    : `A draft again: decisions came after the approval of ${version}`;
+    : `Draft: decisions were made after the approval of ${version}`;
 }
 
-function mapWords({ busy, finished, in_map, standing }) {
+function mapText({ busy, finished, in_map, standing }) {
   if (busy) return "▶ A job waits or runs";
   if (!finished) return "◌ There is no finished map yet";
-  if (!in_map) return "◌ The map does not know the last decisions yet";
+  if (!in_map) return "◌ The last decisions are not in the map yet";
   return standing.length
     ? "✓ The map was made with these decisions"
-    : "✓ The map is as the program made it";
+    : "✓ The map was made without decisions of people";
 }
 
-/** Whether the map knows the decisions, and who approved it. */
+/** Whether the decisions are in the map, and who approved it. */
 export function showSigning(panel, state, { remake, approve }) {
   const { approval } = state;
-  const hurdle = state.busy
+  const obstacle = state.busy
     ? "A job waits or runs"
     : !state.finished
       ? "There is no finished map yet"
       : !state.in_map
-        ? "The map does not know the last decisions"
+        ? "The last decisions are not in the map"
         : approval?.current && approval.check !== "altered"
           ? "This map is approved"
           : "";
   fill(
     panel,
     make("h2", {}, "Map"),
-    make("p", {}, mapWords(state)),
+    make("p", {}, mapText(state)),
     make(
       "p",
       {
@@ -204,7 +238,7 @@ export function showSigning(panel, state, { remake, approve }) {
               ? "good"
               : "",
       },
-      approvalWords(state),
+      approvalText(state),
     ),
     approval ? make("p", { className: "quiet hash" }, approval.hash) : null,
     make(
@@ -224,14 +258,14 @@ export function showSigning(panel, state, { remake, approve }) {
         {
           type: "button",
           id: "approve",
-          disabled: Boolean(hurdle) || !state.may_review,
-          title: hurdle,
+          disabled: Boolean(obstacle) || !state.may_review,
+          title: obstacle,
         },
         "Approve verification…",
       ),
     ),
-    hurdle && !state.busy && !(approval?.current && state.in_map)
-      ? make("p", { className: "quiet" }, `Approving: ${hurdle.toLowerCase()}`)
+    obstacle && !state.busy && !(approval?.current && state.in_map)
+      ? make("p", { className: "quiet" }, `Approval: ${obstacle.toLowerCase()}`)
       : null,
     make("p", { className: "error", role: "alert" }),
   );
@@ -242,8 +276,8 @@ export function showSigning(panel, state, { remake, approve }) {
 const about = (row) =>
   row.frame_i === null ? "" : ` multiframes ${row.frame_i} and ${row.frame_j}`;
 
-/** What somebody else did meanwhile: the last of some rows of the journal. */
-export function journalWords(row, count) {
+/** What another person did meanwhile: the last of `count` new rows of the journal. */
+export function journalNews(row, count) {
   const more =
     count > 1 ? `, after ${count - 1} other ${count > 2 ? "decisions" : "decision"}` : "";
   return `Meanwhile ${row.who} ${KINDS[row.kind] ?? row.kind}${about(row)}${more}`;

@@ -1,16 +1,17 @@
-// <review-queue>: the pairs to decide about, in the order of the server: what matters and may be wrong first.
+// <review-queue>: the loop closures to decide about, in the order of the server: large influence and
+// doubtful ones first.
 
 import { make } from "../shared/dom.js";
 import { VERDICTS, length, seconds } from "./captions.js";
 
 const SHOW = {
-  loops: ["Loops", (row) => row.measured && row.kind !== "neighbor"],
-  doubt: ["Turned down", (row) => row.measured && row.state !== "accepted"],
-  kept: ["Kept", (row) => row.measured && row.state === "accepted" && row.kind !== "neighbor"],
-  open: ["Not decided by anybody", (row) => row.measured && !row.who],
+  loops: ["Loop closures", (row) => row.measured && row.kind !== "neighbor"],
+  doubt: ["Rejected or unverified", (row) => row.measured && row.state !== "accepted"],
+  kept: ["Accepted", (row) => row.measured && row.state === "accepted" && row.kind !== "neighbor"],
+  open: ["Decided automatically", (row) => row.measured && !row.who],
   decided: ["Decided by people", (row) => Boolean(row.who)],
   all: ["All registered pairs", (row) => row.measured],
-  apart: ["Never registered", (row) => !row.measured],
+  apart: ["Not registered", (row) => !row.measured],
 };
 const PAGE = 300; // rows in the list at a time
 
@@ -21,7 +22,7 @@ export class ReviewQueue extends HTMLElement {
   #chosen = null;
   #page = 0;
   #show = make("select", { ariaLabel: "Which pairs" });
-  #reason = make("select", { ariaLabel: "Why turned down" });
+  #reason = make("select", { ariaLabel: "Reason of the rejection" });
   #count = make("p", { className: "quiet", role: "status" });
   #list = make("ol", { className: "queue" });
   tools = make("div", { className: "buttons" });
@@ -33,7 +34,7 @@ export class ReviewQueue extends HTMLElement {
     for (const one of [this.#show, this.#reason])
       one.addEventListener("change", () => this.#fill());
     this.replaceChildren(
-      make("div", { className: "queue-head" }, make("h1", {}, "Loops"), this.tools),
+      make("div", { className: "queue-head" }, make("h1", {}, "Loop closures"), this.tools),
       make("div", { className: "filters" }, this.#show, this.#reason),
       this.#count,
       this.#list,
@@ -61,7 +62,7 @@ export class ReviewQueue extends HTMLElement {
     return this.#byKey.get(key);
   }
 
-  /** What a person decided, or the program, may have changed. */
+  /** Draws pairs again whose decision changed. */
   refresh(keys) {
     for (const key of keys) {
       const row = this.#byKey.get(key);

@@ -31,14 +31,14 @@ const row = (name, ...cells) =>
     ...cells.map((cell) => make("td", {}, cell)),
   );
 
-/** A type that leads to its record. */
+/** A type, linked to its record. */
 function typeLink(schema) {
   const words = typeWords(schema);
   const record = words.split(" ").find((word) => schemas[word]);
   return record ? make("a", { href: `#record-${record}` }, words) : words;
 }
 
-/** Words of the description; what it marks as code is plain text here. */
+/** The description as plain text. */
 const plain = (words = "") => words.replaceAll("`", "");
 
 const RIGHTS = {
@@ -49,7 +49,7 @@ const RIGHTS = {
   administer: "admins",
 };
 
-/** Who may call it, where that is not everybody; and whether that is not the reader. */
+/** The permission an operation needs, and whether the signed-in person lacks it. */
 function rights(needed = []) {
   const words = needed
     .map((one) => RIGHTS[one] ?? one)
@@ -89,7 +89,7 @@ function fields(record) {
   );
 }
 
-/** A command that does it. */
+/** A command line that calls the operation. */
 function curl(path, method, operation, body) {
   const query = (operation.parameters ?? []).filter((one) => one.in === "query" && one.required);
   const values = {
@@ -168,7 +168,7 @@ function parts(path, method, operation) {
     ...answers(operation),
     ...(ok && Object.keys(ok).length
       ? [
-          make("h3", {}, "Example of an answer"),
+          make("h3", {}, "Example of a response"),
           code(JSON.stringify(example(ok, schemas), null, 1)),
         ]
       : []),
@@ -232,7 +232,7 @@ byId("paths").append(
   ...records,
 );
 
-/** An address with # opens what it names. */
+/** Opens the section that the # of the address names. */
 function openNamed() {
   const named = document.getElementById(decodeURIComponent(location.hash.slice(1)));
   if (!named) return;

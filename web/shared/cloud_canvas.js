@@ -66,7 +66,10 @@ export class CloudCanvas {
     this.count += count;
   }
 
-  /** Draws; `turn` is a rotation by columns, `scale` clip units a meter, `shift` where the target is in them; nothing above `top`. */
+  /**
+   * Draws the points below the height `top`; `turn` is a rotation by columns, `scale` clip units per
+   * meter, `shift` the target in clip units.
+   */
   draw({ turn, target, scale, shift, size, top, byHeight, ink }) {
     const gl = this.#gl;
     if (!gl || gl.isContextLost()) return;

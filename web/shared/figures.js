@@ -1,4 +1,4 @@
-// The figures of a run's summary a person looks at first. No DOM, no network.
+// The main figures of a run's summary. No DOM, no network.
 
 import { bytes, count, seconds } from "./format.js";
 
@@ -8,7 +8,7 @@ const ROWS = [
   ["Points in the map", "points", count],
   ["Duration of the walk", "duration_s", seconds],
   ["Multiframes", "multiframes", count],
-  ["Lost multiframes", "lost", count],
+  ["Multiframes, tracking lost", "lost", count],
   ["Pairs accepted", "edges", (edges) => count(edges.accepted ?? 0)],
   ["Pairs rejected", "edges", (edges) => count(edges.rejected ?? 0)],
   ["Pairs unverified", "edges", (edges) => count(edges.unverified ?? 0)],
@@ -16,14 +16,14 @@ const ROWS = [
   ["Peak memory", "peak_bytes", bytes],
 ];
 
-/** [words, value] rows; figures the run did not make are left out. */
+/** [caption, value] rows; figures that are missing are left out. */
 export const figures = (summary) =>
   ROWS.filter(([, key]) => summary[key] !== undefined).map(([words, key, format]) => [
     words,
     format(summary[key]),
   ]);
 
-/** The few words under a project's name. */
+/** The caption below a project's name. */
 export function headline(summary) {
   if (summary.path_length_m == null) return [];
   return [`${summary.path_length_m.toFixed(0)} m path`, `${count(summary.points)} points`];

@@ -1,4 +1,4 @@
-// Numbers and states as words. No DOM, no network.
+// Numbers and states as text. No DOM, no network.
 
 const NARROW = "\u202f";
 
@@ -36,21 +36,21 @@ export const STATES = {
   unfinished: { mark: "◌", word: "Not finished" },
 };
 
-/** State of a project: that of its job while it matters, else what the folder says. */
+/** State of a project: that of its unfinished job, else that of its folder. */
 export function stateOf(project, view) {
   const state = view?.job.state;
   if (state && state !== "succeeded") return state;
   return project?.finished || state === "succeeded" ? "finished" : "unfinished";
 }
 
-/** How far the whole run is and how long it still takes. */
+/** Progress of the whole run and its remaining time. */
 export function overallWords({ overall, overall_eta_s, status }) {
   if (!status.what) return "Starting";
   const left = overall_eta_s === null ? [] : [`about ${seconds(overall_eta_s)} left`];
   return [`${Math.round(overall * 100)} % of the run`, ...left].join(" · ");
 }
 
-/** The piece of work in hand in one line: how far, how fast, how long still. */
+/** Progress of the current stage in one line: fraction, rate, remaining time. */
 export function progressWords({ status, fraction }) {
   const parts = [
     fraction === null ? `${count(status.done)} ${status.unit}` : `${Math.round(fraction * 100)} %`,

@@ -166,12 +166,6 @@ export interface GroupView {
   settings: Array<SettingView>;
 }
 
-export interface Guess {
-  frame_i: number;
-  frame_j: number;
-  T_i_j: Array<number>;
-}
-
 export interface Inputs {
   recordings: Array<string>;
   preset: string;
@@ -335,6 +329,12 @@ export interface PickView {
 export interface PointPairs {
   p_i: Array<Array<number>>;
   p_j: Array<Array<number>>;
+}
+
+export interface PredictedPose {
+  frame_i: number;
+  frame_j: number;
+  T_i_j: Array<number>;
 }
 
 export interface ProblemDetail {
@@ -909,7 +909,7 @@ export interface Operations {
   };
   "POST /api/projects/{project_id}/review/align": {
     path: { project_id: string };
-    body: Guess;
+    body: PredictedPose;
     response: AlignmentView;
   };
   "POST /api/projects/{project_id}/review/approve": {

@@ -1,4 +1,4 @@
-// <page-head>: the bar on top of every page. On the pages of a project it leads to the others.
+// <page-head>: the bar at the top of every page, with links to the other pages of a project.
 
 import { liveUrl, projectUrl, readCapture, readMe, signOut } from "./api.js";
 import { make } from "./dom.js";
@@ -72,7 +72,7 @@ export class PageHead extends HTMLElement {
     this.#name.textContent = words;
   }
 
-  /** Whether the server answers. */
+  /** Shows whether the server answers. */
   set linked(yes) {
     this.#link.textContent = yes ? "" : "Connection lost, trying again";
   }

@@ -1,4 +1,5 @@
-// <slice-above>: the map from above with the cut on it. Drag the line or its ends; drag beside it for a new one.
+// <slice-above>: the map from above with the cut on it. Drag the line or its ends; drag beside it for a
+// new cut.
 //
 // Event: "cut" with detail {a, b} [m].
 
@@ -17,7 +18,7 @@ export class SliceAbove extends HTMLElement {
 
   connectedCallback() {
     this.replaceChildren(this.#canvas);
-    this.setAttribute("aria-busy", "true"); // nothing to drag before there is a picture
+    this.setAttribute("aria-busy", "true"); // nothing to drag before the image is there
     this.#canvas.setAttribute("role", "img");
     this.#canvas.setAttribute("aria-label", "The map from above, with the cut");
     this.#canvas.addEventListener("pointerdown", (event) => this.#down(event));
@@ -28,7 +29,7 @@ export class SliceAbove extends HTMLElement {
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
   }
 
-  /** The picture and what it shows [m]. */
+  /** Shows the image at a URL of a window of the map [m]. */
   show(url, window) {
     const image = make("img", { src: url, alt: "" });
     image.addEventListener("load", () => {
@@ -43,7 +44,7 @@ export class SliceAbove extends HTMLElement {
     this.draw();
   }
 
-  /** A place to point at [m], or null. */
+  /** A place to mark [m], or null. */
   set place(place) {
     this.#wall = place;
     this.draw();
@@ -128,7 +129,7 @@ export class SliceAbove extends HTMLElement {
     const side = [(b[1] - a[1]) / length, -(b[0] - a[0]) / length];
     const middle = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
     pen.fillStyle = color("--accent");
-    pen.beginPath(); // the way the viewer looks
+    pen.beginPath(); // viewing direction
     pen.moveTo(middle[0] + 16 * side[0], middle[1] + 16 * side[1]);
     pen.lineTo(middle[0] + 7 * side[1], middle[1] - 7 * side[0]);
     pen.lineTo(middle[0] - 7 * side[1], middle[1] + 7 * side[0]);

@@ -82,7 +82,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
     );
   }
 
-  /** One change after the other, each of what is kept now: another tab or person may change it, too. */
+  /** Applies changes one after the other to the stored state: another tab or person may change it, too. */
   function keep(edit) {
     const done = last.then(() => write(edit));
     last = done.catch(() => {});
@@ -165,17 +165,17 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
 
   function verdict({ passed, judged_by, missing, outdated }) {
     const left = [
-      missing.length ? `${missing.length} not found yet` : "",
+      missing.length ? `${missing.length} not measured yet` : "",
       outdated.length
-        ? `${outdated.length} found in an earlier map only, they do not count: find them again`
+        ? `${outdated.length} measured in an earlier map only, not counted: measure them again`
         : "",
     ].filter(Boolean);
     const words =
       passed === null
-        ? "– Nothing checked yet"
+        ? "– No check point measured yet"
         : passed
-          ? `✓ The map keeps the limits at the ${judged_by} points`
-          : `✕ The map does not keep the limits at the ${judged_by} points`;
+          ? `✓ Within the limits at the ${judged_by} points`
+          : `✕ Outside the limits at the ${judged_by} points`;
     return make(
       "p",
       { className: `verdict ${passed === null ? "" : passed ? "good" : "bad"}` },
@@ -287,7 +287,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
     const head = [
       `${one.points} ${one.role} point${one.points === 1 ? "" : "s"}`,
       "",
-      "Is [cm]",
+      "Measured [cm]",
       "Limit",
     ].map((words, k) => make("th", { scope: "col", className: k > 1 ? "number" : "" }, words));
     return make(

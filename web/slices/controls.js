@@ -37,7 +37,7 @@ function select(options, value, onValue) {
   return element;
 }
 
-/** Fills the panel; `show(state)` and `facts(facts)` keep it true. */
+/** Fills the panel; `show(state)` and `facts(facts)` update it. */
 export function controls(root, { change, toKind }) {
   const kinds = make("div", { className: "kinds", role: "group", ariaLabel: "Kind of cut" });
   const where = make("div", { className: "where" });

@@ -1,11 +1,11 @@
-// Surfaces that were visited twice: those two visits put at two places, and the others; a click goes there.
+// Double walls: surfaces that two visits put at two places; a click on one shows it in the slice.
 
 import { readDoubleWalls } from "../shared/api.js";
 import { attempt, make } from "../shared/dom.js";
 import { count } from "../shared/format.js";
 import { distanceFrom } from "./state.js";
 
-/** A place reaches about so far around its middle [m]. */
+/** Half the size of a place [m]. */
 const REACH_M = 0.75;
 const MOST_ROWS = 50;
 
@@ -26,7 +26,7 @@ export function doublesPanel({ id, change, point, state }) {
   const button = make(
     "button",
     { type: "button", onclick: () => attempt(message, look) },
-    "Look for double walls",
+    "Find double walls",
   );
   const hint = make(
     "p",
@@ -42,7 +42,7 @@ export function doublesPanel({ id, change, point, state }) {
     );
   const which = choose("Which surfaces", {
     double: "Only double ones",
-    all: "All seen twice, worst first",
+    all: "All visited twice, worst first",
   });
   const where = choose("Where", { all: "Whole map", slice: "In this slice" });
   const table = make("div", { className: "wide" });
@@ -51,21 +51,21 @@ export function doublesPanel({ id, change, point, state }) {
 
   async function look() {
     button.disabled = true;
-    button.textContent = "Looking…";
+    button.textContent = "Searching…";
     try {
       show(await readDoubleWalls(id, state().source));
     } finally {
       button.disabled = false;
-      button.textContent = "Look for double walls";
+      button.textContent = "Find double walls";
     }
   }
 
   function show(found) {
     const seen = found.patches
-      ? `${count(found.patches)} patches were visited twice; their visits differ by ${cm(found.median_separation_m)} (median), ${cm(found.p95_separation_m)} (95 %); a surface is ${cm(found.median_sigma_m)} thick (σ).`
-      : "No surface was visited twice: nothing can be said.";
+      ? `${count(found.patches)} patches were visited twice; distance between the visits ${cm(found.median_separation_m)} (median), ${cm(found.p95_separation_m)} (95 %); a surface is ${cm(found.median_sigma_m)} thick (σ).`
+      : "No surface was visited twice: double walls cannot be detected.";
     const verdict = found.walls.length
-      ? make("p", { className: "verdict bad" }, `✕ ${found.walls.length} places are double`)
+      ? make("p", { className: "verdict bad" }, `✕ ${found.walls.length} double walls`)
       : make(
           "p",
           { className: "verdict good" },
@@ -80,7 +80,7 @@ export function doublesPanel({ id, change, point, state }) {
 
   const inSlice = (wall) => distanceFrom(state(), wall.middle_m) <= state().t / 2 + REACH_M;
 
-  /** The rows that are asked for; with "in this slice" they follow the cut. */
+  /** Lists the selected rows; with "In this slice" they follow the cut. */
   function listed() {
     const focused = table.contains(document.activeElement)
       ? document.activeElement.ariaLabel
@@ -88,17 +88,17 @@ export function doublesPanel({ id, change, point, state }) {
     const asked = which.value === "all" ? [...walls, ...surfaces] : walls;
     const meant = where.value === "slice" ? asked.filter(inSlice) : asked;
     if (!asked.length) return table.replaceChildren();
-    const told = [
+    const summary = [
       `${meant.length} of ${asked.length} places`,
       meant.length > MOST_ROWS ? `the ${MOST_ROWS} worst are listed` : "",
     ];
     const head = [
       "Place",
       "",
-      "Apart",
+      "Separation",
       "Limit",
       "Thickness σ",
-      "D = apart / σ",
+      "D = separation / σ",
       "Weaker layer",
       "Visits",
     ].map((words) => make("th", { scope: "col" }, words));
@@ -106,7 +106,7 @@ export function doublesPanel({ id, change, point, state }) {
     const caption = make(
       "p",
       { className: "quiet", role: "status" },
-      told.filter(Boolean).join(", "),
+      summary.filter(Boolean).join(", "),
     );
     table.replaceChildren(
       caption,

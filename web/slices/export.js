@@ -1,4 +1,4 @@
-// Slices as files: sheets at a true scale, points, pictures with coordinates.
+// Slices as files: sheets at a true scale, points, georeferenced images.
 
 import { sliceFileUrl } from "../shared/api.js";
 import { make } from "../shared/dom.js";
@@ -7,8 +7,8 @@ const KINDS = [
   ["png", "PNG", "sheet, 300 dpi"],
   ["svg", "SVG", "sheet"],
   ["pdf", "PDF", "sheet"],
-  ["dxf", "DXF", "points, a layer a slice, metres"],
-  ["tif", "GeoTIFF", "picture with coordinates"],
+  ["dxf", "DXF", "points, one layer per slice, meters"],
+  ["tif", "GeoTIFF", "georeferenced image"],
   ["laz", "LAZ", "points, all fields"],
   ["csv", "CSV", "points"],
 ];

@@ -1,4 +1,4 @@
-// What is found with slices: double walls, distances to a reference, control points; and files to take away.
+// Findings in slices: double walls, distances to a reference, control points; and exported files.
 
 import { make } from "../shared/dom.js";
 import { controlPanel } from "./control.js";
@@ -6,7 +6,7 @@ import { doublesPanel } from "./doubles.js";
 import { exportPanel } from "./export.js";
 import { referencePanel } from "./reference.js";
 
-/** Fills the section; what it returns is told of every change. */
+/** Fills the section; returns callbacks for changes of the cut, the map and the picked point. */
 export function findings(root, page) {
   /** @type {Array<[string, any]>} */
   const panels = [
@@ -20,6 +20,6 @@ export function findings(root, page) {
       make("details", { className: "panel" }, make("summary", {}, words), element),
     ),
   );
-  const tell = (what) => (value) => panels.forEach(([, panel]) => panel[what]?.(value));
-  return { show: tell("show"), facts: tell("facts"), picked: tell("picked") };
+  const forward = (what) => (value) => panels.forEach(([, panel]) => panel[what]?.(value));
+  return { show: forward("show"), facts: forward("facts"), picked: forward("picked") };
 }

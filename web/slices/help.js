@@ -4,14 +4,14 @@ import { make } from "../shared/dom.js";
 
 const KEYS = [
   ["[ or Page down", "One step back"],
-  ["] or Page up", "One step on"],
+  ["] or Page up", "One step forward"],
   ["H V F", "Horizontal, vertical, free plane"],
   ["+ −", "Twice as thick, half as thick"],
   ["C", "Next color"],
   ["M", "Measure: two points"],
   ["0", "All of the slice"],
-  ["Arrows", "Move the picture, when it has the focus"],
-  ["Enter", "Pick the middle of the picture"],
+  ["Arrows", "Pan the slice, when it has the focus"],
+  ["Enter", "Pick the point in the middle"],
   ["Esc", "End measuring"],
 ];
 
@@ -26,7 +26,7 @@ export function help(dialog) {
     make(
       "p",
       {},
-      "On the map from above: drag for a vertical cut, drag its line or its ends A and B. The arrow points where the picture looks.",
+      "On the map from above: drag for a vertical cut, drag its line or its ends A and B. The arrow shows the viewing direction.",
     ),
     make("form", { method: "dialog" }, make("button", { className: "primary" }, "Close")),
   );

@@ -5,7 +5,7 @@ import { COLORS } from "./state.js";
 
 const UNITS = { height: "m", time: "s", distance: "cm" };
 
-/** Fills the legend; `onRange(low, high)` when a person changes its ends, nulls = as usual. */
+/** Fills the legend; `onRange(low, high)` when a person changes its ends, nulls = automatic. */
 export function legend(root, { state, shown, facts, onRange }) {
   if (root.contains(document.activeElement)) return;
   const scale = state.color === "distance" ? 100 : 1;

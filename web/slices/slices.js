@@ -1,4 +1,4 @@
-// The page of slices: where is cut, how it is shown, what is found. The address is the state.
+// The page of slices: cut, display, findings. The address of the page is the state.
 
 import {
   aboveUrl,
@@ -64,7 +64,7 @@ function change(next, { keep = false } = {}) {
 const step = (times) => change(moved(state, times * state.step));
 const toKind = (kind) => kind !== state.kind && change(unframed({ ...state, ...start(kind) }));
 
-/** A plane of another kind near the middle of the map, or where the present one is. */
+/** A plane of another kind at the present one, or near the middle of the map. */
 function start(kind) {
   const [low, high] = facts.bounds_m;
   const middle = low.map((x, k) => (x + high[k]) / 2);
@@ -81,7 +81,7 @@ function start(kind) {
   return { kind, o: [...at.slice(0, 2), middle[2]], n: normalFrom({ azimuth: 0, tilt: 45 }) };
 }
 
-// -- pictures
+// -- slice images
 
 const ask = (view, more) => ({
   cut: cutOf(state),
@@ -101,10 +101,10 @@ async function load() {
   const page = `${tab}1`;
   document.body.classList.add("drawing");
   try {
-    const told = await readSlice(id, ask(first, { page, turn: mine }));
+    const image = await readSlice(id, ask(first, { page, turn: mine }));
     if (mine !== turn) return;
-    await first.show(told);
-    shown = told;
+    await first.show(image);
+    shown = image;
     if (state.beside || state.besideColor) await loadSecond(mine);
     byId("message").textContent = "";
     describe();
@@ -121,13 +121,13 @@ async function loadSecond(mine) {
   second.frame = first.frame;
   const color = state.besideColor || state.color;
   const range = color === state.color ? {} : { low: null, high: null };
-  const told = await readSlice(
+  const image = await readSlice(
     id,
     ask(second, { page: `${tab}2`, turn: mine, color, source: state.beside, ...range }),
   );
   if (mine !== turn) return;
-  await second.show(told);
-  captions[1].textContent = `${sourceWords(state.beside)} · ${COLORS[color]} · ${count(told.points)} points`;
+  await second.show(image);
+  captions[1].textContent = `${sourceWords(state.beside)} · ${COLORS[color]} · ${count(image.points)} points`;
 }
 
 const sourceWords = (source) =>
@@ -329,9 +329,9 @@ function tools() {
       "span",
       { className: "moves" },
       button("◂ Step", () => step(-1), { title: "One step back  [", ariaLabel: "Step back" }),
-      button("Step ▸", () => step(1), { title: "One step on  ]", ariaLabel: "Step on" }),
-      button("−", () => first.zoom(1.5), { title: "Farther away", ariaLabel: "Zoom out" }),
-      button("+", () => first.zoom(1 / 1.5), { title: "Closer", ariaLabel: "Zoom in" }),
+      button("Step ▸", () => step(1), { title: "One step forward  ]", ariaLabel: "Step forward" }),
+      button("−", () => first.zoom(1.5), { title: "Zoom out", ariaLabel: "Zoom out" }),
+      button("+", () => first.zoom(1 / 1.5), { title: "Zoom in", ariaLabel: "Zoom in" }),
       button("All", () => change(unframed(state), { keep: true }), {
         title: "All of the slice  0",
       }),

@@ -22,7 +22,7 @@ export const COLORS = {
   distance: "Distance to reference",
 };
 
-/** State out of the query of an address; what makes no sense is left at its usual value. */
+/** The state in the query of an address; an invalid value becomes the default. */
 export function parse(query) {
   const given = new URLSearchParams(query);
   const number = (text, usual) =>
@@ -44,7 +44,7 @@ export function parse(query) {
 
 const short = (x) => String(Number(x.toFixed(4)));
 
-/** The query that `parse` reads; only what differs from the usual. */
+/** The query that `parse` reads; only what differs from the default. */
 export function format(state) {
   const query = new URLSearchParams({ kind: state.kind });
   const used = { horizontal: ["z"], vertical: ["a", "b"], free: ["o", "n"] }[state.kind];
@@ -59,7 +59,7 @@ export function format(state) {
   return query.toString().replaceAll("%2C", ",").replaceAll("%3A", ":");
 }
 
-/** The cut as the server takes it. */
+/** The cut as the server expects it. */
 export function cutOf(state) {
   const thickness_m = state.t;
   if (state.kind === "horizontal") return { kind: state.kind, z_m: state.z, thickness_m };
@@ -68,7 +68,7 @@ export function cutOf(state) {
   return { kind: state.kind, origin_m: state.o, normal: state.n, thickness_m };
 }
 
-/** Unit normal of the cut, as the server has it. */
+/** Unit normal of the cut, the same as on the server. */
 export function normalOf(state) {
   if (state.kind === "horizontal") return [0, 0, 1];
   if (state.kind === "vertical") {
@@ -100,7 +100,10 @@ export function moved(state, distance) {
   return { ...state, o: shift(state.o) };
 }
 
-/** A horizontal cut has the map's x and y, a vertical one starts at a, a free one at o: the view of one is none of another. */
+/**
+ * The state without the view: horizontal, vertical and free cuts have different coordinates, so the
+ * view of one is invalid in another.
+ */
 export const unframed = (state) => ({ ...state, u: null, v: null, m: null });
 
 /** 1, 2 or 5 times a power of ten, at least `least`. */
@@ -109,7 +112,7 @@ export function roundStep(least) {
   return power * [1, 2, 5, 10].find((s) => s * power >= least * 0.999);
 }
 
-/** Azimuth (clockwise from y) and steepness (0 = level plane) of a normal, in degrees. */
+/** Azimuth (clockwise from y) and tilt (0 = level plane) of a normal, in degrees. */
 export function anglesOf([x, y, z]) {
   const flat = Math.hypot(x, y);
   return {

@@ -1,6 +1,6 @@
-// <slice-view>: a slice with grid, coordinates, scale bar; pan, zoom, pick. Says what it shows, asks nobody.
+// <slice-view>: a slice with grid, coordinates, scale bar; pan, zoom, pick. No network.
 //
-// Events: "frame" (the view rests elsewhere), "moving" (it moves), "place" (a click, detail {u, v, reach}).
+// Events: "frame" (panned or zoomed), "moving" (while it moves), "place" (a click, detail {u, v, reach}).
 
 import { make } from "../shared/dom.js";
 import { roundStep } from "./state.js";
@@ -39,12 +39,12 @@ export class SliceView extends HTMLElement {
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
   }
 
-  /** Words for those who do not see the picture. */
+  /** The label for screen readers. */
   set label(words) {
     this.#canvas.setAttribute("aria-label", words);
   }
 
-  /** Middle [m] and meters a pixel; null before the first picture. */
+  /** Middle [m] and meters per pixel; null before the first image. */
   get frame() {
     return this.#center && { u: this.#center[0], v: this.#center[1], m: this.#metersPerPx };
   }
@@ -55,7 +55,7 @@ export class SliceView extends HTMLElement {
     this.draw();
   }
 
-  /** What the server is asked for: pixels of the screen, and the window if one is chosen. */
+  /** Size and window to request: pixels of the screen, and the window if one is chosen. */
   get wanted() {
     const { width, height } = this.#size();
     const ratio = Math.min(2, devicePixelRatio || 1);
@@ -69,12 +69,12 @@ export class SliceView extends HTMLElement {
     return { ...ask, window: { left: u - du, bottom: v - dv, right: u + du, top: v + dv } };
   }
 
-  /** A picture of the server, with what it shows. */
+  /** Shows a slice image of the server. */
   async show({ png, window, axes }) {
     const bytes = Uint8Array.from(atob(png), (one) => one.charCodeAt(0));
     const mine = (this.#shown += 1);
     const image = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
-    if (mine !== this.#shown) return image.close(); // a newer one is there already
+    if (mine !== this.#shown) return image.close(); // a newer one is shown already
     this.#image?.close();
     [this.#image, this.#window, this.#axes] = [image, window, axes];
     if (!this.#center) this.#fit(window);

@@ -1,0 +1,207 @@
+// What the review page knows: the server's state, the pairs, the selected pair and the effect of the
+// decisions. No DOM, no network.
+
+import { keyOf, length } from "./captions.js";
+import { apart } from "./math.js";
+
+/**
+ * @typedef {import("../shared/http_types").ReviewView} ReviewView
+ * @typedef {import("../shared/http_types").AlignmentView} AlignmentView
+ * @typedef {object} Selected the pair that is looked at
+ * @property {[number, number]} pair frames of both places
+ * @property {any} row
+ * @property {any} facts details of the pair, null until they are read
+ * @property {AlignmentView | null} found registration made on this page
+ * @property {boolean} moved by hand, since the last registration
+ * @property {boolean} busy a registration runs
+ * @property {boolean} drawn its points are on the screen
+ * @property {boolean} decided on this page, since it was selected
+ */
+
+export class ReviewState {
+  /** @type {ReviewView | null} */
+  server = null;
+  /** @type {any} */
+  effect = null;
+  /** @type {Selected | null} */
+  selected = null;
+  rows = [];
+  graph = ""; // that the rows are made of
+  limit_m = 0.1; // largest path discrepancy
+  began_ns = 0;
+
+  /** Starts again with the state and the queue of the server. */
+  reset(server, queue) {
+    // no journal row of the server is older than -1: the first update always computes the effect
+    this.server = { ...server, seq: -1 };
+    this.graph = server.graph;
+    this.selected = this.effect = null;
+    this.began_ns = queue.began_ns;
+    this.limit_m = queue.limit_m;
+    this.rows = queue.rows.map((row) =>
+      this.#described(Object.fromEntries(queue.columns.map((name, k) => [name, row[k]]))),
+    );
+  }
+
+  /** Takes the server's state; returns new rows of pairs that others added. */
+  update(server) {
+    this.server = server;
+    const known = new Set(this.rows.map((row) => row.key));
+    const added = server.standing
+      .map((one) => /** @type {[number, number]} */ ([one.frame_i, one.frame_j]))
+      .filter((pair) => !known.has(keyOf(pair)))
+      .map((pair) => this.newRow(pair));
+    this.rows = [...added, ...this.rows];
+    return added;
+  }
+
+  /** Takes the effect of the decisions on the graph; null without decisions. */
+  setEffect(effect) {
+    this.effect = effect;
+    if (!effect) return;
+    for (const part of [effect.last, effect.all])
+      for (const move of part.moves) move.t_s = (move.t_ns - this.began_ns) / 1e9;
+    const chi2 = new Map(effect.edges.map((one) => [keyOf(one.pair), one.chi2]));
+    for (const row of this.rows) if (chi2.has(row.key)) row.chi2 = chi2.get(row.key);
+  }
+
+  /** Brings the rows up to date; returns the keys of those that changed. */
+  refreshRows() {
+    const changed = [];
+    for (const row of this.rows) {
+      if (row.kind === "manual") row.measured = this.#isMeasuredByPerson(row);
+      const now = this.#decisionOf(row);
+      if (now.state !== row.state || now.who !== row.who || now.why !== row.why) {
+        Object.assign(row, now);
+        changed.push(row.key);
+      }
+    }
+    return changed;
+  }
+
+  select(pair, row) {
+    this.selected = {
+      pair,
+      row,
+      facts: null,
+      found: null,
+      moved: false,
+      busy: false,
+      drawn: false,
+      decided: false,
+    };
+    return this.selected;
+  }
+
+  /** The decision of a person that stands for a pair. */
+  standingOf([i, j]) {
+    return this.server?.standing.find((one) => one.frame_i === i && one.frame_j === j);
+  }
+
+  /** The measured pose of the selected pair; the graph's prediction if it was never registered. */
+  poseOf({ pair, facts }) {
+    const standing = this.standingOf(pair);
+    return standing?.measured ? standing.T_i_j : (facts.measured ?? facts.predicted);
+  }
+
+  /** Whether the selected pair was registered, by the program or by a person. */
+  get isMeasured() {
+    const { row, pair } = this.selected;
+    return Boolean(row.measured || this.standingOf(pair)?.measured);
+  }
+
+  get hasDecisions() {
+    const { standing, undoable, redoable } = this.server;
+    return Boolean(this.graph && (standing.length || undoable || redoable));
+  }
+
+  /** A row for a pair the program never tried. */
+  newRow(pair) {
+    const unknown = {
+      influence_m: null,
+      overlap: null,
+      error_m: null,
+      limit_m: null,
+      degeneracy: null,
+      verification_m: null,
+      chi2: null,
+    };
+    return this.#described({
+      frame_i: pair[0],
+      frame_j: pair[1],
+      t_i_s: 0,
+      t_j_s: 0,
+      kind: "manual",
+      verdict: "rejected",
+      reason: "",
+      measured: Boolean(this.standingOf(pair)?.measured),
+      paths: 0,
+      ...unknown,
+    });
+  }
+
+  /** Which actions are enabled, by the person's permissions and the selected pair. */
+  enabled(pairs) {
+    const may = Boolean(this.server?.may_review);
+    const { selected } = this;
+    const drawn = may && Boolean(selected?.drawn); // a person decides about points they have seen
+    const open = drawn && !selected.decided;
+    return {
+      previous: pairs > 0,
+      next: pairs > 0,
+      accept: open && this.isMeasured,
+      reject: open,
+      restore: may && Boolean(selected && this.standingOf(selected.pair)),
+      refine: drawn && !selected.busy,
+      pick: drawn,
+      undo: may && this.server.undoable > 0,
+      redo: may && this.server.redoable > 0,
+      add: Boolean(this.graph),
+      keys: true,
+    };
+  }
+
+  /** What to do next with the selected pair. */
+  get hint() {
+    const { selected, server } = this;
+    if (!selected?.facts || !server) return "";
+    if (selected.decided) return "Decided. J shows the next pair, U or Ctrl Z undoes the decision";
+    if (selected.found && !selected.moved) return registrationHint(selected);
+    if (selected.moved) return "Moved by hand. Enter refines from here";
+    return this.isMeasured
+      ? ""
+      : "Not registered: refine it (move it first if it is far off), then create the edge";
+  }
+
+  #isMeasuredByPerson(row) {
+    return Boolean(this.standingOf([row.frame_i, row.frame_j])?.measured);
+  }
+
+  #described(row) {
+    row.key = keyOf([row.frame_i, row.frame_j]);
+    row.title = `Multiframes ${row.frame_i} and ${row.frame_j}`;
+    return Object.assign(row, this.#decisionOf(row));
+  }
+
+  /** A person's decision, else the program's after the decisions, else its first verdict. */
+  #decisionOf(row) {
+    const standing = this.standingOf([row.frame_i, row.frame_j]);
+    if (standing) {
+      const { accepted, who, why } = standing;
+      return { state: accepted ? "accepted" : "rejected", who, why };
+    }
+    const isIn = (pairs) => pairs?.some(([i, j]) => i === row.frame_i && j === row.frame_j);
+    const rejected = isIn(this.effect?.all.rejected_automatically) && "rejected";
+    const accepted = isIn(this.effect?.all.accepted_automatically) && "accepted";
+    return { state: rejected || accepted || row.verdict, who: "", why: "" };
+  }
+}
+
+function registrationHint({ found, facts }) {
+  const [m, degrees] = apart(found.T_i_j, facts.predicted);
+  const moved = `${length(m)} and ${degrees.toFixed(2)}° from the graph`;
+  if (!found.converged) return "Registration did not converge: move it nearer and refine again";
+  return found.reason
+    ? `Refined, ${moved}. It would be rejected automatically: ${found.reason}`
+    : `Refined, ${moved}. Enter creates the edge`;
+}
