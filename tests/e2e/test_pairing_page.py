@@ -54,7 +54,7 @@ def sign_in(page, server, path):
     page.wait_for_url(server.url + path)
 
 
-def test_a_phone_scans_the_code_and_is_in_and_the_token_is_nowhere(server, laptop, phone, screenshot):
+def test_a_phone_signs_in_by_qr_code_and_the_token_is_nowhere(server, laptop, phone, screenshot):
     sign_in(laptop, server, "/")
     laptop.get_by_role("link", name="Phone").click()
     with laptop.expect_response("**/api/pairing/invitations") as answered:

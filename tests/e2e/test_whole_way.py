@@ -136,7 +136,7 @@ def select_next(page):
 
 
 def decide(page, root, screenshot):
-    """By keys alone: a wrong acceptance is reported and undone, an accepted loop closure is rejected."""
+    """By keys alone: a wrong acceptance is reported and undone, an accepted loop is rejected."""
     expect(page.locator("review-queue li").first).to_be_visible()
     expect(page.get_by_label("Go on to the next pair after a decision")).not_to_be_checked()
     page.get_by_label("Which pairs").select_option("doubt")

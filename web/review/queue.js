@@ -34,7 +34,7 @@ export class ReviewQueue extends HTMLElement {
     for (const one of [this.#show, this.#reason])
       one.addEventListener("change", () => this.#fill());
     this.replaceChildren(
-      make("div", { className: "queue-head" }, make("h1", {}, "Loop closures"), this.tools),
+      make("div", { className: "queue-head" }, make("h1", {}, "Loops"), this.tools),
       make("div", { className: "filters" }, this.#show, this.#reason),
       this.#count,
       this.#list,
