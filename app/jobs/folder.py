@@ -15,7 +15,6 @@ outcome.json    how it ended, written last and atomically
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import json
 import os
 import shutil
@@ -31,6 +30,7 @@ import msgspec
 from app.jobs.model import Inputs
 from recon4.store.atomic import make_folders, write_json
 from recon4.store.atomic import sweep as sweep_unfinished
+from recon4.store.locks import trying_lock
 
 KEPT_BYTES = 64 << 10
 MOST_LOG_BYTES = 256 << 10
@@ -99,11 +99,8 @@ class JobFolder:
     @contextlib.contextmanager
     def try_lock(self) -> Iterator[int | None]:
         """File descriptor of the lock, None while a worker holds it."""
-        descriptor = os.open(self.path / "lock", os.O_RDWR | os.O_CREAT, 0o600)
-        try:
-            yield descriptor if _lock(descriptor) else None
-        finally:
-            os.close(descriptor)
+        with trying_lock(self.path / "lock") as descriptor:
+            yield descriptor
 
     def alive(self) -> bool:
         """Whether a worker is alive, by its lock: a reused process number does not matter."""
@@ -222,11 +219,3 @@ def _state(number: int) -> str:
         return Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[0]
     except (OSError, IndexError):
         return ""
-
-
-def _lock(descriptor: int) -> bool:
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    return True

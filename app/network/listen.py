@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import fcntl
 import os
 import socket
 import sys
@@ -27,6 +26,7 @@ from app.network.http_timeouts import KEEP_ALIVE_S, HttpTimeoutsProtocol
 from app.settings import ServerSettings
 from recon4.errors import StoreError
 from recon4.store.atomic import make_folders
+from recon4.store.locks import trying_lock
 
 PING_INTERVAL_S = 20.0
 PING_TIMEOUT_S = 20.0
@@ -139,15 +139,10 @@ def only_one(settings: ServerSettings) -> Iterator[None]:
         StoreError: If another server has the lock.
     """
     make_state(settings)
-    lock = os.open(settings.state / "server.lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
-    try:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError as error:
-            raise StoreError(f"another server runs on {settings.root}; use that one") from error
+    with trying_lock(settings.state / "server.lock") as lock:
+        if lock is None:
+            raise StoreError(f"another server runs on {settings.root}; use that one")
         yield
-    finally:
-        os.close(lock)
 
 
 def make_state(settings: ServerSettings) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 import time
 from collections.abc import Iterator
@@ -14,6 +13,7 @@ from recon4.errors import NoSpace, StoreError
 from recon4.store.atomic import make_folders, raise_if_full, sweep, write_json
 from recon4.store.json_files import read_object
 from recon4.store.ledger import FinishedStage, Ledger
+from recon4.store.locks import open_lock_file, try_lock
 from recon4.store.seal import adopt, begin_change, end_change
 
 FORMAT = 1
@@ -177,13 +177,16 @@ def _refuse_foreign(root: Path) -> None:
 
 def _lock(path: Path) -> int:
     try:
-        descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+        descriptor = open_lock_file(path, 0o644)
     except OSError as error:
         raise_if_full(error, path)
         raise StoreError(f"cannot lock {path.parent}: {error.strerror}") from error
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        locked = try_lock(descriptor)
     except OSError as error:
         os.close(descriptor)
-        raise StoreError(f"{path.parent} is in use by another recon4 process") from error
+        raise StoreError(f"cannot lock {path.parent}: {error.strerror}") from error
+    if not locked:
+        os.close(descriptor)
+        raise StoreError(f"{path.parent} is in use by another recon4 process")
     return descriptor

@@ -11,7 +11,6 @@ can rewrite them. Approvals are signed (`recon4.review.approved`).
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 from collections.abc import Iterator, Mapping
@@ -24,6 +23,7 @@ from recon4.store.atomic import write_json
 from recon4.store.checked import Altered, check_file
 from recon4.store.hashing import FileDigest, files_below, hash_json
 from recon4.store.json_files import parse_object
+from recon4.store.locks import open_lock_file, wait_for_lock
 
 SEALS = "seals.json"
 LOCK = ".seals.lock"
@@ -225,11 +225,11 @@ def seals_text(seals: Mapping[str, Seal]) -> str:
 @contextmanager
 def _locked(path: Path) -> Iterator[None]:
     try:
-        descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+        descriptor = open_lock_file(path, 0o644)
     except OSError as error:
         raise StoreError(f"cannot lock {path}: {error.strerror}") from error
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        wait_for_lock(descriptor)
         yield
     finally:
         os.close(descriptor)

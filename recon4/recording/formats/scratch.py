@@ -6,7 +6,6 @@ which the kernel releases however the owner ends.
 
 from __future__ import annotations
 
-import fcntl
 import os
 import shutil
 import tempfile
@@ -16,6 +15,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from recon4.errors import NoSpace, StoreError
+from recon4.store.locks import open_lock_file, try_lock, wait_for_lock
 
 _LOCK = "lock"
 _UNLOCKED_S = 3600.0
@@ -44,9 +44,9 @@ def scratch_folder(needed_bytes: int) -> Iterator[Path]:
             f"temporary copy, got {free / 1e9:.1f} GB (the variable TMPDIR names another place)"
         )
     folder = Path(tempfile.mkdtemp(dir=base))
-    lock = os.open(folder / _LOCK, os.O_CREAT | os.O_RDWR, 0o600)
+    lock = open_lock_file(folder / _LOCK)
     try:
-        fcntl.flock(lock, fcntl.LOCK_EX)
+        wait_for_lock(lock)
         yield folder
     finally:
         shutil.rmtree(folder, ignore_errors=True)
@@ -72,12 +72,11 @@ def _is_abandoned(folder: Path) -> bool:
     except OSError:
         return _age_s(folder) > _UNLOCKED_S  # else it is being created or removed by its owner
     try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        return try_lock(lock)
     except OSError:
         return False
     finally:
         os.close(lock)
-    return True
 
 
 def _age_s(folder: Path) -> float:
