@@ -9,6 +9,8 @@ import sqlalchemy as sa
 from alembic import command
 from alembic.config import Config
 
+from recon4.store.sqlite_files import make_durable
+
 
 def open_engine(path: Path) -> sa.Engine:
     """An engine for a file; a commit survives a power cut."""
@@ -26,5 +28,5 @@ def migrate(connection: sa.Connection, package: Path) -> None:
 
 
 def _make_durable(connection: Any, _: object) -> None:
-    for pragma in ("journal_mode=WAL", "synchronous=FULL", "busy_timeout=5000"):
-        connection.execute(f"PRAGMA {pragma}").close()
+    make_durable(connection)
+    connection.execute("PRAGMA busy_timeout = 5000").close()

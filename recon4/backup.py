@@ -32,6 +32,7 @@ from recon4.store.hashing import hash_file, hash_json
 from recon4.store.json_files import read_object
 from recon4.store.project import is_project
 from recon4.store.seal import LOCK, OPEN, SEALS, TURN, Seal, read_seals, seals_text
+from recon4.store.sqlite_files import connect, connect_read_only
 
 FORMAT = 1
 STATE = ".recon4"
@@ -268,8 +269,8 @@ def _copy_bytes(source: Path, target: Path) -> bool:
         return False
     try:
         with (
-            closing(sqlite3.connect(f"file:{source}?mode=ro", uri=True)) as read,
-            closing(sqlite3.connect(target)) as written,
+            closing(connect_read_only(source)) as read,
+            closing(connect(target)) as written,
         ):
             read.backup(written)
     except sqlite3.Error as error:

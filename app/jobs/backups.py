@@ -10,6 +10,7 @@ from pathlib import Path
 
 from recon4.errors import StoreError
 from recon4.store.atomic import atomic_file
+from recon4.store.sqlite_files import connect
 
 log = logging.getLogger(__name__)
 
@@ -29,7 +30,7 @@ class Backups:
         if today.exists():
             return
         self._folder.mkdir(exist_ok=True)
-        with atomic_file(today) as part, closing(sqlite3.connect(self._path)) as source:
+        with atomic_file(today) as part, closing(connect(self._path)) as source:
             source.execute("VACUUM INTO ?", (str(part),))
         for old in self._all()[KEPT:]:
             old.unlink()
@@ -82,7 +83,7 @@ def damage_of(path: Path) -> str:
         StoreError: If the file cannot be opened.
     """
     try:
-        with closing(sqlite3.connect(path)) as connection:
+        with closing(connect(path)) as connection:
             (found,) = connection.execute("PRAGMA quick_check(1)").fetchone()
     except sqlite3.OperationalError as error:
         raise StoreError(f"{path} cannot be read: {error}") from error

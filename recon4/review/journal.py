@@ -19,6 +19,7 @@ from recon4.errors import StoreError
 from recon4.review.decisions import Decided, Decision, DecisionKind, fold
 from recon4.store.atomic import raise_if_full
 from recon4.store.seal import changing
+from recon4.store.sqlite_files import connect, make_durable, merge_log, sync_commits
 
 NAME = "decisions.sqlite"
 START = "0" * 64
@@ -139,7 +140,7 @@ def append(root: Path, decision: Decision, *, after_seq: int | None = None) -> R
             tuple(getattr(row, name) for name in _COLUMNS.split(", ")),
         )
         db.execute("COMMIT")
-        db.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()
+        merge_log(db)
     return row
 
 
@@ -202,11 +203,12 @@ def _rows(db: sqlite3.Connection) -> list[Row]:
 def _database(path: Path, *, write: bool = False) -> Iterator[sqlite3.Connection]:
     db: sqlite3.Connection | None = None
     try:
-        db = sqlite3.connect(path, isolation_level=None, timeout=_BUSY_S)
-        db.execute("PRAGMA synchronous = FULL")
+        db = connect(path, busy_s=_BUSY_S)
         if write:
-            db.execute("PRAGMA journal_mode = WAL")
+            make_durable(db)
             db.executescript(_SCHEMA)
+        else:
+            sync_commits(db)  # the last connection to close merges the log
         yield db
     except sqlite3.Error as error:
         raise_if_full(error, path)

@@ -11,6 +11,7 @@ from types import TracebackType
 
 from recon4.errors import StoreError
 from recon4.store.atomic import raise_if_full
+from recon4.store.sqlite_files import connect, connect_read_only, make_durable, merge_log
 
 SCHEMA_VERSION = 1
 _PAGE_BYTES = 512
@@ -72,7 +73,7 @@ class Ledger:
                 f"{path} is cut: expected a page or more, got {path.stat().st_size} bytes"
             )
         with self._errors():
-            self._db = _read_only(path) if read_only else _connect(str(path))
+            self._db = _read_only(path) if read_only else connect(path)
         try:
             self._prepare(read_only=read_only and path.exists())
         except BaseException:
@@ -82,8 +83,7 @@ class Ledger:
     def _prepare(self, *, read_only: bool) -> None:
         with self._errors():
             if not read_only:
-                self._db.execute("PRAGMA journal_mode = WAL")
-                self._db.execute("PRAGMA synchronous = FULL")
+                make_durable(self._db)
             self._db.execute("PRAGMA foreign_keys = ON")
             (found,) = self._db.execute("PRAGMA quick_check").fetchone()
             if found != "ok":
@@ -176,8 +176,7 @@ class Ledger:
     def settle(self) -> bool:
         """Move the write-ahead log into the file; False = a reader prevented it."""
         with self._errors():
-            (busy, _, _) = self._db.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()
-        return not busy
+            return merge_log(self._db)
 
     def close(self) -> None:
         """Close the file; closing twice is allowed."""
@@ -198,15 +197,9 @@ class Ledger:
 _SELECT = f"SELECT {', '.join(f.name for f in fields(FinishedStage))} FROM stages"
 
 
-def _connect(name: str) -> sqlite3.Connection:
-    uri = name.startswith("file:")
-    return sqlite3.connect(name, isolation_level=None, timeout=10.0, uri=uri)
-
-
 def _read_only(path: Path) -> sqlite3.Connection:
     """A connection that creates no file; without a write-ahead log it opens it as immutable."""
     if not path.exists():
-        return _connect(":memory:")
+        return connect(":memory:")
     written = path.with_name(f"{path.name}-wal").exists()
-    options = "mode=ro" if written else "mode=ro&immutable=1"
-    return _connect(f"{path.resolve().as_uri()}?{options}")
+    return connect_read_only(path, immutable=not written)
