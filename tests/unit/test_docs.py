@@ -53,7 +53,7 @@ def headings(path):
     return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles}
 
 
-def test_what_a_page_links_to_is_there(page):
+def test_links_of_a_page_lead_somewhere(page):
     missing = []
     for target in ("".join(found) for found in LINK.findall(page.read_text("utf-8"))):
         file, _, anchor = target.partition("#")
@@ -164,7 +164,7 @@ def test_routes_a_page_names_exist(page, routes):
     assert [found for found in named if (found[0], unnamed(found[1])) not in routes] == []
 
 
-def test_programs_a_page_tells_to_run_are_there(page):
+def test_programs_in_the_commands_of_a_page_exist(page):
     found = BENCHMARK.findall(page.read_text("utf-8"))
     files = [module.replace(".", "/") + ".py" if module else file for module, file in found]
 
@@ -176,22 +176,22 @@ def test_commands_of_a_page_exist_with_their_options(page):
 
 
 def typed(text):
-    """What comes after recon4 in the code of a page, be it a block or a few words."""
+    """The text after ``recon4`` in the code of a page, in blocks and in lines."""
     return [line for code in CODE.findall(text) for line in TYPED.findall("".join(code))]
 
 
 def known(line):
-    """Whether there is such a command and it has all these options."""
+    """Whether the command exists and has all these options."""
     words = shlex.split(line.replace("…", " ").replace("|", " "))
     command = COMMANDS
     while words and words[0] in getattr(command, "commands", {}):
         command = command.commands[words.pop(0)]
     options = {name for one in command.params for name in (*one.opts, *one.secondary_opts)}
-    asked = {word.partition("=")[0] for word in words if word.startswith("--")}
-    return command is not COMMANDS and asked <= options | {"--help"}
+    options_given = {word.partition("=")[0] for word in words if word.startswith("--")}
+    return command is not COMMANDS and options_given <= options | {"--help"}
 
 
-def test_the_rig_file_of_its_page_is_one():
+def test_the_rig_file_of_its_page_is_valid():
     (example,) = re.findall(
         r"```toml\n(.*?)```", (ROOT / "docs/rig.md").read_text("utf-8"), re.DOTALL
     )
@@ -208,7 +208,7 @@ def test_every_page_can_be_reached_from_the_readme():
     assert [one.name for one in PAGES[1:] if f"(docs/{one.name}" not in readme] == []
 
 
-def test_no_word_of_a_help_text_is_taken_for_markup():
+def test_help_texts_contain_no_markup():
     def helps(command):
         below = getattr(command, "commands", {}).values()
         own = [command.help, *(getattr(one, "help", None) for one in command.params)]
