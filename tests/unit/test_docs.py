@@ -135,6 +135,13 @@ def test_names_of_the_code_in_a_page_exist(page):
     assert sorted(name for name in named - INVENTED if name not in all_code()) == []
 
 
+def test_architecture_names_every_top_level_module():
+    page = (ROOT / "docs" / "architecture.md").read_text("utf-8")
+    modules = {path.name for top in ("recon4", "app") for path in (ROOT / top).glob("[!_]*.py")}
+
+    assert sorted(name for name in modules if not re.search(rf"[ `/]{name}[ `]", page)) == []
+
+
 @cache
 def all_code():
     """The Python and JavaScript files of the repository as one text."""
