@@ -15,7 +15,7 @@
     ├── NoRoom               507  not enough disk space
     ├── ViewerFailed         503  the 3-D viewer does not start
     ├── ComputeFailed        503  a helper process died or took too long
-    └── ClientLeft           499  the client disconnected; nobody reads the answer
+    └── ClientLeft           499  the client disconnected; the response is discarded
 
 A `Recon4Error` of the library means wrong input: 422. Errors of the framework (fields of the wrong
 type, unknown paths) get a response of the same form.
@@ -151,7 +151,7 @@ class ComputeFailed(AppError):
 
 
 class ClientLeft(AppError):
-    """The client disconnected; nobody reads the answer."""
+    """The client disconnected; the response is discarded."""
 
     status = 499
 

@@ -39,7 +39,7 @@ def printable(text: str) -> str:
 
 
 class RepeatFilter(logging.Filter):
-    """Drops records that repeat too often; the next one that is written says how many."""
+    """Drops records that repeat too often; the next one written has their count."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         super().__init__()

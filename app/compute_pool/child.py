@@ -1,7 +1,7 @@
 """A child of the compute pool, started by `app.compute_pool.process`.
 
 Arguments: its scratch folder, descriptor of its lifeline, perhaps ``--background``, modules to
-import. It confines itself as its first message says, then answers calls until its input ends.
+import. It confines itself as its first message demands, then serves calls until its input ends.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def main(arguments: list[str]) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in the terminal is the server's
     if "--background" in rest:
         os.nice(BACKGROUND_NICE)
-    # What a library prints must not get between our messages.
+    # Output of a library must not mix with our messages.
     answers = os.fdopen(os.dup(1), "wb", buffering=0)
     os.dup2(2, 1)
     for name in rest:
@@ -65,7 +65,7 @@ def _read(calls: BinaryIO) -> bytes | None:
 
 
 def _confine(message: bytes, scratch: Path, kernels: tuple[Path, ...]) -> None:
-    """Take away from this process whatever its work does not need; the one place for it."""
+    """Confine this process to what its work needs; the only place that does."""
     setup: ChildSetup = decode_request(message)
     importlib.import_module(setup.module)
     os.chdir(scratch)
@@ -80,7 +80,7 @@ def _answer(answers: BinaryIO, message: bytes) -> None:
     except Recon4Error as error:
         kind, data = REFUSED, encode_error(error)
     except MemoryError:
-        kind, data = REFUSED, encode_error(Recon4Error("out of memory: ask for less at a time"))
+        kind, data = REFUSED, encode_error(Recon4Error("out of memory: request less at a time"))
     except Exception:
         kind, data = FAILED, traceback.format_exc().encode()[-20_000:]
     view = memoryview(HEAD.pack(kind, len(data)) + data)

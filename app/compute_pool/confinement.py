@@ -1,4 +1,4 @@
-"""What a child of the pool may do: the policy that its file access means."""
+"""Confinement of a child of the pool: the sandbox policy for its file access."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from recon4.sandbox import Confinement, Policy, confine
 
 MOST_FILE_BYTES = 64 << 30
 MOST_MEMORY_BYTES = 8 << 30
-"""Private memory of a child; maps are mapped from their files and do not count."""
+"""Private memory of a child; memory-mapped files do not count."""
 
 
 def confine_child(access: FileAccess, scratch: Path, kernels: tuple[Path, ...]) -> Confinement:
     """Confine this process: no network, no other files, no programs, bounded memory.
 
     Args:
-        access: What its work may open.
+        access: Files its work may open.
         scratch: Its working folder, the only place it can write besides ``access.write``.
         kernels: Folders of compiled kernels that it may read.
     """

@@ -1,4 +1,4 @@
-"""Who is next: small before large, fair between people, a bounded number waiting."""
+"""A fair queue: small calls before large ones, turns between people, a bounded length."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from app.compute_pool.model import Quota
 from app.errors import TooMany
 
 MOST_PASSED = 8
-"""A large call that this many small ones went before is treated as small: it does not starve."""
+"""A large call that was passed by this many small ones counts as small, so that it is served."""
 
 
 @dataclass(eq=False, slots=True, kw_only=True)
@@ -20,7 +20,7 @@ class Slot:
     person: str
     large: bool
     passed: int = 0
-    """How many small calls went before it."""
+    """Number of small calls that passed it."""
     granted: asyncio.Future[None] = field(
         default_factory=lambda: asyncio.get_running_loop().create_future()
     )
@@ -49,11 +49,11 @@ class FairQueue:
 
     @property
     def granted(self) -> int:
-        """Calls that were ever given a slot."""
+        """Number of calls that were granted a slot."""
         return self._grants
 
     async def acquire(self, person: str, *, large: bool = False) -> Slot:
-        """Wait for a slot; a cancelled wait takes none.
+        """Wait for a slot; a canceled wait takes none.
 
         Raises:
             TooMany: If too many calls of this person, or of all, wait already.
@@ -62,7 +62,7 @@ class FairQueue:
         self._waiting.append(slot)
         self._grant()
         if not slot.granted.done():
-            self._refuse_excess(slot)
+            self._reject_excess(slot)
         try:
             await slot.granted
         except asyncio.CancelledError:
@@ -74,11 +74,11 @@ class FairQueue:
         return slot
 
     def release(self, slot: Slot) -> None:
-        """Give a slot back to the next in line."""
+        """Release a slot to the next call."""
         self._running.remove(slot)
         self._grant()
 
-    def _refuse_excess(self, slot: Slot) -> None:
+    def _reject_excess(self, slot: Slot) -> None:
         quota = self._quota
         own = sum(one.person == slot.person for one in self._waiting)
         if own <= quota.waiting_per_person and len(self._waiting) <= quota.waiting:
@@ -107,7 +107,7 @@ class FairQueue:
             slot.granted.set_result(None)
 
     def _next(self) -> Slot | None:
-        """The best that may run: small first, then whose turn it is, then first come."""
+        """The next call: small first, then the person served least recently, then first come."""
         running = Counter(slot.person for slot in self._running)
         large = sum(slot.large for slot in self._running)
         eligible = [
@@ -127,7 +127,7 @@ class FairQueue:
         )
 
     def _remember(self, person: str) -> None:
-        """Record who was served; people who no longer wait are forgotten."""
+        """Record who was served; remove people without waiting calls."""
         self._served[person] = self._grants
         if len(self._served) > 1000:
             present = {slot.person for slot in (*self._waiting, *self._running)}

@@ -1,7 +1,7 @@
-"""What goes between the server and a child: a pickle to the child, typed JSON back.
+"""Messages between the server and a child: a pickle to the child, typed JSON back.
 
-The child may have been taken over by the file it read. So the server unpickles nothing from it:
-a result is JSON (or bytes) of the type that the function's annotation declares, of bounded size.
+The child may have been taken over by the file it read, so the server unpickles nothing from it: a
+result is JSON (or bytes) of the type that the function's annotation declares, of bounded size.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from app.errors import ComputeFailed
 from recon4.errors import ConfigError, Recon4Error, WrongSettings
 
 LENGTH = struct.Struct("<Q")
-"""Before each message to a child: bytes that follow."""
+"""Header of each message to a child: number of bytes that follow."""
 HEAD = struct.Struct("<cQ")
-"""Before each answer: its kind, bytes that follow."""
+"""Header of each response: its kind, number of bytes that follow."""
 RESULT, REFUSED, FAILED = b"R", b"E", b"F"
-"""A result; an error that says what is wrong with the input; a failure of the program."""
+"""A result; an error about the input; a failure of the program."""
 MOST_RESULT_BYTES = 256 << 20
-MOST_WORDS = 20_000
+MOST_MESSAGE = 20_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,34 +40,34 @@ class Call:
 
 @dataclass(frozen=True, slots=True)
 class ChildSetup:
-    """What a child receives before its first call."""
+    """The first message to a child."""
 
     access: FileAccess
     module: str
-    """Imported before the child is confined: it may lie where it cannot read afterwards."""
+    """Imported before the child is confined, because it may not be readable afterwards."""
 
 
 class CallError(BaseModel):
-    """An error of the library, or a failure, in words."""
+    """An error of the library."""
 
     name: str
-    words: str
+    message: str
     problems: dict[str, str] = {}
 
 
 def encode_request(request: ChildSetup | Call) -> bytes:
-    """What the server sends to a child (server's side)."""
+    """Encode a message to a child (server's side)."""
     data = pickle.dumps(request)
     return LENGTH.pack(len(data)) + data
 
 
 def decode_request(data: bytes) -> Any:
-    """The `ChildSetup` or `Call` that the server sent (child's side)."""
+    """Decode a `ChildSetup` or `Call` of the server (child's side)."""
     return pickle.loads(data)
 
 
 def encode_result(function: Callable[..., Any], result: object) -> bytes:
-    """A result as the bytes of its declared type (child's side)."""
+    """Encode a result as its declared type (child's side)."""
     if isinstance(result, bytes):
         return result
     # `dump_json` writes null for NaN, which no float field accepts.
@@ -76,7 +76,7 @@ def encode_result(function: Callable[..., Any], result: object) -> bytes:
 
 
 def decode_result(function: Callable[..., Any], data: bytes) -> Any:
-    """The result that a child sent (server's side).
+    """Decode the result of a child (server's side).
 
     Raises:
         ComputeFailed: If it is not of the declared type.
@@ -86,7 +86,9 @@ def decode_result(function: Callable[..., Any], data: bytes) -> Any:
     try:
         return _adapter(function).validate_json(data)
     except ValueError as error:
-        raise ComputeFailed(f"the helper process answered nonsense: {str(error)[:200]}") from error
+        raise ComputeFailed(
+            f"the result of the helper process is not of the declared type: {str(error)[:200]}"
+        ) from error
 
 
 def declared(function: Callable[..., Any]) -> Any:
@@ -102,24 +104,25 @@ def declared(function: Callable[..., Any]) -> Any:
 
 
 def encode_error(error: Exception) -> bytes:
-    """An error of the library (child's side)."""
+    """Encode an error of the library (child's side)."""
     problems = error.problems if isinstance(error, WrongSettings) else {}
-    name, words = f"{type(error).__module__}.{type(error).__qualname__}", str(error)[:MOST_WORDS]
-    return CallError(name=name, words=words, problems=problems).model_dump_json().encode()
+    name = f"{type(error).__module__}.{type(error).__qualname__}"
+    message = str(error)[:MOST_MESSAGE]
+    return CallError(name=name, message=message, problems=problems).model_dump_json().encode()
 
 
 def decode_error(data: bytes) -> Exception:
-    """The error that a child sent, as the class of the library it names if there is one."""
+    """Decode an error of a child, as the class of the library that it names if there is one."""
     try:
-        refusal = CallError.model_validate_json(data)
+        error = CallError.model_validate_json(data)
     except ValueError:
-        return ComputeFailed("the helper process answered nonsense")
-    if refusal.problems:
-        return WrongSettings(refusal.problems)
+        return ComputeFailed("the error of the helper process is malformed")
+    if error.problems:
+        return WrongSettings(error.problems)
     for known in _subclasses(Recon4Error):
-        if f"{known.__module__}.{known.__qualname__}" == refusal.name:
-            return known(refusal.words)
-    return ConfigError(refusal.words)
+        if f"{known.__module__}.{known.__qualname__}" == error.name:
+            return known(error.message)
+    return ConfigError(error.message)
 
 
 def _adapter(function: Callable[..., Any]) -> TypeAdapter[Any]:

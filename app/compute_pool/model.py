@@ -1,4 +1,4 @@
-"""What is asked of the compute pool: lanes, quotas, file access."""
+"""Parameters of calls of the compute pool: lanes, quotas, file access."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ class Lane(StrEnum):
     """Kinds of work. Each has its own slots, so that a slice never waits for the optimizer."""
 
     INSPECT = "inspect"
-    """What a recording or a rig file holds."""
+    """Content of a recording or a rig file."""
     THUMBNAIL = "thumbnail"
-    """The map of a project from above."""
+    """Thumbnails of projects: the map from above."""
     SLICE = "slice"
-    """Images and points of cuts."""
+    """Images and points of slices."""
     PAIR = "pair"
-    """Points of two places, and registering them."""
+    """Points of two nodes, and their registration."""
     REVIEW = "review"
-    """Graphs: their queue of decisions, solving them."""
+    """Graphs: the review queue, and solving them."""
     EXPORT = "export"
     """Files of slices."""
     SURVEY = "survey"
@@ -32,20 +32,20 @@ class Lane(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Quota:
-    """How much of a lane runs and waits."""
+    """Limits of a lane."""
 
     slots: int = 1
     """Calls that run at the same time."""
     large_slots: int = 1
-    """How many of them may be large."""
+    """Most of them that may be large."""
     per_person: int = 1
-    """How many of them may be of one person."""
+    """Most of them per person."""
     waiting_per_person: int = 16
-    """Calls of one person that may wait; more are refused (429)."""
+    """Most waiting calls per person; more are rejected (429)."""
     waiting: int = 200
-    """Calls that may wait in all."""
+    """Most waiting calls in total."""
     retry_after_s: float = 2.0
-    """When a refused person is advised to try again [s]."""
+    """``Retry-After`` of a rejected call [s]."""
 
 
 QUOTAS: Mapping[Lane, Quota] = MappingProxyType(
@@ -65,10 +65,10 @@ QUOTAS: Mapping[Lane, Quota] = MappingProxyType(
 
 @dataclass(frozen=True, slots=True)
 class FileAccess:
-    """What a child may open besides the program itself and its own scratch folder."""
+    """Files a child may open besides the program itself and its own scratch folder."""
 
     read: tuple[Path, ...] = ()
-    """Files, and folders with all that is below them."""
+    """Files, and folders with everything below them."""
     write: tuple[Path, ...] = ()
     """The same, to be read and written."""
 
@@ -79,13 +79,13 @@ NO_FILES = FileAccess()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Terms:
-    """Who asks for a call, and under which conditions it runs."""
+    """Conditions of a call: its person, files and limits."""
 
     person: str
     access: FileAccess = NO_FILES
     outputs: Mapping[str, Path] = field(default_factory=dict)
-    """What the call makes: name in the child's working folder -> where the server puts it."""
+    """Output files: name in the child's working folder -> path to which the server moves it."""
     large: bool = False
-    """Takes long; small calls of the lane go first."""
+    """Whether it takes long; small calls of the lane go first."""
     limit_s: float | None = None
-    """Longest time it may run; None = as usual for its kind."""
+    """Longest time it may run [s]; None = the default of its kind."""

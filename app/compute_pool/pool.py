@@ -1,4 +1,4 @@
-"""The pool: who waits for which lane, which children are kept, what is ended when."""
+"""The pool of child processes: queues of calls, reuse of children, limits."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ T = TypeVar("T")
 
 INTERACTIVE_LIMIT_S = 120.0
 BACKGROUND_LIMIT_S = 1800.0
-"""A reference of gigabytes takes minutes."""
+"""Limit of background calls [s]: a reference of gigabytes takes minutes."""
 GRACE_S = 2.0
-"""An interactive call whose client left may go on this long: a child that knows its map already
-is worth more than the two seconds."""
+"""Time an interactive call may continue after its client left [s]: ending a child with a loaded map
+costs more."""
 MOST_KEPT = 4
-"""Idle children with the maps they have open."""
+"""Most idle children that are kept with their open maps."""
 SPARE_AFTER_S = 5.0
 """After the last start of a child the next one is prepared in advance."""
 INTERACTIVE_MODULES = ("app.slices.work", "app.review.work")
@@ -33,7 +33,7 @@ INTERACTIVE_MODULES = ("app.slices.work", "app.review.work")
 
 @dataclass(frozen=True, slots=True)
 class _Permission:
-    """What a kept child may serve."""
+    """The calls that a kept child may serve."""
 
     lane: Lane
     access: FileAccess
@@ -54,12 +54,11 @@ class ComputePool:
     """
 
     def __init__(self, scratch: Path, quotas: Mapping[Lane, Quota] = QUOTAS) -> None:
-        """Nothing is started yet.
+        """Create the pool; no child is started yet.
 
         Args:
-            scratch: Folder for the working folders of children; what an earlier server left in
-                it is removed.
-            quotas: How much of each lane runs and waits.
+            scratch: Folder for the working folders of children; it is emptied.
+            quotas: Limits of each lane.
         """
         self._scratch = scratch
         shutil.rmtree(scratch, ignore_errors=True)
@@ -73,7 +72,7 @@ class ComputePool:
     async def run_interactive(
         self, lane: Lane, terms: Terms, function: Callable[..., T], *args: object, **kwargs: object
     ) -> T:
-        """What ``function`` returns, computed while a person waits for it.
+        """Run ``function`` in a child while a person waits, and return its result.
 
         Its child is kept for the next call of the same lane with the same file access.
 
@@ -87,7 +86,7 @@ class ComputePool:
     async def run_background(
         self, lane: Lane, terms: Terms, function: Callable[..., T], *args: object, **kwargs: object
     ) -> T:
-        """The same for what takes minutes or reads a file of unknown origin.
+        """Run ``function`` that takes minutes or reads a file of unknown origin.
 
         It runs in a fresh child, behind interactive work, and ends at once with its request.
 
@@ -111,7 +110,7 @@ class ComputePool:
             await child.end()
 
     async def _run(self, lane: Lane, terms: Terms, call: Call, *, background: bool) -> Any:
-        declared(call.function)  # a function without a declared result is refused before it waits
+        declared(call.function)  # a function without a declared result is rejected before it waits
         slot = await self.queues[lane].acquire(terms.person, large=terms.large)
         if self._closed:
             self.queues[lane].release(slot)
@@ -130,7 +129,7 @@ class ComputePool:
             raise
 
     async def _serve(self, lane: Lane, terms: Terms, call: Call, *, background: bool) -> Any:
-        """Run a call in a child; at the end no child works on it any more."""
+        """Run a call in a child; when this returns, no child works on it."""
         usual_s = BACKGROUND_LIMIT_S if background else INTERACTIVE_LIMIT_S
         limit_s = terms.limit_s or usual_s
         permission = _Permission.of(lane, terms.access)
@@ -143,7 +142,7 @@ class ComputePool:
             whole = True
             return answer
         except TimeoutError as error:
-            raise ComputeFailed(f"stopped after {limit_s:.0f} s; ask for less at a time") from error
+            raise ComputeFailed(f"stopped after {limit_s:.0f} s; request less at a time") from error
         except ComputeFailed:
             raise
         except Exception:
@@ -189,7 +188,7 @@ class ComputePool:
             await gone.end()
 
     def _prepare_spare(self) -> None:
-        """Start the next child soon, so that the next map to be opened need not wait for it."""
+        """Schedule the start of a spare child, so that the next map opens without delay."""
         if self._preparing is not None:
             self._preparing.cancel()
         if self._closed:
@@ -219,6 +218,6 @@ def _identity(path: Path) -> tuple[int, int] | None:
 
 
 def _retrieved(task: asyncio.Task[Any]) -> None:
-    """Take note of the outcome of a call nobody waits for any more."""
+    """Retrieve the exception of a call without a waiting caller, to avoid a warning."""
     if not task.cancelled():
         task.exception()

@@ -1,4 +1,4 @@
-"""One child process, seen from the server."""
+"""One child process, on the server's side."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from app.settings import worker_environment
 
 
 class ChildFailed(RuntimeError):
-    """A call ended in an error that is our own fault; the message is the child's traceback."""
+    """A call failed by an error of the program; the message is the child's traceback."""
 
 
 class ChildProcess:
@@ -74,15 +74,15 @@ class ChildProcess:
 
     @property
     def alive(self) -> bool:
-        """Whether it runs."""
+        """Whether the process runs."""
         return self._process.returncode is None
 
     async def call(self, call: Call, access: FileAccess) -> Any:
-        """What a call returns. A child serves one `FileAccess`, that of its first call.
+        """Send a call and return its result. A child serves one `FileAccess` only, its first.
 
         Raises:
-            ComputeFailed: If the child died, in words, or sent what is no answer.
-            ChildFailed: If the function failed by a fault of the program.
+            ComputeFailed: If the child died, or its response is malformed.
+            ChildFailed: If the function failed by an error of the program.
             Recon4Error: Whatever the function raises.
         """
         assert self._process.stdin is not None
@@ -99,11 +99,11 @@ class ChildProcess:
             if size > MOST_RESULT_BYTES:
                 raise ComputeFailed(
                     f"expected a result of at most {MOST_RESULT_BYTES} bytes, got {size}: "
-                    "ask for less at a time"
+                    "request less at a time"
                 )
             answer = await self._process.stdout.readexactly(size)
         except (OSError, asyncio.IncompleteReadError) as error:
-            raise ComputeFailed(await self._last_words()) from error
+            raise ComputeFailed(await self._death_message()) from error
         if kind == RESULT:
             return decode_result(call.function, answer)
         if kind == FAILED:
@@ -111,7 +111,7 @@ class ChildProcess:
         raise decode_error(answer)
 
     async def end(self) -> None:
-        """Kill it and remove its scratch folder."""
+        """Kill the process and remove its scratch folder."""
         if self.alive:
             self._process.kill()
         await self._process.wait()
@@ -123,7 +123,7 @@ class ChildProcess:
         await asyncio.to_thread(shutil.rmtree, self.scratch, ignore_errors=True)
 
     def keep(self, outputs: Mapping[str, Path]) -> None:
-        """Move what a call made out of the scratch folder: name there -> place.
+        """Move the output files of a call out of the scratch folder: name there -> path.
 
         Raises:
             ComputeFailed: If there is no such file, or it is a link or something else.
@@ -134,19 +134,19 @@ class ChildProcess:
             place.parent.mkdir(parents=True, exist_ok=True)
             _move(made, place)
 
-    async def _last_words(self) -> str:
-        """Why there is no answer."""
+    async def _death_message(self) -> str:
+        """Why the child did not respond."""
         try:
             await asyncio.wait_for(self._process.wait(), 5.0)
         except TimeoutError:
-            return "the helper process does not answer; try again"
+            return "the helper process does not respond; try again"
         code = self._process.returncode or 0
         how = f"killed by {signal.Signals(-code).name}" if code < 0 else f"exit code {code}"
         return f"the helper process died ({how}: out of memory, or a damaged file); try again"
 
 
 def refuse_links(path: Path) -> None:
-    """See that a path is a regular file, or a folder of nothing but those.
+    """Check that a path is a regular file, or a folder of only regular files.
 
     Raises:
         ComputeFailed: If it is not: a child that was taken over could make the server follow it.
@@ -157,7 +157,7 @@ def refuse_links(path: Path) -> None:
         try:
             mode = one.lstat().st_mode
         except OSError as error:
-            raise ComputeFailed(f"the helper process made no {one.name}") from error
+            raise ComputeFailed(f"the helper process did not write {one.name}") from error
         if stat.S_ISDIR(mode):
             found += one.iterdir()
         elif not stat.S_ISREG(mode):
@@ -165,7 +165,7 @@ def refuse_links(path: Path) -> None:
 
 
 def _move(made: Path, place: Path) -> None:
-    """Rename, durably; what is on another file system is copied first."""
+    """Rename durably; copy first across file systems."""
     if made.stat().st_dev != place.parent.stat().st_dev:
         near = place.with_name(f".tmp-{secrets.token_hex(6)}-{place.name}")
         (shutil.copytree if made.is_dir() else shutil.copyfile)(made, near)

@@ -203,10 +203,10 @@ def _start(path: Path) -> bytes:
 def _is_worker_of(number: int, folder: Path) -> bool:
     """Whether a process was started for a job's folder; the pid file may be wrong."""
     try:
-        words = Path(f"/proc/{number}/cmdline").read_bytes().split(b"\0")
+        arguments = Path(f"/proc/{number}/cmdline").read_bytes().split(b"\0")
     except OSError:
         return not Path("/proc/self").exists()  # not available on macOS
-    return os.fsencode(folder) in words
+    return os.fsencode(folder) in arguments
 
 
 def _printable(line: str) -> str:

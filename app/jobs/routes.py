@@ -177,7 +177,7 @@ def remake(project_id: str, server: Server, request: Request) -> JobView:
 
     Neither the recording nor an earlier job of this server is needed.
     """
-    server.projects.map_artifact(project_id)  # says what is missing
+    server.projects.map_artifact(project_id)  # raises if there is no map
     _refuse_too_many(server)
     earlier = server.jobs.of_project(project_id)
     inputs = replace(earlier[0].inputs if earlier else Inputs(recordings=()), remake=True)
@@ -197,7 +197,7 @@ def read_log(job_id: str, server: Server, lines: Annotated[int, Query(ge=1, le=5
 def follow_log(
     job_id: str, server: Server, offset: Annotated[int, Query(ge=0, le=1 << 40)] = 0
 ) -> LogPiece:
-    """Whole lines of a job's log from a byte offset on; ask again with ``next``."""
+    """Whole lines of a job's log from a byte offset on; continue with ``next``."""
     text, following = server.supervisor.folder(server.jobs.get(job_id).id).log_since(offset)
     return LogPiece(text=text, next=following)
 

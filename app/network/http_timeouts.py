@@ -98,7 +98,7 @@ class HttpTimeoutsProtocol(HttpToolsProtocol):
             self.on_idle()
 
     def on_response_complete(self) -> None:
-        """Become idle, or stop reading a body that nobody wants any more."""
+        """Become idle, or stop reading a body that is no longer needed."""
         super().on_response_complete()
         if self.transport.is_closing():
             return

@@ -1,6 +1,6 @@
 """Clients that do not read what is sent to them: a download, a viewer, the last bytes of an answer.
 
-The transport's buffer alone does not tell: the kernel holds some megabytes more, so that a slow
+The transport's buffer alone does not show it: the kernel holds some megabytes more, so that a slow
 but living client takes nothing from the buffer for a minute. What the client acknowledged does.
 """
 

@@ -123,7 +123,7 @@ def test_what_a_child_hands_back_is_never_unpickled(root):
     owned.unlink(missing_ok=True)
 
     async def ask(pool):
-        with pytest.raises(ComputeFailed, match="nonsense"):
+        with pytest.raises(ComputeFailed, match="declared type"):
             await pool.run_background(Lane.SURVEY, EVE, work.answer_with_a_pickle)
 
     in_pool(root, ask)

@@ -145,7 +145,7 @@ def _admins() -> sa.Select[int]:
 
 def _assignable(role: Role) -> Role:
     if role is Role.NOBODY:
-        raise Refused("nobody is no role; disable the person instead")
+        raise Refused("the role nobody cannot be assigned; disable the person instead")
     return role
 
 

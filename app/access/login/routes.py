@@ -265,5 +265,5 @@ def _note_failure(access: Access, request: Request, name: str, error: AppError) 
     known = access.accounts.password_hash(name) is not None
     outcome = "refused" if isinstance(error, TooMany) else "failed"
     who = access.accounts.get(name).name if known else "nobody"
-    what = str(error) if known else f"a name nobody has: {error}"
+    what = str(error) if known else f"an unknown name: {error}"
     access.log.add(who, address(request), action="sign in", what=what, outcome=outcome)

@@ -121,7 +121,7 @@ class Pairings:
             raise Refused("this code was used already or is too old; make a new one")
         return invitation.grant
 
-    def ask(self, name: str, address: str) -> PairingRequest:
+    def request(self, name: str, address: str) -> PairingRequest:
         """Request pairing for a phone.
 
         Raises:
@@ -131,7 +131,7 @@ class Pairings:
         if len(name) > LONGEST_NAME:
             raise Refused(f"the name of a phone has at most {LONGEST_NAME} characters")
         place = network(address)
-        self._try(("ask", place))
+        self._try(("request", place))
         with self._lock:
             _drop_old(self._requests, self._clock())
             from_there = [r for r in self._requests.values() if network(r.address) == place]

@@ -154,12 +154,12 @@ def redeem(given: Token, request: Request, response: Response, server: Server) -
 
 
 @router.post("/requests", status_code=201, dependencies=ALLOW_ANONYMOUS, summary="Request pairing")
-def ask(new: NewRequest, request: Request, server: Server) -> PairingRequestView:
+def request_pairing(new: NewRequest, request: Request, server: Server) -> PairingRequestView:
     """Request pairing with six digits; a signed-in person types them at ``/phone``."""
     _with_login(server)
     _signed_out(request)
-    asked = server.access.pairings.ask(new.name, address(request))
-    return PairingRequestView(code=asked.code, token=asked.token, seconds=REQUEST_S)
+    pending = server.access.pairings.request(new.name, address(request))
+    return PairingRequestView(code=pending.code, token=pending.token, seconds=REQUEST_S)
 
 
 @router.post("/claim", dependencies=ALLOW_ANONYMOUS, summary="Claim a pairing")

@@ -85,7 +85,7 @@ def test_a_phone_never_may_more_than_who_lets_it_in(pairings, maker, roles):
 
 
 def test_a_phone_waits_with_its_digits_until_somebody_types_them(pairings):
-    asked = pairings.ask("Otto's phone", "192.0.2.7")
+    asked = pairings.request("Otto's phone", "192.0.2.7")
     assert pairings.claim(asked.token) is None
 
     found = pairings.approve(asked.code, OTTO, Role.OPERATOR)
@@ -100,7 +100,7 @@ def test_a_phone_waits_with_its_digits_until_somebody_types_them(pairings):
 
 
 def test_digits_are_good_for_five_minutes_and_are_no_token(pairings, clock):
-    asked = pairings.ask("phone", "192.0.2.7")
+    asked = pairings.request("phone", "192.0.2.7")
     with pytest.raises(Refused):
         pairings.claim(asked.code)
     assert asked.token not in repr(asked)
@@ -113,7 +113,7 @@ def test_digits_are_good_for_five_minutes_and_are_no_token(pairings, clock):
 
 
 def test_digits_cannot_be_guessed_by_trying(pairings, clock):
-    asked = pairings.ask("phone", "192.0.2.7")
+    asked = pairings.request("phone", "192.0.2.7")
     wrong = f"{(int(asked.code) + 1) % 1_000_000:06d}"
     for _ in range(TRIES_A_MINUTE):
         with pytest.raises(NotFound):
@@ -138,25 +138,25 @@ def test_tokens_cannot_be_guessed_by_trying(pairings):
 
 def test_a_flood_of_requests_keeps_no_other_phone_out(pairings, clock):
     for _ in range(MOST_OPEN_A_NETWORK):
-        pairings.ask("flood", "192.0.2.66")
+        pairings.request("flood", "192.0.2.66")
     with pytest.raises(TooMany):
-        pairings.ask("flood", "192.0.2.66")
+        pairings.request("flood", "192.0.2.66")
 
-    assert len(pairings.ask("phone", "192.0.2.1").code) == 6
+    assert len(pairings.request("phone", "192.0.2.1").code) == 6
 
 
 def test_never_more_than_twenty_wait(pairings, clock):
-    codes = {pairings.ask("x", f"192.0.{k}.1").code for k in range(MOST_OPEN)}
+    codes = {pairings.request("x", f"192.0.{k}.1").code for k in range(MOST_OPEN)}
     assert len(codes) == MOST_OPEN
     with pytest.raises(TooMany):
-        pairings.ask("x", "198.51.100.1")
+        pairings.request("x", "198.51.100.1")
     clock.now_s += REQUEST_S + 0.1
-    pairings.ask("x", "198.51.100.1")
+    pairings.request("x", "198.51.100.1")
 
 
 def test_a_name_is_short_and_cannot_forge_lines(pairings):
     with pytest.raises(Refused, match="64"):
-        pairings.ask("x" * 65, "192.0.2.1")
-    asked = pairings.ask("a\nb\x1b[2J", "192.0.2.1")
+        pairings.request("x" * 65, "192.0.2.1")
+    asked = pairings.request("a\nb\x1b[2J", "192.0.2.1")
 
     assert pairings.approve(asked.code, OTTO, Role.VIEWER).name.isprintable()
