@@ -49,19 +49,19 @@ Entries = dict[str, dict[str, Any]]
 
 @dataclass(frozen=True, slots=True)
 class BackedUp:
-    """What a backup holds."""
+    """Summary of a backup."""
 
     path: Path
-    """The list of this backup."""
+    """Path of the listing."""
     files: int
     bytes: int
-    """Of all files."""
+    """Size of all files."""
     new_bytes: int
-    """Of those that an earlier backup in the folder did not hold."""
+    """Size of the files that no earlier backup in the folder has."""
     left_out: tuple[str, ...]
-    """Files that changed while they were copied, or went away: of a job that runs."""
+    """Files of a running job that changed or disappeared while they were copied."""
     damaged: tuple[str, ...]
-    """Files that were not what was sealed when they were copied; the backup holds them as found."""
+    """Files that differed from their seal when copied; the backup has them as found."""
 
 
 def back_up(root: Path, out: Path, *, with_keys: bool, progress: Progress) -> BackedUp:
@@ -95,7 +95,7 @@ def back_up(root: Path, out: Path, *, with_keys: bool, progress: Progress) -> Ba
 
 
 def restore(backup: Path, root: Path, *, with_keys: bool, progress: Progress) -> int:
-    """Put a backup into an empty folder; nothing is left there if a byte differs.
+    """Restore a backup into an empty folder; nothing is left there if a byte differs.
 
     Args:
         backup: The list of a backup, or the folder of backups: then the newest.
@@ -134,7 +134,7 @@ def restore(backup: Path, root: Path, *, with_keys: bool, progress: Progress) ->
 
 
 def newest(backup: Path) -> Path:
-    """The list that a path means: itself, or the newest in a folder.
+    """The listing at a path: the file itself, or the newest one in a folder.
 
     Raises:
         StoreError: If there is none.
@@ -148,7 +148,7 @@ def newest(backup: Path) -> Path:
 
 
 def read_list(path: Path) -> dict[str, Any]:
-    """The list of a backup.
+    """Read the listing of a backup.
 
     Raises:
         StoreError: If it is damaged, has another format, or a name leads outside the backup.
@@ -217,7 +217,7 @@ def _is_secret(name: str) -> bool:
 def _copy_all(
     root: Path, names: list[str], objects: Path, progress: Progress
 ) -> tuple[Entries, list[str], int]:
-    """Entries of the files copied, names of those that did not hold still, and new bytes."""
+    """Copy files; returns their entries, the names of those that changed, and new bytes."""
     taken: Entries = {}
     left_out: list[str] = []
     new_bytes = 0
@@ -232,7 +232,7 @@ def _copy_all(
 
 
 def _copy(path: Path, objects: Path) -> tuple[dict[str, Any], int] | None:
-    """Copy a file under its hash: its entry and how many bytes are new; None = it did not hold."""
+    """Copy a file under its hash: its entry and new bytes; None = it changed meanwhile."""
     for _ in range(_MOST_TRIES):
         temporary = objects / f".tmp-{secrets.token_hex(6)}"
         try:
@@ -248,7 +248,7 @@ def _copy(path: Path, objects: Path) -> tuple[dict[str, Any], int] | None:
 
 
 def _keep(temporary: Path, objects: Path, mode: int) -> tuple[dict[str, Any], int]:
-    """Give a copy its place; on the disk when this returns."""
+    """Move a copy to its place and sync it to the disk."""
     sha256, size = hash_file(temporary), temporary.stat().st_size
     place = _place(objects, sha256)
     new = not place.exists()
@@ -262,7 +262,7 @@ def _keep(temporary: Path, objects: Path, mode: int) -> tuple[dict[str, Any], in
 
 
 def _copy_bytes(source: Path, target: Path) -> bool:
-    """Copy a file; one of SQLite that is being written, by SQLite: then True."""
+    """Copy a file; returns True for a live SQLite file, which SQLite copies."""
     log = source.with_name(f"{source.name}-wal")
     if source.suffix != ".sqlite" or not (log.exists() and log.stat().st_size):
         shutil.copyfile(source, target)
@@ -287,7 +287,7 @@ def _seals_below(root: Path, names: list[str]) -> dict[str, dict[str, Seal]]:
 def _settle_seals(
     root: Path, before: dict[str, dict[str, Seal]], taken: Entries, objects: Path
 ) -> list[str]:
-    """Make the seals in the backup those of the files in it; says which files were damaged.
+    """Adapt the seals in the backup to its files; returns the damaged files.
 
     A file that changed between its seal and its copy is ``open`` in the backup.
     """

@@ -1,4 +1,4 @@
-"""A bag as a recording: which topics are the LiDARs, the IMU and the positions, and their data."""
+"""A bag as a recording: finds the topics of LiDARs, IMU and positions and reads their data."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ _BATCH = 500
 """Number of IMU samples delivered at a time."""
 _PERIOD_NS = 100_000_000
 _PROBED_MESSAGES = 50
-"""Messages of a topic that are tried to find out what it is."""
+"""Messages of a topic that are decoded to detect its content."""
 _NAMES_LISTED = 20
 _FIELD_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
 _FIX_QUALITY = {0: GnssQuality.SINGLE, 1: GnssQuality.DIFFERENTIAL, 2: GnssQuality.RTK_FIXED}
 
 
 class BagRecording:
-    """Streams shots and samples of one bag, or of several that follow each other."""
+    """Streams shots and samples of one bag or of several consecutive ones."""
 
     def __init__(
         self,
@@ -50,7 +50,7 @@ class BagRecording:
         settings: IngestSettings,
         report: ImportReport,
     ) -> None:
-        """Look at the head of the bag and settle the rig.
+        """Read the head of the bag and choose the rig.
 
         Raises:
             RecordingError: If the bag cannot be read or has no LiDAR data.
@@ -72,7 +72,7 @@ class BagRecording:
         self.odometry_topic = _most(self.topics, ODOMETRY, report)
 
     def read(self) -> Iterator[Item]:
-        """Stream the bag once; what belongs together comes in order of time."""
+        """Stream the bag once; messages of one topic are in order of time."""
         # What opening had to say was said when the head was looked at.
         with Bag(self._paths, ImportReport()) as bag:
             bag.report = self._report
@@ -119,7 +119,7 @@ class BagRecording:
 
 
 def lidar_streams(bag: Bag, report: ImportReport) -> list[Stream]:
-    """LiDARs of a bag: raw packets where there are any, else clouds."""
+    """LiDARs of a bag: raw packets if there are any, else clouds."""
     scans = [t for t in bag.topics if t.type == SCAN and t.messages]
     clouds = [t for t in bag.topics if t.type == CLOUD and t.messages]
     if scans and clouds:
@@ -128,7 +128,7 @@ def lidar_streams(bag: Bag, report: ImportReport) -> list[Stream]:
 
 
 def _model(bag: Bag, topic: BagTopic) -> str:
-    """What sensor a topic is from, by its first readable message."""
+    """Detect the sensor of a topic from its first readable message."""
     for message in islice(bag.messages([topic.name]), _PROBED_MESSAGES):
         content = bag.decode(message)
         if content is None:
@@ -144,7 +144,7 @@ def _model(bag: Bag, topic: BagTopic) -> str:
 
 
 def _model_of_packets(payloads: NDArray[np.uint8]) -> str:
-    """By the interval of the packets, which a wrong product byte cannot spoil, and that byte."""
+    """Detect the model from the packet interval and the product byte, which may be wrong."""
     stamps_us = payloads[:, 1200:1204].copy().view("<u4")[:, 0].astype(np.int64)
     interval_s = float(np.median(np.diff(stamps_us))) * 1e-6
     return likely_model(int(payloads[0, 1205]), interval_s, int(payloads[0, 1204])) or "generic"
@@ -164,7 +164,7 @@ def _messages(topic: BagTopic) -> int:
 
 
 def _period_ns(topic: BagTopic, seconds: float) -> int:
-    """Usual time from one message to the next [ns], at most a quarter of a second."""
+    """Median time between messages [ns], at most a quarter of a second."""
     period = seconds * 1e9 / max(1, topic.messages - 1)
     return round(period) if 1e6 < period < 250e6 else _PERIOD_NS
 
@@ -173,7 +173,7 @@ def _period_ns(topic: BagTopic, seconds: float) -> int:
 
 
 class _Scans:
-    """Messages of raw packets."""
+    """Decodes messages of raw packets."""
 
     def __init__(self, decoder: PacketDecoder) -> None:
         self._decoder = decoder
@@ -190,7 +190,7 @@ class _Scans:
 
 
 class _Clouds:
-    """Messages of points."""
+    """Decodes messages of points."""
 
     def __init__(
         self, decoder: CloudDecoder, offset_s: float, period_ns: int, report: ImportReport
@@ -265,7 +265,7 @@ def _point_dtype(fields: Sequence[Any], step: int, order: str) -> np.dtype[np.vo
 
 
 class _Batch:
-    """Rows of one topic, handed on many at a time."""
+    """Collects rows of one topic and delivers them in batches."""
 
     def __init__(self, row: Any, join: Any, report: ImportReport) -> None:
         self._row, self._join, self._report = row, join, report
@@ -330,7 +330,7 @@ def pose_row(message: Any) -> tuple[float, ...]:
 
 
 def join_poses(t_ns: Times, rows: NDArray[np.float64]) -> Trajectory:
-    """Poses of rows of `pose_row`, those that are poses and follow each other in time."""
+    """Poses of rows of `pose_row`; invalid ones and those out of order are left out."""
     length = np.linalg.norm(rows[:, 3:], axis=1)
     good = np.all(np.isfinite(rows), axis=1) & (np.abs(length - 1.0) < 0.01)
     t_ns, rows = t_ns[good], rows[good]

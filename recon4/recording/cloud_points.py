@@ -1,4 +1,4 @@
-"""Tables of cloud fields, from a message or a file, to shots: aliases, units, what is missing.
+"""Converts tables of cloud fields to shots: aliases of fields, units, missing fields.
 
 What a cloud does not say is worked out and said so: ring from elevation, time from azimuth.
 """
@@ -28,16 +28,16 @@ _FLOAT_UNITS = ((2.0, 1e9), (2e3, 1e6), (2e6, 1e3), (2e9, 1.0))
 """Largest span -> unit of a fractional time [ns]."""
 _OTHER_CLOCK_NS = 10_000_000_000
 _TURN_S = (0.01, 0.6)
-"""A full revolution takes between these [s]: tells the unit of whole-number times."""
+"""Duration of a revolution, from and to [s]; determines the unit of integer times."""
 
 
 def find_field(names: Any, aliases: tuple[str, ...]) -> str:
-    """The first alias that is among the names; empty = none."""
+    """The first alias found in the names; empty = none."""
     return next((alias for alias in aliases if alias in names), "")
 
 
 class CloudDecoder:
-    """Turns the clouds of one sensor into shots; what was worked out once is kept for all."""
+    """Converts the clouds of one sensor to shots; detected units apply to all clouds."""
 
     def __init__(
         self,
@@ -48,7 +48,7 @@ class CloudDecoder:
         *,
         points_lead: bool = False,
     ) -> None:
-        """Start without having seen a cloud.
+        """Prepare.
 
         Args:
             sensor_row: Row in ``Rig.sensors``.
@@ -62,7 +62,7 @@ class CloudDecoder:
         self._points_lead = points_lead
         self._ring_of: NDArray[np.uint8] | None = None
         self.absolute = False
-        """The last cloud's points carried absolute times."""
+        """Whether the points of the last cloud had absolute times."""
 
     def decode(self, table: Table, *, t_ns: int, period_ns: int) -> Shots:
         """Points of one cloud in order of time.
@@ -164,7 +164,7 @@ class CloudDecoder:
     def _given_times(
         self, values: NDArray[Any], azimuth: NDArray[np.floating], t_ns: int
     ) -> Times | None:
-        """Absolute times [ns] of a time field; None when it says nothing."""
+        """Absolute times [ns] of a time field; None if the field is unusable."""
         if values.dtype.kind not in "fiu":
             raise CorruptFile(f"{self._name}: time field of type {values.dtype}")
         numbers = values.astype(np.float64)
@@ -197,7 +197,7 @@ class CloudDecoder:
 
 
 def model_of_points(table: Table) -> str:
-    """The Velodyne model whose beams the points lie on, or ``generic``."""
+    """Detect the Velodyne model from the elevations of the points; else ``generic``."""
     xyz = _xyz(table, "cloud")
     valid = np.all(np.isfinite(xyz), axis=1) & np.any(xyz != 0.0, axis=1)
     x, y, z = xyz[valid].T
@@ -259,7 +259,7 @@ def _covers_turn(azimuth: NDArray[np.floating]) -> bool:
 
 
 def _relative_unit(dtype: np.dtype[Any], span: float, full_turn: bool) -> float:
-    """Nanoseconds of one unit of a relative time; 0 = no unit makes sense."""
+    """Unit of a relative time [ns]; 0 = no unit is plausible."""
     if dtype.kind == "f":
         return next((unit for most, unit in _FLOAT_UNITS if span <= most), 0.0)
     if not full_turn:

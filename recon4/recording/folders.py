@@ -1,4 +1,4 @@
-"""Folders of point cloud files, one file a multiframe, and single files of that kind."""
+"""Folders of point cloud files, one file per multiframe, and single cloud files."""
 
 from __future__ import annotations
 
@@ -24,21 +24,21 @@ from recon4.settings import IngestSettings
 CLOUD_SUFFIXES = (".pcd", ".ply", ".bin")
 _PERIOD_NS = 100_000_000
 _SHORTEST_NS, _LONGEST_NS = 20_000_000, 250_000_000
-"""Frames nearer or farther than that do not follow each other: each is still one revolution."""
+"""Plausible intervals of frames [s]; outside them each frame counts as one revolution."""
 _DATE = re.compile(r"(\d{4})-(\d\d)-(\d\d)[-_T](\d\d)[-:](\d\d)[-:](\d\d)[-.](\d{1,9})$")
 
 
 @dataclass(frozen=True, slots=True)
 class FrameFiles:
-    """Files in the order of their numbers, with a time each."""
+    """Files in the order of their numbers, each with a time."""
 
     files: tuple[Path, ...]
     t_ns: Times
-    """Stamps [ns], (N,)."""
+    """Timestamps [ns], (N,)."""
     period_ns: int
     """Length of a frame [ns]."""
     times_from: str
-    """Where the stamps are from, in words; empty = 10 Hz was assumed."""
+    """Origin of the timestamps; empty = 10 Hz is assumed."""
 
 
 def natural(path: Path) -> list[tuple[int, int, str]]:
@@ -71,7 +71,7 @@ def list_frames(path: Path) -> FrameFiles:
 def read_frames(
     frames: FrameFiles, sensor: Sensor, *, settings: IngestSettings, report: ImportReport
 ) -> Iterator[Multiframe]:
-    """Read file by file; a damaged one is left out, counted and named.
+    """Read file by file; a damaged one is skipped, counted and reported.
 
     Raises:
         RecordingError: If not one of the files can be read.
@@ -111,13 +111,13 @@ def read_frames(
 
 
 def frames_label(frames: FrameFiles) -> str:
-    """What the files are, for example ``PCD files, times from times.txt``."""
+    """Description of the files, for example ``PCD files, times from times.txt``."""
     kind = frames.files[0].suffix[1:].upper()
     return f"{kind} files, times from {frames.times_from}" if frames.times_from else f"{kind} files"
 
 
 def folder_gaps(frames: FrameFiles, name: str, gap_s: float) -> list[TimeGap]:
-    """Holes between the stamps longer than ``gap_s`` beyond the usual step."""
+    """Gaps between timestamps that exceed the usual step by more than ``gap_s``."""
     if len(frames.t_ns) < 2:
         return []
     steps = np.diff(frames.t_ns)

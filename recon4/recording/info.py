@@ -1,4 +1,4 @@
-"""What is inside a recording, without reading it all: what ``recon4 info`` shows."""
+"""Contents of a recording without reading all of it; shown by ``recon4 info``."""
 
 from __future__ import annotations
 
@@ -41,13 +41,13 @@ from recon4.recording.velodyne.streams import PacketStream, scan_pcap
 from recon4.settings import IngestSettings
 
 _WHOLE_BYTES = 64 << 20
-"""Files up to this size are looked through to the end."""
+"""Files up to this size are read completely."""
 _HEAD_PACKETS = 4000
 _WHOLE_PACKETS = 100_000
-"""Of a small capture file with more datagrams than that, counts are estimates too."""
+"""Above this number of datagrams the counts of a small capture file are estimates too."""
 _PROBED_MESSAGES = 50
 _EARLIEST_NS = 300_000_000 * 1_000_000_000
-"""Times before 1979 are counted from something else than 1970."""
+"""Times before 1979 do not count from 1970."""
 _LATEST_NS = 253_402_300_800 * 1_000_000_000
 """Start of the year 10000."""
 _HEAD_ITEMS = 40
@@ -64,9 +64,9 @@ class SensorInfo:
     content: str
     """``packets``, ``clouds`` or ``files``."""
     count: int
-    """How many; of a big capture file an estimate."""
+    """Number of them; an estimate for a large capture file."""
     rate_hz: float
-    """How many a second; NaN = unknown."""
+    """Number per second; NaN = unknown."""
     rotation_hz: float = float("nan")
     """Measured at the head; NaN = unknown."""
     fields: tuple[str, ...] = ()
@@ -75,32 +75,32 @@ class SensorInfo:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RecordingInfo:
-    """What a look at a recording found."""
+    """Contents of a recording."""
 
     path: str
     kind: str
     bytes: int
     t_first_ns: int = 0
     t_last_ns: int = 0
-    """0 and 0 = the recording has no times."""
+    """Both 0 = the recording has no times."""
     estimated: bool = False
-    """Only the head of a big file was read: counts and the end are estimates."""
+    """Whether only the head of a large file was read; counts and end are estimates then."""
     sensors: tuple[SensorInfo, ...] = ()
     samples: tuple[str, ...] = ()
-    """IMU, GNSS and poses, in words with their rates."""
+    """Description of IMU, GNSS and poses with their rates."""
     gaps: tuple[TimeGap, ...] = ()
     derived: tuple[str, ...] = ()
-    """What will be worked out."""
+    """What recon4 derives because the recording lacks it."""
     missing: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
 
     @property
     def seconds(self) -> float:
-        """How long it is [s]."""
+        """Duration [s]."""
         return (self.t_last_ns - self.t_first_ns) / 1e9
 
     def lines(self) -> list[str]:
-        """The same in words."""
+        """The contents as text."""
         about = "about " if self.estimated else ""
         lines = [f"{self.path}: {self.kind}, {self.bytes / 1e6:.1f} MB"]
         absolute = self.t_first_ns > _EARLIEST_NS
@@ -122,7 +122,7 @@ class RecordingInfo:
 
 
 def describe(path: Path, *, settings: IngestSettings | None = None) -> RecordingInfo:
-    """Look at a recording: the whole of a small one, head and directory of a big one.
+    """Read a small recording completely, and head and directory of a large one.
 
     Raises:
         RecordingError: If it cannot be read or is nothing that recon4 knows.
@@ -143,7 +143,7 @@ def describe(path: Path, *, settings: IngestSettings | None = None) -> Recording
 
 
 def utc(t_ns: int) -> str:
-    """A time in words, to the millisecond; times beyond the year 9999 in seconds."""
+    """A time as text, to the millisecond; beyond the year 9999 in seconds."""
     if not 0 <= t_ns < _LATEST_NS:
         return f"{t_ns / 1e9:.3f} s since 1970"
     moment = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(milliseconds=t_ns // 1_000_000)
@@ -187,7 +187,7 @@ def _describe_pcap(info: RecordingInfo, path: Path) -> RecordingInfo:
 
 
 def _total(stream: PacketStream) -> int:
-    """Packets in the file, as many a second as in its head."""
+    """Estimated packets in the file, from the rate at its head."""
     head_s = (stream.t_last_ns - stream.t_first_ns) / 1e9
     all_s = (stream.t_end_ns - stream.t_first_ns) / 1e9
     return stream.packets if stream.whole or head_s <= 0 else round(stream.packets * all_s / head_s)
@@ -252,7 +252,7 @@ def _message_fields(bag: Bag, topic: BagTopic) -> tuple[str, ...]:
 
 
 def _bag_gaps(bag: Bag, topics: Sequence[str]) -> tuple[TimeGap, ...]:
-    """Holes between messages, as recorded, of more than twice the usual step."""
+    """Gaps between messages of more than twice the usual step."""
     times: dict[str, list[int]] = {topic: [] for topic in topics}
     for message in bag.messages(topics):
         times[message.topic].append(message.t_ns)
@@ -332,7 +332,7 @@ def _describe_samples(info: RecordingInfo, path: Path, kind: RecordingKind) -> R
 def _with_head(
     info: RecordingInfo, path: Path, settings: IngestSettings, report: ImportReport
 ) -> RecordingInfo:
-    """Add what opening and reading the first second says."""
+    """Add the findings of opening the recording and reading its first second."""
     rates: dict[int, float] = {}
     has_imu = has_gnss = False
     missing = list(info.missing)
@@ -370,7 +370,7 @@ def _with_head(
 
 
 def _read_head(recording: Recording) -> tuple[dict[int, float], bool, bool]:
-    """Rotation rate of each sensor row, whether there are IMU samples and positions."""
+    """Rotation rate of each sensor row; whether there are IMU samples and positions."""
     shots: dict[int, list[Shots]] = {}
     has_imu = has_gnss = False
     start_ns: int | None = None

@@ -1,4 +1,4 @@
-"""The stage ``frames``: a recording to a frame store."""
+"""The stage ``frames``: reads a recording into a frame store."""
 
 from __future__ import annotations
 
@@ -37,14 +37,14 @@ _GAPS_LISTED = 1000
 
 @dataclass(slots=True)
 class _Samples:
-    """What comes beside the points."""
+    """IMU samples, fixes and poses of a recording."""
 
     imu: list[ImuSamples] = field(default_factory=list)
     gnss: list[GnssSamples] = field(default_factory=list)
     poses: list[Trajectory] = field(default_factory=list)
 
     def keep(self, item: ImuSamples | GnssSamples | Trajectory) -> None:
-        """Remember it."""
+        """Add samples."""
         if isinstance(item, ImuSamples):
             gather(self.imu, item)
         elif isinstance(item, GnssSamples):
@@ -55,11 +55,11 @@ class _Samples:
 
 @dataclass(slots=True)
 class _IngestSpan:
-    """What was written of the points."""
+    """Counts of the multiframes written."""
 
     t_first_ns: int = 0
     duration_ns: int = 0
-    """Of a frame; 0 = none was written."""
+    """Duration of a frame; 0 = none was written."""
     t_last_ns: int = 0
     points: NDArray[np.int64] = field(default_factory=lambda: np.zeros(256, np.int64))
     """Of each sensor."""
@@ -78,15 +78,15 @@ class _IngestSpan:
 
 @dataclass(frozen=True, slots=True)
 class LiveSource:
-    """How a capture that still goes on differs from a finished recording."""
+    """How a running capture differs from a finished recording."""
 
     open_file: OpenFile = open_plain
-    """Opens the capture file; reading waits for what is not written yet."""
+    """Opens the capture file; reads wait for bytes not written yet."""
     watch: Callable[[Multiframe | ImuSamples | GnssSamples], None] = lambda item: None
-    """Shown each multiframe as soon as it is cut, before it is written, and samples as they are
-    read, not yet cleaned."""
+    """Called with each multiframe as soon as it is cut, before it is written, and with samples as
+    read, before they are cleaned."""
     report: ImportReport = field(default_factory=ImportReport)
-    """Where repairs and warnings are noted as they happen."""
+    """Receives repairs and warnings as they happen."""
 
 
 def ingest(
@@ -168,7 +168,7 @@ def ingest(
 def _sort_out(
     recordings: Sequence[Path], imu: Path | None, gnss: Path | None
 ) -> tuple[list[Path], Path | None, Path | None]:
-    """Recordings, IMU file and GNSS file, whichever way they were given."""
+    """Recordings, IMU file and GNSS file of the arguments."""
     kinds = {path: recognize(path) for path in recordings}
     for path, kind in kinds.items():
         if kind is RecordingKind.IMU_CSV and imu is None and len(kinds) > 1:
@@ -181,7 +181,7 @@ def _sort_out(
 def _items(
     recording: Recording, assembler: Assembler
 ) -> Iterator[Multiframe | ImuSamples | GnssSamples | Trajectory]:
-    """What a recording holds, its shots assembled."""
+    """The contents of a recording, with shots assembled to multiframes."""
     for item in recording.read():
         if isinstance(item, Shots):
             yield from assembler.push(item)
@@ -224,7 +224,7 @@ def _gnss(
 def _covering(
     samples: Samples | None, span: Span, asked_for: bool, report: ImportReport
 ) -> Samples | None:
-    """The samples, unless their times have nothing to do with the points'.
+    """The samples, unless their times do not overlap with those of the points.
 
     Raises:
         ConfigError: If they were given as a file: then somebody wants them used.

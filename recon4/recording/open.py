@@ -1,4 +1,4 @@
-"""What a path is, by its content, and the recording in it."""
+"""Detects the kind of a recording by its content and opens it."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ Item = Shots | Multiframe | ImuSamples | GnssSamples | Trajectory
 
 
 class RecordingKind(StrEnum):
-    """What recon4 reads; the value is shown to people."""
+    """Kinds of recordings; the value is shown to users."""
 
     PCAP = "Velodyne pcap"
     BAG1 = "rosbag1"
@@ -46,7 +46,7 @@ class RecordingKind(StrEnum):
 
 
 RECORDINGS = (RecordingKind.PCAP, RecordingKind.BAG1, RecordingKind.BAG2, RecordingKind.FRAMES)
-"""Kinds that hold points."""
+"""Kinds with points."""
 
 _OTHERS = {
     b"\xff\xd8\xff": "a JPEG image",
@@ -71,7 +71,7 @@ class Recording:
     kind: RecordingKind
     rig: Rig
     read: Callable[[], Iterator[Item]]
-    """Shots are still to be assembled; multiframes are whole frames of files."""
+    """Shots, which must be assembled, or multiframes of cloud files."""
     seconds: float = 0.0
     """Approximate duration [s]; 0 = unknown."""
     gaps: tuple[TimeGap, ...] = ()
@@ -222,7 +222,7 @@ def _known() -> str:
 
 
 def stream_seconds(streams: Sequence[PacketStream]) -> float:
-    """From the first packet of capture files to the last [s], estimated for big files."""
+    """Duration of capture files [s]; an estimate for large files."""
     if not streams:
         return 0.0
     return (max(s.t_end_ns for s in streams) - min(s.t_first_ns for s in streams)) / 1e9
@@ -260,7 +260,7 @@ def _open_frames(
 
 
 def frames_model(files: Sequence[Path]) -> str:
-    """The sensor the first readable file is from."""
+    """Detect the sensor from the first readable file."""
     for file in files[:3]:
         try:
             return model_of_points(read_cloud(file))

@@ -1,4 +1,4 @@
-"""What reading a recording found: everything counted, nothing dropped in silence."""
+"""Report of an import: all data is counted, nothing is dropped silently."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 
 MAX_TEXTS = 200
-"""Different remarks that are kept; the others are counted."""
+"""Number of different remarks kept; further ones are counted."""
 MAX_TEXT_CHARACTERS = 1000
 
 
@@ -15,12 +15,12 @@ class ImportReport:
     """Counts and remarks of one import; the only mutable record of the readers."""
 
     counts: Counter[str] = field(default_factory=Counter)
-    """Packets, messages, points and samples by what became of them,
+    """Number of packets, messages, points and samples by result,
     for example ``packets``, ``packets_duplicate``, ``points_nan``."""
     derived: list[str] = field(default_factory=list)
-    """What was not in the recording and was worked out, in words."""
+    """What the recording lacks and was derived."""
     warnings: list[str] = field(default_factory=list)
-    """What a person should know: repairs, gaps, missing sensors, forced models."""
+    """Warnings: repairs, gaps, missing sensors, forced models."""
     ahead_ns: dict[str, int] = field(default_factory=dict)
     """Sensor -> its times minus those of the recorder's clock [ns], as last seen: GPS may drive
     the sensors, and the recorder's clock be wrong."""
@@ -35,11 +35,11 @@ class ImportReport:
             self.counts[name] += int(number)
 
     def derive(self, text: str) -> None:
-        """Remember once what was worked out."""
+        """Add a derived value once."""
         self._remember(self.derived, text)
 
     def warn(self, text: str) -> None:
-        """Remember a warning once."""
+        """Add a warning once."""
         self._remember(self.warnings, text)
 
     def _remember(self, texts: list[str], text: str) -> None:

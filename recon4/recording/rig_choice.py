@@ -1,4 +1,4 @@
-"""Which rig a recording belongs to, and which of its streams is which sensor of the rig."""
+"""Chooses the rig of a recording and assigns its streams to the sensors of the rig."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ THESIS_RIG = "4recon"
 
 @dataclass(frozen=True, slots=True)
 class Stream:
-    """One LiDAR's data in a recording, whatever the kind."""
+    """The data of one LiDAR in a recording of any kind."""
 
     label: str
-    """Topic, or address and port: what a person sees."""
+    """Display name: topic, or address and port."""
     model: str
     """`SENSOR_MODELS`; ``generic`` when unknown."""
     address: str = ""
@@ -29,10 +29,10 @@ class Stream:
 
 
 def choose_rig(streams: Sequence[Stream], report: ImportReport) -> Rig:
-    """The rig of a recording for which none was given; said in the report.
+    """Choose the rig of a recording without a given one; noted in the report.
 
     Raises:
-        ConfigError: If there are several LiDARs whose mounting nobody can know.
+        ConfigError: If there are several LiDARs of unknown mounting.
     """
     if len(streams) == 1:
         rig = single_rig(streams[0])

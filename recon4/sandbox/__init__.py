@@ -1,4 +1,4 @@
-"""A process that reads a user's file: no network, no secrets, no files but its own.
+"""Sandbox of a process that reads users' files: no network, no secrets, only its own files.
 
     policy = Policy(read=(recording,), write=(project,), temporary=folder / "tmp",
                     memory_bytes=4 << 30, cpu_s=3600)

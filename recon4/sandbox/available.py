@@ -1,4 +1,4 @@
-"""Which barriers this computer provides, found by putting them up around a child."""
+"""Detects the barriers this computer provides, by confining a child process."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Put this process behind every barrier the kernel offers, before it opens a file of a user."""
+"""Confines this process with all barriers of the kernel, before it opens a user's file."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ NOTHING_KEPT_FROM = {
     "network": "only the filter of system calls keeps it from the network",
     "capabilities": "it keeps the rights of root",
 }
-"""Barrier -> what follows where it is missing."""
+"""Barrier -> consequence if it is missing."""
 
 
 def confine(policy: Policy) -> Confinement:
-    """Confine this process and all it starts, for good. Call before any other thread runs.
+    """Confine this process and its children permanently. Call before other threads start.
 
     Where the kernel lacks a barrier the others still go up; what is missing is logged as a
     warning and is in the record.

@@ -21,11 +21,11 @@ ALLOWED = frozenset(
 
 
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-"""One thread a library, so that two processes do not fight, and `confine` comes before threads."""
+"""One thread per library: processes do not compete, and `confine` runs before threads start."""
 
 
 def allowed_environment(variables: Mapping[str, str]) -> dict[str, str]:
-    """The variables a child may have; the others may hold passwords, keys and addresses."""
+    """The variables passed to a child; others may contain passwords, keys and addresses."""
     return {
         name: value
         for name, value in variables.items()
@@ -34,7 +34,7 @@ def allowed_environment(variables: Mapping[str, str]) -> dict[str, str]:
 
 
 def restart_with_one_thread() -> None:
-    """Start this program again with one thread a library, if libraries started threads already.
+    """Restart this program with one thread per library, if libraries started threads already.
 
     `confine` must come before other threads; a process started by hand need not care.
     """

@@ -1,4 +1,4 @@
-"""Paths every Python process of ours reads: the installation, libraries, fonts, the processor."""
+"""Paths every Python process of recon4 reads: installation, libraries, fonts, processor."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ _SYSTEM = (
     *("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom"),
 )
 WRITABLE = ("/dev/null", "/dev/zero", "/dev/full", "/proc/self/clear_refs")
-"""Nothing is kept in these."""
+"""Folders without data of users."""
 _PACKAGES = ("recon4", "app", "web")
 
 
 def readable_paths() -> tuple[Path, ...]:
-    """Files and folders a process needs to run Python and our packages, none of a user's data."""
+    """Files and folders needed to run Python and recon4; none has data of users."""
     prefixes = {sys.prefix, sys.exec_prefix, sys.base_prefix, sys.base_exec_prefix}
     libraries = {"lib", "lib64", "share", "pyvenv.cfg"}  # not bin: it may start no program
     roots = [Path(prefix, name) for prefix in sorted(prefixes) for name in sorted(libraries)]

@@ -13,7 +13,7 @@ PR_CAPBSET_DROP = 24
 CLONE_NEWUSER, CLONE_NEWNET = 0x10000000, 0x40000000
 
 ARCHITECTURES = {"x86_64": 0xC000003E, "aarch64": 0xC00000B7}
-"""Machines the sandbox knows the numbers of -> ``AUDIT_ARCH`` as the kernel reports it."""
+"""Supported machine -> ``AUDIT_ARCH`` as the kernel reports it."""
 
 _CALLS_OF_OURS = {
     "seccomp": (317, 277),
@@ -25,7 +25,7 @@ _CALLS_OF_OURS = {
 
 
 def machine() -> str | None:
-    """``x86_64`` or ``aarch64``; None where the sandbox does not know the kernel's interface."""
+    """``x86_64`` or ``aarch64``; None on an unsupported machine."""
     name = {"arm64": "aarch64"}.get(platform.machine(), platform.machine())
     known = sys.platform == "linux" and name in ARCHITECTURES and sys.maxsize > 2**32
     return name if known else None
@@ -37,7 +37,7 @@ def _libc() -> ctypes.CDLL:
 
 
 def call(name: str, *args: object) -> int:
-    """Make one of our system calls.
+    """Make a system call of the sandbox.
 
     Args:
         name: Of the call, as in the kernel's documentation.
@@ -80,7 +80,7 @@ def unshare(flags: int) -> None:
 
 
 def threads_of_this_process() -> int:
-    """How many threads the kernel counts; 1 where it does not say."""
+    """Number of threads as counted by the kernel; 1 if it is unknown."""
     try:
         return len(os.listdir("/proc/self/task"))
     except OSError:

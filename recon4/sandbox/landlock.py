@@ -26,10 +26,10 @@ _BIND_TCP, _CONNECT_TCP = 1 << 0, 1 << 1
 _SCOPE_ABSTRACT_UNIX_SOCKET, _SCOPE_SIGNAL = 1 << 0, 1 << 1
 _PATH_BENEATH, _VERSION = 1, 1
 _RIGHTS_OF_ABI = {1: 13, 2: 14, 3: 15, 4: 15, 5: 16}
-"""ABI -> how many rights on files it knows; later ones know as many as 5."""
+"""ABI -> number of file rights; later ABIs have those of 5."""
 
 TCP_SINCE, TRUNCATE_SINCE, SCOPES_SINCE = 4, 3, 6
-"""The ABI that brought each of them."""
+"""First ABI of each right."""
 
 
 class _Ruleset(ctypes.Structure):
@@ -54,7 +54,7 @@ def abi() -> int:
 
 
 def restrict(rules: Iterable[tuple[Path, int]]) -> None:
-    """Confine this thread, and all it starts, to the paths of an allow-list, without TCP. For good.
+    """Confine this thread and its children permanently to allowed paths, without TCP.
 
     Needs ``no_new_privs``. A path that does not exist is skipped.
 

@@ -1,4 +1,4 @@
-"""A network of its own for a process, and the end of its capabilities."""
+"""Gives a process an empty network namespace and drops its capabilities."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from recon4.sandbox.kernel import (
 
 _CAP_DAC_OVERRIDE, _CAP_FOWNER = 1, 3
 _KEPT_BY_ROOT = (_CAP_DAC_OVERRIDE, _CAP_FOWNER)
-"""Root goes on writing files of other users, within the allow-list of paths."""
+"""Root may still write files of other users, within the allowed paths."""
 _LAST_CAPABILITY = 63
 _CAPABILITY_VERSION_3 = 0x20080522
 
 
 def own_network() -> str:
-    """Give this process a network without any interface; how that was done, in words.
+    """Give this process a network without interfaces; returns a description of the method.
 
     Without root it takes a user namespace, which some distributions forbid. That is tried in a
     child first, because a namespace without its table of users leaves a process unable to write.

@@ -1,4 +1,4 @@
-"""What a confined process may do, and which barriers hold: the records of the sandbox."""
+"""Records of the sandbox: the policy of a process, and the barriers in effect."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from pathlib import Path
 
 
 class Network(StrEnum):
-    """Which sockets a confined process may make."""
+    """Sockets a confined process may create."""
 
     NONE = "none"
-    """None at all; those it was given stay usable."""
+    """None; inherited ones stay usable."""
     UNIX = "unix"
     """Unix sockets only: to listen and to connect."""
     RECEIVE = "receive"
@@ -51,18 +51,18 @@ class Policy:
 
 @dataclass(frozen=True, slots=True)
 class Barrier:
-    """One thing the kernel keeps a confined process from."""
+    """One restriction enforced by the kernel."""
 
     name: str
     """``files``, ``network``, …: one word."""
     holds: bool
     detail: str
-    """How it is kept, or what follows from its absence."""
+    """How it is enforced, or the consequence of its absence."""
 
 
 @dataclass(frozen=True, slots=True)
 class Confinement:
-    """Which barriers hold around this process."""
+    """The barriers in effect for this process."""
 
     barriers: tuple[Barrier, ...]
 
@@ -72,7 +72,7 @@ class Confinement:
         return tuple(barrier for barrier in self.barriers if not barrier.holds)
 
     def holds(self, name: str) -> bool:
-        """Whether a barrier of that name is up.
+        """Whether a barrier of that name is in effect.
 
         Raises:
             KeyError: If there is no such barrier.

@@ -1,4 +1,4 @@
-"""Caches of libraries for a confined process: it reads those that are there and writes its own.
+"""Library caches of a confined process: it reads existing ones and writes its own.
 
 Numba's cache is code that the next process loads (machine code and pickles), so a confined process
 must not write where others read. It has a private folder that begins with symbolic links to the
@@ -50,7 +50,7 @@ def private_cache(folder: Path) -> dict[str, str]:
 
 
 def cached_elsewhere(folder: Path) -> tuple[Path, ...]:
-    """Where the links in a private cache folder lead: what its process must be able to read."""
+    """Targets of the links in a private cache folder, which its process must read."""
     links = (path for path in folder.rglob("*") if path.is_symlink())
     return tuple(dict.fromkeys(link.resolve().parent for link in links))
 

@@ -1,4 +1,4 @@
-"""Shots of all LiDARs, as they come, to multiframes: cut by time on the rig's clock."""
+"""Assembles the shots of all LiDARs into multiframes, cut by time on the rig's clock."""
 
 from __future__ import annotations
 
@@ -31,18 +31,18 @@ LONGEST_WAIT_S = 10.0
 
 @dataclass(frozen=True, slots=True)
 class TimeGap:
-    """A hole or a jump in the times of one sensor."""
+    """A gap or a jump in the times of one sensor."""
 
     sensor: str
     t_ns: int
-    """Where it begins [ns]."""
+    """Start [ns]."""
     seconds: float
-    """How long it is [s]; negative = the clock went back."""
+    """Duration [s]; negative = the clock went back."""
 
 
 @dataclass(slots=True)
 class _Stream:
-    """What waits of one sensor."""
+    """Shots of one sensor that wait."""
 
     name: str
     waiting: list[Shots] = field(default_factory=list)
@@ -70,7 +70,7 @@ class Assembler:
         wait_s: float = LONGEST_WAIT_S,
         on_cut: Callable[[Multiframe], None] = lambda frame: None,
     ) -> None:
-        """Start empty.
+        """Prepare.
 
         Args:
             rig: The sensors; shots refer to them by row.
@@ -97,7 +97,7 @@ class Assembler:
         self.gaps: list[TimeGap] = []
 
     def push(self, shots: Shots) -> list[Multiframe]:
-        """Take shots of one sensor.
+        """Add shots of one sensor.
 
         Raises:
             ConfigError: If the clocks of the sensors have nothing to do with each other.
@@ -110,7 +110,7 @@ class Assembler:
         return self._cut(final=False)
 
     def flush(self) -> list[Multiframe]:
-        """Give out what is left; call once, at the end."""
+        """Return the remaining multiframes; call once, at the end."""
         frames = self._cut(final=True)
         for stream in self._streams:
             self._report.count("points_late", stream.late)
@@ -143,7 +143,7 @@ class Assembler:
         stream.waiting.append(shots)
 
     def _shift_for(self, stream: _Stream, back_ns: int) -> int:
-        """What to add after a jump back; sensors that jump together keep their common time."""
+        """Offset after a jump back; sensors that jump together keep their common time."""
         self._report.count("clock_jumps_back")
         self._note_gap(stream, -back_ns)
         others = [o.shift_ns - stream.shift_ns for o in self._streams if o is not stream]
@@ -226,7 +226,7 @@ class Assembler:
         return frames
 
     def _passed(self, end_ns: int) -> bool:
-        """Whether no sensor can still bring points before ``end_ns``, or one is overdue."""
+        """Whether no sensor can still deliver points before ``end_ns``, or one is overdue."""
         reached = [s.last_ns for s in self._streams if s.last_ns is not None]
         everyone = len(reached) == len(self._streams) and min(reached) >= end_ns + _SLACK_NS
         return everyone or max(reached) >= end_ns + self._wait_ns
@@ -291,7 +291,7 @@ class Assembler:
 
 
 def drop_invalid(shots: Shots, *, settings: IngestSettings, report: ImportReport) -> Shots:
-    """Without points that are not finite, at the origin, too near or too far; counted."""
+    """Remove points that are not finite, at the origin, too near or too far; counts them."""
     with np.errstate(over="ignore", invalid="ignore"):
         square = np.einsum("ni,ni->n", shots.xyz, shots.xyz)
     bad = ~np.isfinite(square) | (square == 0.0)

@@ -1,4 +1,4 @@
-"""How fast a LiDAR turns, measured from its points."""
+"""Estimates the rotation rate of a LiDAR from its points."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _SNAP = 0.005
 
 
 def rotation_rate(t_ns: Times, xyz: NDArray[np.float32]) -> float:
-    """Revolutions per second, or NaN when the points do not turn evenly.
+    """Estimate revolutions per second; NaN if the points do not rotate evenly.
 
     The azimuth of a turning sensor is ``a0 +- 2 pi f t``. The rate is the ``f`` at which the
     phasors ``exp(i (a -+ 2 pi f t))`` agree best: neither holes in the view nor the order matter.
@@ -40,7 +40,7 @@ def rotation_rate(t_ns: Times, xyz: NDArray[np.float32]) -> float:
 
 
 def nominal(rate_hz: float) -> float:
-    """The whole number of revolutions per second it was set to, when it is that within 0.5 %."""
+    """Round to the configured whole number of revolutions per second if it is within 0.5 %."""
     whole = max(1.0, float(round(rate_hz)))
     return whole if abs(rate_hz / whole - 1.0) < _SNAP else rate_hz
 

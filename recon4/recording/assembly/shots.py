@@ -12,7 +12,7 @@ from recon4.model.trajectory import Times
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Shots:
-    """Some returns of one sensor in firing order; a reader yields many of these."""
+    """A batch of returns of one sensor in firing order."""
 
     sensor: int
     """Row in ``Rig.sensors``."""
@@ -22,7 +22,7 @@ class Shots:
     xyz: NDArray[np.float32]
     """Points in the frame of the sensor [m], (N, 3)."""
     intensity: NDArray[np.uint16]
-    """As the sensor gave it, (N,)."""
+    """Intensity as measured, (N,)."""
     ring: NDArray[np.uint8]
     """Beam, 0 = lowest elevation, (N,)."""
     echo: NDArray[np.uint8]

@@ -139,7 +139,7 @@ def _topic(header: Fields, about: Fields) -> Topic:
 
 
 class _Info(NamedTuple):
-    """What the directory says of a chunk."""
+    """Directory entry of a chunk."""
 
     offset: int
     t_first_ns: int
@@ -183,7 +183,7 @@ def _chunk_at(file: RecordFile, info: _Info, index_at: int) -> ChunkRef:
 
 
 def _found_chunks(file: RecordFile) -> list[ChunkRef]:
-    """Chunks one behind the other, up to the first record that makes no sense."""
+    """Chunks one after the other, up to the first invalid record."""
     found: list[ChunkRef] = []
     file.seek(min(len(_MAGIC), file.size))
     while file.left > 8:

@@ -1,4 +1,4 @@
-"""rosbag2 folders: what ``metadata.yaml`` says of the storage files beside it."""
+"""rosbag2 folders: reads the description of the storage files in ``metadata.yaml``."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ _NEWEST_VERSION = 9
 
 @dataclass(frozen=True, slots=True)
 class BagMetadata:
-    """Of ``metadata.yaml``, what is needed to read the files."""
+    """The part of ``metadata.yaml`` that is needed to read the files."""
 
     files: tuple[Path, ...]
     compression: str
     """``file`` or ``message`` (always zstd), or empty."""
     messages: int
-    """How many there should be in all files."""
+    """Expected number of messages in all files."""
 
 
 def read_metadata(folder: Path) -> BagMetadata:

@@ -64,7 +64,7 @@ class BagMessage:
     topic: str
     type: str
     t_ns: int
-    """When it was recorded [ns]."""
+    """Recording time [ns]."""
     data: bytes
 
 
@@ -92,7 +92,7 @@ class Bag:
         """
         self._paths = paths
         self.report = report
-        """Receives what is damaged; may be replaced once the bag is open."""
+        """Receives damage; may be replaced while the bag is open."""
         self._stack = ExitStack()
         self._sources: list[StorageFile] = []
         self._compressed_messages = False
@@ -123,7 +123,7 @@ class Bag:
 
     @property
     def seconds(self) -> float:
-        """From the first message to the last [s]."""
+        """Time from the first to the last message [s]."""
         return (self.t_last_ns - self.t_first_ns) / 1e9
 
     def messages(self, topics: Collection[str]) -> Iterator[BagMessage]:
@@ -136,7 +136,7 @@ class Bag:
         yield from heapq.merge(*streams, key=lambda message: message.t_ns)
 
     def decode(self, message: BagMessage) -> Any | None:
-        """The message as an object with its fields; None (counted) when its bytes are damaged."""
+        """Decode a message to an object with its fields; None (counted) if it is damaged."""
         store = _typestore(self.ros1)
         try:
             check_message(message.type, message.data, ros1=self.ros1)
@@ -205,7 +205,7 @@ class Bag:
             )
 
     def _decompressed(self, files: Sequence[Path]) -> tuple[Path, ...]:
-        """Copies of files that are compressed as a whole, for as long as the bag is open."""
+        """Decompressed copies of compressed files, while the bag is open."""
         needed = sum(file.stat().st_size for file in files)
         folder = self._stack.enter_context(scratch_folder(needed))
         return tuple(decompress_file(file, folder) for file in files)

@@ -1,4 +1,4 @@
-"""Chunks of a bag as one stream of messages in order of time, with bounded memory.
+"""Merges the chunks of a bag into one stream of messages by time, with bounded memory.
 
 The index of single messages inside a bag is not used: it may point anywhere and as often as it
 likes. Every chunk is decompressed once and its messages are read one after the other.
@@ -18,9 +18,9 @@ from recon4.errors import CorruptFile
 from recon4.recording.report import ImportReport
 
 MAX_OPEN_BYTES = 256 << 20
-"""Chunks whose times overlap are held at the same time; of more than that the oldest go first."""
+"""Overlapping chunks open at the same time; beyond it the oldest are finished first."""
 MESSAGE_BYTES = 32
-"""What a message that is not given out yet takes beside its bytes."""
+"""Memory of a waiting message in addition to its bytes."""
 
 Row = tuple[str, str, int, bytes]
 """Topic, type, time [ns], bytes."""
@@ -43,10 +43,10 @@ class Topic:
 
 @dataclass(frozen=True, slots=True)
 class ChunkRef:
-    """Where a chunk is and what the directory of the file says of it."""
+    """Location of a chunk and its directory entry."""
 
     offset: int
-    """Of its first byte behind its header."""
+    """Offset of its first byte after the header."""
     length: int
     """Bytes in the file."""
     size: int
@@ -55,22 +55,22 @@ class ChunkRef:
     t_first_ns: int
     t_last_ns: int
     counts: dict[int, int] = field(default_factory=dict)
-    """Connection to messages; a connection without a known count is not in it."""
+    """Connection -> number of messages; connections of unknown count are missing."""
     connections: frozenset[int] | None = None
     """Those with messages in it; None = not known, it is read for every topic."""
     crc: int = 0
     """Of the decompressed bytes; 0 = not known."""
     partial: bool = False
-    """It is cut off: what there is of it is read."""
+    """Whether it is truncated; its existing part is read."""
 
     def has(self, wanted: set[int]) -> bool:
-        """Whether it may hold messages of some connections."""
+        """Whether it may contain messages of some connections."""
         return self.connections is None or not wanted.isdisjoint(self.connections)
 
 
 @dataclass(slots=True)
 class ChunkMessages:
-    """Where the messages of a decompressed chunk are."""
+    """Offsets of the messages of a decompressed chunk."""
 
     data: bytes
     t_ns: array[int] = field(default_factory=lambda: array("q"))
@@ -78,7 +78,7 @@ class ChunkMessages:
     start: array[int] = field(default_factory=lambda: array("q"))
     stop: array[int] = field(default_factory=lambda: array("q"))
     rejected: int = 0
-    """Messages that are too large or whose header makes no sense."""
+    """Number of messages that are too large or have an invalid header."""
 
     def add(self, t_ns: int, connection: int, start: int, stop: int) -> None:
         """Remember a message."""
@@ -105,7 +105,7 @@ Load = Callable[[ChunkRef], ChunkMessages]
 
 @dataclass(slots=True)
 class Directory:
-    """What a bag holds, from its index or from a scan of all of it."""
+    """Contents of a bag, from its index or a scan of the file."""
 
     topics: dict[int, Topic]
     """Number of the connection to its topic."""
@@ -114,7 +114,7 @@ class Directory:
     start_time: int = 2**63 - 1
     """Time of the first message [ns]."""
     end_time: int = 0
-    """Behind the last message [ns]."""
+    """End of the last message [ns]."""
 
     @classmethod
     def of_chunks(cls, topics: dict[int, Topic], chunks: list[ChunkRef]) -> Directory:
@@ -246,7 +246,7 @@ def _advance(heap: list[_Head]) -> int:
 
 
 def require_apart(chunks: Sequence[ChunkRef], name: str, end: int) -> None:
-    """Check that chunks lie one behind the other: an index may not list one twice.
+    """Check that chunks do not overlap: an index must not list one twice.
 
     Raises:
         CorruptFile: If two overlap or one reaches beyond ``end``.

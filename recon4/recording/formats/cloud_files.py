@@ -82,7 +82,7 @@ def cloud_chunks(path: Path) -> Iterator[Table]:
 
 
 def cloud_rows(path: Path) -> int:
-    """How many points the header promises.
+    """Number of points in the header.
 
     Raises:
         CorruptFile, UnknownFormat: As `read_cloud`.
@@ -113,7 +113,7 @@ def _layout(file: BinaryIO, path: Path) -> CloudLayout:
 
 
 def _check_size(file: BinaryIO, layout: CloudLayout, name: str) -> None:
-    """Refuse more points than the bytes behind the header can be."""
+    """Check that the file is large enough for the number of points in the header."""
     left = _size(file) - layout.data_at
     least = {"ascii": 2 * len(layout.fields), "binary": layout.row_bytes}
     needed = layout.rows * least.get(layout.encoding, 0)
@@ -167,7 +167,7 @@ def _binary(file: BinaryIO, layout: CloudLayout, name: str) -> Iterator[Table]:
 
 
 def _ascii(file: BinaryIO, layout: CloudLayout, name: str) -> Iterator[Table]:
-    """As many lines as there are rows; what follows them is not looked at (PLY has faces there)."""
+    """Read one line per row; lines after them are ignored (PLY has faces there)."""
     file.seek(layout.data_at)
     done = 0
     while True:
@@ -181,7 +181,7 @@ def _ascii(file: BinaryIO, layout: CloudLayout, name: str) -> Iterator[Table]:
 
 
 def _some_lines(file: BinaryIO, most: int, name: str) -> list[str]:
-    """Lines with something in them, at most `_CHUNK_BYTES` of them."""
+    """Non-empty lines, at most `_CHUNK_BYTES` in total."""
     lines: list[str] = []
     size = 0
     while len(lines) < most and size < _CHUNK_BYTES:
@@ -218,7 +218,7 @@ def _columns(lines: list[str], layout: CloudLayout, where: str) -> Table:
 
 
 def _cast(values: NDArray[np.float64], dtype: str, where: str) -> NDArray[Any]:
-    """Numbers as the type of their field; an integer field cannot hold just any number."""
+    """Convert numbers to the type of their field; checks the range of integers."""
     kind = np.dtype(dtype).newbyteorder("=")
     if kind.kind == "f":
         with np.errstate(over="ignore"):
@@ -234,7 +234,7 @@ def _cast(values: NDArray[np.float64], dtype: str, where: str) -> NDArray[Any]:
 
 
 def _compressed(file: BinaryIO, layout: CloudLayout, name: str) -> Iterator[Table]:
-    """Columns one behind the other, compressed as one block."""
+    """Read columns stored one after the other in one compressed block."""
     expected = layout.rows * layout.row_bytes
     file.seek(layout.data_at)
     packed, unpacked = (int(v) for v in np.frombuffer(_read(file, 8, name), "<u4", 2))

@@ -9,7 +9,7 @@ import numpy as np
 from recon4.errors import CorruptFile
 
 HEADER_BYTES = 64 * 1024
-"""A header ends within these."""
+"""Largest size of a header."""
 MOST_FIELDS = 256
 MOST_ROW_BYTES = 64 * 1024
 _MOST_COUNT = 4096
@@ -33,7 +33,7 @@ class Field:
     name: str
     """In lower case; empty = padding."""
     dtype: str
-    """Of one value, with its byte order."""
+    """Type of one value, with byte order."""
     count: int = 1
     """Values of the field in a row; only the first is used."""
 
@@ -45,7 +45,7 @@ class Field:
 
 @dataclass(frozen=True, slots=True)
 class CloudLayout:
-    """What a header says about the rows behind it."""
+    """Layout of the rows after a header."""
 
     fields: tuple[Field, ...]
     rows: int

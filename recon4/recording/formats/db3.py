@@ -119,7 +119,7 @@ class Db3:
         return database
 
     def _is_stuck(self) -> bool:
-        """Interrupt a statement that works and works and gives no row."""
+        """Interrupt a statement that runs too long without returning a row."""
         self._silent += 1
         return self._silent > _MAX_SILENT_STEPS
 
@@ -215,7 +215,7 @@ def _reading(name: str) -> Iterator[None]:
 
 
 def _authorize(action: int, table: str | None, *_: str | None) -> int:
-    """Allow to read the two tables, and nothing else."""
+    """Allow reading of the two tables, nothing else."""
     if action == apsw.SQLITE_SELECT:
         return apsw.SQLITE_OK
     if action == apsw.SQLITE_READ and table in _COLUMNS:
@@ -282,7 +282,7 @@ def _pages(path: Path) -> tuple[bool, int]:
 
 
 class _CutFile(apsw.VFSFile):
-    """Shows a file as if its header counted the pages that are left: SQLite refuses it otherwise.
+    """Presents a truncated file with a matching page count, because SQLite refuses it otherwise.
 
     Nothing is copied: the four bytes are replaced as they are read.
     """

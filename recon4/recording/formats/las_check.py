@@ -31,7 +31,7 @@ _LAZ_RECORD = (b"laszip encoded", 22204)
 
 @dataclass(frozen=True, slots=True)
 class LasHeader:
-    """What the header promises."""
+    """Contents of the header."""
 
     points: int
     point_format: int
@@ -47,7 +47,7 @@ class _Compression:
 
     layered: bool
     chunk_points: int
-    """Points of each chunk but the last; `_VARIABLE` = the chunk table says."""
+    """Points of each chunk except the last; `_VARIABLE` = as in the chunk table."""
     layers: int
     """Sizes in front of the layers of a chunk."""
 

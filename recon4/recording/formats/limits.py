@@ -1,4 +1,4 @@
-"""What a recording may ask for: sizes are checked before memory is allocated or work is done."""
+"""Limits of recordings: sizes are checked before memory is allocated or work is done."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MAX_MESSAGE_BYTES = 64 << 20
 MAX_RECORD_HEADER_BYTES = 1 << 20
 MAX_TOPICS = 10_000
 MAX_RATIO = 200
-"""Bytes that one compressed byte may become, beyond `RATIO_FLOOR_BYTES`."""
+"""Largest expansion of a compressed byte, beyond `RATIO_FLOOR_BYTES`."""
 RATIO_FLOOR_BYTES = 16 << 20
 TOTAL_FLOOR_BYTES = 256 << 20
 """As `RATIO_FLOOR_BYTES`, for all chunks of a file."""
@@ -94,11 +94,11 @@ class RecordFile:
         return self._file.read(length)
 
     def restart_budget(self) -> None:
-        """Begin a new pass through the file, see `charge`."""
+        """Start a new pass through the file, see `charge`."""
         self._inflated = 0
 
     def charge(self, size: int, where: str) -> None:
-        """Count bytes that a chunk becomes.
+        """Count the decompressed bytes of a chunk.
 
         Raises:
             CorruptFile: If all chunks of one pass become more than `MAX_RATIO` times the file.
@@ -137,7 +137,7 @@ def decompress(how: str, data: bytes, *, expected: int, where: str) -> bytes:
 
 
 def check_ratio(compressed: int, size: int, where: str) -> None:
-    """Refuse a chunk that claims to become too large.
+    """Refuse a chunk with too large a decompressed size.
 
     Raises:
         CorruptFile: If it does.
@@ -151,7 +151,7 @@ def check_ratio(compressed: int, size: int, where: str) -> None:
 
 
 def decompress_partly(how: str, data: bytes, *, most: int, where: str) -> bytes:
-    """As many bytes, at most ``most``, as can be had of compressed bytes that may be damaged.
+    """Decompress possibly damaged bytes as far as possible, at most ``most`` bytes.
 
     Raises:
         CorruptFile: If the kind of compression is unknown.
@@ -170,7 +170,7 @@ def decompress_partly(how: str, data: bytes, *, most: int, where: str) -> bytes:
 
 
 def _inflate(decoder: Any, data: bytes, most: int) -> bytes:
-    """One compressed stream; what follows it is not a part of the chunk."""
+    """Decompress one stream; bytes after it are not part of the chunk."""
     found, at = bytearray(), 0
     while len(found) < most and not decoder.eof:
         piece = data[at : at + _PIECE] if decoder.needs_input else b""

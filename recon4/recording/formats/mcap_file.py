@@ -41,7 +41,7 @@ _CHUNK_HEAD = struct.Struct("<QQQI")
 _FOOTER_BYTES = _RECORD.size + 20 + len(MAGIC)
 _MAX_SUMMARY_BYTES = 64 << 20
 _MAX_TIME_NS = 2**62
-"""Later times are damage."""
+"""Later times count as damage."""
 _RUN_BYTES = 8 << 20
 """Messages outside of chunks are read in runs of at most this size."""
 
@@ -93,14 +93,14 @@ class Mcap:
 
 
 class _Topics:
-    """Schemas and channels as they are found."""
+    """Schemas and channels found so far."""
 
     def __init__(self) -> None:
         self.types: dict[int, str] = {}
         self.channels: dict[int, Topic] = {}
 
     def add(self, op: int, body: bytes, where: str) -> None:
-        """Remember a schema or a channel; definitions are not read."""
+        """Add a schema or a channel; definitions are not read."""
         from mcap.data_stream import ReadDataStream
         from mcap.records import Channel, Schema
 
@@ -117,7 +117,7 @@ class _Topics:
 
 
 def _parsed(read: Callable[[], _T], where: str) -> _T:
-    """What the library reads from a record's bytes.
+    """Decode the bytes of a record with the library.
 
     Raises:
         CorruptFile: If it cannot be read.
@@ -327,7 +327,7 @@ def _load(file: RecordFile, chunk: ChunkRef, topics: _Topics) -> ChunkMessages:
 
 
 def _read_records(messages: ChunkMessages, topics: _Topics, where: str) -> int:
-    """Note the messages of a chunk; gives the end of the last whole record."""
+    """Add the messages of a chunk; returns the end of the last complete record."""
     raw, at = messages.data, 0
     while at + _RECORD.size <= len(raw):
         op, length = _RECORD.unpack_from(raw, at)

@@ -1,4 +1,4 @@
-"""Which messages are small enough to be decoded: a list costs many times its bytes as objects."""
+"""Size limits of messages to decode: a list of objects takes many times its bytes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _SCAN = "velodyne_msgs/msg/VelodyneScan"
 
 
 def check_message(kind: str, data: bytes, *, ros1: bool) -> None:
-    """Refuse a message that would need far more memory than its bytes.
+    """Refuse a message that needs far more memory than its bytes.
 
     Raises:
         CorruptFile: If it is too large for its type, or is a cloud with too many fields.

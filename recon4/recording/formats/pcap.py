@@ -1,4 +1,4 @@
-"""UDP datagrams of a capture file, streamed in batches; a cut file is read up to the cut."""
+"""UDP datagrams of a capture file, streamed in batches; a truncated file is read to its end."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ _CLASSIC = {
     b"\x4d\x3c\xb2\xa1": ("<", 1),
     b"\xa1\xb2\x3c\x4d": (">", 1),
 }
-"""First four bytes to byte order and nanoseconds a unit of the stamps."""
+"""First four bytes -> byte order and timestamp unit [ns]."""
 _ETHERTYPE_AT = {1: 12, 113: 14, 276: 0}
-"""Link type (Ethernet, Linux cooked 1 and 2) to the place of the ethertype in a packet."""
+"""Link type (Ethernet, Linux cooked 1 and 2) -> offset of the ethertype in a packet."""
 _IP_AT = {1: 14, 113: 16, 276: 20, 101: 0, 228: 0, 0: 4, 108: 4}
-"""Link type to the place of the IP header; without an ethertype the packet is IP anyway."""
+"""Link type -> offset of the IP header; a link type without ethertype carries IP only."""
 _LINK_TYPES = np.array(sorted(_IP_AT))
 _IP_STARTS = np.array([_IP_AT[link] for link in sorted(_IP_AT)])
 _ETHERTYPES = np.array([_ETHERTYPE_AT.get(link, -1) for link in sorted(_IP_AT)])
@@ -41,7 +41,7 @@ _MARGIN = 2048
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Datagrams:
-    """Some UDP datagrams in the order of the file."""
+    """A batch of UDP datagrams in file order."""
 
     t_ns: Times
     """Times of capture [ns], (N,)."""
@@ -52,9 +52,9 @@ class Datagrams:
     length: NDArray[np.int64]
     """Bytes of payload, (N,)."""
     start: NDArray[np.int64]
-    """Where each payload starts in ``buffer``, (N,)."""
+    """Offset of each payload in ``buffer``, (N,)."""
     buffer: NDArray[np.uint8]
-    """Bytes of the file around the payloads, with zeros behind, (B,)."""
+    """Bytes of the file that contain the payloads, with zeros at the end, (B,)."""
 
     def __len__(self) -> int:
         return len(self.t_ns)
@@ -93,7 +93,7 @@ OpenFile = Callable[[Path], IO[bytes]]
 
 
 def open_plain(path: Path) -> IO[bytes]:
-    """A finished file."""
+    """Open a finished file."""
     return path.open("rb")
 
 
@@ -269,7 +269,7 @@ def _datagrams(records: _Records, report: ImportReport) -> Datagrams:
 
 
 def _ip_header(records: _Records) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-    """Where the IP header of each record would start, and whether there is one."""
+    """Offset of the IP header of each record, and whether there is one."""
     kind = np.minimum(np.searchsorted(_LINK_TYPES, records.link_type), len(_LINK_TYPES) - 1)
     known = _LINK_TYPES[kind] == records.link_type
     at = records.start + _IP_STARTS[kind]

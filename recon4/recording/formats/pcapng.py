@@ -24,7 +24,7 @@ _MAX_TIME_NS = 2**62
 
 @dataclass(frozen=True, slots=True)
 class Interface:
-    """An interface that packets came from."""
+    """An interface of the capture."""
 
     link_type: int
     ticks_per_s: int
@@ -108,7 +108,7 @@ def _block(file: IO[bytes], head: bytes, order: str, where: str) -> tuple[int, b
 
 
 def _read(file: IO[bytes], length: int) -> bytes:
-    """As many bytes as there are: a file that still grows may give them in pieces."""
+    """Read the available bytes; a growing file may deliver them in pieces."""
     found = file.read(length)
     while 0 < len(found) < length and (more := file.read(length - len(found))):
         found += more

@@ -87,7 +87,7 @@ def write_kitti(path: Path, trajectory: Trajectory) -> None:
 
 
 def pose_format(path: Path) -> str:
-    """``tum`` or ``kitti`` by the number of words in the first line, or empty."""
+    """``tum`` or ``kitti`` by the number of columns in the first line, or empty."""
     try:
         with path.open(encoding="ascii") as file:
             for _ in range(50):

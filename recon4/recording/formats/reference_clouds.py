@@ -108,7 +108,7 @@ def _las(path: Path) -> Iterator[Array]:
 
 @contextmanager
 def _decoding(name: str) -> Iterator[None]:
-    """Turn what a decoder raises over damaged bytes into `CorruptFile`.
+    """Convert errors of a decoder over damaged bytes to `CorruptFile`.
 
     laspy and lazrs document no errors for them; a panic of Rust is no ``Exception``.
     """
@@ -126,7 +126,7 @@ def _refuse_many(points: int, name: str) -> None:
 
 
 def _refuse_promise(path: Path, promised: int) -> None:
-    """A header that promises more than a compressed file of this size can hold."""
+    """Refuse a header with more points than a compressed file of this size can have."""
     most = path.stat().st_size * 40  # a LAZ point takes a byte or more; 40 is generous
     if promised > min(MOST_POINTS, most):
         raise CorruptFile(f"{path.name}: {promised} points promised in {path.stat().st_size} bytes")
@@ -186,7 +186,7 @@ class _TextLayout:
 
     @staticmethod
     def of(text: str) -> _TextLayout:
-        """From the first lines."""
+        """Detect the format from the first lines."""
         first, _, rest = text.partition("\n")
         second = rest.partition("\n")[0] or first
         delimiter = next((d for d in (";", "\t", ",") if d in second), None)
@@ -224,7 +224,7 @@ def _rows(text: str, layout: _TextLayout, name: str, line: int) -> Array:
 
 
 def _wrong_row(text: str, layout: _TextLayout, name: str, line: int) -> CorruptFile:
-    """The error that names the first line that is no point."""
+    """The error with the first line that is not a point."""
     for number, row in enumerate(text.split("\n"), start=line):
         row = row.partition("#")[0].strip()
         if row and not _is_row(row, layout.delimiter, comma=False):

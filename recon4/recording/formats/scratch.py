@@ -21,7 +21,7 @@ _LOCK = "lock"
 _UNLOCKED_S = 3600.0
 """A folder without a lock that is older has lost its owner between two system calls."""
 _RESERVE_BYTES = 1 << 30
-"""Left free on the disk."""
+"""Space that stays free on the disk."""
 
 
 @contextmanager

@@ -11,7 +11,7 @@ _PIECE = 4 << 20
 
 
 def decompress_file(path: Path, folder: Path) -> Path:
-    """Decompress a zstd file into a folder; what is left of it if it is cut off.
+    """Decompress a zstd file into a folder; a truncated file as far as possible.
 
     Raises:
         CorruptFile: If it becomes more than 200 times its size, or is no zstd file.

@@ -1,4 +1,4 @@
-"""Samples of IMU and GNSS made fit for use: sorted, unique, finite, in SI units; all counted."""
+"""Cleans IMU and GNSS samples: sorted, unique, finite, in SI units; all rejects are counted."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from recon4.recording.report import ImportReport
 Samples = TypeVar("Samples", ImuSamples, GnssSamples)
 
 _FASTEST_RAD_S = 12.0
-"""No carrier turns faster for long (690 deg/s): beyond it the unit is wrong."""
+"""Largest sustained turn rate (690 deg/s); beyond it the unit is wrong."""
 
 
 def join(parts: Sequence[Samples]) -> Samples | None:
-    """One record of several, in the order given; None of none."""
+    """Concatenate records in the given order; None if there are none."""
     if not parts:
         return None
     return _build(parts[0], lambda name: np.concatenate([getattr(part, name) for part in parts]))

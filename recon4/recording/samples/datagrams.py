@@ -31,7 +31,7 @@ _GST_LASTS_NS = 3 * SECOND_NS
 
 @dataclass(slots=True)
 class SampleDecoder:
-    """Datagrams of one recording to samples; each kind in order of time, the rest is counted."""
+    """Converts datagrams of one recording to samples in order of time; counts the others."""
 
     report: ImportReport
     _last_ns: dict[str, int] = field(default_factory=dict)
@@ -41,7 +41,7 @@ class SampleDecoder:
     def push(
         self, t_arrival_ns: list[int], texts: list[bytes]
     ) -> tuple[ImuSamples | None, GnssSamples | None]:
-        """Samples of some datagrams.
+        """Decode the samples of datagrams.
 
         Counts ``imu_samples``, ``gnss_samples``, ``samples_damaged``, ``samples_out_of_order``,
         ``nmea_damaged`` and ``nmea_no_fix``.

@@ -1,4 +1,4 @@
-"""Pcap files of Velodyne sensors: which streams are inside, and their shots."""
+"""Capture files of Velodyne sensors: assigns streams to sensors and decodes their shots."""
 
 from __future__ import annotations
 
@@ -41,11 +41,11 @@ unless its port (and address) matches one."""
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Channel:
-    """One sensor of the rig and where its packets are."""
+    """One sensor of the rig and its streams."""
 
     sensor: Sensor
     streams: tuple[PacketStream, ...]
-    """Its data streams: one, or one a file if the recording was cut into files."""
+    """Its data streams: one per file of the recording."""
     data: PacketDecoder
     positions: PositionDecoder
 
@@ -109,7 +109,7 @@ class VelodynePcap:
         self._open = open_file
 
     def read(self) -> Iterator[Shots | PositionSamples]:
-        """Stream the whole recording once; the shots of one sensor come in order of time."""
+        """Stream the whole recording once; the shots of one sensor are in order of time."""
         batches = (self._batches(path) for path in self._paths)
         for path, datagrams in heapq.merge(*batches, key=lambda batch: int(batch[1].t_ns[0])):
             yield from self._decode_samples(datagrams)  # first: points are mapped with them
@@ -133,7 +133,7 @@ class VelodynePcap:
         return ((path, slot) for slot in in_slots(read_pcap(path, self._report, self._open)))
 
     def _find_late(self, datagrams: Datagrams) -> None:
-        """Read from now on sensors that were silent in the heads of the files."""
+        """Start to read sensors that were silent in the heads of the files."""
         if len(self._channels) == len(self.rig.sensors):
             return
         there = {channel.sensor.name for channel in self._channels}
@@ -167,7 +167,7 @@ class VelodynePcap:
                 yield decoder.push(datagrams.t_ns[rows], datagrams.payloads(rows, size))
 
     def _decode_samples(self, datagrams: Datagrams) -> Iterator[PositionSamples]:
-        """Samples of an IMU or a GNSS receiver with ports of their own."""
+        """Samples of an IMU or a GNSS receiver on separate ports."""
         ports = {port for port in (self.rig.imu_port, self.rig.gnss_port) if port}
         rows = np.flatnonzero(np.isin(datagrams.port, list(ports)))
         if not len(rows):

@@ -1,4 +1,4 @@
-"""The clock of a Velodyne: microseconds past the hour, made absolute."""
+"""Converts Velodyne timestamps, microseconds past the hour, to absolute time."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _SAME_CLOCK_NS = SECOND_NS // 2
 _JUMP_NS = SECOND_NS
 """Clocks that move against each other by more than this have jumped."""
 _FIRST = 500
-"""Packets of the first batch that tell how far the two clocks are apart."""
+"""Packets of the first batch from which the offset of the clocks is measured."""
 _CONFIRM = 8
 """Packets that must agree on a jump; fewer count as damaged packets and are dropped."""
 _BLOCK = 64
@@ -35,7 +35,7 @@ def nearest_hour(t_us: NDArray[np.integer], near_ns: Times | int) -> Times:
 
 
 class SensorClock:
-    """Makes the stamps of one sensor absolute with the help of the times of arrival.
+    """Converts the timestamps of one sensor to absolute time by means of arrival times.
 
     The stamp tells the time within the hour, the time of arrival tells the hour. Then
 
@@ -58,7 +58,7 @@ class SensorClock:
         report: ImportReport,
         utc_offset_ns: int | None = None,
     ) -> None:
-        """Start without any time.
+        """Prepare.
 
         Args:
             name: Of the sensor, for messages.
@@ -95,7 +95,7 @@ class SensorClock:
     def push(
         self, t_arrival_ns: Times, t_us: NDArray[np.integer]
     ) -> tuple[Times, NDArray[np.bool_]]:
-        """Absolute times of data packets, and which of them can be trusted.
+        """Absolute times of data packets, and which of them are valid.
 
         Args:
             t_arrival_ns: Times of arrival [ns], (N,).
@@ -119,7 +119,7 @@ class SensorClock:
     def _push_part(
         self, t_arrival_ns: Times, t_us: NDArray[np.integer]
     ) -> tuple[Times, NDArray[np.bool_]]:
-        """Packets of one block: within it the relation of the clocks does not change."""
+        """Packets of one block, within which the offset of the clocks is constant."""
         assert self._offset_ns is not None
         expected = t_arrival_ns + self._offset_ns
         t_sensor = nearest_hour(t_us, expected)
@@ -130,7 +130,7 @@ class SensorClock:
         return t_ns, np.ones(len(t_us), dtype=np.bool_)
 
     def at(self, t_arrival_ns: Times, t_us: NDArray[np.integer]) -> Times:
-        """Absolute times of other packets of the sensor [ns], (N,); learns nothing from them."""
+        """Absolute times of other packets of the sensor [ns], (N,); does not update the offset."""
         if not len(t_us):
             return np.zeros(0, dtype=np.int64)
         offset = self._offset_ns if self._offset_ns is not None else self._start(t_arrival_ns, t_us)
@@ -174,7 +174,7 @@ class SensorClock:
         return (np.abs(deviation) > _JUMP_NS) | by_hours
 
     def _follow(self, t_arrival_ns: Times, t_sensor: Times, deviation: Times) -> None:
-        """Let the offset drift with the clocks, and the shift of a free-running sensor too."""
+        """Update the offset, and the shift of a free-running sensor, with the clock drift."""
         self._last = (int(t_arrival_ns[-1]), int(t_sensor[-1]))
         self._block.append(np.stack([deviation, t_arrival_ns - t_sensor]))
         self._filled += len(t_sensor)

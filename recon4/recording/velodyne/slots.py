@@ -1,4 +1,4 @@
-"""Datagrams regrouped by the time they came, so that the result does not hang on how they are read.
+"""Groups datagrams by arrival time, so that the result is independent of the reads.
 
 A file that grows is read in many small pieces, a finished one in few large ones. What follows
 (clocks, order, cutting into frames) gets the same pieces either way.
@@ -14,13 +14,13 @@ from recon4.recording.formats.pcap import Datagrams
 
 SLOT_NS = 100_000_000
 FIRST_SLOT_NS = 1_000_000_000
-"""The first piece is longer: the clocks of the sensors are judged by it."""
+"""The first slot is longer, because the clocks of the sensors are compared in it."""
 _SET_BACK_NS = 2_000_000_000
-"""The recorder's clock was set back if a datagram is so far before the end of its slot."""
+"""A datagram this far before the end of its slot means that the clock was set back."""
 
 
 def in_slots(batches: Iterable[Datagrams]) -> Iterator[Datagrams]:
-    """All datagrams in their order, in pieces of `SLOT_NS` of the recorder's clock."""
+    """All datagrams in order, in slots of `SLOT_NS` of the recorder's clock."""
     parts: list[Datagrams] = []
     end_ns: int | None = None
     for batch in batches:

@@ -1,4 +1,4 @@
-"""What is inside a capture file: the streams of datagrams at its head."""
+"""Scans the head of a capture file for streams of datagrams."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class PacketStream:
     whole: bool
     """Whether the scan reached the end of the file."""
     model: str = ""
-    """What the sensor is: by the interval of its packets, else by the product byte; empty =
+    """Model of the sensor: by the interval of its packets, else by the product byte; empty =
     unknown."""
     product: int = 0
     """Product byte; 0 for other kinds."""
@@ -71,7 +71,7 @@ class PacketStream:
     utc_offset_ns: int | None = None
     """UTC minus capture time if the GPS of its position packets drives its clock."""
     remarks: tuple[str, ...] = ()
-    """What a person should know, for example a product byte that the data contradict."""
+    """Warning, for example about a product byte that contradicts the data."""
 
     @property
     def label(self) -> str:
@@ -88,7 +88,7 @@ def address_number(address: str) -> int:
 def scan_pcap(
     path: Path, *, max_packets: int = 4000, open_file: OpenFile = open_plain
 ) -> list[PacketStream]:
-    """Look at the head of a capture file: data streams first, in order of appearance.
+    """Scan the head of a capture file: data streams first, in order of appearance.
 
     Args:
         path: A pcap or pcapng file.
@@ -166,7 +166,7 @@ class _Head:
 
 
 def _head(path: Path, max_packets: int, open_file: OpenFile) -> _Head:
-    """Exactly the first ``max_packets`` datagrams, however the file comes in pieces."""
+    """Exactly the first ``max_packets`` datagrams, independent of the size of the reads."""
     report = ImportReport()
     parts: list[tuple[Datagrams, int]] = []
     left, bytes_read, read_ratio = max_packets, 0, 1.0
@@ -256,7 +256,7 @@ def _usual_step_s(stamp_ns: Times) -> float:
 
 
 def _model(product: int, return_mode: int, interval_s: float) -> tuple[str, tuple[str, ...]]:
-    """Name of the model and what is remarkable: the firing pattern outweighs the product byte."""
+    """Name of the model and a warning; the firing pattern overrules the product byte."""
     model = likely_model(product, interval_s, return_mode)
     said = PRODUCTS.get(product)
     remarks = []
