@@ -284,29 +284,29 @@ class Metrics:
 def _capture(capture: Capture) -> Iterator[Metric]:
     """Packets of the live capture that runs, or of the last one."""
     newest = capture.stream.newest
-    status, notes = newest.get("status"), newest.get("notes")
+    status, notes = newest.status, newest.notes
     if status is not None:
         yield _gauges(
             "recon4_live_packets_dropped",
             "Packets of the live capture that are not in its recording",
             label="reason",
             values={
-                "kernel": status["kernel_drops"],
-                "disk": status["file"]["dropped"],
-                "paused": status["skipped_in_pauses"],
+                "kernel": status.kernel_drops,
+                "disk": status.file.dropped,
+                "paused": status.skipped_in_pauses,
             },
         )
         yield GaugeMetricFamily(
             "recon4_live_packets_recorded",
             "Packets in the recording",
-            value=status["file"]["datagrams"],
+            value=status.file.datagrams,
         )
     if notes is not None:
         yield _gauges(
             "recon4_live_packets_read",
             "What the reader of the recording counted, rejected packets included",
             label="what",
-            values=notes["counts"],
+            values=notes.counts,
         )
 
 

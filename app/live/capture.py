@@ -6,7 +6,6 @@ import asyncio
 import logging
 from enum import StrEnum
 from pathlib import Path
-from typing import Any
 
 from app.errors import Conflict
 from app.live.stream_state import StreamState
@@ -14,6 +13,7 @@ from app.settings import worker_environment
 from recon4.errors import ConfigError
 from recon4.live.ipc.line_client import STARTS_WITHIN_S, LineClient, linked, started
 from recon4.live.project_files import discard
+from recon4.live.protocol import Done, Pause, Request, Resume, Status, Stopped
 from recon4.live.session import CaptureSession
 
 log = logging.getLogger(__name__)
@@ -80,7 +80,7 @@ class Capture:
         ]
         await asyncio.wait_for(connected.wait(), STARTS_WITHIN_S)
 
-    async def request(self, message: dict[str, Any]) -> None:
+    async def request(self, request: Request) -> None:
         """Send a request to the recorder: stop, pause, resume or mark.
 
         Raises:
@@ -88,9 +88,9 @@ class Capture:
         """
         if self._recorder is None:
             raise Conflict("the recording has ended")
-        if message["do"] in ("pause", "resume"):
-            self.state = State.PAUSED if message["do"] == "pause" else State.RECORDING
-        await self._recorder.send(message)
+        if isinstance(request, Pause | Resume):
+            self.state = State.PAUSED if isinstance(request, Pause) else State.RECORDING
+        await self._recorder.send(request)
 
     async def leave(self) -> None:
         """Stop following; the processes continue."""
@@ -103,11 +103,11 @@ class Capture:
             async with linked(self.session.socket("recorder")) as link:
                 self._recorder = link
                 connected.set()
-                async for message in link.lines():
-                    if message["kind"] == "status":
-                        self.state = State.PAUSED if message["paused"] else State.RECORDING
-                    elif message["kind"] == "stopped" and message["why"] != "stopped":
-                        self._ended_because = f"The recording ended by itself: {message['why']}"
+                async for message in link.messages():
+                    if isinstance(message, Status):
+                        self.state = State.PAUSED if message.paused else State.RECORDING
+                    elif isinstance(message, Stopped) and message.why != "stopped":
+                        self._ended_because = f"The recording ended by itself: {message.why}"
                     self.stream.take(message)
         except OSError as error:
             log.warning("recorder of %s: %s", self.project, error)
@@ -135,16 +135,16 @@ class Capture:
         if done is None:
             self.problem = "the map stopped growing (its process died); the recording goes on"
         else:  # finished: earlier problems no longer count
-            self.problem = "; ".join(filter(None, (self._ended_because, done["problem"])))
+            self.problem = "; ".join(filter(None, (self._ended_because, done.problem)))
         while self._recorder is not None:
             await self.stream.news(self.stream.version, timeout_s=1.0)
         self.state = State.READY
 
-    async def _receive_mapper(self, link: LineClient) -> dict[str, Any] | None:
+    async def _receive_mapper(self, link: LineClient) -> Done | None:
         """The message ``done``; None if the mapper died or closed the connection as too slow."""
         done = None
-        async for message in link.lines():
-            if message["kind"] == "done":
+        async for message in link.messages():
+            if isinstance(message, Done):
                 done = message
             self.stream.take(message)
         return done

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from recon4.live.findings import rates
 from recon4.live.mapper.notes import RECENT_S
+from recon4.live.newest import Newest
+from recon4.live.protocol import Notes
 from recon4.model.rig import Rig
-
-Fields = dict[str, Any]
 
 IN_STEP, SHIFTED, JUMPED = "in step", "own, shifted", "jumped"
 
@@ -28,24 +27,24 @@ class LidarHealth:
     `JUMPED` if it or the recorder's clock jumped since the start; empty = unknown."""
 
 
-def lidars(rig: Rig, newest: dict[str, Fields]) -> list[LidarHealth]:
+def lidars(rig: Rig, newest: Newest) -> list[LidarHealth]:
     """Health of each LiDAR of a rig.
 
     Args:
         rig: The LiDARs that should send.
-        newest: Newest message of each kind (`StreamState.newest`).
+        newest: Newest messages of recorder and mapper.
     """
-    if "status" not in newest:
+    if newest.status is None:
         return []
-    per_s, notes = rates(rig, newest["status"]), newest.get("notes")
-    return [_health(sensor.name, per_s[sensor.name], notes) for sensor in rig.sensors]
+    per_s = rates(rig, newest.status)
+    return [_health(sensor.name, per_s[sensor.name], newest.notes) for sensor in rig.sensors]
 
 
-def _health(name: str, per_s: float, notes: Fields | None) -> LidarHealth:
+def _health(name: str, per_s: float, notes: Notes | None) -> LidarHealth:
     if notes is None or per_s <= 0.0:
         return LidarHealth(name, per_s, None, "")
-    missing = notes["recent"].get(f"packets_missing_{name}", 0)
-    mine = [text for text in notes["warnings"] if text.startswith(f"{name}: ")]
+    missing = notes.recent.get(f"packets_missing_{name}", 0)
+    mine = [text for text in notes.warnings if text.startswith(f"{name}: ")]
     return LidarHealth(name, per_s, round(missing / (missing + RECENT_S * per_s), 3), _clock(mine))
 
 

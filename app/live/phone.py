@@ -8,6 +8,7 @@ import time
 from dataclasses import asdict
 from typing import Any
 
+import msgspec
 from fastapi import WebSocket
 
 from app.live.capture import Capture, State
@@ -17,6 +18,7 @@ from app.live.store import Captures
 from app.live.stream_state import BYTES_A_POINT, Cursor
 from recon4 import __version__
 from recon4.live.findings import findings, rates
+from recon4.live.newest import Newest
 
 SHOWN_EVERY_S = 0.05
 """Shortest time between two messages to a phone …"""
@@ -109,9 +111,9 @@ class Phone:
         await asyncio.wait([self._disconnected], timeout=seconds)
 
     async def _send(self, message: dict[str, Any]) -> None:
-        text = json.dumps(message, separators=(",", ":"))
-        self._allowance -= len(text)
-        await asyncio.wait_for(self._socket.send_text(text), STALLED_S)
+        data = msgspec.json.encode(message)
+        self._allowance -= len(data)
+        await asyncio.wait_for(self._socket.send_text(data.decode()), STALLED_S)
 
     async def _wait_for_disconnect(self) -> None:
         """Wait until the phone disconnects; its messages are ignored."""
@@ -133,7 +135,7 @@ def cursor_of(have: Any, capture: Capture) -> Cursor:
 def state_of(captures: Captures, capture: Capture) -> dict[str, Any]:
     """State of the capture; rates and warnings of the sensors only while it records."""
     records = capture.state in (State.RECORDING, State.PAUSED)
-    newest = capture.stream.newest if records else {}
+    newest = capture.stream.newest if records else Newest()
     battery = captures.power.battery
     found = findings(captures.rig, newest, capture.problem)
     found = sorted([*found, *battery_findings(battery)], key=lambda one: URGENCY.index(one.level))
@@ -141,7 +143,7 @@ def state_of(captures: Captures, capture: Capture) -> dict[str, Any]:
         "project": capture.project,
         "state": capture.state,
         "words": [asdict(one) for one in found],
-        "rates": rates(captures.rig, newest["status"]) if "status" in newest else {},
+        "rates": {} if newest.status is None else rates(captures.rig, newest.status),
         "lidars": [asdict(one) for one in lidars(captures.rig, newest)],
         "battery": None if battery is None else asdict(battery),
         "server": __version__,

@@ -24,6 +24,7 @@ from app.names import Name, Note
 from app.network.request_caller import CalledBy
 from app.network.streams import TOO_MANY
 from app.rig_files import check_rig_file
+from recon4.live.protocol import AddMark, Pause, Resume
 from recon4.settings import PRESETS
 
 LOOK = [Depends(needs(Permission.LOOK))]
@@ -124,7 +125,7 @@ async def start_capture(new: NewCapture, server: Server, who: Who, caller: Calle
         new.project, rig, preset=new.preset, address=server.settings.live_address
     )
     if new.place:
-        await capture.request({"do": "mark", "what": "place", "text": new.place, "who": who.name})
+        await capture.request(AddMark("place", new.place, who.name))
     audit(caller.request, "live.start", new.project)
     return _view(server.captures, may_capture=True)
 
@@ -140,14 +141,14 @@ async def stop_capture(request: Request, server: Server) -> CaptureView:
 @router.post("/pause", dependencies=CAPTURE, summary="Pause recording")
 async def pause_capture(server: Server) -> CaptureView:
     """Datagrams until `resume` are counted but not recorded."""
-    await server.captures.capture().request({"do": "pause"})
+    await server.captures.capture().request(Pause())
     return _view(server.captures, may_capture=True)
 
 
 @router.post("/resume", dependencies=CAPTURE, summary="Resume recording")
 async def resume_capture(server: Server) -> CaptureView:
     """End a pause. The operator should stand where the pause began."""
-    await server.captures.capture().request({"do": "resume"})
+    await server.captures.capture().request(Resume())
     return _view(server.captures, may_capture=True)
 
 
@@ -174,8 +175,8 @@ def process_capture(request: Request, server: Server) -> JobView:
 @router.post("/marks", status_code=201, dependencies=CAPTURE, summary="Mark a point of interest")
 async def add_mark(mark: NewMark, server: Server, who: Who) -> dict[str, str]:
     """Save a mark; it is on the disk before it appears in the stream."""
-    message = {"do": "mark", "who": who.name, **mark.model_dump()}
-    await server.captures.capture().request(message)
+    request = AddMark(mark.what, mark.text, who.name, mark.ago_s)
+    await server.captures.capture().request(request)
     return {"status": "noted"}
 
 

@@ -7,6 +7,8 @@ import logging
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from app.errors import Conflict, NotFound
 from app.live.capture import Capture, unfinished
 from app.live.power import Power, read_battery
@@ -15,6 +17,7 @@ from recon4.bounded import read_text_limited
 from recon4.errors import ConfigError, CorruptFile, StoreError
 from recon4.live.ipc.line_client import listens
 from recon4.live.project_files import begin
+from recon4.live.protocol import Mark, Stop
 from recon4.live.session import CaptureSession, load_session
 from recon4.model.rig import Rig, load_rig
 from recon4.store.json_files import parse_object
@@ -111,7 +114,7 @@ class Captures:
             NotFound, Conflict: If nothing is being captured.
         """
         capture = self.capture()
-        await capture.request({"do": "stop"})
+        await capture.request(Stop())
         return capture
 
     async def leave(self) -> None:
@@ -120,7 +123,7 @@ class Captures:
             await self._capture.leave()
 
 
-def marks_of(session: CaptureSession) -> list[dict[str, Any]]:
+def marks_of(session: CaptureSession) -> list[Mark]:
     """Read the marks of a session; skips a line that was being written at a power failure."""
     try:
         if not session.marks.exists():
@@ -132,7 +135,7 @@ def marks_of(session: CaptureSession) -> list[dict[str, Any]]:
     marks = []
     for line in lines:
         try:
-            marks.append(parse_object(line, "a note"))
-        except StoreError:
+            marks.append(msgspec.convert(parse_object(line, "a mark") | {"kind": "mark"}, Mark))
+        except (StoreError, msgspec.ValidationError):
             log.warning("%s: a line is damaged", session.marks)
     return marks

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+if TYPE_CHECKING:
+    from recon4.live.newest import Newest
 
 live = typer.Typer()
 
@@ -60,7 +63,7 @@ def record(
     import time
 
     from recon4.live.findings import findings
-    from recon4.live.headless import Headless, Newest, progress_line
+    from recon4.live.headless import Headless, progress_line
     from recon4.live.project_files import begin
     from recon4.model.rig import load_rig
     from recon4.settings import preset as preset_named
@@ -84,21 +87,21 @@ def record(
 
     ended = asyncio.run(run())
     _write(_outcome(ended))
-    if ended.get("stopped", {}).get("why", "stopped") != "stopped":
-        _write(f"recording ended by itself: {ended['stopped']['why']}")
+    if ended.stopped is not None and ended.stopped.why != "stopped":
+        _write(f"recording ended by itself: {ended.stopped.why}")
     recordings = session.capture.parent
     _write(f"next: recon4 process {session.capture} --rig {recordings / 'rig.toml'} --out {out}")
-    if ended.get("done", {}).get("problem", "mapper died"):
+    if ended.done is None or ended.done.problem:
         raise typer.Exit(1)
 
 
-def _outcome(ended: dict[str, dict[str, Any]]) -> str:
-    done, stopped = ended.get("done", {}), ended.get("stopped", {})
-    file = stopped.get("file", {})
-    lost = stopped.get("kernel_drops", 0) + file.get("dropped", 0)
-    parts = [f"{file.get('datagrams', 0)} datagrams recorded, {lost} lost"]
-    parts.append(done.get("problem") or f"{done.get('frames', 0)} multiframes are ready")
-    return "; ".join(parts)
+def _outcome(ended: Newest) -> str:
+    done, stopped = ended.done, ended.stopped
+    recorded = stopped.file.datagrams if stopped is not None else 0
+    lost = stopped.kernel_drops + stopped.file.dropped if stopped is not None else 0
+    frames, problem = (done.frames, done.problem) if done is not None else (0, "")
+    mapped = problem or f"{frames} multiframes are ready"
+    return f"{recorded} datagrams recorded, {lost} lost; {mapped}"
 
 
 def _write(text: str) -> None:

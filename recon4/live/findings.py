@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
+from recon4.live.newest import Newest
+from recon4.live.protocol import Fix, Notes, Pose, Sender, Status
 from recon4.model.rig import Rig, Sensor
 
 Level = Literal["error", "warning", "info"]
-Fields = dict[str, Any]
 
 _TURN_RAD_S = 3.0
 _LATE_S = 1.5
@@ -30,66 +31,65 @@ class Finding:
     text: str
 
 
-def findings(rig: Rig, newest: dict[str, Fields], problem: str) -> list[Finding]:
+def findings(rig: Rig, newest: Newest, problem: str) -> list[Finding]:
     """Derive the warnings from the newest messages of recorder and mapper.
 
     Args:
         rig: The sensors that should send.
-        newest: Newest message of each kind (`StreamState.newest`).
+        newest: Newest messages of recorder and mapper.
         problem: What is wrong with the capture itself; empty = nothing.
     """
     found = [Finding("error", problem)] if problem else []
-    status = newest.get("status")
-    if status:
+    status = newest.status
+    if status is not None:
         found += [*_disk(status), *_sensors(rig, status), *_samples(rig, status)]
         found += [*_strangers(rig, status), *_drops(status)]
-    found += [*_tracking(newest.get("pose", {})), *_reader(newest.get("notes", {}))]
-    found += _position(newest.get("fix"))
+    if newest.pose is not None:
+        found += _tracking(newest.pose)
+    if newest.notes is not None:
+        found += _reader(newest.notes)
+    if newest.fix is not None:
+        found += _position(newest.fix)
     order: dict[Level, int] = {"error": 0, "warning": 1, "info": 2}
     return sorted(found, key=lambda finding: order[finding.level])
 
 
-def rates(rig: Rig, status: Fields) -> dict[str, float]:
+def rates(rig: Rig, status: Status) -> dict[str, float]:
     """Datagrams per second of each LiDAR of a rig, of its IMU and its GNSS receiver."""
-    senders = status.get("senders", [])
-    found = {s.name: sum(_data_rate(one) for one in _mine(s, senders)) for s in rig.sensors}
+    senders = status.senders
+    found = {s.name: sum(one.data_per_s for one in _mine(s, senders)) for s in rig.sensors}
     for name, port in (("IMU", rig.imu_port), ("GNSS", rig.gnss_port)):
-        found[name] = sum(one["per_s"] for one in senders if port and one["port"] == port)
+        found[name] = sum(one.per_s for one in senders if port and one.port == port)
     return found
 
 
-def _mine(sensor: Sensor, senders: list[Fields]) -> list[Fields]:
+def _mine(sensor: Sensor, senders: list[Sender]) -> list[Sender]:
     """Senders that can be this sensor: they send data packets to its port."""
     return [
         one
         for one in senders
-        if one["port"] == sensor.port
-        and sensor.address in {"", one["source"]}
-        and (_data_rate(one) > 0 or one.get("silent_s", 0.0) > 0.5)
+        if one.port == sensor.port
+        and sensor.address in {"", one.source}
+        and (one.data_per_s > 0 or one.silent_s > 0.5)
     ]
 
 
-def _data_rate(sender: Fields) -> float:
-    rate: float = sender["data_per_s"] if "data_per_s" in sender else sender["per_s"]
-    return rate
-
-
-def _disk(status: Fields) -> list[Finding]:
+def _disk(status: Status) -> list[Finding]:
     found = []
-    file, left_s = status["file"], status["disk"]["left_s"]
-    if file["problem"]:
-        found.append(Finding("error", f"Nothing is recorded: {file['problem']}"))
+    file, left_s = status.file, status.disk.left_s
+    if file.problem:
+        found.append(Finding("error", f"Nothing is recorded: {file.problem}"))
     if left_s is not None and left_s < _LOW_DISK_S:
         found.append(Finding("error", f"Disk full in {max(left_s, 0) // 60} min"))
-    if status.get("notes"):
-        found.append(Finding("error", f"A mark could not be saved: {status['notes']}"))
-    if status["paused"]:
+    if status.notes:
+        found.append(Finding("error", f"A mark could not be saved: {status.notes}"))
+    if status.paused:
         found.append(Finding("info", "Paused: nothing is recorded"))
     return found
 
 
-def _sensors(rig: Rig, status: Fields) -> list[Finding]:
-    silent_s = {s.name: _silent_s(_mine(s, status["senders"]), status) for s in rig.sensors}
+def _sensors(rig: Rig, status: Status) -> list[Finding]:
+    silent_s = {s.name: _silent_s(_mine(s, status.senders), status) for s in rig.sensors}
     silent = {name: seconds for name, seconds in silent_s.items() if seconds >= _SILENT_S}
     if silent and len(silent) == len(silent_s):
         shortest = min(silent.values())
@@ -103,18 +103,18 @@ def _sensors(rig: Rig, status: Fields) -> list[Finding]:
     ]
 
 
-def _arriving(rig: Rig, status: Fields) -> str:
+def _arriving(rig: Rig, status: Status) -> str:
     """Datagrams on the LiDARs' ports although no LiDAR of the rig sends; empty = none."""
     for sensor in rig.sensors:
-        there = [one for one in status["senders"] if one["port"] == sensor.port]
-        data = [one for one in there if _data_rate(one) > 0 and one["source"] != sensor.address]
+        there = [one for one in status.senders if one.port == sensor.port]
+        data = [one for one in there if one.data_per_s > 0 and one.source != sensor.address]
         if sensor.address and data:
             return (
                 f"{sensor.name} is expected from {sensor.address}, but data packets for port "
                 f"{sensor.port} come from {_sources(data)}: correct the address in the rig or in "
                 "the sensor"
             )
-        other = [one for one in there if one["per_s"] > 0]
+        other = [one for one in there if one.per_s > 0]
         if other:
             return (
                 f"datagrams for port {sensor.port} ({sensor.name}) come from {_sources(other)}, "
@@ -123,89 +123,89 @@ def _arriving(rig: Rig, status: Fields) -> str:
     return ""
 
 
-def _sources(senders: list[Fields]) -> str:
+def _sources(senders: list[Sender]) -> str:
     """Addresses of senders, at most three of them."""
-    sources = sorted({str(one["source"]) for one in senders})
+    sources = sorted({one.source for one in senders})
     return ", ".join(sources[:3]) + " …" * (len(sources) > 3)
 
 
-def _silent_s(senders: list[Fields], status: Fields) -> float:
+def _silent_s(senders: list[Sender], status: Status) -> float:
     """Time since the last datagram of some senders [s]; 0 within `_GRACE_S` of the start."""
     if senders:
-        return float(min(one.get("silent_s", 0.0) for one in senders))
-    return float(status["seconds"]) if status["seconds"] >= _GRACE_S else 0.0
+        return min(one.silent_s for one in senders)
+    return status.seconds if status.seconds >= _GRACE_S else 0.0
 
 
-def _samples(rig: Rig, status: Fields) -> list[Finding]:
+def _samples(rig: Rig, status: Status) -> list[Finding]:
     found = []
-    imu = [one for one in status["senders"] if one["port"] == rig.imu_port]
+    imu = [one for one in status.senders if one.port == rig.imu_port]
     silent_s = _silent_s(imu, status)
     if rig.imu_port and imu and silent_s >= _SILENT_S:
         found.append(Finding("warning", f"IMU silent for {_seconds(silent_s)}: turn slowly"))
     elif silent_s >= _SILENT_S:
         found.append(Finding("warning", "No IMU: walk and turn slowly"))
-    if status.get("serial"):
-        found.append(Finding("warning", f"GNSS receiver: {status['serial']}"))
+    if status.serial:
+        found.append(Finding("warning", f"GNSS receiver: {status.serial}"))
     return found
 
 
-def _strangers(rig: Rig, status: Fields) -> list[Finding]:
+def _strangers(rig: Rig, status: Status) -> list[Finding]:
     """Foreign senders to a LiDAR's port, and datagrams there that are not data packets."""
     ports: dict[int, list[Sensor]] = {}
     for sensor in rig.sensors:
         ports.setdefault(sensor.port, []).append(sensor)
     found = []
     for port, sensors in ports.items():
-        there = [one for one in status["senders"] if one["port"] == port and one["per_s"] > 0]
-        there.sort(key=lambda one: -_data_rate(one))
+        there = [one for one in status.senders if one.port == port and one.per_s > 0]
+        there.sort(key=lambda one: -one.data_per_s)
         known = {s.address for s in sensors if s.address} or {
-            one["source"] for one in there[: len(sensors)]
+            one.source for one in there[: len(sensors)]
         }
-        strangers = sorted({one["source"] for one in there if one["source"] not in known})
-        mixed = [one for one in there if one["per_s"] - _data_rate(one) > 0]
+        strangers = sorted({one.source for one in there if one.source not in known})
+        mixed = [one for one in there if one.per_s - one.data_per_s > 0]
         if strangers:
             some = ", ".join(strangers[:3]) + (" …" if len(strangers) > 3 else "")
             found.append(Finding("info", f"Foreign traffic on port {port} from {some}"))
         elif mixed:
-            source = mixed[0]["source"]
+            source = mixed[0].source
             text = f"Packets on port {port} that are not LiDAR data packets, from {source}"
             found.append(Finding("info", text))
     return found
 
 
-def _drops(status: Fields) -> list[Finding]:
+def _drops(status: Status) -> list[Finding]:
     found = []
-    if status["kernel_drops"]:
-        count = status["kernel_drops"]
+    if status.kernel_drops:
+        count = status.kernel_drops
         found.append(Finding("error", f"{count} packets were lost: this computer is too busy"))
-    if status["file"]["dropped"]:
-        count = status["file"]["dropped"]
+    if status.file.dropped:
+        count = status.file.dropped
         text = f"{count} packets are not in the recording: the disk was full or too slow"
         found.append(Finding("error", text))
     return found
 
 
-def _tracking(pose: Fields) -> list[Finding]:
+def _tracking(pose: Pose) -> list[Finding]:
     found = []
-    if pose.get("lost"):
+    if pose.lost:
         found.append(Finding("error", "Tracking lost: stop, then go back a few steps"))
-    elif (pose.get("turn_rad_s") or 0.0) > _TURN_RAD_S:
+    elif (pose.turn_rad_s or 0.0) > _TURN_RAD_S:
         found.append(Finding("warning", "Turn slower"))
     elif _degraded(pose):
         found.append(Finding("warning", "Tracking is degraded: walk slower, look at more walls"))
-    if pose.get("remark"):
-        found.append(Finding("warning", f"{pose['remark'][0].upper()}{pose['remark'][1:]}"))
+    if pose.remark:
+        found.append(Finding("warning", f"{pose.remark[0].upper()}{pose.remark[1:]}"))
     return found + _late(pose)
 
 
-def _late(pose: Fields) -> list[Finding]:
+def _late(pose: Pose) -> list[Finding]:
     """Latency of the preview. Frames are left out of the preview, never of the recording."""
-    age_s, lately = pose.get("age_s") or 0.0, pose.get("lately") or {"frames": 0, "thinned": 0}
-    behind = f"The preview is {age_s:.0f} s behind" if age_s > _LATE_S else ""
+    recent = pose.lately
+    behind = f"The preview is {pose.age_s:.0f} s behind" if pose.age_s > _LATE_S else ""
     left_out = (
-        f"{lately['thinned']} of the last {lately['frames']} frames are left out of the preview "
-        f"({pose['thinned']} in all)"
-        if lately["thinned"]
+        f"{recent.thinned} of the last {recent.frames} frames are left out of the preview "
+        f"({pose.thinned} in all)"
+        if recent.thinned
         else ""
     )
     text = ": ".join(part for part in (behind, left_out) if part)
@@ -213,24 +213,21 @@ def _late(pose: Fields) -> list[Finding]:
     return [Finding(level, f"{text}; the recording is complete")] if text else []
 
 
-def _degraded(pose: Fields) -> bool:
+def _degraded(pose: Pose) -> bool:
     """Whether tracking is degraded: poor match, residual, prediction or observability."""
-    match_ratio, error_m, prediction_offset_m = (
-        pose.get(name) for name in ("match_ratio", "error_m", "prediction_offset_m")
-    )
-    degeneracy = pose.get("degeneracy")
-    registered = pose.get("frame_id", 0) > 0
+    match_ratio, degeneracy = pose.match_ratio, pose.degeneracy
+    registered = pose.frame_id > 0
     return bool(
         (registered and match_ratio is not None and match_ratio < _DEGRADED_MATCH_RATIO)
         or (registered and degeneracy is not None and degeneracy < _DEGRADED_DEGENERACY)
-        or (error_m is not None and error_m > _DEGRADED_ERROR_M)
-        or (prediction_offset_m is not None and prediction_offset_m > _DEGRADED_OFFSET_M)
+        or (pose.error_m or 0.0) > _DEGRADED_ERROR_M
+        or (pose.prediction_offset_m or 0.0) > _DEGRADED_OFFSET_M
     )
 
 
-def _reader(notes: Fields) -> list[Finding]:
-    found = [Finding("warning", text) for text in notes.get("warnings", [])[-3:]]
-    recent: Fields = notes.get("recent") or {}
+def _reader(notes: Notes) -> list[Finding]:
+    found = [Finding("warning", text) for text in notes.warnings[-3:]]
+    recent = notes.recent
     packets, missing = recent.get("packets", 0), recent.get("packets_missing", 0)
     if packets > 1000 and missing > _MOST_LOST * packets:
         percent = 100.0 * missing / (packets + missing)
@@ -247,17 +244,15 @@ def _reader(notes: Fields) -> list[Finding]:
     return found
 
 
-def _position(fix: Fields | None) -> list[Finding]:
-    if not fix:
-        return []
-    if fix.get("jumped_m"):
-        text = f"GNSS jumped by {fix['jumped_m']:.0f} m: the map does not use it"
+def _position(fix: Fix) -> list[Finding]:
+    if fix.jumped_m:
+        text = f"GNSS jumped by {fix.jumped_m:.0f} m: the map does not use it"
         return [Finding("warning", text)]
-    sd_m = fix.get("sd_m")
+    sd_m = fix.sd_m
     within = f", ±{max(sd_m[:2]):.2g} m" if sd_m else ""
-    if fix["quality"] == 0:
+    if fix.quality == 0:
         return [Finding("info", "GNSS has no position")]
-    return [] if fix["quality"] in (4, 5) else [Finding("info", f"GNSS without RTK fix{within}")]
+    return [] if fix.quality in (4, 5) else [Finding("info", f"GNSS without RTK fix{within}")]
 
 
 def _seconds(seconds: float) -> str:

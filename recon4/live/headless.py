@@ -7,17 +7,15 @@ import signal
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from typing import Any
 
 from recon4.errors import ConfigError
 from recon4.live.ipc.line_client import linked, started
+from recon4.live.newest import Newest
 from recon4.live.project_files import discard
 from recon4.live.session import CaptureSession
 
 REPORT_EVERY_S = 2.0
 _MAPPER_STARTS = 3
-
-Newest = dict[str, dict[str, Any]]
 
 
 class Headless:
@@ -32,7 +30,7 @@ class Headless:
                 problem of the capture itself (empty = none).
         """
         self._session, self._send = session, send
-        self._newest: Newest = {}
+        self._newest = Newest()
         self._problem = ""
         self._stopping = asyncio.Event()
 
@@ -40,7 +38,7 @@ class Headless:
         """Record until SIGINT, SIGTERM, the end of the time limit or the end of the recorder.
 
         Returns:
-            The newest message of each kind, including ``done`` of the mapper.
+            The newest messages, including ``done`` of the mapper.
 
         Raises:
             ConfigError: If a process cannot start; the text is its last log line.
@@ -73,7 +71,7 @@ class Headless:
             mapper = await started(self._session, "mapper")
             await self._receive("mapper")
             await mapper.wait()
-            if "done" in self._newest:
+            if self._newest.done is not None:
                 return
             self._problem = "the mapper died and was started again; the recording goes on"
         self._problem = "the map stopped growing; the recording goes on"
@@ -90,8 +88,8 @@ class Headless:
     async def _receive(self, name: str) -> None:
         with suppress(OSError):
             async with linked(self._session.socket(name)) as link:
-                async for message in link.lines():
-                    self._newest[message["kind"]] = message
+                async for message in link.messages():
+                    self._newest.take(message)
 
     async def _report_periodically(self) -> None:
         while True:
@@ -101,15 +99,15 @@ class Headless:
 
 def progress_line(newest: Newest, began_s: float) -> str:
     """Progress of a capture in one line: duration, size, rates, tracking."""
-    status, pose = newest.get("status", {}), newest.get("pose", {})
-    rates = [f"{s['port']}: {s['per_s']:.0f}/s" for s in status.get("senders", [])]
-    file = status.get("file", {})
+    status, pose, loop = newest.status, newest.pose, newest.loop
+    rates = [] if status is None else [f"{s.port}: {s.per_s:.0f}/s" for s in status.senders]
+    size = 0 if status is None else status.file.written_bytes
     parts = [
         f"{time.monotonic() - began_s:6.0f} s",
-        f"{file.get('written_bytes', 0) / 1e6:8.1f} MB",
+        f"{size / 1e6:8.1f} MB",
         ", ".join(rates) or "no datagrams",
     ]
-    if pose:
-        walked = newest.get("loop", {}).get("walked_m", 0.0)
-        parts.append("lost" if pose["lost"] else f"frame {pose['frame_id']}, {walked:.0f} m walked")
+    if pose is not None:
+        walked_m = (loop.walked_m if loop is not None else None) or 0.0
+        parts.append("lost" if pose.lost else f"frame {pose.frame_id}, {walked_m:.0f} m walked")
     return " | ".join(parts)

@@ -30,6 +30,7 @@ from app.viewer import unix_socket
 from recon4 import runtime_folder as places
 from recon4.errors import StoreError
 from recon4.live.ipc.line_server import LineServer
+from recon4.live.protocol import Done
 from tests.project_builder import build_project
 from tests.service.running import ROOT, server_process
 from tests.service.viser_client import PROTOCOL, camera, viewing
@@ -173,7 +174,7 @@ def test_live_messages_are_for_their_user_alone_even_where_permissions_fail(tmp_
 
     async def attack() -> str:
         lines = LineServer(
-            initial_messages=lambda: [{"kind": "secret"}], on_request=requests.append
+            initial_messages=lambda: [Done(frames=0, problem="secret")], on_request=requests.append
         )
         path = Path("/tmp") / f"recon4-test-{os.getpid()}"
         await lines.listen(path)

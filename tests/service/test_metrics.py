@@ -190,15 +190,14 @@ def test_the_state_of_the_server_is_there(server):
 def test_the_packets_of_a_live_capture_are_counted(server):
     """With a capture's messages as its recorder and reader send them."""
     from app.live.capture import Capture
+    from recon4.live.protocol import FileState
     from recon4.live.session import CaptureSession
+    from tests.live_messages import notes, status
 
     capture = Capture(CaptureSession(project=server.root / "walk"))
-    status = {
-        "kind": "status", "t_ns": 1, "kernel_drops": 3, "skipped_in_pauses": 4,
-        "file": {"dropped": 5, "datagrams": 600},
-    }  # fmt: skip
-    capture.stream.take(status)
-    capture.stream.take({"kind": "notes", "counts": {"packets_missing": 7}, "warnings": []})
+    file = FileState(dropped=5, datagrams=600)
+    capture.stream.take(status(kernel_drops=3, skipped_in_pauses=4, file=file))
+    capture.stream.take(notes(counts={"packets_missing": 7}))
     server.app.state.parts.captures._capture = capture
     found = figures(server)
     server.app.state.parts.captures._capture = None

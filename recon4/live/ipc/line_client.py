@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import asyncio
-import json
+import logging
 import os
 import sys
 from collections.abc import AsyncIterator, Mapping
 from contextlib import asynccontextmanager, suppress
 from pathlib import Path
-from typing import Any
 
 from recon4.errors import ConfigError
 from recon4.live.confinement import mapper_environment
+from recon4.live.protocol import Message, ProtocolError, Request, decode_message, encode
 from recon4.live.session import CaptureSession
 from recon4.sandbox import ONE_THREAD, allowed_environment
+
+log = logging.getLogger(__name__)
 
 STARTS_WITHIN_S = 60.0
 
@@ -28,17 +30,27 @@ class LineClient:
     def __init__(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         self._reader, self._writer = reader, writer
 
-    async def lines(self) -> AsyncIterator[dict[str, Any]]:
-        """Messages of the process until it closes the connection."""
-        try:
-            while line := await self._reader.readline():
-                yield json.loads(line)
-        except ConnectionError:
-            return
+    async def messages(self) -> AsyncIterator[Message]:
+        """Messages of the process until it closes the connection; malformed ones are skipped."""
+        while line := await self._line():
+            try:
+                yield decode_message(line)
+            except ProtocolError as error:
+                log.warning("%s", error)
 
-    async def send(self, message: dict[str, Any]) -> None:
-        """Send a message to the process."""
-        self._writer.write(json.dumps(message).encode() + b"\n")
+    async def _line(self) -> bytes:
+        """The next line; empty at the end, also after a line that is too long."""
+        try:
+            return await self._reader.readline()
+        except ConnectionError:
+            return b""
+        except ValueError:
+            log.warning("a line of a live capture is longer than %d bytes", _LONGEST_LINE)
+            return b""
+
+    async def send(self, request: Request) -> None:
+        """Send a request to the process."""
+        self._writer.write(encode(request))
         await self._writer.drain()
 
 

@@ -8,7 +8,6 @@ accepted: the socket is in a private folder, has mode 0600, and the kernel repor
 from __future__ import annotations
 
 import asyncio
-import json
 import logging
 import os
 import socket
@@ -16,7 +15,8 @@ import struct
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+
+from recon4.live.protocol import Message, ProtocolError, Request, decode_request, encode
 
 MOST_UNREAD_BYTES = 16 << 20
 """A complete preview and the path of an hour are 5 MB."""
@@ -31,15 +31,14 @@ class LineServer:
     def __init__(
         self,
         *,
-        initial_messages: Callable[[], Iterable[dict[str, Any]]],
-        on_request: Callable[[dict[str, Any]], None],
+        initial_messages: Callable[[], Iterable[Message]],
+        on_request: Callable[[Request], None],
     ) -> None:
         """Prepare.
 
         Args:
             initial_messages: The messages a new client receives first.
-            on_request: Called with every line of a client that is a JSON object; other lines are
-                ignored.
+            on_request: Called with every request of a client; other lines are logged and ignored.
         """
         self._initial_messages, self._on_request = initial_messages, on_request
         self._writers: set[asyncio.StreamWriter] = set()
@@ -58,9 +57,9 @@ class LineServer:
         finally:
             os.umask(before)
 
-    def send(self, message: dict[str, Any]) -> None:
+    def send(self, message: Message) -> None:
         """Send a message to all clients."""
-        line = json.dumps(message, separators=(",", ":")).encode() + b"\n"
+        line = encode(message)
         for writer in list(self._writers):
             if writer.transport.get_write_buffer_size() > MOST_UNREAD_BYTES:
                 writer.transport.abort()
@@ -90,12 +89,15 @@ class LineServer:
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
         for message in self._initial_messages():
-            writer.write(json.dumps(message, separators=(",", ":")).encode() + b"\n")
+            writer.write(encode(message))
         self._writers.add(writer)
         try:
             while line := await reader.readline():
-                request = _object(line)
-                if request is not None:
+                try:
+                    request = decode_request(line)
+                except ProtocolError as error:  # also a request of a newer server
+                    log.warning("%s: %s", self._path, error)
+                else:
                     self._on_request(request)
         except (ConnectionError, ValueError):
             pass  # disconnected, or a line that is too long
@@ -113,11 +115,3 @@ def peer_uid(connection: socket.socket) -> int | None:
     )
     user: int = struct.unpack("3i", credentials)[1]
     return user
-
-
-def _object(line: bytes) -> dict[str, Any] | None:
-    try:
-        message = json.loads(line)
-    except ValueError:
-        return None
-    return message if isinstance(message, dict) else None

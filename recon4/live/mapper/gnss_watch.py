@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
+from recon4.live.protocol import Fix
 from recon4.model.samples import GnssSamples
 
 EARTH_M = 6_371_000.0
@@ -22,7 +21,7 @@ class GnssWatch:
         self._last: tuple[int, float, float] | None = None
         self._jump = (0, 0.0)
 
-    def push(self, gnss: GnssSamples) -> dict[str, Any]:
+    def push(self, gnss: GnssSamples) -> Fix:
         """Build the message ``fix`` of the newest of some fixes."""
         rows = zip(gnss.t_ns.tolist(), gnss.lat_rad.tolist(), gnss.lon_rad.tolist(), strict=True)
         for t_ns, lat_rad, lon_rad in rows:
@@ -30,15 +29,14 @@ class GnssWatch:
         sd_m = gnss.sd_enu_m[-1]
         t_ns = int(gnss.t_ns[-1])
         jumped = t_ns - self._jump[0] < SHOWN_S * 1e9
-        return {
-            "kind": "fix",
-            "t_ns": t_ns,
-            "quality": int(gnss.quality[-1]),
-            "lat_rad": float(gnss.lat_rad[-1]),
-            "lon_rad": float(gnss.lon_rad[-1]),
-            "sd_m": None if not np.isfinite(sd_m).all() else [round(float(v), 3) for v in sd_m],
-            "jumped_m": round(self._jump[1], 1) if jumped else None,
-        }
+        return Fix(
+            t_ns=t_ns,
+            quality=int(gnss.quality[-1]),
+            lat_rad=float(gnss.lat_rad[-1]),
+            lon_rad=float(gnss.lon_rad[-1]),
+            sd_m=None if not np.isfinite(sd_m).all() else [round(float(v), 3) for v in sd_m],
+            jumped_m=round(self._jump[1], 1) if jumped else None,
+        )
 
     def _take(self, t_ns: int, lat_rad: float, lon_rad: float) -> None:
         if self._last is not None:

@@ -7,20 +7,12 @@ from __future__ import annotations
 
 from collections import deque
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.imu import place_points
-from recon4.live.ipc.messages import (
-    Message,
-    Snapshot,
-    figure,
-    gaps_message,
-    plan_message,
-    points_message,
-)
+from recon4.live.ipc.messages import Snapshot, figure, gaps_message, plan_message, points_message
 from recon4.live.mapper.live_intensity import LiveIntensity
 from recon4.live.mapper.loops import LoopGate
 from recon4.live.mapper.place_index import PlaceIndex
@@ -28,6 +20,8 @@ from recon4.live.mapper.recovery import Recovery
 from recon4.live.mapper.tracker import Tracker
 from recon4.live.preview.cloud import PreviewCloud
 from recon4.live.preview.coverage import Coverage
+from recon4.live.protocol import Gaps, Loop, MapperMessage, Plan, Points, Pose, RecentFrames
+from recon4.live.protocol import Path as PathMessage
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
@@ -88,9 +82,9 @@ class LiveMap:
         self._recovery: Recovery | None = None
         self._plan_due_ns = self._plan_floor = 0
         self._gate = LoopGate()
-        self._loop: Message = {"kind": "loop", "near": False, "closed": False}
-        self._plan: dict[str, Any] = {}
-        self._gaps: Message = {"kind": "gaps", "gaps": [], "well": None, "elsewhere": 0}
+        self._loop = Loop(near=False, closed=False)
+        self._plan: Plan | None = None
+        self._gaps = Gaps([], well=None, elsewhere=0)
 
     def extend_imu(self, imu: ImuSamples) -> None:
         """Add IMU samples."""
@@ -101,38 +95,38 @@ class LiveMap:
         self._thinned += 1
         self._recent.append((frame.t_ns, True))
 
-    def push(self, frame: Multiframe) -> list[Message]:
+    def push(self, frame: Multiframe) -> tuple[Pose, list[MapperMessage]]:
         """Map a multiframe.
 
         Returns:
-            Messages: always a ``pose``; ``points`` when there are new ones; about once a second
-            ``plan``, ``gaps`` and ``loop``.
+            The pose, and further messages: ``path`` after a map reset, ``points`` when there are
+            new ones, about once a second ``plan``, ``gaps`` and ``loop``.
         """
         self._recent.append((frame.t_ns, False))
         interrupted = self.tracker.interrupted(frame)
         step = self.tracker.restart(frame) if interrupted else self.tracker.push(frame)
-        reset: list[Message] = []
+        messages: list[MapperMessage] = []
         if self.tracker.map_reset:
             self._reset()
             self._preview.reset()
-            reset = [{"kind": "path", "points": []}]
+            messages.append(PathMessage([]))
         step, lost = self._resume(step) if interrupted else self._follow(frame, step)
         T_map_body = self.tracker.T_map_odom @ step.T_odom_body
-        messages = [self._pose(frame, step, T_map_body, lost=lost), *reset]
+        pose = self._pose(frame, step, T_map_body, lost=lost)
         if lost:
-            return messages
+            return pose, messages
         self._extend_path(T_map_body.t)
         messages += self._add_points(frame, step)
         if frame.t_ns - self._summary_ns >= SUMMARY_EVERY_NS:
             self._summary_ns = frame.t_ns
             messages += self._summary(frame, T_map_body, step)
-        return messages
+        return pose, messages
 
     def snapshot(self) -> Snapshot:
         """The current state, for clients that connect late."""
         chunk = self._preview.since(0) if len(self._preview) else None
-        others = [*([self._plan] if self._plan else []), self._gaps, self._loop]
-        return Snapshot(list(self._path), chunk, others)
+        plan = [] if self._plan is None else [self._plan]
+        return Snapshot(list(self._path), chunk, [*plan, self._gaps, self._loop])
 
     def _extend_path(self, p_map: Array) -> None:
         self._here_m = p_map
@@ -178,32 +172,28 @@ class LiveMap:
         segments = sample_segments(frame, self._rig, self._settings.segments)
         return (segments.a_body + segments.b_body) / 2
 
-    def _pose(
-        self, frame: Multiframe, step: OdometryStep, T_map_body: SE3, *, lost: bool
-    ) -> Message:
+    def _pose(self, frame: Multiframe, step: OdometryStep, T_map_body: SE3, *, lost: bool) -> Pose:
         R = T_map_body.R
-        return {
-            "kind": "pose",
-            "frame_id": frame.frame_id,
-            "t_ns": frame.t_ns + frame.duration_ns,
-            "p": [round(float(v), 3) for v in T_map_body.t],
-            "yaw": round(float(np.arctan2(R[1, 0], R[0, 0])), 4),
-            "lost": lost,
-            "lost_frames": self._lost,
-            "relocated": self._relocated,
-            "error_m": figure(step.error_m),
-            "match_ratio": figure(step.match_ratio),
-            "degeneracy": figure(step.degeneracy),
-            "prediction_offset_m": figure(
-                self._largest_offset_m(frame.t_ns, step.prediction_offset_m)
-            ),
-            "turn_rad_s": figure(_turn_rate(step)),
-            "points": np.bincount(frame.sensor, minlength=len(self._rig.sensors)).tolist(),
-            "thinned": self._thinned,
-            "lately": self._counts_recently(frame.t_ns),
-            "imu": self.tracker.with_imu,
-            "remark": self.tracker.remark,
-        }
+        offset_m = self._largest_offset_m(frame.t_ns, step.prediction_offset_m)
+        return Pose(
+            frame_id=frame.frame_id,
+            t_ns=frame.t_ns + frame.duration_ns,
+            p=[round(float(v), 3) for v in T_map_body.t],
+            yaw=round(float(np.arctan2(R[1, 0], R[0, 0])), 4),
+            lost=lost,
+            lost_frames=self._lost,
+            relocated=self._relocated,
+            error_m=figure(step.error_m),
+            match_ratio=figure(step.match_ratio),
+            degeneracy=figure(step.degeneracy),
+            prediction_offset_m=figure(offset_m),
+            turn_rad_s=figure(_turn_rate(step)),
+            points=np.bincount(frame.sensor, minlength=len(self._rig.sensors)).tolist(),
+            thinned=self._thinned,
+            lately=self._counts_recently(frame.t_ns),
+            imu=self.tracker.with_imu,
+            remark=self.tracker.remark,
+        )
 
     def _largest_offset_m(self, t_ns: int, prediction_offset_m: float) -> float:
         """Largest prediction offset of the last seconds, so that the warning stays readable."""
@@ -212,13 +202,13 @@ class LiveMap:
             self._offsets_m.popleft()
         return max(prediction_offset_m for _, prediction_offset_m in self._offsets_m)
 
-    def _counts_recently(self, now_ns: int) -> dict[str, int]:
+    def _counts_recently(self, now_ns: int) -> RecentFrames:
         """Count the multiframes of the last 10 s and those of them that were left out."""
         while now_ns - self._recent[0][0] > _RECENT_NS:
             self._recent.popleft()
-        return {"frames": len(self._recent), "thinned": sum(out for _, out in self._recent)}
+        return RecentFrames(len(self._recent), thinned=sum(out for _, out in self._recent))
 
-    def _add_points(self, frame: Multiframe, step: OdometryStep) -> list[Message]:
+    def _add_points(self, frame: Multiframe, step: OdometryStep) -> list[Points]:
         rows = np.arange(0, len(frame), max(1, len(frame) // PREVIEW_POINTS))
         part = frame.take(rows)
         T_map_dense = self.tracker.T_map_odom @ step.T_dense
@@ -232,7 +222,9 @@ class LiveMap:
         chunk = self._preview.add(p_map, values)
         return [] if chunk is None else [points_message(chunk)]
 
-    def _summary(self, frame: Multiframe, T_map_body: SE3, step: OdometryStep) -> list[Message]:
+    def _summary(
+        self, frame: Multiframe, T_map_body: SE3, step: OdometryStep
+    ) -> list[MapperMessage]:
         segments = sample_segments(frame, self._rig, self._settings.segments)
         ends = np.concatenate([segments.a_body, segments.b_body])
         self._close_loop(self._midpoints(frame), T_map_body, step)
@@ -241,12 +233,12 @@ class LiveMap:
         self._gaps = gaps_message(self._coverage)
         return [*self._new_plan(frame.t_ns), self._gaps, self._loop]
 
-    def _new_plan(self, now_ns: int) -> list[Message]:
+    def _new_plan(self, now_ns: int) -> list[Plan]:
         """The message ``plan``, unless the next one is not due because the last one was large."""
         if now_ns < self._plan_due_ns and self._coverage.floor == self._plan_floor:
             return []
         self._plan, self._plan_floor = plan_message(self._coverage), self._coverage.floor
-        lasts_s = len(self._plan["seen"]) / _PLAN_BYTES_PER_S
+        lasts_s = 4 * -(-len(self._plan.seen) // 3) / _PLAN_BYTES_PER_S  # in base64
         self._plan_due_ns = now_ns + round(1e9 * lasts_s)
         return [self._plan]
 
@@ -258,14 +250,13 @@ class LiveMap:
         )
         found = None if place is None else self._places.locate(source, T_map_body, place)
         drifted = self._gate.judge(found, T_map_body)
-        self._loop = {
-            "kind": "loop",
-            "near": place is not None,
-            "closed": self._gate.closed,
-            "drift_m": round(self._gate.drift_m, 3) if self._gate.closed else None,
-            "walked_m": round(self._places.walked_m, 1),
-            "start_m": round(float(np.linalg.norm(T_map_body.t - start_m)), 1),
-        }
+        self._loop = Loop(
+            near=place is not None,
+            closed=self._gate.closed,
+            drift_m=round(self._gate.drift_m, 3) if self._gate.closed else None,
+            walked_m=round(self._places.walked_m, 1),
+            start_m=round(float(np.linalg.norm(T_map_body.t - start_m)), 1),
+        )
         if drifted and found is not None:
             self.tracker.move(found.T_target_source, step)
 

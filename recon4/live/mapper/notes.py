@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import Any
 
+from recon4.live.protocol import Notes
 from recon4.recording.report import ImportReport
 
 RECENT_S = 10.0
@@ -13,7 +13,7 @@ FRESH_S = 120.0
 _MOST = 20
 
 
-class Notes:
+class NotesWatch:
     """Follows an import report that grows."""
 
     def __init__(self, report: ImportReport) -> None:
@@ -21,7 +21,7 @@ class Notes:
         self._seen_s: list[float] = []
         self._counts: deque[tuple[float, dict[str, int]]] = deque()
 
-    def message(self, now_s: float) -> dict[str, Any]:
+    def message(self, now_s: float) -> Notes:
         """Build the message ``notes`` of ``docs/live.md``.
 
         Args:
@@ -41,4 +41,4 @@ class Notes:
         before = self._counts[0][1]
         recent = {name: count - before.get(name, 0) for name, count in counts.items()}
         recent = {name: count for name, count in recent.items() if count}
-        return {"kind": "notes", "warnings": current[-_MOST:], "counts": counts, "recent": recent}
+        return Notes(warnings=current[-_MOST:], counts=counts, recent=recent)

@@ -26,14 +26,14 @@ from recon4.errors import Recon4Error
 from recon4.live.confinement import confine_mapper, scratch_of
 from recon4.live.ipc.line_client import linked
 from recon4.live.ipc.line_server import LineServer
-from recon4.live.ipc.messages import Message
 from recon4.live.mapper.gnss_watch import GnssWatch
 from recon4.live.mapper.imu_synchronization import ImuSynchronization
 from recon4.live.mapper.latency import Latency
 from recon4.live.mapper.live_map import LiveMap
-from recon4.live.mapper.notes import Notes
+from recon4.live.mapper.notes import NotesWatch
 from recon4.live.mapper.tail_file import TailFile, WriteProgress
 from recon4.live.project_files import finish
+from recon4.live.protocol import Done, Message, Pose, Stopped, Written
 from recon4.live.session import CaptureSession, load_session, stretched
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig, load_rig
@@ -61,9 +61,9 @@ class Mapper:
         self._lines = LineServer(
             initial_messages=self._initial_messages, on_request=lambda request: None
         )
-        self._gnss, self._notes = GnssWatch(), Notes(self._live.report)
+        self._gnss, self._notes = GnssWatch(), NotesWatch(self._live.report)
         self._newest_notes = self._notes.message(time.monotonic())
-        self._newest_pose: list[Message] = []
+        self._newest_pose: list[Pose] = []
         self._notes_s = 0.0
         self._synchronization = ImuSynchronization()
         self._latency = Latency(self._live.report, self._now_ns)
@@ -81,12 +81,12 @@ class Mapper:
             outcome = await asyncio.to_thread(self._read)
         except (Recon4Error, OSError) as error:
             log.exception("mapping ended")
-            outcome = {"kind": "done", "frames": 0, "problem": str(error)}
+            outcome = Done(frames=0, problem=str(error))
         following.cancel()
         await asyncio.gather(following, return_exceptions=True)
         self._lines.send(outcome)
         await self._lines.close()
-        return 1 if outcome.get("problem") else 0
+        return 1 if outcome.problem else 0
 
     async def _follow(self) -> None:
         """Receive the readable size from the recorder; when it has ended the file is complete."""
@@ -105,11 +105,12 @@ class Mapper:
             ConnectionError, FileNotFoundError: If there is no recorder.
         """
         async with linked(self._session.socket("recorder")) as link:
-            async for message in link.lines():
-                if message["kind"] == "written":
-                    self._growth.reached(message["bytes"])
-                elif message["kind"] == "stopped":
-                    return True
+            async for message in link.messages():
+                match message:
+                    case Written():
+                        self._growth.reached(message.size)
+                    case Stopped():
+                        return True
         return False
 
     def _abort(self) -> None:
@@ -117,7 +118,7 @@ class Mapper:
         self._aborted = True
         self._growth.complete()
 
-    def _read(self) -> Message:
+    def _read(self) -> Done:
         out = self._session.folder / "frames"
         shutil.rmtree(out, ignore_errors=True)
         out.mkdir(parents=True)
@@ -134,13 +135,13 @@ class Mapper:
         for frame in self._synchronization.flush():
             self._map_frame(frame)
         if self._aborted:
-            return {"kind": "done", "frames": 0, "problem": "the mapper was stopped by a signal"}
+            return Done(frames=0, problem="the mapper was stopped by a signal")
         began_s = time.monotonic()
         frames = finish(self._session, out, self._settings)
         if not self._session.outcome.exists():
             write_json(self._session.outcome, {"why": "the recorder died"})
         seconds = round(time.monotonic() - began_s, 2)
-        return {"kind": "done", "frames": frames, "seconds": seconds, "problem": ""}
+        return Done(frames=frames, problem="", seconds=seconds)
 
     def _open(self, path: Path) -> Any:
         return TailFile(path, self._growth)
@@ -163,12 +164,11 @@ class Mapper:
             self._map.thin(frame)
             return
         with self._mapping:
-            messages = self._map.push(frame)
-        pose = messages[0]
-        pose["t_ns"] = self._latency.on_recorder_clock(pose["t_ns"])
-        pose["age_s"] = self._latency.age_s(pose["t_ns"])
+            pose, others = self._map.push(frame)
+        pose.t_ns = self._latency.on_recorder_clock(pose.t_ns)
+        pose.age_s = self._latency.age_s(pose.t_ns)
         self._newest_pose = [pose]
-        for message in messages:
+        for message in (pose, *others):
             self._send(message)
         self._report_notes()
 

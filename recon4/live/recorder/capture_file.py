@@ -13,8 +13,11 @@ import struct
 import threading
 import time
 from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass, field
 from pathlib import Path
+
+from recon4.live.protocol import FileState
 
 _FILE_HEADER = struct.pack("<IHHiIII", 0xA1B23C4D, 2, 4, 0, 0, 65535, 1)
 _RECORD = struct.Struct("<IIII")
@@ -40,23 +43,6 @@ class Datagram:
     port: int
     """Destination port."""
     payload: bytes
-
-
-@dataclass(slots=True)
-class FileState:
-    """State of the file; `CaptureFile.state` returns a consistent copy."""
-
-    written_bytes: int = 0
-    """Passed to the system, complete records only."""
-    synced_bytes: int = 0
-    """Synced to the disk."""
-    datagrams: int = 0
-    dropped: int = 0
-    """Datagrams missing in the file because the disk was full or too slow."""
-    waiting_bytes: int = 0
-    longest_sync_s: float = 0.0
-    problem: str = ""
-    """Why nothing is written now; empty = no problem."""
 
 
 @dataclass(slots=True)
@@ -101,7 +87,7 @@ class CaptureFile:
         """State of the file now."""
         with self._news:
             self._state.waiting_bytes = self._waiting.size
-            return FileState(*(getattr(self._state, name) for name in FileState.__slots__))
+            return copy(self._state)
 
     def close(self) -> None:
         """Write and sync the queue, then close."""

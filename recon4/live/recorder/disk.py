@@ -6,7 +6,8 @@ import shutil
 from collections import deque
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+
+from recon4.live.protocol import DiskState
 
 _TREND_S = 60.0
 """The fill rate is measured over this period."""
@@ -38,7 +39,8 @@ class DiskWatch:
         """
         self._folder, self._least, self._free_bytes = folder, least_free_bytes, free_bytes
         self._seen: deque[tuple[float, int]] = deque()
-        self._state: dict[str, Any] = {"free_bytes": None, "left_s": None, "enough": True}
+        self.state = DiskState()
+        """As of the last update."""
 
     def update(self, now_s: float) -> None:
         """Read the free space.
@@ -49,7 +51,7 @@ class DiskWatch:
         try:
             free = self._free_bytes(self._folder)
         except OSError:  # unplugged: the writer reports it
-            self._state = {"free_bytes": None, "left_s": None, "enough": True}
+            self.state = DiskState()
             return
         self._seen.append((now_s, free))
         while now_s - self._seen[0][0] > _TREND_S:
@@ -59,14 +61,8 @@ class DiskWatch:
         if now_s - since_s >= _SURE_AFTER_S:
             per_s = (before - free) / (now_s - since_s)
             left_s = (free - self._least) / per_s if per_s > _LEAST_PER_S else None
-        self._state = {
-            "free_bytes": free,
-            "left_s": None if left_s is None else round(left_s),
-            "enough": free > self._least,
-        }
-
-    def message(self) -> dict[str, Any]:
-        """``free_bytes``, ``left_s`` until the disk is full (None = unknown or not filling) and
-        whether there is ``enough`` space to continue, as of the last update.
-        """
-        return self._state
+        self.state = DiskState(
+            free_bytes=free,
+            left_s=None if left_s is None else round(left_s),
+            enough=free > self._least,
+        )

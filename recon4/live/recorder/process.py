@@ -2,13 +2,7 @@
 
 ``python -m recon4.live.recorder.process PROJECT`` listens on the ports of the rig until it
 receives ``stop`` or SIGTERM. It exchanges JSON lines over a Unix socket (`CaptureSession.socket`):
-
-    sends     {"kind": "written", "bytes": n}             the capture file is readable up to there
-              {"kind": "status", …}                       twice a second, see `Recorder.status`
-              {"kind": "mark", "t_ns": …, "text": …, …}
-              {"kind": "stopped", …}                      the file is complete
-    receives  {"do": "stop"} {"do": "pause"} {"do": "resume"}
-              {"do": "mark", "what": "point" | "place", "text": …, "who": …}
+the messages of `RecorderMessage` to its clients, each `Request` from them.
 """
 
 from __future__ import annotations
@@ -23,13 +17,27 @@ import time
 from collections import Counter
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from recon4.errors import Recon4Error, StoreError
 from recon4.live.confinement import confine_recorder
 from recon4.live.ipc.line_server import LineServer
+from recon4.live.protocol import (
+    AddMark,
+    Mark,
+    Message,
+    Pause,
+    Request,
+    Resume,
+    Sender,
+    Status,
+    Stop,
+    Stopped,
+    Written,
+    fields_of,
+)
 from recon4.live.recorder.capture_file import CaptureFile, Datagram
 from recon4.live.recorder.disk import DiskWatch
 from recon4.live.recorder.ports import Port, open_ports
@@ -78,7 +86,7 @@ class Recorder:
         self._disk.update(self._began_s)
         self._notes_problem = ""
         """Why a mark is not on the disk; empty = all marks are."""
-        self._rates: list[dict[str, Any]] = []
+        self._rates: list[Sender] = []
         self._over = asyncio.Event()
         self._why = "stopped"
 
@@ -115,10 +123,10 @@ class Recorder:
             await asyncio.to_thread(self._serial.close)
             await asyncio.sleep(0)  # its last sentences are recorded
         await asyncio.to_thread(self._file.close)
-        outcome = {"why": self._why, **self.status()}
+        outcome = Stopped(why=self._why, **self._state())
         with suppress(StoreError):  # on a full disk; clients still receive the message
-            write_json(self._session.outcome, outcome)
-        self._lines.send({"kind": "stopped", **outcome})
+            write_json(self._session.outcome, fields_of(outcome))
+        self._lines.send(outcome)
         await self._lines.close()
 
     def _receive(self, port: Port) -> None:
@@ -142,33 +150,32 @@ class Recorder:
             self._file.add(replace(datagram, t_ns=t_ns))
 
     def _written(self, size: int) -> None:
-        message = {"kind": "written", "bytes": size}
-        self._loop.call_soon_threadsafe(self._lines.send, message)
+        self._loop.call_soon_threadsafe(self._lines.send, Written(size))
 
     def _report_status(self) -> None:
         now_s = time.monotonic()
         seconds = now_s - self._counted_s
         fresh, data = self._counts - self._counted, self._data - self._data_counted
         self._rates = [
-            {
-                "source": sender[0],
-                "port": sender[1],
-                "per_s": round(fresh[sender] / seconds, 1),
-                "data_per_s": round(data[sender] / seconds, 1),
-                "silent_s": round(now_s - self._received_s[sender], 1),
-            }
+            Sender(
+                source=sender[0],
+                port=sender[1],
+                per_s=round(fresh[sender] / seconds, 1),
+                data_per_s=round(data[sender] / seconds, 1),
+                silent_s=round(now_s - self._received_s[sender], 1),
+            )
             for sender in sorted(self._counts)
         ]
         self._counted, self._counted_s = Counter(self._counts), now_s
         self._data_counted = Counter(self._data)
         self._disk.update(now_s)
-        self._lines.send({"kind": "status", **self.status()})
-        if not self._disk.message()["enough"]:
+        self._lines.send(Status(**self._state()))
+        if not self._disk.state.enough:
             self._why = "the disk is nearly full"
             self._over.set()
 
-    def status(self) -> dict[str, Any]:
-        """The fields of the message ``status``; see ``docs/live.md``."""
+    def _state(self) -> dict[str, Any]:
+        """The fields of `RecorderState`."""
         return {
             "t_ns": stretched(time.time_ns(), self._session.speed),
             "began_ns": self._began_ns,
@@ -179,41 +186,39 @@ class Recorder:
             "ports": {str(port.number): port.expected for port in self._ports},
             "kernel_drops": sum(port.kernel_drops for port in self._ports),
             "serial": None if self._serial is None else self._serial.problem,
-            "file": asdict(self._file.state()),
-            "disk": self._disk.message(),
+            "file": self._file.state(),
+            "disk": self._disk.state,
             "notes": self._notes_problem,
         }
 
-    def _initial_messages(self) -> list[dict[str, Any]]:
-        size = self._file.state().written_bytes
-        return [{"kind": "written", "bytes": size}, {"kind": "status", **self.status()}]
+    def _initial_messages(self) -> list[Message]:
+        return [Written(self._file.state().written_bytes), Status(**self._state())]
 
-    def _handle(self, message: dict[str, Any]) -> None:
-        match message.get("do"):
-            case "stop":
+    def _handle(self, request: Request) -> None:
+        match request:
+            case Stop():
                 self._over.set()
-            case "pause":
+            case Pause():
                 self._paused = True
-                self._mark({"what": "pause"})
-            case "resume":
+                self._mark("pause")
+            case Resume():
                 self._paused = False
-                self._mark({"what": "resume"})
-            case "mark":
-                facts = {name: message.get(name) for name in ("what", "text", "who")}
-                self._mark(facts, ago_s=message.get("ago_s", 0.0))
-            case _:
-                pass  # a request of a newer server
+                self._mark("resume")
+            case AddMark(what, text, who, ago_s):
+                self._mark(what, text, who, ago_s=ago_s)
 
-    def _mark(self, facts: dict[str, Any], *, ago_s: float = 0.0) -> None:
-        t_ns = time.time_ns() - round(1e9 * ago_s)
-        mark = {"t_ns": stretched(t_ns, self._session.speed), **facts}
+    def _mark(
+        self, what: str, text: str | None = None, who: str | None = None, *, ago_s: float = 0.0
+    ) -> None:
+        t_ns = stretched(time.time_ns() - round(1e9 * ago_s), self._session.speed)
+        mark = Mark(t_ns, what, text, who)
         try:
-            _append(self._session.marks, json.dumps(mark, ensure_ascii=False) + "\n")
+            _append(self._session.marks, json.dumps(fields_of(mark), ensure_ascii=False) + "\n")
         except OSError as error:
             self._notes_problem = error.strerror or str(error)
         else:
             self._notes_problem = ""
-            self._lines.send({"kind": "mark", **mark})
+            self._lines.send(mark)
         self._report_status()
 
 

@@ -1,13 +1,14 @@
 """The server's side of a capture, with a mapper that sends a few messages."""
 
 import asyncio
-import json
 
 from app.live.capture import Capture, unfinished
+from recon4.live.protocol import Done, encode
 from recon4.live.session import CaptureSession
+from tests.live_messages import pose
 
-POSE = {"kind": "pose", "t_ns": 1, "p": [0.0, 0.0, 0.0], "lost": False}
-DONE = {"kind": "done", "frames": 3, "problem": ""}
+POSE = pose()
+DONE = Done(frames=3, problem="")
 
 
 def test_a_server_reconnects_to_its_mapper_and_starts_no_second_one(tmp_path):
@@ -18,7 +19,7 @@ def test_a_server_reconnects_to_its_mapper_and_starts_no_second_one(tmp_path):
 
     async def serve(reader, writer):
         for message in next(connections):
-            writer.write(json.dumps(message).encode() + b"\n")
+            writer.write(encode(message))
         writer.close()
 
     async def run():

@@ -3,7 +3,11 @@
 import pytest
 
 from recon4.live.findings import findings, rates
+from recon4.live.newest import Newest
+from recon4.live.protocol import DiskState, FileState, RecentFrames
 from recon4.model.rig import load_rig, parse_rig
+from tests import live_messages
+from tests.live_messages import fix, notes, pose, sender
 
 RIG = load_rig("4recon")
 WITH_ADDRESSES = parse_rig(
@@ -20,46 +24,26 @@ WITH_ADDRESSES = parse_rig(
 )
 
 
-def sender(port, per_s=754.0, *, source="10.0.0.1", data_per_s=None, silent_s=0.0):
-    data_per_s = (per_s if port < 3000 else 0.0) if data_per_s is None else data_per_s
-    return {"source": source, "port": port, "per_s": per_s, "data_per_s": data_per_s,
-            "silent_s": silent_s}  # fmt: skip
-
-
 FIRST = sender(2368)
 SECOND = sender(2369, source="10.0.0.2")
 IMU = sender(8309, 200.0)
 
 
 def status(*senders, **changed):
-    message = {
-        "senders": list(senders or (FIRST, SECOND, IMU)),
-        "seconds": 60.0,
-        "paused": False,
-        "kernel_drops": 0,
-        "serial": None,
-        "file": {"problem": "", "dropped": 0},
-        "disk": {"left_s": 7200},
-    }
-    return message | changed
+    return live_messages.status(*(senders or (FIRST, SECOND, IMU)), **changed)
 
 
 def found_in(message=None, *, rig=RIG, problem="", **newest):
-    found = findings(rig, {"status": message or status(), **newest}, problem)
+    found = findings(rig, Newest(status=message or status(), **newest), problem)
     return [(one.level, one.text) for one in found]
 
 
-POSE = {"frame_id": 9, "lost": False, "turn_rad_s": 0.5, "age_s": 0.2, "match_ratio": 0.9,
-        "error_m": 0.02, "prediction_offset_m": 0.01, "degeneracy": 0.1, "remark": "", "thinned": 0,
-        "lately": {"frames": 100, "thinned": 0}}  # fmt: skip
-
-
 def test_without_faults_there_are_no_findings():
-    fix = {"quality": 4, "sd_m": [0.01, 0.01, 0.02], "jumped_m": None}
-    notes = {"warnings": [], "counts": {"packets": 9999}, "recent": {"packets": 9999}}
+    rtk = fix(sd_m=[0.01, 0.01, 0.02])
+    read = notes(counts={"packets": 9999}, recent={"packets": 9999})
 
-    assert found_in(pose=POSE, fix=fix, notes=notes) == []
-    assert found_in(rig=WITH_ADDRESSES, pose=POSE) == []
+    assert found_in(pose=pose(), fix=rtk, notes=read) == []
+    assert found_in(rig=WITH_ADDRESSES, pose=pose()) == []
 
 
 def test_no_sensor_is_silent_in_the_first_seconds():
@@ -145,12 +129,12 @@ def test_the_rate_of_a_lidar_counts_its_data_packets():
         (status(serial="/dev/x: gone"), "warning", "GNSS receiver: /dev/x: gone"),
         (status(kernel_drops=7), "error", "7 packets were lost: this computer is too busy"),
         (
-            status(file={"problem": "", "dropped": 5}),
+            status(file=FileState(dropped=5)),
             "error",
             "5 packets are not in the recording: the disk was full or too slow",
         ),
         (
-            status(file={"problem": "the disk is full", "dropped": 0}),
+            status(file=FileState(problem="the disk is full")),
             "error",
             "Nothing is recorded: the disk is full",
         ),
@@ -159,7 +143,7 @@ def test_the_rate_of_a_lidar_counts_its_data_packets():
             "error",
             "A mark could not be saved: No space left on device",
         ),
-        (status(disk={"left_s": 185}), "error", "Disk full in 3 min"),
+        (status(disk=DiskState(left_s=185)), "error", "Disk full in 3 min"),
         (status(paused=True), "info", "Paused: nothing is recorded"),
     ],
 )
@@ -168,7 +152,7 @@ def test_status_of_the_recorder_gives_findings(message, level, text):
 
 
 @pytest.mark.parametrize(
-    ("pose", "level", "text"),
+    ("changed", "level", "text"),
     [
         ({"lost": True}, "error", "Tracking lost: stop, then go back a few steps"),
         ({"turn_rad_s": 3.5}, "warning", "Turn slower"),
@@ -183,21 +167,21 @@ def test_status_of_the_recorder_gives_findings(message, level, text):
         ({"remark": "the IMU lies"}, "warning", "The IMU lies"),
         ({"age_s": 3.0}, "warning", "The preview is 3 s behind; the recording is complete"),
         (
-            {"age_s": 3.0, "thinned": 80, "lately": {"frames": 99, "thinned": 40}},
+            {"age_s": 3.0, "thinned": 80, "lately": RecentFrames(99, 40)},
             "warning",
             "The preview is 3 s behind: 40 of the last 99 frames are left out of the preview "
             "(80 in all); the recording is complete",
         ),
         (
-            {"age_s": 0.8, "thinned": 3, "lately": {"frames": 99, "thinned": 3}},
+            {"age_s": 0.8, "thinned": 3, "lately": RecentFrames(99, 3)},
             "info",
             "3 of the last 99 frames are left out of the preview (3 in all); the recording is "
             "complete",
         ),
     ],
 )
-def test_poses_of_the_mapper_give_findings(pose, level, text):
-    assert found_in(pose=POSE | pose) == [(level, text)]
+def test_poses_of_the_mapper_give_findings(changed, level, text):
+    assert found_in(pose=pose(**changed)) == [(level, text)]
 
 
 @pytest.mark.parametrize(
@@ -220,7 +204,7 @@ def test_poses_of_the_mapper_give_findings(pose, level, text):
 def test_repairs_of_the_reader_are_reported_while_they_happen(recent, level, text):
     counts = {"packets": 10**6, "packets_missing": 10**5}
 
-    found = found_in(notes={"warnings": [], "counts": counts, "recent": {"packets": 7000} | recent})
+    found = found_in(notes=notes(counts=counts, recent={"packets": 7000} | recent))
 
     assert found == ([(level, text)] if text else [])
 
@@ -228,23 +212,23 @@ def test_repairs_of_the_reader_are_reported_while_they_happen(recent, level, tex
 def test_a_clock_that_runs_freely_is_reported():
     text = "horizontal: its clock is +5.000 s off the recorder's and no GPS drives it"
 
-    assert found_in(notes={"warnings": [text]}) == [("warning", text)]
+    assert found_in(notes=notes(warnings=[text])) == [("warning", text)]
 
 
 @pytest.mark.parametrize(
-    ("fix", "level", "text"),
+    ("changed", "level", "text"),
     [
         ({"jumped_m": 50.2}, "warning", "GNSS jumped by 50 m: the map does not use it"),
         ({"quality": 1, "sd_m": [2.0, 3.1, 5.0]}, "info", "GNSS without RTK fix, ±3.1 m"),
         ({"quality": 0}, "info", "GNSS has no position"),
     ],
 )
-def test_gnss_is_judged(fix, level, text):
-    assert found_in(fix={"quality": 4, "sd_m": None, "jumped_m": None} | fix) == [(level, text)]
+def test_the_gnss_fix_gives_findings(changed, level, text):
+    assert found_in(fix=fix(**changed)) == [(level, text)]
 
 
 def test_the_most_urgent_comes_first():
-    pose = POSE | {"remark": "x"}
-    found = found_in(status(paused=True, kernel_drops=3), problem="gone", pose=pose)
+    paused = status(paused=True, kernel_drops=3)
+    found = found_in(paused, problem="gone", pose=pose(remark="x"))
 
     assert [level for level, _ in found] == ["error", "error", "warning", "info"]

@@ -7,19 +7,21 @@ from app.live.health import lidars
 from app.live.power import Battery, Power, battery_findings, read_battery
 from app.live.rigs import rig_files, rigs_in, shipped_rigs
 from app.live.store import marks_of
-from recon4.live.mapper.notes import Notes
+from recon4.live.mapper.notes import NotesWatch
+from recon4.live.newest import Newest
 from recon4.live.session import CaptureSession
 from recon4.model.rig import format_rig, load_rig
 from recon4.recording.report import ImportReport
 from recon4.recording.velodyne.sensor_clock import SensorClock
+from tests.live_messages import sender, status
 
 RIG = load_rig("4recon")
 SECOND_NS = 1_000_000_000
 
 
-def status(rate=754.0):
-    sender = {"source": "10.0.0.1", "per_s": rate, "data_per_s": rate, "silent_s": 0.0}
-    return {"senders": [sender | {"port": 2368}, sender | {"port": 2369, "source": "10.0.0.2"}]}
+def newest(rate=754.0, notes=None):
+    senders = (sender(2368, rate), sender(2369, rate, source="10.0.0.2"))
+    return Newest(status=status(*senders), notes=notes)
 
 
 def clock_of(name, offset_s):
@@ -33,7 +35,7 @@ def clock_of(name, offset_s):
 
 
 def health(report, rate=754.0):
-    found = lidars(RIG, {"status": status(rate), "notes": Notes(report).message(0.0)})
+    found = lidars(RIG, newest(rate, NotesWatch(report).message(0.0)))
     return {one.name: one for one in found}
 
 
@@ -46,19 +48,19 @@ def test_a_lidar_without_pps_is_distinguished_from_one_in_step():
 
 def test_lost_packets_are_those_of_the_lidar_that_lost_them():
     report = ImportReport()
-    notes = Notes(report)
+    notes = NotesWatch(report)
     notes.message(0.0)
     report.count("packets_missing", 838)
     report.count("packets_missing_vertical", 838)
 
-    found = lidars(RIG, {"status": status(), "notes": notes.message(9.0)})
+    found = lidars(RIG, newest(notes=notes.message(9.0)))
 
     assert [(one.name, one.lost) for one in found] == [("horizontal", 0.0), ("vertical", 0.1)]
 
 
 def test_without_data_and_for_a_silent_lidar_loss_and_clock_are_unknown():
-    assert lidars(RIG, {}) == []
-    (first, _) = lidars(RIG, {"status": status()})
+    assert lidars(RIG, Newest()) == []
+    (first, _) = lidars(RIG, newest())
     assert (first.lost, first.clock) == (None, "")
     assert health(ImportReport(), rate=0.0)["vertical"].lost is None
 
@@ -141,4 +143,4 @@ def test_marks_are_read_up_to_the_line_that_was_being_written(tmp_path):
     session.marks.parent.mkdir()
     session.marks.write_text('{"t_ns": 1, "what": "point"}\n{"t_ns": 2, "wh')
 
-    assert [one["t_ns"] for one in marks_of(session)] == [1]
+    assert [one.t_ns for one in marks_of(session)] == [1]

@@ -1,7 +1,6 @@
 """Phones are independent of each other, and the data rate to each is limited."""
 
 import asyncio
-import base64
 import json
 import time
 
@@ -13,8 +12,10 @@ from app.live import phone as phones
 from app.live.capture import Capture
 from app.live.phone import Phone
 from app.live.store import Captures
+from recon4.live.protocol import Points
 from recon4.live.session import CaptureSession
 from recon4.model.rig import load_rig
+from tests.live_messages import pose
 
 POINTS = 400_000
 
@@ -61,7 +62,7 @@ def captures(tmp_path):
 
 
 def walk(stream, k):
-    stream.take({"kind": "pose", "t_ns": k, "p": [float(k), 0.0, 1.0], "lost": False})
+    stream.take(pose(t_ns=k, p=[float(k), 0.0, 1.0]))
 
 
 def test_a_phone_that_stalls_is_disconnected_without_effect_on_others(captures, monkeypatch):
@@ -89,10 +90,7 @@ def test_a_phone_that_stalls_is_disconnected_without_effect_on_others(captures, 
 def test_the_newest_pose_is_sent_first_and_the_data_rate_stays_within_two_megabits(captures):
     stream = captures.newest.stream
     voxels = np.zeros((POINTS, 3), np.int16)
-    message = {"kind": "points", "generation": 0, "start": 0, "voxel_m": 0.1}
-    message["voxels"] = base64.b64encode(voxels.tobytes()).decode()
-    message["values"] = base64.b64encode(bytes(POINTS)).decode()
-    stream.take(message)
+    stream.take(Points(0, 0, POINTS, 0.1, voxels.tobytes(), bytes(POINTS)))
 
     async def one_phone():
         client = Client(captures)

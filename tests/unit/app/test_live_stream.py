@@ -1,31 +1,25 @@
 """Each phone gets the part of the state it lacks, no more."""
 
-import base64
-
 import numpy as np
 
 from app.live.stream_state import Cursor, StreamState
+from recon4.live.protocol import Mark, Points
+from tests import live_messages
 
 SECOND_NS = 1_000_000_000
 
 
-def pose(t_s, x, lost=False):
-    return {"kind": "pose", "t_ns": int(t_s * SECOND_NS), "p": [x, 0.0, 1.0], "lost": lost}
+def pose(t_s, x):
+    return live_messages.pose(t_ns=int(t_s * SECOND_NS), p=[x, 0.0, 1.0])
 
 
 def points(start, count, generation=0):
-    return {
-        "kind": "points",
-        "generation": generation,
-        "start": start,
-        "voxel_m": 0.1,
-        "voxels": base64.b64encode(np.full((count, 3), start, np.int16).tobytes()).decode(),
-        "values": base64.b64encode(np.zeros(count, np.uint8).tobytes()).decode(),
-    }
+    voxels = np.full((count, 3), start, np.int16).tobytes()
+    return Points(generation, start, count, 0.1, voxels, bytes(count))
 
 
 def mark(t_s, text, what="point"):
-    return {"kind": "mark", "t_ns": int(t_s * SECOND_NS), "what": what, "text": text}
+    return Mark(int(t_s * SECOND_NS), what, text, "Eva")
 
 
 def marks_of(stream):
@@ -63,17 +57,17 @@ def test_a_mark_gets_the_position_of_its_time_although_the_mapping_is_late():
     assert marks_of(stream) == []
     stream.take(pose(3.0, 30.0))
 
-    assert [(one["text"], one["p"][0]) for one in marks_of(stream)] == [("crack", 30.0)]
+    assert [(one.text, one.p[0]) for one in marks_of(stream)] == [("crack", 30.0)]
 
 
 def test_a_mark_appears_without_mapping_too_and_a_place_name_at_once():
     stream = StreamState()
     stream.take(mark(3.0, "town hall", what="place"))
-    assert [one["text"] for one in marks_of(stream)] == ["town hall"]
+    assert [one.text for one in marks_of(stream)] == ["town hall"]
     stream.take(mark(3.0, "crack"))
-    stream.take({"kind": "status", "t_ns": 14 * SECOND_NS})
+    stream.take(live_messages.status(t_ns=14 * SECOND_NS))
 
-    assert [(one["text"], one["p"]) for one in marks_of(stream)] == [
+    assert [(one.text, one.p) for one in marks_of(stream)] == [
         ("town hall", None),
         ("crack", None),
     ]
@@ -96,7 +90,7 @@ def test_a_mark_gets_the_position_of_the_touch_not_of_the_finished_note():
     stream.take(mark(3.0, "crack"))
     stream.take(pose(9.0, 90.0))
 
-    assert [one["p"][0] for one in marks_of(stream)] == [30.0]
+    assert [one.p[0] for one in marks_of(stream)] == [30.0]
 
 
 def test_marks_of_an_earlier_server_are_not_sent_twice_and_later_ones_come():
@@ -106,7 +100,7 @@ def test_marks_of_an_earlier_server_are_not_sent_twice_and_later_ones_come():
     stream.take(pose(3.0, 1.0))
 
     assert "marks" not in stream.lacking(there)[0]
-    assert [one["text"] for one in stream.lacking(new)[0]["marks"]["marks"]] == [
+    assert [one.text for one in stream.lacking(new)[0]["marks"]["marks"]] == [
         "town hall",
         "crack",
     ]

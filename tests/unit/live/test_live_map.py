@@ -7,6 +7,7 @@ import pytest
 
 from recon4.geometry.se3 import so3_exp
 from recon4.live.mapper.live_map import LiveMap
+from recon4.live.protocol import RecentFrames
 from recon4.model.multiframe import COLUMNS, Multiframe
 from recon4.model.rig import load_rig
 from recon4.model.samples import ImuSamples
@@ -75,10 +76,10 @@ class Follower:
         imu = self.walk.imu(row, shift_ns, before_ns=before_ns)
         gyro, accel = imu.gyro_rad_s * self.axes[0], imu.accel_m_s2 * self.axes[1]
         self.map.extend_imu(ImuSamples(imu.t_ns, gyro, accel))
-        pose = self.map.push(self.walk.frame(row, shift_ns, noise=noise))[0]
-        p_m, truth = np.array(pose["p"]), self.walk.at(row)
+        pose, _ = self.map.push(self.walk.frame(row, shift_ns, noise=noise))
+        p_m, truth = np.array(pose.p), self.walk.at(row)
         if self.start is None:
-            turn = pose["yaw"] - np.arctan2(truth.R[1, 0], truth.R[0, 0])
+            turn = pose.yaw - np.arctan2(truth.R[1, 0], truth.R[0, 0])
             self.start = so3_exp([0.0, 0.0, turn]), truth.t, p_m
         R, truth_m, start_m = self.start
         off_m = R @ (truth.t - truth_m) - (p_m - start_m)
@@ -88,18 +89,18 @@ class Follower:
 def test_who_is_lost_and_carried_elsewhere_is_found_again(walk):
     follower = Follower(walk)
     errors = [follower.push(row)[1] for row in range(130)]
-    points_before = follower.map.snapshot().messages()[1]["count"]
+    points_before = follower.map.snapshot().messages()[1].count
     for row in range(130, 142):
         pose, _ = follower.push(row, noise=True)
-    points_lost = follower.map.snapshot().messages()[1]["count"]
+    points_lost = follower.map.snapshot().messages()[1].count
     back = walk.store[142].t_ns - walk.store[60].t_ns
     message = [follower.push(row, back) for row in range(60, 142)]
 
     assert max(errors) < 0.08
-    assert pose["lost"]
+    assert pose.lost
     assert points_lost == points_before
-    found = [error for pose, error in message if not pose["lost"]]
-    assert message[-1][0]["relocated"] == 1
+    found = [error for pose, error in message if not pose.lost]
+    assert message[-1][0].relocated == 1
     assert len(found) > 10
     assert max(found) < 0.10
 
@@ -109,8 +110,8 @@ def test_an_imu_upside_down_is_said_and_mapping_goes_on_without_it(walk):
 
     message = [follower.push(row) for row in range(60)]
 
-    assert not any(pose["imu"] or pose["lost"] for pose, _ in message)
-    assert "upside down" in message[0][0]["remark"]
+    assert not any(pose.imu or pose.lost for pose, _ in message)
+    assert "upside down" in message[0][0].remark
     assert max(error for _, error in message) < 0.15
 
 
@@ -119,12 +120,12 @@ def test_an_imu_that_turns_the_wrong_way_is_found_out_and_the_map_begins_anew(wa
 
     message = [follower.push(row)[0] for row in range(65)]
 
-    begun = next(k for k, pose in enumerate(message) if pose["remark"])
-    assert (message[0]["imu"], message[-1]["imu"]) == (True, False)
-    assert not any(pose["lost"] for pose in message[begun:])
+    begun = next(k for k, pose in enumerate(message) if pose.remark)
+    assert (message[0].imu, message[-1].imu) == (True, False)
+    assert not any(pose.lost for pose in message[begun:])
     path, points = follower.map.snapshot().messages()[:2]
-    assert points["generation"] == 1
-    walked_m = np.linalg.norm(np.diff(path["points"], axis=0), axis=1).sum()
+    assert points.generation == 1
+    walked_m = np.linalg.norm(np.diff(path.points, axis=0), axis=1).sum()
     truth_m = np.array([walk.at(row).t for row in range(begun, 65)])
     assert walked_m == pytest.approx(
         np.linalg.norm(np.diff(truth_m, axis=0), axis=1).sum(), abs=0.4
@@ -137,7 +138,7 @@ def test_a_long_path_keeps_its_start(walk):
     for k in range(30_000):
         live_map._extend_path(np.array([0.1 * k, 0.0, 0.0]))
 
-    path = live_map.snapshot().messages()[0]["points"]
+    path = live_map.snapshot().messages()[0].points
     assert path[0] == [0.0, 0.0, 0.0]
     assert 9_000 < len(path) < 12_001
 
@@ -158,8 +159,8 @@ def test_what_is_left_out_is_counted_for_ten_seconds(walk):
     pose, _ = follower.push(10)
     later, _ = follower.push(11, 10_000_000_000)
 
-    assert (pose["thinned"], pose["lately"]) == (5, {"frames": 11, "thinned": 5})
-    assert (later["thinned"], later["lately"]["thinned"]) == (5, 0)
+    assert (pose.thinned, pose.lately) == (5, RecentFrames(11, 5))
+    assert (later.thinned, later.lately.thinned) == (5, 0)
 
 
 def test_after_a_pause_the_walk_goes_on_where_it_stopped(walk):
@@ -168,9 +169,9 @@ def test_after_a_pause_the_walk_goes_on_where_it_stopped(walk):
         follower.push(row)
     later = [follower.push(row, 60_000_000_000) for row in range(100, 125)]
 
-    assert later[0][0]["lost"]
-    assert not any(pose["lost"] for pose, _ in later[15:])
-    assert max(error for pose, error in later if not pose["lost"]) < 0.1
+    assert later[0][0].lost
+    assert not any(pose.lost for pose, _ in later[15:])
+    assert max(error for pose, error in later if not pose.lost) < 0.1
 
 
 def test_who_was_carried_elsewhere_in_a_pause_is_found_before_anything_is_drawn(walk):
@@ -180,7 +181,7 @@ def test_who_was_carried_elsewhere_in_a_pause_is_found_before_anything_is_drawn(
     back = walk.store[130].t_ns - walk.store[60].t_ns + 60_000_000_000
     later = [follower.push(row, back) for row in range(60, 142)]
 
-    found = [error for pose, error in later if not pose["lost"]]
+    found = [error for pose, error in later if not pose.lost]
     assert len(found) > 10
     assert max(found) < 0.1
 
@@ -193,8 +194,8 @@ def test_lidars_that_are_silent_for_three_seconds_lose_nobody_who_has_an_imu(wal
         follower.map.extend_imu(walk.imu(row))
     later = [follower.push(row) for row in range(90, 100)]
 
-    assert not later[-1][0]["lost"]
-    assert later[-1][0]["relocated"] == 0
+    assert not later[-1][0].lost
+    assert later[-1][0].relocated == 0
     assert later[-1][1] < 0.1
 
 
@@ -202,10 +203,10 @@ def test_a_few_bad_multiframes_are_no_reason_to_search(walk):
     follower = Follower(walk)
     for row in range(40):
         follower.push(row)
-    lost = [follower.push(row, noise=True)[0]["lost"] for row in range(40, 43)]
+    lost = [follower.push(row, noise=True)[0].lost for row in range(40, 43)]
     pose, error_m = [follower.push(row) for row in range(43, 60)][-1]
 
     assert lost == [True] * 3
-    assert not pose["lost"]
-    assert pose["relocated"] == 0
+    assert not pose.lost
+    assert pose.relocated == 0
     assert error_m < 0.05

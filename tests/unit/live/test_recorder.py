@@ -16,6 +16,8 @@ import pytest
 
 from recon4.errors import ConfigError
 from recon4.live.findings import findings
+from recon4.live.newest import Newest
+from recon4.live.protocol import decode_message
 from recon4.live.recorder.capture_file import CaptureFile, Datagram
 from recon4.live.recorder.ports import check_sources, open_ports
 from recon4.live.recorder.serial_line import parse_device
@@ -84,6 +86,10 @@ class Talk:
         raise AssertionError(f"never heard {kind}")
 
 
+def decode(message):
+    return decode_message(json.dumps(message).encode())
+
+
 def send(session, count, *, size=1206, start=0):
     udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     udp.bind(("127.0.0.77", 0))
@@ -114,7 +120,7 @@ def test_datagrams_from_an_unexpected_address_are_no_silence(session):
             message = talk.hear("status")
             if message["seconds"] > 3.0 and any(one["per_s"] for one in message["senders"]):
                 break
-        found = [one.text for one in findings(rig, {"status": message}, "")]
+        found = [one.text for one in findings(rig, Newest(status=decode(message)), "")]
         talk.send(do="stop")
         process.wait(20.0)
 
@@ -375,7 +381,8 @@ def test_on_a_full_disk_neither_marks_nor_pauses_end_the_recording(session):
         stopped = talk.hear("stopped")
 
     rig = load_rig(session.rig)
-    texts = {found.text for one in (full, message) for found in findings(rig, {"status": one}, "")}
+    states = [Newest(status=decode(one)) for one in (full, message)]
+    texts = {found.text for newest in states for found in findings(rig, newest, "")}
     assert "Nothing is recorded: the disk is full" in texts
     assert any(text.startswith("A mark could not be saved: ") for text in texts)
     assert (stopped["file"]["dropped"], stopped["notes"]) == (50, "")
