@@ -17,7 +17,7 @@ from typing import Any
 
 from app.compute_pool import ComputePool, Lane, Terms
 from app.errors import NoRoom
-from app.slices import work
+from app.slices import export_work
 from app.slices.model import SliceExportRequest
 
 LIMIT_S = 1800.0
@@ -93,7 +93,7 @@ class Exports:
                 await run(
                     Lane.EXPORT,
                     replace(terms, outputs={name: place}, large=request.large, limit_s=LIMIT_S),
-                    work.export,
+                    export_work.export,
                     dict(request.artifacts),
                     request.ask,
                     name,

@@ -15,7 +15,6 @@ from app.slices.model import (
     CompareRequest,
     ControlState,
     PickView,
-    SliceExportRequest,
     SliceFacts,
     SliceImageRequest,
     SliceImageView,
@@ -29,7 +28,6 @@ from recon4.geometry.se3 import SE3
 from recon4.mapping.tiles import TileSet
 from recon4.names import visible
 from recon4.review.evidence import Evidence
-from recon4.review.stamp import stamp_file
 from recon4.slices.acceptance import AcceptanceText, render_acceptance
 from recon4.slices.align import align_by_icp, align_by_pairs
 from recon4.slices.colors import SENSOR_COLORS, ColorBy, Ground, Span, table
@@ -37,7 +35,6 @@ from recon4.slices.compare import compare, to_csv, to_json, usual_cuts
 from recon4.slices.control import ControlPoint, read_control
 from recon4.slices.cut import Cut, horizontal
 from recon4.slices.doubles import find_double_walls
-from recon4.slices.export import write_csv, write_dxf, write_geotiff, write_laz
 from recon4.slices.frames import MapFrame, frame_of
 from recon4.slices.imports import import_reference, set_alignment
 from recon4.slices.pick import nearest_surface, pick
@@ -45,12 +42,9 @@ from recon4.slices.points import SliceWindow, extent
 from recon4.slices.reference import Method, Reference, load_reference, read_facts
 from recon4.slices.residuals import ControlReport, residual_csv, residuals
 from recon4.slices.sheet import (
-    SheetText,
     approval_text,
     axis_labels,
-    lay_out,
     source_text,
-    write_sheet,
 )
 from recon4.slices.slice_image import Paper, SliceImage, draw, png
 from recon4.store.atomic import atomic_file, null_for_nan, write_json
@@ -58,9 +52,6 @@ from recon4.store.checked import CheckedArtifact
 
 Artifacts = dict[str, str]
 """Stage -> folder of its artifact."""
-FINEST_M = 0.005
-"""Pixel of a GeoTIFF, unless it would get too large [m]."""
-MOST_GEOTIFF_PX = 6000
 MOST_KEPT_BYTES = 64 << 20
 
 
@@ -76,7 +67,7 @@ def _approved_tiles(folder: str, manifest_sha256: str) -> TileSet:
     return TileSet.open(Path(folder), CheckedArtifact.open(Path(folder), manifest_sha256))
 
 
-def _map_of(artifacts: Artifacts, evidence: Evidence | None) -> TileSet:
+def map_of(artifacts: Artifacts, evidence: Evidence | None) -> TileSet:
     """The map of a request; an approved map is compared with its signed hashes.
 
     Raises:
@@ -105,7 +96,7 @@ def reference_of(folder: str, method: Method) -> Reference | None:
 
 def facts(artifacts: Artifacts, context: dict[str, Any]) -> SliceFacts:
     """Facts about the map; ``context`` has the fields that the server adds."""
-    tiles, frame = tiles_of(artifacts["map"]), _frame(artifacts)
+    tiles, frame = tiles_of(artifacts["map"]), map_frame(artifacts)
     low, high = (_xyz(np.nan_to_num(corner)) for corner in tiles.bounds_m)
     times = tiles.facts["time_ns"] or [0, 0]
     return SliceFacts(
@@ -126,8 +117,8 @@ def slice_image(
 ) -> SliceImageView:
     """Draw an image of a slice; of an approved map only checked tiles are drawn."""
     began = time.perf_counter()
-    tiles, cut = _map_of({"map": map_folder}, evidence), ask.cut.cut()
-    window = _shaped(_window(ask, tiles, cut), ask.width / ask.height)
+    tiles, cut = map_of({"map": map_folder}, evidence), ask.cut.cut()
+    window = _shaped(window_of(ask, tiles, cut), ask.width / ask.height)
     paper = Paper(window, (window.right - window.left) / ask.width)
     made = draw(tiles, cut, paper, color=ask.color, reference=reference_of(reference, ask.method))
     span = span_of(ask, made)
@@ -188,7 +179,7 @@ def pick_point(
     return PickView(
         found=True,
         p_map=found.p_map,
-        p_crs=_in_crs(_frame(artifacts), found.p_map),
+        p_crs=_in_crs(map_frame(artifacts), found.p_map),
         uv=found.uv,
         about=found.about,
     )
@@ -222,7 +213,7 @@ def comparison_csv(map_folder: str, reference: str, ask: CompareRequest) -> str:
 
 def add_reference(path: str, out: str, name: str, artifacts: Artifacts | None) -> dict[str, Any]:
     """Import a file of unknown origin; ``artifacts`` if it is in the map's CRS."""
-    frame = _frame(artifacts) if artifacts else None
+    frame = map_frame(artifacts) if artifacts else None
     if frame is not None and frame.to_crs is None:
         raise ConfigError("the map is local: a reference in a CRS cannot be aligned with it")
     return import_reference(Path(path), Path(out), name=name, frame=frame)
@@ -246,80 +237,6 @@ def align_reference(
     return set_alignment(folder, fit.T_map_reference, description=fit.description)
 
 
-def export(
-    artifacts: Artifacts,
-    ask: SliceExportRequest,
-    out: str,
-    *,
-    reference: str,
-    context: dict[str, Any],
-) -> str:
-    """Write an export of slices in the format of its suffix, with the approval if there is one.
-
-    Raises:
-        Altered: If a tile differs from the approved one.
-    """
-    path, evidence = Path(out), context["evidence"]
-    tiles, frame = _map_of(artifacts, evidence), _frame(artifacts)
-    cuts = ask.cut.cut().repeated(ask.count, spacing_m=ask.spacing_m)
-    window = SliceWindow(**ask.window.model_dump()) if ask.window else None
-    if path.suffix == ".laz":
-        write_laz(tiles, cuts, path, frame=frame, window=window)
-    elif path.suffix == ".csv":
-        write_csv(tiles, cuts, path, frame=frame, window=window)
-    elif path.suffix == ".dxf":
-        write_dxf(tiles, cuts, path, frame=frame, window=window, flat=ask.flat)
-    elif path.suffix == ".tif":
-        _export_geotiff(artifacts, ask, path, reference=reference, context=context)
-    else:
-        _export_sheet(artifacts, ask, path, reference=reference, context=context)
-    if evidence and path.suffix in (".laz", ".csv", ".dxf"):
-        stamp_file(path, path, evidence.stamp)
-    return out
-
-
-def _export_geotiff(
-    artifacts: Artifacts,
-    ask: SliceExportRequest,
-    path: Path,
-    *,
-    reference: str,
-    context: dict[str, Any],
-) -> None:
-    tiles, cut = _map_of(artifacts, context["evidence"]), ask.cut.cut()
-    window = _window(ask, tiles, cut)
-    side_m = max(window.right - window.left, window.top - window.bottom)
-    paper = Paper(window, max(FINEST_M, side_m / MOST_GEOTIFF_PX))
-    against = reference_of(reference, ask.method)
-    made = draw(tiles, cut, paper, color=ask.color, reference=against)
-    description = f"{context['project']}: {_approval_text(context['evidence'])}"
-    frame = _frame(artifacts)
-    write_geotiff(made, path, frame=frame, span=span_of(ask, made), description=description)
-
-
-def _export_sheet(
-    artifacts: Artifacts,
-    ask: SliceExportRequest,
-    path: Path,
-    *,
-    reference: str,
-    context: dict[str, Any],
-) -> None:
-    tiles, cut = _map_of(artifacts, context["evidence"]), ask.cut.cut()
-    against = reference_of(reference, ask.method)
-    layout = lay_out(_window(ask, tiles, cut), ask.size, ask.scale)
-    made = draw(tiles, cut, layout.paper, color=ask.color, reference=against)
-    text = SheetText(
-        project=context["project"],
-        frame=_frame(artifacts).text,
-        sources=source_text(context["key"]),
-        approval=_approval_text(context["evidence"]),
-        reference=against.name if against else "",
-        sensors=tuple(str(name) for name in tiles.facts.get("sensors", [])),
-    )
-    write_sheet(made, layout, path, span=span_of(ask, made), text=text)
-
-
 def preview_control(data: bytes, name: str, order: str | None) -> dict[str, Any]:
     """Points and open questions of a survey file."""
     return asdict(read_control(data, name=name, order=order))  # type: ignore[arg-type]
@@ -341,14 +258,14 @@ def control_file(
     """
     evidence = context["evidence"]
     if evidence:
-        _map_of(artifacts, evidence)
+        map_of(artifacts, evidence)
         evidence.artifact("map", Path(artifacts["map"])).check_all()  # points were found in it
     found, sources = _residuals(artifacts, state), source_text(Path(artifacts["map"]).name)
     text = AcceptanceText(
         project=context["project"],
-        frame=_frame(artifacts).text,
+        frame=map_frame(artifacts).text,
         sources=sources,
-        approval=_approval_text(evidence),
+        approval=stamp_text(evidence),
     )
     if ending == "html":
         return render_acceptance(found, text)
@@ -357,7 +274,7 @@ def control_file(
 
 
 def _residuals(artifacts: Artifacts, state: ControlState) -> ControlReport:
-    own = _frame(artifacts)
+    own = map_frame(artifacts)
     here = state.of_map(Path(artifacts["map"]).name)
     measured = {name: np.array(p_map) for name, p_map in here.items()}
     if state.frame == "crs":
@@ -372,7 +289,7 @@ def surface_at(artifacts: Artifacts, xyz_m: Xyz, frame: str) -> dict[str, Any]:
     """Position of a surveyed point in the map, and the nearest point of the map's surface."""
     p = np.array(xyz_m)
     if frame == "crs":
-        p = _frame(artifacts).from_crs(p[None])[0]
+        p = map_frame(artifacts).from_crs(p[None])[0]
     found = nearest_surface(tiles_of(artifacts["map"]), p)
     return {"p_map": _xyz(p), "surface": None if found is None else _xyz(found)}
 
@@ -405,11 +322,13 @@ def span_of(ask: SliceView, made: SliceImage) -> Span:
     return Span(low, high)
 
 
-def _approval_text(evidence: Evidence | None) -> str:
+def stamp_text(evidence: Evidence | None) -> str:
+    """Who approved a map, as one line."""
     return approval_text(asdict(evidence.stamp) if evidence else None)
 
 
-def _window(ask: SliceView, tiles: TileSet, cut: Cut) -> SliceWindow:
+def window_of(ask: SliceView, tiles: TileSet, cut: Cut) -> SliceWindow:
+    """The requested window of a slice, or its whole extent with a margin."""
     if ask.window is not None:
         return SliceWindow(**ask.window.model_dump())
     all_of_it = extent(tiles, cut)
@@ -444,7 +363,8 @@ def _stops(color: ColorBy, ground: Ground) -> list[str]:
     return [f"#{r:02x}{g:02x}{b:02x}" for r, g, b in table(color, ground)[::15].tolist()]
 
 
-def _frame(artifacts: Artifacts) -> MapFrame:
+def map_frame(artifacts: Artifacts) -> MapFrame:
+    """The frame of the map of a request."""
     return frame_of({stage: Path(folder) for stage, folder in artifacts.items()})
 
 

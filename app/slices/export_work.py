@@ -1,0 +1,100 @@
+"""Export of slices to files, in a child process of the compute pool."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from app.slices.model import SliceExportRequest
+from app.slices.work import (
+    Artifacts,
+    map_frame,
+    map_of,
+    reference_of,
+    span_of,
+    stamp_text,
+    window_of,
+)
+from recon4.review.stamp import stamp_file
+from recon4.slices.export import write_csv, write_dxf, write_geotiff, write_laz
+from recon4.slices.points import SliceWindow
+from recon4.slices.sheet import SheetText, lay_out, source_text, write_sheet
+from recon4.slices.slice_image import Paper, draw
+
+FINEST_M = 0.005
+"""Pixel of a GeoTIFF, unless it would get too large [m]."""
+MOST_GEOTIFF_PX = 6000
+
+
+def export(
+    artifacts: Artifacts,
+    ask: SliceExportRequest,
+    out: str,
+    *,
+    reference: str,
+    context: dict[str, Any],
+) -> str:
+    """Write an export of slices in the format of its suffix, with the approval if there is one.
+
+    Raises:
+        Altered: If a tile differs from the approved one.
+    """
+    path, evidence = Path(out), context["evidence"]
+    tiles, frame = map_of(artifacts, evidence), map_frame(artifacts)
+    cuts = ask.cut.cut().repeated(ask.count, spacing_m=ask.spacing_m)
+    window = SliceWindow(**ask.window.model_dump()) if ask.window else None
+    if path.suffix == ".laz":
+        write_laz(tiles, cuts, path, frame=frame, window=window)
+    elif path.suffix == ".csv":
+        write_csv(tiles, cuts, path, frame=frame, window=window)
+    elif path.suffix == ".dxf":
+        write_dxf(tiles, cuts, path, frame=frame, window=window, flat=ask.flat)
+    elif path.suffix == ".tif":
+        _export_geotiff(artifacts, ask, path, reference=reference, context=context)
+    else:
+        _export_sheet(artifacts, ask, path, reference=reference, context=context)
+    if evidence and path.suffix in (".laz", ".csv", ".dxf"):
+        stamp_file(path, path, evidence.stamp)
+    return out
+
+
+def _export_geotiff(
+    artifacts: Artifacts,
+    ask: SliceExportRequest,
+    path: Path,
+    *,
+    reference: str,
+    context: dict[str, Any],
+) -> None:
+    tiles, cut = map_of(artifacts, context["evidence"]), ask.cut.cut()
+    window = window_of(ask, tiles, cut)
+    side_m = max(window.right - window.left, window.top - window.bottom)
+    paper = Paper(window, max(FINEST_M, side_m / MOST_GEOTIFF_PX))
+    against = reference_of(reference, ask.method)
+    made = draw(tiles, cut, paper, color=ask.color, reference=against)
+    description = f"{context['project']}: {stamp_text(context['evidence'])}"
+    frame = map_frame(artifacts)
+    write_geotiff(made, path, frame=frame, span=span_of(ask, made), description=description)
+
+
+def _export_sheet(
+    artifacts: Artifacts,
+    ask: SliceExportRequest,
+    path: Path,
+    *,
+    reference: str,
+    context: dict[str, Any],
+) -> None:
+    tiles, cut = map_of(artifacts, context["evidence"]), ask.cut.cut()
+    against = reference_of(reference, ask.method)
+    layout = lay_out(window_of(ask, tiles, cut), ask.size, ask.scale)
+    made = draw(tiles, cut, layout.paper, color=ask.color, reference=against)
+    text = SheetText(
+        project=context["project"],
+        frame=map_frame(artifacts).text,
+        sources=source_text(context["key"]),
+        approval=stamp_text(context["evidence"]),
+        reference=against.name if against else "",
+        sensors=tuple(str(name) for name in tiles.facts.get("sensors", [])),
+    )
+    write_sheet(made, layout, path, span=span_of(ask, made), text=text)
