@@ -13,9 +13,8 @@ import threading
 import time
 import unicodedata
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
-from typing import Any
 
 import sqlalchemy as sa
 from starlette.requests import HTTPConnection
@@ -76,13 +75,13 @@ class AuditLog:
             return
         timestamp = datetime.fromtimestamp(self._clock(), UTC).isoformat(timespec="milliseconds")
         texts = dict(person=person, address=address, action=action, object=what, outcome=outcome)
-        row: dict[str, Any] = {"time": timestamp}
-        row |= {name: printable(text) for name, text in texts.items()}
+        texts = {name: printable(text) for name, text in texts.items()}
         newest = sa.select(AUDIT.c.number, AUDIT.c.hash).order_by(AUDIT.c.number.desc()).limit(1)
         with writing(self._engine) as connection:
             number, before = connection.execute(newest).one_or_none() or (0, BEGINNING)
-            row |= {"number": number + 1}
-            connection.execute(AUDIT.insert().values(**row, hash=link(before, row)))
+            entry = Entry(number=number + 1, time=timestamp, **texts, hash="")
+            entry = replace(entry, hash=link(before, entry))
+            connection.execute(AUDIT.insert().values(**asdict(entry)))
 
     def newest(self, most: int, *, before: int | None = None) -> list[Entry]:
         """The newest rows, newest first; with ``before`` those older than that row."""
@@ -96,7 +95,7 @@ class AuditLog:
         """Compute every hash again."""
         with self._engine.connect() as connection:
             rows = connection.execute(AUDIT.select().order_by(AUDIT.c.number)).mappings()
-            return follow(dict(row) for row in rows)
+            return follow(Entry(**row) for row in rows)
 
     def _counted(self, what: str) -> str:
         """The object of a refusal with the number left out before it; empty = leave it out."""
@@ -131,20 +130,21 @@ def address(connection: HTTPConnection) -> str:
     return connection.client.host if connection.client else "?"
 
 
-def link(before: str, row: dict[str, Any]) -> str:
+def link(before: str, entry: Entry) -> str:
     """The hash of a row, given that of the row before."""
-    text = json.dumps([before, {k: v for k, v in row.items() if k != "hash"}], sort_keys=True)
+    fields = {name: value for name, value in asdict(entry).items() if name != "hash"}
+    text = json.dumps([before, fields], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def follow(rows: Iterable[dict[str, Any]]) -> Chain:
-    """Walk the chain from its beginning."""
+def follow(rows: Iterable[Entry]) -> Chain:
+    """Verify the chain from its beginning."""
     before, number, broken = BEGINNING, 0, None
     for row in rows:
-        whole = row["number"] == number + 1 and row["hash"] == link(before, row)
+        whole = row.number == number + 1 and row.hash == link(before, row)
         if broken is None and not whole:
-            broken = row["number"]
-        before, number = row["hash"], row["number"]
+            broken = row.number
+        before, number = row.hash, row.number
     return Chain(entries=number, broken_at=broken, newest=before)
 
 

@@ -3,7 +3,7 @@
 import contextlib
 import sqlite3
 import threading
-from dataclasses import asdict
+from dataclasses import replace
 
 import pytest
 
@@ -320,12 +320,12 @@ def test_a_row_forged_together_with_its_hash_shows_at_the_next(access, tmp_path)
     for k in range(5):
         access.log.add("Anna", "?", action="start job", what=f"office {k}")
     newest = access.log.newest(5)
-    forged = asdict(newest[2]) | {"person": "Bert"}
-    forged["hash"] = link(newest[3].hash, forged)
+    forged = replace(newest[2], person="Bert")
+    forged = replace(forged, hash=link(newest[3].hash, forged))
 
     with sqlite3.connect(tmp_path / "access.sqlite") as file:
         file.execute("DROP TRIGGER audit_no_update")
-        values = (forged["person"], forged["hash"])
+        values = (forged.person, forged.hash)
         file.execute("UPDATE audit SET person = ?, hash = ? WHERE number = 3", values)
     file.close()
 
