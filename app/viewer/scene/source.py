@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import logging
 import threading
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 
 from app.viewer.cloud.multiframes import Multiframes
@@ -32,6 +33,32 @@ GRAPH_STAGES = ("level", "review", "verification", "graph")
 """Stages with these artifacts, the last one first."""
 SHOWN_WHILE_RUNNING = {"frames": (), "odometry": ("frames",), "graph": ("frames", "odometry")}
 """Running stage -> stages that are shown; the other artifacts are of an earlier run."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GnssResiduals:
+    """The fixes in ``georeference.json``, with their residuals to the trajectory."""
+
+    georeferenced: bool = False
+    t_ns: tuple[int, ...] = ()
+    residual_enu_m: tuple[tuple[float, float, float], ...] = ()
+    """East, north, up [m]."""
+    used: tuple[bool, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Crs:
+    """The CRS in ``georeference.json``."""
+
+    name: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Georeference:
+    """The fields of ``georeference.json`` that the viewer shows."""
+
+    georeference: GnssResiduals | None = None
+    crs: Crs | None = None
 
 
 class ProjectSource:
@@ -89,8 +116,8 @@ class ProjectSource:
             multiframes=frames,
             preview=self._preview(frames) if cloud is None else None,
             sensors=self._sensors(),
-            gnss=self._gnss(georeference, trajectory),
-            crs=str((georeference.get("crs") or {}).get("name", "")),
+            gnss=self._gnss(georeference.georeference, trajectory),
+            crs=georeference.crs.name if georeference.crs else "",
         )
 
     def _once(self, name: str, folder: Path, make: Any) -> Any:
@@ -153,29 +180,29 @@ class ProjectSource:
             return ()
         return tuple(sensor.name for sensor in load_rig(frames / "rig.toml").sensors)
 
-    def _georeference(self) -> dict[str, Any]:
-        def read(path: Path) -> dict[str, Any]:
-            try:
-                record: dict[str, Any] = json.loads((path / "georeference.json").read_text("utf-8"))
-            except (OSError, ValueError):
-                return {}
-            return record
+    def _georeference(self) -> Georeference:
+        return self._of_stage("level", _read_georeference) or Georeference()
 
-        return self._of_stage("level", read) or {}
-
-    def _gnss(self, record: dict[str, Any], line: Trajectory | None) -> GnssMarks | None:
+    def _gnss(self, fixes: GnssResiduals | None, line: Trajectory | None) -> GnssMarks | None:
         """GNSS fixes: antenna positions of the trajectory plus the residuals."""
-        fixes = record.get("georeference") or {}
         frames = self._artifacts.get("frames")
-        if line is None or frames is None or not fixes.get("georeferenced"):
+        if line is None or frames is None or fixes is None or not fixes.georeferenced:
             return None
-        t_ns = np.array(fixes["t_ns"], dtype=np.int64)
+        t_ns = np.array(fixes.t_ns, dtype=np.int64)
         inside = (t_ns >= line.t_ns[0]) & (t_ns <= line.t_ns[-1])
         T = line.at(t_ns[inside])
         p_antenna = (T.R @ load_rig(frames / "rig.toml").p_body_antenna) + T.t
         return GnssMarks(
             t_ns=t_ns[inside],
-            p_map=p_antenna + np.array(fixes["residual_enu_m"])[inside],
+            p_map=p_antenna + np.array(fixes.residual_enu_m)[inside],
             p_antenna=p_antenna,
-            used=np.array(fixes["used"], dtype=np.bool_)[inside],
+            used=np.array(fixes.used, dtype=np.bool_)[inside],
         )
+
+
+def _read_georeference(folder: Path) -> Georeference | None:
+    try:
+        data = (folder / "georeference.json").read_bytes()
+        return msgspec.json.decode(data, type=Georeference)
+    except (OSError, msgspec.MsgspecError, RecursionError):
+        return None
