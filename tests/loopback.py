@@ -1,5 +1,5 @@
-"""Addresses of this computer for captures of tests, so that tests beside each other never hear
-each other.
+"""Loopback addresses for captures of tests, so that parallel tests do not receive each other's
+packets.
 """
 
 from __future__ import annotations
@@ -8,5 +8,5 @@ import secrets
 
 
 def an_address() -> str:
-    """One of the loopback network that nobody else is likely to use."""
+    """A random address of the loopback network, so that parallel tests do not share it."""
     return ".".join(["127", *(str(secrets.randbelow(250) + 2) for _ in range(3))])

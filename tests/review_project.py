@@ -34,7 +34,7 @@ from tests.scanned_room import RIG, scan
 NODES = 120
 SETTINGS = Settings(map=MapSettings(voxel_m=0.05))
 WRONG = {(20, 90): (0.6, 0.0, 0.0), (41, 70): (0.0, 0.5, 0.0)}
-"""Loops that say something else than the truth."""
+"""Loop closures with wrong relative poses."""
 
 
 def rounds(t_s):

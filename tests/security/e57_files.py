@@ -1,4 +1,4 @@
-"""E57 files whose XML section says what a test wants, with right checksums."""
+"""E57 files with an XML section given by a test, and correct checksums."""
 
 from __future__ import annotations
 

@@ -126,7 +126,7 @@ def attempt(deed: Callable[[], object]) -> str:
 
 
 def try_all(facts: dict[str, Any]) -> dict[str, str]:
-    """Each deed's name -> its outcome; children of the fork bomb are ended."""
+    """Name of each action -> its outcome; children of the fork bomb are ended."""
     found = {name: attempt(deed) for name, deed in deeds(facts).items()}
     with suppress(OSError):
         found["secrets in the environment"] = ", ".join(n for n in os.environ if "SECRET" in n)

@@ -1,4 +1,4 @@
-"""What a person does in an hour, for `test_no_outbound.py`: process, slice, serve, ask, stop.
+"""A typical session for `test_no_outbound.py`: process, slice, serve, request, stop.
 
 Run as a program of its own, with a recording and a folder, so that strace can follow it.
 """
@@ -39,7 +39,7 @@ def recon4(*arguments: str) -> None:
 
 
 def crs_with_grids() -> None:
-    """Ask for a height system whose grid is not installed: PROJ could fetch it."""
+    """Request a height system whose grid is not installed: PROJ could download it."""
     subprocess.run([sys.executable, "-c", GRID], check=True)
 
 

@@ -1,4 +1,4 @@
-"""A process that reads hostile recordings: bounded memory, bounded time, its outcome in words.
+"""A process that reads hostile recordings: bounded memory, bounded time, outcome as text.
 
 One server imports recon4 once and forks a child for every file, so that a child that dies, hangs
 or allocates without end is an outcome and not the end of the tests.

@@ -1,4 +1,4 @@
-"""Hostile recordings: small files that ask for endless memory or time. Deterministic."""
+"""Hostile recordings: small files that demand unbounded memory or time. Deterministic."""
 
 from __future__ import annotations
 
@@ -137,7 +137,7 @@ def bag1_directory(path: Path) -> None:
 
 
 def bag1_connections(path: Path) -> None:
-    """Four thousand million connections, says the header."""
+    """A header that declares 4 billion connections."""
     path.write_bytes(
         bag1(
             [plain(message_record(0, b""))],
@@ -258,12 +258,12 @@ def mcap_message(data: bytes) -> bytes:
 
 
 def mcap_zstd(path: Path) -> None:
-    """A chunk that says 100 bytes and has 4 GiB."""
+    """A chunk that declares 100 bytes and has 4 GiB."""
     path.write_bytes(mcap(zstd_zeros(4 << 30), compression=b"zstd", size=100))
 
 
 def mcap_zstd_honest(path: Path) -> None:
-    """The same, and it says so."""
+    """The same, with the declared size."""
     path.write_bytes(mcap(zstd_zeros(4 << 30, known_size=True), compression=b"zstd", size=4 << 30))
 
 

@@ -54,7 +54,7 @@ def root(tmp_path):
 
 
 def refused(root: Path, function, *args, **terms):
-    """See that a call fails in every kind of child; returns what was said."""
+    """Check that a call fails in every kind of child; returns the messages."""
     said = []
 
     async def both(pool):

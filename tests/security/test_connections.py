@@ -1,4 +1,4 @@
-"""Connections that cost the attacker nothing: mute, slow, endless. Everybody else is answered.
+"""Connections that cost the attacker nothing: silent, slow, endless. All other clients are served.
 
 Held: with 2 000 mute connections, from one address or from 2 000, a new connection is answered
 within 0.5 s (99th percentile), and as many connections are open as the limits say. Each kind of
@@ -125,7 +125,7 @@ def test_2000_mute_connections_hold_up_nobody(server, source_of):
 
 
 def test_many_mute_connections_to_a_process_with_few_files_grow_no_log(tmp_path):
-    """256 file descriptors: before, 300 connections locked out everybody for 63 s, log +204 MB."""
+    """256 file descriptors: 300 connections once locked all clients out for 63 s, log +204 MB."""
     log = tmp_path / "stderr.txt"
     (tmp_path / "root").mkdir()
     code = (

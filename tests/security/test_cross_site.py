@@ -1,4 +1,4 @@
-"""A page of another site makes the browser of a surveyor ask for exports.
+"""A page of another site makes the browser of a surveyor request exports.
 
 Held: of 6 ways to cause a GET of ``/api/`` from another origin, 0 reach the server's work, with
 and without login; a link to a page is still followed. `tests/e2e/test_cross_site.py` tries the same

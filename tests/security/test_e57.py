@@ -40,7 +40,7 @@ def sound(tmp_path):
 
 @pytest.fixture
 def listener(tmp_path):
-    """Its address, and how to ask for the requests it got."""
+    """Its address, and a function that returns the received requests."""
     asked = tmp_path / "asked.txt"
     asked.touch()
     command = [sys.executable, "-c", LISTENER, str(asked)]

@@ -1,4 +1,4 @@
-"""Small or sparse files that would fill the memory: refused within 10 s, below 1 GiB, in words.
+"""Small or sparse files that would fill the memory: rejected within 10 s and 1 GiB, with a message.
 
 The readers run in a child that may take 1 GiB beyond its imports. Each refusal must be an error
 of ours, at most 10 s after the call, with at most 1 GiB of resident memory more than before.

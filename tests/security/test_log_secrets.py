@@ -62,7 +62,7 @@ def use(url, token):
 
 
 def send_malformed(url, sent):
-    """A request that is none, with secrets in it."""
+    """A malformed request with secrets in it."""
     context = ssl._create_unverified_context()
     with (
         socket.create_connection((url.host, url.port), timeout=10.0) as plain,

@@ -1,4 +1,4 @@
-"""No text that somebody wrote becomes markup or a script on any page, in a real browser.
+"""Text of users never becomes markup or a script on any page, in a real browser.
 
 Figure: the corpus below in every text that people or files give (names of projects, rigs, people,
 references, uploads, files, programs; reasons; addresses) x every page: 0 scripts run, 0 elements

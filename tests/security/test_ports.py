@@ -169,7 +169,7 @@ def test_another_user_reaches_no_socket(served):
 
 @pytest.mark.skipif(os.getuid() != 0, reason="only root can become another user")
 def test_live_messages_are_for_their_user_alone_even_where_permissions_fail(tmp_path):
-    """Folder and socket are opened to all on purpose: the kernel still says who connects."""
+    """Folder and socket are open to all on purpose: the kernel still reports the peer's user."""
     requests = []
 
     async def attack() -> str:

@@ -1,4 +1,4 @@
-"""Small recordings that ask for endless memory or time are refused, or read within limits.
+"""Small recordings that demand unbounded memory or time are rejected, or read within limits.
 
 Figures: 1 GiB of memory beyond the program itself, 10 s of processor time (60 s for a million
 honest messages), never a traceback; a refusal says what was expected.

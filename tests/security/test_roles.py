@@ -1,4 +1,4 @@
-"""Nobody gets further than their role: every route, every method, own and other things.
+"""Access never exceeds the role: every route, every method, own and foreign objects.
 
 Figures: routes x methods a route does not have x roles: 0 answers of success; roles x things of
 others: 0 read, changed or ended beyond the role. The rest of the class stands where it grew:

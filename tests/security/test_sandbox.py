@@ -48,7 +48,7 @@ def root():
 
 @pytest.fixture
 def ports():
-    """A TCP and a UDP port somebody listens on."""
+    """A listening TCP port and a listening UDP port."""
     with (
         socket.create_server(("127.0.0.1", 0)) as tcp,
         socket.socket(type=socket.SOCK_DGRAM) as udp,

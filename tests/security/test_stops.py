@@ -1,4 +1,4 @@
-"""A stopped command says so in one line and ends with 128 + n, wherever the signal meets it.
+"""A stopped command prints one line and exits with 128 + n, wherever the signal arrives.
 
 Figures to hold: 0 tracebacks, 0 unfinished files, exit code 143 (SIGTERM) or 130 (SIGINT).
 """

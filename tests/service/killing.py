@@ -48,7 +48,7 @@ class Survived:
 
 
 def request_for(root: Path) -> dict[str, Any]:
-    """A job on the walk that lies in a folder of projects."""
+    """Start a job on the walk in a folder of projects."""
     walk = root / "walk"
     return {
         "project": "office",
@@ -60,12 +60,12 @@ def request_for(root: Path) -> dict[str, Any]:
 
 
 def row_of_the_matrix(row: int) -> dict[str, str]:
-    """Stage -> who is killed in it; all rows together are everybody in every stage."""
+    """Stage -> process killed in it; together the rows cover every process in every stage."""
     return {stage: IN_A_STAGE[(k + row) % len(IN_A_STAGE)] for k, stage in enumerate(STAGES)}
 
 
 def run_gated(root: Path, request: dict[str, Any], victims: Mapping[str, str]) -> Survived:
-    """Run a job to its end; in the middle of each stage somebody is killed."""
+    """Run a job to its end; kill a process in the middle of each stage."""
     survived = Survived()
     try:
         with gates(root) as closed:
@@ -133,7 +133,7 @@ def _is_over(view: dict[str, Any]) -> bool:
 
 
 def _kill_viewer(server: Running, process: subprocess.Popen[str]) -> None:
-    """Kill the viewer under somebody who looks, and see that the next who looks gets another."""
+    """Kill a viewer with a client, and check that the next client gets another one."""
     with viewing(server.url) as client:
         client.send(camera())
         client.until(lambda c: "/grid" in c.nodes)

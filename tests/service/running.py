@@ -134,7 +134,7 @@ def server_process(
 
 
 def wait_for(met: Callable[[], Any], what: str, *, most_s: float = 60.0) -> Any:
-    """The first truth of something nobody tells of; looked at again and again."""
+    """Poll a condition until it is true."""
     deadline_s = time.monotonic() + most_s
     while not (found := met()):
         assert time.monotonic() < deadline_s, what

@@ -22,7 +22,7 @@ from tests.service.running import Running, server_thread
 
 PASSWORD = "three green owls dance"
 ROLES = {"vera": Role.VIEWER, "otto": Role.OPERATOR, "rita": Role.REVIEWER, "anna": Role.ADMIN}
-"""Name -> role of everybody on the servers of tests."""
+"""Name -> role of all people on the servers of tests."""
 
 
 @dataclass(frozen=True)
@@ -66,12 +66,12 @@ class Secure:
         return ssl.create_default_context(cafile=self.root / ".recon4" / "tls" / "certificate.pem")
 
     def client(self, **options: Any) -> httpx.Client:
-        """Somebody who has not signed in."""
+        """A client that has not signed in."""
         return httpx.Client(base_url=self.url, verify=self.trust(), timeout=30.0, **options)
 
     @contextmanager
     def signed_in(self, name: str, password: str = PASSWORD) -> Iterator[httpx.Client]:
-        """Somebody who has; every request carries the token."""
+        """A client that has signed in; every request carries the token."""
         with self.client() as client:
             answer = client.post("/api/login", json={"name": name, "password": password})
             assert answer.status_code == 200, answer.text
@@ -108,7 +108,7 @@ class Secure:
 
 @contextmanager
 def secure_server(root: Path, **settings: Any) -> Iterator[Secure]:
-    """A server with TLS and login, everybody of `ROLES` known."""
+    """A server with TLS, login, and the accounts of `ROLES`."""
     state = root / ".recon4"
     state.mkdir(exist_ok=True)
     access = open_access(state, login=True)

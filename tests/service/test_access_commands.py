@@ -29,7 +29,7 @@ def recon4(*arguments, answer=""):
 
 @contextmanager
 def serving(root, *arguments):
-    """A server as from the terminal, and what it said at its start."""
+    """A server as from the terminal, and its output at its start."""
     errors = root / "stderr.txt"
     with errors.open("w") as stderr:
         process = subprocess.Popen(

@@ -15,7 +15,7 @@ FINISHING = "tests.service.finishing_worker"
 
 @pytest.fixture
 def here(tmp_path, data):
-    """Where the client is called: a recording lies there."""
+    """Working folder of the client, with a recording."""
     folder = tmp_path / "here"
     folder.mkdir()
     capture = data("packets/mrpt") / "sample_velodyne_vlp16_gps.pcap"

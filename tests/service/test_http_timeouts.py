@@ -1,4 +1,4 @@
-"""Slow and endless senders: they are hung up on, and nobody else waits for them."""
+"""Slow and endless senders: they are disconnected, and no other client waits for them."""
 
 import contextlib
 import socket
@@ -31,7 +31,7 @@ def opened(server):
 
 
 def rest_of(connection):
-    """What the server says until it hangs up."""
+    """The response until the server disconnects."""
     received = b""
     with contextlib.suppress(ConnectionResetError):
         while piece := connection.recv(65536):

@@ -29,7 +29,7 @@ def server(tmp_path):
 
 
 def after_word(server, recording, word):
-    """The job's end once the stage in hand did what the word says."""
+    """The ended job after the current stage did what the command demands."""
     job = server.start("office", recording)
     server.wait_at_gate(job)
     gate = open_gate(recording, word)

@@ -1,4 +1,4 @@
-"""Uploads: tus 1.0 on a real server, cut anywhere, resumed, refused in words."""
+"""Uploads: tus 1.0 on a real server, interrupted anywhere, resumed, rejected with a message."""
 
 import hashlib
 import os

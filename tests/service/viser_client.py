@@ -25,7 +25,7 @@ PROTOCOL = Subprotocol(f"viser-v{viser.__version__}")
 def camera(
     position=(1.0, 1.0, 1.0), *, ahead=(1.0, 0.0, 0.0), width=1440, height=900
 ) -> dict[str, Any]:
-    """What a browser says of its camera; ``ahead`` must not be vertical."""
+    """The message of a browser about its camera; ``ahead`` must not be vertical."""
     z = np.array(ahead) / np.linalg.norm(ahead)
     x = np.cross(z, [0.0, 0.0, 1.0])
     x /= np.linalg.norm(x)

@@ -20,7 +20,7 @@ from tests.security.fuzz.kinds import KINDS
 from tests.security.fuzz.mutators import Mutant, mutant
 
 MEMORY_BYTES = 1 << 30
-"""What a reader may ask for beyond what the child has when it starts."""
+"""Memory that a reader may allocate beyond that of the child at its start."""
 
 
 def main() -> None:

@@ -41,7 +41,7 @@ from tests.security.fuzz.kind import Kind, Reading
 
 
 def _info(path: Path) -> None:
-    """``recon4 info``: refusals are words, everything else is a finding."""
+    """``recon4 info``: an error message is expected, everything else is a finding."""
     with contextlib.suppress(Recon4Error):
         describe(path).lines()
 

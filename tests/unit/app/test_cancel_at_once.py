@@ -1,4 +1,4 @@
-"""A job cancelled in the moment it is started: no traceback, and it stops."""
+"""A job canceled while it is being started: no traceback, and it stops."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""What lies under a click."""
+"""Picking edges and points under a click."""
 
 import numpy as np
 import pytest
