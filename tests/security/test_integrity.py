@@ -315,7 +315,7 @@ def test_what_is_accepted_is_sealed_as_it_is(office, capsys):
     Project.open(office).close()
 
 
-def test_what_a_server_left_and_somebody_changed_is_found_and_named(tmp_path, capsys):
+def test_changed_files_of_an_earlier_server_are_found_and_named(tmp_path, capsys):
     with server_thread(tmp_path):
         pass
     state = tmp_path / ".recon4"

@@ -32,7 +32,7 @@ def opened():
         yield lambda streams, one: stack.enter_context(streams.place(one))
 
 
-def test_a_person_and_an_address_get_so_many_and_no_more(opened):
+def test_streams_are_limited_per_person_and_per_address(opened):
     streams = Streams("live streams", LIMITS)
     for _ in range(3):
         opened(streams, connection("vera"))

@@ -31,7 +31,7 @@ def stranger():
         process.kill()
 
 
-def test_a_number_of_another_process_kills_nobody(folder, stranger):
+def test_a_pid_of_another_process_is_not_killed(folder, stranger):
     (folder.path / "pid").write_text(str(stranger.pid))
 
     folder.kill()
@@ -41,7 +41,7 @@ def test_a_number_of_another_process_kills_nobody(folder, stranger):
 
 
 @pytest.mark.parametrize("text", ["1", "0", "-1", "", "x", "9" * 5000, "[" * 100_000])
-def test_what_is_no_number_of_a_group_kills_nobody(folder, text):
+def test_a_malformed_pid_file_kills_no_process(folder, text):
     (folder.path / "pid").write_text(text)
 
     folder.kill()
@@ -55,7 +55,7 @@ def test_what_is_no_number_of_a_group_kills_nobody(folder, text):
         *("\x00", '{"state": "failed", "note": "' + "x" * (1 << 20) + '"}'),
     ],
 )
-def test_an_outcome_that_is_none_counts_as_a_death(folder, text):
+def test_a_malformed_outcome_counts_as_a_death(folder, text):
     (folder.path / "outcome.json").write_text(text)
 
     assert folder.outcome() is None

@@ -156,7 +156,7 @@ def test_giving_the_password_again_changes_the_cookie_and_keeps_the_session(serv
         assert client.post("/api/logout").status_code == 204
 
 
-def test_one_ends_ones_own_sessions_and_nobody_elses(server):
+def test_a_person_ends_only_their_own_sessions(server):
     with (
         server.signed_in("vera") as phone,
         server.signed_in("vera") as client,
@@ -402,7 +402,7 @@ def test_the_first_admin_is_made_once_with_the_link_and_never_without(tmp_path):
     assert [(one["name"], one["role"]) for one in people] == [("Anna", Role.ADMIN)]
 
 
-def test_on_loopback_there_is_no_login_and_everybody_is_local(tmp_path):
+def test_on_loopback_there_is_no_login_and_every_caller_is_local(tmp_path):
     with server_thread(tmp_path) as server:
         me = server.get("/api/me").json()
         login = server.post("/api/login", json={"name": "anna", "password": PASSWORD})

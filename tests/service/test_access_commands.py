@@ -134,7 +134,7 @@ def test_people_are_kept_from_the_command_line_and_the_log_is_checked(tmp_path):
     assert PASSWORD not in log.stdout
 
 
-def test_a_log_tampered_with_is_told_with_exit_code_1(tmp_path):
+def test_a_log_tampered_with_is_reported_with_exit_code_1(tmp_path):
     (tmp_path / ".recon4").mkdir()
     access = open_access(tmp_path / ".recon4", login=True)
     for what in ("office", "field"):
@@ -151,7 +151,7 @@ def test_a_log_tampered_with_is_told_with_exit_code_1(tmp_path):
 
 
 @pytest.mark.parametrize("role", ["nobody", "king", ""])
-def test_a_role_that_is_none_is_wrong_usage(tmp_path, role):
+def test_an_unknown_role_is_wrong_usage(tmp_path, role):
     ended = recon4("users", "add", "anna", "--role", role, "--root", tmp_path, answer="x\n")
 
     assert ended.returncode == 2

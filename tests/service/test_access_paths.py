@@ -102,7 +102,7 @@ def test_no_hostile_name_in_any_path_reaches_anything_or_makes_the_server_fail(
     assert (server.root / ".recon4" / "access.sqlite").exists()
 
 
-def test_a_failure_tells_neither_path_nor_code(server, monkeypatch):
+def test_a_failure_reveals_neither_path_nor_code(server, monkeypatch):
     def fail(*_):
         raise RuntimeError(f"secret in {server.root}")
 

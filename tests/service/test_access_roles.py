@@ -61,7 +61,7 @@ def requests_of(routes):
     ]
 
 
-def test_every_route_says_who_may_use_it(routes):
+def test_every_route_declares_its_permission(routes):
     assert len(routes) > 20
     assert [one.path for one in routes if not one.needs and not one.allow_anonymous] == []
 
@@ -194,7 +194,7 @@ def test_of_all_messages_viser_knows_a_viewers_browser_may_only_send_those_of_lo
     assert {kind[:38] for kind in kinds} == {kind[:38] for kind in dropped}
 
 
-def test_asked_too_often_a_session_is_told_when_to_come_back(server):
+def test_a_session_above_its_rate_limit_gets_retry_after(server):
     async def many(cookies):
         options = {"base_url": server.url, "verify": server.trust(), "cookies": cookies}
         async with httpx.AsyncClient(**options, timeout=60.0) as client:  # on a busy computer, too

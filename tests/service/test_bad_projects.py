@@ -79,7 +79,7 @@ def spoil_ledger(root):
         db.close()
 
 
-def test_every_good_project_is_listed_and_every_bad_one_says_why(server):
+def test_good_projects_are_listed_and_bad_ones_have_a_problem(server):
     answer = server.get("/api/projects")
     cards = {card["id"]: card for card in answer.json()}
 
@@ -92,7 +92,7 @@ def test_every_good_project_is_listed_and_every_bad_one_says_why(server):
     assert "lone surrogate" in cards["project-surrogate"]["problem"]
 
 
-def test_a_name_from_the_disk_shows_what_nobody_would_see(server):
+def test_invisible_characters_of_a_name_on_disk_are_escaped(server):
     cards = {card["id"]: card for card in server.get("/api/projects").json()}
 
     assert cards["hidden"]["name"] == "plan<U+202E>gnp.exe"
@@ -124,7 +124,7 @@ def test_one_bad_reference_is_one_bad_row(server):
 
 
 @pytest.mark.parametrize("name", HIDDEN.values(), ids=HIDDEN)
-def test_a_name_nobody_can_see_in_full_is_refused_in_words(server, name):
+def test_a_name_with_invisible_characters_is_rejected_with_a_message(server, name):
     """Projects, uploads, references, control points, notes."""
     base = "/api/projects/good"
     point = {"id": name, "xyz_m": [0, 0, 0]}

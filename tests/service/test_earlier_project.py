@@ -45,7 +45,7 @@ def test_its_loops_and_decisions_are_there(server):
     assert len(queue["rows"]) > 50
 
 
-def test_its_map_can_be_cut_and_says_who_approved_it(server, root, capsys):
+def test_its_map_can_be_sliced_and_names_its_approver(server, root, capsys):
     out = root / "slice.csv"
 
     assert main(["slice", str(root / "format1"), str(out), "--z", "0.5"]) == 0

@@ -61,7 +61,7 @@ def test_another_site_cannot_change_anything(server, origin):
     assert answer.status_code == 403
 
 
-def test_a_browser_that_says_cross_site_cannot_change_anything(server):
+def test_a_cross_site_request_cannot_change_anything(server):
     answer = server.post("/api/jobs", json={}, headers={"Sec-Fetch-Site": "cross-site"})
 
     assert answer.status_code == 403

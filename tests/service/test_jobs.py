@@ -28,7 +28,7 @@ def server(tmp_path):
         yield running
 
 
-def test_a_job_runs_tells_its_progress_and_ends(server, recording):
+def test_a_job_runs_reports_its_progress_and_ends(server, recording):
     job = server.start("office", recording)
 
     waiting = server.wait_at_gate(job)
@@ -44,7 +44,7 @@ def test_a_job_runs_tells_its_progress_and_ends(server, recording):
     assert "succeeded" in server.get(f"/api/jobs/{job}/log").text
 
 
-def test_an_error_of_the_recording_is_told_in_its_own_words(server, tmp_path):
+def test_an_error_of_the_recording_is_reported_with_its_message(server, tmp_path):
     (tmp_path / "empty.pcap").write_bytes(b"")
 
     job = server.start("office", tmp_path / "empty.pcap")

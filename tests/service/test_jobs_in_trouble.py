@@ -38,7 +38,7 @@ def after_word(server, recording, word):
     return view["job"]
 
 
-def test_a_crash_in_native_code_is_told_with_stage_and_signal_and_where(server, recording):
+def test_a_crash_in_native_code_is_reported_with_stage_and_signal(server, recording):
     job = after_word(server, recording, "crash")
 
     assert "crashed in native code (segmentation fault) [SIGSEGV]" in job["note"]
@@ -47,7 +47,7 @@ def test_a_crash_in_native_code_is_told_with_stage_and_signal_and_where(server, 
     assert "Segmentation fault" in log and "slow_worker.py" in log
 
 
-def test_too_little_memory_is_a_failure_in_words_and_harms_nobody(server, recording):
+def test_out_of_memory_is_a_failure_with_a_message_and_affects_no_other_job(server, recording):
     job = after_word(server, recording, "memory")
 
     assert (job["state"], job["attempt"]) == ("failed", 1)
@@ -55,7 +55,7 @@ def test_too_little_memory_is_a_failure_in_words_and_harms_nobody(server, record
     assert server.get("/healthz").status_code == 200
 
 
-def test_a_full_disk_is_told_and_the_job_can_be_resumed(server, recording):
+def test_a_full_disk_is_reported_and_the_job_can_be_resumed(server, recording):
     failed = after_word(server, recording, "full")
     again = server.post(f"/api/jobs/{failed['id']}/retry").json()["job"]["id"]
     server.wait_at_gate(again)
@@ -135,7 +135,7 @@ def test_more_jobs_than_may_wait_are_refused(tmp_path, recording):
     assert "1 jobs wait already" in third.json()["detail"]
 
 
-def test_a_damaged_queue_is_replaced_by_its_newest_copy_and_that_is_said(tmp_path, recording):
+def test_a_damaged_queue_is_replaced_by_its_newest_backup_with_a_notice(tmp_path, recording):
     with server_process(tmp_path) as (server, _):
         job = server.start("office", recording)
         server.wait_at_gate(job)
@@ -181,7 +181,9 @@ def test_asked_to_end_the_server_ends_soon_and_without_complaint(tmp_path, recor
 
 
 @pytest.mark.parametrize("word", ["hang", "hang in C"])
-def test_a_worker_whose_work_hangs_is_killed_and_its_note_says_where(tmp_path, recording, word):
+def test_a_worker_whose_work_hangs_is_killed_and_its_note_names_the_stage(
+    tmp_path, recording, word
+):
     with server_thread(tmp_path, worker=SLOW, attempts=1, hung_after_s=3.0) as server:
         job = server.start("office", recording)
         server.wait_at_gate(job)

@@ -60,7 +60,7 @@ def test_server_worker_and_viewer_are_killed_in_the_middle_of_stages_and_the_byt
     assert not list((killed / "office").rglob(".tmp-*"))
 
 
-def test_the_matrix_kills_everybody_in_every_stage():
+def test_the_matrix_kills_every_process_in_every_stage():
     rows = [row_of_the_matrix(row) for row in range(len(IN_A_STAGE))]
 
     for stage in STAGES:

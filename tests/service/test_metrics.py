@@ -98,7 +98,7 @@ def test_a_renewed_token_ends_the_one_before(secure):
 
 
 @pytest.mark.parametrize("content", ["\n", "x\n"])
-def test_a_token_file_without_a_real_token_lets_nobody_in(tmp_path, content):
+def test_a_token_file_without_a_real_token_admits_no_caller(tmp_path, content):
     with secure_server(tmp_path) as server, server.client() as client:
         (tmp_path / ".recon4" / "metrics.token").write_text(content)
         answer = client.get("/metrics", headers={"Authorization": "Bearer x"})

@@ -130,7 +130,7 @@ def test_a_long_name_and_a_flood_are_refused(server):
     assert flood.count(201) <= 4 and flood[-1] == 429
 
 
-def test_a_page_of_elsewhere_cannot_pair_and_a_link_changes_nobody(server):
+def test_a_page_of_another_site_cannot_pair_and_a_link_keeps_the_person(server):
     with server.signed_in("otto") as laptop, server.client() as phone:
         _, token = invite(laptop)
         evil = phone.post(
@@ -184,7 +184,7 @@ def test_ending_the_session_of_a_phone_ends_it(server):
         assert phone.get("/api/me").status_code == 401
 
 
-def test_without_login_there_is_nothing_to_pair_and_it_says_what_to_do(tmp_path):
+def test_without_login_pairing_fails_with_a_hint(tmp_path):
     with server_thread(tmp_path) as running:
         pairing = running.get("/api/pairing").json()
         answer = running.post("/api/pairing/invitations", json={"role": "viewer"})

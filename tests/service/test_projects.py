@@ -35,7 +35,7 @@ def test_the_list_shows_every_project_also_a_damaged_one(server):
     assert found["office"]["has_map"] and not found["half"]["has_map"]
 
 
-def test_a_project_tells_its_stages_also_a_damaged_one(server):
+def test_a_project_lists_its_stages_also_a_damaged_one(server):
     found = {
         name: server.get(f"/api/projects/{name}").json() for name in ("office", "half", "broken")
     }
@@ -65,7 +65,7 @@ def test_the_picture_shows_the_map_and_a_project_without_one_has_none(server):
     assert server.get("/api/projects/half/thumbnail").status_code == 404
 
 
-def test_errors_are_told_in_words(server):
+def test_errors_have_a_message(server):
     answer = server.get("/api/projects/nowhere")
 
     assert answer.status_code == 404
@@ -80,7 +80,7 @@ def test_errors_are_told_in_words(server):
         ("/no/such/page", "no such address"),
     ],
 )
-def test_a_browser_is_told_on_a_page(server, path, words):
+def test_a_browser_gets_an_error_page(server, path, words):
     page = server.get(path, headers={"Accept": "text/html,*/*"})
     program = server.get(path)
 
@@ -106,7 +106,7 @@ def test_every_route_is_in_the_api_description(server):
             assert operation.get("description"), operation["operationId"]
 
 
-def test_the_api_description_says_who_may_call_what_and_how_refusals_look(server):
+def test_the_api_description_has_permissions_and_errors(server):
     described = server.get("/openapi.json").json()
 
     paths = described["paths"]

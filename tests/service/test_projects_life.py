@@ -130,7 +130,7 @@ def test_the_trash_is_emptied_of_what_is_old_only(tmp_path):
     assert [path.name for path in (tmp_path / "trash").iterdir()] == ["not ours"]
 
 
-def test_a_look_tells_sensors_and_what_suits_them(tmp_path, data):
+def test_an_inspection_lists_sensors_and_suitable_settings(tmp_path, data):
     capture = next(
         path for path in sorted(data("packets/mrpt").iterdir()) if path.suffix == ".pcap"
     )

@@ -147,7 +147,7 @@ def test_the_first_bytes_may_come_with_the_announcement(server):
     assert upload_of(server, made.headers["Location"])["finished"]
 
 
-def test_bytes_damaged_on_the_way_are_not_kept(server):
+def test_bytes_with_a_wrong_checksum_are_not_kept(server):
     location = create(server.url, 10, filename="a.bag").headers["Location"]
     good = patch(server.url, location, 0, b"12345", check=True)
     wrong = CHUNK | {"Upload-Offset": "5", "Upload-Checksum": "sha1 AAAA"}

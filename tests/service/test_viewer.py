@@ -106,7 +106,7 @@ def test_a_click_on_an_edge_says_what_it_is_and_where_to_review_it(looking):
     looking.until(lambda c: "/picked/edge" in c.nodes)
 
 
-def test_on_a_phone_what_was_tapped_is_said_over_the_map(server):
+def test_on_a_phone_the_tapped_object_is_shown_over_the_map(server):
     start, end = rejected_edge()
     away = np.array([0.2, 0.3, 5.0])
     with viewing(server.url) as client:
@@ -186,7 +186,7 @@ def test_a_browser_that_answers_nothing_still_gets_the_map(server):
         client.until(lambda c: c.shown == POINTS)
 
 
-def test_asking_for_a_public_tunnel_reaches_nobody_and_the_session_goes_on(server, caplog):
+def test_a_request_for_a_public_tunnel_is_dropped_and_the_session_goes_on(server, caplog):
     with viewing(server.url) as client:
         client.send({"type": "ShareUrlRequest"})
         client.socket.send(b"\xc1 not a message")
@@ -249,7 +249,7 @@ def test_a_flood_of_messages_arrives_late_but_whole(server):
     assert waited_s > 1.0
 
 
-def test_one_viewer_too_many_is_told_so_and_the_others_stay(root):
+def test_a_viewer_above_the_limit_is_rejected_and_the_others_stay(root):
     with (
         server_thread(root, viewer_sockets=2) as server,
         viewing(server.url) as first,
@@ -290,7 +290,7 @@ def test_a_viewer_ends_with_its_server(tmp_path):
     assert not viewer.is_running()
 
 
-def test_a_viewer_nobody_looks_at_ends_by_itself(tmp_path):
+def test_a_viewer_without_clients_ends_by_itself(tmp_path):
     build_project(tmp_path / "office", points=100)
     with server_thread(tmp_path, viewer_idle_s=0.5) as server:
         with viewing(server.url) as client:
@@ -370,7 +370,7 @@ def test_the_last_of_twenty_people_has_a_map_of_a_million_points_within_8_s(mill
     assert took_s < 8.0 * busy
 
 
-def test_a_browser_that_takes_nothing_is_disconnected_and_harms_nobody(
+def test_a_browser_that_reads_nothing_is_disconnected_without_effect_on_others(
     million, monkeypatch, caplog
 ):
     monkeypatch.setattr(proxy, "STALLED_S", 1.0)
