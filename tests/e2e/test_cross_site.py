@@ -23,7 +23,7 @@ def server(tmp_path_factory):
 
 
 class ForeignPages(http.server.BaseHTTPRequestHandler):
-    """``/`` tries everything a page can do by itself; ``/redirect`` sends the browser on."""
+    """``/`` tries every request a page can make by itself; ``/redirect`` redirects the browser."""
 
     target = ""
 

@@ -23,7 +23,7 @@ def server(tmp_path_factory):
 
 @pytest.fixture
 def page(browser, look) -> Iterator[Page]:
-    """A browser that takes the made certificate, as people do after comparing the fingerprint."""
+    """A browser that accepts the self-signed certificate, as after comparing the fingerprint."""
     screen, scheme = look
     width, height = SCREENS[screen]
     context = browser.new_context(
@@ -53,7 +53,7 @@ def sign_in(page, server: Secure, name: str, path: str = "/"):
 
 
 def fits(page):
-    """Nothing sticks out to the side, and everything to press is large enough."""
+    """Nothing overflows to the side, and every control is large enough."""
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
     small = page.evaluate(
         """[...document.querySelectorAll('button, input:not([type=checkbox]), select, .bar a')]
@@ -63,7 +63,7 @@ def fits(page):
     assert small == []
 
 
-def test_one_is_led_to_the_login_and_back_to_where_one_wanted_to_go(server, page, screenshot):
+def test_a_page_redirects_to_the_login_and_back(server, page, screenshot):
     page.goto(f"{server.url}/projects/office/")
     expect(page.get_by_role("heading", name="Sign in")).to_be_visible()
     expect(page.get_by_label("Name")).to_be_focused()
@@ -83,7 +83,7 @@ def test_one_is_led_to_the_login_and_back_to_where_one_wanted_to_go(server, page
     expect(page.get_by_role("link", name="Account of rita, reviewer")).to_be_visible()
 
 
-def test_signing_out_leads_to_the_login_and_nothing_is_left(server, page):
+def test_signing_out_shows_the_login_and_clears_the_session(server, page):
     sign_in(page, server, "vera")
     expect(page.get_by_role("listitem").filter(has_text="office")).to_be_visible()
     expect(page.get_by_role("link", name="People")).to_have_count(0)
@@ -100,7 +100,7 @@ def test_signing_out_leads_to_the_login_and_nothing_is_left(server, page):
 
 
 @looks("desktop dark")
-def test_a_hostile_link_to_the_login_does_not_lead_away(server, page):
+def test_a_hostile_link_to_the_login_stays_on_this_server(server, page):
     page.goto(f"{server.url}/login#next=//evil.example/x")
     page.get_by_label("Name").fill("vera")
     page.get_by_label("Password", exact=True).fill(PASSWORD)
@@ -153,7 +153,7 @@ def test_an_admin_adds_a_person_changes_a_role_and_reads_the_log(server, page, l
     screenshot(page, "people")
 
 
-def test_ones_own_sessions_are_listed_and_another_is_ended(server, page, screenshot):
+def test_a_person_lists_own_sessions_and_ends_another(server, page, screenshot):
     with server.signed_in("otto"):
         sign_in(page, server, "otto", "/account")
         expect(page.get_by_role("heading", name="otto, operator")).to_be_visible()
@@ -168,7 +168,7 @@ def test_ones_own_sessions_are_listed_and_another_is_ended(server, page, screens
         expect(rows).to_have_count(before - 1)
 
 
-def test_what_is_signed_with_a_name_asks_for_the_password_again(server, page, look, screenshot):
+def test_a_signature_requires_a_recent_password(server, page, look, screenshot):
     if look[1] != "dark":
         pytest.skip("one color is enough")
     sign_in(page, server, "anna", "/people")
@@ -192,7 +192,7 @@ def test_what_is_signed_with_a_name_asks_for_the_password_again(server, page, lo
         access.sessions._clock = clock
 
 
-def test_the_first_admin_is_made_in_the_browser(tmp_path, page, look, screenshot):
+def test_the_first_admin_is_created_in_the_browser(tmp_path, page, look, screenshot):
     if look[1] != "light":
         pytest.skip("one color is enough")
     with server_thread(tmp_path, lan=True) as running:

@@ -1,4 +1,4 @@
-"""The pages as people use them."""
+"""The pages of projects and jobs in a real browser."""
 
 import os
 from pathlib import Path
@@ -40,14 +40,14 @@ def real():
 
 
 def drawn(page):
-    """The scene is there, and the browser's complaint about its missing GPU is not."""
+    """The scene is drawn, and the notice about a missing GPU is closed."""
     page.frames[-1].wait_for_function("window.__viserMutable?.canvas")
     page.frame_locator("iframe").locator(".mantine-Notification-closeButton").click()
     expect(page.frame_locator("iframe").locator(".mantine-Notification-closeButton")).to_be_hidden()
 
 
 def fits(page):
-    """Nothing sticks out to the side, and everything to press is large enough."""
+    """Nothing overflows to the side, and every control is large enough."""
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
     small = page.evaluate(
         """[...document.querySelectorAll(
@@ -162,7 +162,7 @@ def test_a_job_is_started_watched_cancelled_and_resumed(server, page, tmp_path, 
 
 
 @looks("desktop light")
-def test_a_page_that_was_cut_off_learns_how_its_job_ended(server, context, tmp_path):
+def test_a_page_without_link_shows_the_outcome_of_its_job_later(server, context, tmp_path):
     page = context.new_page()  # its browser complains of the cut
     recording = recording_with_gate(tmp_path / "walk")
     job = server.start("office", recording)
@@ -183,7 +183,7 @@ def test_a_page_that_was_cut_off_learns_how_its_job_ended(server, context, tmp_p
         page.close()  # before the link goes
 
 
-def test_a_refusal_is_shown_in_words(server, page, look):
+def test_a_rejected_request_shows_its_message(server, page, look):
     page.goto(server.url)
 
     page.get_by_label("Or a recording on the server").fill("/etc/passwd")
@@ -194,7 +194,7 @@ def test_a_refusal_is_shown_in_words(server, page, look):
 
 
 @looks("desktop light")
-def test_the_keyboard_is_enough_to_start_a_job(server, page, tmp_path):
+def test_a_job_is_started_by_keyboard_alone(server, page, tmp_path):
     (tmp_path / "empty.pcap").write_bytes(b"")
     build_project(server.root / "empty", with_map=False)
     page.goto(server.url)
@@ -212,13 +212,13 @@ def test_the_keyboard_is_enough_to_start_a_job(server, page, tmp_path):
 
 
 @looks("desktop light")
-def test_a_hostile_link_to_the_viewer_stays_with_our_server(finished, page):
+def test_a_hostile_link_to_the_viewer_stays_on_this_server(finished, page):
     page.goto(f"{finished.url}/projects/office/viewer/?websocket=ws://127.0.0.1:9")
 
     expect(page.get_by_text("Connected", exact=True)).to_be_visible()
 
 
-def test_the_api_is_described_without_internet(finished, page, look, screenshot):
+def test_the_api_page_works_without_internet(finished, page, look, screenshot):
     page.goto(f"{finished.url}/api")
 
     route = page.locator("#post-api-jobs")

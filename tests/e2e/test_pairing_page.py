@@ -72,7 +72,7 @@ def test_a_phone_signs_in_by_qr_code_and_the_token_is_nowhere(server, laptop, ph
     assert phone.url == "about:blank"  # the link is in no history
 
 
-def test_a_viewers_phone_sees_no_buttons_and_a_used_code_says_so(server, laptop, phone, browser):
+def test_a_viewers_phone_has_no_buttons_and_a_used_code_is_rejected(server, laptop, phone, browser):
     sign_in(laptop, server, "/phone")
     laptop.get_by_label("viewer: look only").check()
     with laptop.expect_response("**/api/pairing/invitations") as answered:
@@ -91,9 +91,7 @@ def test_a_viewers_phone_sees_no_buttons_and_a_used_code_says_so(server, laptop,
         expect(another.get_by_role("button", name="Show a code")).to_be_visible()
 
 
-def test_six_digits_let_the_phone_in_and_when_its_session_ends_it_can_ask_again(
-    server, laptop, phone
-):
+def test_a_phone_pairs_with_six_digits_and_again_after_its_session(server, laptop, phone):
     phone.goto(f"{server.url}/live")
     phone.wait_for_url(f"{server.url}/pair")
     phone.get_by_label("Name of this phone").fill("Otto's phone")
@@ -115,7 +113,7 @@ def test_six_digits_let_the_phone_in_and_when_its_session_ends_it_can_ask_again(
     expect(phone.get_by_role("button", name="Show a code")).to_be_visible()
 
 
-def test_without_the_network_the_page_says_how_to_get_it(laptop, tmp_path):
+def test_a_server_without_network_shows_how_to_start_it_for_phones(laptop, tmp_path):
     with server_thread(tmp_path) as running:
         laptop.goto(f"{running.url}/phone")
         expect(laptop.get_by_text("recon4 serve ROOT --lan")).to_be_visible()

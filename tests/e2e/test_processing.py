@@ -34,7 +34,7 @@ def chooser(page, *, folder=False):
     return page.locator("upload-box input[type=file]").nth(1 if folder else 0)
 
 
-def test_a_recording_is_uploaded_looked_into_and_suits_the_form(server, page, capture, screenshot):
+def test_an_uploaded_recording_fills_in_the_form(server, page, capture, screenshot):
     page.goto(server.url)
 
     chooser(page).set_input_files(capture)
@@ -60,7 +60,7 @@ def test_a_recording_is_uploaded_looked_into_and_suits_the_form(server, page, ca
 
 
 @looks("desktop light")
-def test_an_upload_goes_on_after_the_page_was_closed(server, page, tmp_path):
+def test_an_upload_resumes_after_the_page_was_closed(server, page, tmp_path):
     data = random.Random(3).randbytes(40_000_000)
     walk = tmp_path / "walk.bag"
     walk.write_bytes(data)
@@ -129,7 +129,7 @@ def test_a_folder_is_uploaded_with_its_names(server, page, tmp_path):
 
 
 @looks("desktop light")
-def test_a_dropped_file_is_taken(server, page):
+def test_a_dropped_file_is_uploaded(server, page):
     page.goto(server.url)
     transfer = page.evaluate_handle(
         """() => { const one = new DataTransfer();
@@ -143,7 +143,7 @@ def test_a_dropped_file_is_taken(server, page):
 
 
 @looks("desktop light")
-def test_a_project_is_run_again_as_a_clone_renamed_deleted_and_brought_back(server, page):
+def test_a_project_is_cloned_renamed_deleted_and_restored(server, page):
     recording = recording_with_gate(server.root / "walk")
     job = server.start("office", recording)
     gate = open_gate(recording)

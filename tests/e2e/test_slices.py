@@ -1,4 +1,4 @@
-"""The page of slices as a geodesist uses it."""
+"""The page of slices in a real browser: cuts, findings, references, control points, export."""
 
 import re
 
@@ -43,7 +43,7 @@ def test_a_slice_is_shown_with_frame_units_and_legend(server, page, screenshot):
     screenshot(page, "slices")
 
 
-def test_keys_step_turn_and_thicken_and_the_address_keeps_it(server, page):
+def test_keys_change_the_cut_and_the_address_keeps_it(server, page):
     opened(page, server, "?kind=horizontal&z=1.5")
 
     page.keyboard.press("]")
@@ -69,7 +69,7 @@ def test_keys_step_turn_and_thicken_and_the_address_keeps_it(server, page):
     expect(page.locator(".facing")).to_contain_text("5 cm thick")
 
 
-def test_a_drag_on_the_map_from_above_cuts_there(server, page, screenshot):
+def test_a_drag_on_the_overview_makes_a_vertical_cut(server, page, screenshot):
     opened(page, server)
     above = page.locator("slice-above:not([aria-busy])")
     above.scroll_into_view_if_needed()
@@ -134,7 +134,7 @@ def test_no_double_wall_is_found_where_there_is_none(server, page):
 
 
 @looks("desktop light")
-def test_what_is_found_is_found_in_the_map_that_is_shown(server, page):
+def test_findings_are_those_of_the_map_that_is_shown(server, page):
     (server.root / "wall.xyz").write_text("\n".join(f"0 {y / 20} 1.5" for y in range(200)))
     opened(page, server, "?source=project:earlier&kind=horizontal&z=1.5")
     expect(page.locator(".caption").first).to_contain_text("Project earlier")
@@ -200,7 +200,7 @@ def test_a_reference_is_uploaded_and_shown(server, page):
 
 
 @looks("desktop dark", "phone light")
-def test_an_uploaded_reference_that_is_none_is_refused_in_words(server, page):
+def test_an_invalid_reference_is_rejected_with_a_message(server, page):
     opened(page, server)
 
     page.get_by_text("Compare with a reference").click()
@@ -211,7 +211,7 @@ def test_an_uploaded_reference_that_is_none_is_refused_in_words(server, page):
     expect(page.get_by_role("button", name="Upload file…")).to_be_enabled()
 
 
-def test_tools_take_two_rows_at_most_and_fit_a_finger(server, page):
+def test_tools_take_two_rows_at_most_and_are_large_enough_to_touch(server, page):
     opened(page, server, "?kind=horizontal&z=1.5&besideColor=time")
 
     tools = page.locator("#tools button, #tools select")
@@ -224,7 +224,7 @@ def test_tools_take_two_rows_at_most_and_fit_a_finger(server, page):
     fits(page)
 
 
-def test_a_double_wall_belongs_to_the_slices_near_it(server, page):
+def test_a_double_wall_is_listed_in_slices_near_it(server, page):
     opened(page, server)
 
     found = page.evaluate("""async () => {
@@ -236,7 +236,7 @@ def test_a_double_wall_belongs_to_the_slices_near_it(server, page):
     assert found == pytest.approx([0.5, 4.0, 2.0])
 
 
-def test_a_survey_is_imported_judged_and_taken_away(server, page, screenshot):
+def test_a_survey_is_imported_checked_and_exported(server, page, screenshot):
     opened(page, server)
 
     page.get_by_text("Control and check points").click()
@@ -266,7 +266,7 @@ def test_a_survey_is_imported_judged_and_taken_away(server, page, screenshot):
 
 
 @looks("desktop dark")
-def test_two_tabs_judge_control_points_and_neither_undoes_the_other(server, page):
+def test_two_tabs_measure_control_points_and_neither_overwrites_the_other(server, page):
     opened(page, server, "?kind=horizontal&z=1.5")
     other = page.context.new_page()  # its browser complains of the 409
     data = b"ID;X;Y;Z\nA;0,02;5;1,5\nB;16,01;4;1,2\n"

@@ -1,4 +1,4 @@
-"""The viewer as people use it: keys, clicks, taps, a viewer process that dies."""
+"""The viewer in a real browser: keys, clicks, taps, a viewer process that is killed."""
 
 import os
 import re
@@ -44,14 +44,14 @@ def viewer(finished, page):
 
 
 def at_first(root, aspect):
-    """Where a new viewer's camera is, and what it looks at [m]."""
+    """Position and target of a new viewer's camera [m]."""
     artifact = next((root / "office").glob("artifacts/*/tiles.json")).parent
     box = bounds(Content(cloud=Cloud(artifact), trajectory=loop_walk()))
     return start_m(box, aspect=aspect), box.center_m
 
 
 def on_screen(page, root, p_map):
-    """Pixel of a point of the map while the camera is where it began."""
+    """Pixel of a point of the map with the first camera."""
     box = page.evaluate("window.__viserMutable.canvas.getBoundingClientRect().toJSON()")
     eye, target = at_first(root, box["width"] / box["height"])
     ahead = (target - eye) / np.linalg.norm(target - eye)
@@ -71,7 +71,7 @@ def touch(page, look, at):
         page.mouse.click(*at)
 
 
-def test_a_click_or_tap_on_a_rejected_edge_says_why_and_leads_to_its_review(
+def test_a_click_or_tap_on_a_rejected_edge_shows_the_reason_and_links_its_review(
     finished, viewer, look, screenshot
 ):
     graph = verified_graph(loop_walk())

@@ -1,4 +1,4 @@
-"""The whole way of a customer: from a recording on one's own computer to a map with a signature."""
+"""The complete workflow: from a recording on the user's computer to an approved map."""
 
 import io
 import json
@@ -22,15 +22,15 @@ from tests.service.running import server_thread, wait_for
 pytestmark = pytest.mark.e2e
 SECONDS = 20.0
 VOXEL_M = 0.03
-"""Coarser than the preset: a computer without a graphics card draws this map."""
+"""Coarser than the preset: this map is drawn without a graphics card."""
 WORK_MS = 240_000
-"""A map may take so long beside other work."""
+"""Limit for a map on a busy computer [ms]."""
 PHONE = {"width": 390, "height": 844}
 
 
 @pytest.fixture(scope="module")
 def walk(tmp_path_factory):
-    """What a backpack left on the operator's computer: capture, IMU, rig."""
+    """Files of a backpack on the operator's computer: capture, IMU, rig."""
     made = tmp_path_factory.mktemp("simulated") / "made"
     simulate("office", made, seconds=SECONDS, seed=3, progress=Silent(), bag=False)
     folder = tmp_path_factory.mktemp("backpack") / "Office walk"
@@ -51,7 +51,7 @@ def look():
     return "desktop", "light"
 
 
-def test_a_recording_becomes_a_map_somebody_signed(server, walk, page, screenshot, browser):
+def test_a_recording_becomes_an_approved_map(server, walk, page, screenshot, browser):
     page.goto(server.url)
     upload(page, walk)
     screenshot(page, "tour-upload")
@@ -77,7 +77,7 @@ def test_a_recording_becomes_a_map_somebody_signed(server, walk, page, screensho
 
 
 def upload(page, walk):
-    """The form knows what is in the folder and suggests the rest."""
+    """The form detects the contents of the folder and fills in the rest."""
     page.locator("upload-box input[type=file]").nth(1).set_input_files(walk)
     expect(page.locator("upload-box")).to_contain_text("On the server")
     expect(page.locator("recording-look")).to_contain_text("VLP-16")
@@ -128,7 +128,7 @@ def toggle_in_the_viewer(page):
 
 
 def select_next(page):
-    """The next pair, with its points."""
+    """Select the next pair and wait for its points."""
     page.keyboard.press("j")
     expect(page.locator(".view-empty")).to_be_empty()
     expect(page.locator("#pair dl")).to_be_visible()
@@ -170,7 +170,7 @@ def decided(page, key, count):
 
 
 def make_a_new_map(page):
-    """The decisions are a stage of the next run; what does not depend on them is kept."""
+    """The decisions are a stage of the next run; stages that do not depend on them are reused."""
     page.get_by_role("button", name="Make a new map").click()
     expect(page.locator("#signing")).to_contain_text("A job waits or runs")
     page.get_by_role("link", name="Map", exact=True).click()
@@ -181,7 +181,7 @@ def make_a_new_map(page):
 
 
 def cut(page, screenshot):
-    """Slices: a step, raw and normalized intensity, no wall twice."""
+    """Slices: a step, raw and normalized intensity, no double wall."""
     page.get_by_role("link", name="Slices", exact=True).click()
     facing = page.locator(".facing")
     expect(facing).to_contain_text("points")
@@ -213,7 +213,7 @@ def approve(page):
 
 
 def take_away(page, root):
-    """The map as LAZ and the report say who approved them."""
+    """The map as LAZ and the report contain the approval."""
     page.get_by_role("link", name="Map", exact=True).click()
     with page.expect_download() as download:
         page.locator("#files").get_by_role("link", name=re.compile("LAZ")).click()
@@ -237,7 +237,7 @@ def approval_in(laz: Path) -> str:
 
 
 def decide_again(page):
-    """What was signed was another state: this one is a draft."""
+    """After another decision the map is a draft again."""
     expect(page.locator("#signing")).to_contain_text("✓ Approved")
     select_next(page)
     page.keyboard.press("r")
@@ -255,11 +255,11 @@ PAGES = {
     "projects/office-walk/review/": "review-queue li",
     "projects/office-walk/slices/": ".facing strong",
 }
-"""What every page of a project shows when it is there."""
+"""An element that every page of a project shows once it is loaded."""
 
 
 def on_a_phone(browser, server):
-    """Every page fits, can be touched, and complains of nothing."""
+    """Every page fits, can be touched, and reports no error."""
     context = browser.new_context(
         viewport=PHONE, color_scheme="dark", has_touch=True, is_mobile=True
     )
@@ -276,7 +276,7 @@ def on_a_phone(browser, server):
 
 
 def low(page):
-    """Whatever is too low for a finger."""
+    """Controls that are too low to touch."""
     return page.evaluate(
         """[...document.querySelectorAll('button:not(.link), select, summary, .bar a')]
         .filter((one) => one.checkVisibility() && one.getBoundingClientRect().height < 40)

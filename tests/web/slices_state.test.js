@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
+import { roundStep, scaleBar } from "../../web/shared/scale_bar.js";
 import {
   anglesOf,
   cutOf,
@@ -10,7 +11,6 @@ import {
   normalFrom,
   normalOf,
   parse,
-  roundStep,
 } from "../../web/slices/state.js";
 
 test("an empty address is the usual horizontal cut", () => {
@@ -68,4 +68,9 @@ test("steps of a scale are 1, 2 or 5 times a power of ten", () => {
 test("a normal and its angles are the same thing", () => {
   const n = normalFrom({ azimuth: 120, tilt: 35 });
   assert.deepEqual(anglesOf(n), { azimuth: 120, tilt: 35 });
+});
+
+test("a scale bar has a round length and its caption", () => {
+  assert.deepEqual(scaleBar(40), { meters: 2, px: 80, text: "2 m" });
+  assert.deepEqual(scaleBar(200), { meters: 0.5, px: 100, text: "50 cm" });
 });
