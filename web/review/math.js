@@ -96,6 +96,18 @@ export class Camera {
     return [width / 2 + this.scale * dot(right), height / 2 - this.scale * dot(up)];
   }
 
+  /** Shows nine tenths of the points x y z around the origin in a square of `px` pixels. */
+  fit(points, px) {
+    if (!points.length) return;
+    const distances = [];
+    for (let k = 0; k < points.length; k += 30)
+      distances.push(Math.hypot(points[k], points[k + 1]));
+    distances.sort((a, b) => a - b);
+    const reach = Math.max(2, distances[Math.floor(distances.length * 0.9)]);
+    this.scale = (0.46 * (px || 400)) / reach;
+    this.center = [0, 0, 0];
+  }
+
   /** A step on the screen as a step in the upright frame [m]. */
   step(dx, dy) {
     const [right, up] = this.axes();

@@ -14,22 +14,19 @@ import {
   redoDecision,
   remakeMap,
   undoDecision,
-  watchJobs,
 } from "../shared/api.js";
 import { attempt, byId } from "../shared/dom.js";
 import { askForFrames, askToSign, showKeys } from "./dialogs.js";
-import { listenToKeys } from "./keys.js";
 import { journalNews, showEffect, showJournal, showPair, showSigning } from "./panels.js";
 import { keyOf } from "./captions.js";
 import { PairLoader } from "./loader.js";
 import { ReviewState } from "./state.js";
-import { keyActions, makeTools, moveActions } from "./tools.js";
+import { listenToActions, makeTools } from "./tools.js";
+import { watchProject } from "./watch.js";
 import { withPassword } from "../account/recent_login.js";
 import "../shared/page_head.js";
 import "./queue.js";
 import "./view.js";
-
-const POLL_MS = 4000; // others decide too, in other browsers or through another server
 
 const id = decodeURIComponent(location.pathname.split("/")[2]);
 const queue = document.querySelector("review-queue");
@@ -74,11 +71,7 @@ function drawSelected() {
   showPair(byId("pair"), selected?.row, selected?.facts, selected?.found, state.limit_m);
   for (const [name, able] of Object.entries(state.enabled(queue.length)))
     buttons[name].disabled = !able;
-  buttons.refine.firstChild.textContent = selected?.busy
-    ? "Refining…"
-    : selected?.found?.measurement && !selected.moved
-      ? "Create edge"
-      : "Refine";
+  buttons.refine.firstChild.textContent = state.refineText;
   byId("said").textContent = state.hint;
 }
 
@@ -271,14 +264,7 @@ const actions = {
   drop,
 };
 const { buttons, reason, goOn } = makeTools(byId("decision"), queue.tools, actions);
-listenToKeys({
-  press: keyActions(actions, view, reason),
-  moves: moveActions(view),
-  undo: actions.undo,
-  redo: actions.redo,
-  reason,
-  canMove: () => Boolean(state.selected?.drawn),
-});
+listenToActions(actions, view, reason, () => Boolean(state.selected?.drawn));
 
 queue.addEventListener("chosen", (event) => {
   const row = queue.get(/** @type {CustomEvent} */ (event).detail);
@@ -307,18 +293,7 @@ async function begin() {
   update(server);
 }
 
-const jobStates = new Map();
-watchJobs(
-  ({ job }) => {
-    if (job.project !== id || jobStates.get(job.id) === job.state) return;
-    jobStates.set(job.id, job.state);
-    poll();
-  },
-  (linked) => {
-    document.querySelector("page-head").linked = linked;
-  },
-);
 drawSelected();
 await attempt(message, begin);
 if (message.textContent) view.clear("Nothing to review");
-setInterval(() => document.hidden || poll(), POLL_MS);
+watchProject(id, poll);

@@ -161,6 +161,13 @@ export class ReviewState {
     };
   }
 
+  /** What the button to refine does next. */
+  get refineText() {
+    const { selected } = this;
+    if (selected?.busy) return "Refining…";
+    return selected?.found?.measurement && !selected.moved ? "Create edge" : "Refine";
+  }
+
   /** What to do next with the selected pair. */
   get hint() {
     const { selected, server } = this;

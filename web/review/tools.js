@@ -1,6 +1,7 @@
 // The buttons and keys of the review page: how each action is called.
 
 import { make } from "../shared/dom.js";
+import { listenToKeys } from "./keys.js";
 
 const GO_ON = "recon4-review-go-on"; // whether this browser goes on after a decision
 
@@ -60,7 +61,7 @@ export function makeTools(bar, queueBar, act) {
 }
 
 /** Actions by key. */
-export const keyActions = (act, view, reason) => ({
+const keyActions = (act, view, reason) => ({
   j: act.next,
   k: act.previous,
   a: act.accept,
@@ -82,7 +83,7 @@ export const keyActions = (act, view, reason) => ({
 });
 
 /** Movements of the second place by key, in meters and radians. */
-export const moveActions = (view) => ({
+const moveActions = (view) => ({
   ArrowLeft: (m) => view.nudge(-m, 0),
   ArrowRight: (m) => view.nudge(m, 0),
   ArrowUp: (m) => view.nudge(0, m),
@@ -92,3 +93,15 @@ export const moveActions = (view) => ({
   Comma: (m, turn) => view.nudge(0, 0, turn),
   Period: (m, turn) => view.nudge(0, 0, -turn),
 });
+
+/** Calls the actions by key; the second place moves by key while `canMove()`. */
+export function listenToActions(act, view, reason, canMove) {
+  listenToKeys({
+    press: keyActions(act, view, reason),
+    moves: moveActions(view),
+    undo: act.undo,
+    redo: act.redo,
+    reason,
+    canMove,
+  });
+}

@@ -4,7 +4,9 @@
 // Event: "cut" with detail {a, b} [m].
 
 import { make } from "../shared/dom.js";
-import { normalOf, roundStep } from "./state.js";
+import { listenToGestures } from "../shared/gestures.js";
+import { scaleBar } from "../shared/scale_bar.js";
+import { normalOf } from "./state.js";
 
 const GRIP_PX = 22;
 
@@ -21,10 +23,11 @@ export class SliceAbove extends HTMLElement {
     this.setAttribute("aria-busy", "true"); // nothing to drag before the image is there
     this.#canvas.setAttribute("role", "img");
     this.#canvas.setAttribute("aria-label", "The map from above, with the cut");
-    this.#canvas.addEventListener("pointerdown", (event) => this.#down(event));
-    this.#canvas.addEventListener("pointermove", (event) => this.#move(event));
-    this.#canvas.addEventListener("pointerup", () => (this.#drag = null));
-    this.#canvas.addEventListener("pointercancel", () => (this.#drag = null));
+    listenToGestures(this.#canvas, {
+      onDown: (at) => this.#down(at),
+      onDrag: (_from, to) => this.#dragged(to),
+      onUp: () => (this.#drag = null),
+    });
     new ResizeObserver(() => this.draw()).observe(this);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
   }
@@ -150,28 +153,21 @@ export class SliceAbove extends HTMLElement {
 
   #bar(pen, color) {
     const { height, scale } = this.#fit();
-    const length = roundStep(50 / scale);
+    const { px, text } = scaleBar(scale, 50);
     pen.fillStyle = color("--panel");
     pen.globalAlpha = 0.8;
-    pen.fillRect(4, height - 32, length * scale + 12, 28);
+    pen.fillRect(4, height - 32, px + 12, 28);
     pen.globalAlpha = 1;
     pen.fillStyle = color("--quiet");
-    pen.fillRect(10, height - 12, length * scale, 3);
+    pen.fillRect(10, height - 12, px, 3);
     pen.font = "12px system-ui, sans-serif";
     pen.textAlign = "left";
     pen.textBaseline = "alphabetic";
-    pen.fillText(`${length} m`, 10, height - 17);
+    pen.fillText(text, 10, height - 17);
   }
 
-  #at(event) {
-    const box = this.getBoundingClientRect();
-    return [event.clientX - box.left, event.clientY - box.top];
-  }
-
-  #down(event) {
+  #down(at) {
     if (!this.#window || !this.#state) return;
-    this.#canvas.setPointerCapture(event.pointerId);
-    const at = this.#at(event);
     const place = this.#toMap(at);
     const { kind, a, b } = this.#state;
     const near = (end) => Math.hypot(...this.#toPx(end).map((x, k) => x - at[k])) < GRIP_PX;
@@ -192,24 +188,23 @@ export class SliceAbove extends HTMLElement {
     return Math.hypot(at[0] - a[0] - s * dx, at[1] - a[1] - s * dy);
   }
 
-  #move(event) {
+  #dragged(at) {
     const drag = this.#drag;
     if (!drag) return;
-    const at = this.#at(event);
     const place = this.#toMap(at);
     const shift = drag.from ? place.map((x, k) => x - drag.from[k]) : null;
     const { a, b } = this.#state;
-    if (drag.what === "a") this.#say(place, b);
-    else if (drag.what === "b") this.#say(a, place);
+    if (drag.what === "a") this.#emit(place, b);
+    else if (drag.what === "b") this.#emit(a, place);
     else if (drag.what === "line")
-      this.#say(
+      this.#emit(
         drag.a.map((x, k) => x + shift[k]),
         drag.b.map((x, k) => x + shift[k]),
       );
-    else if (Math.hypot(at[0] - drag.px[0], at[1] - drag.px[1]) > 12) this.#say(drag.from, place);
+    else if (Math.hypot(at[0] - drag.px[0], at[1] - drag.px[1]) > 12) this.#emit(drag.from, place);
   }
 
-  #say(a, b) {
+  #emit(a, b) {
     if (Math.hypot(b[0] - a[0], b[1] - a[1]) > 0.05)
       this.dispatchEvent(new CustomEvent("cut", { detail: { a, b } }));
   }

@@ -106,12 +106,6 @@ export function moved(state, distance) {
  */
 export const unframed = (state) => ({ ...state, u: null, v: null, m: null });
 
-/** 1, 2 or 5 times a power of ten, at least `least`. */
-export function roundStep(least) {
-  const power = 10 ** Math.floor(Math.log10(least));
-  return power * [1, 2, 5, 10].find((s) => s * power >= least * 0.999);
-}
-
 /** Azimuth (clockwise from y) and tilt (0 = level plane) of a normal, in degrees. */
 export function anglesOf([x, y, z]) {
   const flat = Math.hypot(x, y);

@@ -3,11 +3,13 @@
 // Events: "frame" (panned or zoomed), "moving" (while it moves), "place" (a click, detail {u, v, reach}).
 
 import { make } from "../shared/dom.js";
-import { roundStep } from "./state.js";
+import { listenToGestures } from "../shared/gestures.js";
+import { roundStep, scaleBar } from "../shared/scale_bar.js";
 
 const EDGE = { left: 56, bottom: 26 };
 const FINEST_M = 0.0002;
 const COARSEST_M = 50;
+const CLICK_PX = 5; // a pointer that moves farther drags
 
 export class SliceView extends HTMLElement {
   #canvas = make("canvas", { tabIndex: 0 });
@@ -17,9 +19,7 @@ export class SliceView extends HTMLElement {
   #window = null;
   #axes = ["", ""];
   #marks = [];
-  #pointers = new Map();
-  #pinch = null;
-  #moved = 0;
+  #moved = 0; // by the pointer since it went down [px]
   #rest = 0;
   #shown = 0;
   #hover = make("output", { className: "cursor", ariaLive: "off" });
@@ -28,12 +28,18 @@ export class SliceView extends HTMLElement {
     this.replaceChildren(this.#canvas, this.#hover);
     this.#canvas.setAttribute("role", "img");
     const canvas = this.#canvas;
-    canvas.addEventListener("pointerdown", (event) => this.#down(event));
-    canvas.addEventListener("pointermove", (event) => this.#move(event));
-    canvas.addEventListener("pointerup", (event) => this.#up(event));
-    canvas.addEventListener("pointercancel", (event) => this.#up(event));
+    listenToGestures(canvas, {
+      onDown: (_at, _event, count) => {
+        if (count === 1) this.#moved = 0;
+      },
+      onHover: (at, event) => this.#hovered(at, event),
+      onDrag: (from, to) => this.#dragged(from, to),
+      onPinch: (before, after) => this.#pinched(before, after),
+      onUp: (at, event, count) => this.#released(at, event, count),
+      onWheel: (deltaY, at) =>
+        this.zoom(Math.exp(Math.max(-120, Math.min(120, deltaY)) * 0.0022), at),
+    });
     canvas.addEventListener("pointerleave", () => (this.#hover.value = ""));
-    canvas.addEventListener("wheel", (event) => this.#wheel(event), { passive: false });
     canvas.addEventListener("keydown", (event) => this.#key(event));
     new ResizeObserver(() => (this.#center ? this.#changed() : this.draw())).observe(this);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
@@ -209,8 +215,7 @@ export class SliceView extends HTMLElement {
 
   #bar(pen, color) {
     const { width, height } = this.#size();
-    const length = roundStep(this.#metersPerPx * 60);
-    const px = length / this.#metersPerPx;
+    const { px, text } = scaleBar(1 / this.#metersPerPx);
     const [x, y] = [width - px - 16, height - EDGE.bottom - 16];
     pen.fillStyle = color("--paper");
     pen.globalAlpha = 0.85;
@@ -222,11 +227,7 @@ export class SliceView extends HTMLElement {
     pen.fillRect(x + px / 2, y + 1, px / 2 - 1, 2);
     pen.fillStyle = color("--ink");
     pen.textAlign = "center";
-    pen.fillText(
-      length >= 1 ? `${length} m` : `${Number((length * 100).toPrecision(2))} cm`,
-      x + px / 2,
-      y - 9,
-    );
+    pen.fillText(text, x + px / 2, y - 9);
   }
 
   #mark(pen, { points, words, tone }, color) {
@@ -260,61 +261,34 @@ export class SliceView extends HTMLElement {
 
   // -- pointers
 
-  #place(event) {
-    const box = this.getBoundingClientRect();
-    return [event.clientX - box.left, event.clientY - box.top];
+  #hovered(at, event) {
+    if (!this.#center || event.pointerType !== "mouse") return;
+    const digits = this.#metersPerPx < 0.005 ? 3 : 2;
+    this.#hover.value = this.#toPlane(at)
+      .map((x, k) => `${["u", "v"][k]} ${x.toFixed(digits)}`)
+      .join("  ");
   }
 
-  #down(event) {
-    this.#canvas.setPointerCapture(event.pointerId);
-    this.#pointers.set(event.pointerId, this.#place(event));
-    if (this.#pointers.size === 1) this.#moved = 0;
-    this.#pinch = null;
-  }
-
-  #move(event) {
-    const place = this.#place(event);
-    if (this.#center && event.pointerType === "mouse") {
-      const digits = this.#metersPerPx < 0.005 ? 3 : 2;
-      this.#hover.value = this.#toPlane(place)
-        .map((x, k) => `${["u", "v"][k]} ${x.toFixed(digits)}`)
-        .join("  ");
-    }
-    const before = this.#pointers.get(event.pointerId);
-    if (!before || !this.#center) return;
-    this.#pointers.set(event.pointerId, place);
-    const [dx, dy] = [place[0] - before[0], place[1] - before[1]];
+  #dragged(from, to) {
+    if (!this.#center) return;
+    const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
     this.#moved += Math.hypot(dx, dy);
-    if (this.#pointers.size === 2) this.#pinched();
-    else if (this.#moved > 5) this.#shift(dx, dy);
+    if (this.#moved > CLICK_PX) this.#shift(dx, dy);
   }
 
-  #pinched() {
-    const [a, b] = [...this.#pointers.values()];
-    const apart = Math.hypot(a[0] - b[0], a[1] - b[1]);
-    const middle = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
-    if (this.#pinch) {
-      this.#shift(middle[0] - this.#pinch.middle[0], middle[1] - this.#pinch.middle[1]);
-      this.zoom(this.#pinch.apart / Math.max(apart, 1), middle);
-    }
-    this.#pinch = { apart, middle };
-    this.#moved = 99;
+  #pinched(before, after) {
+    if (!this.#center) return;
+    this.#shift(after.middle[0] - before.middle[0], after.middle[1] - before.middle[1]);
+    this.zoom(before.apart / Math.max(after.apart, 1), after.middle);
+    this.#moved = Infinity;
   }
 
-  #up(event) {
-    const click = this.#pointers.size === 1 && this.#moved <= 5 && event.type === "pointerup";
-    this.#pointers.delete(event.pointerId);
-    this.#pinch = null;
+  #released(at, event, count) {
+    const click = count === 1 && this.#moved <= CLICK_PX && event.type === "pointerup";
     if (!click || !this.#center) return;
-    const [u, v] = this.#toPlane(this.#place(event));
+    const [u, v] = this.#toPlane(at);
     const reach = (event.pointerType === "mouse" ? 8 : 18) * this.#metersPerPx;
     this.dispatchEvent(new CustomEvent("place", { detail: { u, v, reach } }));
-  }
-
-  #wheel(event) {
-    if (!this.#center) return;
-    event.preventDefault();
-    this.zoom(Math.exp(Math.max(-120, Math.min(120, event.deltaY)) * 0.0022), this.#place(event));
   }
 
   #key(event) {

@@ -1,0 +1,115 @@
+// Drawing the pair view: points of two places, scale bar, handle, picked points. No events.
+
+import { scaleBar } from "../shared/scale_bar.js";
+import { apply, rotationOf, times, turn } from "./math.js";
+
+export const RED = 0xff4a52ff; // A B G R
+export const GREEN = 0xff7fd62f;
+export const HANDLE_PX = 22;
+export const RING_PX = 66;
+const GROUND = 0xff18140f;
+
+/** Image of the size of a canvas, to draw points into: {pixels, width, height, ratio, show}. */
+export function pointImage(canvas) {
+  const ratio = Math.min(2, devicePixelRatio || 1);
+  const width = Math.round(canvas.clientWidth * ratio);
+  const height = Math.round(canvas.clientHeight * ratio);
+  if (!width || !height) return null;
+  if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+  const context = canvas.getContext("2d");
+  const image = context.createImageData(width, height);
+  const pixels = new Uint32Array(image.data.buffer).fill(GROUND);
+  return { pixels, width, height, ratio, context, show: () => context.putImageData(image, 0, 0) };
+}
+
+/**
+ * Draws points, two by two pixels each; where both colors meet they add up to a bright one.
+ * `pose` maps the points into the frame that `upright` turns; `slab` is the range along the line of
+ * sight that is shown [m].
+ */
+export function drawPoints(
+  { pixels, width, height, ratio },
+  points,
+  color,
+  { pose, upright, camera, slab },
+) {
+  const R = times(upright, rotationOf(pose.slice(3)));
+  const t = turn(upright, pose);
+  const [x, y, eye] = camera.axes();
+  const [cx, cy, cz] = camera.center;
+  const scale = camera.scale * ratio;
+  const row = (a) => [0, 1, 2].map((k) => a[0] * R[k] + a[1] * R[3 + k] + a[2] * R[6 + k]);
+  const [X, Y, Z] = [row(x), row(y), row(eye)];
+  const offset = (a) => a[0] * (t[0] - cx) + a[1] * (t[1] - cy) + a[2] * (t[2] - cz);
+  const [ox, oy] = [offset(x), offset(y)];
+  const oz = eye[0] * t[0] + eye[1] * t[1] + eye[2] * t[2];
+  const [low, high] = slab;
+  for (let k = 0; k < points.length; k += 3) {
+    const [a, b, c] = [points[k], points[k + 1], points[k + 2]];
+    const depth = Z[0] * a + Z[1] * b + Z[2] * c + oz;
+    if (depth < low || depth > high) continue;
+    const u = (width / 2 + scale * (X[0] * a + X[1] * b + X[2] * c + ox)) | 0;
+    const v = (height / 2 - scale * (Y[0] * a + Y[1] * b + Y[2] * c + oy)) | 0;
+    if (u < 0 || v < 0 || u >= width - 1 || v >= height - 1) continue;
+    const p = v * width + u;
+    const q = p + width;
+    for (const at of [p, p + 1, q, q + 1])
+      pixels[at] = pixels[at] === GROUND || pixels[at] === color ? color : pixels[at] | color;
+  }
+}
+
+export function drawScaleBar(context, height, pxPerM) {
+  const { px, text } = scaleBar(pxPerM);
+  context.strokeStyle = context.fillStyle = "#e6ebf0";
+  context.lineWidth = 2;
+  context.beginPath();
+  context.moveTo(14, height - 20);
+  context.lineTo(14, height - 14);
+  context.lineTo(14 + px, height - 14);
+  context.lineTo(14 + px, height - 20);
+  context.stroke();
+  context.font = "13px system-ui, sans-serif";
+  context.fillText(text, 18, height - 22);
+}
+
+/** A disc to move the second place by, a ring with a knob to turn it. */
+export function drawHandle(context, /** @type {number[]} */ [u, v]) {
+  context.strokeStyle = "#ffffff";
+  context.fillStyle = "rgb(47 214 127 / 35%)";
+  context.lineWidth = 2;
+  context.beginPath();
+  context.arc(u, v, HANDLE_PX / 2, 0, 7);
+  context.fill();
+  context.stroke();
+  context.beginPath();
+  context.moveTo(u - 17, v);
+  context.lineTo(u + 17, v);
+  context.moveTo(u, v - 17);
+  context.lineTo(u, v + 17);
+  context.stroke();
+  context.setLineDash([6, 5]);
+  context.beginPath();
+  context.arc(u, v, RING_PX, 0, 7);
+  context.stroke();
+  context.setLineDash([]);
+  context.fillStyle = "#ffffff";
+  context.beginPath();
+  context.arc(u + RING_PX, v, 7, 0, 7);
+  context.fill();
+}
+
+/** The points picked in both places, numbered; `toScreen` maps points of the first place's frame. */
+export function drawPicked(context, picking, pose, toScreen) {
+  const pins = [
+    ...picking.i.map((p, k) => [p, k, "#ff8f86"]),
+    ...picking.j.map((p, k) => [apply(pose, p), k, "#7bf0b3"]),
+  ];
+  context.font = "bold 14px system-ui, sans-serif";
+  for (const [p, k, color] of pins) {
+    const [u, v] = toScreen(p);
+    context.strokeStyle = context.fillStyle = color;
+    context.lineWidth = 2;
+    context.strokeRect(u - 6, v - 6, 12, 12);
+    context.fillText(String(k + 1), u + 9, v - 8);
+  }
+}

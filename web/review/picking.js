@@ -1,0 +1,40 @@
+// Picking the same three points in two places, in the first and second place by turns. No DOM.
+
+import { IDENTITY, apply } from "./math.js";
+
+const PICK_PX = 14;
+const PAIRS = 3;
+
+export class Picking {
+  i = []; // in the frame of the first place
+  j = []; // in the frame of the second place
+
+  get #isFirst() {
+    return this.i.length === this.j.length;
+  }
+
+  get isDone() {
+    return this.j.length === PAIRS;
+  }
+
+  /** What to pick next. */
+  get text() {
+    const place = this.#isFirst ? "first (red)" : "second (green)";
+    return `Pick point ${this.j.length + 1} of ${PAIRS} in the ${place} place`;
+  }
+
+  /** Picks the point nearest to a position on the screen, if one is near. */
+  pick([x, y], points, pose, toScreen) {
+    const first = this.#isFirst;
+    const [candidates, T] = first ? [points.i, IDENTITY] : [points.j, pose];
+    let best = null;
+    let nearest = PICK_PX;
+    for (let k = 0; k < candidates.length; k += 3) {
+      const p = [candidates[k], candidates[k + 1], candidates[k + 2]];
+      const [u, v] = toScreen(apply(T, p));
+      const d = Math.hypot(u - x, v - y);
+      if (d < nearest) [nearest, best] = [d, p];
+    }
+    if (best) (first ? this.i : this.j).push(best);
+  }
+}
