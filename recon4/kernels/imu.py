@@ -6,6 +6,13 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+ROTATION, POSITION, VELOCITY, GYRO_BIAS, ACCEL_BIAS, GRAVITY = 0, 3, 6, 9, 12, 15
+"""First row of each quantity in the error state (18,); `recon4.registration.state` has slices."""
+_ROTATION_ROWS = 3
+"""The vector of a state (15,) has no rotation: its rows are those of the error state minus 3."""
+_GYRO_NOISE, _ACCEL_NOISE, _GYRO_BIAS_WALK, _ACCEL_BIAS_WALK = 0, 1, 2, 3
+"""Rows of the noise densities."""
+
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def rotation(w: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -27,6 +34,55 @@ def rotation(w: NDArray[np.float64]) -> NDArray[np.float64]:
     out[1, 2] = -a * w[0] + b * w[1] * w[2]
     out[2, 1] = a * w[0] + b * w[1] * w[2]
     return out
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _quantity(state: NDArray[np.float64], first: int) -> NDArray[np.float64]:
+    """Three rows of the vector of a state, by their first row in the error state."""
+    return state[first - _ROTATION_ROWS : first]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _step_transition(
+    half: NDArray[np.float64], f: NDArray[np.float64], dt: float
+) -> NDArray[np.float64]:
+    """Transition of the error state over one sample.
+
+    Args:
+        half: ``R_odom_body`` in the middle of the step, (3, 3).
+        f: Specific force in the odometry frame [m/s²], (3,).
+        dt: Length of the step [s].
+
+    Returns:
+        (18, 18).
+    """
+    F = np.eye(18)
+    F[VELOCITY, ROTATION + 1], F[VELOCITY, ROTATION + 2] = f[2] * dt, -f[1] * dt
+    F[VELOCITY + 1, ROTATION], F[VELOCITY + 1, ROTATION + 2] = -f[2] * dt, f[0] * dt
+    F[VELOCITY + 2, ROTATION], F[VELOCITY + 2, ROTATION + 1] = f[1] * dt, -f[0] * dt
+    for i in range(3):
+        F[POSITION + i, VELOCITY + i] = dt
+        F[VELOCITY + i, GRAVITY + i] = dt
+        F[POSITION + i, GRAVITY + i] = 0.5 * dt * dt
+        for j in range(3):
+            F[ROTATION + i, GYRO_BIAS + j] = -half[i, j] * dt
+            F[VELOCITY + i, ACCEL_BIAS + j] = -half[i, j] * dt
+            F[POSITION + i, ACCEL_BIAS + j] = -0.5 * half[i, j] * dt * dt
+            F[POSITION + i, ROTATION + j] = 0.5 * dt * F[VELOCITY + i, ROTATION + j]
+    return F
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _add_noise(P: NDArray[np.float64], noise: NDArray[np.float64], dt: float) -> None:
+    """Add the noise of one step to the covariance of the error state (18, 18), in place."""
+    for i in range(3):
+        P[ROTATION + i, ROTATION + i] += noise[_GYRO_NOISE] ** 2 * dt
+        P[POSITION + i, POSITION + i] += noise[_ACCEL_NOISE] ** 2 * dt**3 / 3.0
+        P[POSITION + i, VELOCITY + i] += noise[_ACCEL_NOISE] ** 2 * dt**2 / 2.0
+        P[VELOCITY + i, POSITION + i] += noise[_ACCEL_NOISE] ** 2 * dt**2 / 2.0
+        P[VELOCITY + i, VELOCITY + i] += noise[_ACCEL_NOISE] ** 2 * dt
+        P[GYRO_BIAS + i, GYRO_BIAS + i] += noise[_GYRO_BIAS_WALK] ** 2 * dt
+        P[ACCEL_BIAS + i, ACCEL_BIAS + i] += noise[_ACCEL_BIAS_WALK] ** 2 * dt
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -56,8 +112,11 @@ def propagate(
     """
     count = len(t_s)
     R_all, p_all = np.empty((count, 3, 3)), np.empty((count, 3))
-    R, p, v = R0.copy(), state0[0:3].copy(), state0[3:6].copy()
-    bg, ba, gravity = state0[6:9], state0[9:12], state0[12:15]
+    R = R0.copy()
+    p = _quantity(state0, POSITION).copy()
+    v = _quantity(state0, VELOCITY).copy()
+    bg, ba = _quantity(state0, GYRO_BIAS), _quantity(state0, ACCEL_BIAS)
+    gravity = _quantity(state0, GRAVITY)
     Phi = np.eye(18)
     P = P0.copy()
     R_all[0], p_all[0] = R, p
@@ -67,30 +126,10 @@ def propagate(
         force = 0.5 * (accel[k] + accel[k + 1]) - ba
         half = R @ rotation(omega * (0.5 * dt))
         a = half @ force + gravity
-        F = np.eye(18)
-        f = half @ force
-        F[6, 1], F[6, 2] = f[2] * dt, -f[1] * dt
-        F[7, 0], F[7, 2] = -f[2] * dt, f[0] * dt
-        F[8, 0], F[8, 1] = f[1] * dt, -f[0] * dt
-        for i in range(3):
-            F[3 + i, 6 + i] = dt
-            F[6 + i, 15 + i] = dt
-            F[3 + i, 15 + i] = 0.5 * dt * dt
-            for j in range(3):
-                F[i, 9 + j] = -half[i, j] * dt
-                F[6 + i, 12 + j] = -half[i, j] * dt
-                F[3 + i, 12 + j] = -0.5 * half[i, j] * dt * dt
-                F[3 + i, j] = 0.5 * dt * F[6 + i, j]
+        F = _step_transition(half, half @ force, dt)
         Phi = F @ Phi
         P = F @ P @ F.T
-        for i in range(3):
-            P[i, i] += noise[0] ** 2 * dt
-            P[3 + i, 3 + i] += noise[1] ** 2 * dt**3 / 3.0
-            P[3 + i, 6 + i] += noise[1] ** 2 * dt**2 / 2.0
-            P[6 + i, 3 + i] += noise[1] ** 2 * dt**2 / 2.0
-            P[6 + i, 6 + i] += noise[1] ** 2 * dt
-            P[9 + i, 9 + i] += noise[2] ** 2 * dt
-            P[12 + i, 12 + i] += noise[3] ** 2 * dt
+        _add_noise(P, noise, dt)
         p = p + v * dt + 0.5 * a * dt * dt
         v = v + a * dt
         R = R @ rotation(omega * dt)

@@ -1,8 +1,10 @@
-"""Where each quantity stands in the vectors of the odometry filter."""
+"""Index of each quantity in the vectors of the odometry filter."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+
+from recon4.kernels.imu import ACCEL_BIAS, GRAVITY, GYRO_BIAS, POSITION, ROTATION, VELOCITY
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,27 +29,31 @@ class StateIndex:
     """Both biases and gravity: what changes slowly."""
 
 
+def _rows(first: int) -> slice:
+    return slice(first, first + 3)
+
+
 STATE = StateIndex(
-    rotation=slice(0, 3),
-    position=slice(3, 6),
-    velocity=slice(6, 9),
-    gyro_bias=slice(9, 12),
-    accel_bias=slice(12, 15),
-    gravity=slice(15, 18),
-    pose=slice(0, 6),
-    calibration=slice(9, 18),
+    rotation=_rows(ROTATION),
+    position=_rows(POSITION),
+    velocity=_rows(VELOCITY),
+    gyro_bias=_rows(GYRO_BIAS),
+    accel_bias=_rows(ACCEL_BIAS),
+    gravity=_rows(GRAVITY),
+    pose=slice(ROTATION, VELOCITY),
+    calibration=slice(GYRO_BIAS, 18),
 )
 """Rows of the error state: the rotation is a tangent vector there."""
 
 VECTOR = StateIndex(
     rotation=slice(0, 0),
-    position=slice(0, 3),
-    velocity=slice(3, 6),
-    gyro_bias=slice(6, 9),
-    accel_bias=slice(9, 12),
-    gravity=slice(12, 15),
-    pose=slice(0, 3),
-    calibration=slice(6, 15),
+    position=_rows(POSITION - 3),
+    velocity=_rows(VELOCITY - 3),
+    gyro_bias=_rows(GYRO_BIAS - 3),
+    accel_bias=_rows(ACCEL_BIAS - 3),
+    gravity=_rows(GRAVITY - 3),
+    pose=_rows(POSITION - 3),
+    calibration=slice(GYRO_BIAS - 3, 15),
 )
 """Rows of `MotionState.vector`: the rotation is kept as a matrix beside it."""
 
