@@ -152,7 +152,7 @@ def one_stalls(server: Running, pid: int) -> None:
         before = memory_bytes(pid)
         beside_s = []
         for k in range(30):
-            stalled.set("Palette", ("turbo", "grey")[k % 2])
+            stalled.set("Palette", ("turbo", "gray")[k % 2])
             beside_s += [toggle_s(client) for client in clients]
         print(
             f"toggle p95 alone {1e3 * np.percentile(alone_s, 95):.0f} ms, beside one who stalls "
