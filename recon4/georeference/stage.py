@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +32,21 @@ _FLOOR_POINTS = 2000
 """Numbers of multiframes, and of points of each, that are sampled to find the floor."""
 
 _MOST_JSON_BYTES = 16 << 20
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CrsRecord:
+    """The CRS in ``georeference.json``; the fields are its keys."""
+
+    name: str
+    """EPSG code or codes."""
+    wkt: str
+    operation: str
+    """Description of the transformation by PROJ."""
+    accuracy_m: float
+    """Stated accuracy of the transformation [m]; NaN if unknown."""
+    origin_m: list[float]
+    """Coordinates of the map's origin in the CRS [m], (3,)."""
 
 
 def run_level(
@@ -65,19 +81,23 @@ def run_level(
     dense = apply_corrections(
         dense, nodes.t_ns, T_before=nodes.T_map_body, T_after=placed.graph.T_map_body
     )
-    crs = _describe_crs(placed.origin, settings.gnss.crs) if placed.origin else {}
+    crs = _describe_crs(placed.origin, settings.gnss.crs) if placed.origin else None
     save_trajectory(out / "trajectory.npz", dense)
     judged = placed.graph
     if placed.rejected:
         judged = confirmed_again(judged, settings=settings.verification)
     save_graph(out, with_residuals(judged))
-    record = {"levelling": leveling.to_json(), "georeference": placed.to_json(), "crs": crs}
+    record = {
+        "levelling": leveling.to_json(),
+        "georeference": placed.to_json(),
+        "crs": asdict(crs) if crs else {},
+    }
     write_json(out / "georeference.json", null_for_nan(record))
     progress.advance()
     return {
         "levelled_by": leveling.source,
         "tilt_deg": round(float(np.rad2deg(leveling.tilt_rad)), 4),
-        "crs": crs.get("name", ""),
+        "crs": crs.name if crs else "",
         "local": placed.reason,
         "edges_rejected": len(placed.rejected),
     }
@@ -129,15 +149,15 @@ def read_crs(artifact: Path, crs: str = "") -> CrsTransform | None:
         raise StoreError(f"{path} cannot be read: {error!r}") from error
 
 
-def _describe_crs(origin: GeodeticOrigin, name: str) -> dict[str, Any]:
+def _describe_crs(origin: GeodeticOrigin, name: str) -> CrsRecord:
     crs = CrsTransform(origin, name)
-    return {
-        "name": crs.crs,
-        "wkt": crs.wkt,
-        "operation": crs.operation,
-        "accuracy_m": crs.accuracy_m,
-        "origin_m": crs.to_crs(np.zeros((1, 3)))[0].tolist(),
-    }
+    return CrsRecord(
+        name=crs.crs,
+        wkt=crs.wkt,
+        operation=crs.operation,
+        accuracy_m=crs.accuracy_m,
+        origin_m=crs.to_crs(np.zeros((1, 3)))[0].tolist(),
+    )
 
 
 def _sample_points(frames: FrameStore, trajectory: Trajectory) -> tuple[Array, Array]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO, Self, TypeVar
@@ -157,6 +157,20 @@ class TileSet:
         return low, np.max([tile.high_m for tile in self.tiles], axis=0)
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _TileRow:
+    """A tile in ``tiles.json``; the fields are its keys."""
+
+    ijk: list[int]
+    origin_m: list[float]
+    start: int
+    stop: int
+    low_m: list[float]
+    high_m: list[float]
+    time_ns: list[int]
+    """Times of its first and last point [ns], (2,)."""
+
+
 class TileWriter:
     """Writes tiles one after the other; ``tiles.json`` last, if the block ends without error."""
 
@@ -164,7 +178,7 @@ class TileWriter:
         self._folder = folder
         self._fields = list(fields)
         self._tile_m = tile_m
-        self._rows: list[dict[str, Any]] = []
+        self._rows: list[_TileRow] = []
         self._points = 0
         self._files: dict[str, BinaryIO] = {}
         self.facts: dict[str, Any] = {}
@@ -202,28 +216,29 @@ class TileWriter:
             self._files[name].write(column.data)
         origin = np.array(ijk) * self._tile_m
         self._rows.append(
-            {
-                "ijk": list(ijk),
-                "origin_m": origin.tolist(),
-                "start": self._points,
-                "stop": self._points + count,
-                "low_m": (origin + columns["xyz"].min(axis=0)).tolist(),
-                "high_m": (origin + columns["xyz"].max(axis=0)).tolist(),
-                "time_ns": [int(columns["t_ns"].min()), int(columns["t_ns"].max())],
-            }
+            _TileRow(
+                ijk=list(ijk),
+                origin_m=origin.tolist(),
+                start=self._points,
+                stop=self._points + count,
+                low_m=(origin + columns["xyz"].min(axis=0)).tolist(),
+                high_m=(origin + columns["xyz"].max(axis=0)).tolist(),
+                time_ns=[int(columns["t_ns"].min()), int(columns["t_ns"].max())],
+            )
         )
         self._points += count
 
     def _write_list(self) -> None:
         rows = self._rows
         bounds = [
-            np.min([row["low_m"] for row in rows], axis=0).tolist() if rows else None,
-            np.max([row["high_m"] for row in rows], axis=0).tolist() if rows else None,
+            np.min([row.low_m for row in rows], axis=0).tolist() if rows else None,
+            np.max([row.high_m for row in rows], axis=0).tolist() if rows else None,
         ]
-        times = [t for row in rows for t in row["time_ns"]]
+        times = [t for row in rows for t in row.time_ns]
         facts = {"format": FORMAT, "points": self._points, "bounds_m": bounds} | self.facts
         facts["time_ns"] = [min(times), max(times)] if times else None
-        facts |= {"tile_m": self._tile_m, "fields": self._fields, "tiles": rows}
+        listed = [asdict(row) for row in rows]
+        facts |= {"tile_m": self._tile_m, "fields": self._fields, "tiles": listed}
         write_json(self._folder / "tiles.json", facts)
 
 

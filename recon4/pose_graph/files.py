@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.errors import StoreError
 from recon4.geometry.se3 import SE3
@@ -65,7 +67,7 @@ def load_graph(folder: Path) -> PoseGraph:
     return PoseGraph(columns["frame_ids"], columns["t_ns"], T_map_body, edges)
 
 
-def _edge(columns: dict[str, Any], row: int) -> Edge:
+def _edge(columns: Mapping[str, NDArray[Any]], row: int) -> Edge:
     fields: dict[str, Any] = {name: float(columns[name][row]) for name in _NUMBERS}
     fields |= {name: int(columns[name][row]) for name in _COUNTS}
     return Edge(

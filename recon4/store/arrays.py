@@ -68,7 +68,7 @@ def load_trajectory(path: Path) -> Trajectory:
     return Trajectory(arrays["t_ns"], SE3.from_quat(arrays["quat_xyzw"], arrays["t_m"]))
 
 
-def load_arrays(path: Path, names: list[str] | None = None) -> dict[str, Any]:
+def load_arrays(path: Path, names: list[str] | None = None) -> dict[str, NDArray[Any]]:
     """Read named arrays of an ``.npz`` file, or all of them.
 
     Raises:
@@ -97,7 +97,9 @@ def load_array(path: Path, dtype: np.dtype[Any]) -> NDArray[Any]:
             raise StoreError(f"{path.name}: expected an array of {dtype}: {error}") from error
 
 
-def _members(archive: zipfile.ZipFile, names: list[str] | None, where: str) -> dict[str, Any]:
+def _members(
+    archive: zipfile.ZipFile, names: list[str] | None, where: str
+) -> dict[str, NDArray[Any]]:
     found = {info.filename: info for info in archive.infolist()}
     if names is None:
         names = [name.removesuffix(".npy") for name in found if name.endswith(".npy")]
