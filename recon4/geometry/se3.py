@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+ROTATION, TRANSLATION = slice(0, 3), slice(3, 6)
+"""Rows of a twist, and of a tangent or its information matrix: rotation first, (6,)."""
 _SMALL_ANGLE = 1e-7
 
 
@@ -118,7 +120,7 @@ class SE3:
     def exp(xi: ArrayLike) -> SE3:
         """Motion of a twist, rotation first as in gtsam, (..., 6)."""
         xi = np.asarray(xi, dtype=np.float64)
-        omega, v = xi[..., :3], xi[..., 3:]
+        omega, v = xi[..., ROTATION], xi[..., TRANSLATION]
         return SE3(so3_exp(omega), np.einsum("...ij,...j->...i", _left_jacobian(omega), v))
 
     @staticmethod

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.geometry.se3 import SE3, Array, align_points
+from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, align_points
 from recon4.georeference.crs import GeodeticOrigin
 from recon4.georeference.gnss_priors import (
     GnssPriors,
@@ -252,10 +252,10 @@ def _tilt_priors(graph: PoseGraph, *, sd_rad: float) -> PosePriors:
     up = R[:, 2, :]
     information = np.zeros((len(graph), 6, 6))
     weight = 1.0 / (sd_rad**2 * len(graph))
-    information[:, :3, :3] = weight * (np.eye(3) - np.einsum("ni,nj->nij", up, up))
+    information[:, ROTATION, ROTATION] = weight * (np.eye(3) - np.einsum("ni,nj->nij", up, up))
     # Heading and position stay free; gtsam requires a positive definite matrix.
     information += 1e-6 * weight * np.eye(6)
-    information[:, 3:, 3:] = 1e-9 * np.eye(3)
+    information[:, TRANSLATION, TRANSLATION] = 1e-9 * np.eye(3)
     return PosePriors(np.arange(len(graph)), graph.T_map_body, information)
 
 

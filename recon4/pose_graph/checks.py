@@ -11,12 +11,12 @@ from scipy.sparse.csgraph import connected_components
 
 from recon4.errors import GraphError
 from recon4.geometry.se3 import SE3, Array
-from recon4.model.pose_graph import Flags, PoseGraph, Relations
+from recon4.model.pose_graph import Flags, Relations
 
 _ROTATION_TOLERANCE = 1e-6
 
 
-def check_graph(graph: PoseGraph) -> list[tuple[int, int]]:
+def check_relations(T_map_body: SE3, of: Relations) -> list[tuple[int, int]]:
     """Check that a graph can be solved.
 
     Returns:
@@ -25,11 +25,6 @@ def check_graph(graph: PoseGraph) -> list[tuple[int, int]]:
     Raises:
         GraphError: Names the node or the edge and its defect.
     """
-    return check_relations(graph.T_map_body, graph.relations)
-
-
-def check_relations(T_map_body: SE3, of: Relations) -> list[tuple[int, int]]:
-    """`check_graph` of poses and edges given as arrays."""
     if len(T_map_body) == 0:
         raise GraphError("the graph has no node")
     bad_nodes = ~_is_motion(T_map_body)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from recon4.geometry.se3 import SE3, Array, skew
+from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, skew
 from recon4.model.pose_graph import PoseGraph, Relations
 
 
@@ -25,8 +25,8 @@ def with_residuals(graph: PoseGraph) -> PoseGraph:
 def adjoint(T_a_b: SE3) -> Array:
     """Adjoint matrices that map twists of ``b`` to ``a``, rotation first, (..., 6, 6)."""
     out = np.zeros((*T_a_b.t.shape[:-1], 6, 6))
-    out[..., :3, :3] = out[..., 3:, 3:] = T_a_b.R
-    out[..., 3:, :3] = skew(T_a_b.t) @ T_a_b.R
+    out[..., ROTATION, ROTATION] = out[..., TRANSLATION, TRANSLATION] = T_a_b.R
+    out[..., TRANSLATION, ROTATION] = skew(T_a_b.t) @ T_a_b.R
     return out
 
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from recon4.geometry.lines import Lines, closest_points
-from recon4.geometry.se3 import SE3, Array, align_points
+from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, align_points
 from recon4.registration.result import Registration, StopReason
 from recon4.settings import RegistrationSettings
 
@@ -68,10 +68,9 @@ def register_lines(
         stop = _stop(errors, step, settings)
         if stop is not None or iteration == settings.max_iterations:
             match_ratio = len(rows_source) / len(source)
-            spread = float(np.std(errors[-settings.error_window :]))
             return Registration(
-                T_target_source, stop or StopReason.LIMIT, iteration, step.error_m, spread,
-                match_ratio, step.information, step.degeneracy,
+                T_target_source, stop or StopReason.LIMIT, iteration, step.error_m, match_ratio,
+                step.information, step.degeneracy,
             )  # fmt: skip
     raise AssertionError("max_iterations is at least 1")
 
@@ -121,8 +120,8 @@ def _common_normal_step(target: Lines, moved: Lines, settings: RegistrationSetti
     H, g, degeneracy = _normal_equations(moved.mid, n, r, w)
     xi = -np.linalg.solve(H + 1e-9 * np.trace(H) * np.eye(6), g)
     centroid = moved.mid.mean(axis=0)
-    turn = SE3.exp(np.concatenate([xi[:3], np.zeros(3)]))
-    T = SE3(turn.R, centroid + xi[3:] - turn.R @ centroid)
+    turn = SE3.exp(np.concatenate([xi[ROTATION], np.zeros(3)]))
+    T = SE3(turn.R, centroid + xi[TRANSLATION] - turn.R @ centroid)
     error_m = float(np.average(np.abs(r), weights=sine**2 + 1e-12))
     return _Step(T, error_m, H / settings.kernel_m**2, degeneracy)
 
@@ -158,6 +157,4 @@ def _stop(errors: list[float], step: _Step, settings: RegistrationSettings) -> S
 
 def _refused(T_target_source: SE3) -> Registration:
     nan = float("nan")
-    return Registration(
-        T_target_source, StopReason.TOO_FEW, 0, nan, 0.0, 0.0, np.zeros((6, 6)), 0.0
-    )
+    return Registration(T_target_source, StopReason.TOO_FEW, 0, nan, 0.0, np.zeros((6, 6)), 0.0)

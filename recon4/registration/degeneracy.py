@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from recon4.geometry.se3 import Array
+from recon4.geometry.se3 import ROTATION, TRANSLATION, Array
 from recon4.registration.plane_map import Match
+from recon4.registration.state import END_POSE, START
 
 
 def observable_directions(match: Match, normal_noise_rad: float) -> tuple[Array, Array]:
@@ -23,12 +24,13 @@ def observable_directions(match: Match, normal_noise_rad: float) -> tuple[Array,
     Returns:
         ``H`` (12, 12) and ``g`` (12,) in the form of `Match`.
     """
-    H6 = match.H[:6, :6] + match.H[:6, 6:] + match.H[6:, :6] + match.H[6:, 6:]
-    weight = float(np.trace(H6[3:, 3:]))
+    H = match.H
+    H6 = H[START, START] + H[START, END_POSE] + H[END_POSE, START] + H[END_POSE, END_POSE]
+    weight = float(np.trace(H6[TRANSLATION, TRANSLATION]))
     if weight <= 0.0:
         return match.H, match.g
     # Rotations in meters at the typical distance, so that they compare with shifts.
-    arm_m = np.sqrt(float(np.trace(H6[:3, :3])) / weight)
+    arm_m = np.sqrt(float(np.trace(H6[ROTATION, ROTATION])) / weight)
     scale = np.repeat([1.0 / max(arm_m, 1e-3), 1.0], 3)
     normalized, V = np.linalg.eigh(scale[:, None] * H6 * scale / weight)
     kept = np.clip(1.0 - normal_noise_rad**2 / np.maximum(normalized, 1e-12), 0.0, 1.0)

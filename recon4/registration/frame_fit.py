@@ -104,9 +104,10 @@ def _correct(prediction: Prediction, delta: Array, center: Array) -> SE3:
 
 def _largest_move_m(step: Array) -> float:
     """How far a step moves a point 5 m away, at the start or end of the frame [m]."""
+    poses = (step[START], step[END_POSE])
     return float(
         max(
-            5 * np.linalg.norm(step[k : k + 3]) + np.linalg.norm(step[k + 3 : k + 6])
-            for k in (0, 6)
+            5 * np.linalg.norm(pose[STATE.rotation]) + np.linalg.norm(pose[STATE.position])
+            for pose in poses
         )
     )

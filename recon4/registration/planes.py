@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from recon4.geometry.se3 import SE3, Array, so3_exp
+from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, so3_exp
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.result import Registration, StopReason
+from recon4.registration.state import START
 from recon4.settings import PlaneSettings, RegistrationSettings
 
 _GATES_M = (1.0, 0.7, 0.5, 0.3, 0.2, 0.15)
@@ -48,19 +49,21 @@ def register_to_planes(
         if match.matches < _MIN_MATCHES:
             stop = StopReason.TOO_FEW
             break
-        H, g = match.H[:6, :6], match.g[:6]
+        H, g = match.H[START, START], match.g[START]
         step = -np.linalg.solve(H + 1e-6 * np.trace(H) / 6 * np.eye(6), g)
-        T_target_source = SE3(so3_exp(step[:3]) @ T_target_source.R, T_target_source.t + step[3:])
+        T_target_source = SE3(
+            so3_exp(step[ROTATION]) @ T_target_source.R, T_target_source.t + step[TRANSLATION]
+        )
         if not np.isfinite(step).all() or _moved(initial, T_target_source) > settings.max_move_m:
             stop = StopReason.UNSTABLE
             break
-        small = 5.0 * np.linalg.norm(step[:3]) + np.linalg.norm(step[3:])
+        small = 5.0 * np.linalg.norm(step[ROTATION]) + np.linalg.norm(step[TRANSLATION])
         if last_gate and small < settings.converged_step_m:
             stop = StopReason.SMALL_STEP
             break
     error_m = _error(target, T_target_source, source, zero)
     return Registration(
-        T_target_source, stop, rounds, error_m, 0.0, match.match_ratio, match.H[:6, :6],
+        T_target_source, stop, rounds, error_m, match.match_ratio, match.H[START, START],
         match.degeneracy,
     )  # fmt: skip
 

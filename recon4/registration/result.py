@@ -29,8 +29,6 @@ class Registration:
     iterations: int
     error_m: float
     """Mean distance of the matches kept, after the last step [m]; NaN without any."""
-    error_sd_m: float
-    """Standard deviation of that error over the last rounds [m] (0 if not computed)."""
     match_ratio: float
     """Part of the source that found a match, 0..1."""
     information: Array

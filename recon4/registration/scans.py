@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy import fft, ndimage
 from scipy.spatial import cKDTree
 
-from recon4.geometry.se3 import SE3, Array, so3_exp
+from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, so3_exp
 from recon4.kernels.scans import accumulate_symmetric, count_from_above, neighbor_normals
 from recon4.registration.result import Registration, StopReason
 from recon4.settings import ScanSettings
@@ -173,8 +173,12 @@ def _descend(
         if matches < _MIN_MATCHES:
             return _refused(T, done)
         step = -np.linalg.solve(H + 1e-9 * np.trace(H) * np.eye(6), g)
-        T = SE3(so3_exp(step[:3]) @ T.R, T.t + step[3:])
-        if done > 2 and _STEP_ARM_M * np.linalg.norm(step[:3]) + np.linalg.norm(step[3:]) < 1e-3:
+        T = SE3(so3_exp(step[ROTATION]) @ T.R, T.t + step[TRANSLATION])
+        if (
+            done > 2
+            and _STEP_ARM_M * np.linalg.norm(step[ROTATION]) + np.linalg.norm(step[TRANSLATION])
+            < 1e-3
+        ):
             stop = StopReason.SMALL_STEP
             break
     match_ratio = inliers / len(rows)
@@ -182,7 +186,7 @@ def _descend(
         stop = StopReason.TOO_FEW
     variance = max(squares / weight, 1e-4)
     degeneracy = float(np.linalg.eigvalsh(nn / weight)[0])
-    return Registration(T, stop, done, total / weight, 0.0, match_ratio, H / variance, degeneracy)
+    return Registration(T, stop, done, total / weight, match_ratio, H / variance, degeneracy)
 
 
 def _some(scan: Scan, limit: int) -> NDArray[np.intp]:
@@ -192,7 +196,7 @@ def _some(scan: Scan, limit: int) -> NDArray[np.intp]:
 
 def _refused(T: SE3, rounds: int) -> Registration:
     nan = float("nan")
-    return Registration(T, StopReason.TOO_FEW, rounds, nan, 0.0, 0.0, np.zeros((6, 6)), 0.0)
+    return Registration(T, StopReason.TOO_FEW, rounds, nan, 0.0, np.zeros((6, 6)), 0.0)
 
 
 def _thinned(p: Array, voxel_m: float) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 from recon4.geometry.se3 import SE3, Array, so3_exp, so3_log
 from recon4.registration.frame_fit import FrameFit
 from recon4.registration.motion import Prediction
-from recon4.registration.state import END_MOTION, POSES, VECTOR
+from recon4.registration.state import END_MOTION, END_POSE, POSES, START, STATE, VECTOR
 
 _STILL_M = 0.01
 """While stationary two consecutive scans agree to this [m] …"""
@@ -50,11 +50,11 @@ def _standing(fit: FrameFit, prediction: Prediction, T_odom_body: SE3) -> Array:
     delta = fit.delta.copy()
     predicted, end = prediction.T_odom_body, prediction.end
     center = predicted.t[-1]
-    for first, k in ((0, 0), (6, -1)):
+    for pose, k in ((delta[START], 0), (delta[END_POSE], -1)):
         omega = so3_log(T_odom_body.R @ predicted.R[k].T)
         arm = so3_exp(omega) @ (predicted.t[k] - center)
-        delta[first : first + 3] = omega
-        delta[first + 3 : first + 6] = T_odom_body.t - center - arm
+        pose[STATE.rotation] = omega
+        pose[STATE.position] = T_odom_body.t - center - arm
     still = np.concatenate([end.vector[VECTOR.velocity], end.vector[VECTOR.gyro_bias]])
     delta[END_MOTION] = -still  # no velocity, no turn rate
     return delta

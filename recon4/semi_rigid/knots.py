@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import solveh_banded
 
-from recon4.geometry.se3 import SE3, Array, so3_exp
+from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, so3_exp
 from recon4.model.trajectory import Times, Trajectory
+from recon4.registration.state import END_POSE, START
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,12 +40,12 @@ def solve_knots(system: KnotSystem, done: Array, *, step_sd: Array, total_sd: Ar
     knots = len(system.H) + 1
     chain, anchor = step_sd**-2.0, total_sd**-2.0
     diagonal = np.tile(np.diag(anchor), (knots, 1, 1))
-    diagonal[:-1] += system.H[:, :6, :6] + np.diag(chain)
-    diagonal[1:] += system.H[:, 6:, 6:] + np.diag(chain)
-    lower = system.H[:, 6:, :6] - np.diag(chain)
+    diagonal[:-1] += system.H[:, START, START] + np.diag(chain)
+    diagonal[1:] += system.H[:, END_POSE, END_POSE] + np.diag(chain)
+    lower = system.H[:, END_POSE, START] - np.diag(chain)
     gradient = anchor * done
-    gradient[:-1] += system.g[:, :6] - chain * np.diff(done, axis=0)
-    gradient[1:] += system.g[:, 6:] + chain * np.diff(done, axis=0)
+    gradient[:-1] += system.g[:, START] - chain * np.diff(done, axis=0)
+    gradient[1:] += system.g[:, END_POSE] + chain * np.diff(done, axis=0)
     banded = _lower_band(diagonal, lower)
     return -solveh_banded(banded, gradient.ravel(), lower=True).reshape(knots, 6)
 
@@ -72,5 +73,7 @@ def apply_knots(trajectory: Trajectory, knot_ns: Times, correction: Array) -> Tr
     t = (trajectory.t_ns - knot_ns[0]) * 1e-9
     knots = (knot_ns - knot_ns[0]) * 1e-9
     at = np.stack([np.interp(t, knots, correction[:, k]) for k in range(6)], axis=1)
-    moved = SE3(so3_exp(at[:, :3]) @ trajectory.T_a_b.R, trajectory.T_a_b.t + at[:, 3:])
+    moved = SE3(
+        so3_exp(at[:, ROTATION]) @ trajectory.T_a_b.R, trajectory.T_a_b.t + at[:, TRANSLATION]
+    )
     return replace(trajectory, T_a_b=moved)

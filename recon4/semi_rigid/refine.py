@@ -17,7 +17,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.geometry.se3 import Array
+from recon4.geometry.se3 import TRANSLATION, Array
 from recon4.model.corrections import apply_corrections
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Times, Trajectory
@@ -121,7 +121,7 @@ def refine_trajectory(
         step = solve_knots(system, correction, step_sd=step_sd, total_sd=total_sd)
         correction = correction + step
         trajectory = apply_knots(trajectory, knot_ns, step)
-        largest_m = float(np.linalg.norm(step[:, 3:], axis=1).max())
+        largest_m = float(np.linalg.norm(step[:, TRANSLATION], axis=1).max())
         rounds.append(Round(mean_m, match_ratio, largest_m))
         progress.event("refine", mean_m=mean_m, match_ratio=match_ratio, largest_step_m=largest_m)
         if largest_m < r.converged_step_m:

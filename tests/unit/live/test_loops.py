@@ -18,7 +18,6 @@ def found(x_m=0.0, yaw_rad=0.0, *, match_ratio=0.8, degeneracy=0.1):
         stop=StopReason.SMALL_STEP,
         iterations=3,
         error_m=0.01,
-        error_sd_m=0.0,
         match_ratio=match_ratio,
         information=np.eye(6),
         degeneracy=degeneracy,
