@@ -50,7 +50,7 @@ def test_the_central_meridian_of_utm_is_500_km_and_its_scale_0_9996() -> None:
     assert q[2, 2] == pytest.approx(12.0, abs=1e-6)
 
 
-def test_the_offset_is_a_multiple_of_a_kilometre_near_the_place() -> None:
+def test_the_offset_is_a_multiple_of_a_kilometer_near_the_origin() -> None:
     transform = CrsTransform(BRNO)
 
     assert np.all(transform.offset % 1000.0 == 0.0)
@@ -91,6 +91,6 @@ def data_folders() -> list[str]:
         ("EPSG:2229", "not in meters"),
     ],
 )
-def test_what_cannot_hold_metres_is_refused(crs: str, message: str) -> None:
+def test_a_crs_that_is_not_in_meters_is_rejected(crs: str, message: str) -> None:
     with pytest.raises(GeoreferenceError, match=message):
         CrsTransform(BRNO, crs)

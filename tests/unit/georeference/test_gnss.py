@@ -64,7 +64,7 @@ def slam(true: Trajectory, rng: np.random.Generator) -> tuple[PoseGraph, Traject
 
 
 def receiver(true: Trajectory, rng: np.random.Generator, *, sd_m: float = 0.02) -> GnssSamples:
-    """Fixes at 5 Hz, off the frame grid, errors alike over some 10 s."""
+    """Fixes at 5 Hz, off the frame grid, errors correlated over some 10 s."""
     t_ns = true.t_ns[0] + np.arange(30_000_000, int(true.t_ns[-1] - true.t_ns[0]), 200_000_000)
     T = true.at(t_ns)
     slow = np.zeros((len(t_ns), 3))
@@ -113,7 +113,7 @@ def gnss(true: Trajectory) -> GnssSamples:
     return receiver(true, np.random.default_rng(2))
 
 
-def test_a_drifting_walk_is_laid_over_its_positions(true: Trajectory, gnss: GnssSamples) -> None:
+def test_a_drifting_walk_is_aligned_with_its_positions(true: Trajectory, gnss: GnssSamples) -> None:
     result = run(true, gnss)
 
     assert worst_m(result, true) < 0.08
@@ -128,7 +128,7 @@ def test_exact_positions_pull_a_drifting_walk_to_the_truth(true: Trajectory) -> 
 
     result = run(true, exact)
 
-    # What is left is drift that the edges insist on: they promise more than they keep.
+    # The rest is drift of the edges, which are overconfident.
     assert worst_m(result, true) < 0.06
 
 
@@ -141,7 +141,7 @@ def test_the_lever_arm_matters(true: Trajectory, gnss: GnssSamples) -> None:
     assert worst_m(result, true) > 0.5
 
 
-def test_outliers_of_every_kind_are_left_out(true: Trajectory, gnss: GnssSamples) -> None:
+def test_outliers_of_every_kind_are_excluded(true: Trajectory, gnss: GnssSamples) -> None:
     rng = np.random.default_rng(4)
     bad = rows_of(gnss, np.arange(len(gnss)))
     single = rng.choice(len(gnss), 60, replace=False)
@@ -199,7 +199,7 @@ def test_a_straight_line_does_not_roll() -> None:
 
 
 def soft(graph: PoseGraph) -> PoseGraph:
-    """A walk whose edges promise twenty times less: no match for loops that agree."""
+    """A walk with twenty times the standard deviation: consistent loops dominate its edges."""
     return graph.with_edges(
         tuple(edge.evolve(information=edge.information / 400.0) for edge in graph.edges)
     )
@@ -224,7 +224,7 @@ def with_loops(
 
 
 @pytest.mark.parametrize(("shift_m", "kept"), [(0.0, LOOPS), (1.0, 0)])
-def test_loops_stay_or_fall_by_what_the_positions_say(
+def test_the_positions_decide_which_loops_are_rejected(
     true: Trajectory, gnss: GnssSamples, shift_m: float, kept: int
 ) -> None:
     graph, dense = slam(true, np.random.default_rng(1))
@@ -247,7 +247,7 @@ def test_loops_stay_or_fall_by_what_the_positions_say(
 
 
 @pytest.mark.parametrize(("person", "judge_edges"), [({"decided_by": "Ada"}, True), ({}, False)])
-def test_positions_turn_down_no_edge_of_a_person_and_none_when_switched_off(
+def test_positions_reject_no_decision_of_a_person_and_nothing_when_off(
     true: Trajectory, gnss: GnssSamples, person: dict[str, str], judge_edges: bool
 ) -> None:
     graph, dense = slam(true, np.random.default_rng(1))
@@ -261,7 +261,7 @@ def test_positions_turn_down_no_edge_of_a_person_and_none_when_switched_off(
 
 
 @pytest.mark.parametrize("kept", [0, 3])
-def test_too_few_fixes_leave_a_local_frame_without_a_place_on_earth(
+def test_with_too_few_fixes_the_map_is_not_georeferenced(
     true: Trajectory, gnss: GnssSamples, kept: int
 ) -> None:
     graph, dense = slam(true, np.random.default_rng(1))
@@ -276,7 +276,9 @@ def test_too_few_fixes_leave_a_local_frame_without_a_place_on_earth(
     assert result.to_json()["georeferenced"] is False
 
 
-def test_standing_still_gives_no_heading_and_says_so(true: Trajectory, gnss: GnssSamples) -> None:
+def test_a_stationary_receiver_gives_no_heading_and_a_reason(
+    true: Trajectory, gnss: GnssSamples
+) -> None:
     result = run(true, rows_of(gnss, np.arange(8)))
 
     assert result.origin is None

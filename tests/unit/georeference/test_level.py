@@ -75,7 +75,7 @@ def test_up_along_x_is_turned_by_pitch_alone() -> None:
     np.testing.assert_allclose(T @ np.array([1.0, 0, 1.0]), [0, 0, np.sqrt(2.0)], atol=1e-12)
 
 
-def test_levelling_has_no_heading_and_no_shift() -> None:
+def test_leveling_has_no_heading_and_no_shift() -> None:
     rng = np.random.default_rng(1)
 
     for up in rng.normal(size=(20, 3)):

@@ -69,7 +69,7 @@ def apply(table, intensity, ring, incidence_deg, range_m, sensor=0):
     )
 
 
-def test_two_bins_worked_out_on_paper():
+def test_two_bins_computed_by_hand():
     # Ring 0: 10 and 30 (mean 20, sigma 10). Ring 1: 60 and 100 (mean 80, sigma 20).
     # All: mean 50, sigma sqrt((40² + 20² + 10² + 50²) / 4) = 33.91.
     dark = sums_of([10, 30] * 10, 0, 20.5, 3.05)
@@ -165,7 +165,7 @@ def test_two_sensors_with_the_same_ring_are_kept_apart():
     assert table.mean[0, 4, 10, 10] == 15.0 and table.mean[1, 4, 10, 10] == 95.0
 
 
-def test_dependency_of_means_on_beam_range_and_incidence_goes_by_bins(tmp_path):
+def test_bins_remove_the_dependency_of_means_on_beam_range_and_incidence(tmp_path):
     walk = room_walk(frames=10, points=100_000, noise_m=0.005, intensity=law)
 
     write_intensity(walk, walk.trajectory, tmp_path, settings=replace(COARSE, method="bins"))
@@ -192,7 +192,7 @@ def carpet(p_map, sensor, ring, incidence_rad, range_m, rng):
     return law(places, sensor, ring, incidence_rad, range_m, rng)
 
 
-def test_what_lies_near_and_far_is_not_taken_for_an_effect_of_range():
+def test_near_and_far_objects_are_not_mistaken_for_an_effect_of_range():
     walk = room_walk(frames=20, points=40_000, noise_m=0.005, intensity=carpet)
 
     _, by_surfaces = learn_intensity(walk, walk.trajectory, settings=COARSE)
@@ -224,7 +224,9 @@ def normalized_map(walk, table, folder):
 
 
 @pytest.mark.parametrize(("method", "low", "high"), [("surfaces", 2.75, 3.25), ("bins", 1.0, 2.6)])
-def test_walls_that_reflect_three_times_as_much_become_so_bright(tmp_path, method, low, high):
+def test_walls_with_three_times_the_reflectivity_become_three_times_as_bright(
+    tmp_path, method, low, high
+):
     walk = room_walk(frames=20, points=40_000, noise_m=0.005, intensity=carpet)
     table, _ = learn_intensity(walk, walk.trajectory, settings=replace(COARSE, method=method))
 
@@ -262,7 +264,7 @@ def test_one_sensor_and_one_frame_are_enough():
     assert np.isfinite(shown.all_before).all()
 
 
-def test_nothing_to_learn_from_is_refused():
+def test_a_recording_without_points_is_rejected():
     walk = room_walk(frames=2)
     empty = Walk([f.take(slice(0, 0)) for f in walk.frames], walk.rig, walk.trajectory)
 
@@ -272,7 +274,7 @@ def test_nothing_to_learn_from_is_refused():
         learn_intensity(Walk([], walk.rig, walk.trajectory), walk.trajectory, settings=SETTINGS)
 
 
-def test_a_table_survives_its_file(tmp_path):
+def test_a_table_is_saved_and_loaded(tmp_path):
     table = IntensityTable.of_sums(
         sums_of([10, 20] * 10, 0, 10, 2.0), settings=SETTINGS, largest=255.0
     )

@@ -1,4 +1,4 @@
-"""Factors of beam, incidence and range from places seen in several ways."""
+"""Factors of beam, incidence and range from surfaces seen repeatedly."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ SETTINGS = IntensitySettings(min_count=2)
 
 
 def made_up(points=40_000, cells=300, *, seed=3, interaction=None):
-    """Sightings whose factors are known; far places are bright, so that plain means mislead."""
+    """Observations with known factors; far surfaces are bright, so that plain means are wrong."""
     rng = np.random.default_rng(seed)
     parts = [np.exp(rng.uniform(-0.6, 0.6, size)) for size in SHAPE[1:]]
     factor = parts[0][:, None, None] * parts[1][:, None] * parts[2]
@@ -39,7 +39,7 @@ def shape_of(factor):
 
 
 @pytest.mark.parametrize("interaction", [None, (1, 2, 3)])
-def test_factors_of_known_sightings_are_found_again(interaction):
+def test_known_factors_are_estimated(interaction):
     seen, factor = made_up(interaction=interaction)
 
     found = learn_surfaces(seen, SHAPE, settings=SETTINGS)
@@ -60,7 +60,7 @@ def test_the_mean_of_all_stays_and_a_place_has_one_brightness():
     assert found.brightness_of(np.array([-5, 301])).tolist() == [0.0, 0.0]
 
 
-def test_few_points_do_not_move_a_bin_off_the_product_of_its_factors():
+def test_a_bin_with_few_points_keeps_the_product_of_its_factors():
     seen, _ = made_up(interaction=(1, 2, 3))
 
     bold, shy = (
@@ -74,7 +74,7 @@ def test_few_points_do_not_move_a_bin_off_the_product_of_its_factors():
     assert excess(bold) > 1.2 * excess(shy)
 
 
-def test_bins_nobody_saw_are_as_their_neighbors():
+def test_bins_without_points_are_like_their_neighbors():
     seen, _ = made_up()
     near = seen.bins[:, 2] < 4
     few = Observations(seen.cell[near], seen.bins[near], seen.intensity[near])
@@ -86,7 +86,7 @@ def test_bins_nobody_saw_are_as_their_neighbors():
 
 
 @pytest.mark.parametrize("value", [None, 0.0])
-def test_nothing_seen_and_only_zeros_change_nothing(value):
+def test_without_points_or_with_zeros_only_nothing_changes(value):
     count = 0 if value is None else 10
     seen = Observations(
         np.zeros(count, np.int64), np.zeros((count, 3), np.int32), np.zeros(count, np.float32)

@@ -80,7 +80,7 @@ def test_going_round_in_a_circle():
     np.testing.assert_allclose(v, [-np.sin(1), np.cos(1), 0], atol=1e-5)
 
 
-def test_biases_are_taken_off():
+def test_biases_are_subtracted():
     gyro, accel = np.tile([0.1, 0.2, -0.1], (21, 1)), np.tile([0.3, 0.0, 9.0], (21, 1))
 
     R, p, v, _, _ = carry(
@@ -145,7 +145,7 @@ def test_uncertainty_grows_as_the_densities_say():
     np.testing.assert_allclose(P, P.T, atol=1e-15)
 
 
-def test_uncertainty_of_one_step_on_paper():
+def test_covariance_of_one_step_computed_by_hand():
     still = np.zeros((2, 3))
 
     cov = carry(still, still - GRAVITY, t_s=np.array([0.0, 0.1]))[4]
@@ -187,7 +187,7 @@ def test_each_point_is_placed_by_the_pose_at_its_time():
     np.testing.assert_allclose(placed, trajectory.at(t_ns) @ points, atol=1e-7)
 
 
-def test_half_way_on_paper():
+def test_half_way_computed_by_hand():
     T = SE3.stack([SE3.identity(), SE3.from_rpy(0, 0, 0.4, [1.0, 0, 0])])
 
     placed = place_points(np.array([0.0, 0.1]), T.R, T.t, np.array([0.05]), np.array([[2.0, 0, 0]]))

@@ -33,7 +33,7 @@ def test_a_tilted_plane_has_its_normal_everywhere():
     assert found.support.min() >= 6
 
 
-def test_exactly_axis_parallel_planes_and_their_turned_copies_agree():
+def test_axis_parallel_planes_and_rotated_copies_have_equal_normals():
     rng = np.random.default_rng(4)
     flat = np.c_[rng.uniform(0, 1, (5000, 2)), np.zeros(5000)].astype(np.float32)
 

@@ -38,7 +38,7 @@ def digest(folder):
     return {p.name: hashlib.sha256(p.read_bytes()).hexdigest() for p in names}
 
 
-def test_without_thinning_every_point_is_in_the_map_once_with_its_own_facts(tmp_path):
+def test_without_thinning_every_point_is_in_the_map_once_with_its_fields(tmp_path):
     walk = room_walk(frames=6, points=800)
 
     tiles = build(walk, tmp_path / "map", ALL)
@@ -82,7 +82,7 @@ def test_no_two_points_share_a_voxel_and_the_nearest_one_stays(tmp_path):
     np.testing.assert_allclose(points(tiles, "range_m"), [nearest[tuple(v)] for v in voxel])
 
 
-def test_the_same_walk_gives_the_same_bytes_however_often_it_is_written_out(tmp_path):
+def test_the_map_does_not_depend_on_the_number_of_bursts(tmp_path):
     walk = room_walk(frames=15)
     settings = MapSettings(voxel_m=0.05)
 
@@ -94,7 +94,7 @@ def test_the_same_walk_gives_the_same_bytes_however_often_it_is_written_out(tmp_
     assert not list((tmp_path / "streamed").glob("buckets-*"))
 
 
-def test_normals_of_walls_point_at_the_sensor_and_do_not_see_tile_borders(tmp_path):
+def test_normals_of_walls_point_to_the_sensor_and_ignore_tile_borders(tmp_path):
     walk = room_walk(frames=20, points=20_000, noise_m=0.002)
     settings = MapSettings(voxel_m=0.02, tile_m=1.0, normal_cell_m=0.1)
 
@@ -140,7 +140,7 @@ def test_any_first_part_of_a_tile_samples_it_evenly(tmp_path):
     assert np.median(steps) < 0.2 < np.median(np.linalg.norm(np.diff(whole, axis=0), axis=1))
 
 
-def test_disabled_sensors_and_far_points_are_left_out(tmp_path):
+def test_disabled_sensors_and_far_points_are_excluded(tmp_path):
     tiles = build(room_walk(frames=5, enabled=(True, False)), tmp_path / "one", ALL)
     near = build(
         room_walk(frames=5),
@@ -167,7 +167,7 @@ def test_lonely_points_are_removed_and_counted(tmp_path):
     ].any()
 
 
-def test_points_seen_from_far_go_where_there_are_near_ones(tmp_path):
+def test_points_of_long_range_are_removed_next_to_points_of_short_range(tmp_path):
     walk = room_walk(frames=20)
     settings = MapSettings(voxel_m=0.0, far_ratio=1.5, min_neighborhood=1)
 
@@ -182,7 +182,7 @@ def test_points_seen_from_far_go_where_there_are_near_ones(tmp_path):
     assert (points(tiles, "range_m") <= 1.5 * nearest[group] + 1e-4).all()
 
 
-def test_the_list_of_tiles_says_where_everything_is(tmp_path):
+def test_the_list_of_tiles_has_rows_and_bounds(tmp_path):
     crs = MapCrs('LOCAL_CS["x"]', (500_000.0, 5_400_000.0, 200.0))
 
     tiles = build(room_walk(frames=3), tmp_path / "map", ALL, crs=crs)
@@ -251,7 +251,7 @@ def test_damaged_maps_are_refused(tmp_path):
         TileSet.open(tmp_path / "map")
 
 
-def test_progress_is_told_and_can_stop_it(tmp_path):
+def test_progress_is_reported_and_can_stop_it(tmp_path):
     class Stop(Silent):
         def advance(self, done=1):
             raise KeyboardInterrupt

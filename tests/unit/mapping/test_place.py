@@ -76,7 +76,7 @@ def test_order_of_points_does_not_matter():
     np.testing.assert_array_equal(p_map, place(frame, trajectory, rig)[mixed])
 
 
-def test_one_pose_a_frame_goes_on_for_half_a_frame_at_either_end():
+def test_a_trajectory_with_one_pose_per_frame_is_extrapolated_by_half_a_frame():
     frame = frame_of([[0.0, 0, 0], [0.0, 0, 0]], [0, 100_000_000])
     T_map_body = SE3(
         np.broadcast_to(np.eye(3), (2, 3, 3)).copy(), np.array([[0, 0, 0], [1.0, 0, 0]])

@@ -65,7 +65,7 @@ def test_the_result_does_not_depend_on_where_the_origin_is() -> None:
     np.testing.assert_allclose((far @ near.T_a_b).matrix(), there.T_a_b.matrix(), atol=1e-8)
 
 
-def test_outside_the_nodes_the_nearest_correction_holds() -> None:
+def test_outside_the_nodes_the_nearest_correction_applies() -> None:
     dense = walk()
     rows = np.array([10, 30])
     T_after = SE3(dense.T_a_b[rows].R, dense.T_a_b[rows].t + np.array([[0, 0, 1.0], [0, 0, 2.0]]))

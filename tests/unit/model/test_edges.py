@@ -18,7 +18,7 @@ def test_only_a_rejected_edge_is_out_of_the_graph():
     assert in_graph == {Verdict.ACCEPTED: True, Verdict.UNVERIFIED: True, Verdict.REJECTED: False}
 
 
-def test_what_was_not_measured_is_nan_not_zero():
+def test_values_that_were_not_measured_are_nan():
     tried = edge(Verdict.ACCEPTED)
 
     assert all(math.isnan(v) for v in (tried.overlap, tried.error_m, tried.verification_m))

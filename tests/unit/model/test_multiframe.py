@@ -1,4 +1,4 @@
-"""A multiframe's points stay together whatever is taken of them."""
+"""The columns of a multiframe stay consistent in selections."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Rig files: what is right is read exactly, what is wrong is named."""
+"""Rig files: valid ones are read exactly, invalid ones are rejected with the defect."""
 
 import json
 
@@ -84,18 +84,18 @@ def test_lever_arm_and_time_offsets_are_kept():
         ("wheels = 4\n" + ONE, r"x: unknown \['wheels'\]"),
     ],
 )
-def test_what_is_wrong_with_a_rig_is_named(text, message):
+def test_an_invalid_rig_is_rejected_with_its_defect(text, message):
     with pytest.raises(ConfigError, match=message):
         parse_rig(text, where="x")
 
 
-def test_a_rig_nobody_knows_is_refused_with_those_that_are_known():
+def test_an_unknown_rig_is_rejected_with_the_known_ones():
     with pytest.raises(ConfigError, match=r"no rig named '5recon'; shipped: .*4recon"):
         load_rig("5recon")
 
 
 @pytest.mark.parametrize("name", ["../../pyproject", "../rigs/4recon", "", "\0", "x" * 5000])
-def test_a_name_is_no_way_to_a_file_elsewhere(name):
+def test_a_name_cannot_address_a_file_elsewhere(name):
     with pytest.raises(ConfigError, match="no rig named"):
         load_rig(name)
 

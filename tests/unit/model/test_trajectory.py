@@ -1,4 +1,4 @@
-"""Poses at any time covered, and a refusal everywhere else."""
+"""Interpolated poses within the covered time, and errors outside."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ def corner() -> Trajectory:
     return Trajectory(np.array([100 * S, 102 * S, 103 * S]), SE3(R, t))
 
 
-def test_between_two_poses_the_way_is_straight_and_the_turn_even(corner):
+def test_between_two_poses_translation_and_rotation_are_linear(corner):
     found = corner.at(np.array([100 * S, 100 * S + S // 2, 102 * S + S // 2, 103 * S]))
 
     assert np.allclose(found.t[:, 0], [0.0, 2.5, 10.0, 10.0])
@@ -40,19 +40,19 @@ def test_int64_nanoseconds_since_1970_keep_their_nanoseconds():
 
 
 @pytest.mark.parametrize("t_ns", [99 * S, 104 * S])
-def test_a_time_outside_is_refused_with_what_is_covered(corner, t_ns):
+def test_a_time_outside_is_rejected_with_the_covered_span(corner, t_ns):
     with pytest.raises(OutOfRange, match=r"covers 100\.000 … 103\.000 s"):
         corner.at(np.array([t_ns]))
 
 
-def test_with_slack_the_last_motion_goes_on(corner):
+def test_with_slack_the_last_motion_is_extrapolated(corner):
     found = corner.at(np.array([99 * S, 104 * S]), slack_ns=S)
 
     assert np.allclose(found.t[0], [-5.0, 0.0, 0.0])
     assert np.allclose(np.rad2deg(found[1].rpy()), [0.0, 0.0, 180.0])
 
 
-def test_one_pose_answers_at_its_own_time_only():
+def test_a_single_pose_covers_its_own_time_only():
     one = Trajectory(np.array([5 * S]), SE3(np.eye(3)[None], np.ones((1, 3))))
 
     assert np.allclose(one.at(np.array([5 * S, 5 * S])).t, 1.0)
@@ -60,7 +60,7 @@ def test_one_pose_answers_at_its_own_time_only():
         one.at(np.array([6 * S]))
 
 
-def test_an_empty_trajectory_says_so():
+def test_an_empty_trajectory_raises_an_error():
     with pytest.raises(OutOfRange, match="empty"):
         Trajectory(np.array([], dtype=np.int64), SE3.identity(0)).at(np.array([S]))
 
@@ -69,7 +69,7 @@ def test_no_times_give_no_poses(corner):
     assert len(corner.at(np.array([], dtype=np.int64)).t) == 0
 
 
-def test_times_that_stand_still_are_our_own_mistake():
+def test_equal_times_fail_an_assertion():
     with pytest.raises(AssertionError):
         Trajectory(np.array([S, S]), SE3.identity(2))
 

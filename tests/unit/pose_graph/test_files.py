@@ -78,7 +78,7 @@ def test_a_graph_without_edges_is_saved(tmp_path: Path) -> None:
     assert json.loads((tmp_path / "edges.json").read_text("utf-8"))["edges"] == []
 
 
-def test_the_json_holds_every_pair_and_null_for_what_nobody_knows(tmp_path: Path) -> None:
+def test_the_json_has_every_pair_and_null_for_unknown_numbers(tmp_path: Path) -> None:
     graph = sample()
 
     save_graph(tmp_path, graph)
@@ -146,7 +146,7 @@ def test_gtsam_reads_our_file_and_agrees_about_the_error(tmp_path: Path) -> None
 
 @settings(max_examples=60, deadline=None)
 @given(share=st.floats(0.0, 0.9999))
-def test_a_cut_off_g2o_file_is_never_taken_for_a_whole_one(
+def test_a_truncated_g2o_file_is_rejected(
     tmp_path_factory: pytest.TempPathFactory, share: float
 ) -> None:
     path = tmp_path_factory.mktemp("cut") / "graph.g2o"
@@ -171,14 +171,14 @@ def test_a_cut_off_g2o_file_is_never_taken_for_a_whole_one(
         ("ply\nformat ascii 1.0\n", "line 1: expected one of"),
     ],
 )
-def test_what_is_no_g2o_file_is_refused(tmp_path: Path, text: str, message: str) -> None:
+def test_a_file_that_is_not_g2o_is_rejected(tmp_path: Path, text: str, message: str) -> None:
     (tmp_path / "graph.g2o").write_text(text)
 
     with pytest.raises(CorruptFile, match=message):
         read_g2o(tmp_path / "graph.g2o")
 
 
-def test_an_edge_backwards_is_turned_around(tmp_path: Path) -> None:
+def test_an_edge_from_a_later_to_an_earlier_node_is_reversed(tmp_path: Path) -> None:
     lines = ["VERTEX_SE2 0 0 0 0", "VERTEX_SE2 1 1 0 1.5", "EDGE_SE2 1 0 -1 0.5 -1.4 9 1 2 8 3 7"]
     (tmp_path / "graph.g2o").write_text("\n".join(lines) + "\n")
 

@@ -85,7 +85,7 @@ def test_the_limit_is_a_hundredth_of_the_median_range_and_five_centimeters(strol
     (["graph.min_match_ratio=1.01"], None, Reason.FEW_MATCHES),
     (["graph.min_degeneracy=0.34"], None, Reason.DEGENERATE),
 ])  # fmt: skip
-def test_each_reason_to_turn_a_pair_down(stroll, assignments, wrong, reason):
+def test_each_reason_to_reject_a_pair(stroll, assignments, wrong, reason):
     edge = try_one(stroll, *assignments, wrong=wrong)
 
     assert (edge.verdict, edge.reason) == (Verdict.REJECTED, reason)
@@ -93,7 +93,7 @@ def test_each_reason_to_turn_a_pair_down(stroll, assignments, wrong, reason):
     assert np.isfinite(edge.overlap)
 
 
-def test_a_pair_that_hardly_overlaps_keeps_the_pose_it_was_asked_with(stroll):
+def test_a_pair_without_overlap_keeps_its_initial_pose(stroll):
     wrong = SE3.from_rpy(0, 0, 0, [40.0, 0, 0])
 
     edge = try_one(stroll, wrong=wrong)
@@ -123,7 +123,7 @@ def test_the_mode_of_overlap_counts(stroll):
     assert found["harmonic"] == pytest.approx(2 * a * b / (a + b))
 
 
-def test_edges_come_back_in_the_order_of_the_pairs(stroll):
+def test_edges_are_in_the_order_of_the_pairs(stroll):
     asked = [pair(stroll, *ends) for ends in [(2, 3), (0, 2), (1, 3), (0, 1)]]
 
     edges = registrar(stroll).register(asked, Silent())
@@ -174,7 +174,7 @@ def test_single_multiframes_overlap_by_all_their_points(stroll):
     assert edge.verdict is Verdict.ACCEPTED
 
 
-def test_lines_keep_the_share_of_matches_that_overlaps(stroll, monkeypatch):
+def test_lines_keep_the_overlapping_fraction_of_matches(stroll, monkeypatch):
     portions = []
 
     def register(*args, portion, **more):
@@ -192,7 +192,7 @@ def test_lines_keep_the_share_of_matches_that_overlaps(stroll, monkeypatch):
 # -- how certain an edge is
 
 
-def test_the_information_is_positive_definite_and_no_surer_than_its_floor(stroll):
+def test_the_information_is_positive_definite_and_within_its_limit(stroll):
     edge = try_one(stroll)
 
     g = Settings().graph
@@ -203,7 +203,7 @@ def test_the_information_is_positive_definite_and_no_surer_than_its_floor(stroll
     assert (sd < 8 * np.repeat([g.loop_sd_rad, g.loop_sd_m], 3)).all()
 
 
-def test_matches_count_as_independent_by_the_share_that_is_set(stroll):
+def test_the_information_scale_sets_the_fraction_of_independent_matches(stroll):
     g = Settings().graph
     floor = np.repeat([g.loop_sd_rad, g.loop_sd_m], 3) ** 2
     usual, naive = (
@@ -251,7 +251,7 @@ def test_a_submap_holds_its_multiframes_in_the_axes_of_the_node(stroll):
     assert p_map[:, 0].min() == pytest.approx(-4.0, abs=0.05)
 
 
-def test_lost_multiframes_bring_nothing(stroll):
+def test_lost_multiframes_have_no_segments(stroll):
     lost = NOTHING_LOST.copy()
     lost[[9, 11]] = True
     whole, holed = (
@@ -274,7 +274,7 @@ def test_a_submap_at_the_start_takes_what_there_is(stroll):
     assert 0.7 < len(first) / len(last) < 1.4
 
 
-def test_nodes_keep_at_most_so_many_segments_spread_over_all(stroll, tmp_path):
+def test_nodes_keep_a_limited_number_of_segments_spread_over_all(stroll, tmp_path):
     settings = override(Settings(), ["graph.source_segments=500"])
     views = NodeRangeImages(1, settings, tmp_path)
     views.fill(Submaps(stroll, stroll.truth, np.array([10]), settings, skip=NOTHING_LOST), [0])

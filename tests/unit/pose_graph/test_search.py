@@ -65,7 +65,7 @@ def test_every_fifth_multiframe_is_a_node_from_the_middle_of_the_first_five():
     assert node_rows(np.arange(21), 5, np.zeros(21, bool)).tolist() == [2, 7, 12, 17]
 
 
-def test_lost_multiframes_are_no_nodes():
+def test_lost_multiframes_are_not_nodes():
     lost = np.zeros(21, bool)
     lost[[7, 8]] = True
 
@@ -127,7 +127,7 @@ def test_wrapping_pairs_need_a_closed_trajectory():
     assert closed == [*open_pairs, (0, 4), (1, 5)]
 
 
-def test_pairs_tried_before_are_not_tried_again():
+def test_registered_pairs_are_not_selected_again():
     tried = Edge(i=1, j=3, T_i_j=SE3.identity(), kind=EdgeKind.NEIGHBOR, verdict=Verdict.REJECTED)
     graph = line(5).with_edges((tried,))
 
@@ -212,7 +212,7 @@ def test_no_node_has_more_revisits_than_the_limit_and_two_limits_never_repeat():
     assert np.bincount([p.j for p in [*few, *more]]).max() <= 8
 
 
-def test_the_number_of_pairs_grows_with_the_walk_and_not_with_its_square():
+def test_the_number_of_pairs_is_linear_in_the_path_length():
     count = [
         len(revisit_pairs(laps(n), settings=GraphSettings(), limit=6))
         + len(neighbor_pairs(laps(n), GraphSettings()))
@@ -487,7 +487,7 @@ def test_the_scratch_of_a_search_lies_in_its_own_folder_and_is_gone_after(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_full_disk_is_told_before_the_search_begins(tmp_path):
+def test_a_full_disk_is_reported_before_the_search_begins(tmp_path):
     resource = pytest.importorskip("resource")
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, before[1]))
@@ -503,7 +503,7 @@ def test_a_full_disk_is_told_before_the_search_begins(tmp_path):
 @pytest.mark.parametrize(
     "assignment", ["node_stride=0", "workers=0", "retry_rounds=-1", "retry_move_m=0"]
 )
-def test_settings_of_the_graph_that_make_no_sense_are_refused(assignment):
+def test_invalid_settings_of_the_graph_are_rejected(assignment):
     with pytest.raises(ConfigError, match=assignment.partition("=")[0]):
         settings_of(f"graph.{assignment}")
 

@@ -27,7 +27,7 @@ def graph_of(T_map_body: SE3, *edges: Edge) -> PoseGraph:
 
 
 def triangle() -> PoseGraph:
-    """Two steps of 1 m, and a third edge that says they make 2.3 m together."""
+    """Two steps of 1 m, and a third edge that measures 2.3 m for both."""
     T = SE3.stack([shift(0.0), shift(1.0), shift(2.0)])
     return graph_of(T, edge(0, 1, shift(1.0)), edge(1, 2, shift(1.0)), edge(0, 2, shift(2.3)))
 
@@ -42,7 +42,7 @@ def test_a_contradiction_of_30_cm_is_shared_by_three_edges() -> None:
     assert solution.converged
 
 
-def test_information_says_whose_word_counts() -> None:
+def test_information_weights_the_edges() -> None:
     graph = triangle()
     sure = graph.edges[2].evolve(information=1e6 * np.eye(6))
 
@@ -84,7 +84,7 @@ def test_moving_the_whole_graph_moves_the_whole_solution() -> None:
     assert there.chi2 == pytest.approx(here.chi2, rel=1e-6)
 
 
-def test_a_false_loop_pulls_little_under_the_cauchy_kernel_and_not_at_all_in_gnc() -> None:
+def test_a_false_loop_has_little_weight_with_cauchy_and_none_with_gnc() -> None:
     clean, truth = office_graph(np.random.default_rng(2), nodes=120)
     graph = inject_random(clean, np.random.default_rng(3), 10)
 
@@ -152,7 +152,7 @@ def test_poses_from_edges_alone_end_at_the_same_optimum() -> None:
     np.testing.assert_allclose(solution.T_map_body.t, expected.T_map_body.t, atol=1e-4)
 
 
-def test_noisier_edges_than_promised_widen_the_limit_up_to_tenfold() -> None:
+def test_overconfident_edges_increase_the_outlier_limit_up_to_tenfold() -> None:
     exact = outlier_limit(np.full(9, 5.348), probability=0.999)
 
     assert exact == pytest.approx(22.46, abs=0.01)
@@ -163,7 +163,7 @@ def test_noisier_edges_than_promised_widen_the_limit_up_to_tenfold() -> None:
     assert outlier_limit(np.zeros(0), probability=0.999) == pytest.approx(exact)
 
 
-def test_a_relation_seen_from_the_other_end_has_the_same_residual() -> None:
+def test_a_reversed_relation_has_the_same_residual() -> None:
     rng = np.random.default_rng(7)
     root = rng.normal(size=(6, 6))
     T_i_j = SE3.exp(rng.normal(size=6))
@@ -207,7 +207,7 @@ def test_a_position_with_a_lever_arm_places_the_body() -> None:
         ({"j": 3}, "edge 2 joins nodes 0 and 3; there are nodes 0 to 2"),
     ],
 )
-def test_a_bad_edge_is_refused_by_its_row(change: dict[str, object], message: str) -> None:
+def test_an_invalid_edge_is_reported_with_its_row(change: dict[str, object], message: str) -> None:
     graph = triangle()
     bad = graph.with_edges((*graph.edges[:2], graph.edges[2].evolve(**change)))
 

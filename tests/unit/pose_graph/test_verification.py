@@ -117,7 +117,7 @@ def test_an_edge_without_a_path_is_unverified_and_stays() -> None:
     assert verified.edges[5].in_graph
 
 
-def test_the_worst_goes_first_and_takes_its_victims_error_with_it() -> None:
+def test_rejecting_the_worst_edge_first_clears_the_edges_it_affected() -> None:
     # (0, 2) is right, but two of its three paths run over wrong loops.
     graph = line((0, 2, 0.0), (1, 3, 5.0), (0, 3, 2.0), nodes=4)
 
@@ -150,7 +150,7 @@ def test_odometry_that_disagrees_is_flagged_but_never_rejected() -> None:
 
 
 @pytest.mark.parametrize("robust", ["gnc", "cauchy", "none"])
-def test_what_a_person_decided_stays_and_persists(robust: str) -> None:
+def test_decisions_of_a_person_are_kept(robust: str) -> None:
     stated = np.diag([1e6] * 3 + [1e4] * 3)
     graph = line((0, 2, 3.0), (2, 4, 0.0))
     edges = [edge.evolve(information=stated) for edge in graph.edges]
@@ -160,7 +160,7 @@ def test_what_a_person_decided_stays_and_persists(robust: str) -> None:
 
     found = verify(graph.with_edges(tuple(edges)), settings=settings)
 
-    # The loop is wrong by meters and says it knows to a centimeter: it pulls as much as the steps.
+    # The loop is wrong by meters with a standard deviation of a centimeter, like the steps.
     assert found.graph.edges[5].chi2 > 1000.0
     assert found.graph.T_map_body.t[2, 1] > 0.5
     assert found.chi2_after > 1000.0
@@ -182,7 +182,7 @@ def test_verifying_twice_is_verifying_once() -> None:
 
 
 @pytest.mark.parametrize("reason", [Reason.VERIFICATION, Reason.ROBUST])
-def test_what_an_earlier_verification_turned_down_is_judged_anew(reason: Reason) -> None:
+def test_edges_rejected_by_an_earlier_verification_are_verified_again(reason: Reason) -> None:
     graph = line((0, 2, 0.0), (2, 4, 0.0))
     refused = graph.edges[5].evolve(verdict=Verdict.REJECTED, reason=reason)
     unregistered = graph.edges[6].evolve(verdict=Verdict.REJECTED, reason=Reason.OVERLAP)
@@ -204,7 +204,7 @@ def test_an_edge_a_person_accepted_needs_no_path() -> None:
     assert edge.verdict is Verdict.ACCEPTED
 
 
-def test_without_a_robust_solve_only_paths_turn_a_loop_down() -> None:
+def test_without_a_robust_solve_only_paths_reject_a_loop() -> None:
     stated = np.diag([1e6] * 3 + [1e4] * 3)
     graph = line((0, 4, 1.5))
     graph = graph.with_edges(tuple(edge.evolve(information=stated) for edge in graph.edges))
@@ -239,7 +239,7 @@ def test_after_the_robust_solve_poses_and_paths_are_those_of_the_edges_that_stay
 
 
 @pytest.mark.parametrize("robust", ["gnc", "cauchy"])
-def test_a_false_loop_no_path_reaches_falls_to_the_robust_solve(robust: str) -> None:
+def test_the_robust_solve_rejects_a_false_loop_without_paths(robust: str) -> None:
     clean, truth = office_graph(np.random.default_rng(5), nodes=150)
     graph = inject_random(clean, np.random.default_rng(6), 8)
     settings = VerificationSettings(robust=robust)  # type: ignore[arg-type]
@@ -253,7 +253,7 @@ def test_a_false_loop_no_path_reaches_falls_to_the_robust_solve(robust: str) -> 
     assert np.linalg.norm(result.graph.T_map_body.t - truth.t, axis=1).max() < 0.05
 
 
-def test_who_lost_the_last_path_that_confirmed_it_is_unverified() -> None:
+def test_an_edge_without_its_last_path_becomes_unverified() -> None:
     graph = verify(line((0, 4, 0.0), (0, 2, 0.0), (2, 4, 0.0)), settings=PATHS_ONLY).graph
     edges = list(graph.edges)
     edges[6] = edges[6].evolve(verdict=Verdict.REJECTED, reason=Reason.ROBUST)

@@ -1,4 +1,4 @@
-"""What errors of the planes' normals alone would hold is taken away."""
+"""Information that errors of the plane normals alone create is removed."""
 
 import numpy as np
 import pytest
@@ -26,7 +26,7 @@ def around(directions, *, off_rad=0.0, seed=2):
     return n / np.linalg.norm(n, axis=1, keepdims=True)
 
 
-def test_flat_ground_with_noisy_normals_holds_nothing_sideways():
+def test_flat_ground_with_noisy_normals_has_no_horizontal_information():
     found = match_of(around([[0, 0, 1]], off_rad=0.02))
 
     H, _ = observable_directions(found, NOISE_RAD)
@@ -36,7 +36,7 @@ def test_flat_ground_with_noisy_normals_holds_nothing_sideways():
     assert H[5, 5] == pytest.approx(found.H[5, 5], rel=0.01)
 
 
-def test_a_room_is_left_nearly_as_it_is():
+def test_the_information_of_a_room_hardly_changes():
     found = match_of(around(np.eye(3)))
 
     H, g = observable_directions(found, NOISE_RAD)
@@ -45,7 +45,7 @@ def test_a_room_is_left_nearly_as_it_is():
     np.testing.assert_allclose(g, found.g, atol=0.02 * np.abs(found.g).max())
 
 
-def test_a_direction_held_in_part_keeps_its_step_with_less_weight():
+def test_a_weakly_observable_direction_keeps_its_step_with_less_weight():
     found = match_of(around([[0, 0, 1], [0, 1, 0], [0.1, 0, 1]], off_rad=0.01))
 
     H, g = observable_directions(found, 0.02)
@@ -56,7 +56,7 @@ def test_a_direction_held_in_part_keeps_its_step_with_less_weight():
     )
 
 
-def test_without_a_match_nothing_is_taken_away():
+def test_without_a_match_the_information_is_unchanged():
     nothing = match_of(np.empty((0, 3)))
 
     H, g = observable_directions(nothing, NOISE_RAD)

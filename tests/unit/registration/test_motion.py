@@ -84,7 +84,7 @@ def test_an_imu_upside_down_levels_too():
     np.testing.assert_allclose(state.R @ [0, 0, -1], [0, 0, 1], atol=1e-6)
 
 
-def test_mounting_and_lever_arm_of_the_imu_are_taken_off():
+def test_mounting_and_lever_arm_of_the_imu_are_compensated():
     T_body_imu = SE3.from_rpy(0.1, 0.2, 1.0, [0.3, -0.2, 0.4])
     rig = replace(RIG, T_body_imu=T_body_imu)
 
@@ -136,7 +136,7 @@ def test_the_turn_of_a_second():
     np.testing.assert_allclose(turn, so3_exp([0, 0, np.deg2rad(20.0)]), atol=1e-6)
 
 
-def test_without_an_imu_the_motion_goes_on():
+def test_without_an_imu_the_velocity_stays_constant():
     motion = FreeMotion(SETTINGS)
     state = motion.initial(T0_NS)
     vector = state.vector.copy()
@@ -150,7 +150,7 @@ def test_without_an_imu_the_motion_goes_on():
     assert not motion.covers(T0_NS, T0_NS)
 
 
-def test_standing_still_stays():
+def test_a_stationary_state_stays():
     state = start_of(standing, T0_NS, [0.0, 0.0, 0.0])
 
     end = imu_motion(standing).predict(state, T0_NS + S_NS).end
@@ -173,7 +173,7 @@ def test_a_steady_motion_through_two_poses_reaches_the_second():
     np.testing.assert_allclose(end.R, second.R, atol=1e-6)
 
 
-def test_an_imu_at_the_end_of_an_arm_feels_the_body_spin_up():
+def test_angular_acceleration_acts_on_an_imu_with_a_lever_arm():
     arm_m, spin_up = 0.4, 2.0
     rig = replace(RIG, T_body_imu=SE3(np.eye(3), np.array([arm_m, 0.0, 0.0])))
     t_s = np.arange(0.0, 1.0, 0.005)
@@ -189,7 +189,7 @@ def test_an_imu_at_the_end_of_an_arm_feels_the_body_spin_up():
     np.testing.assert_allclose(end.vector[:6], 0.0, atol=1e-6)
 
 
-def test_only_samples_near_the_start_say_what_is_level():
+def test_only_samples_near_the_start_determine_the_vertical():
     upright, tilted = np.array([0.0, 0.0, 9.80665]), np.array([3.0, 0.0, 9.3])
     t_ns = T0_NS + np.arange(400) * (S_NS // 200)
     accel = np.where(np.arange(400)[:, None] < 150, upright, tilted)

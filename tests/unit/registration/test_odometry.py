@@ -106,7 +106,7 @@ def test_a_stroll_is_followed(stroll, with_imu):
     steps = push_all(odometry, stroll)
 
     assert not any(step.lost for step in steps)
-    # Without an IMU nobody knows at first that the body moves.
+    # Without an IMU the initial velocity is not known.
     skipped = 0 if with_imu else 3
     assert worst_from_start(poses(steps)[skipped:], stroll.true_poses()[skipped:]) < 0.03
 
@@ -131,7 +131,7 @@ def test_with_an_imu_a_new_map_is_begun_in_an_unknown_place(stroll):
     assert steps[8].match_ratio > 0.4
 
 
-def test_frames_one_by_one_and_the_stage_are_one_code(stroll, tmp_path):
+def test_single_frames_and_the_stage_give_the_same_result(stroll, tmp_path):
     steps = push_all(Odometry(stroll.rig, Settings(), stroll.imu), stroll)
     run_odometry(stroll, tmp_path, settings=Settings(), progress=Silent())
 
@@ -140,7 +140,7 @@ def test_frames_one_by_one_and_the_stage_are_one_code(stroll, tmp_path):
     )
 
 
-def test_a_frame_of_noise_is_said_to_be_lost_and_tracking_goes_on(stroll):
+def test_a_frame_of_noise_is_lost_and_tracking_continues(stroll):
     frames = list(stroll)
     frames[7] = noise_frame(frames[7])
 
@@ -150,7 +150,7 @@ def test_a_frame_of_noise_is_said_to_be_lost_and_tracking_goes_on(stroll):
     assert worst_from_start(poses(steps), stroll.true_poses()) < 0.03
 
 
-def test_the_stage_tells_of_a_lost_frame(stroll, tmp_path):
+def test_the_stage_reports_a_lost_frame(stroll, tmp_path):
     frames = list(stroll)
     frames[7] = without_points(frames[7])
     watch = Silent()
@@ -166,7 +166,7 @@ def test_the_stage_tells_of_a_lost_frame(stroll, tmp_path):
     assert np.flatnonzero(lost).tolist() == [7]
 
 
-def test_an_empty_frame_is_lost_and_tracking_goes_on(stroll):
+def test_an_empty_frame_is_lost_and_tracking_continues(stroll):
     frames = list(stroll)
     frames[7] = without_points(frames[7])
 
@@ -179,8 +179,8 @@ def test_an_empty_frame_is_lost_and_tracking_goes_on(stroll):
 
 
 @pytest.mark.parametrize(("row", "held"), [(0, [0, 1]), (1, [0, 2])])
-def test_one_sensor_alone_holds_its_own_plane_and_says_what_is_free(stroll, row, held):
-    # V §3.4: the horizontal one fails vertically, the vertical one sideways.
+def test_a_single_sensor_observes_its_plane_and_has_a_degenerate_direction(stroll, row, held):
+    # V §3.4: the horizontal one is degenerate vertically, the vertical one sideways.
     frames = [frame.of_sensor(row) for frame in stroll]
 
     alone = push_all(Odometry(stroll.rig, Settings(), stroll.imu), frames)
@@ -221,7 +221,7 @@ def test_a_step_has_the_prediction_offset(stroll):
 THESIS = preset("thesis")
 
 
-def test_the_thesis_preset_takes_lines(stroll):
+def test_the_thesis_preset_uses_line_odometry(stroll):
     assert isinstance(make_odometry(stroll.rig, THESIS, None), LineOdometry)
     assert isinstance(make_odometry(stroll.rig, Settings(), None), Odometry)
 
@@ -285,7 +285,7 @@ def test_the_poses_against_a_history_are_averaged_over_those_that_converged():
     assert not none.converged
 
 
-def test_lines_take_the_gyroscope_if_they_may(stroll):
+def test_line_odometry_uses_the_gyroscope_if_allowed(stroll):
     settings = override(
         THESIS,
         ["odometry.use_imu=true", "registration.max_iterations=30"],
@@ -297,7 +297,7 @@ def test_lines_take_the_gyroscope_if_they_may(stroll):
     assert np.rad2deg(turned) == pytest.approx(8.0, abs=0.7)
 
 
-def test_an_empty_first_frame_does_not_blind_the_lines():
+def test_line_odometry_works_after_an_empty_first_frame():
     frames = [scan(standing, T0_NS + k * FRAME_NS, frame_id=k) for k in range(4)]
     frames[0] = without_points(frames[0])
     settings = override(THESIS, ["registration.max_iterations=40"])
@@ -308,7 +308,7 @@ def test_an_empty_first_frame_does_not_blind_the_lines():
     assert steps[3].match_ratio > 0.3
 
 
-def test_an_empty_frame_is_lost_to_the_lines_too():
+def test_line_odometry_loses_an_empty_frame():
     frames = [scan(standing, T0_NS + k * FRAME_NS, frame_id=k) for k in range(4)]
     frames[2] = without_points(frames[2])
     settings = override(THESIS, ["registration.max_iterations=40"])
@@ -333,7 +333,7 @@ def test_dense_poses_are_thinned_but_ends_stay(stroll):
     assert len(single) >= 2
 
 
-def test_an_empty_first_frame_does_not_blind_the_odometry(stroll):
+def test_odometry_works_after_an_empty_first_frame(stroll):
     frames = list(stroll)
     frames[0] = without_points(frames[0])
 
@@ -354,7 +354,7 @@ def test_an_imu_that_begins_late_leaves_no_nan(stroll):
     assert worst_from_start(poses(steps)[3:], stroll.true_poses()[3:]) < 0.05
 
 
-def test_a_hole_of_the_imu_is_no_free_fall(stroll):
+def test_a_gap_of_the_imu_is_not_free_fall(stroll):
     t = stroll.imu.t_ns - T0_NS
     there = (t < 400_000_000) | (t > 900_000_000)
     imu = ImuSamples(

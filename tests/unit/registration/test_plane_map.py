@@ -91,7 +91,7 @@ def test_normal_equations_are_those_of_a_numerical_derivative():
     np.testing.assert_allclose(before.H, before.H.T)
 
 
-def test_taking_points_away_restores_the_map():
+def test_removing_points_restores_the_map():
     first, second = patch((0, 0, 1), 0.05), patch((0, 0.2, 1), 0.3, seed=7)
     asked = patch((0, 0, 1), 0.06, count=500, seed=2)
     planes = made_of(first)
@@ -163,7 +163,7 @@ def test_a_map_that_moves_along_for_long_does_not_fill_up():
     assert len(planes._keys) <= 1 << 17
 
 
-def test_a_plane_is_less_sure_far_from_its_center():
+def test_the_variance_of_a_plane_grows_with_the_distance_from_its_center():
     # Few points, noisy, of a sensor that says it is exact: the plane's own error counts.
     rng = np.random.default_rng(4)
     p = np.column_stack([rng.uniform(0.0, 0.2, (12, 2)), rng.normal(0.1, 0.006, 12)])
@@ -220,7 +220,7 @@ def room_points(half_m, sides, count=3000):
     return np.concatenate(out)
 
 
-def test_a_room_holds_all_directions_and_a_tunnel_leaves_one_free():
+def test_all_directions_are_observable_in_a_room_and_one_is_not_in_a_tunnel():
     half = np.array([1.9, 1.9, 1.9])
     every = [(axis, sign) for axis in range(3) for sign in (-1, 1)]
     room = room_points(half, every)
@@ -230,7 +230,7 @@ def test_a_room_holds_all_directions_and_a_tunnel_leaves_one_free():
     assert hold(made_of(tunnel), tunnel).degeneracy == pytest.approx(0.0, abs=0.005)
 
 
-def test_the_frame_at_its_end_feels_the_end_only():
+def test_points_at_the_end_of_a_frame_affect_the_end_pose_only():
     planes = made_of(patch((0, 0, 1), 0.05))
     asked = patch((0, 0, 1), 0.06, count=100, seed=2)
 
@@ -249,7 +249,7 @@ def test_fitting_all_at_once_changes_nothing():
     np.testing.assert_array_equal(hold(lazy, points).residual_m, hold(eager, points).residual_m)
 
 
-def test_a_map_of_a_moved_world_says_nearly_the_same():
+def test_a_map_of_a_moved_world_gives_nearly_the_same_distances():
     points, asked = patch((0, 0, 1), 0.05), patch((0, 0, 1), 0.08, count=500, seed=2)
     T = SE3.from_rpy(0.4, 0.3, 1.0, [30.0, -20.0, 3.0])
 

@@ -132,7 +132,7 @@ def test_a_shifted_source_gives_the_shifted_motion(solver, target_ends, source_e
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_too_few_segments_are_refused(solver, target_ends, source_ends):
+def test_too_few_segments_are_a_stop_reason(solver, target_ends, source_ends):
     none = register(solver, target_ends, source_ends[:0], T_TRUE)
     few = register(solver, target_ends, source_ends[:15], T_TRUE)
     no_target = register(solver, target_ends[:0], source_ends, T_TRUE)
@@ -229,7 +229,7 @@ def test_the_error_counts_what_lies_too_far_off_to_register_but_not_what_is_else
     assert found.error_m == pytest.approx(0.1, abs=0.03)
 
 
-def test_a_solution_far_from_the_guess_is_unstable(target_ends, source_ends):
+def test_a_solution_far_from_the_initial_pose_is_unstable(target_ends, source_ends):
     found = register("planes", target_ends, source_ends, SE3.identity(), max_move_m=0.1)
 
     assert found.stop is StopReason.UNSTABLE
@@ -255,7 +255,7 @@ def test_parallel_lines_only_give_no_motion():
     assert prediction_offset_m(found.T_target_source, SE3.identity()) == 0.0
 
 
-def test_things_that_moved_hardly_count_along_common_normals(target_ends, source_ends):
+def test_moving_objects_have_little_weight_along_common_normals(target_ends, source_ends):
     moved = source_ends.copy()
     moved[::3] += [0.3, 0.18, 0.09]
 
@@ -267,7 +267,7 @@ def test_things_that_moved_hardly_count_along_common_normals(target_ends, source
     assert prediction_offset_m(plain.T_target_source, T_TRUE) > 0.08
 
 
-def test_portion_is_the_share_of_lines_kept(target_ends, source_ends):
+def test_portion_is_the_fraction_of_lines_kept(target_ends, source_ends):
     lines = Lines.through(source_ends[:, 0], source_ends[:, 1])
     target = LineTarget(Lines.through(target_ends[:, 0], target_ends[:, 1]))
 

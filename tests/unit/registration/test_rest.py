@@ -32,7 +32,7 @@ def slow():
     return walk(standing_then_going, 12, with_imu=False)
 
 
-def test_a_standing_body_does_not_drift_without_an_imu(slow):
+def test_a_stationary_body_does_not_drift_without_an_imu(slow):
     T, steps = poses(slow)
 
     np.testing.assert_array_equal(T.t[:5], 0.0)
@@ -48,7 +48,7 @@ def test_a_body_that_begins_to_creep_is_followed(slow):
     assert T.t[-1, 0] > 0.04
 
 
-def test_a_stroll_is_no_standing():
+def test_a_walking_body_is_not_stationary():
     recording = walk(strolling, 3, with_imu=False)
     T = recording.true_poses()
 
@@ -58,7 +58,7 @@ def test_a_stroll_is_no_standing():
     assert not is_stationary(SE3.from_rpy(0.0, 0.0, 0.01, np.zeros(3)))
 
 
-def test_scans_whose_matches_go_to_and_fro_are_not_lost():
+def test_scans_with_oscillating_matches_are_not_lost():
     recording = walk(strolling, 6, with_imu=False)
     # Two rounds never end by a small step.
     settings = override(Settings(), ["scans.rounds=2"])
@@ -81,7 +81,7 @@ def fit_of_second_frame(recording, state):
     return prediction, fitter.fit(target, second, prediction), second
 
 
-def test_both_ends_of_a_segment_are_held_against_the_planes(slow):
+def test_both_ends_of_a_segment_are_matched_to_the_planes(slow):
     state = FreeMotion(Settings().odometry).initial(slow[1].t_ns)
 
     _, fit, segments = fit_of_second_frame(slow, state)
@@ -90,7 +90,7 @@ def test_both_ends_of_a_segment_are_held_against_the_planes(slow):
     assert fit.match.match_ratio > 0.8
 
 
-def test_standing_does_not_depend_on_what_was_predicted(slow):
+def test_the_zero_velocity_update_does_not_depend_on_the_prediction(slow):
     T = SE3.stack([SE3.identity(), SE3.from_rpy(0.0, 0.0, 0.06, [0.1, 0.04, 0.0])])
     t_ns = slow[1].t_ns, slow[1].t_ns + FRAME_NS
     turning = FreeMotion(Settings().odometry).between(T, t_ns, slow[1].t_ns)

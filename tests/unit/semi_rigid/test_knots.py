@@ -48,7 +48,7 @@ def test_the_banded_solution_is_the_dense_one(frames):
     np.testing.assert_allclose(step.ravel(), -np.linalg.solve(A, start), rtol=1e-6, atol=1e-12)
 
 
-def test_nothing_measured_moves_nothing():
+def test_without_information_nothing_moves():
     frames = 5
     nothing = KnotSystem(np.zeros((frames, 12, 12)), np.zeros((frames, 12)))
 
@@ -57,7 +57,7 @@ def test_nothing_measured_moves_nothing():
     np.testing.assert_array_equal(step, 0.0)
 
 
-def test_without_a_measurement_a_correction_is_taken_back():
+def test_without_information_a_correction_decays_to_zero():
     frames = 3
     nothing = KnotSystem(np.zeros((frames, 12, 12)), np.zeros((frames, 12)))
     done = np.full((4, 6), 1e-3)
@@ -67,7 +67,7 @@ def test_without_a_measurement_a_correction_is_taken_back():
     np.testing.assert_allclose(step, -done, rtol=1e-9)
 
 
-def test_one_frame_that_knows_better_pulls_its_neighbors_less_and_less():
+def test_the_influence_of_a_single_frame_decays_with_distance():
     frames, wanted_m = 400, 0.01
     H, g = np.zeros((frames, 12, 12)), np.zeros((frames, 12))
     for end in (5, 11):
@@ -94,7 +94,7 @@ def still(count=9):
     return Trajectory(t_ns, SE3(np.tile(so3_exp([0, 0, 0.3]), (count, 1, 1)), np.ones((count, 3))))
 
 
-def test_corrections_are_interpolated_in_time_and_held_outside():
+def test_corrections_are_interpolated_in_time_and_constant_outside():
     knot_ns = np.array([100_000_000, 200_000_000, 300_000_000])
     correction = np.zeros((3, 6))
     correction[:, 3] = [0.0, 0.02, 0.06]

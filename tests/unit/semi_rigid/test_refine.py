@@ -83,7 +83,7 @@ def test_threads_do_not_change_a_bit(stroll):
     np.testing.assert_array_equal(a.T_a_b.t, b.T_a_b.t)
 
 
-def test_lost_multiframes_take_no_part(stroll):
+def test_lost_multiframes_are_excluded(stroll):
     lost = lost_none(stroll)
     lost[[10, 11]] = True
     frames = list(stroll)
@@ -106,7 +106,7 @@ def test_without_any_match_nothing_moves(stroll):
 
 
 class Asked:
-    """Stands in for the map: remembers which points it was asked for, and finds nothing."""
+    """A double of the map that records the points of its matches and finds nothing."""
 
     def match(self, p_map, fraction, **_):
         self.p_map, self.fraction = p_map, fraction
@@ -114,7 +114,7 @@ class Asked:
         return Match(np.zeros((12, 12)), np.zeros(12), nan, 0, np.nan, 0.0, 0.0)
 
 
-def test_both_ends_of_a_segment_are_held_against_the_map_each_at_its_own_time(stroll):
+def test_both_ends_of_a_segment_are_matched_each_at_its_own_time(stroll):
     sweep = _Sweep(stroll, stroll.truth, lost_none(stroll), settings=SETTINGS, progress=Silent())
     frame, asked = stroll[25], Asked()
 
@@ -133,7 +133,7 @@ def test_both_ends_of_a_segment_are_held_against_the_map_each_at_its_own_time(st
 
 
 def matched(stroll, gap_s):
-    """Which multiframes find a match in a map that holds the first multiframe only."""
+    """Multiframes that match a map of the first multiframe only."""
     settings = override(SETTINGS, [f"refine.min_gap_s={gap_s}", "refine.map_stride=1000"])
     frames = lost_none(stroll)
     sweep = _Sweep(stroll, stroll.truth, frames, settings=settings, progress=Silent())
@@ -200,7 +200,7 @@ def prepared(stroll, folder):
 
 
 @pytest.mark.parametrize("mode", ["10", "overlap", "verification"])
-def test_other_modes_leave_the_graph_s_word_alone(stroll, tmp_path, mode):
+def test_other_modes_keep_the_trajectory_of_the_graph(stroll, tmp_path, mode):
     graph = prepared(stroll, tmp_path)
 
     facts = refine(
@@ -219,7 +219,7 @@ def test_other_modes_leave_the_graph_s_word_alone(stroll, tmp_path, mode):
     np.testing.assert_allclose(found.T_a_b.t, expected.T_a_b.t, atol=1e-9)
 
 
-def test_beyond_writes_a_better_trajectory_and_how_the_rounds_went(stroll, tmp_path):
+def test_mode_beyond_writes_a_better_trajectory_and_its_rounds(stroll, tmp_path):
     graph = prepared(stroll, tmp_path)
 
     facts = refine(

@@ -1,4 +1,4 @@
-"""Arrays on disk: exact when whole, one error when not."""
+"""Arrays on disk: exact if intact, a StoreError otherwise."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Files are there completely or not at all."""
+"""Files are written completely or not at all."""
 
 import json
 import resource
@@ -69,7 +69,7 @@ def test_a_failed_folder_leaves_nothing(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_place_that_cannot_be_written_is_one_error(tmp_path):
+def test_a_path_that_cannot_be_written_raises_a_store_error(tmp_path):
     (tmp_path / "file").write_text("x")
 
     with pytest.raises(StoreError, match="cannot write"):
@@ -92,7 +92,7 @@ def test_what_is_not_a_number_becomes_null():
     }
 
 
-def test_sweeping_removes_files_and_folders_of_ours_only(tmp_path):
+def test_sweep_removes_only_temporary_files_and_folders(tmp_path):
     (tmp_path / f".tmp-{'a1' * 6}-x.txt").write_text("x")
     (tmp_path / f".tmp-{'b2' * 6}-key").mkdir()
     (tmp_path / ".tmp-thesis.txt").write_text("keep")
@@ -103,7 +103,7 @@ def test_sweeping_removes_files_and_folders_of_ours_only(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == [".tmp-thesis.txt"]
 
 
-def test_a_full_disk_is_said_and_leaves_no_part_of_the_file(small_disk):
+def test_a_full_disk_is_reported_and_leaves_no_partial_file(small_disk):
     write_text(small_disk / "a.txt", "old")
 
     with pytest.raises(NoSpace, match="no space left"):
@@ -113,14 +113,14 @@ def test_a_full_disk_is_said_and_leaves_no_part_of_the_file(small_disk):
     assert [p.name for p in small_disk.iterdir()] == ["a.txt"]
 
 
-def test_numpy_on_a_full_disk_is_said_although_numpy_gives_no_error_number(small_disk):
+def test_a_full_disk_is_recognized_in_numpy_errors_without_a_number(small_disk):
     with pytest.raises(NoSpace), atomic_folder(small_disk / "key") as folder:
         np.save(folder / "a.npy", np.zeros(1_000_000))
 
     assert list(small_disk.iterdir()) == []
 
 
-def test_a_copy_onto_a_full_disk_is_said(small_disk, tmp_path):
+def test_a_copy_to_a_full_disk_is_reported(small_disk, tmp_path):
     (tmp_path / "large").write_bytes(b"\x00" * 1_000_000)
 
     with pytest.raises(NoSpace):
@@ -129,7 +129,7 @@ def test_a_copy_onto_a_full_disk_is_said(small_disk, tmp_path):
     assert list(small_disk.iterdir()) == []
 
 
-def test_a_stage_on_a_full_disk_fails_clean_and_resumes_when_there_is_room(small_disk):
+def test_a_stage_on_a_full_disk_leaves_nothing_and_can_resume(small_disk):
     from recon4.progress import Silent
     from recon4.settings import Settings
     from recon4.store.project import Project

@@ -64,7 +64,7 @@ def test_a_result_that_was_edited_is_found(tmp_path):
     assert audit(tmp_path / "p", Silent()).damaged == ("trajectory.tum has other bytes",)
 
 
-def test_a_folder_we_do_not_know_is_named_and_not_damage(tmp_path):
+def test_an_unknown_folder_is_reported_but_not_as_damage(tmp_path):
     run_all(tmp_path / "p")
     (tmp_path / "p" / "artifacts" / "notes").mkdir()
 

@@ -49,7 +49,7 @@ def test_frames_come_back_as_they_were(written):
             np.testing.assert_array_equal(getattr(after, name), getattr(before, name))
 
 
-def test_what_belongs_to_the_recording_comes_back(written):
+def test_imu_gnss_and_report_are_read_back(written):
     store = FrameStore.open(written[0])
 
     assert store.t_mid_ns.tolist() == [50_000_000, 150_000_000, 250_000_000]
@@ -71,13 +71,13 @@ def test_writing_to_a_frame_does_not_change_the_file(written):
     assert (FrameStore.open(written[0])[0].xyz >= 0).all()
 
 
-def test_a_store_travels_to_another_process(written):
+def test_a_store_can_be_pickled_to_another_process(written):
     store = pickle.loads(pickle.dumps(FrameStore.open(written[0])))
 
     assert len(store[2]) == 7
 
 
-def test_a_frame_that_is_not_there_is_an_index_error(written):
+def test_a_missing_frame_raises_index_error(written):
     with pytest.raises(IndexError, match="frame 3 of 3"):
         FrameStore.open(written[0])[3]
 
@@ -109,7 +109,7 @@ def test_an_empty_store_can_be_opened(tmp_path):
     assert (len(store), store.points, len(store.t_mid_ns)) == (0, 0, 0)
 
 
-def test_a_full_disk_is_named(tmp_path):
+def test_a_full_disk_raises_no_space(tmp_path):
     """A real limit on the size of files, in a process of its own."""
     program = f"""
 import resource, signal, sys
@@ -147,7 +147,7 @@ def test_no_space_left_becomes_no_space(tmp_path, monkeypatch):
         pass
 
 
-def test_memory_does_not_follow_the_walk(tmp_path):
+def test_memory_does_not_depend_on_the_length_of_the_walk(tmp_path):
     rng = np.random.default_rng(1)
     with FrameWriter(tmp_path / "store", load_rig("4recon")) as writer:
         for k in range(60):

@@ -1,4 +1,4 @@
-"""Files from outside are known by their content, not by their name."""
+"""External files are keyed by their content, not by their name."""
 
 import os
 

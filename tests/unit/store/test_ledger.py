@@ -1,4 +1,4 @@
-"""The ledger remembers what is finished, and says when it is damaged."""
+"""The ledger records finished stages and detects damage."""
 
 import sqlite3
 from dataclasses import replace
@@ -41,7 +41,7 @@ def test_stages_come_in_the_order_they_finished(tmp_path):
         assert [row.key for row in ledger.stages()] == ["k1", "k0"]
 
 
-def test_a_forgotten_stage_is_gone_from_the_latest_run_too(tmp_path):
+def test_a_deleted_stage_is_removed_from_the_latest_run(tmp_path):
     with Ledger(tmp_path / "l.sqlite") as ledger:
         ledger.add(ROW)
         ledger.set_current("odometry", "k1")

@@ -1,4 +1,4 @@
-"""A project folder belongs to one process at a time and is never half there."""
+"""A project folder is locked by one process and never partial."""
 
 import json
 import subprocess
@@ -41,7 +41,7 @@ def test_a_second_process_is_refused_until_the_first_is_dead(tmp_path):
         Project.open(tmp_path / "p").close()
 
 
-def test_who_only_looks_is_not_locked_out(tmp_path):
+def test_reading_needs_no_lock(tmp_path):
     run_all(tmp_path / "p")
 
     with Project.open(tmp_path / "p"):
@@ -92,7 +92,7 @@ def test_only_our_own_orphans_are_swept(tmp_path):
     assert all((folder / "file").exists() for folder in strangers)
 
 
-def test_facts_about_a_project_are_added_not_replaced(tmp_path):
+def test_fields_of_a_description_are_added_not_replaced(tmp_path):
     with Project.open(tmp_path / "p") as project:
         project.describe(preset="indoor")
         project.describe(name="Office")
@@ -110,6 +110,6 @@ def test_a_moved_project_is_still_finished(tmp_path):
     assert all(run.reused for run in again.runs.values())
 
 
-def test_looking_at_what_is_no_project_says_so(tmp_path):
+def test_reading_a_folder_that_is_not_a_project_raises_an_error(tmp_path):
     with pytest.raises(StoreError, match="is not a recon4 project"):
         read_stages(Path(tmp_path))

@@ -43,7 +43,7 @@ def test_a_kill_before_any_file_operation_leaves_a_project_that_resumes(tmp_path
     assert kills >= 10
 
 
-def test_a_run_killed_again_and_again_still_gets_to_the_same_end(tmp_path, expected):
+def test_a_run_killed_repeatedly_gives_the_same_result(tmp_path, expected):
     root = tmp_path / "project"
     for operation in range(4, 40, 4):
         killed_before(operation, root)
@@ -53,7 +53,7 @@ def test_a_run_killed_again_and_again_still_gets_to_the_same_end(tmp_path, expec
     assert results(root) == expected
 
 
-def test_kills_at_random_moments_lose_nothing(tmp_path, expected):
+def test_kills_at_random_times_lose_nothing(tmp_path, expected):
     rng = random.Random(11)
     for k in range(6):
         root = tmp_path / str(k)
@@ -69,7 +69,7 @@ def test_kills_at_random_moments_lose_nothing(tmp_path, expected):
         assert audit(root, Silent()).damaged == ()
 
 
-def test_an_artifact_renamed_but_not_yet_in_the_ledger_is_adopted_not_made_again(tmp_path):
+def test_a_renamed_artifact_without_a_record_is_adopted(tmp_path):
     first = run_all(tmp_path / "project")
     (tmp_path / "project" / "ledger.sqlite").unlink()
 
