@@ -29,7 +29,7 @@ _PLANAR_SD = 1e-3
 
 
 def write_g2o(path: Path, graph: PoseGraph) -> None:
-    """Write nodes and those edges that are in the graph; numbers so that they read back exactly."""
+    """Write the nodes and the edges in use; numbers with enough digits to be read back exactly."""
     used = [edge for edge in graph.edges if edge.in_graph]
     lines = [f"# recon4 vertices {len(graph)} edges {len(used)}"]
     for row, (t, q) in enumerate(
@@ -47,15 +47,15 @@ def write_g2o(path: Path, graph: PoseGraph) -> None:
 def read_g2o(path: Path) -> PoseGraph:
     """Read a graph; 2-D vertices and edges are lifted to 3-D.
 
-    Edges between consecutive nodes become odometry, all others loops; ``i < j`` by turning the
-    relation around where needed. Times are not in the file: the nodes get 0, 1, 2, … seconds.
+    Edges between consecutive nodes become odometry, all others loops; relations are reversed if
+    needed so that ``i < j``. The file has no times: the nodes get 0, 1, 2, … seconds.
 
     Raises:
-        CorruptFile: Naming the line, if it is not of a known kind, has missing or surplus words,
-            a word that is no number, an edge names no vertex, or lines are missing at the end.
+        CorruptFile: Names the line if its kind is unknown, it has missing or surplus fields or an
+            invalid number, an edge names a missing vertex, or lines are missing at the end.
     """
     rows = _read_rows(path)
-    vertices = {int(words[0]): _vertex(tag, words) for _, tag, words in rows if "VERTEX" in tag}
+    vertices = {int(fields[0]): _vertex(tag, fields) for _, tag, fields in rows if "VERTEX" in tag}
     if not vertices:
         raise CorruptFile(f"{path.name}: there is no vertex")
     if len(vertices) < sum("VERTEX" in tag for _, tag, _ in rows):
@@ -63,15 +63,15 @@ def read_g2o(path: Path) -> PoseGraph:
     ids = sorted(vertices)
     row_of = {vertex: row for row, vertex in enumerate(ids)}
     edges = []
-    for line, tag, words in rows:
+    for line, tag, fields in rows:
         if "EDGE" in tag:
-            if words[0] == words[1]:
+            if fields[0] == fields[1]:
                 raise CorruptFile(
-                    f"{path.name}, line {line}: expected two vertices, got {int(words[0])} twice"
+                    f"{path.name}, line {line}: expected two vertices, got {int(fields[0])} twice"
                 )
-            if int(words[0]) not in row_of or int(words[1]) not in row_of:
+            if int(fields[0]) not in row_of or int(fields[1]) not in row_of:
                 raise CorruptFile(f"{path.name}, line {line}: an edge names a missing vertex")
-            edges.append(_edge(tag, words, row_of))
+            edges.append(_edge(tag, fields, row_of))
     return PoseGraph(
         np.array(ids, dtype=np.int64),
         np.arange(len(ids), dtype=np.int64) * 1_000_000_000,
@@ -91,53 +91,53 @@ def _read_rows(path: Path) -> list[tuple[int, str, Array]]:
     lines = lines_limited(path, most_bytes=_MOST_BYTES, most_line_bytes=_MOST_LINE_BYTES)
     for number, line in enumerate(lines, start=1):
         first = first if number > 1 else line
-        words = line.split()
-        if not words or words[0].startswith("#"):
+        fields = line.split()
+        if not fields or fields[0].startswith("#"):
             continue
-        rows.append((number, words[0], _numbers(words, f"{path.name}, line {number}")))
+        rows.append((number, fields[0], _numbers(fields, f"{path.name}, line {number}")))
     if first.startswith("# recon4 vertices"):
-        _check_promise(first, rows, path.name, complete=line.endswith("\n"))
+        _check_counts(first, rows, path.name, complete=line.endswith("\n"))
     return rows
 
 
-def _numbers(words: list[str], where: str) -> Array:
-    expected = _FIELDS.get(words[0])
+def _numbers(fields: list[str], where: str) -> Array:
+    expected = _FIELDS.get(fields[0])
     if expected is None:
-        raise CorruptFile(f"{where}: expected one of {', '.join(_FIELDS)}, got {words[0]!r}")
-    if len(words) != expected:
-        raise CorruptFile(f"{where}: {words[0]} has {expected} words, got {len(words)}")
+        raise CorruptFile(f"{where}: expected one of {', '.join(_FIELDS)}, got {fields[0]!r}")
+    if len(fields) != expected:
+        raise CorruptFile(f"{where}: {fields[0]} has {expected} fields, got {len(fields)}")
     try:
-        numbers = np.array([parse_float(word) for word in words[1:]])
+        numbers = np.array([parse_float(field) for field in fields[1:]])
     except ValueError as error:
         raise CorruptFile(f"{where}: {error}") from error
     if not np.isfinite(numbers).all():
         raise CorruptFile(f"{where}: a number is not finite")
-    for number in numbers[: 2 if "EDGE" in words[0] else 1]:
+    for number in numbers[: 2 if "EDGE" in fields[0] else 1]:
         if number != int(number) or not 0 <= number < _MOST_ID:
             raise CorruptFile(f"{where}: expected a vertex 0 to 2^53, got {number:g}")
-    if words[0].endswith("QUAT"):
-        quat = numbers[4:8] if "VERTEX" in words[0] else numbers[5:9]
+    if fields[0].endswith("QUAT"):
+        quat = numbers[4:8] if "VERTEX" in fields[0] else numbers[5:9]
         if abs(np.linalg.norm(quat) - 1.0) > _LENGTH_TOLERANCE:
             raise CorruptFile(f"{where}: a quaternion has length 1, got {np.linalg.norm(quat):.4g}")
     return numbers
 
 
-def _check_promise(
+def _check_counts(
     head: str, rows: list[tuple[int, str, Array]], name: str, *, complete: bool
 ) -> None:
-    """Our own files say how much is in them, so that a cut-off one is noticed."""
-    words = [*head.split(), *[""] * 6]
+    """Check the counts in the first line of files of recon4, to detect truncated ones."""
+    fields = [*head.split(), *[""] * 6]
     tags = [tag for _, tag, _ in rows]
     found = (sum("VERTEX" in tag for tag in tags), sum("EDGE" in tag for tag in tags))
-    if not complete or [str(count) for count in found] != [words[3], words[5]]:
+    if not complete or [str(count) for count in found] != [fields[3], fields[5]]:
         raise CorruptFile(
-            f"{name}: expected {words[3][:20]} vertices and {words[5][:20]} edges "
+            f"{name}: expected {fields[3][:20]} vertices and {fields[5][:20]} edges "
             f"and an end of line, got {found[0]} and {found[1]}"
         )
 
 
-def _vertex(tag: str, words: Array) -> SE3:
-    return _motion(tag, words[1:])
+def _vertex(tag: str, fields: Array) -> SE3:
+    return _motion(tag, fields[1:])
 
 
 def _motion(tag: str, numbers: Array) -> SE3:
@@ -146,10 +146,10 @@ def _motion(tag: str, numbers: Array) -> SE3:
     return SE3.from_quat(numbers[3:7], numbers[:3])
 
 
-def _edge(tag: str, words: Array, row_of: dict[int, int]) -> Edge:
-    i, j = row_of[int(words[0])], row_of[int(words[1])]
-    T_i_j = _motion(tag, words[2:])
-    information = _information(tag, words[2:])
+def _edge(tag: str, fields: Array, row_of: dict[int, int]) -> Edge:
+    i, j = row_of[int(fields[0])], row_of[int(fields[1])]
+    T_i_j = _motion(tag, fields[2:])
+    information = _information(tag, fields[2:])
     if i > j:
         i, j = j, i
         T_i_j, information = reverse(T_i_j, information)

@@ -18,7 +18,7 @@ _SOURCE_POINTS = 3000
 
 
 class ScanChain:
-    """Registers each scan to the last one with a known pose, without a pose prior.
+    """Registers each scan to the last one with a known pose, even far from the predicted pose.
 
     Scans are not undistorted: two consecutive ones are distorted alike. While frames are lost, the
     last good scan stays the target, so that returning to it ends the loss.

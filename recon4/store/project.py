@@ -170,7 +170,7 @@ def _refuse_foreign(root: Path) -> None:
     others = sorted(entry.name for entry in root.iterdir())
     if others:
         raise StoreError(
-            f"{root} is not empty and not a recon4 project (it holds {others[0]!r}); "
+            f"{root} is not empty and not a recon4 project (it contains {others[0]!r}); "
             "give a new folder"
         )
 

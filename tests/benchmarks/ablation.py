@@ -1,4 +1,4 @@
-"""What each step adds: V Table 3.2 (modes) and V §3.4 (one LiDAR against two).
+"""Accuracy by mode (V Table 3.2) and with one LiDAR instead of two (V §3.4).
 
     python -m tests.benchmarks.ablation RECORDING [--sensors | --preset thesis]
 

@@ -1,4 +1,4 @@
-"""What comparing approved bytes costs a slice of a large map.
+"""Cost of checking approved bytes for a slice of a large map.
 
     python -m tests.benchmarks.checked_slices FOLDER [POINTS]
 
@@ -32,7 +32,7 @@ def _seconds(tiles: TileSet) -> float:
 
 
 def main(folder: Path, points: int) -> None:
-    """Make the map, draw it plainly, checked for the first time, and checked again."""
+    """Make the map and draw it unchecked, checked for the first time, and checked again."""
     if not folder.exists():
         with Project.open(folder) as project:
             runner = StageRunner(project, Settings(), Silent())

@@ -23,7 +23,7 @@ from tests.unit.recording.packet_builders import sensor, spin
 
 SENSORS = 2
 PACKETS = 754
-"""What a VLP-16 sends in a second."""
+"""Packets of a VLP-16 per second."""
 BATCH = 76
 """Packets of a revolution: as they come in the messages of a bag."""
 
@@ -59,7 +59,7 @@ def from_file(path: Path) -> int:
 
 
 def milliseconds(rounds: int, work: Callable[[], int]) -> tuple[float, float, int]:
-    """CPU time, median and best of some rounds after one to warm up, and what the work returned."""
+    """Median and best CPU time of some rounds after one to warm up, and the result."""
     result = work()
     times = []
     for _ in range(rounds):

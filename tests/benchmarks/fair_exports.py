@@ -28,13 +28,13 @@ WHOLE = {"cut": {"kind": "horizontal", "z_m": 0.0, "thickness_m": 5.0}}
 
 
 def small(z_m: float) -> dict[str, object]:
-    """A sheet of one meter of one cut; each asks for another one, so that none is kept."""
+    """A sheet of one meter of a cut; each request has another size, so that none is cached."""
     window = {"left": 5.0, "bottom": 0.0, "right": 6.0, "top": 1.0}
     return {"cut": {"kind": "horizontal", "z_m": z_m, "thickness_m": 0.1}, "window": window}
 
 
 def export(client: httpx.Client, ending: str, ask: dict[str, object]) -> float:
-    """Seconds until the whole file has come."""
+    """Seconds until the whole file is received."""
     began_s = time.perf_counter()
     path = f"/api/projects/office/slices/export.{ending}"
     answer = client.get(path, params={"ask": json.dumps(ask)}, timeout=LIMIT_S)
@@ -44,7 +44,7 @@ def export(client: httpx.Client, ending: str, ask: dict[str, object]) -> float:
 
 
 def ask_for_all(server: Secure, client: httpx.Client, number: int) -> ssl.SSLSocket:
-    """A connection that waits for the whole map as CSV; closing it is leaving."""
+    """A connection that requests the whole map as CSV; closing it cancels the request."""
     ask = WHOLE | {"cut": WHOLE["cut"] | {"z_m": number / 1000.0}}
     cookies = "; ".join(f"{name}={value}" for name, value in client.cookies.items())
     host, port = server.host.split(":")

@@ -20,7 +20,7 @@ from recon4.pose_graph.verification import verify
 from recon4.settings import VerificationSettings
 
 SD = np.array([0.002, 0.002, 0.002, 0.01, 0.01, 0.01])
-"""What the edges promise: rotation [rad], translation [m]."""
+"""Stated standard deviations of the edges: rotation [rad], translation [m]."""
 
 
 def office_graph(
@@ -136,7 +136,7 @@ def _false(model: Edge, i: int, j: int, T_i_j: SE3) -> Edge:
 
 @dataclass(frozen=True, slots=True)
 class Score:
-    """What became of the injected and of the good edges that are not odometry."""
+    """Verdicts of the injected edges, and of the correct edges that are not odometry."""
 
     false_rejected: int
     false_total: int

@@ -27,7 +27,7 @@ from tests.project_builder import approve_project, build_project
 
 @dataclass
 class Outcome:
-    """What became of the flips."""
+    """Results of the flips."""
 
     flips: int = 0
     found: int = 0
@@ -106,7 +106,7 @@ def main() -> int:
 
 
 def make_server_state(root: Path) -> None:
-    """What a server leaves: queue, people, an upload that was broken off."""
+    """Files of a server: queue, users, an interrupted upload."""
     from app.access.login.login_service import open_access
     from app.jobs.store import JobStore
     from recon4.review.signature import sign

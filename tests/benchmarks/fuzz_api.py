@@ -1,4 +1,4 @@
-"""Requests nobody would think of, made up from the server's own description: none may break it.
+"""Fuzz the API with requests generated from its OpenAPI description; none may cause an error 500.
 
 Needs ``schemathesis`` (``pip install schemathesis``, best in an environment of its own), and a
 processed project, of which a copy is attacked::

@@ -38,7 +38,7 @@ class Ended(Exception):
 
 
 class Phone:
-    """What one phone saw."""
+    """Measurements of one phone."""
 
     def __init__(self, stalls: bool) -> None:
         self.stalls = stalls

@@ -50,7 +50,7 @@ MIB = 2**20
 
 @dataclass
 class Heard:
-    """What came to a phone since it was last asked."""
+    """Messages a phone received since the last query."""
 
     speed: float
     ages_s: list[float] = field(default_factory=list)
@@ -217,7 +217,7 @@ class Soak:
         return time.monotonic() - began_s
 
     def figures(self, ready_s: float) -> dict[str, Any]:
-        """What is quoted."""
+        """The reported figures."""
         walk_s = 60.0 * self.given.minutes
         last = self.rows[-1]
         return {

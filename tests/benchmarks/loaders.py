@@ -1,4 +1,4 @@
-"""Real sequences as multiframes, for benchmarks (the data page says what is in each)."""
+"""Load real sequences as multiframes, for benchmarks (the data page describes them)."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def one_sensor(model: str) -> Rig:
 
 
 def nclt(folder: Path) -> Iterator[Multiframe]:
-    """Key scans of ``nclt-hdl32``: rigid (no time inside a scan), a made-up clock of 10 Hz."""
+    """Key scans of ``nclt-hdl32``: rigid (no time inside a scan), an artificial clock of 10 Hz."""
     k = 0
     for path in sorted(folder.glob("scans_*.npz")):
         with np.load(path) as file:

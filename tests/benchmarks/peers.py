@@ -1,4 +1,4 @@
-"""Other people's odometry on a frame store, for comparison in the same run.
+"""Odometry of other projects on a frame store, for comparison in the same run.
 
     python -m tests.benchmarks.peers FRAMES_FOLDER TRUTH.tum
 
@@ -35,7 +35,7 @@ _KNOTS = 40
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PeerRun:
-    """What a peer made of a recording."""
+    """Result of a peer for a recording."""
 
     name: str
     trajectory: Trajectory

@@ -167,7 +167,7 @@ def check_all(top: Path, *, cuts: int, reruns: int) -> Counter[str]:
 
 
 def check(root: Path, marks: list[str]) -> list[str]:
-    """What is wrong on a disk after a cut, in words."""
+    """Messages about damage on a disk after a power cut."""
     problems = []
     try:
         problems += check_project(root / "office", marks)

@@ -182,7 +182,7 @@ def sequence_table(frames: Sequence[Multiframe], rig: Rig, *, voxel_m: float) ->
 
 
 def main() -> None:
-    """Run what is asked for, everything by default."""
+    """Run the requested benchmarks, by default all."""
     every = int(sys.argv[sys.argv.index("--every") + 1]) if "--every" in sys.argv else 1
     skip = int(sys.argv[sys.argv.index("--skip") + 1]) if "--skip" in sys.argv else 0
     wanted = [word for word in sys.argv[1:] if word in {"nclt", "corridor", "muehlburg"}]

@@ -58,7 +58,7 @@ class Ended(Exception):
 
 @dataclass
 class Tally:
-    """What clients saw."""
+    """Counts and latencies of the clients."""
 
     errors: Counter[str] = field(default_factory=Counter)
     times_s: dict[str, list[float]] = field(default_factory=lambda: defaultdict(list))
@@ -67,7 +67,7 @@ class Tally:
 
     @contextlib.contextmanager
     def counting(self, what: str) -> Iterator[None]:
-        """Count what goes wrong meanwhile."""
+        """Count errors in a block."""
         try:
             yield
         except Exception as error:
@@ -162,7 +162,7 @@ def percentiles(times_s: list[float]) -> str:
 def probe(
     url: str, kept: bool, seconds: float, ready: Barrier, out: Queue[tuple[str, list[float]]]
 ) -> None:
-    """Ask for ``/healthz``, on one connection or on a new one each time."""
+    """Request ``/healthz``, on one connection or on a new one each time."""
     times_s = []
     ready.wait()
     until_s = time.monotonic() + seconds
@@ -228,7 +228,7 @@ def keep_a_job(
 
 
 def start_capture(server: Running, given: argparse.Namespace) -> None:
-    """Begin to record what is sent."""
+    """Start recording the datagrams."""
     capture = {"project": "walk", "rig": given.rig, "preset": "indoor"}
     server.post("/api/live", json=capture).raise_for_status()
 

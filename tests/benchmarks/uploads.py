@@ -25,7 +25,7 @@ CHUNK_BYTES = 8 << 20
 
 
 def send(url: str, total: int, seed: int) -> tuple[float, str]:
-    """Seconds it took and the SHA-256 of what was sent."""
+    """Duration [s] and SHA-256 of the sent bytes."""
     block = hashlib.shake_256(bytes([seed])).digest(CHUNK_BYTES)
     location = create(url, total, filename=f"stream-{seed}.bag").headers["Location"]
     digest, offset, began = hashlib.sha256(), 0, time.perf_counter()

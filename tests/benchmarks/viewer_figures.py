@@ -31,7 +31,7 @@ from tests.service.viser_client import ViserClient, camera, viewing
 
 TILE_M = 5.0
 LANE_TILES = 5
-"""Tiles across the street; it is as long as the points ask for."""
+"""Tiles across the street; its length depends on the number of points."""
 IN_A_TILE = 50_000
 PEOPLE = 20
 
@@ -101,7 +101,7 @@ def one_person(server: Running, pid: int) -> None:
 
 
 def timed(client: ViserClient, words: str, pid: int) -> None:
-    """Print what a wish cost until the last byte."""
+    """Print the cost of an action until its last byte."""
     before, bytes_before, points = cpu_s(pid), client.bytes, set(client.points)
     spent_s = client.rest(quiet_s=1.0)
     new = sum(n for name, n in client.points.items() if name not in points)
@@ -138,7 +138,7 @@ def many_people(server: Running, pid: int) -> None:
 
 
 def one_stalls(server: Running, pid: int) -> None:
-    """Answers to two people, alone and beside one who takes nothing."""
+    """Latency of two clients, alone and beside one that reads nothing."""
     with ExitStack() as stack:
         clients = [stack.enter_context(viewing(server.url, "small")) for _ in range(2)]
         for client in clients:

@@ -1,4 +1,4 @@
-"""Bad input on the command line: a clear line, or a counted repair that can be seen."""
+"""Bad input on the command line: a clear error message, or a reported count of repairs."""
 
 import html
 import json

@@ -1,4 +1,4 @@
-"""Double walls in the program's own map: silent on a good one, found after one wrong decision."""
+"""Double walls in a map of the pipeline: none in a good one, found after one wrong decision."""
 
 import numpy as np
 import pytest

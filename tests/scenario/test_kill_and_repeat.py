@@ -1,4 +1,4 @@
-"""A run that is killed goes on to the same bytes; so does any other run of the same input."""
+"""A killed and resumed run gives the same bytes, as does any other run of the same input."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""Real scans without an IMU: registered in pairs, tracked, and honestly lost in another place."""
+"""Real scans without an IMU: registered in pairs, tracked, and lost in another place."""
 
 import dataclasses
 

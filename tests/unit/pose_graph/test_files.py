@@ -163,7 +163,7 @@ def test_a_truncated_g2o_file_is_rejected(
     [
         ("", "no vertex"),
         ("VERTEX_SE2 0 0 0 0\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n", "line 2: .* missing vertex"),
-        ("VERTEX_SE2 0 0 0\n", "line 1: VERTEX_SE2 has 5 words, got 4"),
+        ("VERTEX_SE2 0 0 0\n", "line 1: VERTEX_SE2 has 5 fields, got 4"),
         ("VERTEX_SE2 0 0 0 x\n", "line 1: could not convert"),
         ("VERTEX_SE2 0 0 0 nan\n", "line 1: a number is not finite"),
         ("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 0 0 0 0\n", "a vertex is there twice"),

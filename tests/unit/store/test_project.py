@@ -55,7 +55,7 @@ def test_reading_needs_no_lock(tmp_path):
 def test_a_folder_of_something_else_is_refused_and_untouched(tmp_path):
     (tmp_path / "holiday.jpg").write_bytes(b"photo")
 
-    with pytest.raises(StoreError, match=r"not a recon4 project \(it holds 'holiday.jpg'\)"):
+    with pytest.raises(StoreError, match=r"not a recon4 project \(it contains 'holiday.jpg'\)"):
         Project.open(tmp_path)
 
     assert [p.name for p in tmp_path.iterdir()] == ["holiday.jpg"]
