@@ -114,7 +114,7 @@ def process(
 
 @app.command()
 def simulate(
-    world: Annotated[str, typer.Argument(help="office, staircase, street or field.")],
+    world: Annotated[str, typer.Argument(help="office, staircase, street, field or corridor.")],
     out: Annotated[Path, typer.Argument(help="New folder for the recording and its truth.")],
     *,
     seconds: Annotated[float, typer.Option(help="Length of the walk in seconds.")] = 60.0,

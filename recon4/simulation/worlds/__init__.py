@@ -8,7 +8,7 @@ from importlib import import_module
 from recon4.errors import ConfigError
 from recon4.simulation.world import World
 
-WORLDS = ("office", "staircase", "street", "field")
+WORLDS = ("office", "staircase", "street", "field", "corridor")
 
 
 def build_world(name: str) -> World:

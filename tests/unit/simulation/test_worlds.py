@@ -31,7 +31,9 @@ def test_a_world_is_always_the_same_and_sound(name, worlds):
 
 
 @pytest.mark.parametrize("seed", [2, 3])
-@pytest.mark.parametrize(("name", "seconds"), list(zip(WORLDS, (250, 200, 220, 450), strict=True)))
+@pytest.mark.parametrize(
+    ("name", "seconds"), list(zip(WORLDS, (250, 200, 220, 450, 170), strict=True))
+)
 def test_the_person_walks_into_nothing(name, seconds, seed, worlds):
     world = worlds[name]
     walk = plan_walk(world, seconds=float(seconds), rng=np.random.default_rng(seed))
