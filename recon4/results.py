@@ -22,6 +22,7 @@ from recon4.recording.formats.poses import write_tum
 from recon4.report.artifacts import path_length_m
 from recon4.report.facts import InputFile, ReportFacts, StageTiming
 from recon4.report.html import write_report
+from recon4.report.verdict import assess
 from recon4.review.approval import put_back
 from recon4.review.approved import Approval, approval_of
 from recon4.review.stamp import stamp_file
@@ -84,6 +85,8 @@ class Summary:
     """In the map."""
     edges: Mapping[str, int]
     """Pairs tried by verdict, as ``edges.json`` has them: positions had the last word."""
+    verdict: Mapping[str, Any]
+    """``usability``: good, check or do not use; ``reasons``: the findings that led to it."""
     warnings: tuple[str, ...]
     seconds: float
     """Wall clock of all stages, of the earlier run where reused [s]."""
@@ -146,6 +149,7 @@ def _publish(
         lost=runs["odometry"].figures["lost"],
         points=runs["map"].figures["points"],
         edges=edges_by_verdict(runs["level"].artifact.folder),
+        verdict=asdict(assess(facts)),
         warnings=(*runs["frames"].figures["warnings"], *_later_warnings(runs), *warning),
         seconds=round(sum(run.done.seconds for run in runs.values()), 3),
         peak_bytes=max(run.done.peak_bytes for run in runs.values()),

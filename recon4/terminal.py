@@ -180,10 +180,16 @@ def describe_summary(summary: Mapping[str, Any], folder: Path) -> str:
         f"{summary['points']} points in the map",
         f"{summary['seconds']:.1f} s of work, {summary['peak_bytes'] / 1e9:.2f} GB at most",
         *(f"warning: {text}" for text in summary["warnings"]),
+        *_describe_verdict(summary["verdict"]),
         f"map     {folder / 'map.laz'}",
         f"report  {folder / 'report.html'}",
     ]
     return "\n".join(lines)
+
+
+def _describe_verdict(verdict: Mapping[str, Any]) -> list[str]:
+    """The verdict on the map and its reasons, a line each."""
+    return [f"verdict: {verdict['usability']}", *(f"  - {text}" for text in verdict["reasons"])]
 
 
 def _describe_stage(facts: dict[str, object]) -> str:

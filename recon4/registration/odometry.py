@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -49,6 +49,8 @@ class OdometryStep:
     lost: bool
     motion_cov: Array
     """Covariance of the motion over the frame, turn and shift in odom axes, (6, 6)."""
+    weak_direction: Array = field(default_factory=lambda: np.full(3, np.nan))
+    """See `Match.weak_direction`, in odom axes; NaN where it is unknown."""
 
 
 class Odometry:
@@ -233,6 +235,7 @@ def _step(
         float(np.linalg.norm(T_dense.t[-1] - end.t)),
         lost,
         _motion_cov(prediction.prior if lost else fit.P),
+        fit.match.weak_direction,
     )
 
 

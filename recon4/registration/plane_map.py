@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,8 @@ class Match:
     chi2: float
     degeneracy: float
     """Smallest eigenvalue of the mean of n n^T: 0 = unobservable direction, 1/3 = isotropic."""
+    weak_direction: Array = field(default_factory=lambda: np.full(3, np.nan))
+    """Its eigenvector: the unit direction least constrained by the planes, map axes, (3,)."""
 
     @property
     def match_ratio(self) -> float:
@@ -118,6 +120,10 @@ class PlaneMap:
             p_map, fraction, center, finest, gate_m, s.kernel_m, s.point_sd_m**2,
             float(s.min_points), s.max_sd_m, H, g, residual_m,
         )  # fmt: skip
-        degeneracy = float(np.linalg.eigvalsh(normals / matches)[0]) if matches else 0.0
-        mean_m = total / matches if matches else float("nan")
-        return Match(H, g, residual_m, int(matches), mean_m, float(chi2), degeneracy)
+        if not matches:
+            return Match(H, g, residual_m, 0, float("nan"), float(chi2), 0.0)
+        values, vectors = np.linalg.eigh(normals / matches)
+        return Match(
+            H, g, residual_m, int(matches), total / matches, float(chi2), float(values[0]),
+            vectors[:, 0],
+        )  # fmt: skip

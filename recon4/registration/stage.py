@@ -106,4 +106,5 @@ def _save_steps(path: Path, steps: list[OdometryStep]) -> None:
         prediction_offset_m=np.array([s.prediction_offset_m for s in steps]),
         lost=np.array([s.lost for s in steps]),
         motion_cov=np.array([s.motion_cov for s in steps]).reshape(-1, 6, 6),
+        weak_direction=np.array([s.weak_direction for s in steps]).reshape(-1, 3),
     )

@@ -12,10 +12,15 @@ from recon4.model.pose_graph import EdgeKind, PoseGraph, Verdict
 from recon4.report.artifacts import Results
 from recon4.report.drift import DriftClosed
 from recon4.report.facts import ReportFacts
+from recon4.report.observability import WeakStretch, weak_stretches
+from recon4.report.plausibility import MAX_SPEED_M_S, too_fast
 
 _GOAL_M = 0.05
 """Required relative error, V §3 [m]."""
 _MOST_WARNINGS = 12
+_MOST_CONVERGED, _HALF = 0.9, 0.5
+_UNOBSERVED_S = 10.0
+"""A longer time without observation of a direction makes the map unusable [s]."""
 
 
 class Level(IntEnum):
@@ -51,7 +56,8 @@ def headline(findings: list[Finding]) -> tuple[Level, str]:
 
 def find(facts: ReportFacts, results: Results, drift: DriftClosed | None) -> list[Finding]:
     """All findings, worst first."""
-    found = [*_tracking(results), *_loops(results.graph), *_closed(drift)]
+    found = [*_tracking(results), *_converged(results), *_observability(results)]
+    found += [*_plausibility(results), *_loops(results.graph), *_closed(drift)]
     found += [*_leveled(results), *_contradicted(results)]
     found += [*_imported(results), *_accuracy(facts)]
     found += [Finding(Level.WARNING, text) for text in facts.warnings]
@@ -70,6 +76,49 @@ def _tracking(results: Results) -> list[Finding]:
         where = f", first {(t_ns[lost][0] - t_ns[0]) / 1e9:.1f} s after the start"
     how_many = f"{lost.sum()} of {len(lost)} multiframes ({percentage(lost.mean())})"
     return [Finding(Level.BAD, f"Tracking was lost in {how_many}{where}.")]
+
+
+def _converged(results: Results) -> list[Finding]:
+    converged = np.asarray(results.steps.get("converged", np.empty(0)), dtype=bool)
+    if not len(converged) or converged.mean() >= _MOST_CONVERGED:
+        return []
+    level = Level.WARNING if converged.mean() >= _HALF else Level.BAD
+    how_many = f"{converged.sum()} of {len(converged)} multiframes ({percentage(converged.mean())})"
+    return [Finding(level, f"The registration converged in only {how_many}.")]
+
+
+def _observability(results: Results) -> list[Finding]:
+    stretches = weak_stretches(results.steps)
+    if not stretches:
+        return []
+    seconds = sum(stretch.seconds for stretch in stretches)
+    positions = results.georeference.get("georeference", {}).get("georeferenced", False)
+    level = Level.BAD if seconds >= _UNOBSERVED_S and not positions else Level.WARNING
+    return [Finding(level, _describe_stretch(stretch)) for stretch in stretches[:_MOST_WARNINGS]]
+
+
+def _describe_stretch(stretch: WeakStretch) -> str:
+    direction = "a horizontal" if stretch.horizontal else "the vertical"
+    if not np.isfinite(stretch.direction_odom).all():
+        direction = "one"
+    return (
+        f"Between {stretch.start_s:.0f} s and {stretch.end_s:.0f} s the LiDAR hardly observes "
+        f"{direction} direction (degeneracy {stretch.degeneracy:.4f}, 0 = unobservable): the "
+        "position along it may be wrong by meters, and no other figure shows it. A control "
+        "point, a loop or GNSS there would help."
+    )
+
+
+def _plausibility(results: Results) -> list[Finding]:
+    walk = results.final if results.final is not None else results.odometry
+    fast = too_fast(walk) if walk is not None else None
+    if fast is None:
+        return []
+    text = (
+        f"The trajectory moves at {fast.fastest_m_s:.1f} m/s, {fast.at_s:.0f} s after the start; "
+        f"{fast.seconds} s of it are faster than a person walks ({MAX_SPEED_M_S:.0f} m/s)."
+    )
+    return [Finding(Level.BAD, text)]
 
 
 def _loops(graph: PoseGraph | None) -> list[Finding]:

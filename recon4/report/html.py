@@ -16,7 +16,7 @@ from recon4.model.pose_graph import EdgeKind
 from recon4.report import chart_groups
 from recon4.report.approval import draft_block
 from recon4.report.artifacts import Results, path_length_m, read_results
-from recon4.report.drift import DriftClosed, drift_closed
+from recon4.report.drift import DriftClosed, closed_drift
 from recon4.report.edges import EdgeRow, edge_rows
 from recon4.report.facts import ReportFacts
 from recon4.report.findings import find, headline
@@ -42,9 +42,7 @@ def write_report(path: Path, *, facts: ReportFacts) -> None:
 def render(facts: ReportFacts) -> str:
     """The report as HTML text; all names are escaped."""
     results = read_results(facts.artifacts)
-    drift = None
-    if results.odometry is not None and results.final is not None and len(results.odometry):
-        drift = drift_closed(results.odometry, results.final, results.graph)
+    drift = closed_drift(results)
     tiles = TileSet.open(facts.artifacts["map"]) if "map" in facts.artifacts else None
     rasters = rasterize(lambda: map_chunks(tiles)) if tiles is not None else []
     findings = find(facts, results, drift)

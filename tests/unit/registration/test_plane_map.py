@@ -257,3 +257,27 @@ def test_a_map_of_a_moved_world_gives_nearly_the_same_distances():
 
     assert moved.match_ratio > 0.8
     assert moved.mean_m == pytest.approx(0.03, abs=1e-6)
+
+
+def test_the_weak_direction_of_a_corridor_is_along_it():
+    rng = np.random.default_rng(3)
+    x, z = rng.uniform(-8.0, 8.0, 6000), rng.uniform(0.0, 2.5, 6000)
+    y = np.where(np.arange(6000) % 2, -0.9, 0.9)
+    floor = np.column_stack([x, rng.uniform(-0.9, 0.9, 6000), 0 * x])
+    points = np.concatenate([np.column_stack([x, y, z]), floor])
+    points += rng.normal(0.0, 0.002, points.shape)
+    planes = PlaneMap(SETTINGS)
+    planes.add(points)
+
+    found = planes.match(points, np.ones(len(points)), center=np.zeros(3), finest=0, gate_m=0.3)
+
+    assert found.degeneracy < 0.01
+    assert abs(found.weak_direction) == pytest.approx([1.0, 0.0, 0.0], abs=0.05)
+
+
+def test_without_a_match_the_weak_direction_is_unknown():
+    found = PlaneMap(SETTINGS).match(
+        np.zeros((3, 3)), np.ones(3), center=np.zeros(3), finest=0, gate_m=0.3
+    )
+
+    assert np.isnan(found.weak_direction).all()

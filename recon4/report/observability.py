@@ -1,0 +1,85 @@
+"""Stretches of the walk along which the LiDAR hardly observes one direction of the motion.
+
+In a corridor without doors, a tunnel or an open field nearly all planes are parallel to one
+direction. The registration then converges, and its residuals are small, wherever along that
+direction the pose lies: neither convergence nor the match ratio shows the error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import Array
+
+WEAK_DEGENERACY = 0.005
+"""Below this a direction counts as unobservable, as for pairs (`GraphSettings.min_degeneracy`)."""
+MIN_SECONDS = 2.0
+"""Shorter stretches are bridged by the motion before them [s]."""
+_BRIDGED_S = 1.0
+"""Two weak stretches with less than this between them are one [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class WeakStretch:
+    """Consecutive multiframes that observe one direction weakly."""
+
+    start_s: float
+    """After the first multiframe [s]."""
+    end_s: float
+    degeneracy: float
+    """Median of the smallest eigenvalue of the mean of n n^T."""
+    direction_odom: Array
+    """Unit vector of the weak direction, in odom axes, (3,); NaN = unknown."""
+
+    @property
+    def seconds(self) -> float:
+        """Duration [s]."""
+        return self.end_s - self.start_s
+
+    @property
+    def horizontal(self) -> bool:
+        """Whether the weak direction is closer to horizontal than to vertical."""
+        return not abs(float(self.direction_odom[2])) > np.sqrt(0.5)
+
+
+def weak_stretches(steps: Mapping[str, NDArray[np.generic]]) -> list[WeakStretch]:
+    """Find the stretches of `MIN_SECONDS` or more, in order of time.
+
+    Args:
+        steps: Columns of ``steps.npz``. Files of earlier versions have no ``weak_direction``.
+    """
+    if "degeneracy" not in steps or len(steps["degeneracy"]) < 2:
+        return []
+    t_s = (steps["t_mid_ns"] - steps["t_mid_ns"][0]) / 1e9
+    degeneracy = np.asarray(steps["degeneracy"], np.float64)
+    directions = np.asarray(steps.get("weak_direction", np.full((len(t_s), 3), np.nan)), np.float64)
+    weak = degeneracy < WEAK_DEGENERACY
+    weak[0] = False  # there is no map yet to observe anything against
+    weak &= ~np.asarray(steps["lost"], bool)  # lost tracking is reported by itself
+    rows = np.flatnonzero(weak)
+    if not len(rows):
+        return []
+    runs = np.split(rows, np.flatnonzero(np.diff(t_s[rows]) > _BRIDGED_S) + 1)
+    found = [
+        WeakStretch(
+            start_s=float(t_s[run[0]]),
+            end_s=float(t_s[run[-1]]),
+            degeneracy=float(np.median(degeneracy[run])),
+            direction_odom=_mean_direction(directions[run]),
+        )
+        for run in runs
+    ]
+    return [stretch for stretch in found if stretch.seconds >= MIN_SECONDS]
+
+
+def _mean_direction(directions: Array) -> Array:
+    """Axis closest to all of them, whatever their signs."""
+    known = directions[np.isfinite(directions).all(axis=1)]
+    if not len(known):
+        return np.full(3, np.nan)
+    axis: Array = np.linalg.eigh(known.T @ known)[1][:, -1]
+    return axis

@@ -1,0 +1,42 @@
+"""Whether the trajectory is one that a person on foot can have walked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from recon4.geometry.se3 import Array
+from recon4.model.trajectory import Trajectory
+
+MAX_SPEED_M_S = 4.0
+"""No person who carries a backpack moves faster for a second [m/s]."""
+_WINDOW_S = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class TooFast:
+    """Where the trajectory moves faster than a person."""
+
+    seconds: int
+    """How many seconds of the walk are faster than `MAX_SPEED_M_S`."""
+    fastest_m_s: float
+    at_s: float
+    """Time of the fastest second, after the start [s]."""
+
+
+def too_fast(trajectory: Trajectory) -> TooFast | None:
+    """The seconds in which the positions lie farther apart than a person walks; None = none."""
+    if len(trajectory) < 2:
+        return None
+    t_s = (trajectory.t_ns - trajectory.t_ns[0]) / 1e9
+    knots = np.arange(0.0, t_s[-1] + 1e-9, _WINDOW_S)
+    if len(knots) < 2:
+        return None
+    p: Array = np.stack([np.interp(knots, t_s, trajectory.T_a_b.t[:, k]) for k in range(3)], 1)
+    speed_m_s = np.linalg.norm(np.diff(p, axis=0), axis=1) / _WINDOW_S
+    fast = speed_m_s > MAX_SPEED_M_S
+    if not fast.any():
+        return None
+    worst = int(np.argmax(speed_m_s))
+    return TooFast(int(fast.sum()), float(speed_m_s[worst]), float(knots[worst]))

@@ -1,0 +1,125 @@
+"""Unobservable stretches, impossible speeds, and the verdict they lead to."""
+
+import numpy as np
+import pytest
+
+from recon4.geometry.se3 import SE3
+from recon4.model.trajectory import Trajectory
+from recon4.report.artifacts import Results
+from recon4.report.facts import ReportFacts
+from recon4.report.findings import Finding, Level, find
+from recon4.report.observability import weak_stretches
+from recon4.report.plausibility import too_fast
+from recon4.report.verdict import Usability, map_verdict
+from recon4.settings import preset
+
+
+def steps(degeneracy, *, direction=(1.0, 0.0, 0.0), lost=None, converged=None):
+    """Columns of ``steps.npz`` at 10 Hz."""
+    n = len(degeneracy)
+    return {
+        "t_mid_ns": np.arange(n) * 100_000_000,
+        "degeneracy": np.asarray(degeneracy, float),
+        "weak_direction": np.tile(direction, (n, 1)) * np.where(np.arange(n) % 2, 1, -1)[:, None],
+        "lost": np.zeros(n, bool) if lost is None else lost,
+        "converged": np.ones(n, bool) if converged is None else converged,
+    }
+
+
+def corridor(seconds, *, before=20):
+    return [0.1] * before + [0.001] * round(10 * seconds) + [0.1] * before
+
+
+def test_a_corridor_is_found_with_its_time_and_its_direction():
+    (found,) = weak_stretches(steps(corridor(5.0)))
+
+    assert (found.start_s, found.end_s) == pytest.approx((2.0, 6.9))
+    assert found.degeneracy == pytest.approx(0.001)
+    assert abs(found.direction_odom) == pytest.approx([1.0, 0.0, 0.0])
+    assert found.horizontal
+
+
+def test_an_elevator_shaft_is_weak_vertically():
+    (found,) = weak_stretches(steps(corridor(5.0), direction=(0.1, 0.0, 0.995)))
+
+    assert not found.horizontal
+
+
+def test_a_short_gap_does_not_split_a_stretch_and_short_stretches_do_not_count():
+    split = corridor(3.0) + corridor(3.0)
+    bridged = [0.1] * 20 + [0.001] * 20 + [0.1] * 5 + [0.001] * 20
+
+    assert len(weak_stretches(steps(split))) == 2
+    assert len(weak_stretches(steps(bridged))) == 1
+    assert weak_stretches(steps(corridor(1.0))) == []
+
+
+def test_the_first_multiframe_and_lost_ones_are_no_weak_stretch():
+    lost = np.zeros(90, bool)
+    lost[20:70] = True
+
+    assert weak_stretches(steps([0.0] + [0.1] * 50)) == []
+    assert weak_stretches(steps(corridor(5.0), lost=lost)) == []
+
+
+def test_files_of_earlier_versions_have_no_direction():
+    columns = steps(corridor(5.0))
+    del columns["weak_direction"]
+
+    (found,) = weak_stretches(columns)
+
+    assert np.isnan(found.direction_odom).all()
+
+
+def walk(speed_m_s, *, seconds=10):
+    t_s = np.arange(0.0, seconds, 0.1)
+    t_m = np.stack([speed_m_s * t_s, 0 * t_s, 0 * t_s], axis=1)
+    R = np.tile(np.eye(3), (len(t_s), 1, 1))
+    return Trajectory((t_s * 1e9).astype(np.int64), SE3(R, t_m))
+
+
+def test_a_person_does_not_walk_at_thirteen_meters_a_second():
+    assert too_fast(walk(1.5)) is None
+
+    found = too_fast(walk(13.0))
+
+    assert found.fastest_m_s == pytest.approx(13.0)
+    assert found.seconds == 9
+
+
+def facts():
+    return ReportFacts(title="office", created="", preset="indoor", settings=preset("indoor"))
+
+
+@pytest.mark.parametrize(
+    ("results", "usability", "reason"),
+    [
+        (Results(steps=steps([0.1] * 50)), Usability.GOOD, ""),
+        (Results(steps=steps(corridor(5.0))), Usability.CHECK, "Between 2 s and 7 s"),
+        (Results(steps=steps(corridor(30.0))), Usability.DO_NOT_USE, "a horizontal direction"),
+        (
+            Results(
+                steps=steps(corridor(30.0)),
+                georeference={"georeference": {"georeferenced": True}},
+            ),
+            Usability.CHECK,
+            "GNSS",
+        ),
+        (
+            Results(steps=steps([0.1] * 50, converged=np.arange(50) < 20)),
+            Usability.DO_NOT_USE,
+            "converged in only 20 of 50",
+        ),
+        (Results(odometry=walk(13.0)), Usability.DO_NOT_USE, "13.0 m/s"),
+    ],
+)
+def test_what_makes_a_map_unusable_is_announced(results, usability, reason):
+    verdict = map_verdict(find(facts(), results, None))
+
+    assert verdict.usability is usability
+    assert reason in " ".join(verdict.reasons)
+
+
+def test_a_map_nothing_is_known_of_is_not_good():
+    assert map_verdict([]).usability is Usability.CHECK
+    assert map_verdict([Finding(Level.GOOD, "fine")]).reasons == ()
