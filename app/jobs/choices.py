@@ -50,7 +50,7 @@ class SettingView(BaseModel):
     """Values of a ``choice``."""
     unit: str
     text: str
-    """What it means."""
+    """Description."""
     default: Any
     value: Any
     """Value in the requested preset."""

@@ -29,10 +29,10 @@ class Certificate:
     chain: Path
     key: Path
     own: bool
-    """Whether the user brought it."""
+    """Whether it is the user's own."""
 
     def context(self) -> ssl.SSLContext:
-        """What a server listens with: TLS 1.2 and later.
+        """The TLS context of a server: TLS 1.2 and later.
 
         Raises:
             ConfigError: If the files are no certificate and the key that fits it.
@@ -55,7 +55,7 @@ class Certificate:
         return ":".join(f"{byte:02X}" for byte in digest)
 
     def names(self) -> frozenset[str]:
-        """Host names and addresses it is for, lower case."""
+        """Host names and addresses of the certificate, lower case."""
         return _names(_read(self.chain))
 
 

@@ -26,7 +26,7 @@ FEWEST_CONNECTIONS = 16
 
 
 class Phase(StrEnum):
-    """What a connection is doing."""
+    """Phase of a connection."""
 
     WAITING = "waiting"
     """Has not completed the head of its first request: silent, in the TLS handshake, or slow."""
@@ -58,7 +58,7 @@ class Connection:
     address: str
     """Of the client; for IPv6 its network, since one household has 2^64 addresses."""
     accepted_s: float = 0.0
-    """When it was accepted, on a monotonic clock [s]."""
+    """Time of accepting, on a monotonic clock [s]."""
     abort: Callable[[], None] = lambda: None
     """Closes it at once."""
     phase: Phase = Phase.WAITING

@@ -15,7 +15,7 @@ from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 from app.network.connections import Connection, ConnectionTable, Phase
 
 HEAD_TIMEOUT_S = 10.0
-"""The head of a request is complete by then, from its first byte [s]."""
+"""Longest time for the head of a request, from its first byte [s]."""
 MAX_HEAD_BYTES = 1 << 16
 BODY_WINDOW_S = 30.0
 MIN_BODY_BYTES = 3_000_000
@@ -38,12 +38,12 @@ class HttpTimeoutsProtocol(HttpToolsProtocol):
         self._reading_paused = False
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Wait for the first head from now on."""
+        """Start the deadline of the first head."""
         super().connection_made(transport)  # type: ignore[arg-type]
         self._start_timer(HEAD_TIMEOUT_S)
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Stop waiting."""
+        """Stop the deadlines."""
         self._stop_timer()
         super().connection_lost(exc)
 
@@ -80,7 +80,7 @@ class HttpTimeoutsProtocol(HttpToolsProtocol):
         super().handle_websocket_upgrade()
         protocol = self.transport.get_protocol()
         if not getattr(protocol, "handshake_initiated", True):
-            # uvicorn waits forever after an opening handshake that is none, as one with POST.
+            # uvicorn waits forever after a malformed opening handshake, such as one with POST.
             self._reject(b"400 Bad Request", "malformed")
 
     def on_body(self, body: bytes) -> None:
@@ -110,7 +110,7 @@ class HttpTimeoutsProtocol(HttpToolsProtocol):
             self.on_idle()
 
     def on_idle(self) -> None:
-        """Wait for the next request; uvicorn forgets to when a body outlives its answer."""
+        """Wait for the next request; uvicorn does not when a body outlives its response."""
         self._table.move(self._connection, Phase.IDLE)
         self._unset_keepalive_if_required()
         self.timeout_keep_alive_task = self.loop.call_later(
@@ -118,7 +118,7 @@ class HttpTimeoutsProtocol(HttpToolsProtocol):
         )
 
     def send_400_response(self, msg: str) -> None:
-        """Answer what is not HTTP, and count it."""
+        """Respond to a message that is not HTTP, and count it."""
         self._table.counts.rejected["malformed"] += 1
         super().send_400_response(msg)
 

@@ -1,4 +1,4 @@
-"""Clients that do not read what is sent to them: a download, a viewer, the last bytes of an answer.
+"""Clients that do not read sent data: a download, a viewer, the last bytes of a response.
 
 The transport's buffer alone does not show it: the kernel holds some megabytes more, so that a slow
 but living client takes nothing from the buffer for a minute. What the client acknowledged does.
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 READ_WINDOW_S = 30.0
 MIN_READ_BYTES = 60_000
-"""A client that data waits for takes at least this much in `READ_WINDOW_S`: 2 kB/s."""
+"""Least bytes that a client with waiting data reads in `READ_WINDOW_S`: 2 kB/s."""
 TCP_INFO_BYTES = 128
 BYTES_ACKED = struct.Struct("=120xQ")
 """``tcpi_bytes_acked`` in the ``struct tcp_info`` of Linux, since 4.1."""
@@ -21,18 +21,18 @@ BYTES_ACKED = struct.Struct("=120xQ")
 
 @dataclass(slots=True, eq=False)
 class ReaderWatch:
-    """How much one client read lately."""
+    """Reading rate of one client."""
 
     sock: socket.socket
     transport: asyncio.Transport
     _since_s: float | None = None
     """When data began to wait in the present window; None = nothing waits."""
     _acked: int = 0
-    """What the client had acknowledged then [bytes]."""
+    """Bytes that the client had acknowledged then."""
 
     @property
     def closed(self) -> bool:
-        """Whether there is nothing to watch any more."""
+        """Whether there is nothing left to watch."""
         return self.sock.fileno() < 0
 
     def stalled(self, now_s: float) -> bool:
@@ -56,7 +56,7 @@ class ReaderWatch:
 
 
 def bytes_acked(sock: socket.socket) -> int:
-    """How many bytes the other side has acknowledged since the connection was made."""
+    """Bytes that the client has acknowledged since the connection began."""
     info = sock.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, TCP_INFO_BYTES)
     acked: int = BYTES_ACKED.unpack_from(info)[0]
     return acked

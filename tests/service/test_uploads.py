@@ -164,7 +164,7 @@ def test_bytes_with_a_wrong_checksum_are_not_kept(server):
     [
         ({"Tus-Resumable": "0.2.1"}, 412, "Tus-Resumable: 1.0.0"),
         ({"Content-Type": "text/plain"}, 415, "Content-Type"),
-        ({"Upload-Offset": "3"}, 409, "the file is at 0"),
+        ({"Upload-Offset": "3"}, 409, "expected Upload-Offset 0"),
         ({"Upload-Offset": "-1"}, 400, "Upload-Offset"),
         ({"Upload-Checksum": "crc7 AAAA"}, 400, "sha256"),
     ],

@@ -27,7 +27,7 @@ HOUR_S = 3600.0
 
 @dataclass(frozen=True, slots=True)
 class Life:
-    """How long a session lasts."""
+    """Limits of a session's duration."""
 
     whole_s: float
     """From the login [s]."""

@@ -39,7 +39,7 @@ class Multiframes:
         return len(self._frames)
 
     def pose(self, moment: int, line: Trajectory) -> SE3 | None:
-        """``T_map_body`` in the middle of a multiframe; None where the trajectory ends before."""
+        """``T_map_body`` in the middle of a multiframe; None outside the trajectory."""
         t_ns = self.t_mid_ns[min(moment, len(self) - 1)]
         try:
             return line.at(np.array([t_ns]), slack_ns=200_000_000)[0]
@@ -84,7 +84,7 @@ class Multiframes:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MultiframeWindow:
-    """Points of some multiframes in the map, and what is known of each."""
+    """Points of some multiframes in the map, with their attributes."""
 
     p_map: Array
     """[m], (N, 3)"""

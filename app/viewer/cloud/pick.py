@@ -114,7 +114,7 @@ def _first_hit(cloud: Cloud, ray: Ray, widening: float) -> tuple[Tile, int] | No
 
 
 def _entries(cloud: Cloud, ray: Ray, widening: float) -> Array:
-    """How far along the ray its cone may enter each tile [m]; inf = never, (T,)."""
+    """Distance along the ray at which its cone may enter each tile [m]; inf = never, (T,)."""
     boxes = cloud.boxes
     low, high = boxes.low_m - ray.origin_m, boxes.high_m - ray.origin_m
     farthest = np.linalg.norm(np.maximum(np.abs(low), np.abs(high)), axis=1, keepdims=True)

@@ -75,7 +75,7 @@ class GnssMarks:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Content:
-    """What a project has to show so far."""
+    """Content of a project for the viewer, so far."""
 
     cloud: Cloud | None = None
     trajectory: Trajectory | None = None

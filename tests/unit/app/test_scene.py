@@ -226,7 +226,7 @@ def test_an_edge_picked_leads_to_its_review(content):
     assert "Error" not in dict(facts.rows)
 
 
-def test_a_distance_is_told_with_its_parts():
+def test_a_distance_has_its_components():
     points = ((1.0, 1.0, 1.0), (4.0, 5.0, -11.0))
 
     rows = dict(measurement_facts(1, points).rows)
