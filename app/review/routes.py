@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
@@ -37,10 +38,11 @@ from recon4.review.approval import approve as sign
 from recon4.review.approved import Approval, approval_of, latest_approval
 from recon4.review.decisions import Decided, Decision, DecisionKind, fold
 from recon4.review.journal import JournalChanged, NothingToUndo, Row, append, read_rows
-from recon4.review.pairs import align, fit_points, pair_facts, pair_points, walk_facts
+from recon4.review.pairs import align, fit_points, pair_facts, pair_points, trajectory_nodes
 from recon4.review.signature import ensure_key
 from recon4.review.source import Source, graph_key
 from recon4.review.state import artifact_keys, decisions_in_map, read_summary
+from recon4.store.atomic import null_for_nan
 from recon4.store.checked import Altered
 
 T = TypeVar("T")
@@ -93,7 +95,7 @@ async def read_queue(project_id: str, server: Server, caller: CalledBy) -> Respo
 @router.get("/walk", dependencies=LOOK, summary="Nodes along the trajectory")
 async def read_walk(project_id: str, server: Server, caller: CalledBy) -> dict[str, Any]:
     """Nodes of the graph: multiframe, seconds since the start, position."""
-    return await _of_pairs(project_id, server, caller, walk_facts)
+    return asdict(await _of_pairs(project_id, server, caller, trajectory_nodes))
 
 
 @router.get("/pair", dependencies=LOOK, summary="One pair")
@@ -101,7 +103,9 @@ async def read_pair(
     project_id: str, server: Server, caller: CalledBy, *, frame_i: Frame, frame_j: Frame
 ) -> dict[str, Any]:
     """Poses of a pair, registered or not, and its alternative paths."""
-    return await _of_pairs(project_id, server, caller, pair_facts, (frame_i, frame_j))
+    facts = await _of_pairs(project_id, server, caller, pair_facts, (frame_i, frame_j))
+    record: dict[str, Any] = null_for_nan(asdict(facts))
+    return record
 
 
 @router.get("/points", dependencies=LOOK, summary="Points of a pair")
@@ -133,14 +137,17 @@ async def align_pair(
     """
     root, pair = server.projects.folder(project_id), (predicted.frame_i, predicted.frame_j)
     found = await _of_pairs(project_id, server, caller, align, pair, tuple(predicted.T_i_j))
-    record = found.to_json()["measurement"]
-    figures = ("overlap", "error_m", "limit_m", "degeneracy", "iterations")
+    measured = found.measurement
     return AlignmentView(
         measurement=server.reviews.remember(root, pair, found) if found.converged else "",
-        T_i_j=list(found.measurement.T_i_j),
+        T_i_j=list(measured.T_i_j),
         converged=found.converged,
         reason=found.reason,
-        **{name: record[name] for name in figures},
+        overlap=null_for_nan(measured.overlap),
+        error_m=null_for_nan(measured.error_m),
+        limit_m=null_for_nan(measured.limit_m),
+        degeneracy=null_for_nan(measured.degeneracy),
+        iterations=measured.iterations,
     )
 
 
@@ -191,10 +198,10 @@ async def read_effect(project_id: str, server: Server, caller: CalledBy) -> dict
     root = server.projects.folder(project_id)
     source = await run_in_threadpool(Source.of, root)
     decided, before = _now_and_before(await run_in_threadpool(read_rows, root))
-    record = await caller.wait(
+    effect = await caller.wait(
         server.reviews.effect(root, source, decided=decided, before=before, person=caller.name)
     )
-    return {"superseded": True} if record is None else record
+    return {"superseded": True} if effect is None else effect.to_json()
 
 
 @router.get("/journal", dependencies=LOOK, summary="Journal")

@@ -6,13 +6,12 @@ import asyncio
 import secrets
 from collections import OrderedDict
 from pathlib import Path
-from typing import Any
 
 from app.compute_pool import ComputePool, FileAccess, Lane, Terms
 from app.errors import Conflict
 from recon4.review.decisions import Decided, Measurement, Pair
 from recon4.review.pairs import Alignment
-from recon4.review.preview import preview
+from recon4.review.preview import Effect, preview
 from recon4.review.queue import queue_json
 from recon4.review.source import Source
 
@@ -33,7 +32,7 @@ class Reviews:
         self._measured: OrderedDict[str, tuple[Path, Pair, Measurement]] = OrderedDict()
         self._queues: OrderedDict[tuple[Path, str], bytes] = OrderedDict()
         self._wanted: dict[Path, tuple[str, str]] = {}
-        self._effects: dict[Path, tuple[tuple[str, str, str], dict[str, Any]]] = {}
+        self._effects: dict[Path, tuple[tuple[str, str, str], Effect]] = {}
         self._turns: dict[Path, asyncio.Lock] = {}
 
     # -- measurements: a decision refers to a registration made by the server
@@ -74,7 +73,7 @@ class Reviews:
 
     async def effect(
         self, root: Path, source: Source, *, decided: Decided, before: Decided, person: str
-    ) -> dict[str, Any] | None:
+    ) -> Effect | None:
         """`recon4.review.preview.preview`; None if a newer request superseded this one."""
         known = (source.key, decided.key, before.key)
         mine = (decided.key, before.key)

@@ -1,4 +1,4 @@
-"""Absolute trajectory error: how far the estimated poses lie from the true ones (L §4.4.2)."""
+"""Absolute trajectory error: deviation of the estimated poses from ground truth (L §4.4.2)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from recon4.model.trajectory import Times, Trajectory
 Alignment = Literal["svd", "first", "none"]
 
 _MIN_SPREAD_M = 0.05
-"""Positions that spread less than this across the walk cannot say how the map is turned."""
+"""Below this lateral extent of the positions the rotation of the fit is undetermined."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +50,7 @@ class PosePairs:
     T_true_body: SE3
     """True, N of them, in a frame of their own."""
     coverage_ratio: float
-    """Share of the estimate's poses that the truth covers, 0..1."""
+    """Ratio of the estimated poses covered by the ground truth, 0..1."""
 
     def __len__(self) -> int:
         return len(self.t_ns)
@@ -64,7 +64,7 @@ class AbsoluteError:
     T_true_map: SE3
     """The alignment: moves the estimate onto the truth."""
     determined: bool
-    """False: the positions lie on a line or a point, so the turn found from them means nothing."""
+    """False: the positions lie on a line or a point, so the rotation is undetermined."""
     position_m: Spread
     rotation_rad: Spread
     """Axis-angle (L Eq. 12)."""

@@ -1,4 +1,4 @@
-"""How many points lie on a square centimetre (V §3.2: ZEB-1 0.9, 4RECON 10.1)."""
+"""Point density per square centimeter (V §3.2: ZEB-1 0.9, 4RECON 10.1)."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class PlanePatch:
         return float(np.linalg.norm(np.cross(self.side_u, self.side_v)))
 
     def count(self, p: Array) -> int:
-        """How many of the points (N, 3) lie on it."""
+        """Number of the points (N, 3) on the patch."""
         A = np.stack([self.side_u, self.side_v, np.cross(self.side_u, self.side_v) / self.area_m2])
         u, v, height_m = np.linalg.solve(A.T, (p - self.corner).T)
         on_it = (u >= 0) & (u <= 1) & (v >= 0) & (v <= 1)
@@ -51,29 +51,29 @@ class Density:
 
 @dataclass(frozen=True, slots=True)
 class SurfaceDensity:
-    """Density on the surfaces of the whole map, at places drawn at random among its points."""
+    """Density on the surfaces of the whole map, at random points of it."""
 
     places: int
     radius_m: float
     low_per_cm2: float
-    """A tenth of the places has less [points/cm²]."""
+    """10th percentile [points/cm²]."""
     median_per_cm2: float
     high_per_cm2: float
-    """A tenth of the places has more [points/cm²]."""
+    """90th percentile [points/cm²]."""
 
 
 def patch_density(chunks: Iterable[Array], patch: PlanePatch) -> Density:
-    """Count the points on a patch.
+    """Measure the density on a patch.
 
     Args:
         chunks: Points of the map [m], arrays of (N, 3).
-        patch: Where, in the frame of the map.
+        patch: The patch, in the frame of the map.
 
     Raises:
         ConfigError: If the sides of the patch span no area.
     """
     if not patch.area_m2 > 1e-6:
-        raise ConfigError(f"the sides of a patch must span an area, got {patch.area_m2} m²")
+        raise ConfigError(f"patch: expected sides that span an area, got {patch.area_m2} m²")
     points = sum(patch.count(np.asarray(chunk, dtype=np.float64)) for chunk in chunks)
     return Density(points, patch.area_m2, points / (patch.area_m2 * _CM2_PER_M2))
 
@@ -81,11 +81,11 @@ def patch_density(chunks: Iterable[Array], patch: PlanePatch) -> Density:
 def surface_density(
     chunks: Iterable[Array], places: Array, *, radius_m: float = 0.1
 ) -> SurfaceDensity:
-    """Points in a ball over the area of its great circle: right on flat surfaces.
+    """Points in a ball over the area of its great circle: exact on flat surfaces.
 
     Args:
         chunks: Points of the map [m], arrays of (N, 3); every point is counted.
-        places: Where to count: some points of the map drawn at random [m], (M, 3), M > 0.
+        places: Centers of the balls: random points of the map [m], (M, 3), M > 0.
         radius_m: Radius of the ball [m].
     """
     tree = cKDTree(places)

@@ -1,4 +1,4 @@
-"""Everything that can be said about a result when the truth is known: ``recon4 evaluate``."""
+"""Evaluation of a result against ground truth: ``recon4 evaluate``."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from recon4.model.rig import Rig
 from recon4.model.trajectory import Trajectory
 
 FRAME_NS = 100_000_000
-"""Dense trajectories are judged at one pose a multiframe of 10 Hz [ns]."""
+"""Dense trajectories are evaluated at one pose per multiframe of 10 Hz [ns]."""
 MapAlignment = Literal["icp", "trajectory", "none"]
 Chunks = Callable[[], Iterable[Array]]
 """Makes a fresh pass over the points of the map [m], arrays of (N, 3)."""
@@ -39,7 +39,7 @@ Chunks = Callable[[], Iterable[Array]]
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class MapQuality:
-    """What the map looks like without any truth."""
+    """Quality of the map that needs no ground truth."""
 
     density: SurfaceDensity
     sharpness: Sharpness
@@ -47,24 +47,24 @@ class MapQuality:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Evaluation:
-    """All figures of one result."""
+    """All figures of a result."""
 
     estimate: str
-    """Name of what was judged."""
+    """Name of the evaluated trajectory or project."""
     truth: str
-    """Name of what it was judged by."""
+    """Name of the ground truth."""
     poses: int
     coverage_ratio: float
-    """Share of the estimate's poses that the truth covers, 0..1."""
+    """Ratio of the estimated poses covered by the ground truth, 0..1."""
     path_length_m: float
-    """Length of the true way [m]."""
+    """Path length of the ground truth [m]."""
     duration_s: float
     aligned: AbsoluteError
     """After the SVD fit of all positions."""
     first_pose: AbsoluteError
-    """With the first poses made equal (L Eq. 9)."""
+    """Aligned at the first pose (L Eq. 9)."""
     unaligned: AbsoluteError
-    """As it is: meaningful when estimate and truth share a frame."""
+    """Not aligned: meaningful if estimate and truth are in one frame."""
     drift: tuple[Drift, ...]
     relative: RelativeError | None = None
     floor: ErrorFloor | None = None
@@ -75,7 +75,7 @@ class Evaluation:
         return evaluation_text(self)
 
     def to_json(self) -> dict[str, Any]:
-        """Plain JSON values; what is not a number becomes null, one row a pose is left out."""
+        """Plain JSON values; NaN becomes null, arrays with one row per pose are left out."""
         plain = _plain(self)
         assert isinstance(plain, dict)
         return plain
@@ -92,18 +92,18 @@ def evaluate(
     map_alignment: MapAlignment = "icp",
     max_range_m: float = 60.0,
 ) -> Evaluation:
-    """Judge a result by the truth.
+    """Evaluate a result against ground truth.
 
     Args:
         project_or_trajectory: ``.tum`` or ``.npz`` file, or a project with ``trajectory.tum``.
-        truth: True trajectory in the same formats, at any rate and in any frame.
-        model: True model as a triangle mesh in the frame of ``truth``; gives e_r.
-        chunks: Function that makes a pass over the map's points, for example
+        truth: Ground truth trajectory in the same formats, at any rate, in any frame.
+        model: True model as a triangle mesh in the frame of ``truth``; needed for e_r.
+        chunks: Function that returns an iterator over the map's points, for example
             ``lambda: TileSet.open(folder).points()``; needed for e_r and the map's quality.
         frames: Multiframes (`FrameStore`); with ``rig`` and ``model`` they give e_r of the true
             poses from the same points.
         rig: Mountings for ``frames``.
-        map_alignment: How the map is laid onto the model: ``icp`` (V §3.2; starts from the
+        map_alignment: How the map is aligned with the model: ``icp`` (V §3.2; starts from the
             trajectory's fit), ``trajectory`` (SVD fit of the positions only) or ``none``.
         max_range_m: Range limit of the map, for ``frames`` [m].
 
@@ -149,7 +149,7 @@ def at_frames(trajectory: Trajectory, *, period_ns: int = FRAME_NS) -> Trajector
 
 
 def drifts(pairs: PosePairs) -> tuple[Drift, ...]:
-    """V's metric and the official one, and the official one at lengths that fit into a house."""
+    """V's metric, the official KITTI metric, and the latter with lengths for short walks."""
     return (
         thesis_drift(pairs, lengths=THESIS_FRAMES),
         official_drift(pairs, lengths_m=OFFICIAL_M),
@@ -162,8 +162,8 @@ def map_quality(chunks: Chunks, *, places: int = 2000, seed: int = 0) -> MapQual
 
     Args:
         chunks: Makes a pass over the map's points.
-        places: How many places.
-        seed: Seed of the draw.
+        places: Number of places.
+        seed: Random seed.
 
     Returns:
         None for a map without points.
@@ -185,13 +185,13 @@ def _relative(
     if map_alignment == "icp":
         rng = np.random.default_rng(0)
         T_model_map = map_onto_model(chunks(), mesh, start=start, rng=rng)
-    words = {"icp": "ICP", "trajectory": "fit of the trajectory", "none": "none"}[map_alignment]
+    name = {"icp": "ICP", "trajectory": "fit of the trajectory", "none": "none"}[map_alignment]
     return relative_error(
         chunks(),
         spread_slices(mesh),
         T_model_map=T_model_map,
         distance=distance_to(mesh),
-        alignment=words,
+        alignment=name,
     )
 
 

@@ -21,7 +21,7 @@ from recon4.model.trajectory import Trajectory
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ErrorFloor:
-    """e_r of an estimate beside e_r of the true poses, from the very same points."""
+    """e_r of estimated poses and of true poses, from the same points."""
 
     estimated: RelativeError
     true: RelativeError
@@ -35,7 +35,7 @@ class ErrorFloor:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Points:
-    """Where the points of some multiframes lie by one trajectory; made anew at every pass."""
+    """Points of some multiframes placed by a trajectory; computed again in every pass."""
 
     frames: Iterable[Multiframe]
     trajectory: Trajectory
@@ -62,18 +62,18 @@ def relative_error_floor(
 ) -> ErrorFloor:
     """Place the same points twice and compare their e_r.
 
-    Both maps are laid onto the model in the same way (`map_onto_model`), so the ratio says what
-    the poses cost beyond the noise of the sensor.
+    Both maps are aligned with the model by `map_onto_model`, so the ratio is the effect of the
+    poses relative to the noise of the sensor.
 
     Args:
-        frames: Multiframes; gone through several times (a `FrameStore` or a list).
+        frames: Multiframes; iterated several times (a `FrameStore` or a list).
         rig: Mountings; sensors switched off are left out.
         mesh: The true model, in the frame of ``truth``.
         estimate: ``T_map_body``.
         truth: ``T_model_body``.
         max_range_m: As for the map [m].
-        every: Every so many-th multiframe is used, with all its points.
-        slices: Where to look; None = V's eight.
+        every: Every n-th multiframe is used, with all its points.
+        slices: The slices; None = V's eight.
 
     Raises:
         OutOfRange: If no multiframe is covered by both trajectories.

@@ -1,4 +1,4 @@
-"""Drift over pieces of the walk: V's metric (Eq. 3.1) and the official one of KITTI."""
+"""Drift over segments of the trajectory: V's metric (Eq. 3.1) and the official KITTI metric."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from recon4.geometry.se3 import SE3, Array
 
 Rows = NDArray[np.integer]
 
-_MIN_WAY_M = 0.1
-"""Pieces in which the body stood still have no drift per metre and are left out."""
+_MIN_PATH_M = 0.1
+"""Shorter pieces are stationary and have no drift per meter; they are left out."""
 
 THESIS_FRAMES = tuple(range(100, 801, 100))
 """Lengths of the pieces in V §3.1 [frames]."""
@@ -42,7 +42,7 @@ class Drift:
     """Drift by one metric."""
 
     metric: str
-    """Which metric and which lengths, in words."""
+    """Name of the metric and its lengths."""
     unit: str
     """Unit of `DriftRow.length`: ``frames`` or ``m``."""
     rows: tuple[DriftRow, ...]
@@ -56,15 +56,15 @@ class Drift:
 def thesis_drift(
     pairs: PosePairs, *, lengths: Sequence[int] = THESIS_FRAMES, step: int = 10
 ) -> Drift:
-    """V Eq. 3.1: ``|E_s - C_s| / l_s`` over pieces of so many frames.
+    """V Eq. 3.1: ``|E_s - C_s| / l_s`` over pieces of n frames.
 
-    ``E_s`` and ``C_s`` are the true and the estimated end position when the first poses of the
-    piece coincide, ``l_s`` is the way the truth covers in it.
+    ``E_s`` and ``C_s`` are the true and the estimated end position, aligned at the first pose of
+    the piece; ``l_s`` is the path length of the ground truth in it.
 
     Args:
         pairs: One pose a frame.
         lengths: Lengths of the pieces [frames].
-        step: A piece starts every so many frames.
+        step: Frames between the starts of two pieces.
     """
     starts = np.arange(0, len(pairs), step)
     ends = {float(n): np.where(starts + n < len(pairs), starts + n, -1) for n in lengths}
@@ -75,14 +75,14 @@ def thesis_drift(
 def official_drift(
     pairs: PosePairs, *, lengths_m: Sequence[float] = OFFICIAL_M, step: int = 10
 ) -> Drift:
-    """The KITTI benchmark's own metric: pieces of so many metres of the true way.
+    """The official KITTI metric: pieces of a given path length of the ground truth.
 
     Args:
         pairs: One pose a frame.
-        lengths_m: Lengths of the pieces [m]; said in the result.
-        step: A piece starts every so many frames.
+        lengths_m: Lengths of the pieces [m]; stated in the result.
+        step: Frames between the starts of two pieces.
     """
-    path_length_m = _way(pairs)
+    path_length_m = _path_length_m(pairs)
     starts = np.arange(0, len(pairs), step)
     ends = {}
     for length_m in lengths_m:
@@ -94,8 +94,8 @@ def official_drift(
     return _drift(pairs, starts, ends, metric=name, unit="m")
 
 
-def _way(pairs: PosePairs) -> Array:
-    """Way the truth has covered before each pose [m], (N,)."""
+def _path_length_m(pairs: PosePairs) -> Array:
+    """Path length of the ground truth before each pose [m], (N,)."""
     steps_m = np.linalg.norm(np.diff(pairs.T_true_body.t, axis=0), axis=1)
     return np.concatenate([[0.0], np.cumsum(steps_m)])
 
@@ -103,12 +103,12 @@ def _way(pairs: PosePairs) -> Array:
 def _drift(
     pairs: PosePairs, starts: Rows, ends: dict[float, Rows], *, metric: str, unit: str
 ) -> Drift:
-    path_length_m = _way(pairs)
+    path_length_m = _path_length_m(pairs)
     rows, all_translation, all_rotation = [], [], []
     for length, end in ends.items():
         first, last = starts[end >= 0], end[end >= 0]
         covered_m = path_length_m[last] - path_length_m[first]
-        moved = covered_m > _MIN_WAY_M
+        moved = covered_m > _MIN_PATH_M
         first, last, covered_m = first[moved], last[moved], covered_m[moved]
         length_m = covered_m if unit == "frames" else np.full(len(last), length)
         error = _end_errors(pairs, first, last)
@@ -122,7 +122,7 @@ def _drift(
 
 
 def _end_errors(pairs: PosePairs, first: Rows, last: Rows) -> SE3:
-    """Estimated pose at the end of each piece seen from the true one, first poses made equal."""
+    """Error of the end pose of each piece, aligned at its first pose."""
     T_estimated = pairs.T_map_body[first].inverse() @ pairs.T_map_body[last]
     T_true = pairs.T_true_body[first].inverse() @ pairs.T_true_body[last]
     return T_true.inverse() @ T_estimated

@@ -1,4 +1,4 @@
-"""Points of known coordinates in the map: control and check points (V §3.3, Table 3.3)."""
+"""Survey markers: errors of the map at control and check points (V §3.3, Table 3.3)."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class SurveyMarker:
     xyz_m: Array
     """East, north, up (or x, y, z of the map) [m], (3,)."""
     role: Role = "check"
-    """Control points were used to make the map; only check points say how good it is."""
+    """Control points were used to make the map; only check points measure its accuracy."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,13 +48,13 @@ class MarkerRow:
 
 @dataclass(frozen=True, slots=True)
 class MarkerTable:
-    """Errors at the markers and whether they are within V's limits."""
+    """Errors at the markers, compared with V's limits."""
 
     rows: tuple[MarkerRow, ...]
     missing: tuple[str, ...]
     """Markers of the reference that were not found in the map."""
     judged_by: Role
-    """Whose rows make the figures below: check points if there are any."""
+    """Role behind the figures below: check points if there are any."""
     mean_horizontal_m: float
     mean_vertical_m: float
     """Mean of ``|dz|`` [m]."""
@@ -73,7 +73,7 @@ class MarkerTable:
 
 
 def compare_markers(measured: dict[str, Array], reference: tuple[SurveyMarker, ...]) -> MarkerTable:
-    """Coordinates picked in the map against surveyed ones.
+    """Compare coordinates picked in the map with surveyed ones.
 
     Args:
         measured: Name -> coordinates in the frame of the reference [m], (3,).
@@ -96,7 +96,7 @@ def compare_markers(measured: dict[str, Array], reference: tuple[SurveyMarker, .
 
 
 def read_markers(path: Path) -> tuple[SurveyMarker, ...]:
-    """Read a CSV with a header naming ``name``, ``x_m``, ``y_m``, ``z_m`` and perhaps ``role``.
+    """Read a CSV of markers: columns ``name``, ``x_m``, ``y_m``, ``z_m``, optional ``role``.
 
     Raises:
         CorruptFile: Naming the line, what was expected and what was found.

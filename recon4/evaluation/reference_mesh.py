@@ -1,4 +1,4 @@
-"""The true model: a triangle mesh, and how to lay a map onto it."""
+"""The reference model: a triangle mesh, and the alignment of a map with it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _KERNEL_M = 0.05
 """Scale of the Cauchy kernel: points of moving people must not pull the map."""
 _MAX_SAMPLES = 400_000
 _STILL = 1e-4
-"""A step shorter than this [m and rad] moves nothing anybody measures."""
+"""Convergence: largest step [m and rad]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -114,12 +114,12 @@ def align_to_mesh(
     rounds: int = 30,
     max_distance_m: float = 0.5,
 ) -> SE3:
-    """Lay points of the map onto the model: point-to-plane ICP against points sampled from it.
+    """Align map points with the model: point-to-plane ICP against points sampled from it.
 
     Args:
         p_map: A few ten thousand points of the map [m], (N, 3).
         mesh: The model.
-        T_model_map: Where to start, some decimetres and degrees off at most.
+        T_model_map: Where to start, within some decimeters and degrees.
         rng: Source of randomness.
         rounds: Upper bound on rounds of matching.
         max_distance_m: Farther points are not matched [m].
@@ -135,13 +135,13 @@ def align_to_mesh(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlaneFit:
-    """Where point-to-plane ICP ended."""
+    """Result of point-to-plane ICP."""
 
     T_model_map: SE3
     distance_m: Array
-    """Of the points that matched, from the plane of their partner [m], (M,)."""
+    """Distance of each matched point from the plane of its partner [m], (M,)."""
     converged: bool
-    """Whether the last step was no step any more."""
+    """Whether the last step was below the convergence limit."""
 
 
 def fit_planes(

@@ -43,15 +43,15 @@ class SliceError:
 
     name: str
     points: int
-    """Points nearer to the model than the outlier limit; the figures below are of these."""
+    """Points within the outlier limit; the figures below are of these."""
     outliers: int
-    """Points farther away: people, mixed pixels, or a map that is wrong."""
+    """Points beyond the limit: people, mixed pixels, or errors of the map."""
     mean_m: float
     """Mean distance to the model [m]; NaN = no points."""
     ratio_within_2cm: float
-    """Share of the points nearer than 2 cm, 0..1."""
+    """Ratio of the points within 2 cm, 0..1."""
     ratio_within_5cm: float
-    """Share of the points nearer than 5 cm, 0..1."""
+    """Ratio of the points within 5 cm, 0..1."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,15 +60,15 @@ class RelativeError:
 
     slices: tuple[SliceError, ...]
     point_weighted: SliceError
-    """All slices thrown together: what V prints as average."""
+    """All slices together, weighted by points: the average in V."""
     plain_mean_m: float
-    """Mean of the slices' means [m]: what V's rows give by hand."""
+    """Unweighted mean of the slices' means [m]."""
     outlier_m: float
-    """Points farther from the model are counted apart [m]."""
+    """Outlier limit: points farther from the model are only counted [m]."""
     histogram: NDArray[np.int64]
-    """Points by distance in classes of `HISTOGRAM_STEP_M`, outliers left out (V Fig. 3.2)."""
+    """Points by distance in classes of `HISTOGRAM_STEP_M`, without outliers (V Fig. 3.2)."""
     alignment: str
-    """How the map was laid onto the model, in words."""
+    """How the map was aligned with the model, as text."""
 
 
 def spread_slices(
@@ -106,11 +106,11 @@ def relative_error(
 
     Args:
         chunks: Points of the map [m], arrays of (N, 3), of any length and number.
-        slices: Where to look, in the frame of the model.
+        slices: The slices, in the frame of the model.
         T_model_map: Moves the map onto the model.
         distance: Distance of points to the model.
         outlier_m: Points farther from the model than this are counted, not averaged [m].
-        alignment: How ``T_model_map`` was found, in words.
+        alignment: How ``T_model_map`` was found, as text.
     """
     tallies = [_ErrorAccumulator(s, distance, outlier_m) for s in slices]
     for chunk in chunks:
@@ -131,7 +131,7 @@ def relative_error(
 
 
 class _ErrorAccumulator:
-    """What was found in one slice so far; distances are taken batch by batch."""
+    """Accumulates the errors of a slice; distances are computed in batches."""
 
     def __init__(self, where: Slice, distance: Distance, outlier_m: float) -> None:
         self.where = where
@@ -177,7 +177,7 @@ class _ErrorAccumulator:
 
 
 def merge_slices(rows: tuple[SliceError, ...]) -> SliceError:
-    """All slices thrown together, weighted by points."""
+    """Merge slices, weighted by points."""
     points = sum(row.points for row in rows)
     used = [row for row in rows if row.points]
     return SliceError(

@@ -1,4 +1,4 @@
-"""Aligned text tables for people."""
+"""Aligned text tables."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ _MISSING = "–"
 
 
 def text_table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """Columns lined up: the first to the left, the others to the right.
+    """Format a table: the first column left-aligned, the others right-aligned.
 
     Args:
-        header: A title a column, with the unit.
+        header: Title of each column, with the unit.
         rows: Cells; every row as long as the header.
     """
     lines = [list(header), *[list(row) for row in rows]]
@@ -34,5 +34,5 @@ def number(value: float, digits: int = 2, scale: float = 1.0) -> str:
 
 
 def percentage(value: float, digits: int = 1) -> str:
-    """A share 0..1 as per cent."""
+    """A ratio 0..1 as percent."""
     return f"{number(value, digits, 100.0)} %" if value == value else _MISSING

@@ -1,4 +1,4 @@
-"""An evaluation as tables for a terminal."""
+"""Text tables of an evaluation for a terminal."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def evaluation_text(found: Evaluation) -> str:
     """All tables of an evaluation."""
     head = (
         f"{found.estimate} against {found.truth}: {found.poses} poses "
-        f"({percentage(found.coverage_ratio)} covered by the truth), "
+        f"({percentage(found.coverage_ratio)} covered by ground truth), "
         f"{found.duration_s:.1f} s, {found.path_length_m:.1f} m"
     )
     parts = [head, ate_text(found), *(drift_text(drift) for drift in found.drift)]
@@ -47,20 +47,23 @@ def evaluation_text(found: Evaluation) -> str:
 def ate_text(found: Evaluation) -> str:
     """Absolute errors under the three alignments, in the form of L Table 2."""
     rows = []
-    for words, error in (
+    for alignment, error in (
         ("SVD-aligned", found.aligned),
         ("first pose", found.first_pose),
-        ("as it is", found.unaligned),
+        ("not aligned", found.unaligned),
     ):
-        rows += _error_rows(words, error)
+        rows += _error_rows(alignment, error)
     table = text_table(("Absolute error", "RMSE", "mean", "median", "min", "max"), rows)
     if found.aligned.determined:
         return table
-    return table + "\n(the positions lie on a line or a point: the SVD fit leaves a turn open)"
+    return (
+        table
+        + "\n(the positions lie on a line or a point: the rotation of the SVD fit is undetermined)"
+    )
 
 
 def drift_text(drift: Drift) -> str:
-    """One drift metric, a row a length."""
+    """One drift metric, one row per length."""
     if not drift.pieces:
         return f"Drift, {drift.metric}: the walk is too short"
     rows = [
@@ -96,7 +99,7 @@ def relative_text(error: RelativeError) -> str:
 def floor_text(floor: ErrorFloor) -> str:
     """e_r of estimated and of true poses from the same points."""
     pairs = (("estimated poses", floor.estimated), ("true poses", floor.true))
-    rows = [(words, *_slice_row(error.point_weighted)[1:]) for words, error in pairs]
+    rows = [(name, *_slice_row(error.point_weighted)[1:]) for name, error in pairs]
     header = (
         f"Same points of {floor.frames} frames",
         "points",
@@ -131,11 +134,11 @@ def marker_text(table: MarkerTable) -> str:
     )
 
 
-def _error_rows(words: str, error: AbsoluteError) -> list[tuple[str, ...]]:
+def _error_rows(alignment: str, error: AbsoluteError) -> list[tuple[str, ...]]:
     return [
-        (f"{words}: position [cm]", *_spread(error.position_m, _CM)),
-        (f"{words}: rotation [deg]", *_spread(error.rotation_rad, _DEG)),
-        (f"{words}: yaw only [deg]", *_spread(error.yaw_rad, _DEG)),
+        (f"{alignment}: position [cm]", *_spread(error.position_m, _CM)),
+        (f"{alignment}: rotation [deg]", *_spread(error.rotation_rad, _DEG)),
+        (f"{alignment}: yaw only [deg]", *_spread(error.yaw_rad, _DEG)),
     ]
 
 

@@ -1,4 +1,4 @@
-"""Reading trajectories to judge: ``.tum``, ``.npz`` or a project folder."""
+"""Reads trajectories to evaluate: ``.tum``, ``.npz`` or a project folder."""
 
 from __future__ import annotations
 

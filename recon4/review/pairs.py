@@ -6,10 +6,9 @@ Only nodes of the graph can be joined; a time between two nodes selects the near
 from __future__ import annotations
 
 import struct
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import gettempdir
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,10 +24,9 @@ from recon4.registration.overlap import RangeImage, overlap
 from recon4.registration.submap import NodeRangeImages, Submaps
 from recon4.review.apply import is_measured, rows_by_pair
 from recon4.review.decisions import Measurement, Pair, numbers_of, pose_of
-from recon4.review.queue import MOST_PATHS, alternative_paths
+from recon4.review.queue import MOST_PATHS, AlternativePath, alternative_paths
 from recon4.review.source import Source
 from recon4.store.arrays import load_arrays, load_trajectory
-from recon4.store.atomic import null_for_nan
 
 MAGIC = b"R4PP"
 LAYOUT = struct.Struct("<4sIII")
@@ -53,10 +51,41 @@ class Alignment:
     reason: str
     """Why the pair would be rejected automatically; empty = it would be accepted."""
 
-    def to_json(self) -> dict[str, Any]:
-        """Plain JSON values."""
-        record: dict[str, Any] = null_for_nan(asdict(self))
-        return record
+
+@dataclass(frozen=True, slots=True)
+class PairFacts:
+    """Poses of a pair, x y z [m] and quaternion x y z w, and its alternative paths."""
+
+    pair: Pair
+    t_ns: tuple[int, int]
+    """Times of the two nodes [ns]."""
+    predicted: tuple[float, ...]
+    """``T_i_j`` of the solved graph."""
+    odometry: tuple[float, ...]
+    """``T_i_j`` of the odometry; as ``predicted`` if there is none."""
+    measured: tuple[float, ...] | None
+    """``T_i_j`` of the registration; None = not registered."""
+    upright: tuple[float, ...]
+    """Rotation of the body at i in a leveled frame, quaternion x y z w."""
+    apart_m: float
+    """Prediction offset: distance between predicted and measured pose [m]."""
+    apart_rad: float
+    paths: tuple[AlternativePath, ...]
+    """Worst first; at most `MOST_PATHS`."""
+    path_count: int
+    """Number of all alternative paths."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrajectoryNodes:
+    """The nodes along the trajectory, one entry per node."""
+
+    frames: list[int]
+    """Multiframes."""
+    t_s: list[float]
+    """Since the first node [s]."""
+    xyz_m: list[list[float]]
+    """Positions in the map [m]."""
 
 
 def pair_points(source: Source, pair: Pair, reach: int) -> bytes:
@@ -74,7 +103,7 @@ def pair_points(source: Source, pair: Pair, reach: int) -> bytes:
     return head + b"".join(np.ascontiguousarray(cloud, "<f4").tobytes() for cloud in clouds)
 
 
-def pair_facts(source: Source, pair: Pair) -> dict[str, Any]:
+def pair_facts(source: Source, pair: Pair) -> PairFacts:
     """Poses and alternative paths of a pair, registered or not.
 
     Raises:
@@ -89,21 +118,18 @@ def pair_facts(source: Source, pair: Pair) -> dict[str, Any]:
     measured = edge is not None and is_measured(edge)
     T_i_j = edge.T_i_j if edge is not None and measured else predicted
     paths = alternative_paths(graph, i, j, T_i_j, settings=source.settings)
-    record: dict[str, Any] = null_for_nan(
-        {
-            "pair": list(pair),
-            "t_ns": [int(graph.t_ns[node]) for node in (i, j)],
-            "predicted": numbers_of(predicted),
-            "odometry": numbers_of(_by_odometry(source, i, j) or predicted),
-            "measured": numbers_of(T_i_j) if measured else None,
-            "upright": _upright(source, graph, i),
-            "apart_m": float(np.linalg.norm((predicted.inverse() @ T_i_j).t)),
-            "apart_rad": float((predicted.inverse() @ T_i_j).angle()),
-            "paths": [asdict(path) for path in paths[:MOST_PATHS]],
-            "path_count": len(paths),
-        }
+    return PairFacts(
+        pair=pair,
+        t_ns=(int(graph.t_ns[i]), int(graph.t_ns[j])),
+        predicted=numbers_of(predicted),
+        odometry=numbers_of(_by_odometry(source, i, j) or predicted),
+        measured=numbers_of(T_i_j) if measured else None,
+        upright=_upright(source, graph, i),
+        apart_m=float(np.linalg.norm((predicted.inverse() @ T_i_j).t)),
+        apart_rad=float((predicted.inverse() @ T_i_j).angle()),
+        paths=tuple(paths[:MOST_PATHS]),
+        path_count=len(paths),
     )
-    return record
 
 
 def align(source: Source, pair: Pair, predicted: tuple[float, ...]) -> Alignment:
@@ -167,19 +193,19 @@ def fit_points(p_i: Array, p_j: Array) -> tuple[float, ...]:
     return numbers_of(align_points(p_i, p_j))
 
 
-def walk_facts(source: Source) -> dict[str, Any]:
-    """The nodes along the trajectory: frame ids, seconds since the first, x y z [m].
+def trajectory_nodes(source: Source) -> TrajectoryNodes:
+    """The nodes along the trajectory, rounded to 1 ms and 1 mm.
 
     Raises:
         StoreError: If there is no verified graph.
     """
     graph = source.verified
     seconds = (graph.t_ns - graph.t_ns[0]) / 1e9
-    return {
-        "frames": graph.frame_ids.tolist(),
-        "t_s": np.round(seconds, 3).tolist(),
-        "xyz_m": np.round(graph.T_map_body.t, 3).tolist(),
-    }
+    return TrajectoryNodes(
+        frames=graph.frame_ids.tolist(),
+        t_s=np.round(seconds, 3).tolist(),
+        xyz_m=np.round(graph.T_map_body.t, 3).tolist(),
+    )
 
 
 def nodes_of(graph: PoseGraph, pair: Pair) -> tuple[int, int]:
@@ -216,7 +242,7 @@ def _thinned(p_body: Array) -> Array:
     return p_body[rows]
 
 
-def _upright(source: Source, graph: PoseGraph, node: int) -> list[float]:
+def _upright(source: Source, graph: PoseGraph, node: int) -> tuple[float, ...]:
     """Rotation of the body of a node in a leveled frame, as a quaternion x y z w."""
     folder = source.artifacts.get("level")
     if folder is not None:
@@ -225,8 +251,7 @@ def _upright(source: Source, graph: PoseGraph, node: int) -> list[float]:
         quat = leveled.at(np.array([at]))[0].quat_xyzw()
     else:
         quat = graph.T_map_body[node].quat_xyzw()
-    listed: list[float] = quat.tolist()
-    return listed
+    return tuple(quat.tolist())
 
 
 def _by_odometry(source: Source, i: int, j: int) -> SE3 | None:

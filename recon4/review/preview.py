@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 from collections import OrderedDict
+from dataclasses import asdict, dataclass
 from time import perf_counter
 from typing import Any
 
 from recon4.model.pose_graph import PoseGraph
-from recon4.review.decisions import AUTOMATIC, Decided
-from recon4.review.solve import Reviewed, difference, facts_of, pair_of, review
+from recon4.review.decisions import AUTOMATIC, Decided, Pair
+from recon4.review.solve import (
+    Difference,
+    Reviewed,
+    ReviewProblems,
+    difference,
+    pair_of,
+    review,
+)
 from recon4.review.source import Source
 
 _REMEMBERED = 6
@@ -17,18 +25,49 @@ _solved: OrderedDict[tuple[str, str], Reviewed] = OrderedDict()
 _sources: OrderedDict[str, Source] = OrderedDict()
 
 
-def preview(source: Source, decided: Decided, before: Decided) -> dict[str, Any]:
+@dataclass(frozen=True, slots=True)
+class DecidedEdge:
+    """Verdict of a pair with a decision."""
+
+    pair: Pair
+    chi2: float
+    """Chi-square contribution."""
+    verdict: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Effect:
+    """Effect of the decisions on the graph."""
+
+    key: str
+    """Key of the decisions."""
+    last: Difference
+    """To the graph before the last decision."""
+    all: Difference
+    """To the graph without decisions."""
+    edges: tuple[DecidedEdge, ...]
+    problems: ReviewProblems
+    seconds: float
+    """Computing time [s]."""
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain JSON values, with the fields of `ReviewProblems`."""
+        fields = {
+            "key": self.key,
+            "last": self.last.to_json(),
+            "all": self.all.to_json(),
+            "edges": [asdict(edge) | {"pair": list(edge.pair)} for edge in self.edges],
+        }
+        return fields | self.problems.to_json() | {"seconds": self.seconds}
+
+
+def preview(source: Source, decided: Decided, before: Decided) -> Effect:
     """Result the stage ``review`` would have, and the change since earlier decisions.
 
     Args:
         source: The project's latest graph.
         decided: Decisions in force now.
         before: Decisions in force before the last one.
-
-    Returns:
-        JSON values: ``key`` of the decisions, ``last`` and ``all`` (`Difference` to before the last
-        decision and to no decision), ``conflicts``, ``missing``, ``changed``, ``edges`` (squared
-        residual and verdict of every pair somebody decided about), ``seconds``.
 
     Raises:
         StoreError: If there is no verified graph.
@@ -37,15 +76,14 @@ def preview(source: Source, decided: Decided, before: Decided) -> dict[str, Any]
     began_s = perf_counter()
     source = _known(source)
     earlier, now = _review(source, before).graph, _review(source, decided)
-    record: dict[str, Any] = {
-        "key": decided.key,
-        "last": difference(earlier, now.graph).to_json(),
-        "all": difference(source.verified, now.graph).to_json(),
-        "edges": _decided_edges(now.graph),
-    }
-    record |= facts_of(now, ())
-    del record["decisions"]
-    return record | {"seconds": round(perf_counter() - began_s, 3)}
+    return Effect(
+        key=decided.key,
+        last=difference(earlier, now.graph),
+        all=difference(source.verified, now.graph),
+        edges=_decided_edges(now.graph),
+        problems=now.problems,
+        seconds=round(perf_counter() - began_s, 3),
+    )
 
 
 def _review(source: Source, decided: Decided) -> Reviewed:
@@ -70,9 +108,9 @@ def _known(found: Source) -> Source:
     return _sources[known]
 
 
-def _decided_edges(graph: PoseGraph) -> list[dict[str, Any]]:
-    return [
-        {"pair": list(pair_of(graph, edge)), "chi2": edge.chi2, "verdict": str(edge.verdict)}
+def _decided_edges(graph: PoseGraph) -> tuple[DecidedEdge, ...]:
+    return tuple(
+        DecidedEdge(pair_of(graph, edge), edge.chi2, str(edge.verdict))
         for edge in graph.edges
         if edge.decided_by != AUTOMATIC
-    ]
+    )

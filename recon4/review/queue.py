@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,16 +20,40 @@ from recon4.review.solve import pair_of
 from recon4.review.source import Source
 from recon4.settings import Settings
 
-COLUMNS = (
-    "frame_i", "frame_j", "t_i_s", "t_j_s", "kind", "verdict", "reason", "measured", "influence_m",
-    "overlap", "error_m", "limit_m", "degeneracy", "verification_m", "paths", "chi2",
-)  # fmt: skip
-"""Values of each row of the queue, in this order."""
 MOST_PATHS = 60
 """Largest number of alternative paths listed for a pair, the worst first."""
 _GOOD, _WEAK, _PREDICTED_ONLY, _NO_OVERLAP = range(4)
 _WEAK_REASONS = (Reason.ERROR, Reason.FEW_MATCHES, Reason.DEGENERATE)
 """Reasons of a rejection that come from the registration itself, not from the graph."""
+
+
+class QueueRow(NamedTuple):
+    """One pair of the queue; figures are None where they are unknown."""
+
+    frame_i: int
+    frame_j: int
+    t_i_s: float
+    """Since the first node [s]."""
+    t_j_s: float
+    kind: str
+    verdict: str
+    reason: str
+    measured: bool
+    """Whether the pair was registered."""
+    influence_m: float | None
+    overlap: float | None
+    error_m: float | None
+    limit_m: float | None
+    degeneracy: float | None
+    verification_m: float | None
+    """Path discrepancy [m]."""
+    paths: int
+    """Number of alternative paths."""
+    chi2: float | None
+
+
+COLUMNS = QueueRow._fields
+"""Names of the values of a row in `queue_json`, in this order."""
 
 
 def queue_json(source: Source) -> bytes:
@@ -53,8 +77,8 @@ def queue_json(source: Source) -> bytes:
     return json.dumps(record, separators=(",", ":"), allow_nan=False).encode()
 
 
-def queue_rows(graph: PoseGraph, *, settings: Settings) -> list[list[Any]]:
-    """One row per pair, as `COLUMNS`, in the order of the review.
+def queue_rows(graph: PoseGraph, *, settings: Settings) -> list[QueueRow]:
+    """One row per pair, in the order of the review.
 
     First pairs with a good registration, accepted or rejected by verification; then pairs with a
     weak registration; both by influence on the map. Then pairs that were never registered, by
@@ -168,14 +192,30 @@ def _index(graph: PoseGraph, settings: Settings) -> PathIndex:
 
 def _row(
     graph: PoseGraph, edge: Edge, *, influence: float, median_m: float, paths: int
-) -> list[Any]:
+) -> QueueRow:
     frame_i, frame_j = pair_of(graph, edge)
     began_ns = int(graph.t_ns[0])
     seconds = [round((int(graph.t_ns[node]) - began_ns) / 1e9, 3) for node in (edge.i, edge.j)]
-    numbers = (
-        influence, edge.overlap, edge.error_m, edge.limit_m, edge.degeneracy, median_m,
-    )  # fmt: skip
-    record = [float(f"{v:.5g}") if math.isfinite(v) else None for v in numbers]
-    chi2 = float(f"{edge.chi2:.5g}") if math.isfinite(edge.chi2) else None
-    words = [str(edge.kind), str(edge.verdict), str(edge.reason), is_measured(edge)]
-    return [frame_i, frame_j, *seconds, *words, *record, paths, chi2]
+    return QueueRow(
+        frame_i=frame_i,
+        frame_j=frame_j,
+        t_i_s=seconds[0],
+        t_j_s=seconds[1],
+        kind=str(edge.kind),
+        verdict=str(edge.verdict),
+        reason=str(edge.reason),
+        measured=is_measured(edge),
+        influence_m=_rounded(influence),
+        overlap=_rounded(edge.overlap),
+        error_m=_rounded(edge.error_m),
+        limit_m=_rounded(edge.limit_m),
+        degeneracy=_rounded(edge.degeneracy),
+        verification_m=_rounded(median_m),
+        paths=paths,
+        chi2=_rounded(edge.chi2),
+    )
+
+
+def _rounded(value: float) -> float | None:
+    """Five significant digits; None if not finite."""
+    return float(f"{value:.5g}") if math.isfinite(value) else None

@@ -58,6 +58,32 @@ class Move:
     moved_m: float
 
 
+@dataclass(frozen=True, slots=True)
+class ReviewProblems:
+    """What the operator should check after a review."""
+
+    conflicts: tuple[EdgeConflict, ...]
+    """Worst first."""
+    missing: tuple[Pair, ...]
+    """Pairs of decisions without effect."""
+    changed: tuple[Pair, ...]
+    """Pairs whose measurement has changed since the decision."""
+    warnings: tuple[str, ...]
+    """The same in sentences."""
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain JSON values."""
+        fields: dict[str, Any] = null_for_nan(
+            {
+                "conflicts": [_fields(one) for one in self.conflicts],
+                "missing": self.missing,
+                "changed": self.changed,
+                "warnings": self.warnings,
+            }
+        )
+        return fields
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Reviewed:
     """The solved graph with the decisions applied."""
@@ -74,6 +100,16 @@ class Reviewed:
     def chi2(self) -> float:
         """Sum of the chi-square contributions of the edges in the graph."""
         return chi2_of(self.graph)[0]
+
+    @property
+    def problems(self) -> ReviewProblems:
+        """Conflicts, ineffective and outdated decisions, and their warnings."""
+        return ReviewProblems(
+            conflicts=self.conflicts,
+            missing=tuple(one.pair for one in self.missing),
+            changed=tuple(one.pair for one in self.changed),
+            warnings=tuple(self.warnings()),
+        )
 
     def warnings(self) -> list[str]:
         """Warnings for the operator, one sentence each."""
@@ -148,7 +184,9 @@ def run_review(
     verified = load_graph(graph)
     reviewed = review(verified, decisions, settings=settings, progress=progress)
     save_graph(out, reviewed.graph)
-    fields = difference(verified, reviewed.graph).to_json() | facts_of(reviewed, decisions)
+    fields = difference(verified, reviewed.graph).to_json()
+    fields["decisions"] = [one.to_json() for one in decisions]
+    fields |= reviewed.problems.to_json()
     write_json(out / "review.json", fields)
     counts = {str(v): sum(e.verdict is v for e in reviewed.graph.edges) for v in Verdict}
     return {
@@ -248,20 +286,6 @@ def chi2_of(graph: PoseGraph) -> tuple[float, int]:
     of = graph.relations
     used: NDArray[np.float64] = squared_residuals(graph.T_map_body, of)[of.in_graph]
     return float(used.sum()), len(used)
-
-
-def facts_of(reviewed: Reviewed, decisions: Sequence[Standing]) -> dict[str, Any]:
-    """Decisions, their conflicts and warnings, as JSON values."""
-    fields: dict[str, Any] = null_for_nan(
-        {
-            "decisions": [one.to_json() for one in decisions],
-            "conflicts": [_fields(one) for one in reviewed.conflicts],
-            "missing": [list(one.pair) for one in reviewed.missing],
-            "changed": [list(one.pair) for one in reviewed.changed],
-            "warnings": reviewed.warnings(),
-        }
-    )
-    return fields
 
 
 def pair_of(graph: PoseGraph, edge: Edge) -> Pair:

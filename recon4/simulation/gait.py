@@ -14,7 +14,7 @@ from recon4.simulation.world import Waypoint, World
 SPEED_M_S = 1.2
 _SLOWEST_M_S, _FASTEST_M_S = 1.0, 1.4
 _LONGEST = 1.12
-"""A round may take so much longer than a full one at the usual speed."""
+"""Largest factor by which a round may be longer than a full one at the usual speed."""
 _STAND_S = 1.5
 _RATE_HZ = 4.0 / KNOT_S
 _PATH_SIGMA_S = 0.2
@@ -45,7 +45,7 @@ class _Timeline:
 
 
 def plan_walk(world: World, *, seconds: float, rng: np.random.Generator) -> Walk:
-    """Walk rounds through a world for exactly so long, ending where it began.
+    """Plan rounds through a world of a given duration, ending at the start.
 
     A longer walk is more rounds, each by another way; their number and the places visited are
     chosen so that the person walks at 1.0 to 1.4 m/s. Only a walk too short for the shortest
@@ -59,7 +59,7 @@ def plan_walk(world: World, *, seconds: float, rng: np.random.Generator) -> Walk
 
 
 def _fit(world: World, seconds: float, rng: np.random.Generator) -> tuple[list[Waypoint], float]:
-    """Waypoints of all rounds, and the speed at which they take the time there is [m/s]."""
+    """Waypoints of all rounds, and the speed that fits them into the duration [m/s]."""
     full = _duration(world.route(np.random.default_rng(0), world.stops), SPEED_M_S)
     rounds = max(1, math.ceil(seconds / (_LONGEST * full)))
     routes: list[Waypoint] = []
@@ -74,7 +74,7 @@ def _fit(world: World, seconds: float, rng: np.random.Generator) -> tuple[list[W
 
 
 def _round(world: World, seconds: float, rng: np.random.Generator) -> list[Waypoint]:
-    """One round that takes about so long and at most so long at the fastest speed."""
+    """One round of about a given duration, and at most that at the fastest speed."""
     seeds = rng.integers(1 << 62, size=world.stops)
     plans = [
         world.route(np.random.default_rng(seed), stops + 1) for stops, seed in enumerate(seeds)
@@ -90,7 +90,7 @@ def _duration(route: list[Waypoint], speed_m_s: float) -> float:
 
 
 def _lay_out(route: list[Waypoint], speed_m_s: float) -> _Timeline:
-    """When the person is where and looks whereto."""
+    """Position and heading of the person over time."""
     points = np.array([[w.x_m, w.y_m, w.z_m] for w in route])
     steps = np.diff(points, axis=0)
     directions = np.arctan2(steps[:, 1], steps[:, 0])
@@ -107,7 +107,7 @@ def _lay_out(route: list[Waypoint], speed_m_s: float) -> _Timeline:
 
 def _turn(line: _Timeline, waypoint: Waypoint, angle_rad: float, *, at_end: bool) -> None:
     if not waypoint.stop and not at_end:
-        # On the way: half of the turn before the corner, half after it.
+        # Without a stop: half of the turn before the corner, half after it.
         seconds = abs(angle_rad) / np.deg2rad(130.0)
         line.turn(angle_rad, line.t_s[-1] - 0.5 * seconds, seconds)
         return

@@ -28,8 +28,8 @@ class GnssModel:
     """Correlation time of it [s]."""
     outages_per_minute: float = 0.7
     """How often the fix is lost for 2 to 8 s: float (0.4 m) or single (2 m) solutions."""
-    wild_share: float = 0.003
-    """Share of samples that are wrong by about a meter and say they are fixed."""
+    outlier_ratio: float = 0.003
+    """Ratio of outliers: samples wrong by about 1 m but reported as fixed."""
     roll_pitch_sd_deg: float = 0.03
     heading_sd_deg: float = 0.06
 
@@ -40,7 +40,7 @@ class GnssModel:
             sd_enu_m=(0.0, 0.0, 0.0),
             slow_sd_enu_m=(0.0, 0.0, 0.0),
             outages_per_minute=0.0,
-            wild_share=0.0,
+            outlier_ratio=0.0,
             roll_pitch_sd_deg=0.0,
             heading_sd_deg=0.0,
         )
@@ -63,8 +63,8 @@ def simulate_gnss(
     quality, sd = _quality(t_ns, model, rng)
     error = sd * rng.standard_normal(p_map.shape)
     error += np.array(model.slow_sd_enu_m) * _slow(len(t_ns), model.slow_s, rng)
-    wild = rng.random(len(t_ns)) < model.wild_share
-    error[wild] += rng.standard_normal((int(wild.sum()), 3))
+    outlier = rng.random(len(t_ns)) < model.outlier_ratio
+    error[outlier] += rng.standard_normal((int(outlier.sum()), 3))
     lat_rad, lon_rad, height_m = geodetic(p_map + error, origin)
     return GnssSamples(
         epoch_ns + t_ns - round(1e9 * rig.gnss_time_offset_s),

@@ -1,4 +1,4 @@
-"""A Velodyne VLP-16 on a walking body: when it fires, whereto, and what it measures."""
+"""A Velodyne VLP-16 on a walking body: time, direction and measurement of each shot."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ CARRIER = np.array([0.24, 0.0, 0.21, -1.5, 0.12])
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LidarModel:
-    """What is not ideal about a sensor; zeros make it perfect."""
+    """Errors of a sensor; zeros make it perfect."""
 
     range_sd_m: float = 0.015
     """Standard deviation of a range [m]."""
@@ -42,7 +42,7 @@ class LidarModel:
     """reflectivity x cos(incidence) / range² at which half of the shots return [1/m²]:
     10 % reflectivity at 50 m."""
     loss: float = 0.003
-    """Share of shots lost for no reason."""
+    """Ratio of shots lost at random."""
     divergence_rad: float = 0.003
     """Full opening of a beam."""
     mixed_step_m: float = 0.8
@@ -52,7 +52,7 @@ class LidarModel:
     intensity_sd_counts: float = 1.5
     """Absolute noise of the intensity."""
     gain_spread: float = 0.25
-    """Beams differ in gain by up to this share."""
+    """Largest relative deviation of the gain of a laser."""
     carrier: bool = True
     """The person hides what is behind."""
 
@@ -100,7 +100,7 @@ class Lidar:
     turn_rate_hz: float
     """Near 10 Hz; two sensors are not phase locked."""
     gain: Array
-    """Of each laser, (16,)."""
+    """Gain of each laser, (16,)."""
 
     @staticmethod
     def drawn(sensor: Sensor, model: LidarModel, rng: np.random.Generator) -> Lidar:
@@ -115,7 +115,7 @@ class Lidar:
         )
 
     def packets_before(self, t_ns: int) -> int:
-        """How many packets are complete at a time since the start of the walk [ns]."""
+        """Number of packets complete at a time since the start of the walk [ns]."""
         return max(0, (t_ns - self.first_packet_ns) // PACKET_NS)
 
     def fire(

@@ -23,7 +23,7 @@ EPOCH_NS = 1_780_308_000_000_000_000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Models:
-    """How imperfect the sensors are."""
+    """Error models of the sensors."""
 
     lidar: LidarModel = field(default_factory=LidarModel)
     imu: ImuModel = field(default_factory=ImuModel)
@@ -47,7 +47,7 @@ class SimulationSetup:
     surroundings: Surroundings
     seed: int
     epoch_ns: int
-    """UTC of the first moment [ns]."""
+    """UTC of the start [ns]."""
 
     def rng(self, *purpose: int) -> np.random.Generator:
         """A generator of its own for each purpose, so that parts can be left out or reordered."""
@@ -72,7 +72,7 @@ def prepare(
         rig: VLP-16s and their mounting; None = 4RECON. Addresses and topics that are
             missing are filled in.
         models: Errors of the sensors; None = those of the real ones.
-        epoch_ns: UTC of the first moment [ns].
+        epoch_ns: UTC of the start [ns].
 
     Raises:
         ConfigError: If there is no such world, the walk is shorter than 5 s, the seed is
@@ -104,7 +104,7 @@ def prepare(
 
 
 def _addressed(rig: Rig) -> Rig:
-    """A rig whose sensors can be told apart by address and by topic."""
+    """The rig with unique addresses and topics for all sensors."""
     sensors = tuple(
         replace(
             sensor,

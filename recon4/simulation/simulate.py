@@ -52,17 +52,17 @@ def simulate(  # noqa: PLR0913 - every part of a recording can be chosen
         out: Folder to make: it must not exist, or be empty.
         seconds: Length of the walk.
         seed: Draws the walk and all noise; the same seed gives the same bytes.
-        progress: Told of every simulated second.
+        progress: Receives every simulated second.
         rig: VLP-16s and their mounting; None = 4RECON.
         models: Errors of the sensors; None = those of the real ones.
         bag: Also write the rosbag2, which doubles the size.
-        epoch_ns: UTC of the first moment [ns].
+        epoch_ns: UTC of the start [ns].
 
     Raises:
         ConfigError: If the world, the duration or the rig cannot be simulated.
         StoreError: If the folder exists with something in it or cannot be written.
     """
-    _make_way(out)
+    _check_empty(out)
     setup = prepare(world, seconds=seconds, seed=seed, rig=rig, models=models, epoch_ns=epoch_ns)
     with atomic_folder(out) as folder:
         with _Recorder(folder, setup, bag=bag) as recorder:
@@ -191,7 +191,7 @@ def _parameters(setup: SimulationSetup) -> dict[str, object]:
     }
 
 
-def _make_way(out: Path) -> None:
+def _check_empty(out: Path) -> None:
     if not out.exists():
         return
     if not out.is_dir() or any(out.iterdir()):

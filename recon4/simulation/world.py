@@ -1,4 +1,4 @@
-"""What a world is: surfaces, survey markers and where one can walk."""
+"""Definition of a world: surfaces, survey markers and routes."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from recon4.geometry.mesh import WorldMesh
 
 @dataclass(frozen=True, slots=True)
 class Waypoint:
-    """A place on the floor on the way of the person."""
+    """A point on the floor of the person's route."""
 
     x_m: float
     y_m: float
     z_m: float = 0.0
     pace: float = 1.0
-    """Speed of the leg that ends here, as a share of the walk's speed (stairs: 0.5)."""
+    """Speed of the leg that ends here, as a ratio of the walking speed (stairs: 0.5)."""
     stop: bool = False
     """Come to rest here and turn on the spot."""
     look_deg: float = 0.0
-    """Turn by so much first, left positive, before turning to the next waypoint (needs `stop`)."""
+    """Turn by this angle, left positive, before turning to the next waypoint (needs `stop`)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ BRNO = WorldOrigin(lat_deg=49.2265, lon_deg=16.5967, height_m=275.0)
 """Origin of every world: near the faculty where the backpack of the thesis was built."""
 
 Route = Callable[[np.random.Generator, int], list[Waypoint]]
-"""One round with so many places visited (1..stops); it ends where it began."""
+"""One round with a number of places visited (1..stops); it ends at its start."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

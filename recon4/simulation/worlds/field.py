@@ -1,4 +1,4 @@
-"""Open fields with a power line: little to hold on to, but GNSS is received.
+"""Open fields with a power line: few features, but GNSS is received.
 
 A path of some 500 m leads around under the wires; survey markers lie beside it.
 """
@@ -28,7 +28,7 @@ CORNERS = 10
 _HALF_LENGTH_M, _HALF_WIDTH_M = 95.0, 62.0
 _CLEAR_M = 3.0
 _SHORT_STOPS = 4
-"""So many of the possible rounds do not even reach the first corner."""
+"""Number of possible rounds that do not reach the first corner."""
 _PYLONS = ((-110.0, 18.0), (-8.0, 10.0), (105.0, 2.0))
 _ARMS = ((15.0, 4.5), (19.0, 3.2))
 """Height and half length of the cross-arms of a pylon [m]."""
@@ -142,7 +142,7 @@ def _corner(k: int) -> Array:
 
 
 def _free_places(rng: np.random.Generator, count: int) -> list[tuple[float, float]]:
-    """Random places away from every way that a round can take, and from the pylons."""
+    """Random places away from all routes and from the pylons."""
     corners = np.array([_corner(k) for k in range(CORNERS)])
     ways = [(corners[k], corners[(k + 1) % CORNERS]) for k in range(CORNERS)]
     ways += [(corners[k], corners[0]) for k in range(2, CORNERS - 1)]
@@ -176,7 +176,7 @@ def _markers(builder: MeshBuilder) -> tuple[WorldMarker, ...]:
 
 
 def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:
-    """Part of the way to the first corner and back, or from corner to corner and straight back."""
+    """Part of the path to the first corner and back, or from corner to corner and straight back."""
     order = list(range(1, max(stops - _SHORT_STOPS, 0) + 1))
     if rng.random() < 0.5:
         order = [CORNERS - k for k in order]

@@ -106,7 +106,7 @@ def _markers(builder: MeshBuilder) -> tuple[WorldMarker, ...]:
 def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:
     """From the corridor's west end through rooms to the east and back.
 
-    On the way out one row of rooms, on the way back the other; some neighbors by the inner door.
+    One row of rooms outbound, the other inbound; some neighbors by the inner door.
     """
     rows = [0, 1] if rng.random() < 0.5 else [1, 0]
     visits = [(rows[0], column) for column in range(ROOMS)]

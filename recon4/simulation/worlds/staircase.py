@@ -168,7 +168,7 @@ def _hall(builder: MeshBuilder, floor: int, rng: np.random.Generator) -> None:
 
 
 def _signs(builder: MeshBuilder, floor: int) -> None:
-    """So many bars as the floor's number, a notice board and an extinguisher that wander."""
+    """As many bars as the number of the floor, and a notice board and an extinguisher."""
     z = floor * STOREY_M
     for bar in range(floor + 1):
         x = 0.3 + 0.12 * bar
@@ -180,7 +180,7 @@ def _signs(builder: MeshBuilder, floor: int) -> None:
 
 
 def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:
-    """So many half-storeys up and down again; beyond six, halls are visited on the way."""
+    """A number of half-storeys up and down again; beyond six, halls are visited too."""
     halves = min(stops, 2 * (FLOORS - 1))
     top = halves // 2
     between = [(floor, way) for floor in range(1, top) for way in (0, 1)]
@@ -226,7 +226,7 @@ def _visit(floor: int, rng: np.random.Generator) -> list[Waypoint]:
 
 
 def _climb(floor: int, *, down: bool = False) -> list[Waypoint]:
-    """From the landing of a floor to the next one; reversed for the way down."""
+    """From the landing of a floor to the next one; reversed for the descent."""
     z, half, top = floor * STOREY_M, (floor + 0.5) * STOREY_M, (floor + 1) * STOREY_M
     south, north = FLIGHT_WIDTH_M / 2, WIDTH_M - FLIGHT_WIDTH_M / 2
     near, far = LANDING_M - 0.15, LENGTH_M - LANDING_M + 0.15

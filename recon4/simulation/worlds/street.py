@@ -245,7 +245,7 @@ def _markers(builder: MeshBuilder) -> tuple[WorldMarker, ...]:
 
 
 def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:
-    """A way along the block and back, or around it when all stops are asked for."""
+    """A route along the block and back, or around it with all stops."""
     start = Waypoint(*_place(0, 0.5 * LENGTH_M, NEAR_WALK_M))
     if stops < _STOPS:
         out = [start, *_along(9.0 * stops)]
@@ -257,7 +257,7 @@ def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:
 
 
 def _along(reach_m: float) -> list[Waypoint]:
-    """Corners on the way so far along the block, where the person turns back."""
+    """Corners up to the point of the block where the person turns back."""
     way: list[Waypoint] = []
     begin = 0.5 * LENGTH_M
     for side in range(4):

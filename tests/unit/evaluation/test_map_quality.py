@@ -49,7 +49,7 @@ def test_a_patch_turns_with_the_map() -> None:
 def test_a_patch_without_area_is_refused() -> None:
     patch = PlanePatch(np.zeros(3), np.array([1.0, 0, 0]), np.array([2.0, 0, 0]))
 
-    with pytest.raises(ConfigError, match="must span an area"):
+    with pytest.raises(ConfigError, match="expected sides that span an area"):
         patch_density([], patch)
 
 

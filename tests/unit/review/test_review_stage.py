@@ -112,11 +112,12 @@ def test_the_quick_look_says_what_the_stage_will_say(run):
 
     artifact = run()["review"].artifact.folder
     record = json.loads((artifact / "review.json").read_text())
-    assert quick["all"] == {name: record[name] for name in quick["all"]}
-    assert quick["conflicts"] == record["conflicts"]
-    assert quick["last"] == quick["all"]
-    assert quick["edges"][0]["pair"] == [52, 202]
-    assert quick["edges"][0]["chi2"] == pytest.approx(record["conflicts"][0]["chi2"])
+    fields = quick.to_json()
+    assert fields["all"] == {name: record[name] for name in fields["all"]}
+    assert fields["conflicts"] == record["conflicts"]
+    assert fields["last"] == fields["all"]
+    assert quick.edges[0].pair == (52, 202)
+    assert quick.edges[0].chi2 == pytest.approx(record["conflicts"][0]["chi2"])
 
 
 def test_the_queue_is_ordered_by_influence_and_always_the_same(run):
@@ -156,21 +157,21 @@ def test_pairs_without_a_registration_that_holds_come_last():
 
     rows = queue_rows(graph.with_edges(graph.edges + more), settings=Settings())
 
-    assert rows[0][:2] == [52, 202]
-    assert [row[:2] for row in rows[-4:]] == [[22, 252], [17, 252], [7, 252], [12, 252]]
-    column = {name: [row[COLUMNS.index(name)] for row in rows[-4:]] for name in COLUMNS}
-    assert column["measured"] == [True, False, False, False]
-    assert column["influence_m"][0] > 1.0 and column["influence_m"][1:] == [None] * 3
+    assert rows[0][:2] == (52, 202)
+    assert [row[:2] for row in rows[-4:]] == [(22, 252), (17, 252), (7, 252), (12, 252)]
+    assert [row.measured for row in rows[-4:]] == [True, False, False, False]
+    assert rows[-4].influence_m > 1.0
+    assert [row.influence_m for row in rows[-3:]] == [None] * 3
 
 
 def test_alternative_paths_one_by_one_have_the_median_of_the_verification():
     graph = verify(two_rounds(), settings=Settings().verification).graph
-    rows = {tuple(row[:2]): row for row in queue_rows(graph, settings=Settings())}
+    rows = {row[:2]: row for row in queue_rows(graph, settings=Settings())}
     edge = next(e for e in graph.edges if (e.i, e.j) == (3, 32))
 
     paths = alternative_paths(graph, 3, 32, edge.T_i_j, settings=Settings())
 
-    assert len(paths) == edge.paths == rows[17, 162][COLUMNS.index("paths")]
+    assert len(paths) == edge.paths == rows[17, 162].paths
     assert np.median([path.residual_m for path in paths]) == pytest.approx(edge.verification_m)
     assert all(path.frames[0] == 17 and path.frames[-1] == 162 for path in paths)
 
