@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
-from app.slices.model import SliceExportRequest
+from app.slices.model import ExportContext, SliceExportRequest
 from app.slices.work import (
     Artifacts,
     map_frame,
@@ -32,14 +31,14 @@ def export(
     out: str,
     *,
     reference: str,
-    context: dict[str, Any],
+    context: ExportContext,
 ) -> str:
     """Write an export of slices in the format of its suffix, with the approval if there is one.
 
     Raises:
         Altered: If a tile differs from the approved one.
     """
-    path, evidence = Path(out), context["evidence"]
+    path, evidence = Path(out), context.evidence
     tiles, frame = map_of(artifacts, evidence), map_frame(artifacts)
     cuts = ask.cut.cut().repeated(ask.count, spacing_m=ask.spacing_m)
     window = SliceWindow(**ask.window.model_dump()) if ask.window else None
@@ -64,15 +63,15 @@ def _export_geotiff(
     path: Path,
     *,
     reference: str,
-    context: dict[str, Any],
+    context: ExportContext,
 ) -> None:
-    tiles, cut = map_of(artifacts, context["evidence"]), ask.cut.cut()
+    tiles, cut = map_of(artifacts, context.evidence), ask.cut.cut()
     window = window_of(ask, tiles, cut)
     side_m = max(window.right - window.left, window.top - window.bottom)
     paper = Paper(window, max(FINEST_M, side_m / MOST_GEOTIFF_PX))
     against = reference_of(reference, ask.method)
     made = draw(tiles, cut, paper, color=ask.color, reference=against)
-    description = f"{context['project']}: {stamp_text(context['evidence'])}"
+    description = f"{context.project}: {stamp_text(context.evidence)}"
     frame = map_frame(artifacts)
     write_geotiff(made, path, frame=frame, span=span_of(ask, made), description=description)
 
@@ -83,17 +82,17 @@ def _export_sheet(
     path: Path,
     *,
     reference: str,
-    context: dict[str, Any],
+    context: ExportContext,
 ) -> None:
-    tiles, cut = map_of(artifacts, context["evidence"]), ask.cut.cut()
+    tiles, cut = map_of(artifacts, context.evidence), ask.cut.cut()
     against = reference_of(reference, ask.method)
     layout = lay_out(window_of(ask, tiles, cut), ask.size, ask.scale)
     made = draw(tiles, cut, layout.paper, color=ask.color, reference=against)
     text = SheetText(
-        project=context["project"],
+        project=context.project,
         frame=map_frame(artifacts).text,
-        sources=source_text(context["key"]),
-        approval=stamp_text(context["evidence"]),
+        sources=source_text(context.key),
+        approval=stamp_text(context.evidence),
         reference=against.name if against else "",
         sensors=tuple(str(name) for name in tiles.facts.get("sensors", [])),
     )

@@ -13,12 +13,11 @@ import shutil
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any
 
 from app.compute_pool import ComputePool, Lane, Terms
 from app.errors import NoRoom
 from app.slices import export_work
-from app.slices.model import SliceExportRequest
+from app.slices.model import ExportContext, SliceExportRequest
 
 LIMIT_S = 1800.0
 """Longest time an export may take [s]."""
@@ -41,20 +40,18 @@ class ExportRequest:
     """Stage -> folder of its artifact."""
     reference: str
     """Folder of the reference; empty = none."""
-    context: Mapping[str, Any]
-    """Name of the project, key of the map, evidence of its approval."""
+    context: ExportContext
 
     @property
     def key(self) -> str:
         """Hash of the request, including the alignment of the reference."""
-        evidence = self.context["evidence"]
         facts = Path(self.reference) / "reference.json" if self.reference else None
         determines = {
             "ending": self.ending,
             "ask": self.ask.model_dump(mode="json"),
             "artifacts": dict(self.artifacts),
             "reference": [str(facts), facts.stat().st_mtime_ns] if facts else None,
-            "context": dict(self.context) | {"evidence": asdict(evidence) if evidence else None},
+            "context": asdict(self.context),
         }
         return hashlib.sha256(json.dumps(determines, sort_keys=True).encode()).hexdigest()
 
@@ -98,7 +95,7 @@ class Exports:
                     request.ask,
                     name,
                     reference=request.reference,
-                    context=dict(request.context),
+                    context=request.context,
                 )
         self._making.pop(place, None)
         return place

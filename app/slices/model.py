@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.names import Name
+from recon4.review.evidence import Evidence
 from recon4.slices.colors import ColorBy, Ground
 from recon4.slices.cut import MOST_SLICES, MOST_THICKNESS_M, Cut, free, horizontal, vertical
 
@@ -226,3 +228,25 @@ class SliceFacts(BaseModel):
     references: list[dict[str, Any]]
     sources: list[dict[str, str]]
     """Other maps to compare with: ``id`` and the label ``words``."""
+
+
+@dataclass(frozen=True, slots=True)
+class ExportContext:
+    """Origin of an exported map."""
+
+    project: str
+    """Name of the project."""
+    key: str
+    """Key of the map."""
+    evidence: Evidence | None
+    """Of its approval; None = not approved."""
+
+
+@dataclass(frozen=True, slots=True)
+class SurfacePoint:
+    """A surveyed point and the surface beside it."""
+
+    p_map: Xyz
+    """Position in the map [m]."""
+    surface: Xyz | None
+    """Nearest point of the map's surface [m]; None = there is none nearby."""

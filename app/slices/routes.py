@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import binascii
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -26,6 +26,7 @@ from app.slices.model import (
     CompareRequest,
     ControlFile,
     ControlState,
+    ExportContext,
     PickRequest,
     PickView,
     SliceExportRequest,
@@ -36,6 +37,7 @@ from app.slices.model import (
 )
 from app.slices.store import Asking
 from recon4.errors import ConfigError
+from recon4.store.atomic import null_for_nan
 
 LOOK = [Depends(needs(Permission.LOOK))]
 PROCESS = [Depends(needs(Permission.PROCESS))]
@@ -65,13 +67,13 @@ async def read_facts(
     """Bounds, frame, fields, references and the other maps to compare with."""
     slices = server.slices
     artifacts = await run_in_threadpool(slices.artifacts, project_id, source)
-    context = {
-        "references": await run_in_threadpool(slices.references, project_id),
-        "sources": await run_in_threadpool(slices.sources, project_id),
-        "approval": await run_in_threadpool(slices.approval_text, project_id, source),
-    }
+    references = await run_in_threadpool(slices.references, project_id)
+    sources = await run_in_threadpool(slices.sources, project_id)
+    approval = await run_in_threadpool(slices.approval_text, project_id, source)
     terms = slices.terms(project_id, caller.name, source)
-    return await caller.wait(slices.run_interactive(terms, work.facts, artifacts, context))
+    return await caller.wait(
+        slices.run_interactive(terms, work.facts, artifacts, references, sources, approval)
+    )
 
 
 @router.post("/image", summary="An image of a slice")
@@ -152,9 +154,10 @@ async def compare(
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, ask.source)
     reference = server.slices.reference(project_id, ask.reference)
     terms = server.slices.terms(project_id, caller.name, ask.source)
-    return await caller.wait(
+    comparison = await caller.wait(
         server.slices.run_background(terms, work.comparison, artifacts["map"], reference, ask)
     )
+    return comparison.to_json()
 
 
 @router.post("/references", status_code=201, dependencies=PROCESS, summary="Add a reference")
@@ -237,11 +240,8 @@ async def export(
     artifacts = await run_in_threadpool(
         slices.approved_artifacts, project_id, asked.source, evidence
     )
-    context = {
-        "project": (await run_in_threadpool(server.projects.get, project_id)).name,
-        "key": Path(artifacts["map"]).name,
-        "evidence": evidence,
-    }
+    project = await run_in_threadpool(server.projects.get, project_id)
+    context = ExportContext(project.name, Path(artifacts["map"]).name, evidence)
     request = ExportRequest(
         ending=ending,
         ask=asked,
@@ -268,9 +268,10 @@ async def preview_control(
     except (binascii.Error, ValueError) as error:
         raise BadRequest("the file must be sent as base64") from error
     terms = Terms(person=caller.name)
-    return await caller.wait(
+    preview = await caller.wait(
         server.slices.run_background(terms, work.preview_control, data, file.name, file.order)
     )
+    return asdict(preview)
 
 
 @router.get("/control", summary="Control and check points")
@@ -291,9 +292,11 @@ async def control_report(project_id: str, server: Server, caller: CalledBy) -> d
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     state = await run_in_threadpool(server.slices.control, project_id)
     terms = server.slices.terms(project_id, caller.name)
-    return await caller.wait(
+    report = await caller.wait(
         server.slices.run_interactive(terms, work.control_report, artifacts, state)
     )
+    record: dict[str, Any] = null_for_nan(asdict(report))
+    return record | {"passed": report.passed}
 
 
 @router.get("/control/report.{ending}", summary="Residuals as a file")
@@ -304,10 +307,9 @@ async def control_file(
     slices = server.slices
     artifacts = await run_in_threadpool(slices.artifacts, project_id)
     state = await run_in_threadpool(slices.control, project_id)
-    context = {
-        "project": (await run_in_threadpool(server.projects.get, project_id)).name,
-        "evidence": await run_in_threadpool(slices.evidence, project_id),
-    }
+    project = await run_in_threadpool(server.projects.get, project_id)
+    evidence = await run_in_threadpool(slices.evidence, project_id)
+    context = ExportContext(project.name, Path(artifacts["map"]).name, evidence)
     terms = slices.terms(project_id, caller.name)
     text = await caller.wait(
         slices.run_interactive(terms, work.control_file, artifacts, state, ending, context)
@@ -327,9 +329,10 @@ async def surface(project_id: str, point: str, server: Server, caller: CalledBy)
     if not found:
         raise ConfigError(f"no point {point[:64]!r}")
     terms = server.slices.terms(project_id, caller.name)
-    return await caller.wait(
+    at = await caller.wait(
         server.slices.run_interactive(terms, work.surface_at, artifacts, found[0], state.frame)
     )
+    return asdict(at)
 
 
 @router.get("/compare.csv", response_class=PlainTextResponse, summary="The table as CSV")

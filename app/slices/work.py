@@ -14,11 +14,13 @@ import numpy as np
 from app.slices.model import (
     CompareRequest,
     ControlState,
+    ExportContext,
     PickView,
     SliceFacts,
     SliceImageRequest,
     SliceImageView,
     SliceView,
+    SurfacePoint,
     WindowSpec,
     Xyz,
 )
@@ -31,8 +33,8 @@ from recon4.review.evidence import Evidence
 from recon4.slices.acceptance import AcceptanceText, render_acceptance
 from recon4.slices.align import align_by_icp, align_by_pairs
 from recon4.slices.colors import SENSOR_COLORS, ColorBy, Ground, Span, table
-from recon4.slices.compare import compare, to_csv, to_json, usual_cuts
-from recon4.slices.control import ControlPoint, read_control
+from recon4.slices.compare import Comparison, compare, to_csv, usual_cuts
+from recon4.slices.control import ControlPoint, ControlPreview, Order, read_control
 from recon4.slices.cut import Cut, horizontal
 from recon4.slices.doubles import find_double_walls
 from recon4.slices.frames import MapFrame, frame_of
@@ -94,8 +96,13 @@ def reference_of(folder: str, method: Method) -> Reference | None:
     return _reference(folder, method, changed_ns)
 
 
-def facts(artifacts: Artifacts, context: dict[str, Any]) -> SliceFacts:
-    """Facts about the map; ``context`` has the fields that the server adds."""
+def facts(
+    artifacts: Artifacts,
+    references: list[dict[str, Any]],
+    sources: list[dict[str, str]],
+    approval: str,
+) -> SliceFacts:
+    """Facts about the map, its references, other maps and its approval."""
     tiles, frame = tiles_of(artifacts["map"]), map_frame(artifacts)
     low, high = (_xyz(np.nan_to_num(corner)) for corner in tiles.bounds_m)
     times = tiles.facts["time_ns"] or [0, 0]
@@ -108,7 +115,9 @@ def facts(artifacts: Artifacts, context: dict[str, Any]) -> SliceFacts:
         key=Path(artifacts["map"]).name,
         crs=frame.crs,
         frame=frame.text,
-        **context,
+        references=references,
+        sources=sources,
+        approval=approval,
     )
 
 
@@ -188,19 +197,16 @@ def pick_point(
 def double_walls(map_folder: str, out: str) -> None:
     """Write the double wall check of the whole map as JSON."""
     found = find_double_walls(tiles_of(map_folder))
-    context = asdict(found) | {"share": found.share}
-    write_json(Path(out), null_for_nan(context))
+    write_json(Path(out), null_for_nan(asdict(found) | {"share": found.share}))
 
 
-def comparison(map_folder: str, reference: str, ask: CompareRequest) -> dict[str, Any]:
+def comparison(map_folder: str, reference: str, ask: CompareRequest) -> Comparison:
     """Compare slices with a reference (V Table 3.2)."""
     tiles = tiles_of(map_folder)
     against = reference_of(reference, ask.method)
     assert against is not None
     cuts = [spec.cut() for spec in ask.cuts] or usual_cuts(tiles)
-    found = to_json(compare(tiles, cuts, against))
-    context: dict[str, Any] = null_for_nan(found)
-    return context | {"reference": against.name, "method": ask.method}
+    return Comparison(compare(tiles, cuts, against), against.name, ask.method)
 
 
 def comparison_csv(map_folder: str, reference: str, ask: CompareRequest) -> str:
@@ -237,32 +243,31 @@ def align_reference(
     return set_alignment(folder, fit.T_map_reference, description=fit.description)
 
 
-def preview_control(data: bytes, name: str, order: str | None) -> dict[str, Any]:
+def preview_control(data: bytes, name: str, order: Order | None) -> ControlPreview:
     """Points and open questions of a survey file."""
-    return asdict(read_control(data, name=name, order=order))  # type: ignore[arg-type]
+    return read_control(data, name=name, order=order)
 
 
-def control_report(artifacts: Artifacts, state: ControlState) -> dict[str, Any]:
+def control_report(artifacts: Artifacts, state: ControlState) -> ControlReport:
     """Residuals of the points found in the map."""
-    context: dict[str, Any] = null_for_nan(asdict(found := _residuals(artifacts, state)))
-    return context | {"passed": found.passed}
+    return _residuals(artifacts, state)
 
 
 def control_file(
-    artifacts: Artifacts, state: ControlState, ending: str, context: dict[str, Any]
+    artifacts: Artifacts, state: ControlState, ending: str, context: ExportContext
 ) -> str:
     """The residuals as CSV or as an HTML sheet.
 
     Raises:
         Altered: If the map or its georeference differs from the approved one.
     """
-    evidence = context["evidence"]
+    evidence = context.evidence
     if evidence:
         map_of(artifacts, evidence)
         evidence.artifact("map", Path(artifacts["map"])).check_all()  # points were found in it
     found, sources = _residuals(artifacts, state), source_text(Path(artifacts["map"]).name)
     text = AcceptanceText(
-        project=context["project"],
+        project=context.project,
         frame=map_frame(artifacts).text,
         sources=sources,
         approval=stamp_text(evidence),
@@ -285,13 +290,13 @@ def _residuals(artifacts: Artifacts, state: ControlState) -> ControlReport:
     return residuals(surveyed, measured, outdated=state.picks.keys() - here.keys())
 
 
-def surface_at(artifacts: Artifacts, xyz_m: Xyz, frame: str) -> dict[str, Any]:
+def surface_at(artifacts: Artifacts, xyz_m: Xyz, frame: str) -> SurfacePoint:
     """Position of a surveyed point in the map, and the nearest point of the map's surface."""
     p = np.array(xyz_m)
     if frame == "crs":
         p = map_frame(artifacts).from_crs(p[None])[0]
     found = nearest_surface(tiles_of(artifacts["map"]), p)
-    return {"p_map": _xyz(p), "surface": None if found is None else _xyz(found)}
+    return SurfacePoint(_xyz(p), None if found is None else _xyz(found))
 
 
 def references_in(folder: Path) -> list[dict[str, Any]]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -14,7 +16,33 @@ from recon4.geometry.se3 import SE3
 from recon4.mapping.tiles import TileSet
 from recon4.slices.cut import ERROR_THICKNESS_M, Cut, horizontal, vertical
 from recon4.slices.points import points_in
-from recon4.slices.reference import FAR_M, Reference
+from recon4.slices.reference import FAR_M, Method, Reference
+from recon4.store.atomic import null_for_nan
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Comparison:
+    """Errors of map slices against a reference."""
+
+    found: RelativeError
+    reference: str
+    """Name of the reference."""
+    method: Method
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain JSON values; ``histogram`` counts points by distance, 100 classes of 1 mm."""
+        fields: dict[str, Any] = null_for_nan(
+            {
+                "slices": [_row(row) for row in self.found.slices],
+                "point_weighted": _row(self.found.point_weighted),
+                "plain_mean_m": self.found.plain_mean_m,
+                "outlier_m": self.found.outlier_m,
+                "histogram": self.found.histogram[:100].tolist(),
+                "reference": self.reference,
+                "method": self.method,
+            }
+        )
+        return fields
 
 
 def compare(tiles: TileSet, cuts: Sequence[Cut], reference: Reference) -> RelativeError:
@@ -81,17 +109,6 @@ def to_csv(found: RelativeError) -> str:
         rows.writerow([name, row.points, row.outliers, *_figures(row)])
     rows.writerow(["plain average of the slices", "", "", _number(100.0 * found.plain_mean_m)])
     return out.getvalue()
-
-
-def to_json(found: RelativeError) -> dict[str, object]:
-    """Plain values for the page; NaN where a slice has no points."""
-    return {
-        "slices": [_row(row) for row in found.slices],
-        "point_weighted": _row(found.point_weighted),
-        "plain_mean_m": found.plain_mean_m,
-        "outlier_m": found.outlier_m,
-        "histogram": found.histogram[:100].tolist(),
-    }
 
 
 def _row(row: SliceError) -> dict[str, object]:
