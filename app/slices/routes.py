@@ -157,7 +157,8 @@ async def compare(
     comparison = await caller.wait(
         server.slices.run_background(terms, work.comparison, artifacts["map"], reference, ask)
     )
-    return comparison.to_json()
+    record: dict[str, Any] = null_for_nan(asdict(comparison))
+    return record
 
 
 @router.post("/references", status_code=201, dependencies=PROCESS, summary="Add a reference")

@@ -206,7 +206,7 @@ def comparison(map_folder: str, reference: str, ask: CompareRequest) -> Comparis
     against = reference_of(reference, ask.method)
     assert against is not None
     cuts = [spec.cut() for spec in ask.cuts] or usual_cuts(tiles)
-    return Comparison(compare(tiles, cuts, against), against.name, ask.method)
+    return Comparison.of(compare(tiles, cuts, against), against)
 
 
 def comparison_csv(map_folder: str, reference: str, ask: CompareRequest) -> str:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -20,6 +20,7 @@ import recon4
 from app.cli.serve import server
 from app.cli.users import users
 from recon4.cli.backup import backups
+from recon4.cli.evaluation import evaluation
 from recon4.cli.live import live
 from recon4.cli.slices import slices
 from recon4.errors import Cancelled, Recon4Error
@@ -27,7 +28,6 @@ from recon4.stopping import StopSignals
 from recon4.terminal import write
 
 if TYPE_CHECKING:
-    from recon4.geometry.se3 import Array
     from recon4.settings import Settings
 
 app = typer.Typer(
@@ -43,6 +43,7 @@ app.add_typer(server)
 app.add_typer(live)
 app.add_typer(slices)
 app.add_typer(backups)
+app.add_typer(evaluation)
 
 _INTERRUPTED = 130
 """What shells report for a program that Ctrl-C ended."""
@@ -130,39 +131,6 @@ def simulate(
     with watcher() as progress:
         run(world, out, seconds=seconds, seed=seed, rig=load_rig(rig), bag=bag, progress=progress)
     write(f"{out}")
-
-
-@app.command()
-def evaluate(
-    result: Annotated[Path, typer.Argument(help="Project folder, .tum or .npz trajectory.")],
-    *,
-    truth: Annotated[Path, typer.Option(help="True trajectory, .tum or .npz.")],
-    model: Annotated[Path | None, typer.Option(help="True model, .ply; gives e_r.")] = None,
-    floor: Annotated[
-        bool, typer.Option("--floor", help="Also e_r of the same points with the true poses.")
-    ] = False,
-    as_json: JsonOption = False,
-) -> None:
-    """Judge a result by the truth: ATE, KITTI drift, e_r in slices, density."""
-    from recon4.evaluation.evaluate import evaluate as judge
-    from recon4.store.project import is_project, read_artifacts
-
-    given: dict[str, Any] = {}
-    artifacts = read_artifacts(result) if is_project(result) else {}
-    if "map" in artifacts:
-        given["chunks"] = _map_chunks(artifacts["map"])
-    if floor:
-        if "frames" not in artifacts:
-            raise typer.BadParameter(f"--floor needs a project with its frames, got {result}")
-        from recon4.store.frames import FrameStore
-
-        frames = FrameStore.open(artifacts["frames"])
-        given |= {"frames": frames, "rig": frames.rig}
-    found = judge(result, truth=truth, model=model, **given)
-    if as_json:
-        _write_json(found.to_json())
-    else:
-        write(found.table())
 
 
 @app.command()
@@ -353,12 +321,6 @@ def _settings(preset_name: str, assignments: list[str] | None) -> Settings:
         return override(preset(preset_name), assignments or [])
     except Recon4Error as error:
         raise typer.BadParameter(str(error)) from error
-
-
-def _map_chunks(folder: Path) -> Callable[[], Iterator[Array]]:
-    from recon4.mapping.tiles import TileSet
-
-    return lambda: (tile.xyz_m() for tile in TileSet.open(folder))
 
 
 def _show_settings(chosen: Settings) -> None:

@@ -6,6 +6,7 @@ from math import degrees
 from typing import TYPE_CHECKING
 
 from recon4.evaluation.ate import AbsoluteError, Spread
+from recon4.evaluation.density import Density
 from recon4.evaluation.floor import ErrorFloor
 from recon4.evaluation.kitti import Drift
 from recon4.evaluation.markers import MarkerTable
@@ -111,6 +112,14 @@ def floor_text(floor: ErrorFloor) -> str:
     return text_table(header, rows) + f"\nratio {number(floor.ratio, 3)}"
 
 
+def density_text(density: Density) -> str:
+    """Density of a patch."""
+    return (
+        f"Patch: {density.points} points on {density.area_m2:.4f} m², "
+        f"{number(density.points_per_cm2)} points/cm²"
+    )
+
+
 def marker_text(table: MarkerTable) -> str:
     """Errors at markers in the form of V Table 3.3."""
     rows = [
@@ -125,6 +134,8 @@ def marker_text(table: MarkerTable) -> str:
     ]
     body = text_table(("Marker", "dX cm", "dY cm", "H cm", "dZ cm", "total cm"), rows)
     verdict = "within" if table.within_limits else "NOT within"
+    if table.missing:
+        body += f"\nnot measured: {', '.join(table.missing)}"
     return (
         f"{body}\nby {table.judged_by} points: "
         f"mean H {number(table.mean_horizontal_m, 1, _CM)} cm, "

@@ -6,7 +6,6 @@ import csv
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -17,32 +16,37 @@ from recon4.mapping.tiles import TileSet
 from recon4.slices.cut import ERROR_THICKNESS_M, Cut, horizontal, vertical
 from recon4.slices.points import points_in
 from recon4.slices.reference import FAR_M, Method, Reference
-from recon4.store.atomic import null_for_nan
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True)
 class Comparison:
-    """Errors of map slices against a reference."""
+    """Errors of map slices against a reference (V Table 3.2), as plain values."""
 
-    found: RelativeError
+    slices: tuple[SliceError, ...]
+    point_weighted: SliceError
+    """All slices together, weighted by points."""
+    plain_mean_m: float
+    """Unweighted mean of the slices' means [m]; NaN = no points."""
+    outlier_m: float
+    """Points farther from the reference are only counted [m]."""
+    histogram: tuple[int, ...]
+    """Points by distance, up to 100 classes of 1 mm."""
     reference: str
     """Name of the reference."""
     method: Method
 
-    def to_json(self) -> dict[str, Any]:
-        """Plain JSON values; ``histogram`` counts points by distance, 100 classes of 1 mm."""
-        fields: dict[str, Any] = null_for_nan(
-            {
-                "slices": [_row(row) for row in self.found.slices],
-                "point_weighted": _row(self.found.point_weighted),
-                "plain_mean_m": self.found.plain_mean_m,
-                "outlier_m": self.found.outlier_m,
-                "histogram": self.found.histogram[:100].tolist(),
-                "reference": self.reference,
-                "method": self.method,
-            }
+    @staticmethod
+    def of(found: RelativeError, reference: Reference) -> Comparison:
+        """The comparison with a reference."""
+        return Comparison(
+            slices=found.slices,
+            point_weighted=found.point_weighted,
+            plain_mean_m=found.plain_mean_m,
+            outlier_m=found.outlier_m,
+            histogram=tuple(found.histogram[:100].tolist()),
+            reference=reference.name,
+            method=reference.method,
         )
-        return fields
 
 
 def compare(tiles: TileSet, cuts: Sequence[Cut], reference: Reference) -> RelativeError:
@@ -109,17 +113,6 @@ def to_csv(found: RelativeError) -> str:
         rows.writerow([name, row.points, row.outliers, *_figures(row)])
     rows.writerow(["plain average of the slices", "", "", _number(100.0 * found.plain_mean_m)])
     return out.getvalue()
-
-
-def _row(row: SliceError) -> dict[str, object]:
-    return {
-        "name": row.name,
-        "points": row.points,
-        "outliers": row.outliers,
-        "mean_m": row.mean_m,
-        "ratio_within_2cm": row.ratio_within_2cm,
-        "ratio_within_5cm": row.ratio_within_5cm,
-    }
 
 
 def _figures(row: SliceError) -> list[str]:

@@ -1,0 +1,121 @@
+"""The command ``recon4 evaluate``."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from recon4.errors import ConfigError
+from recon4.store.atomic import null_for_nan
+from recon4.terminal import write
+
+if TYPE_CHECKING:
+    from recon4.evaluation.density import Density
+    from recon4.evaluation.evaluate import Evaluation
+    from recon4.evaluation.markers import MarkerTable
+    from recon4.geometry.se3 import Array
+
+evaluation = typer.Typer()
+
+
+@evaluation.command()
+def evaluate(
+    result: Annotated[Path, typer.Argument(help="Project folder, .tum or .npz trajectory.")],
+    *,
+    truth: Annotated[Path | None, typer.Option(help="True trajectory, .tum or .npz.")] = None,
+    model: Annotated[Path | None, typer.Option(help="True model, .ply; gives e_r.")] = None,
+    floor: Annotated[
+        bool, typer.Option("--floor", help="Also e_r of the same points with the true poses.")
+    ] = False,
+    markers: Annotated[
+        tuple[Path, Path] | None,
+        typer.Option(
+            metavar="SURVEYED MEASURED",
+            help="Two CSV files (name, x_m, y_m, z_m, role): surveyed and measured in the map.",
+        ),
+    ] = None,
+    patch: Annotated[
+        str,
+        typer.Option(
+            metavar="X,Y,Z,X,Y,Z,X,Y,Z",
+            help="A corner and its two neighbors [m]: density on this patch of the map.",
+        ),
+    ] = "",
+    as_json: Annotated[bool, typer.Option("--json", help="Write JSON for programs.")] = False,
+) -> None:
+    """Evaluate a result: ATE, KITTI drift, e_r in slices, density, survey markers."""
+    from recon4.evaluation.text import density_text, marker_text
+
+    if truth is None and markers is None and not patch:
+        raise typer.BadParameter("expected --truth, --markers or --patch")
+    record: dict[str, Any] = {}
+    texts: list[str] = []
+    if truth is not None:
+        found = _against_truth(result, truth, model=model, floor=floor)
+        record, texts = found.to_json(), [found.table()]
+    if markers is not None:
+        table = _marker_table(*markers)
+        record["markers"] = asdict(table) | {"within_limits": table.within_limits}
+        texts.append(marker_text(table))
+    if patch:
+        density = _patch_density(result, patch)
+        record["patch"] = asdict(density)
+        texts.append(density_text(density))
+    if as_json:
+        write(json.dumps(null_for_nan(record), indent=1, ensure_ascii=False))
+    else:
+        write("\n\n".join(texts))
+
+
+def _against_truth(result: Path, truth: Path, *, model: Path | None, floor: bool) -> Evaluation:
+    from recon4.evaluation.evaluate import evaluate as evaluate_result
+    from recon4.store.project import is_project, read_artifacts
+
+    given: dict[str, Any] = {}
+    artifacts = read_artifacts(result) if is_project(result) else {}
+    if "map" in artifacts:
+        given["chunks"] = _map_chunks(artifacts["map"])
+    if floor:
+        if "frames" not in artifacts:
+            raise typer.BadParameter(f"--floor needs a project with its frames, got {result}")
+        from recon4.store.frames import FrameStore
+
+        frames = FrameStore.open(artifacts["frames"])
+        given |= {"frames": frames, "rig": frames.rig}
+    return evaluate_result(result, truth=truth, model=model, **given)
+
+
+def _marker_table(surveyed: Path, measured: Path) -> MarkerTable:
+    from recon4.evaluation.markers import compare_markers, read_markers
+
+    positions = {marker.name: marker.xyz_m for marker in read_markers(measured)}
+    return compare_markers(positions, read_markers(surveyed))
+
+
+def _patch_density(project: Path, text: str) -> Density:
+    import numpy as np
+
+    from recon4.evaluation.density import PlanePatch, patch_density
+    from recon4.store.project import read_artifacts
+
+    try:
+        corner, u, v = np.array([float(part) for part in text.split(",")]).reshape(3, 3)
+    except ValueError as error:
+        raise ConfigError(f"--patch: expected nine numbers with commas, got {text!r}") from error
+    artifacts = read_artifacts(project)
+    if "map" not in artifacts:
+        raise ConfigError(f"--patch: expected a project with a map, got {project}")
+    return patch_density(
+        _map_chunks(artifacts["map"])(), PlanePatch(corner, u - corner, v - corner)
+    )
+
+
+def _map_chunks(folder: Path) -> Callable[[], Iterator[Array]]:
+    from recon4.mapping.tiles import TileSet
+
+    return lambda: (tile.xyz_m() for tile in TileSet.open(folder))

@@ -1,0 +1,67 @@
+"""Results of the child processes survive the way back to the server as typed JSON."""
+
+import inspect
+
+import numpy as np
+import pytest
+from pydantic import TypeAdapter
+
+import app.review.work
+import app.slices.work
+from app.compute_pool.messages import declared, decode_result, encode_result
+from app.review.work import pair_facts, preview
+from app.slices.work import comparison, control_report
+from recon4.evaluation.slices import RelativeError, SliceError
+from recon4.review.pairs import PairFacts
+from recon4.review.preview import DecidedEdge, Effect
+from recon4.review.queue import AlternativePath
+from recon4.review.solve import Difference, EdgeConflict, Move, ReviewProblems
+from recon4.slices.compare import Comparison
+from recon4.slices.control import ControlPoint
+from recon4.slices.residuals import residuals
+
+WORK = [
+    function
+    for module in (app.review.work, app.slices.work)
+    for name, function in inspect.getmembers(module, inspect.isfunction)
+    if not name.startswith("_")
+    if function.__module__ == module.__name__ or name in getattr(module, "__all__", ())
+]
+HELPERS = {"reference_of", "span_of"}
+"""Not called through the pool."""
+ROW = SliceError("z = 1.00 m", 10, 1, 0.01, 0.9, 1.0)
+CHANGE = Difference(1.0, 2.0, 5, 4, (Move(3, 30, 10**18, 0.1),), ((10, 40),), ())
+POSE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+
+
+@pytest.mark.parametrize("function", WORK, ids=lambda function: function.__name__)
+def test_every_result_has_a_type_that_can_be_checked(function):
+    hint = declared(function) if function.__name__ not in HELPERS else None
+    if hint is not None and hint is not bytes:
+        TypeAdapter(hint)
+
+
+def test_records_come_back_as_they_were():
+    effect = Effect(
+        key="k",
+        last=CHANGE,
+        all=CHANGE,
+        edges=(DecidedEdge((10, 40), 1.5, "accepted"),),
+        problems=ReviewProblems((EdgeConflict((1, 2), 9.0, 5.0, 0.2, 0.1, "Eva"),), (), (), ("w",)),
+        seconds=0.1,
+    )
+    pair = PairFacts(
+        (1, 2), (10**18, 10**18 + 1), POSE, POSE, None, POSE[3:], 0.1, 0.2,
+        (AlternativePath((1, 3, 2), 0.1, 0.01),), 1,
+    )  # fmt: skip
+    found = RelativeError((ROW,), ROW, 0.01, 0.5, np.arange(500), "given")
+    table = Comparison(
+        found.slices, ROW, 0.01, 0.5, tuple(found.histogram[:100].tolist()), "model", "plane"
+    )
+    report = residuals([ControlPoint("A", (0.0, 0.0, 0.0))], {"A": np.array([0.01, 0.0, 0.0])})
+
+    assert decode_result(preview, encode_result(preview, effect)).to_json() == effect.to_json()
+    assert decode_result(pair_facts, encode_result(pair_facts, pair)) == pair
+    assert decode_result(comparison, encode_result(comparison, table)) == table
+    again = decode_result(control_report, encode_result(control_report, report))
+    assert again.rows == report.rows and again.passed is report.passed
