@@ -46,6 +46,10 @@ def evaluate(
             help="A corner and its two neighbors [m]: density on this patch of the map.",
         ),
     ] = "",
+    report: Annotated[
+        Path | None,
+        typer.Option(help="Also write the report of the project, .html, with these figures."),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Write JSON for programs.")] = False,
 ) -> None:
     """Evaluate a result: ATE, KITTI drift, e_r in slices, density, survey markers."""
@@ -53,11 +57,15 @@ def evaluate(
 
     if truth is None and markers is None and not patch:
         raise typer.BadParameter("expected --truth, --markers or --patch")
+    if report is not None and truth is None:
+        raise typer.BadParameter("--report needs --truth")
     record: dict[str, Any] = {}
     texts: list[str] = []
     if truth is not None:
         found = _against_truth(result, truth, model=model, floor=floor)
         record, texts = found.to_json(), [found.table()]
+        if report is not None:
+            _write_report(result, found, report)
     if markers is not None:
         table = _marker_table(*markers)
         record["markers"] = asdict(table) | {"within_limits": table.within_limits}
@@ -88,6 +96,13 @@ def _against_truth(result: Path, truth: Path, *, model: Path | None, floor: bool
         frames = FrameStore.open(artifacts["frames"])
         given |= {"frames": frames, "rig": frames.rig}
     return evaluate_result(result, truth=truth, model=model, **given)
+
+
+def _write_report(project: Path, found: Evaluation, path: Path) -> None:
+    from recon4.report.html import write_report
+    from recon4.report.project import project_facts
+
+    write_report(path, facts=project_facts(project, found))
 
 
 def _marker_table(surveyed: Path, measured: Path) -> MarkerTable:

@@ -5,7 +5,8 @@ import json
 import pytest
 
 from recon4.cli.main import main
-from tests.project_builder import build_project
+from recon4.recording.formats.poses import write_tum
+from tests.project_builder import build_project, loop_walk, write_summary
 
 SURVEYED = "name,x_m,y_m,z_m,role\nA,1,2,3,check\nB,4,5,6,control\nC,7,8,9,check\n"
 MEASURED = "name,x_m,y_m,z_m\nA,1.03,2.04,3.1\nB,4,5,6\n"
@@ -58,3 +59,29 @@ def test_a_patch_needs_nine_numbers_and_a_map(tmp_path, capsys):
 def test_nothing_to_evaluate_is_wrong_usage(tmp_path, capsys):
     assert main(["evaluate", str(tmp_path)]) == 2
     assert "--truth, --markers or --patch" in capsys.readouterr().err
+
+
+def test_the_report_is_written_again_with_the_evaluation(tmp_path, capsys):
+    root, report = tmp_path / "office", tmp_path / "report.html"
+    build_project(root, points=20_000)
+    stage = {"seconds": 2.0, "cpu_seconds": 3.0, "peak_bytes": 10**8, "reused": False}
+    summary = {
+        "name": "office", "created": "2026-01-01T00:00:00Z", "preset": "indoor", "rig": "4RECON",
+        "crs": "", "versions": {"recon4": "1"}, "warnings": ["early", "late"],
+        "stages": [stage | {"stage": "frames", "figures": {"warnings": ["early"]}}],
+    }  # fmt: skip
+    write_summary(root, summary)
+    for path in (root / "trajectory.tum", tmp_path / "truth.tum"):
+        write_tum(path, loop_walk())
+    truth = ["--truth", str(tmp_path / "truth.tum")]
+
+    assert main(["evaluate", str(root), *truth, "--report", str(report)]) == 0
+
+    page = report.read_text("utf-8")
+    assert "Accuracy against ground truth" in page
+    assert "late" in page and "early" not in page
+    assert "The absolute trajectory error is 0.0 cm" in page
+
+
+def test_a_report_needs_a_truth(tmp_path, capsys):
+    assert main(["evaluate", str(tmp_path), "--patch", "1", "--report", "r.html"]) == 2

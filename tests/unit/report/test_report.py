@@ -288,7 +288,7 @@ def test_an_evaluation_is_shown_with_its_figures(facts: ReportFacts, tmp_path: P
 
     text = Tags(render(replace(facts, evaluation=found))).text
 
-    assert "Accuracy against the truth" in text
+    assert "Accuracy against ground truth" in text
     assert f"{100 * found.aligned.position_m.rmse:.2f}" in text
 
 
