@@ -4,6 +4,6 @@ import os
 
 __version__ = "0.1.0"
 
-# PROJ reads this once, before anything of ours could be asked. With it on, PROJ fetches grids:
+# PROJ reads this once, before any code of recon4 runs. With it on, PROJ fetches grids:
 # that tells others where the survey is, and a fetch that fails gives a height without its grid.
 os.environ["PROJ_NETWORK"] = "OFF"

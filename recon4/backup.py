@@ -107,7 +107,7 @@ def restore(backup: Path, root: Path, *, with_keys: bool, progress: Progress) ->
         How many files were written.
 
     Raises:
-        ConfigError: If ``root`` is not empty, or keys are asked for and not there.
+        ConfigError: If ``root`` is not empty, or keys are requested and missing.
         StoreError: If the backup is damaged, or the folder cannot be written.
     """
     path = newest(backup)
@@ -334,13 +334,13 @@ def _place(objects: Path, sha256: str) -> Path:
 
 
 def _write_list(out: Path, files: Entries, left_out: list[str], *, with_keys: bool) -> Path:
-    moment = time.strftime("%Y-%m-%dT%H-%M-%SZ", time.gmtime())
-    path, number = out / f"{moment}.json", 1
+    timestamp = time.strftime("%Y-%m-%dT%H-%M-%SZ", time.gmtime())
+    path, number = out / f"{timestamp}.json", 1
     while path.exists():
-        path, number = out / f"{moment}-{number}.json", number + 1
+        path, number = out / f"{timestamp}-{number}.json", number + 1
     body = {
         "format": FORMAT,
-        "made": moment,
+        "made": timestamp,
         "with_keys": with_keys,
         "left_out": left_out,
         "files": files,

@@ -292,5 +292,5 @@ def _refuse_utf16(data: bytes, name: str, failure: Failure) -> None:
 
 
 def _unreadable(path: Path, error: Exception, failure: Failure) -> Recon4Error:
-    words = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-    return failure(f"{path.name[:200]}: cannot be read: {words}")
+    reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    return failure(f"{path.name[:200]}: cannot be read: {reason}")

@@ -1,18 +1,18 @@
-"""Everything recon4 raises on purpose.
+"""Exceptions of recon4.
 
     Recon4Error
     ├── ConfigError            a setting or a rig file is wrong (also a ValueError)
     │   └── WrongSettings      all that is wrong with a set of settings at once
     ├── RecordingError         a recording cannot be read
     │   ├── UnknownFormat      no reader recognizes the file
-    │   ├── EmptyRecording     the file is readable but holds no points
+    │   ├── EmptyRecording     the file is readable but has no points
     │   └── CorruptFile        bytes do not match the format
-    ├── OutOfRange             a time was asked for that the trajectory does not cover
+    ├── OutOfRange             a time is outside the trajectory
     ├── GraphError             a pose graph cannot be solved (not finite, not connected, …)
     ├── GeoreferenceError      no usable CRS, transformation or position
     ├── StoreError             a project folder is damaged, locked or cannot be written
     │   └── NoSpace            the disk is full
-    └── Cancelled              the caller asked to stop (not a failure)
+    └── Cancelled              the caller requested to stop (not a failure)
 
 A measurement that turns out bad is not an error: it is a value
 (``Registration.converged``, ``Edge.verdict``, ``OdometryStep.lost``).
@@ -22,7 +22,7 @@ from __future__ import annotations
 
 
 class Recon4Error(Exception):
-    """Base of the tree above; the message is fit to be shown to an operator."""
+    """Base of the tree above; the message can be shown to an operator."""
 
 
 class ConfigError(Recon4Error, ValueError):
@@ -35,7 +35,7 @@ class WrongSettings(ConfigError):
     def __init__(self, problems: dict[str, str]) -> None:
         super().__init__(problems)
         self.problems = problems
-        """``group.field`` (or the text itself where it names none) -> what is wrong, in words."""
+        """``group.field``, or the text itself if it has none -> description of the problem."""
 
     def __str__(self) -> str:
         return "; ".join(self.problems.values())
@@ -50,7 +50,7 @@ class UnknownFormat(RecordingError):
 
 
 class EmptyRecording(RecordingError):
-    """The file is readable but holds no points."""
+    """The file is readable but has no points."""
 
 
 class CorruptFile(RecordingError):
@@ -58,7 +58,7 @@ class CorruptFile(RecordingError):
 
 
 class OutOfRange(Recon4Error):
-    """A time was asked for that the trajectory does not cover."""
+    """A time is outside the trajectory."""
 
 
 class GraphError(Recon4Error):
@@ -78,4 +78,4 @@ class NoSpace(StoreError):
 
 
 class Cancelled(Recon4Error):
-    """The caller asked to stop."""
+    """The caller requested to stop."""

@@ -1,6 +1,6 @@
 """Names that people give: what is refused, and how what is on disk already is shown.
 
-A character nobody sees can make one name look like another: controls, marks of writing direction
+An invisible character can make one name look like another: controls, marks of writing direction
 (U+202E), zero-width characters, halves of characters.
 """
 
@@ -25,7 +25,7 @@ def check_name(text: str, *, what: str, most: int = LONGEST_NAME) -> str:
         most: How many characters it may have.
 
     Raises:
-        ConfigError: If it is too long or has characters nobody sees.
+        ConfigError: If it is too long or has invisible characters.
     """
     return _check(text, what, most, allowed="")
 
@@ -34,7 +34,7 @@ def check_note(text: str, *, what: str, most: int = LONGEST_NOTE) -> str:
     """A text of several lines as it was given.
 
     Raises:
-        ConfigError: If it is too long or has characters nobody sees, except tabs and line ends.
+        ConfigError: If it is too long or has invisible characters, except tabs and line ends.
     """
     return _check(text, what, most, allowed="\t\n\r")
 
@@ -51,7 +51,7 @@ def _check(text: str, what: str, most: int, *, allowed: str) -> str:
     hidden = [one for one in text if _hidden(one) and one not in allowed]
     if hidden:
         raise ConfigError(
-            f"{what} may not have characters that nobody sees, got U+{ord(hidden[0]):04X} at "
+            f"{what} may not have invisible characters, got U+{ord(hidden[0]):04X} at "
             f"place {text.index(hidden[0]) + 1}"
         )
     return text

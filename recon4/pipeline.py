@@ -35,7 +35,7 @@ def process(
     preset: str = "indoor",
     progress: Progress | None = None,
 ) -> Summary:
-    """Make a map of recordings, or go on where an earlier call stopped.
+    """Make a map of recordings, or continue where an earlier call stopped.
 
     Args:
         recordings: Files or folders of one walk: pcap, bags, folders of clouds.
@@ -54,7 +54,7 @@ def process(
         RecordingError: If a recording cannot be read.
         StoreError: If ``out`` is in use, damaged or cannot be written (`NoSpace`: disk full).
         Recon4Error: Whatever else stops a stage.
-        Cancelled: If the watcher asked to stop; the next call goes on from there.
+        Cancelled: If the watcher requested to stop; the next call continues from there.
     """
     if not recordings:
         raise RecordingError("no recording given")
@@ -97,7 +97,7 @@ def remake(out: Path, *, progress: Progress | None = None) -> Summary:
     Raises:
         StoreError: If a stage is missing or damaged, the project is in use or cannot be written.
         Recon4Error: Whatever else stops a stage.
-        Cancelled: If the watcher asked to stop; the next call goes on from there.
+        Cancelled: If the watcher requested to stop; the next call continues from there.
     """
     progress = progress or Silent()
     made = read_artifacts(out)

@@ -19,7 +19,7 @@ class Progress(Protocol):
         """Say that ``done`` more units are finished.
 
         Raises:
-            Cancelled: If the watcher asked to stop.
+            Cancelled: If the watcher requested to stop.
         """
 
     def event(self, kind: str, **facts: object) -> None:

@@ -48,7 +48,7 @@ RESULTS = (
 
 @dataclass(frozen=True, slots=True)
 class About:
-    """What a run was asked to do."""
+    """Request of a run."""
 
     project: Mapping[str, Any]
     """``project.json``: name, preset, inputs."""
@@ -62,7 +62,7 @@ FORMAT = 2
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Summary:
-    """What ``summary.json`` says; the fields are its keys."""
+    """Contents of ``summary.json``; the fields are its keys."""
 
     name: str
     """Of the project."""
@@ -117,7 +117,7 @@ def publish(
     Args:
         root: The project folder.
         runs: How the stages went, in order.
-        about: What it was asked to do.
+        about: Request of the run.
         progress: Counts the files.
 
     Raises:
@@ -189,7 +189,7 @@ def edges_by_verdict(artifact: Path) -> dict[str, int]:
 
 
 def export_map(project: Path, path: Path, *, crs: str, progress: Progress) -> int:
-    """Write the map of a finished run as LAZ or PLY; if it was approved, the file says so.
+    """Write the map of a finished run as LAZ or PLY; the file notes an approval.
 
     Args:
         project: The project folder.
@@ -203,7 +203,7 @@ def export_map(project: Path, path: Path, *, crs: str, progress: Progress) -> in
     Raises:
         Altered: If it was approved and is not what was approved; nothing is written.
         ConfigError: If the ending is another.
-        GeoreferenceError: If a CRS is asked for and the map has no place on earth.
+        GeoreferenceError: If a CRS is requested and the map is not georeferenced.
         StoreError: If there is no map yet or the file cannot be written.
     """
     artifacts = read_artifacts(project)

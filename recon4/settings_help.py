@@ -18,10 +18,10 @@ class SettingHelp:
     group: str
     name: str
     kind: str
-    """What may be given, in words: ``int``, ``float``, ``text``, or the choices."""
+    """Allowed values: ``int``, ``float``, ``text``, or the choices."""
     default: Any
     text: str
-    """Meaning and unit; empty where the name says all."""
+    """Meaning and unit; empty if the name is sufficient."""
 
     @property
     def path(self) -> str:

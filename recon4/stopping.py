@@ -23,7 +23,7 @@ CLEANING_UP_S = 10.0
 
 
 class Stopped(KeyboardInterrupt):
-    """A signal asked the command to stop."""
+    """A signal requested the command to stop."""
 
 
 class StopSignals:
@@ -70,7 +70,7 @@ class StopSignals:
         sys.unraisablehook, threading.excepthook, sys.excepthook = self._hooks
 
     def say(self, more: str = "") -> None:
-        """Write the one line that says what ended the command; the first call counts."""
+        """Write one line with the reason of the end; only the first call counts."""
         if not self._said and self.received is not None:
             self._said = True
             sys.stderr.write(f"recon4: stopped by {self.received.name}{more}\n")

@@ -18,7 +18,7 @@ _EVENTS = {
     "warning": "warning",
     "repair": "repaired",
 }
-"""Events a person should see while a run goes on; the others end up in the results."""
+"""Events shown during a run; the others are in the results."""
 
 
 def write(text: str, end: str = "\n") -> None:

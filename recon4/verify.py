@@ -47,7 +47,7 @@ class Verified:
 
     checked: int
     damaged: tuple[str, ...]
-    """What differs, in words; empty = all is well."""
+    """Differences found; empty = none."""
     unknown: tuple[str, ...]
     """Folders that no stage accounts for."""
     notes: tuple[str, ...]
@@ -55,7 +55,7 @@ class Verified:
     rows: int
     """Of journals."""
     approvals: tuple[str, ...]
-    """Those that hold, in words."""
+    """Descriptions of the valid approvals."""
 
 
 def verify(path: Path, progress: Progress) -> Verified:
@@ -127,7 +127,7 @@ def open_state(state: Path) -> tuple[str, ...]:
     """Mark the server's files as about to change; for its start.
 
     Returns:
-        What is not as the server left it last, in words.
+        Descriptions of what differs from the server's last state.
     """
     damaged = verify_state(state).damaged
     if damaged and not _seals_hold(state):
@@ -138,7 +138,7 @@ def open_state(state: Path) -> tuple[str, ...]:
 
 
 def seal_state(state: Path) -> None:
-    """Seal the server's files; for its end, when nobody writes them any more."""
+    """Seal the server's files; called at its end, after the last write."""
     end_change(state, tuple({*read_seals(state), *state_files(state)}))
 
 

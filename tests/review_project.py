@@ -147,7 +147,7 @@ def _apart(T, i, j) -> Edge:
 
 
 def work(folder: JobFolder, progress: Progress) -> None:
-    """A job's work, for servers in tests: makes the project again, as asked."""
+    """A job's work, for servers in tests: makes the project again."""
     root, inputs = folder.request()
     (remake if inputs.remake else make)(root, progress=progress)
 

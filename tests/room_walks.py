@@ -69,7 +69,7 @@ def straight(frames):
 def room_walk(frames=20, points=3000, *, seed=1, noise_m=0.01, intensity=None, enabled=None):
     """Points on the walls of a room 8 x 6 x 3 m around the start, seen by two sensors.
 
-    ``intensity(p_map, sensor, ring, incidence_rad, range_m, rng)`` says how bright they are.
+    ``intensity(p_map, sensor, ring, incidence_rad, range_m, rng)`` returns their intensity.
     """
     rig = rig_of(
         SE3.from_rpy(0, 0, 0, [0, 0, 0.2]),

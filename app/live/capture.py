@@ -133,7 +133,7 @@ class Capture:
                 except ConfigError as error:
                     self.problem = str(error)
         if done is None:
-            self.problem = "the map stopped growing (its process died); the recording goes on"
+            self.problem = "the map stopped growing (its process died); the recording continues"
         else:  # finished: earlier problems no longer count
             self.problem = "; ".join(filter(None, (self._ended_because, done.problem)))
         while self._recorder is not None:

@@ -1,7 +1,7 @@
 """The command line: ``recon4 COMMAND --help``.
 
-Exit codes: 0 done, 1 a known error (said in one line), 2 wrong usage, 128 + n stopped by signal n
-(130 Ctrl-C, 143 SIGTERM).
+Exit codes: 0 done, 1 a known error (reported in one line), 2 wrong usage, 128 + n stopped by
+signal n (130 Ctrl-C, 143 SIGTERM).
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def process(
     assignments: SetOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Make a map of a recording; started again, it goes on where it stopped."""
+    """Make a map of a recording; started again, it continues where it stopped."""
     chosen = _settings(preset, assignments)
 
     from recon4.model.rig import load_rig
@@ -136,7 +136,9 @@ def simulate(
 @app.command()
 def export(
     project: Annotated[Path, typer.Argument(help="Folder that `recon4 process --out` made.")],
-    file: Annotated[Path, typer.Argument(help="File to write; its ending says what: .laz, .ply.")],
+    file: Annotated[
+        Path, typer.Argument(help="File to write; the suffix selects the format: .laz, .ply.")
+    ],
     crs: Annotated[str, typer.Option(help="As EPSG:5514+8357; default: the map's.")] = "",
 ) -> None:
     """Write the map of a project to a file, in any CRS when it is georeferenced."""

@@ -48,7 +48,7 @@ class _WrittenBounds:
 
 
 class _Watched(io.BufferedWriter):
-    """Remembers why a write failed: lazrs only says that it did."""
+    """Keeps the cause of a failed write, because lazrs does not report it."""
 
     failed: OSError | None = None
 
@@ -132,7 +132,7 @@ def _header(tiles: TileSet, offset: NDArray[np.float64], crs: str | None) -> Any
 
 
 def _wkt(crs: str) -> str:
-    """The WKT that LAS 1.4 asks for (version 1), or the newer one for a CRS it cannot express."""
+    """The WKT that LAS 1.4 requires (version 1), or the newer one for a CRS it cannot express."""
     try:
         known = pyproj.CRS.from_user_input(crs)
     except pyproj.exceptions.CRSError as error:
@@ -189,7 +189,7 @@ def _check(path: Path, written: _WrittenBounds, header: Any) -> None:
     """Read back count, bounds, CRS, and the first and last point.
 
     Raises:
-        StoreError: If the file says something else than what was written.
+        StoreError: If the file differs from what was written.
     """
     with laspy.open(path) as file:
         found = file.header

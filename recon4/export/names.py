@@ -1,4 +1,4 @@
-"""File names that promise a format: what is written must be what the name says."""
+"""Checks that the suffix of a file name matches the format that is written."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ def check_name(path: Path, ending: str) -> None:
         ConfigError: Saying which name would do.
     """
     name = path.name.lower()
-    for special, words in _UNWRITTEN.items():
+    for special, kind in _UNWRITTEN.items():
         if special.endswith(ending) and name.endswith(special):
             plain = path.name[: -len(special)] + ending
-            raise ConfigError(f"{path.name}: {words} is not written; take {plain}")
+            raise ConfigError(f"{path.name}: {kind} is not supported; use {plain}")
     if path.suffix.lower() != ending:
         raise ConfigError(f"a {ending[1:].upper()} file must be named {ending}, got {path.name}")

@@ -28,7 +28,7 @@ class Block:
     xyz: Array
     """Coordinates of the export, float64 (N, 3)."""
     columns: Columns
-    """The other fields asked for."""
+    """Further fields requested."""
 
 
 def into_crs(tiles: TileSet, to_crs: ToCrs | None) -> ToCrs:

@@ -73,8 +73,8 @@ class Headless:
             await mapper.wait()
             if self._newest.done is not None:
                 return
-            self._problem = "the mapper died and was started again; the recording goes on"
-        self._problem = "the map stopped growing; the recording goes on"
+            self._problem = "the mapper died and was started again; the recording continues"
+        self._problem = "the map stopped growing; the recording continues"
 
     async def _stop_after(
         self, seconds: float | None, recorder: asyncio.subprocess.Process

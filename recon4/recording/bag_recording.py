@@ -73,7 +73,7 @@ class BagRecording:
 
     def read(self) -> Iterator[Item]:
         """Stream the bag once; messages of one topic are in order of time."""
-        # What opening had to say was said when the head was looked at.
+        # Opening was reported already when the head was read.
         with Bag(self._paths, ImportReport()) as bag:
             bag.report = self._report
             yield from self._read(bag)
@@ -221,7 +221,7 @@ def cloud_table(cloud: Any) -> Table:
     """Fields of a ``PointCloud2`` by lower-case name.
 
     Raises:
-        CorruptFile: If the data are shorter than the layout says.
+        CorruptFile: If the data are shorter than the layout.
     """
     order = ">" if cloud.is_bigendian else "<"
     known = [f for f in cloud.fields if f.datatype in _FIELD_TYPES]

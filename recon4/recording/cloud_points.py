@@ -1,6 +1,6 @@
 """Converts tables of cloud fields to shots: aliases of fields, units, missing fields.
 
-What a cloud does not say is worked out and said so: ring from elevation, time from azimuth.
+What a cloud lacks is derived and reported: ring from elevation, time from azimuth.
 """
 
 from __future__ import annotations

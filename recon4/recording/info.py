@@ -146,8 +146,8 @@ def utc(t_ns: int) -> str:
     """A time as text, to the millisecond; beyond the year 9999 in seconds."""
     if not 0 <= t_ns < _LATEST_NS:
         return f"{t_ns / 1e9:.3f} s since 1970"
-    moment = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(milliseconds=t_ns // 1_000_000)
-    return moment.strftime("%Y-%m-%d %H:%M:%S.%f")[:-3]
+    time = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(milliseconds=t_ns // 1_000_000)
+    return time.strftime("%Y-%m-%d %H:%M:%S.%f")[:-3]
 
 
 def _size(path: Path) -> int:
@@ -174,15 +174,15 @@ def _describe_pcap(info: RecordingInfo, path: Path) -> RecordingInfo:
     files = pcap_files(path)
     most = _WHOLE_PACKETS if info.bytes <= _WHOLE_BYTES else _HEAD_PACKETS
     streams = [stream for file in files for stream in scan_pcap(file, max_packets=most)]
-    words = {"position": "position packets", "IMU": "IMU samples", "GNSS": "GNSS samples"}
-    samples = [s for s in streams if s.kind in words]
+    names = {"position": "position packets", "IMU": "IMU samples", "GNSS": "GNSS samples"}
+    samples = [s for s in streams if s.kind in names]
     return replace(
         info,
         t_first_ns=min((s.t_first_ns for s in streams), default=0),
         t_last_ns=max((s.t_end_ns for s in streams), default=0),
         estimated=not all(s.whole for s in streams),
         sensors=tuple(_packet_sensor(s) for s in streams if s.kind == "data"),
-        samples=tuple(f"{s.source}:{s.port}: {_total(s)} {words[s.kind]}" for s in samples),
+        samples=tuple(f"{s.source}:{s.port}: {_total(s)} {names[s.kind]}" for s in samples),
     )
 
 

@@ -105,7 +105,7 @@ def ingest(
     Args:
         recordings: The recording; CSV files of IMU and GNSS samples may be among the paths.
         out: Folder of the store.
-        rig: Sensors and mountings; None = chosen from what is in the recording, and said.
+        rig: Sensors and mountings; None = chosen from the recording, and reported.
         imu: IMU samples that replace the recording's.
         gnss: GNSS samples that replace the recording's.
         settings: Settings of the reader.
@@ -227,7 +227,7 @@ def _covering(
     """The samples, unless their times do not overlap with those of the points.
 
     Raises:
-        ConfigError: If they were given as a file: then somebody wants them used.
+        ConfigError: If they were given as a file, which must be used.
     """
     if samples is None:
         return None

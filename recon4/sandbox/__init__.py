@@ -4,7 +4,7 @@
                     memory_bytes=4 << 30, cpu_s=3600)
     confinement = confine(policy)    # in the child, before other threads and the user's file
 
-The parent starts the child with ``allowed_environment``. `Confinement` says which barriers this
+The parent starts the child with ``allowed_environment``. `Confinement` reports which barriers this
 computer provides; ``recon4 doctor`` prints them.
 """
 

@@ -65,7 +65,7 @@ def confine(policy: Policy) -> Confinement:
 
 
 def refuse_new_sockets() -> None:
-    """Refuse sockets, connections and listening from now on; those that are open go on.
+    """Refuse sockets, connections and listening from now on; open ones stay usable.
 
     For a process that opens its ports first and reads from strangers afterwards. Without effect
     where there is no filter of system calls.

@@ -26,7 +26,7 @@ _LEAST_UPRIGHT = 0.5
 """Cosine of the largest tilt at the start, 60 degrees."""
 _INTERRUPTED_NS = 2_000_000_000
 """Duration of a pause after which the pose is unknown, unless the IMU continued."""
-_IMU_WRONG = "is it mounted as the rig file says (upside down?)"
+_IMU_WRONG = "is it mounted as in the rig file (upside down?)"
 
 
 class Tracker:

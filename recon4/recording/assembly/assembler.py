@@ -193,20 +193,23 @@ class Assembler:
 
     def _rate_hz(self) -> float:
         measured = [rate for rate in self.rotation_hz.values() if np.isfinite(rate)]
-        asked = self._settings.rate_hz
-        if not asked and not measured:
+        requested = self._settings.rate_hz
+        if not requested and not measured:
             self._report.derive(f"no rotation found, cut into frames at {_FALLBACK_HZ:g} Hz")
             return _FALLBACK_HZ
-        slowest = nominal(min(measured)) if measured else asked
-        if not asked:
+        slowest = nominal(min(measured)) if measured else requested
+        if not requested:
             self._report.derive(f"frames at {slowest:.6g} Hz: one revolution of the slowest LiDAR")
             return slowest
-        if abs(slowest / asked - round(slowest / asked)) > 0.03 or slowest < 0.97 * asked:
+        if (
+            abs(slowest / requested - round(slowest / requested)) > 0.03
+            or slowest < 0.97 * requested
+        ):
             self._report.warn(
-                f"rate_hz = {asked:g} does not fit the rotation of {slowest:.6g} Hz: "
+                f"rate_hz = {requested:g} does not fit the rotation of {slowest:.6g} Hz: "
                 "frames are no whole revolutions"
             )
-        return asked
+        return requested
 
     # -- cutting
 

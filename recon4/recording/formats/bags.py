@@ -201,7 +201,7 @@ class Bag:
             self.report.outcome = "lossy"
             self.report.count("messages_missing", expected - found)
             self.report.warn(
-                f"{path.name}: expected {expected} messages as metadata.yaml says, got {found}"
+                f"{path.name}: expected {expected} messages as in metadata.yaml, got {found}"
             )
 
     def _decompressed(self, files: Sequence[Path]) -> tuple[Path, ...]:

@@ -185,7 +185,7 @@ class ChunkStream:
             self._report.outcome = "lossy"
             self._report.count("messages_missing", missing)
             self._report.warn(
-                f"{self._name}: {missing} messages fewer than the directory of the file says"
+                f"{self._name}: {missing} messages fewer than in the directory of the file"
             )
 
     def _merged(self, chunks: list[ChunkRef], wanted: set[int]) -> Iterator[Message]:

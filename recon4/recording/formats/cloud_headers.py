@@ -86,7 +86,7 @@ def pcd_layout(head: bytes, name: str) -> CloudLayout:
     """Read the header of a PCD file.
 
     Raises:
-        CorruptFile: If it is damaged; says what was expected and what was found.
+        CorruptFile: If it is damaged, with the expected and the found value.
     """
     words, at = _pcd_words(head, name)
     try:
@@ -131,7 +131,7 @@ def ply_layout(head: bytes, name: str) -> CloudLayout:
     """Read the header of a PLY file up to the rows of its vertices.
 
     Raises:
-        CorruptFile: If it is damaged; says what was expected and what was found.
+        CorruptFile: If it is damaged, with the expected and the found value.
     """
     end = head.find(b"end_header")
     line_end = head.find(b"\n", end)

@@ -79,7 +79,7 @@ class RecordFile:
         """Read exactly ``length`` bytes.
 
         Args:
-            length: How many, as the file itself says.
+            length: Number of bytes, as in the file.
             what: What they are, for the message.
             most: More than that is damage or an attack.
 

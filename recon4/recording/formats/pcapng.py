@@ -76,7 +76,7 @@ def read_packets(file: IO[bytes], skipped: Callable[[str], None]) -> Iterator[Pa
 
 
 def _order(file: IO[bytes], head: bytes, order: str, where: str) -> str:
-    """Byte order: a section header says it, in four bytes that `_block` reads again."""
+    """Byte order of the section, from four bytes that `_block` reads again."""
     if head[:4] != MAGIC:
         return order
     magic = _read(file, 4)

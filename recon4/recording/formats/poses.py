@@ -91,10 +91,10 @@ def pose_format(path: Path) -> str:
     try:
         with path.open(encoding="ascii") as file:
             for _ in range(50):
-                words = file.readline(4096).split("#")[0].split()
-                if words:
-                    [float(word) for word in words]
-                    return {8: "tum", 12: "kitti"}.get(len(words), "")
+                cells = file.readline(4096).split("#")[0].split()
+                if cells:
+                    [float(cell) for cell in cells]
+                    return {8: "tum", 12: "kitti"}.get(len(cells), "")
     except (OSError, ValueError):
         return ""
     return ""
@@ -121,17 +121,17 @@ class _Table:
             EmptyRecording: If there is no row.
         """
         first, lines, values = [], array("q"), array("d")
-        for number, words in _words(path):
+        for number, cells in _cells(path):
             try:
-                if len(words) != width or any("_" in word for word in words):
-                    raise ValueError(f"{len(words)} words")
-                row = [float(word) for word in words]
+                if len(cells) != width or any("_" in cell for cell in cells):
+                    raise ValueError(f"{len(cells)} columns")
+                row = [float(cell) for cell in cells]
             except ValueError as error:
                 raise CorruptFile(
-                    f"{path.name}: line {number}: expected {width} numbers, got {len(words)}: "
-                    f"{' '.join(words)[:80]!r}"
+                    f"{path.name}: line {number}: expected {width} numbers, got {len(cells)}: "
+                    f"{' '.join(cells)[:80]!r}"
                 ) from error
-            first.append(words[0])
+            first.append(cells[0])
             lines.append(number)
             values.extend(row)
         if not first:
@@ -149,13 +149,13 @@ class _Table:
         return f"{self.name}: line {self.lines[row]}"
 
 
-def _words(path: Path) -> Iterator[tuple[int, list[str]]]:
+def _cells(path: Path) -> Iterator[tuple[int, list[str]]]:
     """Words of each line with its number, without comments and blank lines."""
     lines = lines_limited(path, most_bytes=_MOST_BYTES, most_line_bytes=_MOST_LINE_BYTES)
     for number, line in enumerate(lines, start=1):
-        words = line.partition("#")[0].replace(",", " ").split()
-        if words:
-            yield number, words
+        cells = line.partition("#")[0].replace(",", " ").split()
+        if cells:
+            yield number, cells
 
 
 def _nanoseconds(text: str, where: str) -> int:

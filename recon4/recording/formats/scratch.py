@@ -94,7 +94,7 @@ def _base() -> Path:
     """The folder of all temporary copies of this user.
 
     Raises:
-        StoreError: If somebody else can write there.
+        StoreError: If other users can write there.
     """
     base = _base_path()
     base.mkdir(mode=0o700, exist_ok=True)

@@ -5,7 +5,7 @@
     {"t_ns": …, "lat_deg": 49.2, "lon_deg": 16.6, "height_m": 250.1, "sd_e_m": 0.02, "quality": 4}
 
 One object a line, one or more lines a datagram. ``t_ns`` is absolute; without it the time of
-arrival counts: in UTC, whatever the recorder's clock says, where GPS drives a LiDAR. What is
+arrival counts: in UTC, independent of the recorder's clock, where GPS drives a LiDAR. What is
 missing is not measured.
 """
 

@@ -55,7 +55,7 @@ class VelodynePcap:
 
     ``rig`` is the one given; without one, a rig with one sensor a data stream, all mounted at the
     origin. Streams go to the sensors of a given rig by address and port, but no trickle when a full
-    stream fits too; a sensor left over gets a stream left over, in order, and the report says so.
+    stream fits too; a sensor left over gets a stream left over, in order, which is reported.
     A sensor that is not in the heads of the files is read from when it first sends.
     """
 
@@ -81,7 +81,7 @@ class VelodynePcap:
         Raises:
             UnknownFormat: If a file is not a capture file.
             EmptyRecording: If there is no Velodyne data packet in the heads of the files and no
-                rig that says where to look for later ones.
+                rig, whose ports and addresses identify later ones.
             ConfigError: If the model of a sensor is not decoded from packets.
         """
         self._report = report

@@ -137,7 +137,7 @@ class PacketDecoder:
     ``velodyne-decoder`` and the ROS driver. Azimuth grows clockwise seen from above.
 
     The model is that of the ``sensor``, whatever the packets say of themselves; a product byte or
-    a packet interval that says otherwise is warned of.
+    a contradicting packet interval gives a warning.
     """
 
     def __init__(

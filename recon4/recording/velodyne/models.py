@@ -222,6 +222,6 @@ def models_of_interval(seconds: float, return_mode: int) -> tuple[str, ...]:
 
 def likely_model(product: int, seconds: float, return_mode: int) -> str | None:
     """The model of packets at this interval; its product byte counts only if it fits, or alone."""
-    said = PRODUCTS.get(product)
+    stated = PRODUCTS.get(product)
     fits = models_of_interval(seconds, return_mode)
-    return said if said in fits or not fits else fits[0]
+    return stated if stated in fits or not fits else fits[0]

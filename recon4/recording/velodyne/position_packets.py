@@ -26,7 +26,7 @@ _ACCEL_M_S2 = 0.001221 * STANDARD_GRAVITY_M_S2
 
 @dataclass(frozen=True, slots=True)
 class Fix:
-    """What one NMEA sentence says."""
+    """Contents of one NMEA sentence."""
 
     utc_ns: int
     lat_deg: float
@@ -38,7 +38,7 @@ class Fix:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PositionSamples:
-    """What some position packets said; None where they said nothing."""
+    """Contents of position packets; None where they have no value."""
 
     imu: ImuSamples | None
     gnss: GnssSamples | None
@@ -82,10 +82,10 @@ def _fix(message: Any, near_ns: int) -> Fix | None:
     if message.msgID == "RMC":
         if message.status != "A":
             return None
-        moment = datetime.combine(message.date, message.time, tzinfo=UTC)
+        time = datetime.combine(message.date, message.time, tzinfo=UTC)
         differential = getattr(message, "posMode", "A") == "D"
         quality = GnssQuality.DIFFERENTIAL if differential else GnssQuality.SINGLE
-        return Fix(_ns(moment), float(message.lat), float(message.lon), float("nan"), quality)
+        return Fix(_ns(time), float(message.lat), float(message.lon), float("nan"), quality)
     if message.msgID != "GGA" or message.quality == 0:
         return None
     of_day = _ns(datetime.combine(datetime(1970, 1, 1), message.time, tzinfo=UTC))
@@ -96,8 +96,8 @@ def _fix(message: Any, near_ns: int) -> Fix | None:
     return Fix(utc_ns, float(message.lat), float(message.lon), height_m, quality)
 
 
-def _ns(moment: datetime) -> int:
-    since = moment - datetime(1970, 1, 1, tzinfo=UTC)
+def _ns(time: datetime) -> int:
+    since = time - datetime(1970, 1, 1, tzinfo=UTC)
     return (since.days * 86400 + since.seconds) * SECOND_NS + since.microseconds * 1000
 
 

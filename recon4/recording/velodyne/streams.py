@@ -258,11 +258,11 @@ def _usual_step_s(stamp_ns: Times) -> float:
 def _model(product: int, return_mode: int, interval_s: float) -> tuple[str, tuple[str, ...]]:
     """Name of the model and a warning; the firing pattern overrules the product byte."""
     model = likely_model(product, interval_s, return_mode)
-    said = PRODUCTS.get(product)
+    stated = PRODUCTS.get(product)
     remarks = []
     if return_mode not in RETURN_MODES:
         remarks.append(f"unknown return mode byte {return_mode:#04x}, read as single return")
-    if model and said != model:
+    if model and stated != model:
         remarks.append(
             f"its packets say {product_text(product)}, but they come every {1e3 * interval_s:.3f} "
             f"ms as those of a {model}: taken for a {model}"

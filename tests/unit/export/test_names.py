@@ -1,4 +1,4 @@
-"""A file is what its name says."""
+"""The suffix of a file name must match its format."""
 
 from pathlib import Path
 
@@ -9,17 +9,17 @@ from recon4.export.names import check_name
 
 
 @pytest.mark.parametrize(
-    ("name", "ending", "words"),
+    ("name", "ending", "text"),
     [
-        ("x.copc.laz", ".laz", r"COPC is not written; take x\.laz"),
-        ("X.COPC.LAZ", ".laz", r"take X\.laz"),
+        ("x.copc.laz", ".laz", r"COPC is not supported; use x\.laz"),
+        ("X.COPC.LAZ", ".laz", r"use X\.laz"),
         ("x.las", ".laz", r"must be named \.laz"),
-        ("x.cog.tif", ".tif", r"take x\.tif"),
+        ("x.cog.tif", ".tif", r"use x\.tif"),
         ("x", ".ply", r"must be named \.ply"),
     ],
 )
-def test_a_name_of_another_format_is_refused(name: str, ending: str, words: str) -> None:
-    with pytest.raises(ConfigError, match=words):
+def test_a_name_of_another_format_is_refused(name: str, ending: str, text: str) -> None:
+    with pytest.raises(ConfigError, match=text):
         check_name(Path(name), ending)
 
 
