@@ -122,7 +122,7 @@ def test_the_viewer_works_behind_the_login(server, page):
     sign_in(page, server, "vera", "/projects/office/")
 
     viewer = page.frame_locator("iframe")
-    expect(viewer.get_by_text("map frame · z up · metres")).to_be_visible()
+    expect(viewer.get_by_text("map frame · z up · meters")).to_be_visible()
     page.frames[-1].wait_for_function("window.__viserMutable?.canvas")
 
 
