@@ -4,8 +4,8 @@ import { test } from "node:test";
 import {
   bytes,
   count,
-  overallWords,
-  progressWords,
+  overallText,
+  progressText,
   seconds,
   stateOf,
 } from "../../web/shared/format.js";
@@ -55,22 +55,19 @@ test("a project shows the state of its job while that matters", () => {
 
 test("the time left is given once it is known", () => {
   const status = { what: "pairs" };
-  assert.equal(overallWords({ overall: 0, overall_eta_s: null, status: { what: "" } }), "Starting");
-  assert.equal(overallWords({ overall: 0.124, overall_eta_s: null, status }), "12 % of the run");
+  assert.equal(overallText({ overall: 0, overall_eta_s: null, status: { what: "" } }), "Starting");
+  assert.equal(overallText({ overall: 0.124, overall_eta_s: null, status }), "12 % of the run");
   assert.equal(
-    overallWords({ overall: 0.5, overall_eta_s: 61, status }),
+    overallText({ overall: 0.5, overall_eta_s: 61, status }),
     "50 % of the run · about 1 min 1 s left",
   );
 });
 
 test("progress names how far, how fast and how long", () => {
   const status = { done: 1200, unit: "pairs", rate_per_s: 8.26, eta_s: 30 };
+  assert.equal(progressText({ status, fraction: 0.4 }), "This part 40 % · 8.3 pairs/s · 30 s left");
   assert.equal(
-    progressWords({ status, fraction: 0.4 }),
-    "This part 40 % · 8.3 pairs/s · 30 s left",
-  );
-  assert.equal(
-    progressWords({ status: { ...status, rate_per_s: 0, eta_s: null }, fraction: null }),
+    progressText({ status: { ...status, rate_per_s: 0, eta_s: null }, fraction: null }),
     `This part 1${NARROW}200 pairs`,
   );
 });

@@ -49,10 +49,10 @@ async function wait(asked, untilMs) {
   setTimeout(wait, CLAIM_EVERY_MS, asked, untilMs);
 }
 
-function over(words) {
+function over(text) {
   byId("digits").hidden = byId("left").hidden = true;
   byId("words").textContent = "";
-  byId("message").textContent = words;
+  byId("message").textContent = text;
   byId("ask").hidden = byId("else").hidden = false;
 }
 

@@ -110,7 +110,7 @@ async function readLog(before) {
 const sessions = document.querySelector("session-list");
 const form = byId("add", HTMLFormElement);
 fields(form).role.append(
-  ...Object.entries(ROLES).map(([value, words]) => make("option", { value }, words)),
+  ...Object.entries(ROLES).map(([value, text]) => make("option", { value }, text)),
 );
 form.addEventListener("submit", async (event) => {
   event.preventDefault();

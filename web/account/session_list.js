@@ -23,7 +23,7 @@ export class SessionList extends HTMLElement {
 
   connectedCallback() {
     const titles = ["Person", "Device", "From", "Signed in", "Last seen", ""];
-    const head = make("tr", {}, ...titles.map((words) => make("th", { scope: "col" }, words)));
+    const head = make("tr", {}, ...titles.map((text) => make("th", { scope: "col" }, text)));
     this.replaceChildren(
       this.#message,
       make("table", { className: "rows" }, make("thead", {}, head), this.#body),

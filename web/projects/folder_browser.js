@@ -29,8 +29,8 @@ export class FolderBrowser extends HTMLElement {
     this.#list.inert = false;
     if (!entries) return;
     const up = path.split("/").slice(0, -1).join("/");
-    const row = (words, note, onclick) =>
-      make("button", { type: "button", onclick }, make("span", {}, words), make("small", {}, note));
+    const row = (text, note, onclick) =>
+      make("button", { type: "button", onclick }, make("span", {}, text), make("small", {}, note));
     this.#list.replaceChildren(
       make("p", { className: "path" }, path || "Folders of this server"),
       ...(path

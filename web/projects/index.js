@@ -46,7 +46,7 @@ function draw(id, project = projects.find((one) => one.id === id)) {
         height: 180,
       })
     : make("div", { className: "no-thumbnail", ariaHidden: "true" }, "No map yet");
-  const words = project
+  const text = project
     ? [...headline(project), when(project.updated)]
     : [view ? view.job.inputs.recordings.map((path) => path.split("/").at(-1)).join(", ") : ""];
   fill(
@@ -58,7 +58,7 @@ function draw(id, project = projects.find((one) => one.id === id)) {
       make("strong", {}, project?.name ?? id),
     ),
     open ? null : badge(stateOf(project, view)),
-    make("p", { className: "quiet" }, words.join(" · ")),
+    make("p", { className: "quiet" }, text.join(" · ")),
     project?.problem ? make("p", { className: "error" }, `Damaged: ${project.problem}`) : null,
   );
   status.hidden = !open;
@@ -145,7 +145,7 @@ async function begin() {
   document.querySelector("main").classList.toggle("alone", !processes);
   const server = await attempt(byId("message"), readServer);
   byId("notices").replaceChildren(
-    ...(server?.notices ?? []).map((words) => make("p", { className: "notice" }, `▲ ${words}`)),
+    ...(server?.notices ?? []).map((text) => make("p", { className: "notice" }, `▲ ${text}`)),
   );
   if (processes) await showTrash();
 }

@@ -2,7 +2,7 @@
 
 import { cancelJob, readMe, retryJob } from "../shared/api.js";
 import { attempt, fill, make } from "../shared/dom.js";
-import { STATES, overallWords, progressWords } from "../shared/format.js";
+import { STATES, overallText, progressText } from "../shared/format.js";
 
 export function badge(state) {
   const { mark, word } = STATES[state];
@@ -18,7 +18,7 @@ export class JobStatus extends HTMLElement {
   #view;
   #line = make("div", { className: "job-line" });
   #bar = make("progress", { max: 1, ariaLabel: "Progress of the whole run" });
-  #words = make("p", { className: "job-words", role: "status" });
+  #text = make("p", { className: "job-words", role: "status" });
   #piece = make("p", { className: "job-words" });
   #buttons = make("div", { className: "buttons" });
   #message = make("p", { className: "error", role: "alert" });
@@ -27,7 +27,7 @@ export class JobStatus extends HTMLElement {
     this.replaceChildren(
       this.#line,
       this.#bar,
-      this.#words,
+      this.#text,
       this.#piece,
       this.#buttons,
       this.#message,
@@ -46,19 +46,19 @@ export class JobStatus extends HTMLElement {
     );
     this.#bar.hidden = !running;
     this.#bar.value = view.overall;
-    this.#words.textContent = running ? overallWords(view) : job.note;
-    this.#words.hidden = !this.#words.textContent;
+    this.#text.textContent = running ? overallText(view) : job.note;
+    this.#text.hidden = !this.#text.textContent;
     this.#piece.hidden = !running || !status.what;
-    this.#piece.textContent = this.#piece.hidden ? "" : progressWords(view);
+    this.#piece.textContent = this.#piece.hidden ? "" : progressText(view);
     if (before?.state !== job.state || before?.id !== job.id) this.#offer(job);
   }
 
   async #offer(job) {
-    const button = (words, action) =>
+    const button = (text, action) =>
       make(
         "button",
         { type: "button", onclick: () => attempt(this.#message, () => action(job.id)) },
-        words,
+        text,
       );
     const open = job.state === "queued" || job.state === "running";
     const again = job.state === "failed" || job.state === "cancelled";

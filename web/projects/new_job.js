@@ -8,8 +8,8 @@ import "./recording_summary.js";
 import "./setting_editor.js";
 import "./upload_box.js";
 
-const field = (words, control, hint) =>
-  make("label", {}, make("span", {}, words), control, hint ? make("small", {}, hint) : null);
+const field = (text, control, hint) =>
+  make("label", {}, make("span", {}, text), control, hint ? make("small", {}, hint) : null);
 
 const slug = (path) =>
   path

@@ -57,7 +57,7 @@ function drawFigures() {
   byId("figures").hidden = rows.length === 0;
   fill(
     byId("figures").querySelector("dl"),
-    ...rows.map(([words, value]) => make("div", {}, make("dt", {}, words), make("dd", {}, value))),
+    ...rows.map(([text, value]) => make("div", {}, make("dt", {}, text), make("dd", {}, value))),
   );
 }
 

@@ -34,15 +34,15 @@ export function sorted(picked) {
 
 /** A key by which the same files are recognized after an interruption. */
 export async function fingerprint(files) {
-  const words = JSON.stringify(files.map(({ file, name }) => [name, file.size, file.lastModified]));
-  const digest = await crypto.subtle?.digest("SHA-256", new TextEncoder().encode(words));
-  if (!digest) return words.slice(0, 200);
+  const text = JSON.stringify(files.map(({ file, name }) => [name, file.size, file.lastModified]));
+  const digest = await crypto.subtle?.digest("SHA-256", new TextEncoder().encode(text));
+  if (!digest) return text.slice(0, 200);
   return [...new Uint8Array(digest)].map((one) => one.toString(16).padStart(2, "0")).join("");
 }
 
 export class Sending extends EventTarget {
   state = "waiting"; // sending, paused, trying, failed, done, removed
-  words = "";
+  text = "";
   sent = 0;
   recording = "";
   #upload = null;
@@ -185,9 +185,9 @@ export class Sending extends EventTarget {
     this.#tell(this.state === "trying" ? "sending" : this.state, "");
   }
 
-  #tell(state, words) {
+  #tell(state, text) {
     this.state = state;
-    this.words = words;
+    this.text = text;
     this.dispatchEvent(new Event("change"));
   }
 }

@@ -3,15 +3,15 @@
 const nameOf = (ref) => ref.split("/").at(-1);
 
 /** A type as a short text: `string`, `list of JobView`, `number or null`. */
-export function typeWords(schema = {}) {
+export function typeText(schema = {}) {
   if (schema.$ref) return nameOf(schema.$ref);
-  if (schema.anyOf) return schema.anyOf.map(typeWords).join(" or ");
+  if (schema.anyOf) return schema.anyOf.map(typeText).join(" or ");
   if (schema.enum) return schema.enum.map((one) => JSON.stringify(one)).join(" or ");
   if (schema.const !== undefined) return JSON.stringify(schema.const);
   if (schema.type === "array")
-    return `list of ${schema.items ? typeWords(schema.items) : "anything"}`;
+    return `list of ${schema.items ? typeText(schema.items) : "anything"}`;
   if (schema.type === "object" && schema.additionalProperties)
-    return `map of text to ${typeWords(schema.additionalProperties)}`;
+    return `map of text to ${typeText(schema.additionalProperties)}`;
   return schema.type ?? "anything";
 }
 

@@ -18,7 +18,7 @@ export class SettingEditor extends HTMLElement {
     oninput: () => this.#filter(),
   });
   #only = make("input", { type: "checkbox", onchange: () => this.#filter() });
-  #words = make("p", { className: "quiet", role: "status" });
+  #text = make("p", { className: "quiet", role: "status" });
   #groups = make("div", { className: "groups" });
   #message = make("p", { className: "error", role: "alert" });
 
@@ -26,7 +26,7 @@ export class SettingEditor extends HTMLElement {
     this.replaceChildren(
       make("label", {}, make("span", {}, "Find a setting"), this.#find),
       make("label", { className: "check" }, this.#only, make("span", {}, "Only changed ones")),
-      this.#words,
+      this.#text,
       this.#groups,
       this.#message,
     );
@@ -79,7 +79,7 @@ export class SettingEditor extends HTMLElement {
       row.input.setAttribute("aria-invalid", String(path in problems));
     }
     const elsewhere = Object.entries(problems).filter(([path]) => !this.#rows.has(path));
-    this.#message.textContent = elsewhere.map(([, words]) => words).join("; ");
+    this.#message.textContent = elsewhere.map(([, text]) => text).join("; ");
     const first = [...this.#rows.values()].find((row) => row.error.textContent);
     if (first) {
       first.row.closest("details").open = true;
@@ -158,21 +158,20 @@ export class SettingEditor extends HTMLElement {
   }
 
   #filter() {
-    const words = this.#find.value.trim().toLowerCase();
+    const text = this.#find.value.trim().toLowerCase();
     for (const [path, row] of this.#rows) {
       const changed = row.input.value !== row.value;
       row.row.classList.toggle("changed", changed);
-      const fits =
-        !words || path.includes(words) || row.row.textContent.toLowerCase().includes(words);
+      const fits = !text || path.includes(text) || row.row.textContent.toLowerCase().includes(text);
       row.row.hidden = !fits || (this.#only.checked && !changed);
     }
     for (const group of this.#groups.children) {
       const rows = [...group.querySelectorAll(".setting")];
       group.hidden = rows.every((row) => row.hidden);
-      if (words || this.#only.checked) group.open = !group.hidden;
+      if (text || this.#only.checked) group.open = !group.hidden;
     }
     const n = this.texts().length;
-    this.#words.textContent = n ? `${n} changed` : "None changed";
+    this.#text.textContent = n ? `${n} changed` : "None changed";
   }
 }
 

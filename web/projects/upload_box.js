@@ -42,14 +42,14 @@ export class UploadBox extends HTMLElement {
   );
   #bar = make("progress", { max: 1, ariaLabel: "Upload" });
   #title = make("p", { className: "upload-title" });
-  #words = make("p", { className: "job-words", role: "status" });
+  #text = make("p", { className: "job-words", role: "status" });
   #buttons = make("div", { className: "buttons" });
   #now = make(
     "div",
     { className: "upload-now", hidden: true },
     this.#title,
     this.#bar,
-    this.#words,
+    this.#text,
     this.#buttons,
   );
   #open = make("ul", { className: "uploads", ariaLabel: "Unfinished uploads" });
@@ -103,13 +103,13 @@ export class UploadBox extends HTMLElement {
 
   #draw(sending) {
     if (sending !== this.#sending) return;
-    const { state, name, files, sent, total, words } = sending;
+    const { state, name, files, sent, total, text } = sending;
     this.#now.hidden = state === "removed";
     this.#zone.hidden = !["removed", "done"].includes(state);
     const label = files.length > 1 ? `${name}, ${count(files.length)} files` : name;
     fill(this.#title, make("strong", {}, label), ` ${STATES[state] ?? ""}`);
     this.#bar.value = total ? (state === "done" ? 1 : sent / total) : 1;
-    this.#words.textContent = words || this.#figures(sending);
+    this.#text.textContent = text || this.#figures(sending);
     this.#offer(state);
     const busy = ["sending", "trying"].includes(state);
     if (busy) addEventListener("beforeunload", this.#leaving);
@@ -129,8 +129,8 @@ export class UploadBox extends HTMLElement {
   #offer(state) {
     if (this.#buttons.dataset.state === state) return;
     this.#buttons.dataset.state = state;
-    const button = (words, action) =>
-      make("button", { type: "button", onclick: () => attempt(this.#message, action) }, words);
+    const button = (text, action) =>
+      make("button", { type: "button", onclick: () => attempt(this.#message, action) }, text);
     const pause = button("Pause", () => this.#sending.pause());
     const resume = button("Continue", () => this.#sending.start());
     const remove = button("Remove", () => this.#sending.remove());

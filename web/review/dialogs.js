@@ -17,8 +17,8 @@ function open(title, ...children) {
 }
 
 export function showKeys() {
-  const rows = KEYS.map(([keys, words]) =>
-    make("tr", {}, make("th", { scope: "row" }, make("kbd", {}, keys)), make("td", {}, words)),
+  const rows = KEYS.map(([keys, text]) =>
+    make("tr", {}, make("th", { scope: "row" }, make("kbd", {}, keys)), make("td", {}, text)),
   );
   const dialog = open(
     "Keys",

@@ -124,12 +124,12 @@ export function showEffect(panel, effect, { working, choose }) {
       { type: "button", className: "link", onclick: () => choose(p) },
       `multiframes ${p[0]} and ${p[1]}`,
     );
-  const list = (words, pairs, name) =>
+  const list = (text, pairs, name) =>
     pairs.length
       ? make(
           "div",
           { className: name ?? "" },
-          make("h3", {}, words),
+          make("h3", {}, text),
           make(
             "ul",
             {},

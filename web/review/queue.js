@@ -29,7 +29,7 @@ export class ReviewQueue extends HTMLElement {
 
   connectedCallback() {
     this.#show.append(
-      ...Object.entries(SHOW).map(([key, [words]]) => make("option", { value: key }, words)),
+      ...Object.entries(SHOW).map(([key, [text]]) => make("option", { value: key }, text)),
     );
     for (const one of [this.#show, this.#reason])
       one.addEventListener("change", () => this.#fill());
@@ -49,7 +49,7 @@ export class ReviewQueue extends HTMLElement {
     const reasons = [...new Set(rows.map((row) => row.reason).filter(Boolean))].sort();
     this.#reason.replaceChildren(
       make("option", { value: "" }, "Any reason"),
-      ...reasons.map((words) => make("option", { value: words }, words)),
+      ...reasons.map((text) => make("option", { value: text }, text)),
     );
     this.#fill();
   }

@@ -2,19 +2,19 @@
 
 import { readMe, readOpenApi } from "./api.js";
 import { attempt, byId, make } from "./dom.js";
-import { example, limits, typeWords } from "../projects/schema.js";
+import { example, limits, typeText } from "../projects/schema.js";
 import "./page_head.js";
 
 const api = await attempt(byId("message"), readOpenApi);
 const me = await readMe();
 const schemas = api?.components?.schemas ?? {};
-const anchor = (words) => words.replace(/[^A-Za-z0-9]+/g, "-").toLowerCase();
+const anchor = (text) => text.replace(/[^A-Za-z0-9]+/g, "-").toLowerCase();
 
 function table(heads, rows) {
   const head = make(
     "thead",
     {},
-    make("tr", {}, ...heads.map((words) => make("th", { scope: "col" }, words))),
+    make("tr", {}, ...heads.map((text) => make("th", { scope: "col" }, text))),
   );
   return make(
     "div",
@@ -33,13 +33,13 @@ const row = (name, ...cells) =>
 
 /** A type, linked to its record. */
 function typeLink(schema) {
-  const words = typeWords(schema);
-  const record = words.split(" ").find((word) => schemas[word]);
-  return record ? make("a", { href: `#record-${record}` }, words) : words;
+  const text = typeText(schema);
+  const record = text.split(" ").find((word) => schemas[word]);
+  return record ? make("a", { href: `#record-${record}` }, text) : text;
 }
 
 /** The description as plain text. */
-const plain = (words = "") => words.replaceAll("`", "");
+const plain = (text = "") => text.replaceAll("`", "");
 
 const RIGHTS = {
   look: "",
@@ -51,13 +51,13 @@ const RIGHTS = {
 
 /** The permission an operation needs, and whether the signed-in person lacks it. */
 function rights(needed = []) {
-  const words = needed
+  const text = needed
     .map((one) => RIGHTS[one] ?? one)
     .filter(Boolean)
     .join(" and ");
-  if (!words) return null;
+  if (!text) return null;
   const mine = needed.every((one) => me.may.includes(one));
-  return make("span", { className: "needs" }, mine ? words : `✕ ${words}, not you`);
+  return make("span", { className: "needs" }, mine ? text : `✕ ${text}, not you`);
 }
 
 const code = (text) => make("pre", { tabIndex: 0 }, text);
@@ -130,8 +130,8 @@ function bodyOf({ requestBody }) {
 function answers({ responses = {} }) {
   const rows = Object.entries(responses).map(([status, one]) => {
     const [[kind, content] = []] = Object.entries(one.content ?? {});
-    const words = content?.schema ? typeLink(content.schema) : (kind ?? "nothing");
-    return row(status, words, one.description ?? "");
+    const text = content?.schema ? typeLink(content.schema) : (kind ?? "nothing");
+    return row(status, text, one.description ?? "");
   });
   return [make("h3", {}, "Answers"), table(["Status", "What", ""], rows)];
 }
@@ -143,12 +143,12 @@ function parts(path, method, operation) {
     row(
       one.name,
       one.in,
-      typeWords(one.schema),
+      typeText(one.schema),
       [one.required ? "needed" : "", limits(one.schema ?? {})].filter(Boolean).join(", "),
       plain(one.description),
     ),
   );
-  const record = body?.schema?.$ref && schemas[typeWords(body.schema)];
+  const record = body?.schema?.$ref && schemas[typeText(body.schema)];
   const ok = Object.entries(operation.responses ?? {}).find(([status]) =>
     status.startsWith("2"),
   )?.[1]?.content?.["application/json"]?.schema;
@@ -206,7 +206,7 @@ for (const [path, methods] of Object.entries(api?.paths ?? {})) {
     tags.set(tag, [...(tags.get(tag) ?? []), route(path, method, operation)]);
   }
 }
-const title = (words) => words[0].toUpperCase() + words.slice(1);
+const title = (text) => text[0].toUpperCase() + text.slice(1);
 const records = Object.entries(schemas).map(([name, one]) =>
   make(
     "details",

@@ -18,8 +18,8 @@ const ROWS = [
 
 /** [caption, value] rows; figures that are missing are left out. */
 export const figures = (summary) =>
-  ROWS.filter(([, key]) => summary[key] !== undefined).map(([words, key, format]) => [
-    words,
+  ROWS.filter(([, key]) => summary[key] !== undefined).map(([text, key, format]) => [
+    text,
     format(summary[key]),
   ]);
 

@@ -44,14 +44,14 @@ export function stateOf(project, view) {
 }
 
 /** Progress of the whole run and its remaining time. */
-export function overallWords({ overall, overall_eta_s, status }) {
+export function overallText({ overall, overall_eta_s, status }) {
   if (!status.what) return "Starting";
   const left = overall_eta_s === null ? [] : [`about ${seconds(overall_eta_s)} left`];
   return [`${Math.round(overall * 100)} % of the run`, ...left].join(" · ");
 }
 
 /** Progress of the current stage in one line: fraction, rate, remaining time. */
-export function progressWords({ status, fraction }) {
+export function progressText({ status, fraction }) {
   const parts = [
     fraction === null ? `${count(status.done)} ${status.unit}` : `${Math.round(fraction * 100)} %`,
   ];

@@ -39,7 +39,7 @@ export class PageHead extends HTMLElement {
 
   /** Who is signed in, and what only some may open. */
   #show({ name, role, may, login }, live) {
-    const link = (href, words) => make("a", { href }, words);
+    const link = (href, text) => make("a", { href }, text);
     this.#account.replaceChildren(
       ...(live ? [link(liveUrl, "Live")] : []),
       ...(may.includes("process") ? [link("/api", "API")] : []),
@@ -68,8 +68,8 @@ export class PageHead extends HTMLElement {
   }
 
   /** The project's name. */
-  set name(words) {
-    this.#name.textContent = words;
+  set name(text) {
+    this.#name.textContent = text;
   }
 
   /** Shows whether the server answers. */
@@ -88,14 +88,14 @@ export class PageHead extends HTMLElement {
   }
 
   #tabs(id, here) {
-    const tab = ([path, words]) =>
+    const tab = ([path, text]) =>
       make(
         "a",
         {
           href: projectUrl(id) + path,
           ...(path === (here && `${here}/`) ? { ariaCurrent: "page" } : {}),
         },
-        words,
+        text,
       );
     return make("nav", { ariaLabel: "Pages of the project", className: "tabs" }, ...PAGES.map(tab));
   }

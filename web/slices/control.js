@@ -45,8 +45,8 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
           ...one.xyz_m.map((x) => make("td", { className: "number" }, x.toFixed(3))),
         ),
       );
-    const button = (words, action) =>
-      make("button", { type: "button", onclick: () => attempt(message, action) }, words);
+    const button = (text, action) =>
+      make("button", { type: "button", onclick: () => attempt(message, action) }, text);
     const use = (frame) => () => keep(() => ({ points: found.points, frame, picks: {} }));
     preview.replaceChildren(
       make(
@@ -63,14 +63,14 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
           make(
             "tr",
             {},
-            ...["Point", "East, x", "North, y", "Height"].map((words, k) =>
-              make("th", { scope: "col", className: k ? "number" : "" }, words),
+            ...["Point", "East, x", "North, y", "Height"].map((text, k) =>
+              make("th", { scope: "col", className: k ? "number" : "" }, text),
             ),
           ),
         ),
         make("tbody", {}, ...rows),
       ),
-      ...found.skipped.slice(0, 5).map((words) => make("p", { className: "error" }, words)),
+      ...found.skipped.slice(0, 5).map((text) => make("p", { className: "error" }, text)),
       found.question ? make("p", {}, found.question) : "",
       make(
         "div",
@@ -117,16 +117,16 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
     const found = /** @type {any} */ (await readControlReport(id));
     const residuals = new Map(found.rows.map((one) => [one.id, one]));
     const earlier = new Set(found.outdated);
-    const head = ["Point", "Role", "dE", "dN", "dU", "2D", "3D [cm]", ""].map((words, k) =>
-      make("th", { scope: "col", className: k > 1 ? "number" : "" }, words),
+    const head = ["Point", "Role", "dE", "dN", "dU", "2D", "3D [cm]", ""].map((text, k) =>
+      make("th", { scope: "col", className: k > 1 ? "number" : "" }, text),
     );
     const all = make(
       "button",
       { type: "button", onclick: () => attempt(message, () => everySurface(all)) },
       "All on the nearest surface",
     );
-    const file = (ending, words, more) =>
-      make("a", { className: "button", href: controlFileUrl(id, ending), ...more }, words);
+    const file = (ending, text, more) =>
+      make("a", { className: "button", href: controlFileUrl(id, ending), ...more }, text);
     table.replaceChildren(
       verdict(found),
       ...found.figures.map(figures),
@@ -170,7 +170,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
         ? `${outdated.length} measured in an earlier map only, not counted: measure them again`
         : "",
     ].filter(Boolean);
-    const words =
+    const text =
       passed === null
         ? "– No check point measured yet"
         : passed
@@ -179,7 +179,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
     return make(
       "p",
       { className: `verdict ${passed === null ? "" : passed ? "good" : "bad"}` },
-      [words, ...left].join(" · "),
+      [text, ...left].join(" · "),
     );
   }
 
@@ -217,7 +217,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
         })),
       ),
     );
-    const button = (words, action, label) =>
+    const button = (text, action, label) =>
       make(
         "button",
         {
@@ -226,7 +226,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
           ariaLabel: label,
           onclick: () => attempt(message, action),
         },
-        words,
+        text,
       );
     return make(
       "tr",
@@ -235,7 +235,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
       make("td", {}, role),
       ...(earlier
         ? [make("td", { colSpan: values.length, className: "quiet" }, "found in an earlier map")]
-        : values.map((words) => make("td", { className: "number" }, words))),
+        : values.map((text) => make("td", { className: "number" }, text))),
       make(
         "td",
         {},
@@ -270,7 +270,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
 
   /** The limits of one role, with what was measured. */
   function figures(one) {
-    const cell = (words) => make("td", { className: "number" }, words);
+    const cell = (text) => make("td", { className: "number" }, text);
     const line = (limit) =>
       make(
         "tr",
@@ -289,7 +289,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
       "",
       "Measured [cm]",
       "Limit",
-    ].map((words, k) => make("th", { scope: "col", className: k > 1 ? "number" : "" }, words));
+    ].map((text, k) => make("th", { scope: "col", className: k > 1 ? "number" : "" }, text));
     return make(
       "div",
       { className: "figures" },

@@ -10,9 +10,9 @@ const KINDS = [
   ["free", "Free", "F"],
 ];
 
-const field = (words, control) => make("label", {}, make("span", {}, words), control);
+const field = (text, control) => make("label", {}, make("span", {}, text), control);
 
-function number(words, value, step, onValue) {
+function number(text, value, step, onValue) {
   const input = make("input", {
     type: "number",
     step: String(step),
@@ -23,14 +23,14 @@ function number(words, value, step, onValue) {
     "change",
     () => Number.isFinite(input.valueAsNumber) && onValue(input.valueAsNumber),
   );
-  return field(words, input);
+  return field(text, input);
 }
 
 function select(options, value, onValue) {
   const element = make(
     "select",
     {},
-    ...options.map(([key, words]) => make("option", { value: key }, words)),
+    ...options.map(([key, text]) => make("option", { value: key }, text)),
   );
   element.value = value;
   element.addEventListener("change", () => onValue(element.value));
@@ -93,20 +93,20 @@ export function controls(root, { change, toKind }) {
     ];
   }
 
-  function kindButton([kind, words, key], state) {
+  function kindButton([kind, text, key], state) {
     return make(
       "button",
       {
         type: "button",
         ariaPressed: String(state.kind === kind),
-        title: `${words}  ${key}`,
+        title: `${text}  ${key}`,
         onclick: () => toKind(kind),
       },
-      words,
+      text,
     );
   }
 
-  const thick = (state, words, t) =>
+  const thick = (state, text, t) =>
     make(
       "button",
       {
@@ -114,7 +114,7 @@ export function controls(root, { change, toKind }) {
         ariaPressed: String(state.t === t),
         onclick: () => change({ t }, { keep: true }),
       },
-      words,
+      text,
     );
 
   function looks(state) {
@@ -168,7 +168,7 @@ export function controls(root, { change, toKind }) {
   }
 
   function options(element, pairs, value) {
-    fill(element, ...pairs.map(([key, words]) => make("option", { value: key }, words)));
+    fill(element, ...pairs.map(([key, text]) => make("option", { value: key }, text)));
     element.value = value;
   }
 
@@ -190,7 +190,7 @@ export function controls(root, { change, toKind }) {
       besideColor,
       [
         ["", state.beside ? "Same color" : "One slice"],
-        ...colors.map(([key, words]) => [key, `Beside: ${words.toLowerCase()}`]),
+        ...colors.map(([key, text]) => [key, `Beside: ${text.toLowerCase()}`]),
       ],
       state.besideColor,
     );

@@ -34,10 +34,10 @@ export function doublesPanel({ id, change, point, state }) {
     "A wall is double where two visits put one surface at two places. The whole map is checked.",
   );
 
-  const choose = (words, choices) =>
+  const choose = (text, choices) =>
     make(
       "select",
-      { ariaLabel: words, hidden: true, onchange: () => listed() },
+      { ariaLabel: text, hidden: true, onchange: () => listed() },
       ...Object.entries(choices).map(([value, name]) => make("option", { value }, name)),
     );
   const which = choose("Which surfaces", {
@@ -101,7 +101,7 @@ export function doublesPanel({ id, change, point, state }) {
       "D = separation / σ",
       "Weaker layer",
       "Visits",
-    ].map((words) => make("th", { scope: "col" }, words));
+    ].map((text) => make("th", { scope: "col" }, text));
     const rows = meant.slice(0, MOST_ROWS).map(row);
     const caption = make(
       "p",
@@ -131,7 +131,7 @@ export function doublesPanel({ id, change, point, state }) {
       change(cutAt(wall));
       document.getElementById("views").scrollIntoView({ block: "nearest" });
     };
-    const words = wall.middle_m.map((x) => x.toFixed(1)).join(" ");
+    const text = wall.middle_m.map((x) => x.toFixed(1)).join(" ");
     return make(
       "tr",
       {},
@@ -140,8 +140,8 @@ export function doublesPanel({ id, change, point, state }) {
         {},
         make(
           "button",
-          { type: "button", className: "go", onclick: go, ariaLabel: `Go to ${words}` },
-          words,
+          { type: "button", className: "go", onclick: go, ariaLabel: `Go to ${text}` },
+          text,
         ),
       ),
       make("td", { className: double ? "bad" : "good" }, double ? "✕ double" : "✓ single"),

@@ -80,7 +80,7 @@ export function exportPanel({ id, change, state, ask }) {
       Number.isFinite(spacing.valueAsNumber) &&
       change({ spacing: spacing.valueAsNumber }, { keep: true }),
   );
-  const field = (words, control) => make("label", {}, make("span", {}, words), control);
+  const field = (text, control) => make("label", {}, make("span", {}, text), control);
   return {
     element: make(
       "div",

@@ -16,8 +16,8 @@ export function findings(root, page) {
     ["Export", exportPanel(page)],
   ];
   root.replaceChildren(
-    ...panels.map(([words, { element }]) =>
-      make("details", { className: "panel" }, make("summary", {}, words), element),
+    ...panels.map(([text, { element }]) =>
+      make("details", { className: "panel" }, make("summary", {}, text), element),
     ),
   );
   const forward = (what) => (value) => panels.forEach(([, panel]) => panel[what]?.(value));

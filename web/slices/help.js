@@ -21,7 +21,7 @@ export function help(dialog) {
     make(
       "dl",
       { className: "keys" },
-      ...KEYS.map(([key, words]) => make("div", {}, make("dt", {}, key), make("dd", {}, words))),
+      ...KEYS.map(([key, text]) => make("div", {}, make("dt", {}, key), make("dd", {}, text))),
     ),
     make(
       "p",

@@ -29,12 +29,12 @@ export function legend(root, { state, shown, facts, onRange }) {
     root.replaceChildren(...[head, ...names.map(swatch), green].filter(Boolean));
     return;
   }
-  const end = (value, words, which) => {
+  const end = (value, text, which) => {
     const input = make("input", {
       type: "number",
       step: "any",
       value: String(Number((value * scale).toPrecision(4))),
-      ariaLabel: words,
+      ariaLabel: text,
     });
     input.addEventListener("change", () => {
       const x = input.valueAsNumber / scale;

@@ -43,8 +43,8 @@ export function referencePanel({ id, change, state, reload }) {
   const method = make(
     "select",
     { ariaLabel: "How distances are measured" },
-    ...Object.entries(METHODS).map(([key, words]) =>
-      make("option", { value: key }, `Distances ${words}`),
+    ...Object.entries(METHODS).map(([key, text]) =>
+      make("option", { value: key }, `Distances ${text}`),
     ),
   );
   const table = make("div", {});
@@ -53,8 +53,8 @@ export function referencePanel({ id, change, state, reload }) {
     await attempt(message, action);
     button.disabled = false;
   };
-  const make_ = (words, action) => {
-    const button = make("button", { type: "button" }, words);
+  const make_ = (text, action) => {
+    const button = make("button", { type: "button" }, text);
     button.addEventListener("click", busy(button, action));
     return button;
   };
@@ -66,10 +66,10 @@ export function referencePanel({ id, change, state, reload }) {
     ariaLabel: "Reference file",
     onchange: () => attempt(message, upload),
   });
-  const words = make("span", { role: "status" });
+  const text = make("span", { role: "status" });
   const bar = make("progress", { max: 1, ariaLabel: "Upload of the reference" });
   const stop = make("button", { type: "button" }, "Stop");
-  const sendingNow = make("div", { className: "row", hidden: true }, words, bar, stop);
+  const sendingNow = make("div", { className: "row", hidden: true }, text, bar, stop);
   const choose = make("button", { type: "button", onclick: () => file.click() }, "Upload file…");
 
   /** Sends the file like a recording (it goes on after a break), then uses it. */
@@ -78,8 +78,8 @@ export function referencePanel({ id, change, state, reload }) {
     file.value = ""; // the same file may be chosen again
     stop.onclick = () => attempt(message, () => sending.remove());
     sending.addEventListener("change", () => {
-      words.textContent =
-        sending.words || `${sending.name}: ${bytes(sending.sent)} of ${bytes(sending.total)}`;
+      text.textContent =
+        sending.text || `${sending.name}: ${bytes(sending.sent)} of ${bytes(sending.total)}`;
       bar.value = sending.total ? sending.sent / sending.total : 1;
     });
     choose.disabled = true;
@@ -87,9 +87,9 @@ export function referencePanel({ id, change, state, reload }) {
     try {
       await sending.start();
       if (sending.state === "failed")
-        throw new Error(`${sending.words}; choose the same file again to go on`);
+        throw new Error(`${sending.text}; choose the same file again to go on`);
       if (sending.state !== "done") return;
-      words.textContent = `${sending.name} is being read`;
+      text.textContent = `${sending.name} is being read`;
       path.value = sending.recording;
       await add();
     } finally {
@@ -171,7 +171,7 @@ export function referencePanel({ id, change, state, reload }) {
   }
 
   function show(found, ask) {
-    const cell = (words) => make("td", { className: "number" }, words);
+    const cell = (text) => make("td", { className: "number" }, text);
     const figure = (x, digits = 2) => cell(x === null ? "–" : (x * 100).toFixed(digits));
     const row = (name, one) =>
       make(
@@ -185,7 +185,7 @@ export function referencePanel({ id, change, state, reload }) {
         cell(count(one.outliers)),
       );
     const head = ["Slice", "Mean [cm]", "< 2 cm [%]", "< 5 cm [%]", "Points", "Beyond 50 cm"].map(
-      (words, k) => make("th", { scope: "col", className: k ? "number" : "" }, words),
+      (text, k) => make("th", { scope: "col", className: k ? "number" : "" }, text),
     );
     const rows = [
       ...found.slices.map((one) => row(one.name, one)),

@@ -127,15 +127,15 @@ async function loadSecond(mine) {
   );
   if (mine !== turn) return;
   await second.show(image);
-  captions[1].textContent = `${sourceWords(state.beside)} · ${COLORS[color]} · ${count(image.points)} points`;
+  captions[1].textContent = `${sourceText(state.beside)} · ${COLORS[color]} · ${count(image.points)} points`;
 }
 
-const sourceWords = (source) =>
+const sourceText = (source) =>
   source ? (facts.sources.find((one) => one.id === source)?.words ?? source) : "This map";
 
 function describe() {
   const [name, points] = [shown.name, count(shown.points)];
-  captions[0].textContent = `${sourceWords(state.source)} · ${COLORS[state.color]} · ${points} points`;
+  captions[0].textContent = `${sourceText(state.source)} · ${COLORS[state.color]} · ${points} points`;
   first.label = `Slice ${name}, ${points} points, colored by ${COLORS[state.color]}`;
   second.label = captions[1].textContent;
   fill(
@@ -176,12 +176,12 @@ async function place({ u, v, reach }) {
   if (measuring) measured = measured.length >= 2 ? [answer] : [...measured, answer];
   found.picked(answer);
   mark();
-  reading.textContent = measured.length === 2 ? distanceWords(...measured) : pointWords(answer);
+  reading.textContent = measured.length === 2 ? distanceText(...measured) : pointText(answer);
 }
 
 const fixed = (xs) => xs.map((x) => x.toFixed(3)).join("  ");
 
-function pointWords({ p_map, p_crs, about }) {
+function pointText({ p_map, p_crs, about }) {
   const parts = [`x y z  ${fixed(p_map)} m`];
   if (p_crs) parts.push(`${facts.crs}  E N H  ${fixed(p_crs)} m`);
   if (about.intensity !== undefined) parts.push(`intensity ${about.intensity}`);
@@ -196,7 +196,7 @@ function lengths(a, b) {
   return { all: Math.hypot(...d), flat: Math.hypot(d[0], d[1]), up: d[2] };
 }
 
-function distanceWords(a, b) {
+function distanceText(a, b) {
   const { all, flat, up } = lengths(a, b);
   return `Distance ${all.toFixed(3)} m · horizontal ${flat.toFixed(3)} m · vertical ${up.toFixed(3)} m · from ${fixed(a.p_map)} to ${fixed(b.p_map)}`;
 }
@@ -205,7 +205,7 @@ function mark() {
   const line = measured.length === 2 ? `${lengths(...measured).all.toFixed(3)} m` : "";
   const marks =
     measuring || measured.length
-      ? [{ points: measured.map((one) => one.uv), words: line }]
+      ? [{ points: measured.map((one) => one.uv), text: line }]
       : picked
         ? [{ points: [picked.uv] }]
         : [];
@@ -313,11 +313,11 @@ const found = findings(byId("findings"), {
 });
 
 function tools() {
-  const button = (words, action, more = {}) =>
-    make("button", { type: "button", onclick: action, ...more }, words);
-  const mode = (words, value) =>
+  const button = (text, action, more = {}) =>
+    make("button", { type: "button", onclick: action, ...more }, text);
+  const mode = (text, value) =>
     button(
-      words,
+      text,
       () => {
         byId("views").dataset.mode = value;
         layOut();

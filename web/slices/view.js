@@ -46,8 +46,8 @@ export class SliceView extends HTMLElement {
   }
 
   /** The label for screen readers. */
-  set label(words) {
-    this.#canvas.setAttribute("aria-label", words);
+  set label(text) {
+    this.#canvas.setAttribute("aria-label", text);
   }
 
   /** Middle [m] and meters per pixel; null before the first image. */
@@ -105,7 +105,7 @@ export class SliceView extends HTMLElement {
     this.draw();
   }
 
-  /** Points and lines to mark: [{points: [[u, v], …], words}]. */
+  /** Points and lines to mark: [{points: [[u, v], …], text}]. */
   set marks(marks) {
     this.#marks = marks;
     this.draw();
@@ -186,7 +186,7 @@ export class SliceView extends HTMLElement {
   #labels(pen, step, color) {
     const { width, height } = this.#size();
     const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
-    const words = (x) => (Math.abs(x) < step / 2 ? 0 : x).toFixed(digits).replace("-", "−");
+    const text = (x) => (Math.abs(x) < step / 2 ? 0 : x).toFixed(digits).replace("-", "−");
     pen.fillStyle = color("--paper-edge");
     pen.fillRect(0, height - EDGE.bottom, width, EDGE.bottom);
     pen.fillRect(0, 0, EDGE.left, height);
@@ -198,12 +198,12 @@ export class SliceView extends HTMLElement {
     const free = width - pen.measureText(across).width - 32;
     for (const u of this.#lines(step, 0)) {
       const x = this.#toPx([u, 0])[0];
-      if (x > EDGE.left + 16 && x < free) pen.fillText(words(u), x, height - EDGE.bottom / 2);
+      if (x > EDGE.left + 16 && x < free) pen.fillText(text(u), x, height - EDGE.bottom / 2);
     }
     pen.textAlign = "right";
     for (const v of this.#lines(step, 1)) {
       const y = this.#toPx([0, v])[1];
-      if (y > 26 && y < height - EDGE.bottom - 10) pen.fillText(words(v), EDGE.left - 8, y);
+      if (y > 26 && y < height - EDGE.bottom - 10) pen.fillText(text(v), EDGE.left - 8, y);
     }
     pen.fillStyle = color("--ink");
     pen.fillText(across, width - 8, height - EDGE.bottom / 2);
@@ -230,7 +230,7 @@ export class SliceView extends HTMLElement {
     pen.fillText(text, x + px / 2, y - 9);
   }
 
-  #mark(pen, { points, words, tone }, color) {
+  #mark(pen, { points, text, tone }, color) {
     if (!points.length) return;
     const places = points.map((point) => this.#toPx(point));
     for (const [stroke, width] of [
@@ -247,16 +247,16 @@ export class SliceView extends HTMLElement {
       }
       pen.stroke();
     }
-    if (!words) return;
+    if (!text) return;
     const [x, y] = places.at(-1);
     pen.font = "600 13px system-ui, sans-serif";
     pen.textAlign = "left";
-    const wide = pen.measureText(words).width;
+    const wide = pen.measureText(text).width;
     const left = Math.min(x + 12, this.#size().width - wide - 12);
     pen.fillStyle = color("--paper");
     pen.fillRect(left - 4, y - 30, wide + 8, 22);
     pen.fillStyle = color("--ink");
-    pen.fillText(words, left, y - 19);
+    pen.fillText(text, left, y - 19);
   }
 
   // -- pointers
