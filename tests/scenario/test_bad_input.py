@@ -42,7 +42,7 @@ def pcap(tmp_path_factory):
 
 @pytest.fixture
 def process(tmp_path, capsys):
-    """Run ``recon4 process`` on something; the summary, and what the report says."""
+    """Run ``recon4 process`` on an input; returns the summary with the text of the report."""
 
     def run(recording, *more, out="project"):
         capsys.readouterr()
@@ -58,7 +58,7 @@ def process(tmp_path, capsys):
 
 @pytest.fixture
 def refuse(tmp_path, capsys):
-    """Run a command that must fail; the one line it says."""
+    """Run a command that must fail; returns its error line."""
 
     def run(*arguments, command="process", out="project"):
         capsys.readouterr()
@@ -153,7 +153,7 @@ def test_a_bag_cut_off_becomes_a_map_of_what_is_left(process, tmp_path, kind):
 # -- packets
 
 
-def test_garbage_doubles_and_disorder_leave_the_map_as_it_is(process, tmp_path, whole):
+def test_garbage_duplicates_and_disorder_do_not_change_the_map(process, tmp_path, whole):
     rng = np.random.default_rng(1)
     t_ns, payloads = room_packets(seconds=0.8)
     twice = np.sort(np.append(np.arange(len(t_ns)), rng.choice(len(t_ns), 60, replace=False)))
@@ -171,7 +171,7 @@ def test_garbage_doubles_and_disorder_leave_the_map_as_it_is(process, tmp_path, 
     assert "packets duplicate" in summary["report"]
 
 
-def test_a_product_byte_of_another_model_is_overruled_and_said(process, tmp_path, whole):
+def test_a_product_byte_of_another_model_is_overridden_and_reported(process, tmp_path, whole):
     t_ns, payloads = room_packets(seconds=0.8)
     payloads[:, 1205] = 0x21
 
@@ -191,7 +191,7 @@ def test_a_recording_over_the_full_hour_is_one_recording(process, tmp_path, whol
     assert summary["points"] == pytest.approx(whole, rel=0.01)
 
 
-def test_a_clock_that_is_set_back_is_carried_on_and_said(process, tmp_path, whole):
+def test_a_clock_that_is_set_back_is_continued_and_reported(process, tmp_path, whole):
     t_ns, payloads = room_packets(seconds=0.8)
     half = len(t_ns) // 2
     t_ns[half:] -= 30_000_000_000
@@ -206,7 +206,7 @@ def test_a_clock_that_is_set_back_is_carried_on_and_said(process, tmp_path, whol
     assert_warned(summary, "clock")
 
 
-def test_shots_without_a_return_are_counted_and_left_out(process, tmp_path, whole):
+def test_shots_without_a_return_are_counted_and_skipped(process, tmp_path, whole):
     t_ns, payloads = room_packets(seconds=0.8)
     blocks = payloads[:, :1200].reshape(-1, 12, 100)
     blocks[:, ::2, 4:100:3] = 0
@@ -229,7 +229,7 @@ def test_a_silent_second_lidar_is_named(pcap, process):
     assert_warned(summary, "vertical")
 
 
-def test_without_imu_and_gnss_the_map_is_local_and_says_so(pcap, process):
+def test_without_imu_and_gnss_the_map_is_local_with_a_warning(pcap, process):
     summary = process(pcap, "--preset", "outdoor")
 
     assert summary["crs"] == ""
@@ -239,7 +239,7 @@ def test_without_imu_and_gnss_the_map_is_local_and_says_so(pcap, process):
 # -- clouds
 
 
-def test_points_that_are_none_are_dropped_and_counted(process, tmp_path):
+def test_invalid_points_are_dropped_and_counted(process, tmp_path):
     folder = tmp_path / "frames"
     folder.mkdir()
     for k in range(3):
@@ -255,7 +255,7 @@ def test_points_that_are_none_are_dropped_and_counted(process, tmp_path):
     assert "points invalid" in summary["report"]
 
 
-def test_frames_without_points_are_counted_and_passed_over(process, tmp_path):
+def test_frames_without_points_are_counted_and_skipped(process, tmp_path):
     folder = tmp_path / "frames"
     folder.mkdir()
     for k in range(4):
@@ -286,7 +286,7 @@ def cloud_bag(folder, table, frames=4):
     return path
 
 
-def test_unknown_fields_of_a_cloud_are_passed_over(process, tmp_path):
+def test_unknown_fields_of_a_cloud_are_ignored(process, tmp_path):
     table = room_cloud()
     table = {"mystery": np.ones(len(table["x"]), np.float64), **table, "rgb_2": table["ring"]}
 
@@ -381,7 +381,7 @@ def test_angular_rates_in_degrees_are_refused_with_the_unit(pcap, refuse, tmp_pa
     assert "deg/s" in said
 
 
-def test_accelerations_in_g_are_scaled_and_said(pcap, process, tmp_path):
+def test_accelerations_in_g_are_scaled_with_a_warning(pcap, process, tmp_path):
     summary = process(pcap, "--imu", write_imu(tmp_path / "imu.csv", accel=(0.0, 0.0, 1.0)))
 
     assert summary["multiframes"] == 8
@@ -389,7 +389,7 @@ def test_accelerations_in_g_are_scaled_and_said(pcap, process, tmp_path):
     assert "was in g" in summary["report"]
 
 
-def test_an_imu_that_contradicts_the_lidar_is_not_used_and_said(pcap, process, tmp_path):
+def test_an_imu_that_contradicts_the_lidar_is_not_used_with_a_warning(pcap, process, tmp_path):
     imu = write_imu(tmp_path / "imu.csv", gyro=(0.0, 0.0, 3.0))
 
     summary = process(pcap, "--imu", imu)
@@ -418,7 +418,7 @@ def test_positions_that_jump_do_not_move_the_map(pcap, process, tmp_path):
 # -- the place of the results
 
 
-def test_a_folder_of_somebody_else_is_not_touched(pcap, refuse, tmp_path):
+def test_a_foreign_folder_is_not_changed(pcap, refuse, tmp_path):
     (tmp_path / "project").mkdir()
     (tmp_path / "project" / "thesis.doc").write_text("years of work")
 
@@ -426,7 +426,7 @@ def test_a_folder_of_somebody_else_is_not_touched(pcap, refuse, tmp_path):
     assert [p.name for p in (tmp_path / "project").iterdir()] == ["thesis.doc"]
 
 
-def test_a_place_that_cannot_be_written_is_one_line(pcap, refuse, tmp_path):
+def test_a_folder_that_cannot_be_written_is_one_line(pcap, refuse, tmp_path):
     (tmp_path / "file").write_text("not a folder")
 
     assert "file" in refuse(pcap, out="file/project")
@@ -447,7 +447,7 @@ sys.exit(main(sys.argv[2:]))
 
 
 @pytest.mark.parametrize("limit_kb", [1, 60, 400, 1000])
-def test_a_full_disk_is_one_line_and_the_next_run_goes_on(pcap, process, tmp_path, limit_kb):
+def test_a_full_disk_is_one_line_and_the_next_run_resumes(pcap, process, tmp_path, limit_kb):
     """No file may grow beyond a limit: for a program the same as a full disk."""
     command = ["process", str(pcap), "--out", str(tmp_path / "project"), *FEW]
     limited = [sys.executable, "-c", LIMITED, str(1000 * limit_kb), *command]

@@ -84,7 +84,7 @@ def _off(edge, T_map_body):
     )
 
 
-def test_a_wall_doubled_by_one_wrong_loop_is_found_and_a_good_map_is_not_accused(process):
+def test_a_wall_doubled_by_one_wrong_loop_is_found_and_a_good_map_has_none(process):
     root = process()
     good = doubles(root)
     assert accept_one_loop_off(root) > 3

@@ -74,7 +74,7 @@ def assert_same(found, expected):
         assert found[name] == expected[name], name
 
 
-def test_the_walk_is_worth_the_test(unbroken):
+def test_the_walk_is_tracked_and_has_accepted_loops(unbroken):
     summary = json.loads((unbroken / "summary.json").read_text())
 
     assert summary["multiframes"] in {40, 41}
@@ -94,7 +94,7 @@ def test_one_thread_gives_the_bytes_of_two(walk, unbroken, tmp_path):
     assert_same(results(tmp_path / "one"), results(unbroken))
 
 
-def test_a_run_killed_in_every_stage_goes_on_to_the_same_bytes(walk, unbroken, tmp_path):
+def test_a_run_killed_in_every_stage_resumes_to_the_same_bytes(walk, unbroken, tmp_path):
     """Each run is killed a random while after a stage ended, so that the next one is hit.
 
     SIGKILL goes to a real process: no cleaning up, no last word.

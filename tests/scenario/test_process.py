@@ -48,7 +48,7 @@ def test_every_result_is_there_and_vouched_for_by_its_hash(project):
         assert hash_file(project / name) == sha256
 
 
-def test_the_summary_tells_what_was_done_with_what(project):
+def test_the_summary_has_inputs_settings_and_stages(project):
     summary = json.loads((project / "summary.json").read_text())
 
     assert summary["rig"] == "4RECON"
@@ -67,7 +67,7 @@ def test_the_summary_tells_what_was_done_with_what(project):
     assert sum(summary["edges"].values()) == len(edges)
 
 
-def test_the_walk_is_tracked_to_a_centimetre(project, walk):
+def test_the_walk_is_tracked_to_a_centimeter(project, walk):
     found = evaluate(project, truth=walk / "truth.tum")
 
     # The last pose is the end of the last revolution, a moment after the end of the truth.
@@ -120,7 +120,7 @@ def test_verify_finds_the_project_whole(project, capsys):
     assert "0 damaged" in capsys.readouterr().out
 
 
-def test_the_map_is_exported_but_not_into_a_crs_it_has_no_place_in(project, tmp_path, capsys):
+def test_the_map_is_exported_but_without_gnss_not_to_a_crs(project, tmp_path, capsys):
     assert main(["export", str(project), str(tmp_path / "map.ply")]) == 0
     assert (tmp_path / "map.ply").read_bytes().startswith(b"ply\n")
 

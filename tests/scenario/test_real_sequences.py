@@ -20,7 +20,7 @@ from tests.benchmarks.real_sequences import corridor
 
 SCANS = ScanSettings()
 AT_REST = "packets/veloview/vlp-16-test-90deg-1-50-frames.pcap"
-"""A VLP-16 that stands for 1.5 s (multiframes 1 to 28); then somebody moves it."""
+"""A VLP-16 that is stationary for 1.5 s (multiframes 1 to 28) and then moved."""
 FAR_AND_TURNED = 318
 """Key scan of nclt-hdl32 after which the vehicle is 8.2 m away and turned by 154°."""
 
@@ -137,7 +137,7 @@ def test_the_finished_trajectory_of_a_scanner_at_rest_does_not_drift(data, tmp_p
     assert np.rad2deg(off.angle()).max() < 0.05
 
 
-def test_frames_of_another_place_are_lost_and_the_way_goes_on_after_them(corridor_frames, data):
+def test_frames_of_another_place_are_lost_and_tracking_continues_after_them(corridor_frames, data):
     good = corridor_frames[:14]
     strange = [
         f for f, _ in zip(muehlburg(data("sequences/hdl64-muehlburg")), range(3), strict=False)

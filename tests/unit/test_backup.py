@@ -1,4 +1,4 @@
-"""A backup holds every byte, restores it, and refuses what differs."""
+"""A backup contains every byte, restores it, and rejects damaged data."""
 
 import json
 import os
@@ -20,7 +20,7 @@ NOT_COPIED = (".lock", ".seals.lock", ".changes.lock", "seals.json")
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory):
-    """What a server left: an approved project, queue, people, keys, an upload."""
+    """Files of a server: an approved project, queue, users, keys, an upload."""
     root = tmp_path_factory.mktemp("server")
     make_server_state(root)
     make(root)
@@ -34,7 +34,7 @@ def hashes(root):
     return {name: hash_file(root / name) for name in names}
 
 
-def test_what_was_restored_has_the_same_bytes_and_verifies(server, tmp_path):
+def test_a_restored_backup_has_the_same_bytes_and_verifies(server, tmp_path):
     made = back_up(server, tmp_path / "backups", with_keys=True, progress=Silent())
     restore(tmp_path / "backups", tmp_path / "new", with_keys=True, progress=Silent())
 
@@ -46,7 +46,7 @@ def test_what_was_restored_has_the_same_bytes_and_verifies(server, tmp_path):
     assert key.stat().st_mode & 0o777 == 0o600
 
 
-def test_keys_and_people_are_taken_and_given_only_when_asked_for(server, tmp_path):
+def test_keys_and_users_are_saved_and_restored_only_on_request(server, tmp_path):
     back_up(server, tmp_path / "without", with_keys=False, progress=Silent())
     back_up(server, tmp_path / "with", with_keys=True, progress=Silent())
 
@@ -91,7 +91,7 @@ def test_a_damaged_backup_is_refused_and_leaves_nothing(server, tmp_path, spoil)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["backups"]
 
 
-def test_a_folder_that_holds_something_is_not_restored_into(server, tmp_path):
+def test_a_folder_that_is_not_empty_is_not_restored_into(server, tmp_path):
     back_up(server, tmp_path / "backups", with_keys=False, progress=Silent())
     (tmp_path / "new").mkdir()
     (tmp_path / "new" / "mine").write_text("x")
@@ -102,7 +102,7 @@ def test_a_folder_that_holds_something_is_not_restored_into(server, tmp_path):
         back_up(server, server / "backups", with_keys=False, progress=Silent())
 
 
-def test_damage_before_the_backup_is_said_and_fails_the_command(server, tmp_path, capsys):
+def test_damage_before_the_backup_is_reported_and_fails_the_command(server, tmp_path, capsys):
     path = server / "office" / "project.json"
     whole = path.read_bytes()
     path.write_bytes(whole.replace(b"office", b"0ffice"))
@@ -125,7 +125,7 @@ def copied_counts(root, new):
     return found
 
 
-def test_a_database_that_is_written_meanwhile_is_taken_at_one_moment(tmp_path):
+def test_a_database_that_is_being_written_is_copied_consistently(tmp_path):
     """Two tables always hold the same count; so must every copy of them."""
     root = tmp_path / "root"
     make_server_state(root)

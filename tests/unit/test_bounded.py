@@ -1,4 +1,4 @@
-"""Bounded reading: sizes, line lengths and nesting are refused before memory follows them."""
+"""Bounded reading: excessive sizes, lines and nesting are rejected before memory is used."""
 
 import os
 
@@ -53,7 +53,7 @@ def test_pipes_devices_folders_and_impossible_names_are_refused(tmp_path):
         ("a,b".encode("utf-16"), "got UTF-16"),
     ],
 )
-def test_text_names_the_line_of_what_is_no_text(tmp_path, data, words):
+def test_bytes_that_are_not_text_are_reported_with_their_line(tmp_path, data, words):
     path = tmp_path / "a.txt"
     path.write_bytes(data)
     for read in (
@@ -65,7 +65,7 @@ def test_text_names_the_line_of_what_is_no_text(tmp_path, data, words):
             read()
 
 
-def test_lines_and_blocks_are_the_text_again(tmp_path):
+def test_lines_and_blocks_make_up_the_text(tmp_path):
     path = tmp_path / "a.txt"
     text = "".join(f"line {k} ä\r\n" for k in range(1000)) + "last"
     path.write_bytes(b"\xef\xbb\xbf" + text.encode())

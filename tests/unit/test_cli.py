@@ -1,4 +1,4 @@
-"""The command line: what it says, where it says it, and how it ends."""
+"""The command line: output, error messages and exit codes."""
 
 import json
 import resource
@@ -25,7 +25,7 @@ def keep_signals():
     signal.signal(signal.SIGTERM, before)
 
 
-def test_help_answers_well_under_a_second():
+def test_help_is_shown_well_under_a_second():
     # Processor time: other tests run at the same moment.
     assert min(_processor_seconds("--help") for _ in range(3)) < 0.8
 
@@ -38,7 +38,7 @@ def _processor_seconds(argument: str) -> float:
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-def test_the_version_is_said(capsys):
+def test_the_version_is_printed(capsys):
     assert main(["--version"]) == 0
     assert capsys.readouterr().out == f"recon4 {recon4.__version__}\n"
 
@@ -58,7 +58,7 @@ def test_no_command_shows_the_help_and_is_wrong_usage(capsys):
         (["settings", "--preset", "forest"], "no preset named 'forest'"),
     ],
 )
-def test_wrong_usage_ends_with_2_and_says_what_is_wrong(capsys, arguments, message):
+def test_wrong_usage_exits_with_2_and_a_message(capsys, arguments, message):
     assert main(arguments) == 2
 
     said = capsys.readouterr()
@@ -86,14 +86,14 @@ def test_settings_for_people_mark_what_was_changed(capsys):
     assert sum(line.startswith(" * ") for line in lines) == 1
 
 
-def test_verify_says_all_is_well(tmp_path, capsys):
+def test_verify_reports_no_damage(tmp_path, capsys):
     run_all(tmp_path / "p")
 
     assert main(["verify", str(tmp_path / "p")]) == 0
     assert capsys.readouterr().out == "8 checked, 0 damaged\n"
 
 
-def test_verify_names_damage_and_ends_with_1(tmp_path, capsys):
+def test_verify_reports_damage_and_exits_with_1(tmp_path, capsys):
     runner = run_all(tmp_path / "p")
     (runner.runs["total"].artifact.folder / "total.txt").write_text("?")
 
@@ -101,7 +101,7 @@ def test_verify_names_damage_and_ends_with_1(tmp_path, capsys):
     assert "total.txt has another size" in capsys.readouterr().out
 
 
-def test_a_known_error_is_one_line_on_stderr_and_ends_with_1(tmp_path, capsys):
+def test_a_known_error_is_one_line_on_stderr_and_exits_with_1(tmp_path, capsys):
     assert main(["verify", str(tmp_path)]) == 1
 
     said = capsys.readouterr()
@@ -125,9 +125,7 @@ def test_a_known_error_is_one_line_on_stderr_and_ends_with_1(tmp_path, capsys):
     ],
     ids=lambda arguments: arguments[0],
 )
-def test_what_is_not_there_is_said_in_one_line_and_leaves_nothing(
-    tmp_path, monkeypatch, capsys, arguments
-):
+def test_a_missing_input_is_one_line_and_leaves_nothing(tmp_path, monkeypatch, capsys, arguments):
     monkeypatch.chdir(tmp_path)
 
     assert main(arguments) == 1
@@ -137,7 +135,7 @@ def test_what_is_not_there_is_said_in_one_line_and_leaves_nothing(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_the_doctor_looks_at_the_machine(tmp_path, capsys):
+def test_the_doctor_checks_the_machine(tmp_path, capsys):
     code = main(["doctor", str(tmp_path), "--json"])
 
     checks = {check["what"]: check for check in json.loads(capsys.readouterr().out)}
@@ -145,7 +143,7 @@ def test_the_doctor_looks_at_the_machine(tmp_path, capsys):
     assert code == (0 if all(check["ok"] for check in checks.values()) else 1)
 
 
-def test_the_doctor_says_what_to_do_about_what_is_missing(tmp_path, monkeypatch):
+def test_the_doctor_reports_how_to_install_missing_parts(tmp_path, monkeypatch):
     monkeypatch.setattr("recon4.doctor._PACKAGES", (("no-such-package", "flying"),))
 
     check = examine(tmp_path)[-1]
@@ -167,7 +165,7 @@ sys.exit(recon4.cli.main.main(["verify", "."]))
 
 
 @pytest.mark.parametrize("stop", [signal.SIGINT, signal.SIGTERM])
-def test_a_stopped_command_ends_with_128_plus_the_signal_and_says_which(stop):
+def test_a_stopped_command_exits_with_128_plus_the_signal_and_names_it(stop):
     with subprocess.Popen(
         [sys.executable, "-c", STUCK],
         stdin=subprocess.PIPE,

@@ -98,7 +98,7 @@ ONLY_HERE = {
     "rich": {"recon4/terminal.py"},
     "sqlite3": {"recon4/backup.py", "recon4/store", "recon4/recording", "recon4/review", "app"},
 }
-"""Heavy or telling packages -> where alone they may be imported."""
+"""Heavy or revealing packages -> the only modules that may import them."""
 
 NEVER = {"pickle", "marshal", "shelve", "yaml", "cPickle", "dill", "cloudpickle"}
 """Loading these from a file of unknown origin runs its code."""
@@ -168,13 +168,13 @@ def test_nothing_that_runs_code_from_files_is_imported(path):
     assert {name for name in imported(path) if name.split(".")[0] in NEVER} == allowed
 
 
-def test_the_page_names_every_room():
+def test_the_page_names_every_package():
     page = (ROOT / "docs" / "architecture.md").read_text("utf-8")
-    rooms = {
+    packages = {
         path.parent.name for top in ("recon4", "app") for path in (ROOT / top).glob("*/__init__.py")
     }
 
-    assert {room for room in rooms if not re.search(rf"\b{room}/", page)} == set()
+    assert {package for package in packages if not re.search(rf"\b{package}/", page)} == set()
 
 
 def test_every_package_imported_is_named_in_pyproject():

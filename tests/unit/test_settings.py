@@ -1,4 +1,4 @@
-"""Settings: declared once, changed by text, refused in words."""
+"""Settings: declared once, changed by assignments, validated with messages."""
 
 import ast
 import inspect
@@ -70,7 +70,7 @@ def test_a_wrong_text_is_refused_with_what_was_expected(text, message):
         override(Settings(), [text])
 
 
-def test_everything_wrong_is_told_at_once_and_where():
+def test_all_wrong_settings_are_reported_together():
     texts = [
         "map.voxel_m=thick",
         "maps.x=1",
@@ -103,7 +103,7 @@ def test_two_settings_that_only_fit_together_may_be_changed_together():
     assert changed.ingest.min_range_m == 200.0
 
 
-def test_an_unknown_preset_is_refused_with_those_there_are():
+def test_an_unknown_preset_is_rejected_with_the_known_ones():
     with pytest.raises(ConfigError, match="there are: indoor, outdoor, staircase, thesis"):
         preset("forest")
 
@@ -117,12 +117,12 @@ def test_the_thesis_preset_is_the_documents_algorithm():
     assert not thesis.odometry.use_imu
 
 
-def test_settings_cannot_be_changed_behind_anyones_back():
+def test_settings_are_immutable():
     with pytest.raises(FrozenInstanceError):
         Settings().map.voxel_m = 1.0
 
 
-def test_equal_settings_have_one_text_and_different_ones_two():
+def test_the_canonical_text_is_equal_for_equal_settings_only():
     a = override(Settings(), ["map.voxel_m=0.5", "graph.node_stride=2"])
     b = override(Settings(), ["graph.node_stride=2", "map.voxel_m=0.5"])
 
@@ -131,7 +131,7 @@ def test_equal_settings_have_one_text_and_different_ones_two():
     assert to_json(a)["map"]["voxel_m"] == 0.5
 
 
-def test_every_numeric_setting_either_says_its_unit_or_explains_itself():
+def test_every_numeric_setting_has_a_unit_or_an_explanation():
     units = ("_m", "_s", "_hz", "_rad", "_deg", "_ns", "_m_s2", "_rad_s", "_bins")
     silent = [
         setting.path

@@ -1,4 +1,4 @@
-"""What a person sees while a run goes on."""
+"""Progress on the terminal while a run is in progress."""
 
 import io
 
@@ -40,7 +40,7 @@ def test_bytes_are_shown_in_units_a_person_reads():
 
 
 @pytest.mark.parametrize(("done", "total"), [(0, 0), (0, 10), (5, 0)])
-def test_an_unknown_total_or_no_progress_yet_is_no_division_by_zero(done, total):
+def test_an_unknown_total_or_no_progress_does_not_divide_by_zero(done, total):
     assert describe_progress("x", done, total, unit="y", seconds=0.0)
 
 
@@ -71,7 +71,7 @@ def test_at_a_terminal_there_are_bars_with_the_same_figures():
     assert "frames: done in 1.5 s" in out.getvalue()
 
 
-def test_a_person_hears_of_stages_and_damage_not_of_every_edge():
+def test_stages_and_damage_are_printed_but_not_every_edge():
     assert describe_event("stage", {"stage": "map", "state": "reused"}) == "map: already there"
     assert describe_event("stage", {"stage": "map", "state": "running"}) == ""
     assert describe_event("edge", {"i": 1, "j": 2}) == ""

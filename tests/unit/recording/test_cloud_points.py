@@ -119,7 +119,7 @@ def test_lasers_in_the_order_of_firing_are_put_in_order_of_elevation():
     np.testing.assert_array_equal(shots.ring, table["ring"])
 
 
-def test_points_that_are_none_are_dropped_and_counted():
+def test_invalid_points_are_dropped_and_counted():
     table = room_cloud()
     table["x"][:10] = np.nan
     table["y"][10:15] = np.inf
