@@ -97,6 +97,8 @@ class ProjectCard:
     """Path length [m]; None before the first run has finished."""
     points: int | None
     """Points of the map; None before the first run has finished."""
+    usability: str = ""
+    """Verdict on the map: good, check or do not use; empty = not known."""
     problem: str = ""
     """File of the project that cannot be read, and why; empty = none."""
 

@@ -22,6 +22,7 @@ from app.projects.model import (
     StageView,
 )
 from recon4.errors import StoreError
+from recon4.model.usability import Usability
 from recon4.names import visible
 from recon4.review.approved import approval_of
 from recon4.review.state import artifact_keys
@@ -224,8 +225,16 @@ def _read_card(folder: Path, stamp: Stamp) -> ProjectCard:
         has_map=finished and "points" in summary,
         path_length_m=_number(summary.get("path_length_m")),
         points=_whole(summary.get("points")),
+        usability=_usability(summary),
         problem="; ".join(filter(None, (problem, more))),
     )
+
+
+def _usability(summary: dict[str, Any]) -> str:
+    """The verdict on the map; empty where there is none, as in files of format 1."""
+    verdict = summary.get("verdict")
+    usability = verdict.get("usability") if isinstance(verdict, dict) else None
+    return usability if usability in list(Usability) else ""
 
 
 def _name(facts: dict[str, Any], folder: Path) -> str:

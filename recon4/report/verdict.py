@@ -8,20 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import StrEnum
 
+from recon4.model.usability import Usability
 from recon4.report.artifacts import read_results
 from recon4.report.drift import closed_drift
 from recon4.report.facts import ReportFacts
 from recon4.report.findings import Finding, Level, find
-
-
-class Usability(StrEnum):
-    """What a person may do with the map."""
-
-    GOOD = "good"
-    CHECK = "check"
-    DO_NOT_USE = "do not use"
 
 
 @dataclass(frozen=True, slots=True)

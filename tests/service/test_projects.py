@@ -1,5 +1,6 @@
 """Projects, results and pages over HTTP."""
 
+import json
 import socket
 
 import httpx
@@ -9,6 +10,8 @@ from app.main import serve
 from app.network.listen import listening
 from app.settings import ServerSettings
 from recon4.errors import StoreError
+from recon4.store.atomic import write_json
+from recon4.store.seal import changing
 from tests.project_builder import build_project
 from tests.service.running import server_process, server_thread
 
@@ -33,6 +36,19 @@ def test_the_list_shows_every_project_also_a_damaged_one(server):
     assert found["office"]["finished"] and not found["half"]["finished"]
     assert found["office"]["path_length_m"] == 58.2 and found["half"]["path_length_m"] is None
     assert found["office"]["has_map"] and not found["half"]["has_map"]
+
+
+def test_the_verdict_on_a_map_stands_on_its_card(tmp_path):
+    for name, usability in (("ruined", "do not use"), ("fine", "good"), ("odd", ["?"])):
+        build_project(tmp_path / name, points=1000)
+        summary = json.loads((tmp_path / name / "summary.json").read_text())
+        verdict = {"usability": usability, "reasons": ["The LiDAR observes nothing."]}
+        with changing(tmp_path / name, "summary.json", compared=False):
+            write_json(tmp_path / name / "summary.json", summary | {"verdict": verdict})
+    with server_thread(tmp_path) as running:
+        cards = {card["id"]: card["usability"] for card in running.get("/api/projects").json()}
+
+    assert cards == {"ruined": "do not use", "fine": "good", "odd": ""}
 
 
 def test_a_project_lists_its_stages_also_a_damaged_one(server):

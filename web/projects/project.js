@@ -59,6 +59,9 @@ function drawFigures() {
     byId("figures").querySelector("dl"),
     ...rows.map(([text, value]) => make("div", {}, make("dt", {}, text), make("dd", {}, value))),
   );
+  const reasons = project?.summary?.verdict?.reasons ?? [];
+  byId("verdict").hidden = reasons.length === 0;
+  fill(byId("verdict").querySelector("ul"), ...reasons.map((text) => make("li", {}, text)));
 }
 
 function drawFiles() {

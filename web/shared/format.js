@@ -33,13 +33,20 @@ export const STATES = {
   failed: { mark: "✕", word: "Failed" },
   cancelled: { mark: "■", word: "Cancelled" },
   finished: { mark: "✓", word: "Finished" },
+  check: { mark: "▲", word: "Check this map" },
+  unusable: { mark: "✕", word: "Do not use this map" },
   unfinished: { mark: "◌", word: "Not finished" },
 };
 
-/** State of a project: that of its unfinished job, else that of its folder. */
+/** The verdicts that must not look like "Finished". */
+const VERDICTS = { check: "check", "do not use": "unusable" };
+
+/** State of a project: that of its unfinished job, else the verdict on its map, else its folder. */
 export function stateOf(project, view) {
   const state = view?.job.state;
   if (state && state !== "succeeded") return state;
+  const verdict = VERDICTS[project?.usability ?? project?.summary?.verdict?.usability];
+  if (verdict) return verdict;
   return project?.finished || state === "succeeded" ? "finished" : "unfinished";
 }
 

@@ -353,6 +353,7 @@ export interface ProjectCard {
   has_map: boolean;
   path_length_m: number | null;
   points: number | null;
+  usability: string;
   problem: string;
 }
 

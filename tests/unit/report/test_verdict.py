@@ -5,12 +5,13 @@ import pytest
 
 from recon4.geometry.se3 import SE3
 from recon4.model.trajectory import Trajectory
+from recon4.model.usability import Usability
 from recon4.report.artifacts import Results
 from recon4.report.facts import ReportFacts
 from recon4.report.findings import Finding, Level, find
 from recon4.report.observability import weak_stretches
 from recon4.report.plausibility import too_fast
-from recon4.report.verdict import Usability, map_verdict
+from recon4.report.verdict import map_verdict
 from recon4.settings import preset
 
 
