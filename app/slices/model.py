@@ -119,7 +119,7 @@ class SliceImageView(BaseModel):
 
 
 class PickRequest(Strict):
-    """A place on a slice."""
+    """Request for the map point at a position on a slice."""
 
     cut: CutSpec
     uv: Xy
@@ -128,7 +128,7 @@ class PickRequest(Strict):
 
 
 class PickView(BaseModel):
-    """The nearest point of the map there."""
+    """The nearest point of the map."""
 
     found: bool
     p_map: Xyz = (0.0, 0.0, 0.0)

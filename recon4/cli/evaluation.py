@@ -43,7 +43,7 @@ def evaluate(
         str,
         typer.Option(
             metavar="X,Y,Z,X,Y,Z,X,Y,Z",
-            help="A corner and its two neighbors [m]: density on this patch of the map.",
+            help="A corner and its two neighbors in meters: density on this patch of the map.",
         ),
     ] = "",
     report: Annotated[

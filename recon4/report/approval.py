@@ -1,4 +1,4 @@
-"""The block of the report that says whether somebody approved the map, and who."""
+"""The block of the report with the approval of the map."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _BLOCK = re.compile(f"{re.escape(_BEGIN)}.*?{re.escape(_END)}", re.DOTALL)
 
 
 def draft_block() -> str:
-    """HTML for a map nobody approved."""
+    """HTML for a map without approval."""
     return _block("note", "draft", "Not approved by anybody.")
 
 
@@ -27,7 +27,7 @@ def approved_block(*, version: int, who: str, role: str, time: str, hash: str) -
 
 
 def replace_block(page: str, block: str) -> str:
-    """The report with another block; one without a block gets it at its end."""
+    """Replace the block of a report; append it if there is none."""
     if _BLOCK.search(page):
         return _BLOCK.sub(lambda _: block, page, count=1)
     return page + block

@@ -24,7 +24,7 @@ class Curve:
     """Intensity in classes of one quantity, before and after."""
 
     x: Array
-    """The classes that hold points, (N,)."""
+    """Centers of the classes with points, (N,)."""
     raw: Array
     """(N,)."""
     normalized: Array

@@ -1,4 +1,4 @@
-"""Where to cut: horizontal, vertical and free planes with a thickness."""
+"""Cuts through the map: horizontal, vertical and free planes with a thickness."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ Kind = Literal["horizontal", "vertical", "free"]
 Vector = tuple[float, float, float]
 
 ERROR_THICKNESS_M = 0.02
-"""To judge errors (V §3.2: slices 2 cm wide) [m]."""
+"""Thickness for error measurement (V §3.2: slices 2 cm wide) [m]."""
 LOOKING_THICKNESS_M = 0.10
-"""To look at [m]."""
+"""Thickness for display [m]."""
 MOST_THICKNESS_M = 100.0
 MOST_SLICES = 200
 """Repeated slices in one request."""

@@ -1,4 +1,4 @@
-"""A reference file becomes a reference of ours: tiles of points with normals, or a mesh."""
+"""Import of reference files: tiles of points with normals, or a mesh."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ from recon4.store.atomic import atomic_folder, write_json
 
 TILE_M = 5.0
 NORMAL_CELLS_M = (0.05, 0.10, 0.20)
-"""Normals come from neighborhoods of three of the smallest of these cells that hold enough."""
+"""Cell sizes for normals: the smallest one with enough points is used."""
 _BURST = 4_000_000
 MOST_TILES = 100_000
-"""Each tile is a file for a while: points scattered over the Earth are no survey."""
+"""Limit of temporary tile files: points scattered over the Earth are no survey."""
 
 
 def import_reference(
     path: Path, out: Path, *, name: str = "", frame: MapFrame | None = None
 ) -> dict[str, object]:
-    """Make a reference of a cloud or mesh, completely or not at all.
+    """Import a cloud or mesh as a reference; atomic.
 
     Args:
         path: PLY, PCD, LAS, LAZ, E57, XYZ, CSV, OBJ, STL.
         out: New folder.
-        name: Shown to people; empty = the file's name.
-        frame: Given when the file's coordinates are those of the map's CRS; None = map frame.
+        name: Display name; empty = the file's name.
+        frame: Set if the file's coordinates are in the map's CRS; None = map frame.
 
     Returns:
         ``reference.json``.
@@ -62,7 +62,7 @@ def import_reference(
 
 
 def set_alignment(folder: Path, T_map_reference: SE3, *, description: str) -> dict[str, object]:
-    """Remember how a reference is laid onto the map."""
+    """Store the alignment of a reference with the map."""
     facts = read_facts(folder) | {
         "T_map_reference": T_map_reference.matrix().tolist(),
         "alignment": description,
@@ -72,7 +72,7 @@ def set_alignment(folder: Path, T_map_reference: SE3, *, description: str) -> di
 
 
 def write_tiles(chunks: Iterable[Array], out: Path) -> TileSet:
-    """Sort points into tiles, with a normal each where the neighborhood is flat.
+    """Sort points into tiles and compute normals where the neighborhood is flat.
 
     Args:
         chunks: Points [m], (N, 3) each.

@@ -1,4 +1,4 @@
-"""The point of the map at a place of a slice, and the surface near given coordinates."""
+"""Picking: the map point at a position of a slice, and the surface near given coordinates."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from recon4.slices.points import SliceWindow, points_in
 
 _DESCRIBED = ("intensity", "sensor", "ring", "frame_id", "t_ns")
 _PLANE_M = 0.10
-"""Radius of the part of a surface that is taken for a plane [m]."""
+"""Radius within which a surface is fitted by a plane [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,15 +23,15 @@ class Picked:
     p_map: Vector
     """[m]"""
     uv: tuple[float, float]
-    """Where it is on the cut [m]."""
+    """Position on the cut [m]."""
     off_m: float
-    """How far from the place asked for [m]."""
+    """Distance from the requested position [m]."""
     about: dict[str, float]
     """Intensity, sensor, ring, multiframe, seconds since the start."""
 
 
 def pick(tiles: TileSet, cut: Cut, uv: tuple[float, float], *, radius_m: float) -> Picked | None:
-    """The point of a slice nearest to a place on it; None if there is none within the radius."""
+    """The point of a slice nearest to a position on it; None if there is none within the radius."""
     u, v = uv
     window = SliceWindow(u - radius_m, v - radius_m, u + radius_m, v + radius_m)
     fields = [name for name in _DESCRIBED if name in tiles.fields]
@@ -52,10 +52,10 @@ def pick(tiles: TileSet, cut: Cut, uv: tuple[float, float], *, radius_m: float) 
 
 
 def nearest_surface(tiles: TileSet, p_map: Array, *, radius_m: float = 0.3) -> Array | None:
-    """Where the map's surface is beside given coordinates [m], (3,).
+    """The nearest point of the map's surface to given coordinates [m], (3,).
 
     The foot of the point on the plane through the points within 10 cm of the nearest one; the
-    nearest point itself where they are no plane. None if nothing is within the radius.
+    nearest map point itself where they are not flat. None if there is none within the radius.
     """
     low, high = p_map - radius_m, p_map + radius_m
     near = [np.empty((0, 3))]

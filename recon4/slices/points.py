@@ -15,12 +15,12 @@ from recon4.mapping.tiles import Tile, TileSet
 from recon4.slices.cut import Cut
 
 BLOCK = 2_000_000
-"""Points looked at at once: memory does not follow the size of a tile."""
+"""Points processed at once: memory does not depend on the size of a tile."""
 
 
 @dataclass(frozen=True, slots=True)
 class SliceWindow:
-    """The part of a cut that is looked at, in its own coordinates [m]."""
+    """Part of a cut, in its own coordinates u, v [m]."""
 
     left: float
     bottom: float
@@ -38,7 +38,7 @@ class TilePart:
     uvd: Array
     """u, v and distance from the plane [m], float64 (M, 3)."""
     columns: Columns
-    """The fields asked for, (M,) each."""
+    """The requested fields, (M,) each."""
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -51,7 +51,7 @@ def points_in(
 
     Args:
         tiles: The map.
-        cut: Where.
+        cut: The slab.
         fields: Names of fields besides the coordinates.
         window: Only what lies in this part of it.
     """
@@ -95,7 +95,7 @@ def may_meet(tile: Tile, cut: Cut, low: Array, high: Array) -> bool:
 
 
 def extent(tiles: TileSet, cut: Cut) -> SliceWindow:
-    """What has to be seen to see all of a cut: bounds of the tiles it meets [m]."""
+    """Window that contains all of a cut: bounds of the tiles it meets [m]."""
     low, high = box_of(cut, None)
     met = [tile for tile in tiles if may_meet(tile, cut, low, high)]
     if not met:

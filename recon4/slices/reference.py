@@ -1,4 +1,4 @@
-"""A reference model beside the map: a cloud or a mesh, and distances to it."""
+"""Reference models, clouds or meshes, and distances of map points to them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from recon4.store.json_files import read_object
 
 Method = Literal["plane", "point"]
 FAR_M = 0.5
-"""Distances are not looked for beyond this [m]; they come back as infinite."""
+"""Search radius of distances [m]; larger ones are returned as infinite."""
 MOST_FACTS_BYTES = 1 << 20
 """Size of ``reference.json``."""
 _MARGIN_M = 2.0
@@ -75,7 +75,7 @@ class Reference:
         return distance_to(self.mesh)
 
     def _to_cloud(self, p: Array) -> Array:
-        """Cube by cube, so that only the reference's points nearby are in memory."""
+        """Distance to a cloud, cube by cube, so that only nearby points are in memory."""
         assert self.tiles is not None
         out = np.full(len(p), np.inf)
         cubes = np.floor(p / _MARGIN_M).astype(np.int64)
@@ -118,7 +118,7 @@ def points_between(tiles: TileSet | None, low: Array, high: Array) -> tuple[Arra
 
 
 def load_reference(folder: Path, *, method: Method = "plane") -> Reference:
-    """A reference that `recon4.slices.imports.import_reference` made.
+    """Load a reference written by `recon4.slices.imports.import_reference`.
 
     Raises:
         StoreError: If it is missing or damaged.

@@ -133,7 +133,7 @@ def test_two_browsers_at_once_lose_nothing(server, root):
         {"kind": "accept", **RIGHT, "why": "x" * 501},
     ],
 )
-def test_a_decision_that_makes_no_sense_is_refused_and_not_kept(server, root, body):
+def test_an_invalid_decision_is_rejected_and_not_stored(server, root, body):
     answer = server.post("/decisions", json=body)
 
     assert answer.status_code == 422
@@ -209,7 +209,7 @@ def test_a_pair_is_aligned_and_becomes_an_edge(server, root):
     assert record["missing"] == []
 
 
-def test_a_measurement_nobody_made_is_not_taken(server, root):
+def test_an_unknown_measurement_is_rejected(server, root):
     pair = {"frame_i": 30, "frame_j": 60}
 
     answer = decide(server, "add", pair, measurement="0" * 24)
@@ -219,7 +219,7 @@ def test_a_measurement_nobody_made_is_not_taken(server, root):
     assert read_rows(root) == []
 
 
-def test_a_guess_far_off_does_not_become_an_edge(server):
+def test_a_predicted_pose_far_off_does_not_become_an_edge(server):
     pair = {"frame_i": 30, "frame_j": 60}
 
     found = server.post("/align", json={**pair, "T_i_j": [80, 0, 0, 0, 0, 0, 1]}).json()
@@ -274,7 +274,7 @@ def make_a_new_map(server, root):
     server.running.wait_state(answer.json()["job"]["id"], "succeeded")
 
 
-def test_a_project_without_a_map_is_not_made_anew(server, root):
+def test_a_project_without_a_map_is_not_processed_again(server, root):
     shutil.rmtree(root)
     make(root, graph_only=True)
 
@@ -314,7 +314,7 @@ def test_an_approval_is_signed_and_every_export_carries_it(server, root):
     read_tum(root / "trajectory.tum")
 
 
-def test_nobody_signs_what_became_another_map_while_the_password_was_typed(server):
+def test_a_map_that_changed_during_the_login_is_not_signed(server):
     seen = server.get().json()
     server.post("/decisions", json={"kind": "reject", **RIGHT})
     server.post("/undo", json={"after_seq": seen["seq"] + 1})  # the map is the same, but who knows
@@ -485,7 +485,7 @@ def overwrite(path, data):
         (add_version, "versions/2 is in no row of the journal"),
     ],
 )
-def test_verify_finds_whatever_was_tampered_with(server, root, capsys, forge, words):
+def test_verify_finds_every_change(server, root, capsys, forge, words):
     decide(server, "reject", RIGHT)
     server.post("/undo", json={})
     approve(server)
@@ -497,7 +497,7 @@ def test_verify_finds_whatever_was_tampered_with(server, root, capsys, forge, wo
     assert words in capsys.readouterr().out
 
 
-def test_an_approval_cut_off_before_it_counted_does_not_stand_in_the_way(server, root):
+def test_an_interrupted_approval_does_not_block_the_next_one(server, root):
     (root / "versions" / "1").mkdir(parents=True)
 
     answer = approve(server)

@@ -51,7 +51,7 @@ def exported(server, ending, **changes):
     return server.get(f"{BASE}/export.{ending}", params={"ask": asked})
 
 
-def test_the_page_is_told_what_can_be_cut(server):
+def test_the_facts_about_the_map(server):
     body = server.get(BASE).json()
 
     assert body["points"] == 120_000
@@ -61,7 +61,7 @@ def test_the_page_is_told_what_can_be_cut(server):
     assert [source["id"] for source in body["sources"]] == ["project:other"]
 
 
-def test_a_picture_shows_the_room_from_all_its_points(server):
+def test_an_image_shows_the_room_from_all_its_points(server):
     body = sent(server, "/image", ask(color="sensor")).json()
 
     image = Image.open(io.BytesIO(base64.b64decode(body["png"])))
@@ -293,7 +293,7 @@ def test_control_points_are_looked_at_kept_and_judged(server):
     assert near["surface"][0] == pytest.approx(0.0, abs=0.01)
 
 
-def test_the_table_of_control_points_is_taken_away(server):
+def test_the_table_of_control_points_is_downloaded(server):
     state = {"points": [{"id": "A", "xyz_m": [0.02, 5, 1.5]}], "picks": {"A": [0, 5, 1.5]}}
     httpx.put(f"{server.url}{BASE}/control", json=state, timeout=30)
 

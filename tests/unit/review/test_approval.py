@@ -235,7 +235,7 @@ def test_a_changed_approval_is_found(root, key, change, words):
     assert any(words in what for what in damage(root))
 
 
-def test_files_added_to_and_taken_from_a_version_are_found(root, key):
+def test_added_and_removed_files_of_a_version_are_found(root, key):
     folder = approve(root, key, SIGNER, False).folder
     (folder / "more.txt").write_text("x")
     (folder / "edges.json").unlink()
@@ -246,7 +246,7 @@ def test_files_added_to_and_taken_from_a_version_are_found(root, key):
     )
 
 
-def test_a_journal_written_anew_from_its_first_row_does_not_fit_what_was_signed(root, key):
+def test_a_rewritten_journal_does_not_match_the_signature(root, key):
     append(root, reject())
     append(root, undo())
     approve(root, key, SIGNER, False)

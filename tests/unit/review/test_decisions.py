@@ -147,7 +147,7 @@ def test_a_decision_survives_the_journal_bit_for_bit():
         {"kind": DecisionKind.ACCEPT, "who": "Eva", "pair": (2, 7), "measurement": MEASURED},
     ],
 )
-def test_a_decision_that_makes_no_sense_is_refused(wrong):
+def test_an_invalid_decision_is_rejected(wrong):
     with pytest.raises(ValueError, match=r"decision|pair"):
         Decision(**wrong)
 

@@ -31,7 +31,7 @@ def undo(who="Eva"):
     return Decision(kind=DecisionKind.UNDO, who=who)
 
 
-def test_a_project_nobody_decided_about_has_an_empty_journal_and_no_file(tmp_path):
+def test_a_project_without_decisions_has_an_empty_journal_and_no_file(tmp_path):
     assert read_rows(tmp_path) == []
     assert not read_decided(tmp_path)
     assert list(tmp_path.iterdir()) == []
@@ -120,7 +120,7 @@ def test_a_changed_row_breaks_the_chain(tmp_path, change):
     assert any("row 2" in what and "changed" in what for what in broken(rows))
 
 
-def test_a_row_whose_hash_was_made_anew_breaks_the_chain_behind_it(tmp_path):
+def test_a_row_with_a_recomputed_hash_breaks_the_chain_after_it(tmp_path):
     for j in (7, 8, 9):
         append(tmp_path, reject(j))
     rows = read_rows(tmp_path)

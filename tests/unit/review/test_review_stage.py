@@ -102,7 +102,7 @@ def test_review_json_names_what_happened(run):
     assert len(found.figures["warnings"]) == 2
 
 
-def test_the_quick_look_says_what_the_stage_will_say(run):
+def test_the_preview_has_the_result_of_the_stage(run):
     run()
     before = read_decided(run.root)
     append(run.root, Decision(kind=DecisionKind.ACCEPT, who="Eva", pair=(52, 202)))

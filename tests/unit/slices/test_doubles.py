@@ -53,7 +53,7 @@ def test_a_wall_seen_again_at_its_place_is_not_double(tmp_path):
     assert found.surfaces[0].sigma_m == pytest.approx(0.01, abs=0.003)
 
 
-def test_a_place_is_told_once_as_double_or_as_single(tmp_path):
+def test_a_place_is_reported_once_as_double_or_as_single(tmp_path):
     rng = np.random.default_rng(5)
     columns = visits(rng, [0.0, 0.05])
     far = columns["p_map"][:, 1] > 2.5

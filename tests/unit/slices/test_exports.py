@@ -125,7 +125,7 @@ def test_a_geotiff_of_a_section_has_its_own_meters(tiles, tmp_path):
         assert file.crs is None or file.crs.to_epsg() is None
 
 
-def test_a_picture_too_large_for_one_transformation_is_refused(tiles, tmp_path):
+def test_an_image_too_large_for_one_transformation_is_rejected(tiles, tmp_path):
     drawn = draw(tiles, CUT, Paper(SliceWindow(-40e3, -40e3, 40e3, 40e3), 100.0))
     small = draw(tiles, CUT, Paper(SliceWindow(-40e3, -40e3, 40e3, 40e3), 100.0))
     object.__setattr__(small.paper, "pixel_m", 0.01)

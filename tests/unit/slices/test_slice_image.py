@@ -88,7 +88,7 @@ def test_the_ends_of_a_palette_stand_for_everything_beyond():
     assert np.array_equal(colors[3], table("height", "light")[255])
 
 
-def test_a_picture_is_a_png_transparent_where_nothing_is(tiles):
+def test_an_image_is_a_png_transparent_without_points(tiles):
     drawn = draw(tiles, CUT, PAPER)
 
     image = Image.open(io.BytesIO(png(drawn.rgba(drawn.span, "dark"))))
@@ -97,7 +97,7 @@ def test_a_picture_is_a_png_transparent_where_nothing_is(tiles):
     assert image.getpixel((20, 10))[3] == 0 and image.getpixel((0, 0))[3] > 100
 
 
-def test_an_enormous_picture_is_refused_before_it_is_made():
+def test_a_too_large_image_is_rejected_before_it_is_drawn():
     with pytest.raises(ConfigError, match="larger pixels"):
         Paper(SliceWindow(0.0, 0.0, 1000.0, 1000.0), 0.001)
 

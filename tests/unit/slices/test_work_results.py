@@ -1,4 +1,4 @@
-"""Results of the child processes survive the way back to the server as typed JSON."""
+"""Results of child processes are transferred to the server as typed JSON."""
 
 import inspect
 
