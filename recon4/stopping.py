@@ -1,6 +1,6 @@
 """Ends a command at SIGINT, SIGTERM or SIGHUP: in order, without a traceback.
 
-The signal becomes a `Stopped` exception in the main thread, so that every ``with`` block removes
+The signal becomes a `StoppedBySignal` exception in the main thread, so that every ``with`` block removes
 what it had not finished. Python may throw such an exception away (it is raised inside a callback
 of native code, a destructor or a weak reference) and print a traceback instead: then it is raised
 again a moment later, and nothing is printed.
@@ -22,12 +22,12 @@ CLEANING_UP_S = 10.0
 """Signals that come while the first one is obeyed are ignored this long, then the process ends."""
 
 
-class Stopped(KeyboardInterrupt):
+class StoppedBySignal(KeyboardInterrupt):
     """A signal requested the command to stop."""
 
 
 class StopSignals:
-    """Context manager: while it is open, signals raise `Stopped` in the main thread."""
+    """Context manager: while it is open, signals raise `StoppedBySignal` in the main thread."""
 
     def __init__(self) -> None:
         self.received: signal.Signals | None = None
@@ -79,17 +79,17 @@ class StopSignals:
     def _stop(self, number: int, _: FrameType | None) -> None:
         if self.received is None:
             self.received, self._received_s = signal.Signals(number), time.monotonic()
-            raise Stopped
+            raise StoppedBySignal
         if time.monotonic() - self._received_s > CLEANING_UP_S:
             os._exit(self.exit_code)
 
     def _raise_again(self, *_: object) -> None:
-        raise Stopped
+        raise StoppedBySignal
 
     def _unraisable(self, lost: sys.UnraisableHookArgs) -> None:
         if self.received is None:
             self._hooks[0](lost)
-        elif lost.exc_type is not None and issubclass(lost.exc_type, Stopped):
+        elif lost.exc_type is not None and issubclass(lost.exc_type, StoppedBySignal):
             signal.setitimer(signal.ITIMER_REAL, RAISED_AGAIN_AFTER_S)
 
     def _in_thread(self, lost: threading.ExceptHookArgs) -> None:

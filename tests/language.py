@@ -51,14 +51,18 @@ FOREIGN = ('found["guesses"]', '"levelling"', '"levelled_by"', '"metre"', "node 
 """Names of other libraries, and keys of stored files."""
 
 
+def listed(paths: list[str]) -> list[str]:
+    """Tracked files below some paths; all without any."""
+    command = ["git", "ls-files", *paths]
+    found = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    return found.stdout.splitlines()
+
+
 def lines_with(paths: list[str]) -> Iterator[tuple[str, int, str, str]]:
     """File, line number, the word found and what to use instead."""
-    listed = subprocess.run(
-        ["git", "ls-files", *paths], cwd=ROOT, capture_output=True, text=True, check=True
-    ).stdout.splitlines()
     everywhere = [(re.compile(word, re.IGNORECASE), fix) for word, fix in RETIRED.items()]
     local = [(re.compile(word, re.IGNORECASE), places) for word, places in IN_FOLDER.items()]
-    for name in listed:
+    for name in listed(paths):
         if name in ALLOWED or Path(name).suffix not in SUFFIXES:
             continue
         rules = everywhere + [(rx, "a plain verb") for rx, at in local if name.startswith(at)]

@@ -21,7 +21,7 @@ from app.deps import Parts, Server
 from app.errors import NoRoom, NotFound, ProblemDetail, TooMany
 from app.jobs.model import Inputs, Job, JobState
 from app.jobs.space import refuse_if_full
-from app.jobs.status import Status
+from app.jobs.status import JobStatus
 from app.jobs.supervisor import now
 from app.network.rate_limit import at_most
 from app.network.request_caller import CalledBy
@@ -76,7 +76,7 @@ class JobView:
     """A job and its progress."""
 
     job: Job
-    status: Status
+    status: JobStatus
     fraction: float | None
     """Fraction of the current piece of work, None = not known."""
     overall: float

@@ -8,7 +8,7 @@ a large artifact, may report nothing for longer.
 from __future__ import annotations
 
 from app.jobs.run_progress import AFTER
-from app.jobs.status import Status
+from app.jobs.status import JobStatus
 from recon4.store.stage import SAVING
 
 COMPUTING_FACTOR = 10.0
@@ -16,7 +16,7 @@ COMPUTING = frozenset({"graph", "verification", "review", "refine", "level", "ma
 """Stages, and pieces of work in any stage."""
 
 
-def allowed_silence_s(status: Status, hung_after_s: float) -> float:
+def allowed_silence_s(status: JobStatus, hung_after_s: float) -> float:
     """Seconds without progress after which a worker at this point is killed."""
     running = {row.stage for row in status.stages if row.state == "running"}
     return hung_after_s * (COMPUTING_FACTOR if COMPUTING & {*running, status.what} else 1.0)

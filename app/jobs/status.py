@@ -19,7 +19,7 @@ class StageStatus:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Status:
+class JobStatus:
     """Current piece of work and stages of a running job."""
 
     what: str = ""
@@ -49,15 +49,15 @@ class Status:
         return min(self.done / self.total, 1.0) if self.total else None
 
 
-def after(status: Status, event: Event) -> Status:
+def after(status: JobStatus, event: Event) -> JobStatus:
     """The status after one more event; other events change nothing."""
     match event:
         case RunStarted():
-            return Status()
+            return JobStatus()
         case StageChanged():
             row = StageStatus(stage=event.stage, state=event.state, seconds=event.seconds)
             others = tuple(other for other in status.stages if other.stage != event.stage)
-            return Status(stages=(*others, row))
+            return JobStatus(stages=(*others, row))
         case WorkProgress():
             rate = event.done / event.seconds if event.seconds > 0.0 else 0.0
             return replace(

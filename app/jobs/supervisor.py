@@ -27,7 +27,7 @@ from app.jobs.model import Job, JobState
 from app.jobs.run_progress import RunProgress
 from app.jobs.run_progress import after as progress_after
 from app.jobs.silence import allowed_silence_s
-from app.jobs.status import Status, after
+from app.jobs.status import JobStatus, after
 from app.jobs.store import JobStore
 from app.settings import ServerSettings, worker_environment
 
@@ -40,7 +40,7 @@ class Tail:
     """Reads the events of a job as they are appended."""
 
     def __init__(self, folder: JobFolder) -> None:
-        self.status = Status()
+        self.status = JobStatus()
         self.overall = RunProgress()
         self.unreadable = 0
         """Number of events with numbers out of range."""
@@ -63,7 +63,7 @@ class Tail:
     def forget(self) -> None:
         """Reset: the events so far are those of another worker."""
         self.read()
-        self.status, self.overall = Status(), RunProgress()
+        self.status, self.overall = JobStatus(), RunProgress()
 
 
 class Supervisor:
@@ -92,10 +92,10 @@ class Supervisor:
         """The folder of a job's files."""
         return JobFolder(self._settings.state / "jobs" / job_id)
 
-    def status(self, job: Job) -> Status:
+    def status(self, job: Job) -> JobStatus:
         """The status of a job."""
         if job.state is JobState.QUEUED:
-            return Status()
+            return JobStatus()
         return self._tail(job).status
 
     def overall(self, job: Job) -> RunProgress:

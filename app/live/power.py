@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from recon4.live.findings import Finding
+from recon4.live.findings import CaptureFinding
 
 SUPPLIES = Path("/sys/class/power_supply")
 READ_EVERY_S = 15.0
@@ -57,7 +57,7 @@ def read_battery(supplies: Path = SUPPLIES) -> Battery | None:
     return Battery(min(max(now / full, 0.0), 1.0), left_s, mains)
 
 
-def battery_findings(battery: Battery | None) -> list[Finding]:
+def battery_findings(battery: Battery | None) -> list[CaptureFinding]:
     """Warnings about the battery for the operator."""
     if battery is None or battery.mains:
         return []
@@ -67,7 +67,7 @@ def battery_findings(battery: Battery | None) -> list[Finding]:
     critical = left_s < CRITICAL_S or battery.charge < CRITICAL_CHARGE
     left = f", {left_s / 60:.0f} min" if battery.left_s is not None else ""
     text = f"The computer's battery has {100 * battery.charge:.0f} %{left} left"
-    return [Finding("error" if critical else "warning", text)]
+    return [CaptureFinding("error" if critical else "warning", text)]
 
 
 def _batteries(supplies: Path) -> Iterator[dict[str, float]]:

@@ -24,14 +24,14 @@ _DEGRADED_DEGENERACY = 0.002
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class CaptureFinding:
     """One line on the phone."""
 
     level: Level
     text: str
 
 
-def findings(rig: Rig, newest: Newest, problem: str) -> list[Finding]:
+def findings(rig: Rig, newest: Newest, problem: str) -> list[CaptureFinding]:
     """Derive the warnings from the newest messages of recorder and mapper.
 
     Args:
@@ -39,7 +39,7 @@ def findings(rig: Rig, newest: Newest, problem: str) -> list[Finding]:
         newest: Newest messages of recorder and mapper.
         problem: What is wrong with the capture itself; empty = nothing.
     """
-    found = [Finding("error", problem)] if problem else []
+    found = [CaptureFinding("error", problem)] if problem else []
     status = newest.status
     if status is not None:
         found += [*_disk(status), *_sensors(rig, status), *_samples(rig, status)]
@@ -74,32 +74,33 @@ def _mine(sensor: Sensor, senders: list[Sender]) -> list[Sender]:
     ]
 
 
-def _disk(status: Status) -> list[Finding]:
+def _disk(status: Status) -> list[CaptureFinding]:
     found = []
     file, left_s = status.file, status.disk.left_s
     if file.problem:
-        found.append(Finding("error", f"Nothing is recorded: {file.problem}"))
+        found.append(CaptureFinding("error", f"Nothing is recorded: {file.problem}"))
     if left_s is not None and left_s < _LOW_DISK_S:
-        found.append(Finding("error", f"Disk full in {max(left_s, 0) // 60} min"))
+        found.append(CaptureFinding("error", f"Disk full in {max(left_s, 0) // 60} min"))
     if status.notes:
-        found.append(Finding("error", f"A mark could not be saved: {status.notes}"))
+        found.append(CaptureFinding("error", f"A mark could not be saved: {status.notes}"))
     if status.paused:
-        found.append(Finding("info", "Paused: nothing is recorded"))
+        found.append(CaptureFinding("info", "Paused: nothing is recorded"))
     return found
 
 
-def _sensors(rig: Rig, status: Status) -> list[Finding]:
+def _sensors(rig: Rig, status: Status) -> list[CaptureFinding]:
     silent_s = {s.name: _silent_s(_mine(s, status.senders), status) for s in rig.sensors}
     silent = {name: seconds for name, seconds in silent_s.items() if seconds >= _SILENT_S}
     if silent and len(silent) == len(silent_s):
         shortest = min(silent.values())
         arrives = _arriving(rig, status)
         if arrives:
-            return [Finding("error", f"No LiDAR of the rig sends: {arrives}")]
+            return [CaptureFinding("error", f"No LiDAR of the rig sends: {arrives}")]
         text = f"No LiDAR sends anything for {_seconds(shortest)}: check power and cables"
-        return [Finding("error", text)]
+        return [CaptureFinding("error", text)]
     return [
-        Finding("error", f"{name} LiDAR silent for {_seconds(s)}") for name, s in silent.items()
+        CaptureFinding("error", f"{name} LiDAR silent for {_seconds(s)}")
+        for name, s in silent.items()
     ]
 
 
@@ -136,20 +137,20 @@ def _silent_s(senders: list[Sender], status: Status) -> float:
     return status.seconds if status.seconds >= _GRACE_S else 0.0
 
 
-def _samples(rig: Rig, status: Status) -> list[Finding]:
+def _samples(rig: Rig, status: Status) -> list[CaptureFinding]:
     found = []
     imu = [one for one in status.senders if one.port == rig.imu_port]
     silent_s = _silent_s(imu, status)
     if rig.imu_port and imu and silent_s >= _SILENT_S:
-        found.append(Finding("warning", f"IMU silent for {_seconds(silent_s)}: turn slowly"))
+        found.append(CaptureFinding("warning", f"IMU silent for {_seconds(silent_s)}: turn slowly"))
     elif silent_s >= _SILENT_S:
-        found.append(Finding("warning", "No IMU: walk and turn slowly"))
+        found.append(CaptureFinding("warning", "No IMU: walk and turn slowly"))
     if status.serial:
-        found.append(Finding("warning", f"GNSS receiver: {status.serial}"))
+        found.append(CaptureFinding("warning", f"GNSS receiver: {status.serial}"))
     return found
 
 
-def _strangers(rig: Rig, status: Status) -> list[Finding]:
+def _strangers(rig: Rig, status: Status) -> list[CaptureFinding]:
     """Foreign senders to a LiDAR's port, and datagrams there that are not data packets."""
     ports: dict[int, list[Sensor]] = {}
     for sensor in rig.sensors:
@@ -165,40 +166,44 @@ def _strangers(rig: Rig, status: Status) -> list[Finding]:
         mixed = [one for one in there if one.per_s - one.data_per_s > 0]
         if strangers:
             some = ", ".join(strangers[:3]) + (" …" if len(strangers) > 3 else "")
-            found.append(Finding("info", f"Foreign traffic on port {port} from {some}"))
+            found.append(CaptureFinding("info", f"Foreign traffic on port {port} from {some}"))
         elif mixed:
             source = mixed[0].source
             text = f"Packets on port {port} that are not LiDAR data packets, from {source}"
-            found.append(Finding("info", text))
+            found.append(CaptureFinding("info", text))
     return found
 
 
-def _drops(status: Status) -> list[Finding]:
+def _drops(status: Status) -> list[CaptureFinding]:
     found = []
     if status.kernel_drops:
         count = status.kernel_drops
-        found.append(Finding("error", f"{count} packets were lost: this computer is too busy"))
+        found.append(
+            CaptureFinding("error", f"{count} packets were lost: this computer is too busy")
+        )
     if status.file.dropped:
         count = status.file.dropped
         text = f"{count} packets are not in the recording: the disk was full or too slow"
-        found.append(Finding("error", text))
+        found.append(CaptureFinding("error", text))
     return found
 
 
-def _tracking(pose: Pose) -> list[Finding]:
+def _tracking(pose: Pose) -> list[CaptureFinding]:
     found = []
     if pose.lost:
-        found.append(Finding("error", "Tracking lost: stop, then go back a few steps"))
+        found.append(CaptureFinding("error", "Tracking lost: stop, then go back a few steps"))
     elif (pose.turn_rad_s or 0.0) > _TURN_RAD_S:
-        found.append(Finding("warning", "Turn slower"))
+        found.append(CaptureFinding("warning", "Turn slower"))
     elif _degraded(pose):
-        found.append(Finding("warning", "Tracking is degraded: walk slower, look at more walls"))
+        found.append(
+            CaptureFinding("warning", "Tracking is degraded: walk slower, look at more walls")
+        )
     if pose.remark:
-        found.append(Finding("warning", f"{pose.remark[0].upper()}{pose.remark[1:]}"))
+        found.append(CaptureFinding("warning", f"{pose.remark[0].upper()}{pose.remark[1:]}"))
     return found + _late(pose)
 
 
-def _late(pose: Pose) -> list[Finding]:
+def _late(pose: Pose) -> list[CaptureFinding]:
     """Latency of the preview. Frames are left out of the preview, never of the recording."""
     recent = pose.lately
     behind = f"The preview is {pose.age_s:.0f} s behind" if pose.age_s > _LATE_S else ""
@@ -210,7 +215,7 @@ def _late(pose: Pose) -> list[Finding]:
     )
     text = ": ".join(part for part in (behind, left_out) if part)
     level: Level = "warning" if behind else "info"
-    return [Finding(level, f"{text}; the recording is complete")] if text else []
+    return [CaptureFinding(level, f"{text}; the recording is complete")] if text else []
 
 
 def _degraded(pose: Pose) -> bool:
@@ -225,14 +230,14 @@ def _degraded(pose: Pose) -> bool:
     )
 
 
-def _reader(notes: Notes) -> list[Finding]:
-    found = [Finding("warning", text) for text in notes.warnings[-3:]]
+def _reader(notes: Notes) -> list[CaptureFinding]:
+    found = [CaptureFinding("warning", text) for text in notes.warnings[-3:]]
     recent = notes.recent
     packets, missing = recent.get("packets", 0), recent.get("packets_missing", 0)
     if packets > 1000 and missing > _MOST_LOST * packets:
         percent = 100.0 * missing / (packets + missing)
         text = f"{percent:.0f} % of the packets never arrived: check the cable"
-        found.append(Finding("warning", text))
+        found.append(CaptureFinding("warning", text))
     for name, what in (
         ("packets_duplicate", "arrived twice: the copies are discarded"),
         ("packets_out_of_order", "arrived out of order: sorted"),
@@ -240,19 +245,23 @@ def _reader(notes: Notes) -> list[Finding]:
         ("packets_wrong_length", "on a LiDAR's port have a wrong size: discarded"),
     ):
         if packets > 1000 and recent.get(name, 0) > _MOST_LOST * packets:
-            found.append(Finding("info", f"{100 * recent[name] / packets:.0f} % of packets {what}"))
+            found.append(
+                CaptureFinding("info", f"{100 * recent[name] / packets:.0f} % of packets {what}")
+            )
     return found
 
 
-def _position(fix: Fix) -> list[Finding]:
+def _position(fix: Fix) -> list[CaptureFinding]:
     if fix.jumped_m:
         text = f"GNSS jumped by {fix.jumped_m:.0f} m: the map does not use it"
-        return [Finding("warning", text)]
+        return [CaptureFinding("warning", text)]
     sd_m = fix.sd_m
     within = f", ±{max(sd_m[:2]):.2g} m" if sd_m else ""
     if fix.quality == 0:
-        return [Finding("info", "GNSS has no position")]
-    return [] if fix.quality in (4, 5) else [Finding("info", f"GNSS without RTK fix{within}")]
+        return [CaptureFinding("info", "GNSS has no position")]
+    return (
+        [] if fix.quality in (4, 5) else [CaptureFinding("info", f"GNSS without RTK fix{within}")]
+    )
 
 
 def _seconds(seconds: float) -> str:

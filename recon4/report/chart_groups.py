@@ -13,7 +13,7 @@ from recon4.report.edges import edge_paths
 from recon4.report.facts import ReportFacts
 from recon4.report.intensity import dependencies
 from recon4.report.maps import ABOVE, FRONT, Raster, height_png, ink_png, intensity_png
-from recon4.report.plan import Path, frame_around, plan_svg
+from recon4.report.plan import PlanPath, frame_around, plan_svg
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,11 +51,11 @@ def trajectory_figures(
     out: list[ChartFigure] = []
     if final is None or len(final) < 2:
         return out
-    curves = [Path("line-final", (final.T_a_b.t,))]
+    curves = [PlanPath("line-final", (final.T_a_b.t,))]
     legend = [("line-final", "final trajectory"), ("mark-start", "start"), ("mark-end", "end")]
     if drift is not None and results.odometry is not None:
         moved = drift.T_map_odom @ results.odometry.T_a_b
-        curves.insert(0, Path("line-odometry", (moved.t,)))
+        curves.insert(0, PlanPath("line-odometry", (moved.t,)))
         legend.insert(1, ("line-odometry", "odometry before loop closure"))
     marks = (("mark-start", final.T_a_b.t[0]), ("mark-end", final.T_a_b.t[-1]))
     shown = [raster for raster in rasters if raster.view in {ABOVE, FRONT}]
@@ -84,7 +84,7 @@ def edge_figures(results: Results, rasters: list[Raster]) -> list[ChartFigure]:
         return []
     above = next((raster for raster in rasters if raster.view is ABOVE), None)
     frame = above.frame if above is not None else frame_around(graph.T_map_body.t, ABOVE)
-    paths = (Path("line-nodes", (graph.T_map_body.t,)), *edge_paths(graph))
+    paths = (PlanPath("line-nodes", (graph.T_map_body.t,)), *edge_paths(graph))
     png = ink_png(above) if above is not None else None
     legend = (
         ("edge-accepted", "accepted"),

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
-from recon4.report.plan import Path
+from recon4.report.plan import PlanPath
 
 _MOST_DRAWN = 4000
 _REASONS = {
@@ -70,7 +70,7 @@ def _reason_text(reason: Reason, limit_m: float) -> str:
     return _REASONS.get(reason, str(reason))
 
 
-def edge_paths(graph: PoseGraph) -> tuple[Path, ...]:
+def edge_paths(graph: PoseGraph) -> tuple[PlanPath, ...]:
     """Lines between the nodes: rejected ones below, accepted ones above."""
     place = graph.T_map_body.t
     tests: tuple[tuple[str, Callable[[Edge], bool]], ...] = (
@@ -83,7 +83,7 @@ def edge_paths(graph: PoseGraph) -> tuple[Path, ...]:
         ("edge-verification", _verified_away),
     )
     return tuple(
-        Path(css, tuple(place[[edge.i, edge.j]] for edge in _some(graph, test)))
+        PlanPath(css, tuple(place[[edge.i, edge.j]] for edge in _some(graph, test)))
         for css, test in tests
     )
 

@@ -17,7 +17,7 @@ _TICKS = 6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Path:
+class PlanPath:
     """A curve, or many separate pieces."""
 
     css: str
@@ -31,7 +31,7 @@ def plan_svg(
     view: MapProjection,
     frame: ImageFrame,
     *,
-    paths: tuple[Path, ...] = (),
+    paths: tuple[PlanPath, ...] = (),
     css: str = "",
     marks: tuple[tuple[str, Array], ...] = (),
 ) -> str:

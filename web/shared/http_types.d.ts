@@ -196,9 +196,19 @@ export interface Job {
 
 export type JobState = "queued" | "running" | "succeeded" | "failed" | "cancelled";
 
+export interface JobStatus {
+  what: string;
+  unit: string;
+  done: number;
+  total: number;
+  rate_per_s: number;
+  eta_s: number | null;
+  stages: Array<StageStatus>;
+}
+
 export interface JobView {
   job: Job;
-  status: Status;
+  status: JobStatus;
   fraction: number | null;
   overall: number;
   overall_eta_s: number | null;
@@ -556,16 +566,6 @@ export interface StandingView {
   why: string;
   measured: boolean;
   T_i_j: Array<number>;
-}
-
-export interface Status {
-  what: string;
-  unit: string;
-  done: number;
-  total: number;
-  rate_per_s: number;
-  eta_s: number | null;
-  stages: Array<StageStatus>;
 }
 
 export interface Step {

@@ -25,7 +25,7 @@ _ACCEL_M_S2 = 0.001221 * STANDARD_GRAVITY_M_S2
 
 
 @dataclass(frozen=True, slots=True)
-class Fix:
+class NmeaFix:
     """Contents of one NMEA sentence."""
 
     utc_ns: int
@@ -49,7 +49,7 @@ def nmea_text(payload: NDArray[np.uint8]) -> bytes:
     return payload[206:].tobytes().split(b"\0")[0].split(b"\r")[0].strip()
 
 
-def parse_fix(sentence: bytes, near_ns: int, report: ImportReport) -> Fix | None:
+def parse_fix(sentence: bytes, near_ns: int, report: ImportReport) -> NmeaFix | None:
     """Read an RMC or GGA sentence; None if it has no valid position.
 
     Counts ``nmea_no_fix`` and ``nmea_damaged`` (checksum or fields).
@@ -78,14 +78,14 @@ def parse_fix(sentence: bytes, near_ns: int, report: ImportReport) -> Fix | None
     return fix
 
 
-def _fix(message: Any, near_ns: int) -> Fix | None:
+def _fix(message: Any, near_ns: int) -> NmeaFix | None:
     if message.msgID == "RMC":
         if message.status != "A":
             return None
         time = datetime.combine(message.date, message.time, tzinfo=UTC)
         differential = getattr(message, "posMode", "A") == "D"
         quality = GnssQuality.DIFFERENTIAL if differential else GnssQuality.SINGLE
-        return Fix(_ns(time), float(message.lat), float(message.lon), float("nan"), quality)
+        return NmeaFix(_ns(time), float(message.lat), float(message.lon), float("nan"), quality)
     if message.msgID != "GGA" or message.quality == 0:
         return None
     of_day = _ns(datetime.combine(datetime(1970, 1, 1), message.time, tzinfo=UTC))
@@ -93,7 +93,7 @@ def _fix(message: Any, near_ns: int) -> Fix | None:
     height_m = float(message.alt) + float(message.sep)
     known = int(message.quality) in set(GnssQuality)
     quality = GnssQuality(message.quality) if known else GnssQuality.SINGLE
-    return Fix(utc_ns, float(message.lat), float(message.lon), height_m, quality)
+    return NmeaFix(utc_ns, float(message.lat), float(message.lon), height_m, quality)
 
 
 def _ns(time: datetime) -> int:
@@ -190,7 +190,7 @@ class PositionDecoder:
         )
 
     def _gnss(self, t_ns: Times, payloads: NDArray[np.uint8]) -> GnssSamples | None:
-        fixes: list[tuple[int, Fix]] = []
+        fixes: list[tuple[int, NmeaFix]] = []
         for row, payload in enumerate(payloads):
             sentence = nmea_text(payload)
             if not sentence or sentence == self._sentence:
@@ -214,7 +214,7 @@ class PositionDecoder:
         return _samples(fixes)
 
 
-def _samples(fixes: list[tuple[int, Fix]]) -> GnssSamples:
+def _samples(fixes: list[tuple[int, NmeaFix]]) -> GnssSamples:
     count = len(fixes)
     return GnssSamples(
         t_ns=np.array([t for t, _ in fixes], dtype=np.int64),

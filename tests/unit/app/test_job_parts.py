@@ -8,7 +8,7 @@ from app.errors import Conflict, IllegalTransition, NotFound
 from app.jobs.events import EventWriter, event_of, read_events
 from app.jobs.folder import JobFolder
 from app.jobs.model import TRANSITIONS, Inputs, Job, JobState
-from app.jobs.status import Status, after
+from app.jobs.status import JobStatus, after
 from app.jobs.store import JobStore
 from recon4.errors import Cancelled
 from recon4.model.events import NodesPlaced, RunStarted, StageChanged
@@ -84,7 +84,7 @@ def test_what_is_over_stays_over(state):
 def test_rate_and_remaining_time_follow_from_an_event():
     event = {"kind": "progress", "what": "odometry", "done": 25, "total": 100, "unit": "frames"}
 
-    status = after(Status(), event_of({**event, "seconds": 5.0}))
+    status = after(JobStatus(), event_of({**event, "seconds": 5.0}))
 
     assert status.fraction == 0.25
     assert status.rate_per_s == 5.0
@@ -92,14 +92,14 @@ def test_rate_and_remaining_time_follow_from_an_event():
 
 
 def test_a_new_worker_begins_with_nothing_done():
-    status = after(Status(), StageChanged(stage="frames", state="done", seconds=1.0))
+    status = after(JobStatus(), StageChanged(stage="frames", state="done", seconds=1.0))
 
     assert len(status.stages) == 1
-    assert after(status, RunStarted()) == Status()
+    assert after(status, RunStarted()) == JobStatus()
 
 
 def test_other_events_change_nothing():
-    assert after(Status(), NodesPlaced(t_m=())) == Status()
+    assert after(JobStatus(), NodesPlaced(t_m=())) == JobStatus()
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,31 @@
+"""One language: no retired word, and one class for each class name."""
+
+import ast
+from collections import defaultdict
+
+from tests.language import ROOT, lines_with
+
+WORD = "".join(("an", "ew"))
+
+
+def test_no_retired_word_is_used():
+    assert list(lines_with([])) == []
+
+
+def test_the_search_finds_retired_words(tmp_path, monkeypatch):
+    monkeypatch.setattr("tests.language.ROOT", tmp_path)
+    monkeypatch.setattr("tests.language.listed", lambda paths: ["page.md"])
+    (tmp_path / "page.md").write_text(f"The program was {WORD} so.\nFine.\nA {WORD}er.\n")
+
+    assert [(number, word) for _, number, word, _ in lines_with([])] == [(1, WORD)]
+
+
+def test_each_class_name_stands_for_one_idea():
+    places = defaultdict(set)
+    for top in ("recon4", "app"):
+        for path in (ROOT / top).rglob("*.py"):
+            for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+                if isinstance(node, ast.ClassDef):
+                    places[node.name].add(path.relative_to(ROOT).as_posix())
+
+    assert {name: at for name, at in places.items() if len(at) > 1} == {}
