@@ -1,6 +1,6 @@
 """Ends a command at SIGINT, SIGTERM or SIGHUP: in order, without a traceback.
 
-The signal becomes a `StoppedBySignal` exception in the main thread, so that every ``with`` block removes
+The signal becomes a `StoppedBySignal` in the main thread, so that every ``with`` block removes
 what it had not finished. Python may throw such an exception away (it is raised inside a callback
 of native code, a destructor or a weak reference) and print a traceback instead: then it is raised
 again a moment later, and nothing is printed.
