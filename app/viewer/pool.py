@@ -17,6 +17,7 @@ from pathlib import Path
 from app.errors import ViewerFailed
 from app.network.streams import Streams
 from app.settings import worker_environment
+from app.viewer.scratch import scratch_of, viewer_environment
 from recon4.processes import ChildRegister
 from recon4.runtime_folder import private_folder, runtime_folder
 
@@ -85,6 +86,7 @@ class ViewerPool:
     async def _start(self, project: Path) -> Running:
         self._logs.mkdir(parents=True, exist_ok=True)
         socket = private_folder(socket_folder(self._state)) / secrets.token_hex(4)
+        caches = await asyncio.to_thread(viewer_environment, scratch_of(self._state, project.name))
         with (self._logs / f"{project.name}.txt").open("ab") as log:
             process = await asyncio.create_subprocess_exec(
                 *(sys.executable, "-m", "app.viewer.process", str(project)),
@@ -92,7 +94,7 @@ class ViewerPool:
                 stdin=asyncio.subprocess.PIPE,  # its lifeline
                 stdout=asyncio.subprocess.PIPE,
                 stderr=log,
-                env=worker_environment(),
+                env=worker_environment() | caches,
             )
         self._children.add(process.pid)
         assert process.stdout is not None

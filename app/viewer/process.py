@@ -19,10 +19,11 @@ from app.viewer.client.client_session import ClientSession
 from app.viewer.client.show import Viewer
 from app.viewer.cloud.palette import table
 from app.viewer.scene.source import ProjectSource
+from app.viewer.scratch import scratch_of
 from recon4.processes import die_with_parent
 from recon4.sandbox import Network, Policy, confine
 from recon4.sandbox.limits import physical_memory_bytes
-from recon4.sandbox.private_cache import use_private_cache
+from recon4.sandbox.private_cache import cached_elsewhere
 
 MEMORY_FRACTION = 0.7
 LOOK_EVERY_S = 0.5
@@ -78,8 +79,7 @@ def main(project: Path, idle_s: float, *, points: int, jobs: Path, socket: Path)
     """
     answer, sys.stdout = sys.stdout, sys.stderr  # viser prints to it
     logging.basicConfig(level=logging.WARNING, format="%(asctime)s %(name)s %(message)s")
-    scratch = jobs.parent / "viewers" / f"{project.name}.tmp"
-    shutil.rmtree(scratch, ignore_errors=True)  # of a viewer that was killed
+    scratch = scratch_of(jobs.parent, project.name)
     confine(viewer_policy(project, jobs, scratch, socket=socket.parent))
     over = threading.Event()
     signal.signal(signal.SIGTERM, lambda *_: over.set())
@@ -100,7 +100,7 @@ def main(project: Path, idle_s: float, *, points: int, jobs: Path, socket: Path)
 def viewer_policy(project: Path, jobs: Path, scratch: Path, *, socket: Path) -> Policy:
     """The sandbox policy: read the project and its jobs, listen on a Unix socket in one folder."""
     return Policy(
-        read=(project, jobs, *use_private_cache(scratch)),
+        read=(project, jobs, *cached_elsewhere(scratch)),
         write=(socket,),
         temporary=scratch,
         network=Network.UNIX,

@@ -5,6 +5,7 @@ import os
 import signal
 import time
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from urllib.parse import urlsplit
 
 import msgspec.msgpack
@@ -277,6 +278,14 @@ def test_a_killed_viewer_is_there_again_soon(server, root):
         client.send(camera())
         client.until(lambda c: c.shown == POINTS and "/edges/accepted/loop/0" in c.nodes)
     assert time.monotonic() - began_s < 20.0  # 2 s on a quiet machine
+
+
+def test_a_viewer_compiles_into_a_folder_of_its_own(server, root):
+    with viewing(server.url):
+        environment = viewer_process(root).environ()
+
+    folder = root / ".recon4" / "viewers" / "office.tmp"
+    assert Path(environment["NUMBA_CACHE_DIR"]).is_relative_to(folder)
 
 
 def test_a_viewer_ends_with_its_server(tmp_path):
