@@ -14,9 +14,9 @@ FEW = ("--set", "map.voxel_m=0.05", "--set", "graph.node_stride=10")
 
 GRID = """
 from recon4.errors import GeoreferenceError
-from recon4.georeference.crs import CrsTransform, Origin
+from recon4.georeference.crs import CrsTransform, GeodeticOrigin
 try:
-    CrsTransform(Origin(0.9, 0.14, 100.0), "EPSG:25832+7837")
+    CrsTransform(GeodeticOrigin(0.9, 0.14, 100.0), "EPSG:25832+7837")
 except GeoreferenceError as error:
     assert "needs the grid" in str(error), error
 else:

@@ -112,7 +112,7 @@ def test_a_failure_reveals_neither_path_nor_code(server, monkeypatch):
     assert answer.status_code == 500
     assert str(server.root) not in answer.text
     assert "Traceback" not in answer.text
-    assert re.search(r"under [0-9a-f]{8}", answer.text)
+    assert re.search(r"internal error [0-9a-f]{8}", answer.text)
     assert answer.headers["x-content-type-options"] == "nosniff"
     assert answer.headers["content-security-policy"].startswith("default-src 'self'")
 

@@ -118,7 +118,7 @@ def test_a_directory_that_counts_more_messages_than_there_are_is_said(tmp_path):
 
     assert report.outcome == "lossy"
     assert report.counts["messages_missing"] == 9999 - count
-    assert f"expected 9999 messages as metadata.yaml says, got {count}" in report.warnings[0]
+    assert f"expected 9999 messages as in metadata.yaml, got {count}" in report.warnings[0]
 
 
 def test_a_summary_that_counts_more_messages_than_the_chunks_hold_is_said(tmp_path):
