@@ -25,7 +25,7 @@ REPEATS_A_MINUTE = 20
 RECORDS_A_MINUTE = 200
 """Records of one logger written within a minute, of whatever kind."""
 MAX_MESSAGE_CHARS = 4000
-MOST_KINDS = 1000
+MAX_KINDS = 1000
 """Kinds of records that are remembered; beyond that the least recently used are forgotten."""
 
 
@@ -77,7 +77,7 @@ class RepeatFilter(logging.Filter):
         count = count + 1 if then == minute else 1
         self._written[key] = (minute, count)
         self._written.move_to_end(key)
-        while len(self._written) > MOST_KINDS:
+        while len(self._written) > MAX_KINDS:
             forgotten, _ = self._written.popitem(last=False)
             self._dropped.pop(forgotten, None)
         return count

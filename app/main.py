@@ -208,7 +208,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
     app.state.metrics.follow(app.state.parts)
     watching = [
         asyncio.create_task(supervisor.run()),
-        asyncio.create_task(maintain(jobs, uploads, trash, slices)),
+        asyncio.create_task(maintain(jobs, uploads, trash, slices=slices)),
         asyncio.create_task(rotate_logs(settings.state, jobs, captures)),
         asyncio.create_task(captures.adopt()),
     ]

@@ -23,7 +23,7 @@ ROTATE_LOGS_S = 20.0
 """Interval of checking the logs of workers, viewers and captures [s]."""
 
 
-async def maintain(jobs: JobStore, uploads: UploadStore, trash: Trash, slices: Slices) -> None:
+async def maintain(jobs: JobStore, uploads: UploadStore, trash: Trash, *, slices: Slices) -> None:
     """Sweep and back up every hour, until cancelled; a failure is logged and retried."""
     while True:
         for task in (

@@ -42,7 +42,7 @@ _DERIVED = ("thumbnails", "slices", "viewers", "clones", "trash")
 _TEMPORARY = re.compile(r"\.(tmp|slice|going)-.*|buckets-.*|\.lock|server\.lock|lock|pid|heartbeat")
 _BESIDE_SQLITE = ("-wal", "-shm", "-journal")
 _LIST = re.compile(r"\d{4}-\d{2}-\d{2}T\d{2}-\d{2}-\d{2}Z(-\d+)?\.json")
-_MOST_TRIES = 5
+_MAX_TRIES = 5
 Entries = dict[str, dict[str, Any]]
 """Relative name -> ``bytes``, ``sha256`` and ``mode``."""
 
@@ -83,8 +83,8 @@ def back_up(root: Path, out: Path, *, with_keys: bool, progress: Progress) -> Ba
         objects.mkdir(parents=True, exist_ok=True, mode=0o700)
         names = sorted(_names(root, with_keys=with_keys))
         before = _seals_below(root, names)
-        taken, left_out, new_bytes = _copy_all(root, names, objects, progress)
-        damaged = _settle_seals(root, before, taken, objects)
+        taken, left_out, new_bytes = _copy_all(root, names, objects, progress=progress)
+        damaged = _settle_seals(root, before, taken, objects=objects)
         path = _write_list(out, taken, left_out, with_keys=with_keys)
     except OSError as error:
         raise_if_full(error, out)
@@ -121,7 +121,7 @@ def restore(backup: Path, root: Path, *, with_keys: bool, progress: Progress) ->
     building = root.with_name(f".tmp-restore-{root.name}-{os.getpid()}")
     try:
         for name, entry in track(files.items(), progress, what="restore", unit="files"):
-            _put(path.parent / "objects", building, name, entry)
+            _put(path.parent / "objects", building, name, entry=entry)
         if root.exists():
             root.rmdir()
         building.rename(root)
@@ -153,7 +153,7 @@ def read_list(path: Path) -> dict[str, Any]:
     Raises:
         StoreError: If it is damaged, has another format, or a name leads outside the backup.
     """
-    listing = read_object(path, most_bytes=1 << 30)
+    listing = read_object(path, max_bytes=1 << 30)
     body = {name: value for name, value in listing.items() if name != "sha256"}
     if listing.get("format") != FORMAT or listing.get("sha256") != hash_json(body):
         raise StoreError(f"{path} is not the listing of a backup, or was changed")
@@ -215,7 +215,7 @@ def _is_secret(name: str) -> bool:
 
 
 def _copy_all(
-    root: Path, names: list[str], objects: Path, progress: Progress
+    root: Path, names: list[str], objects: Path, *, progress: Progress
 ) -> tuple[Entries, list[str], int]:
     """Copy files; returns their entries, the names of those that changed, and new bytes."""
     taken: Entries = {}
@@ -233,7 +233,7 @@ def _copy_all(
 
 def _copy(path: Path, objects: Path) -> tuple[dict[str, Any], int] | None:
     """Copy a file under its hash: its entry and new bytes; None = it changed meanwhile."""
-    for _ in range(_MOST_TRIES):
+    for _ in range(_MAX_TRIES):
         temporary = objects / f".tmp-{secrets.token_hex(6)}"
         try:
             before, mode = _identity(path), stat.S_IMODE(path.stat().st_mode)
@@ -285,7 +285,7 @@ def _seals_below(root: Path, names: list[str]) -> dict[str, dict[str, Seal]]:
 
 
 def _settle_seals(
-    root: Path, before: dict[str, dict[str, Seal]], taken: Entries, objects: Path
+    root: Path, before: dict[str, dict[str, Seal]], taken: Entries, *, objects: Path
 ) -> list[str]:
     """Adapt the seals in the backup to its files; returns the damaged files.
 
@@ -349,7 +349,7 @@ def _write_list(out: Path, files: Entries, left_out: list[str], *, with_keys: bo
     return path
 
 
-def _put(objects: Path, building: Path, name: str, entry: dict[str, Any]) -> None:
+def _put(objects: Path, building: Path, name: str, *, entry: dict[str, Any]) -> None:
     target, sha256 = building / name, str(entry["sha256"])
     target.parent.mkdir(parents=True, exist_ok=True)
     with atomic_file(target) as temporary:

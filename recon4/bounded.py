@@ -20,9 +20,9 @@ from recon4.errors import CorruptFile, Recon4Error
 Failure = type[Recon4Error]
 """Class of the error that a reader raises."""
 
-MOST_LINE_BYTES = 64 * 1024
+MAX_LINE_BYTES = 64 * 1024
 """No table that recon4 reads has longer lines [bytes]."""
-MOST_DEPTH = 64
+MAX_DEPTH = 64
 """Nesting of a JSON document: what recon4 writes has fewer than ten levels."""
 
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
@@ -46,25 +46,25 @@ def open_regular(path: Path, *, failure: Failure = CorruptFile) -> BinaryIO:
     return os.fdopen(descriptor, "rb")
 
 
-def read_bytes_limited(path: Path, most_bytes: int, *, failure: Failure = CorruptFile) -> bytes:
-    """Read a whole file of at most ``most_bytes``.
+def read_bytes_limited(path: Path, max_bytes: int, *, failure: Failure = CorruptFile) -> bytes:
+    """Read a whole file of at most ``max_bytes``.
 
     Raises:
         Recon4Error: Of the class ``failure``, if it is larger or cannot be read.
     """
     with open_regular(path, failure=failure) as file:
-        check_file_size(file, path, most_bytes, failure=failure)
+        check_file_size(file, path, max_bytes, failure=failure)
         try:
-            data = file.read(most_bytes + 1)
+            data = file.read(max_bytes + 1)
         except OSError as error:
             raise _unreadable(path, error, failure) from error
-    if len(data) > most_bytes:  # it grew meanwhile
-        raise failure(f"{path.name}: expected at most {most_bytes} bytes, got more")
+    if len(data) > max_bytes:  # it grew meanwhile
+        raise failure(f"{path.name}: expected at most {max_bytes} bytes, got more")
     return data
 
 
 def check_file_size(
-    file: BinaryIO, path: Path, most_bytes: int, *, failure: Failure = CorruptFile
+    file: BinaryIO, path: Path, max_bytes: int, *, failure: Failure = CorruptFile
 ) -> int:
     """The size of an open file [bytes], checked against the largest allowed.
 
@@ -72,19 +72,19 @@ def check_file_size(
         Recon4Error: Of the class ``failure``, if it is larger.
     """
     size = os.fstat(file.fileno()).st_size
-    if size > most_bytes:
-        raise failure(f"{path.name}: expected at most {most_bytes} bytes, got {size}")
+    if size > max_bytes:
+        raise failure(f"{path.name}: expected at most {max_bytes} bytes, got {size}")
     return size
 
 
-def read_text_limited(path: Path, most_bytes: int, *, failure: Failure = CorruptFile) -> str:
-    """Read a whole UTF-8 file of at most ``most_bytes``; a byte order mark is left out.
+def read_text_limited(path: Path, max_bytes: int, *, failure: Failure = CorruptFile) -> str:
+    """Read a whole UTF-8 file of at most ``max_bytes``; a byte order mark is left out.
 
     Raises:
         Recon4Error: Of the class ``failure``, if it is larger, not UTF-8 or cannot be read.
     """
     return decode_text(
-        read_bytes_limited(path, most_bytes, failure=failure), path.name, failure=failure
+        read_bytes_limited(path, max_bytes, failure=failure), path.name, failure=failure
     )
 
 
@@ -113,8 +113,8 @@ def decode_text(data: bytes, name: str, *, failure: Failure = CorruptFile) -> st
 def lines_limited(
     path: Path,
     *,
-    most_line_bytes: int = MOST_LINE_BYTES,
-    most_bytes: int,
+    max_line_bytes: int = MAX_LINE_BYTES,
+    max_bytes: int,
     failure: Failure = CorruptFile,
 ) -> Iterator[str]:
     r"""Lines of a UTF-8 text file with their ends, one in memory at a time.
@@ -127,45 +127,45 @@ def lines_limited(
             not UTF-8, or if the file is too large.
     """
     with open_regular(path, failure=failure) as file:
-        check_file_size(file, path, most_bytes, failure=failure)
+        check_file_size(file, path, max_bytes, failure=failure)
         number = 0
-        while line := file.readline(most_line_bytes + 1):
+        while line := file.readline(max_line_bytes + 1):
             number += 1
-            if len(line) > most_line_bytes:
+            if len(line) > max_line_bytes:
                 raise failure(
-                    f"{path.name}: line {number}: expected at most {most_line_bytes} bytes, "
+                    f"{path.name}: line {number}: expected at most {max_line_bytes} bytes, "
                     "got a longer line"
                 )
-            yield _line(line, number, path.name, failure)
+            yield _line(line, number, path.name, failure=failure)
 
 
 def text_blocks(
-    path: Path, *, block_bytes: int, most_bytes: int, failure: Failure = CorruptFile
+    path: Path, *, block_bytes: int, max_bytes: int, failure: Failure = CorruptFile
 ) -> Iterator[str]:
     """Whole lines of a UTF-8 text file, as many as fit into ``block_bytes`` at a time.
 
     Raises:
         Recon4Error: Of the class ``failure``, as `lines_limited`; a line longer than
-            `MOST_LINE_BYTES` is refused.
+            `MAX_LINE_BYTES` is refused.
     """
     with open_regular(path, failure=failure) as file:
-        check_file_size(file, path, most_bytes, failure=failure)
+        check_file_size(file, path, max_bytes, failure=failure)
         number, rest = 1, b""
         while data := file.read(block_bytes):
             data = rest + data
             end = data.rfind(b"\n") + 1
             block, rest = data[:end], data[end:]
-            if len(rest) > MOST_LINE_BYTES:
+            if len(rest) > MAX_LINE_BYTES:
                 line = number + block.count(b"\n")
                 raise failure(
-                    f"{path.name}: line {line}: expected at most {MOST_LINE_BYTES} bytes, "
+                    f"{path.name}: line {line}: expected at most {MAX_LINE_BYTES} bytes, "
                     "got a longer line"
                 )
             if block:
-                yield _block(block, number, path.name, failure)
+                yield _block(block, number, path.name, failure=failure)
                 number += block.count(b"\n")
         if rest:
-            yield _block(rest, number, path.name, failure)
+            yield _block(rest, number, path.name, failure=failure)
 
 
 def parse_float(text: str) -> float:
@@ -191,7 +191,7 @@ def parse_json(
         finite: Also refuse NaN and numbers that are too large for a computer.
 
     Raises:
-        Recon4Error: Of the class ``failure``, if it is no JSON, nested deeper than `MOST_DEPTH`
+        Recon4Error: Of the class ``failure``, if it is no JSON, nested deeper than `MAX_DEPTH`
             or has text that cannot be written as UTF-8 (a lone surrogate).
     """
     if isinstance(text, bytes):
@@ -202,32 +202,32 @@ def parse_json(
     except ValueError as error:
         raise failure(f"{name}: expected JSON, got something else: {error}") from error
     except RecursionError as error:
-        raise failure(f"{name}: expected JSON of at most {MOST_DEPTH} levels, got more") from error
+        raise failure(f"{name}: expected JSON of at most {MAX_DEPTH} levels, got more") from error
     _check_depth(value, name, failure)
     if _SURROGATE.search(text):
         _check_surrogates(value, name, failure)
     return value
 
 
-def read_json_limited(path: Path, most_bytes: int, *, failure: Failure = CorruptFile) -> Any:
+def read_json_limited(path: Path, max_bytes: int, *, failure: Failure = CorruptFile) -> Any:
     """Read and parse a JSON file of unknown origin, see `parse_json`.
 
     Raises:
         Recon4Error: Of the class ``failure``, if it is too large, damaged or cannot be read.
     """
-    data = read_bytes_limited(path, most_bytes, failure=failure)
+    data = read_bytes_limited(path, max_bytes, failure=failure)
     return parse_json(data, path.name, failure=failure)
 
 
 def read_json_object(
-    path: Path, most_bytes: int, *, failure: Failure = CorruptFile
+    path: Path, max_bytes: int, *, failure: Failure = CorruptFile
 ) -> dict[str, Any]:
     """Read a JSON file whose outermost value must be an object.
 
     Raises:
         Recon4Error: Of the class ``failure``, as `read_json_limited`.
     """
-    found = read_json_limited(path, most_bytes, failure=failure)
+    found = read_json_limited(path, max_bytes, failure=failure)
     if not isinstance(found, dict):
         raise failure(f"{path.name}: expected a JSON object, got {type(found).__name__}")
     return found
@@ -242,7 +242,7 @@ def _finite(text: str) -> float:
 
 def _check_depth(value: Any, name: str, failure: Failure) -> None:
     level = [value]
-    for _ in range(MOST_DEPTH + 1):
+    for _ in range(MAX_DEPTH + 1):
         level = [
             child
             for item in level
@@ -251,7 +251,7 @@ def _check_depth(value: Any, name: str, failure: Failure) -> None:
         ]
         if not level:
             return
-    raise failure(f"{name}: expected JSON of at most {MOST_DEPTH} levels, got more")
+    raise failure(f"{name}: expected JSON of at most {MAX_DEPTH} levels, got more")
 
 
 def _check_surrogates(value: Any, name: str, failure: Failure) -> None:
@@ -261,18 +261,18 @@ def _check_surrogates(value: Any, name: str, failure: Failure) -> None:
         raise failure(f"{name}: expected Unicode text, got a lone surrogate: {error}") from error
 
 
-def _block(block: bytes, number: int, name: str, failure: Failure) -> str:
+def _block(block: bytes, number: int, name: str, *, failure: Failure) -> str:
     try:
         if b"\0" not in block:
             return block.decode("utf-8-sig" if number == 1 else "utf-8")
     except UnicodeDecodeError:
         pass
     for k, line in enumerate(block.splitlines(keepends=True)):
-        _line(line, number + k, name, failure)
+        _line(line, number + k, name, failure=failure)
     raise failure(f"{name}: behind line {number}: expected UTF-8 text, got something else")
 
 
-def _line(line: bytes, number: int, name: str, failure: Failure) -> str:
+def _line(line: bytes, number: int, name: str, *, failure: Failure) -> str:
     if number == 1:
         _refuse_utf16(line, name, failure)
     if b"\0" in line:

@@ -117,7 +117,7 @@ def _level(
     from recon4.store.frames import FrameStore
 
     store = FrameStore.open(frames)
-    return run_level(store, refined, graph, out, settings=settings, progress=progress)
+    return run_level(store, refined, graph, out=out, settings=settings, progress=progress)
 
 
 def _intensity(

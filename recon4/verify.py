@@ -35,7 +35,7 @@ STATE_FILES = (
     "backups",
 )
 """Files of the server's state that are sealed when it ends; thumbnails and logs are not."""
-MOST_STATE_BYTES = 64 << 20
+MAX_STATE_BYTES = 64 << 20
 """Larger files of the state are parts of uploads: the sender's checksum covers those."""
 _UNREADABLE = (Recon4Error, ValueError, KeyError, TypeError, AttributeError, OverflowError)
 """What a damaged file may lead to where its content is read."""
@@ -180,7 +180,7 @@ def accept(path: Path) -> None:
 
 def _is_small_file(path: Path) -> bool:
     ours = path.name not in (LOCK, TURN, SEALS, "lock", "pid", "heartbeat")
-    return ours and path.is_file() and path.stat().st_size <= MOST_STATE_BYTES
+    return ours and path.is_file() and path.stat().st_size <= MAX_STATE_BYTES
 
 
 def _named(found: Verified, name: Path) -> Verified:

@@ -83,7 +83,7 @@ def room_packets(*, seconds=1.0, rate_hz=10.0, t0_ns=T0_NS):
     distance, _ = room_range(azimuth, np.tile(model.elevation_rad, 2))
     t_ns = t0_ns + np.rint(t_packet_s * 1e9).astype(np.int64)
     units = np.rint(distance / 0.002).astype(np.int64)
-    payloads = encode_vlp16(t_ns // 1000, azimuth_cdeg, units, np.full(units.shape, 40))
+    payloads = encode_vlp16(t_ns // 1000, azimuth_cdeg, units, intensity=np.full(units.shape, 40))
     return t_ns, payloads
 
 

@@ -144,7 +144,9 @@ def room_points(rng: np.random.Generator, count: int) -> np.ndarray:
 def _frames(*, out: Path, settings: Settings, progress: Progress) -> None:
     rng, walk = np.random.default_rng(8), loop_walk()
     sensors = tuple(
-        Sensor(name=name, model="VLP-16", T_body_sensor=SE3.from_rpy(0.0, pitch, 0.0, [0.0, 0, z]))
+        Sensor(
+            name=name, model="VLP-16", T_body_sensor=SE3.from_rpy(0.0, pitch, 0.0, t=[0.0, 0, z])
+        )
         for name, pitch, z in (("horizontal", 0.0, 0.3), ("vertical", np.pi / 2.0, 0.5))
     )
     nothing = {"imu_time_offset_s": 0.0, "p_body_antenna": np.zeros(3), "gnss_time_offset_s": 0.0}

@@ -72,8 +72,8 @@ def room_walk(frames=20, points=3000, *, seed=1, noise_m=0.01, intensity=None, e
     ``intensity(p_map, sensor, ring, incidence_rad, range_m, rng)`` returns their intensity.
     """
     rig = rig_of(
-        SE3.from_rpy(0, 0, 0, [0, 0, 0.2]),
-        SE3.from_rpy(np.pi / 2, 0, 0, [0, 0.1, 0]),
+        SE3.from_rpy(0, 0, 0, t=[0, 0, 0.2]),
+        SE3.from_rpy(np.pi / 2, 0, 0, t=[0, 0.1, 0]),
         enabled=enabled,
     )
     trajectory = straight(frames)

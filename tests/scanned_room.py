@@ -18,7 +18,8 @@ BOXES_M = (
 )
 ELEVATION_RAD = np.deg2rad(np.arange(-15.0, 16.0, 2.0))
 RIG = rig_of(
-    SE3.from_rpy(0.0, 0.0, 0.0, [0.0, 0.0, 0.3]), SE3.from_rpy(np.pi / 2, 0.0, 0.0, [0.0, 0.1, 0.0])
+    SE3.from_rpy(0.0, 0.0, 0.0, t=[0.0, 0.0, 0.3]),
+    SE3.from_rpy(np.pi / 2, 0.0, 0.0, t=[0.0, 0.1, 0.0]),
 )
 
 

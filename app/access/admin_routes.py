@@ -69,7 +69,7 @@ def add_person(new: NewPerson, request: Request, server: Server) -> Account:
 
 
 @router.patch("/people/{name}", dependencies=[RECENT_LOGIN])
-def change_person(name: str, changes: Changes, request: Request, server: Server) -> Account:
+def change_person(name: str, changes: Changes, request: Request, *, server: Server) -> Account:
     """Change the role or password, disable or enable the account; the person's sessions end."""
     accounts = server.access.accounts
     account = accounts.get(name)

@@ -8,8 +8,8 @@ from pathlib import Path
 from app.compute_pool.model import FileAccess
 from recon4.sandbox import Confinement, Policy, confine
 
-MOST_FILE_BYTES = 64 << 30
-MOST_MEMORY_BYTES = 8 << 30
+MAX_FILE_BYTES = 64 << 30
+MAX_MEMORY_BYTES = 8 << 30
 """Private memory of a child; memory-mapped files do not count."""
 
 
@@ -26,8 +26,8 @@ def confine_child(access: FileAccess, scratch: Path, kernels: tuple[Path, ...]) 
             read=(*access.read, *kernels),
             write=(*access.write, scratch),
             temporary=scratch / "tmp",
-            memory_bytes=min(MOST_MEMORY_BYTES, _half_of_the_memory()),
-            file_bytes=MOST_FILE_BYTES,
+            memory_bytes=min(MAX_MEMORY_BYTES, _half_of_the_memory()),
+            file_bytes=MAX_FILE_BYTES,
         )
     )
 

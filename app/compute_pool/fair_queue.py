@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from app.compute_pool.model import Quota
 from app.errors import TooMany
 
-MOST_PASSED = 8
+MAX_PASSED = 8
 """A large call that was passed by this many small ones counts as small, so that it is served."""
 
 
@@ -119,7 +119,7 @@ class FairQueue:
         return min(
             eligible,
             key=lambda slot: (
-                slot.large and slot.passed < MOST_PASSED,
+                slot.large and slot.passed < MAX_PASSED,
                 running[slot.person],
                 self._served.get(slot.person, 0),
             ),

@@ -25,8 +25,8 @@ HEAD = struct.Struct("<cQ")
 """Header of each response: its kind, number of bytes that follow."""
 RESULT, REFUSED, FAILED = b"R", b"E", b"F"
 """A result; an error about the input; a failure of the program."""
-MOST_RESULT_BYTES = 256 << 20
-MOST_MESSAGE = 20_000
+MAX_RESULT_BYTES = 256 << 20
+MAX_MESSAGE = 20_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +107,7 @@ def encode_error(error: Exception) -> bytes:
     """Encode an error of the library (child's side)."""
     problems = error.problems if isinstance(error, WrongSettings) else {}
     name = f"{type(error).__module__}.{type(error).__qualname__}"
-    message = str(error)[:MOST_MESSAGE]
+    message = str(error)[:MAX_MESSAGE]
     return CallError(name=name, message=message, problems=problems).model_dump_json().encode()
 
 

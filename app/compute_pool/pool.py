@@ -24,7 +24,7 @@ BACKGROUND_LIMIT_S = 1800.0
 GRACE_S = 2.0
 """Time an interactive call may continue after its client left [s]: ending a child with a loaded map
 costs more."""
-MOST_KEPT = 4
+MAX_KEPT = 4
 """Most idle children that are kept with their open maps."""
 SPARE_AFTER_S = 5.0
 """After the last start of a child the next one is prepared in advance."""
@@ -180,7 +180,7 @@ class ComputePool:
             return
         self._kept.setdefault(permission, []).append(child)
         self._kept.move_to_end(permission)
-        while sum(map(len, self._kept.values())) > MOST_KEPT:
+        while sum(map(len, self._kept.values())) > MAX_KEPT:
             oldest = next(iter(self._kept))
             gone = self._kept[oldest].pop(0)
             if not self._kept[oldest]:

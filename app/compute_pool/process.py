@@ -16,7 +16,7 @@ from typing import Any
 from app.compute_pool.messages import (
     FAILED,
     HEAD,
-    MOST_RESULT_BYTES,
+    MAX_RESULT_BYTES,
     RESULT,
     Call,
     ChildSetup,
@@ -96,9 +96,9 @@ class ChildProcess:
                 self._process.stdin.write(encode_request(message))
             await self._process.stdin.drain()
             kind, size = HEAD.unpack(await self._process.stdout.readexactly(HEAD.size))
-            if size > MOST_RESULT_BYTES:
+            if size > MAX_RESULT_BYTES:
                 raise ComputeFailed(
-                    f"expected a result of at most {MOST_RESULT_BYTES} bytes, got {size}: "
+                    f"expected a result of at most {MAX_RESULT_BYTES} bytes, got {size}: "
                     "request less at a time"
                 )
             answer = await self._process.stdout.readexactly(size)

@@ -25,7 +25,7 @@ MANY = frozenset({"edge", "nodes", "poses", "verdicts"})
 """Events the viewer draws; they are too many for the text log."""
 EVERY_S = 0.25
 """Shortest interval of writing progress and of checking for a request to stop [s]."""
-MOST_BYTES = 4 << 20
+MAX_BYTES = 4 << 20
 """Read at a time."""
 
 
@@ -121,11 +121,11 @@ def read_events(path: Path, offset: int) -> tuple[list[Event], int]:
     try:
         with path.open("rb") as file:
             file.seek(offset)
-            data = file.read(MOST_BYTES)
+            data = file.read(MAX_BYTES)
     except FileNotFoundError:
         return [], offset
     whole = data[: data.rfind(b"\n") + 1]
-    if not whole and len(data) == MOST_BYTES:
+    if not whole and len(data) == MAX_BYTES:
         whole = data  # a line longer than any of ours
     found = (_parse(line) for line in whole.splitlines())
     return [event for event in found if event is not None], offset + len(whole)

@@ -33,8 +33,8 @@ from recon4.store.atomic import sweep as sweep_unfinished
 from recon4.store.locks import trying_lock
 
 KEPT_BYTES = 64 << 10
-MOST_LOG_BYTES = 256 << 10
-MOST_REPLY_BYTES = 64 << 10
+MAX_LOG_BYTES = 256 << 10
+MAX_REPLY_BYTES = 64 << 10
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -172,11 +172,11 @@ class JobFolder:
                 if offset > file.seek(0, os.SEEK_END):
                     offset = 0  # it was rotated (`app.logs.rotate_grown`)
                 file.seek(offset)
-                data = file.read(MOST_LOG_BYTES)
+                data = file.read(MAX_LOG_BYTES)
         except FileNotFoundError:
             return "", offset
         whole = (
-            data[: data.rfind(b"\n") + 1] or data[: MOST_LOG_BYTES * (len(data) >= MOST_LOG_BYTES)]
+            data[: data.rfind(b"\n") + 1] or data[: MAX_LOG_BYTES * (len(data) >= MAX_LOG_BYTES)]
         )
         lines = whole.decode("utf-8", "replace").splitlines()
         return "".join(f"{_printable(line)}\n" for line in lines), offset + len(whole)
@@ -197,7 +197,7 @@ class JobFolder:
 def _start(path: Path) -> bytes:
     """The first bytes of a file of a worker; all of them, unless it is too long."""
     with path.open("rb") as file:
-        return file.read(MOST_REPLY_BYTES)
+        return file.read(MAX_REPLY_BYTES)
 
 
 def _is_worker_of(number: int, folder: Path) -> bool:

@@ -14,10 +14,10 @@ from recon4.sandbox.limits import physical_memory_bytes
 from recon4.sandbox.private_cache import use_private_cache
 
 MEMORY_FRACTION = 0.7
-MOST_FILES = 4096
-MOST_CPU_S = 96 * 3600
+MAX_FILES = 4096
+MAX_CPU_S = 96 * 3600
 """Of all threads together; a day of recording takes less."""
-LEAST_FILE_BYTES = 1 << 30
+MIN_FILE_BYTES = 1 << 30
 NICENESS = 10
 """Workers run at low priority, so that the pages stay responsive."""
 
@@ -45,9 +45,9 @@ def worker_policy(folder: JobFolder) -> Policy:
         write=(project, folder.path),
         temporary=folder.temporary,
         memory_bytes=limits.memory_bytes,
-        cpu_s=MOST_CPU_S,
-        file_bytes=max(LEAST_FILE_BYTES, free),
-        open_files=MOST_FILES,
+        cpu_s=MAX_CPU_S,
+        file_bytes=max(MIN_FILE_BYTES, free),
+        open_files=MAX_FILES,
     )
 
 

@@ -102,7 +102,7 @@ def list_jobs(server: Server) -> list[JobView]:
 @router.post(
     "/jobs", status_code=201, responses=REFUSALS, dependencies=START, summary="Start a job"
 )
-async def start_job(new: NewJob, server: Server, request: Request, caller: CalledBy) -> JobView:
+async def start_job(new: NewJob, server: Server, request: Request, *, caller: CalledBy) -> JobView:
     """Add a job to the queue.
 
     On an existing project, stages that do not depend on a changed input are reused. ``clone_of``

@@ -12,7 +12,7 @@ from recon4.bounded import read_text_limited
 from recon4.errors import ConfigError, CorruptFile
 from recon4.model.rig import load_rig, rig_presets
 
-MOST_FILES = 100
+MAX_FILES = 100
 LARGEST_BYTES = 1 << 17
 
 
@@ -40,7 +40,7 @@ def rig_files(
         shows: Whether a file may be listed (`ImportFolders.shows`).
     """
     files = (path for folder in folders for path in _files(folder) if _fits(path) and shows(path))
-    return tuple(islice(files, MOST_FILES))
+    return tuple(islice(files, MAX_FILES))
 
 
 def rigs_in(files: tuple[Path, ...]) -> list[RigChoice]:

@@ -24,7 +24,7 @@ from recon4.store.json_files import parse_object
 
 log = logging.getLogger(__name__)
 
-MOST_MARKS_BYTES = 16 << 20
+MAX_MARKS_BYTES = 16 << 20
 LIVE_STREAMS = StreamLimits(most=32, per_person=8, per_address=16, reserved=4)
 
 
@@ -128,7 +128,7 @@ def marks_of(session: CaptureSession) -> list[Mark]:
     try:
         if not session.marks.exists():
             return []
-        lines = read_text_limited(session.marks, MOST_MARKS_BYTES).splitlines()
+        lines = read_text_limited(session.marks, MAX_MARKS_BYTES).splitlines()
     except CorruptFile as error:
         log.warning("%s", error)
         return []

@@ -12,7 +12,7 @@ from app.projects.model import FolderEntry
 
 SYSTEM = tuple(map(Path, ("/boot", "/dev", "/etc", "/proc", "/run", "/sys")))
 """Never recordings, even where a folder of recordings contains them (``/``)."""
-MOST_ENTRIES = 2000
+MAX_ENTRIES = 2000
 """A longer folder listing is cut."""
 
 
@@ -85,7 +85,7 @@ class ImportFolders:
             raise NotFound(f"{folder[:200]!r} cannot be listed: {error.strerror}") from error
         shown = [path for path in inside if self.shows(path)]
         shown.sort(key=lambda path: (not path.is_dir(), path.name.lower()))
-        return [_entry(path, path.name) for path in shown[:MOST_ENTRIES]]
+        return [_entry(path, path.name) for path in shown[:MAX_ENTRIES]]
 
     def _within(self, real: Path) -> bool:
         return any(real.is_relative_to(folder) for folder in self._folders)

@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-MOST_BESIDE = 50
+MAX_BESIDE = 50
 """In folders with more files, no IMU or GNSS file is searched for."""
 
 
@@ -53,14 +53,14 @@ class RecordingSummary:
 def files_beside(path: Path) -> tuple[Path, ...]:
     """Regular files in the folder of a recording: `inspect_recording` may read them too.
 
-    With more than `MOST_BESIDE` files only those of the recording's own name (``x.db3-wal``).
+    With more than `MAX_BESIDE` files only those of the recording's own name (``x.db3-wal``).
     """
     folder = path if path.is_dir() else path.parent
     with os.scandir(folder) as entries:
         files = sorted(Path(one.path) for one in entries if one.is_file(follow_symlinks=False))
     files = [file for file in files if file != path]
-    if len(files) > MOST_BESIDE:
-        return tuple(file for file in files if file.name.startswith(path.stem))[:MOST_BESIDE]
+    if len(files) > MAX_BESIDE:
+        return tuple(file for file in files if file.name.startswith(path.stem))[:MAX_BESIDE]
     return tuple(files)
 
 

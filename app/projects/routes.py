@@ -62,7 +62,9 @@ def read_project(project_id: str, server: Server) -> ProjectView:
 
 
 @router.patch("/projects/{project_id}", dependencies=PROCESS, summary="Rename a project")
-def rename_project(project_id: str, new: Rename, server: Server, request: Request) -> ProjectView:
+def rename_project(
+    project_id: str, new: Rename, server: Server, *, request: Request
+) -> ProjectView:
     """Change the display name of a project; its folder and URLs stay. Not while a job runs."""
     server.projects.rename(project_id, new.name.strip())
     audit(request, "rename project", f"{project_id}: {new.name}")

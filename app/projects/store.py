@@ -35,11 +35,11 @@ from recon4.store.project import is_project, read_artifacts, read_stages
 
 PROJECT_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 Stamp = tuple[int | None, ...]
-MOST_PROBLEM = 400
+MAX_PROBLEM = 400
 """A longer description of a project's problem is cut [characters]."""
 _LARGE = 1 << 53
 """Greater numbers are not plausible, and not exact in a browser."""
-MOST_ENTRIES = 2000
+MAX_ENTRIES = 2000
 """A longer folder listing is cut."""
 
 
@@ -296,7 +296,7 @@ def _stages(folder: Path) -> tuple[tuple[StageView, ...], str]:
         rows = [row for row in read_stages(folder) if row.key in current]
         found = tuple(map(_stage, rows))
     except (StoreError, ValueError, TypeError) as error:
-        return (), visible(str(error), most=MOST_PROBLEM)
+        return (), visible(str(error), most=MAX_PROBLEM)
     order = {stage: k for k, stage in enumerate(STAGE_ORDER)}
     return tuple(sorted(found, key=lambda one: order.get(one.stage, len(order)))), ""
 
@@ -329,7 +329,7 @@ def _object(folder: Path, name: str) -> tuple[dict[str, Any], str]:
         return read_object(path), ""
     except StoreError as error:
         problem = str(error).replace(f"{folder}/", "")
-        return {}, visible(problem, most=MOST_PROBLEM)
+        return {}, visible(problem, most=MAX_PROBLEM)
 
 
 def _name_of(rig: Any) -> str:

@@ -9,7 +9,7 @@ from app.compute_pool import ComputePool, FileAccess, Lane, Terms
 from app.errors import ComputeFailed, NotFound
 from recon4.errors import Recon4Error
 
-MOST_POINTS = 3_000_000
+MAX_POINTS = 3_000_000
 """Points of a map that are enough for a thumbnail."""
 THUMBNAIL = "map.png"
 
@@ -51,5 +51,5 @@ def draw_thumbnail(artifact: Path, out: Path) -> None:
     from recon4.report.maps import ABOVE, ink_png, map_chunks, rasterize
 
     tiles = TileSet.open(artifact)
-    raster = rasterize(lambda: map_chunks(tiles, points=MOST_POINTS), (ABOVE,))[0]
+    raster = rasterize(lambda: map_chunks(tiles, points=MAX_POINTS), (ABOVE,))[0]
     out.write_bytes(ink_png(raster))

@@ -129,7 +129,7 @@ async def read_points(
 
 @router.post("/align", dependencies=REVIEW, summary="Register a pair")
 async def align_pair(
-    project_id: str, predicted: PredictedPose, server: Server, caller: CalledBy
+    project_id: str, predicted: PredictedPose, server: Server, *, caller: CalledBy
 ) -> AlignmentView:
     """Register two multiframes like the loop closure search, from a predicted pose.
 
@@ -225,7 +225,7 @@ async def approve(
     signer = {"who": who.name, "role": str(who.role), "why": asked.why}
     key = server.settings.state / "signing.key"
     try:
-        approval = await _sign(root, key, signer, asked, server=server)
+        approval = await _sign(root, key, signer, asked=asked, server=server)
     except NotApprovable as error:
         raise Conflict(str(error)) from error
     await run_in_threadpool(make_read_only, approval)
@@ -247,7 +247,7 @@ async def _of_pairs(
 
 
 async def _sign(
-    root: Path, key: Path, signer: dict[str, str], asked: Approve, *, server: Parts
+    root: Path, key: Path, signer: dict[str, str], *, asked: Approve, server: Parts
 ) -> Approval:
     """Sign in a separate child process, the only one that may read the key.
 

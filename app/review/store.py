@@ -15,8 +15,8 @@ from recon4.review.preview import Effect, preview
 from recon4.review.queue import queue_json
 from recon4.review.source import Source
 
-_MOST_MEASUREMENTS = 500
-_MOST_QUEUES = 4
+_MAX_MEASUREMENTS = 500
+_MAX_QUEUES = 4
 
 
 def terms_of(root: Path, person: str) -> Terms:
@@ -41,7 +41,7 @@ class Reviews:
         """Store a registration and return its id."""
         name = secrets.token_hex(12)
         self._measured[name] = (root, pair, alignment.measurement)
-        if len(self._measured) > _MOST_MEASUREMENTS:
+        if len(self._measured) > _MAX_MEASUREMENTS:
             self._measured.popitem(last=False)
         return name
 
@@ -65,7 +65,7 @@ class Reviews:
             self._queues[known] = await self._pool.run_interactive(
                 Lane.REVIEW, terms_of(root, person), queue_json, source
             )
-            if len(self._queues) > _MOST_QUEUES:
+            if len(self._queues) > _MAX_QUEUES:
                 self._queues.popitem(last=False)
         return self._queues[known]
 

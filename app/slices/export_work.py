@@ -22,7 +22,7 @@ from recon4.slices.slice_image import Paper, draw
 
 FINEST_M = 0.005
 """Pixel of a GeoTIFF, unless it would get too large [m]."""
-MOST_GEOTIFF_PX = 6000
+MAX_GEOTIFF_PX = 6000
 
 
 def export(
@@ -68,7 +68,7 @@ def _export_geotiff(
     tiles, cut = map_of(artifacts, context.evidence), ask.cut.cut()
     window = window_of(ask, tiles, cut)
     side_m = max(window.right - window.left, window.top - window.bottom)
-    paper = Paper(window, max(FINEST_M, side_m / MOST_GEOTIFF_PX))
+    paper = Paper(window, max(FINEST_M, side_m / MAX_GEOTIFF_PX))
     against = reference_of(reference, ask.method)
     made = draw(tiles, cut, paper, color=ask.color, reference=against)
     description = f"{context.project}: {stamp_text(context.evidence)}"

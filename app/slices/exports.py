@@ -22,8 +22,8 @@ from app.slices.model import ExportContext, SliceExportRequest
 LIMIT_S = 1800.0
 """Longest time an export may take [s]."""
 KEPT_S = 86_400.0
-"""A finished export is kept at least this long, unless all exceed `MOST_KEPT_BYTES` [s]."""
-MOST_KEPT_BYTES = 20 << 30
+"""A finished export is kept at least this long, unless all exceed `MAX_KEPT_BYTES` [s]."""
+MAX_KEPT_BYTES = 20 << 30
 """Limit for all kept exports; the oldest are removed first."""
 LARGE_THICKNESS_M = 0.5
 """A thicker cut may hold most of the map [m]."""
@@ -115,7 +115,7 @@ class Exports:
         total, removed = 0, 0
         for changed_s, size, path in files:
             total += size
-            if now_s - changed_s > KEPT_S or total > MOST_KEPT_BYTES:
+            if now_s - changed_s > KEPT_S or total > MAX_KEPT_BYTES:
                 path.unlink(missing_ok=True)
                 removed += 1
         return removed

@@ -10,14 +10,14 @@ from pydantic import BaseModel, ConfigDict, Field
 from app.names import Name
 from recon4.review.evidence import Evidence
 from recon4.slices.colors import ColorBy, Ground
-from recon4.slices.cut import MOST_SLICES, MOST_THICKNESS_M, Cut, free, horizontal, vertical
+from recon4.slices.cut import MAX_SLICES, MAX_THICKNESS_M, Cut, free, horizontal, vertical
 
 Coordinate = Annotated[float, Field(ge=-1e8, le=1e8, allow_inf_nan=False)]
 Xy = tuple[Coordinate, Coordinate]
 Xyz = tuple[Coordinate, Coordinate, Coordinate]
 Reach = Annotated[float, Field(ge=-1e9, le=1e9, allow_inf_nan=False)]
 """A coordinate u or v of a cut [m]; its origin is arbitrary."""
-MOST_SIDE_PX = 4096
+MAX_SIDE_PX = 4096
 
 
 class Strict(BaseModel):
@@ -40,7 +40,7 @@ class CutSpec(Strict):
     """A point of a free plane [m]."""
     normal: Xyz = (0.0, 0.0, 1.0)
     """Normal of a free plane."""
-    thickness_m: float = Field(default=0.10, gt=0.0, le=MOST_THICKNESS_M)
+    thickness_m: float = Field(default=0.10, gt=0.0, le=MAX_THICKNESS_M)
 
     def cut(self) -> Cut:
         """The cut it describes.
@@ -84,8 +84,8 @@ class SliceView(Strict):
 class SliceImageRequest(SliceView):
     """Request for an image of a slice."""
 
-    width: int = Field(ge=16, le=MOST_SIDE_PX)
-    height: int = Field(ge=16, le=MOST_SIDE_PX)
+    width: int = Field(ge=16, le=MAX_SIDE_PX)
+    height: int = Field(ge=16, le=MAX_SIDE_PX)
     ground: Ground = "light"
     page: str = Field(default="", max_length=40)
     """Id of the page: of several requests of one page only the latest gets an image."""
@@ -142,7 +142,7 @@ class CompareRequest(Strict):
 
     reference: str = Field(min_length=1)
     method: Literal["plane", "point"] = "plane"
-    cuts: list[CutSpec] = Field(default=[], max_length=MOST_SLICES)
+    cuts: list[CutSpec] = Field(default=[], max_length=MAX_SLICES)
     """Empty = eight slices spread over the map, 2 cm thick (V §3.2)."""
     source: str = ""
 
@@ -167,7 +167,7 @@ class AlignRequest(Strict):
 class SliceExportRequest(SliceView):
     """Request for an export of slices."""
 
-    count: int = Field(default=1, ge=1, le=MOST_SLICES)
+    count: int = Field(default=1, ge=1, le=MAX_SLICES)
     spacing_m: float = Field(default=0.5, ge=-1000.0, le=1000.0)
     size: Literal["a4", "a3", "a2", "a1"] = "a4"
     scale: int = 0

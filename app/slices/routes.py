@@ -103,16 +103,16 @@ async def overview(
     project_id: str, server: Server, caller: CalledBy, source: str = ""
 ) -> FileResponse:
     """A transparent PNG; its window is at ``/overview/window``."""
-    image = await _overview(project_id, server, caller, source)
+    image = await _overview(project_id, server, caller, source=source)
     return FileResponse(image, media_type="image/png")
 
 
 @router.get("/overview/window", summary="Window of the image from above")
 async def overview_window(
-    project_id: str, server: Server, caller: CalledBy, source: str = ""
+    project_id: str, server: Server, caller: CalledBy, *, source: str = ""
 ) -> dict[str, Any]:
     """Left, bottom, right and top in the map [m]."""
-    image = await _overview(project_id, server, caller, source)
+    image = await _overview(project_id, server, caller, source=source)
     return await run_in_threadpool(work.read_kept, image.with_suffix(".json"))
 
 
@@ -338,7 +338,7 @@ async def surface(project_id: str, point: str, server: Server, caller: CalledBy)
 
 @router.get("/compare.csv", response_class=PlainTextResponse, summary="The table as CSV")
 async def compare_csv(
-    project_id: str, ask: str, server: Server, caller: CalledBy
+    project_id: str, ask: str, server: Server, *, caller: CalledBy
 ) -> PlainTextResponse:
     """``ask`` is a CompareRequest as JSON."""
     asked = _parsed_compare(ask)
@@ -352,7 +352,7 @@ async def compare_csv(
     return PlainTextResponse(text, media_type="text/csv; charset=utf-8", headers=head)
 
 
-async def _overview(project_id: str, server: Server, caller: Caller, source: str) -> Path:
+async def _overview(project_id: str, server: Server, caller: Caller, *, source: str) -> Path:
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, source)
     folder = artifacts["map"]
     terms = server.slices.terms(project_id, caller.name, source)

@@ -35,10 +35,10 @@ from recon4.store.seal import begin_change, changing, check_sealed, end_change
 T = TypeVar("T")
 _KEY = re.compile(r"[0-9a-f]{16,64}")
 _REFERENCE = re.compile(r"[0-9a-f]{12}")
-MOST_REFERENCES = 20
+MAX_REFERENCES = 20
 CONTROL = "slices/control.json"
-MOST_PAGES = 256
-MOST_CONTROL_BYTES = 16 << 20
+MAX_PAGES = 256
+MAX_CONTROL_BYTES = 16 << 20
 
 
 class Superseded(Conflict):
@@ -192,8 +192,8 @@ class Slices:
         Raises:
             Conflict: If there are too many.
         """
-        if len(self.references(project_id)) >= MOST_REFERENCES:
-            raise Conflict(f"a project has at most {MOST_REFERENCES} references; remove one first")
+        if len(self.references(project_id)) >= MAX_REFERENCES:
+            raise Conflict(f"a project has at most {MAX_REFERENCES} references; remove one first")
         folder = self._folder(project_id) / "references"
         folder.mkdir(parents=True, exist_ok=True)
         return folder / secrets.token_hex(6)
@@ -234,7 +234,7 @@ class Slices:
         if not path.exists():
             return ControlState(version=0)
         try:
-            text = read_text_limited(path, MOST_CONTROL_BYTES, failure=StoreError)
+            text = read_text_limited(path, MAX_CONTROL_BYTES, failure=StoreError)
             state = ControlState.model_validate_json(text)
         except (StoreError, ValueError) as error:
             raise StoreError(f"{path.name} cannot be read: {error}") from error
@@ -298,7 +298,7 @@ class Slices:
         work = asyncio.ensure_future(self.run_interactive(terms, function, *args))
         self._newest[page] = _Latest(asking.turn, work)
         self._newest.move_to_end(page)
-        while len(self._newest) > MOST_PAGES:
+        while len(self._newest) > MAX_PAGES:
             self._newest.popitem(last=False)
         try:
             return await work

@@ -54,7 +54,7 @@ from recon4.store.checked import CheckedArtifact
 
 Artifacts = dict[str, str]
 """Stage -> folder of its artifact."""
-MOST_KEPT_BYTES = 64 << 20
+MAX_KEPT_BYTES = 64 << 20
 
 
 @lru_cache(maxsize=4)
@@ -388,4 +388,4 @@ def read_kept(path: Path) -> dict[str, Any]:
     Raises:
         StoreError: If it is damaged or too large.
     """
-    return read_json_object(path, MOST_KEPT_BYTES, failure=StoreError)
+    return read_json_object(path, MAX_KEPT_BYTES, failure=StoreError)

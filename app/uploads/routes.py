@@ -120,7 +120,7 @@ def list_uploads(server: Server) -> list[UploadView]:
 
 
 @router.post("", status_code=201, summary="Announce a recording")
-def begin_upload(new: NewUpload, server: Server, who: Who, request: Request) -> UploadView:
+def begin_upload(new: NewUpload, server: Server, who: Who, *, request: Request) -> UploadView:
     """Announce a recording of one or several files; then send each file with tus.
 
     Rejected if the disk has too little space (507), if it is too large (413) or if too many uploads
@@ -227,7 +227,7 @@ async def create(request: Request, server: Server, who: Who) -> Response:
     )
     headers = {"Location": _url(upload, part)}
     if request.headers.get("content-type") == tus.CHUNK_TYPE and part.offset == 0:
-        await _take(server, upload, part, request)
+        await _take(server, upload, part, request=request)
     await asyncio.to_thread(server.uploads.finish, upload)
     return Response(status_code=201, headers=headers | _offset_headers(server, upload, part))
 
@@ -251,7 +251,7 @@ async def patch(
     tus.check_version(request.headers)
     tus.check_type(request.headers)
     upload, part = server.uploads.part(file_id)
-    await _take(server, upload, part, request)
+    await _take(server, upload, part, request=request)
     await asyncio.to_thread(server.uploads.finish, upload)
     return Response(status_code=204, headers=_offset_headers(server, upload, part))
 
@@ -279,7 +279,7 @@ def _announce(
     return upload, server.uploads.add(upload, name[:1000], length=length)
 
 
-async def _take(server: Parts, upload: Upload, part: UploadPart, request: Request) -> None:
+async def _take(server: Parts, upload: Upload, part: UploadPart, *, request: Request) -> None:
     """Write the body of a request to its file; one request per file at a time."""
     if part.turn.locked():
         raise Locked("another request writes to this file; send HEAD and try again")

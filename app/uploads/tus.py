@@ -16,7 +16,7 @@ VERSION = "1.0.0"
 EXTENSIONS = "creation,creation-with-upload,termination,checksum,expiration"
 ALGORITHMS = ("sha256", "sha1")
 CHUNK_TYPE = "application/offset+octet-stream"
-MOST_METADATA = 8192
+MAX_METADATA = 8192
 
 
 class WrongVersion(AppError):
@@ -70,8 +70,8 @@ def metadata(headers: Mapping[str, str]) -> dict[str, str]:
         BadRequest: If it is malformed.
     """
     text = headers.get("upload-metadata", "")
-    if len(text) > MOST_METADATA:
-        raise BadRequest(f"Upload-Metadata has more than {MOST_METADATA} letters")
+    if len(text) > MAX_METADATA:
+        raise BadRequest(f"Upload-Metadata has more than {MAX_METADATA} letters")
     found = {}
     for pair in filter(None, (one.strip() for one in text.split(","))):
         name, _, value = pair.partition(" ")

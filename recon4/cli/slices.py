@@ -42,7 +42,7 @@ def cut_map(  # noqa: PLR0913 - options of a command
     from recon4.slices.frames import frame_of
     from recon4.store.project import read_artifacts
 
-    cuts = _cut(z, line, plane, thickness).repeated(count, spacing_m=spacing)
+    cuts = _cut(z, line, plane, thickness_m=thickness).repeated(count, spacing_m=spacing)
     artifacts = read_artifacts(project)
     approval = approval_of(project, {stage: folder.name for stage, folder in artifacts.items()})
     if approval:
@@ -52,7 +52,7 @@ def cut_map(  # noqa: PLR0913 - options of a command
         approval.evidence.open_map(artifacts["map"]) if approval else TileSet.open(artifacts["map"])
     )
     about = {"color": color, "name": project.name, "stamp": approval.stamp if approval else None}
-    points = _write(tiles, cuts, file, frame, about=about)
+    points = _write(tiles, cuts, file, frame=frame, about=about)
     sys.stdout.write(f"{points} points in {file}\n")
 
 
@@ -81,7 +81,7 @@ def double_walls(project: ProjectArgument) -> None:
         raise typer.Exit(1)
 
 
-def _cut(z: float | None, line: str, plane: str, thickness_m: float) -> Cut:
+def _cut(z: float | None, line: str, plane: str, *, thickness_m: float) -> Cut:
     from recon4.slices.cut import free, horizontal, vertical
 
     if (z is not None) + bool(line) + bool(plane) != 1:
@@ -106,7 +106,7 @@ def _numbers(text: str, count: int) -> list[float]:
 
 
 def _write(
-    tiles: TileSet, cuts: tuple[Cut, ...], file: Path, frame: MapFrame, *, about: dict[str, Any]
+    tiles: TileSet, cuts: tuple[Cut, ...], file: Path, *, frame: MapFrame, about: dict[str, Any]
 ) -> int:
     from recon4.review.stamp import stamp_file
     from recon4.slices.export import write_csv, write_dxf, write_laz
@@ -124,11 +124,11 @@ def _write(
         raise ConfigError(f"a slice is written as png svg pdf tif dxf laz csv, got {file.name}")
     if len(cuts) > 1:
         raise ConfigError("an image has one slice; use .dxf, .laz or .csv for several")
-    return _write_image(tiles, cuts[0], file, frame, about=about)
+    return _write_image(tiles, cuts[0], file, frame=frame, about=about)
 
 
 def _write_image(
-    tiles: TileSet, cut: Cut, file: Path, frame: MapFrame, *, about: dict[str, Any]
+    tiles: TileSet, cut: Cut, file: Path, *, frame: MapFrame, about: dict[str, Any]
 ) -> int:
     from recon4.slices.colors import LABELS
     from recon4.slices.export import write_geotiff

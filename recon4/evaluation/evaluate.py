@@ -122,7 +122,7 @@ def evaluate(
         )
     relative = None
     if mesh is not None and chunks is not None:
-        relative = _relative(chunks, mesh, aligned.T_true_map, map_alignment)
+        relative = _relative(chunks, mesh, aligned.T_true_map, map_alignment=map_alignment)
     return Evaluation(
         estimate=project_or_trajectory.name,
         truth=truth.name,
@@ -179,7 +179,7 @@ def map_quality(chunks: Chunks, *, places: int = 2000, seed: int = 0) -> MapQual
 
 
 def _relative(
-    chunks: Chunks, mesh: TriangleMesh, start: SE3, map_alignment: MapAlignment
+    chunks: Chunks, mesh: TriangleMesh, start: SE3, *, map_alignment: MapAlignment
 ) -> RelativeError:
     T_model_map = SE3.identity() if map_alignment == "none" else start
     if map_alignment == "icp":

@@ -14,7 +14,7 @@ from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
 
 Role = Literal["control", "check"]
-_MOST_BYTES = 16 << 20
+_MAX_BYTES = 16 << 20
 
 MEAN_HORIZONTAL_LIMIT_M = 0.14
 MEAN_VERTICAL_LIMIT_M = 0.12
@@ -102,7 +102,7 @@ def read_markers(path: Path) -> tuple[SurveyMarker, ...]:
         CorruptFile: Naming the line, what was expected and what was found.
     """
     try:
-        rows = csv.DictReader(lines_limited(path, most_bytes=_MOST_BYTES))
+        rows = csv.DictReader(lines_limited(path, max_bytes=_MAX_BYTES))
         return tuple(_marker(row, f"{path.name} line {rows.line_num}") for row in rows)
     except csv.Error as error:
         raise CorruptFile(f"{path.name}: cannot be read as CSV: {error}") from error

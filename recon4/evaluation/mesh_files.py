@@ -25,9 +25,9 @@ from recon4.recording.formats.cloud_headers import HEADER_BYTES, is_ply, ply_lay
 Corners = tuple[Array, NDArray[np.int64]]
 """Vertices [m], (V, 3), and triangles as rows of them, (T, 3)."""
 
-MOST_TRIANGLES = 20_000_000
-MOST_TEXT_BYTES = 4 << 30
-_MOST_SIDES = 1000
+MAX_TRIANGLES = 20_000_000
+MAX_TEXT_BYTES = 4 << 30
+_MAX_SIDES = 1000
 _INTEGERS = {
     **dict.fromkeys(("uchar", "uint8"), "u1"),
     **dict.fromkeys(("char", "int8"), "i1"),
@@ -156,12 +156,12 @@ def _ply(path: Path, head: bytes) -> Corners:
     vertices = np.column_stack([table[axis] for axis in "xyz"]).astype(np.float64)
     properties = _face_properties(top, path.name)
     if layout.encoding == "ascii":
-        return vertices, _face_lines(path, layout.rows, faces, properties)
+        return vertices, _face_lines(path, layout.rows, faces, properties=properties)
     if len(elements) > 2:
         raise CorruptFile(f"{path.name}: expected nothing behind the faces, got {elements[2][0]}")
     start = layout.data_at + layout.rows * layout.row_bytes
     order = "<" if "binary_little" in top else ">"
-    return vertices, _face_rows(path, start, faces, _face_dtype(properties, order))
+    return vertices, _face_rows(path, start, faces, row=_face_dtype(properties, order))
 
 
 def _face_properties(top: str, name: str) -> list[list[str]]:
@@ -198,7 +198,7 @@ def _face_dtype(properties: Iterable[Sequence[str]], order: str) -> np.dtype[np.
     return np.dtype(fields)
 
 
-def _face_rows(path: Path, start: int, count: int, row: np.dtype[np.void]) -> NDArray[np.int64]:
+def _face_rows(path: Path, start: int, count: int, *, row: np.dtype[np.void]) -> NDArray[np.int64]:
     with open_regular(path) as file:
         needed, left = count * row.itemsize, os.fstat(file.fileno()).st_size - start
         if left != needed:
@@ -214,7 +214,7 @@ def _face_rows(path: Path, start: int, count: int, row: np.dtype[np.void]) -> ND
 
 
 def _face_lines(
-    path: Path, vertices: int, count: int, properties: list[list[str]]
+    path: Path, vertices: int, count: int, *, properties: list[list[str]]
 ) -> NDArray[np.int64]:
     before = next(k for k, words in enumerate(properties) if words[0] == "list")
     triangles, faces = array("q"), 0
@@ -256,7 +256,7 @@ def _behind_vertices(path: Path, vertices: int) -> Iterator[tuple[int, list[str]
 
 
 def _lines(path: Path) -> Iterator[tuple[int, str]]:
-    return enumerate(lines_limited(path, most_bytes=MOST_TEXT_BYTES), start=1)
+    return enumerate(lines_limited(path, max_bytes=MAX_TEXT_BYTES), start=1)
 
 
 def _numbers(words: Sequence[str], count: int, where: str) -> list[float]:
@@ -271,8 +271,8 @@ def _numbers(words: Sequence[str], count: int, where: str) -> list[float]:
 
 
 def _fan(triangles: array[int], corners: Sequence[int], where: str) -> None:
-    if not 3 <= len(corners) <= _MOST_SIDES:
-        raise CorruptFile(f"{where}: expected 3 to {_MOST_SIDES} corners, got {len(corners)}")
+    if not 3 <= len(corners) <= _MAX_SIDES:
+        raise CorruptFile(f"{where}: expected 3 to {_MAX_SIDES} corners, got {len(corners)}")
     if max(corners) >= 1 << 62:
         raise CorruptFile(f"{where}: expected numbers of vertices, got {max(corners)}")
     for b, c in pairwise(corners[1:]):
@@ -288,5 +288,5 @@ def _arrays(vertices: array[float], triangles: array[int]) -> Corners:
 
 
 def _refuse_many(triangles: int, where: str) -> None:
-    if triangles > MOST_TRIANGLES:
-        raise CorruptFile(f"{where}: expected at most {MOST_TRIANGLES} triangles, got {triangles}")
+    if triangles > MAX_TRIANGLES:
+        raise CorruptFile(f"{where}: expected at most {MAX_TRIANGLES} triangles, got {triangles}")

@@ -65,7 +65,7 @@ class MeshBuilder:
             np.concatenate(self._reflectivity).astype(np.float32),
         )
 
-    def quad(self, corner: ArrayLike, u: ArrayLike, v: ArrayLike, reflectivity: float) -> None:
+    def quad(self, corner: ArrayLike, u: ArrayLike, v: ArrayLike, *, reflectivity: float) -> None:
         """A parallelogram from a corner along two edges [m]."""
         c, u, v = (np.asarray(x, dtype=np.float64) for x in (corner, u, v))
         corners = np.stack([c, c + u, c + u + v, c + v])
@@ -90,8 +90,8 @@ class MeshBuilder:
         start: ArrayLike,
         end: ArrayLike,
         radius_m: float,
-        reflectivity: float,
         *,
+        reflectivity: float,
         sides: int = 6,
         end_radius_m: float | None = None,
     ) -> None:
@@ -135,7 +135,7 @@ class MeshBuilder:
         corners = np.asarray(center) + (unit * scale[..., None] * np.asarray(radii)).reshape(-1, 3)
         self.add(corners, _grid_triangles(rows, columns, wrap=True), reflectivity)
 
-    def terrain(self, x_m: Array, y_m: Array, z_m: Array, reflectivity: ArrayLike) -> None:
+    def terrain(self, x_m: Array, y_m: Array, z_m: Array, *, reflectivity: ArrayLike) -> None:
         """A height field: x (M,), y (N,), z (N, M) [m]; reflectivity: one, or (N-1, M-1) cells."""
         grid_x, grid_y = np.meshgrid(x_m, y_m)
         corners = np.stack([grid_x, grid_y, z_m], axis=-1).reshape(-1, 3)

@@ -129,7 +129,7 @@ class SE3:
         return SE3(matrix_from_quat(quat_xyzw), np.asarray(t, dtype=np.float64))
 
     @staticmethod
-    def from_rpy(roll_rad: float, pitch_rad: float, yaw_rad: float, t: ArrayLike) -> SE3:
+    def from_rpy(roll_rad: float, pitch_rad: float, yaw_rad: float, *, t: ArrayLike) -> SE3:
         """``Rz(yaw) Ry(pitch) Rx(roll)`` and a translation [m], (3,)."""
         R = so3_exp([0, 0, yaw_rad]) @ so3_exp([0, pitch_rad, 0]) @ so3_exp([roll_rad, 0, 0])
         return SE3(R, np.asarray(t, dtype=np.float64))

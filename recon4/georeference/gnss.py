@@ -117,7 +117,7 @@ def georeference(
     if gnss is None or not settings.enabled:
         why = "no GNSS in the recording" if gnss is None else "switched off (gnss.enabled)"
         return _local(graph, why, samples=0)
-    gnss_priors, origin = usable_gnss_priors(graph, trajectory, gnss, rig, settings=settings)
+    gnss_priors, origin = usable_gnss_priors(graph, trajectory, gnss, rig=rig, settings=settings)
     if origin is None or len(gnss_priors) < _MIN_PRIORS:
         return _local(graph, f"{len(gnss_priors)} usable fixes of {len(gnss)}", samples=len(gnss))
     p_map = graph.T_map_body[gnss_priors.node] @ gnss_priors.p_node_antenna
@@ -170,13 +170,13 @@ def align_heading(
             continue
         pair = [a, b]
         T_enu_map = _heading_fit(p_map[pair], gnss_priors.p_enu[pair], gnss_priors.sd_m[pair])
-        near = _near(T_enu_map, p_map, gnss_priors, gate)
+        near = _near(T_enu_map, p_map, gnss_priors, gate=gate)
         if near.sum() > best[1].sum():
             best = (T_enu_map, near)
     for _ in range(5 if best[1].any() else 0):
         near = best[1]
         T_enu_map = _heading_fit(p_map[near], gnss_priors.p_enu[near], gnss_priors.sd_m[near])
-        best = (T_enu_map, _near(T_enu_map, p_map, gnss_priors, gate))
+        best = (T_enu_map, _near(T_enu_map, p_map, gnss_priors, gate=gate))
     return best
 
 
@@ -185,12 +185,14 @@ def _heading_fit(p_map: Array, p_enu: Array, sd_m: Array) -> SE3:
     flat = np.array([1.0, 1.0, 0.0])
     R = align_points(p_enu * flat, p_map * flat, weights).R
     yaw = np.arctan2(R[1, 0], R[0, 0])
-    turn = SE3.from_rpy(0.0, 0.0, float(yaw), [0.0, 0.0, 0.0])
+    turn = SE3.from_rpy(0.0, 0.0, float(yaw), t=[0.0, 0.0, 0.0])
     shift = np.average(p_enu - turn @ p_map, axis=0, weights=weights)
     return SE3(turn.R, shift)
 
 
-def _near(T_enu_map: SE3, p_map: Array, gnss_priors: GnssPriors, gate: Array) -> NDArray[np.bool_]:
+def _near(
+    T_enu_map: SE3, p_map: Array, gnss_priors: GnssPriors, *, gate: Array
+) -> NDArray[np.bool_]:
     off = gnss_priors.p_enu - T_enu_map @ p_map
     vertical = gate + 3.0 * gnss_priors.sd_m[:, 2]
     return (np.hypot(off[:, 0], off[:, 1]) < gate) & (np.abs(off[:, 2]) < vertical)

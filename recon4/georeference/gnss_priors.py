@@ -57,7 +57,7 @@ class GnssPriors:
 
 
 def usable_gnss_priors(
-    graph: PoseGraph, trajectory: Trajectory, gnss: GnssSamples, rig: Rig, *, settings: GnssSettings
+    graph: PoseGraph, trajectory: Trajectory, gnss: GnssSamples, *, rig: Rig, settings: GnssSettings
 ) -> tuple[GnssPriors, GeodeticOrigin | None]:
     """Select fixes with a position, of sufficient quality, during the walk and not frozen.
 

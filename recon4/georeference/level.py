@@ -90,7 +90,7 @@ def tilt_to(up_odom: Array) -> SE3:
     """Rotation without heading that turns ``up_odom`` (3,) to (0, 0, 1)."""
     x, y, z = up_odom
     return SE3.from_rpy(
-        float(np.arctan2(y, z)), float(np.arctan2(-x, np.hypot(y, z))), 0.0, [0] * 3
+        float(np.arctan2(y, z)), float(np.arctan2(-x, np.hypot(y, z))), 0.0, t=[0] * 3
     )
 
 
@@ -118,7 +118,7 @@ def level_by_attitude(trajectory: Trajectory, gnss: GnssSamples, rig: Rig) -> Le
         if np.abs(T_level_odom.R - before.R).max() < 1e-7:
             break
     angles = _angles(ups, T_level_odom.R[2])
-    return _result(T_level_odom, "ins", angles, kept)
+    return _result(T_level_odom, "ins", angles, kept=kept)
 
 
 def level_by_gravity(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> Leveling:
@@ -145,7 +145,7 @@ def level_by_gravity(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> Level
             break
         gravity, bias = _fit_gravity(force[kept], R_mean[kept])
     angles = _angles(force - R_mean @ bias, gravity)
-    return _result(tilt_to(gravity / np.linalg.norm(gravity)), "imu", angles, kept)
+    return _result(tilt_to(gravity / np.linalg.norm(gravity)), "imu", angles, kept=kept)
 
 
 def _windows(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> tuple[Array, Array] | None:
@@ -207,6 +207,6 @@ def _trimmed(angles: Array) -> Any:
     return angles <= np.maximum(_TRIM * np.median(angles) / 1.1774, 1e-9)
 
 
-def _result(T_level_odom: SE3, source: str, angles: Array, kept: Any) -> Leveling:
+def _result(T_level_odom: SE3, source: str, angles: Array, *, kept: Any) -> Leveling:
     spread = float(np.sqrt(np.mean(angles[kept] ** 2)))
     return Leveling(T_level_odom, source, int(kept.sum()), int((~kept).sum()), spread)

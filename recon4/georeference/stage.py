@@ -31,7 +31,7 @@ _FLOOR_FRAMES = 200
 _FLOOR_POINTS = 2000
 """Numbers of multiframes, and of points of each, that are sampled to find the floor."""
 
-_MOST_JSON_BYTES = 16 << 20
+_MAX_JSON_BYTES = 16 << 20
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,8 +53,8 @@ def run_level(
     frames: FrameStore,
     refined: Path,
     graph: Path,
-    out: Path,
     *,
+    out: Path,
     settings: Settings,
     progress: Progress,
 ) -> dict[str, Any]:
@@ -133,7 +133,7 @@ def read_crs(artifact: Path, crs: str = "") -> CrsTransform | None:
     """
     path = artifact / "georeference.json"
     try:
-        record = read_json_object(path, _MOST_JSON_BYTES, failure=StoreError)
+        record = read_json_object(path, _MAX_JSON_BYTES, failure=StoreError)
         if not record["crs"]:
             if crs:
                 raise GeoreferenceError(

@@ -79,7 +79,7 @@ def spread(count: Array, curve: Array, *, min_count: int = 1) -> float:
 
 
 def diagnose(
-    table: IntensityTable, sums: Array, surfaces: Surfaces, seen: Observations
+    table: IntensityTable, sums: Array, surfaces: Surfaces, *, seen: Observations
 ) -> Diagnostics:
     """Dependency curves of some points before and after normalization by a table.
 

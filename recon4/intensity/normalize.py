@@ -72,7 +72,7 @@ def learn_intensity(
     few = settings.surface_points / max(1, sum(map(len, windows)))
     learned, held_out = (_SampleAccumulator(shape, few, settings) for _ in range(2))
     for window in track(windows, progress, what="learn intensities", unit="windows"):
-        samples = _sample(frames, trajectory, window, settings)
+        samples = _sample(frames, trajectory, window, settings=settings)
         for k, sample in enumerate(samples):
             (held_out if k % HELD_OUT == HELD_OUT - 1 else learned).add(sample)
     seen = learned.observations()
@@ -84,7 +84,7 @@ def learn_intensity(
     else:
         table = IntensityTable.of_sums(learned.sums, settings=settings, largest=largest)
     shown = held_out if held_out.sums[..., 0].any() else learned
-    return table, diagnose(table, shown.sums, surfaces, shown.observations())
+    return table, diagnose(table, shown.sums, surfaces, seen=shown.observations())
 
 
 def write_intensity(
@@ -157,7 +157,7 @@ class _SampleAccumulator:
                 sample.cell[rows],
                 sample.sensor[rows].astype(np.int64) * rings + sample.ring[rows],
                 sample.incidence_rad[rows],
-                sample.range_m[rows],
+                range_m=sample.range_m[rows],
                 intensity=sample.intensity[rows],
                 shape=(sensors * rings, incidences, ranges),
                 settings=self._settings,
@@ -170,7 +170,7 @@ class _SampleAccumulator:
 
 
 def _sample(
-    frames: Frames, trajectory: Trajectory, rows: list[int], settings: IntensitySettings
+    frames: Frames, trajectory: Trajectory, rows: list[int], *, settings: IntensitySettings
 ) -> Iterator[IntensitySample]:
     """The samples of one window, with normals from all of its points."""
     enabled = np.array([sensor.enabled for sensor in frames.rig.sensors])

@@ -83,8 +83,8 @@ def observations_of(
     cell: NDArray[np.int64],
     channel: NDArray[np.int64],
     incidence_rad: NDArray[np.float32],
-    range_m: NDArray[np.float32],
     *,
+    range_m: NDArray[np.float32],
     intensity: NDArray[np.uint16],
     shape: tuple[int, int, int],
     settings: IntensitySettings,
@@ -115,7 +115,7 @@ def learn_surfaces(
     starts = np.append(first, len(order))
     bins, intensity = seen.bins[order], seen.intensity[order]
     groups = (shape[0] * shape[1], shape[2], shape[3])
-    parts = _log_factors(starts, bins, intensity, groups, weight=float(settings.min_count))
+    parts = _log_factors(starts, bins, intensity, groups=groups, weight=float(settings.min_count))
     factor = np.exp(parts[0][:, None, None] + parts[1][:, None] + parts[2])
 
     flat = np.ravel_multi_index(tuple(bins.T), factor.shape)
@@ -151,8 +151,8 @@ def _log_factors(
     starts: NDArray[np.int64],
     bins: NDArray[np.int32],
     intensity: NDArray[np.float32],
-    groups: tuple[int, int, int],
     *,
+    groups: tuple[int, int, int],
     weight: float,
 ) -> list[Array]:
     """Logarithms of the factors of channel, incidence and range; 0 without data."""

@@ -17,7 +17,7 @@ _LOW_DISK_S = 600
 _SILENT_S = 1.5
 _GRACE_S = 3.0
 """No sensor is reported as silent this soon after the start."""
-_MOST_LOST = 0.01
+_MAX_LOST = 0.01
 _DEGRADED_MATCH_RATIO, _DEGRADED_ERROR_M, _DEGRADED_OFFSET_M = 0.4, 0.08, 0.25
 _DEGRADED_DEGENERACY = 0.002
 """1/3 = isotropic, 0 = one direction is unobservable (a long corridor)."""
@@ -234,7 +234,7 @@ def _reader(notes: Notes) -> list[CaptureFinding]:
     found = [CaptureFinding("warning", text) for text in notes.warnings[-3:]]
     recent = notes.recent
     packets, missing = recent.get("packets", 0), recent.get("packets_missing", 0)
-    if packets > 1000 and missing > _MOST_LOST * packets:
+    if packets > 1000 and missing > _MAX_LOST * packets:
         percent = 100.0 * missing / (packets + missing)
         text = f"{percent:.0f} % of the packets never arrived: check the cable"
         found.append(CaptureFinding("warning", text))
@@ -244,7 +244,7 @@ def _reader(notes: Notes) -> list[CaptureFinding]:
         ("packets_late", "arrived too late for their frame"),
         ("packets_wrong_length", "on a LiDAR's port have a wrong size: discarded"),
     ):
-        if packets > 1000 and recent.get(name, 0) > _MOST_LOST * packets:
+        if packets > 1000 and recent.get(name, 0) > _MAX_LOST * packets:
             found.append(
                 CaptureFinding("info", f"{100 * recent[name] / packets:.0f} % of packets {what}")
             )

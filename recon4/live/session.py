@@ -21,7 +21,7 @@ from recon4.store.json_files import read_object
 _DAY_NS = 86_400_000_000_000
 
 
-MOST_JSON_BYTES = 1 << 20
+MAX_JSON_BYTES = 1 << 20
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,6 +92,6 @@ def load_session(project: Path) -> CaptureSession:
     """
     path = project / "live" / "session.json"
     try:
-        return CaptureSession(project=project, **read_object(path, most_bytes=MOST_JSON_BYTES))
+        return CaptureSession(project=project, **read_object(path, max_bytes=MAX_JSON_BYTES))
     except TypeError as error:
         raise StoreError(f"{path} cannot be read: {error}") from error

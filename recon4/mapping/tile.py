@@ -75,7 +75,7 @@ def make_tile(records: Records, recipe: Recipe) -> MadeTile:
     lonely = own & (normals.support < settings.min_neighborhood)
     removed["lonely"] = int(lonely.sum())
     rows = progressive(np.flatnonzero(own & ~lonely))
-    return MadeTile(_columns(records, rows, normals.normal, recipe), removed)
+    return MadeTile(_columns(records, rows, normals.normal, recipe=recipe), removed)
 
 
 def _without_far(records: Records, ratio: float) -> tuple[Records, int]:
@@ -109,7 +109,7 @@ def _strata() -> list[int]:
 
 
 def _columns(
-    records: Records, rows: NDArray[np.intp], normals: NDArray[np.float32], recipe: Recipe
+    records: Records, rows: NDArray[np.intp], normals: NDArray[np.float32], *, recipe: Recipe
 ) -> Columns:
     n = len(rows)
     columns: Columns = {

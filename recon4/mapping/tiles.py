@@ -28,7 +28,7 @@ from recon4.store.checked import Altered, CheckedArtifact
 FORMAT = 1
 Number = TypeVar("Number", int, float)
 _HEADER_BYTES = 128
-_MOST_FACTS_BYTES = 256 << 20
+_MAX_FACTS_BYTES = 256 << 20
 """``tiles.json`` has some 300 bytes per tile."""
 
 
@@ -82,7 +82,7 @@ class Tile:
         count = len(self) if limit is None else min(limit, len(self))
         for name in fields:
             self._check(name, count)
-        return {name: _map_rows(self.folder, name, self.start, count) for name in fields}
+        return {name: _map_rows(self.folder, name, self.start, count=count) for name in fields}
 
     def _check(self, name: str, count: int) -> None:
         if self.checked is None or count == 0:
@@ -133,7 +133,7 @@ class TileSet:
                 raise StoreError(f"{path.name}: expected format {FORMAT}, got {facts['format']}")
             fields = tuple(str(name) for name in facts["fields"])
             rows = facts.pop("tiles")
-            tiles = tuple(_tile(folder / "tiles", fields, row, checked) for row in rows)
+            tiles = tuple(_tile(folder / "tiles", fields, row, checked=checked) for row in rows)
             crs = facts["crs"] and MapCrs(facts["crs"]["wkt"], tuple(facts["crs"]["origin_m"]))
             points = int(facts["points"])
         except (ValueError, KeyError, TypeError, IndexError, OverflowError) as error:
@@ -244,13 +244,13 @@ class TileWriter:
 
 def _read_facts(path: Path) -> dict[str, Any]:
     try:
-        return read_json_object(path, _MOST_FACTS_BYTES, failure=StoreError)
+        return read_json_object(path, _MAX_FACTS_BYTES, failure=StoreError)
     except StoreError as error:
         raise StoreError(f"{path} is not the list of a map's tiles: {error}") from error
 
 
 def _tile(
-    folder: Path, fields: tuple[str, ...], row: dict[str, Any], checked: CheckedArtifact | None
+    folder: Path, fields: tuple[str, ...], row: dict[str, Any], *, checked: CheckedArtifact | None
 ) -> Tile:
     return Tile(
         folder,
@@ -311,7 +311,7 @@ def _row_offset(name: str, row: int) -> tuple[int, int]:
     return _HEADER_BYTES + row * row_bytes, row_bytes
 
 
-def _map_rows(folder: Path, name: str, start: int, count: int) -> NDArray[Any]:
+def _map_rows(folder: Path, name: str, start: int, *, count: int) -> NDArray[Any]:
     dtype = np.dtype(FIELDS[name][0])
     if count == 0:
         return np.empty(_shape(name, 0), dtype)

@@ -18,11 +18,11 @@ from recon4.geometry.se3 import SE3, Array
 
 IMU_PORT, GNSS_PORT = 8309, 8310
 """Default UDP ports, next to Velodyne's 2368 (data) and 8308 (positions)."""
-MOST_RIG_BYTES = 128 * 1024
+MAX_RIG_BYTES = 128 * 1024
 """A rig file has some hundred bytes per sensor."""
-MOST_SENSORS = 64
-_MOST_TEXT = 1000
-_MOST_DOTS = 100
+MAX_SENSORS = 64
+_MAX_TEXT = 1000
+_MAX_DOTS = 100
 _BETWEEN_KEYS = re.compile(r"[=\[\]{},\n]")
 _LARGEST = 4e9
 """Clocks differ by seconds since 1970 at most; nanoseconds must fit into 64 bits."""
@@ -102,7 +102,7 @@ def load_rig(name_or_path: str | Path) -> Rig:
         preset = resources.files("recon4") / "rigs" / f"{name_or_path}.toml"
         return parse_rig(preset.read_text("utf-8"), where=str(name_or_path))
     try:
-        text = read_text_limited(path, MOST_RIG_BYTES, failure=ConfigError)
+        text = read_text_limited(path, MAX_RIG_BYTES, failure=ConfigError)
     except ConfigError as error:
         raise ConfigError(f"cannot read rig file {error}") from error
     return parse_rig(text, where=path.name[:200])
@@ -117,9 +117,9 @@ def parse_rig(text: str, *, where: str) -> Rig:
     table = _toml(text, where)
     _refuse_unknown(table, {"name", "sensor", "imu", "gnss"}, where)
     rows = table.get("sensor", [])
-    if not isinstance(rows, list) or not 1 <= len(rows) <= MOST_SENSORS:
+    if not isinstance(rows, list) or not 1 <= len(rows) <= MAX_SENSORS:
         raise ConfigError(
-            f"{where}: a rig needs at least one [[sensor]] and at most {MOST_SENSORS}, "
+            f"{where}: a rig needs at least one [[sensor]] and at most {MAX_SENSORS}, "
             f"got {len(rows) if isinstance(rows, list) else rows!r:.40}"
         )
     sensors = tuple(_sensor(row, f"{where}: sensor {k}") for k, row in enumerate(rows))
@@ -132,15 +132,17 @@ def parse_rig(text: str, *, where: str) -> Rig:
     )
     _refuse_unknown(gnss, {"lever_arm_m", "time_offset_s", "port", "serial"}, f"{where}: gnss")
     return Rig(
-        name=_text(table, "name", where, where),
+        name=_text(table, "name", where, where=where),
         sensors=sensors,
         T_body_imu=_mounting(imu, f"{where}: imu"),
-        imu_time_offset_s=_number(imu, "time_offset_s", 0.0, f"{where}: imu"),
-        p_body_antenna=_vector(gnss, "lever_arm_m", 3, (0.0, 0.0, 0.0), where=f"{where}: gnss"),
-        gnss_time_offset_s=_number(gnss, "time_offset_s", 0.0, f"{where}: gnss"),
+        imu_time_offset_s=_number(imu, "time_offset_s", 0.0, where=f"{where}: imu"),
+        p_body_antenna=_vector(
+            gnss, "lever_arm_m", 3, default=(0.0, 0.0, 0.0), where=f"{where}: gnss"
+        ),
+        gnss_time_offset_s=_number(gnss, "time_offset_s", 0.0, where=f"{where}: gnss"),
         imu_port=_port(imu, IMU_PORT, f"{where}: imu"),
         gnss_port=_port(gnss, GNSS_PORT, f"{where}: gnss"),
-        gnss_serial=_text(gnss, "serial", "", f"{where}: gnss"),
+        gnss_serial=_text(gnss, "serial", "", where=f"{where}: gnss"),
     )
 
 
@@ -149,10 +151,10 @@ def _toml(text: str, where: str) -> dict[str, Any]:
 
     tomllib needs quadratic time for dotted keys, and recursion for nested arrays.
     """
-    if len(text) > MOST_RIG_BYTES:
-        raise ConfigError(f"{where}: expected at most {MOST_RIG_BYTES} characters, got {len(text)}")
+    if len(text) > MAX_RIG_BYTES:
+        raise ConfigError(f"{where}: expected at most {MAX_RIG_BYTES} characters, got {len(text)}")
     longest = max((part.count(".") for part in _BETWEEN_KEYS.split(text)), default=0)
-    if longest > _MOST_DOTS:
+    if longest > _MAX_DOTS:
         raise ConfigError(f"{where}: expected keys of few parts, got one with {longest} dots")
     try:
         return tomllib.loads(text)
@@ -201,36 +203,36 @@ def _mounting_lines(T_body_x: SE3) -> list[str]:
 def _sensor(row: dict[str, Any], where: str) -> Sensor:
     known = {"name", "model", "xyz_m", "rpy_deg", "quat_xyzw", "time_offset_s"}
     _refuse_unknown(row, known | {"address", "port", "topic", "enabled"}, where)
-    model = _text(row, "model", "VLP-16", where)
+    model = _text(row, "model", "VLP-16", where=where)
     if model not in SENSOR_MODELS:
         raise ConfigError(f"{where}: model must be one of {SENSOR_MODELS}, got {model[:80]!r}")
-    if not _text(row, "name", "", where):
+    if not _text(row, "name", "", where=where):
         raise ConfigError(f"{where}: name must be a text, got {row.get('name')!r:.80}")
     return Sensor(
         name=row["name"],
         model=model,
         T_body_sensor=_mounting(row, where),
-        time_offset_s=_number(row, "time_offset_s", 0.0, where),
-        address=_text(row, "address", "", where),
+        time_offset_s=_number(row, "time_offset_s", 0.0, where=where),
+        address=_text(row, "address", "", where=where),
         port=_port(row, 2368, where),
-        topic=_text(row, "topic", "", where),
+        topic=_text(row, "topic", "", where=where),
         enabled=_flag(row, "enabled", where),
     )
 
 
 def _mounting(row: dict[str, Any], where: str) -> SE3:
-    xyz_m = _vector(row, "xyz_m", 3, (0.0, 0.0, 0.0), where=where)
+    xyz_m = _vector(row, "xyz_m", 3, default=(0.0, 0.0, 0.0), where=where)
     if "quat_xyzw" in row:
-        quat = _vector(row, "quat_xyzw", 4, (), where=where)
+        quat = _vector(row, "quat_xyzw", 4, default=(), where=where)
         if not 0.99 < np.linalg.norm(quat) < 1.01:
             raise ConfigError(f"{where}: quat_xyzw must have length 1, got {quat.tolist()}")
         return SE3.from_quat(quat, xyz_m)
-    roll, pitch, yaw = np.deg2rad(_vector(row, "rpy_deg", 3, (0.0, 0.0, 0.0), where=where))
-    return SE3.from_rpy(roll, pitch, yaw, xyz_m)
+    roll, pitch, yaw = np.deg2rad(_vector(row, "rpy_deg", 3, default=(0.0, 0.0, 0.0), where=where))
+    return SE3.from_rpy(roll, pitch, yaw, t=xyz_m)
 
 
 def _vector(
-    row: dict[str, Any], key: str, size: int, default: tuple[float, ...], *, where: str
+    row: dict[str, Any], key: str, size: int, *, default: tuple[float, ...], where: str
 ) -> Array:
     value = row.get(key, default)
     if not isinstance(value, list | tuple) or len(value) != size or not all(map(_usable, value)):
@@ -240,7 +242,7 @@ def _vector(
     return np.asarray(value, dtype=np.float64)
 
 
-def _number(row: dict[str, Any], key: str, default: float, where: str) -> float:
+def _number(row: dict[str, Any], key: str, default: float, *, where: str) -> float:
     value = row.get(key, default)
     if not _usable(value):
         raise ConfigError(
@@ -255,11 +257,11 @@ def _usable(value: Any) -> bool:
     return number and -_LARGEST <= value <= _LARGEST
 
 
-def _text(row: dict[str, Any], key: str, default: str, where: str) -> str:
+def _text(row: dict[str, Any], key: str, default: str, *, where: str) -> str:
     value = row.get(key, default)
-    if not isinstance(value, str) or len(value) > _MOST_TEXT:
+    if not isinstance(value, str) or len(value) > _MAX_TEXT:
         raise ConfigError(
-            f"{where}: {key} must be a text of at most {_MOST_TEXT} characters, got {value!r:.80}"
+            f"{where}: {key} must be a text of at most {_MAX_TEXT} characters, got {value!r:.80}"
         )
     return value
 
@@ -272,7 +274,7 @@ def _flag(row: dict[str, Any], key: str, where: str) -> bool:
 
 
 def _port(row: dict[str, Any], default: int, where: str) -> int:
-    port = _number(row, "port", default, where)
+    port = _number(row, "port", default, where=where)
     if not 0 <= port <= 65535 or port != int(port):
         raise ConfigError(f"{where}: port must be 0 to 65535, got {port:g}")
     return int(port)

@@ -58,7 +58,7 @@ def pairs_at_distances(
             i, j = sorted((start, (start + d) % count))
             if i != j and (i, j) not in tried:
                 tried.add((i, j))
-                pairs.append(_pair(graph, i, j, settings))
+                pairs.append(_pair(graph, i, j, settings=settings))
     return pairs
 
 
@@ -98,7 +98,7 @@ def revisit_pairs(graph: PoseGraph, *, settings: GraphSettings, limit: int) -> l
         )
         inside = distance_m < allowed_m
         chosen = _spread(earlier[inside], distance_m[inside], limit)
-        pairs += [_pair(graph, i, j, settings) for i in chosen if (i, j) not in tried]
+        pairs += [_pair(graph, i, j, settings=settings) for i in chosen if (i, j) not in tried]
     return pairs
 
 
@@ -138,6 +138,6 @@ def retry_pairs(graph: PoseGraph, expected: Mapping[Ends, SE3], *, move_m: float
     return pairs
 
 
-def _pair(graph: PoseGraph, i: int, j: int, settings: GraphSettings) -> Pair:
+def _pair(graph: PoseGraph, i: int, j: int, *, settings: GraphSettings) -> Pair:
     kind = EdgeKind.NEIGHBOR if j - i <= settings.neighbors else EdgeKind.LOOP
     return Pair(i, j, kind, graph.T_map_body[i].inverse() @ graph.T_map_body[j])

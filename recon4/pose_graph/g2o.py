@@ -18,9 +18,9 @@ from recon4.pose_graph.relations import reverse
 
 _FIELDS = {"VERTEX_SE3:QUAT": 9, "EDGE_SE3:QUAT": 31, "VERTEX_SE2": 5, "EDGE_SE2": 12, "FIX": 2}
 """Number of fields in a line of each kind, its tag included."""
-_MOST_BYTES = 1 << 30
-_MOST_LINE_BYTES = 4096
-_MOST_ID = 1 << 53
+_MAX_BYTES = 1 << 30
+_MAX_LINE_BYTES = 4096
+_MAX_ID = 1 << 53
 """Numbers of vertices pass through a float64."""
 _LENGTH_TOLERANCE = 1e-2
 _ROTATION_FIRST = [3, 4, 5, 0, 1, 2]
@@ -88,7 +88,7 @@ def _read_rows(path: Path) -> list[tuple[int, str, Array]]:
     """Line number, tag and numbers of each line."""
     rows: list[tuple[int, str, Array]] = []
     first = line = ""
-    lines = lines_limited(path, most_bytes=_MOST_BYTES, most_line_bytes=_MOST_LINE_BYTES)
+    lines = lines_limited(path, max_bytes=_MAX_BYTES, max_line_bytes=_MAX_LINE_BYTES)
     for number, line in enumerate(lines, start=1):
         first = first if number > 1 else line
         fields = line.split()
@@ -113,7 +113,7 @@ def _numbers(fields: list[str], where: str) -> Array:
     if not np.isfinite(numbers).all():
         raise CorruptFile(f"{where}: a number is not finite")
     for number in numbers[: 2 if "EDGE" in fields[0] else 1]:
-        if number != int(number) or not 0 <= number < _MOST_ID:
+        if number != int(number) or not 0 <= number < _MAX_ID:
             raise CorruptFile(f"{where}: expected a vertex 0 to 2^53, got {number:g}")
     if fields[0].endswith("QUAT"):
         quat = numbers[4:8] if "VERTEX" in fields[0] else numbers[5:9]
@@ -142,7 +142,7 @@ def _vertex(tag: str, fields: Array) -> SE3:
 
 def _motion(tag: str, numbers: Array) -> SE3:
     if tag.endswith("SE2"):
-        return SE3.from_rpy(0.0, 0.0, numbers[2], [numbers[0], numbers[1], 0.0])
+        return SE3.from_rpy(0.0, 0.0, numbers[2], t=[numbers[0], numbers[1], 0.0])
     return SE3.from_quat(numbers[3:7], numbers[:3])
 
 

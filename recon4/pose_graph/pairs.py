@@ -71,11 +71,11 @@ class PairRegistrar:
 
     def _try_chunk(self, groups: list[list[int]], pairs: Sequence[Pair]) -> dict[int, Edge]:
         submaps, planes = self._make_submaps(), PlaneMap(self._settings.planes)
-        edges = [self._try_group(submaps, planes, group, pairs) for group in groups]
+        edges = [self._try_group(submaps, planes, group, pairs=pairs) for group in groups]
         return {k: edge for tried in edges for k, edge in tried}
 
     def _try_group(
-        self, submaps: Submaps, planes: PlaneMap, group: list[int], pairs: Sequence[Pair]
+        self, submaps: Submaps, planes: PlaneMap, group: list[int], *, pairs: Sequence[Pair]
     ) -> list[tuple[int, Edge]]:
         """Register all pairs of one target node; its map is built once, if a pair needs it."""
         target: PlaneMap | LineTarget | None = None
@@ -94,7 +94,9 @@ class PairRegistrar:
                 (
                     k,
                     self._judge(
-                        pair, overlap_ratio, self._solve(target, ends, pair, overlap_ratio)
+                        pair,
+                        overlap_ratio,
+                        self._solve(target, ends, pair, overlap_ratio=overlap_ratio),
                     ),
                 )
             )
@@ -115,7 +117,7 @@ class PairRegistrar:
         return planes
 
     def _solve(
-        self, target: PlaneMap | LineTarget, ends: Ends, pair: Pair, overlap_ratio: float
+        self, target: PlaneMap | LineTarget, ends: Ends, pair: Pair, *, overlap_ratio: float
     ) -> Registration:
         settings = self._settings.registration
         if isinstance(target, LineTarget):

@@ -81,7 +81,7 @@ class CloudDecoder:
         self._report.count("points_invalid", len(xyz) - len(valid))
         table = {key: column[valid] for key, column in table.items()}
         xyz = xyz[valid]
-        times = self._times(table, xyz, t_ns, period_ns)
+        times = self._times(table, xyz, t_ns, period_ns=period_ns)
         order = np.argsort(times, kind="stable")
         self._report.count("points", len(xyz))
         return Shots(
@@ -145,7 +145,7 @@ class CloudDecoder:
 
     # -- time
 
-    def _times(self, table: Table, xyz: NDArray[np.float32], t_ns: int, period_ns: int) -> Times:
+    def _times(self, table: Table, xyz: NDArray[np.float32], t_ns: int, *, period_ns: int) -> Times:
         azimuth = np.arctan2(xyz[:, 1], xyz[:, 0])
         key = find_field(table, TIME_FIELDS)
         self.absolute = False

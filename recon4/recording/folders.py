@@ -85,7 +85,7 @@ def read_frames(
     for file, stamp in zip(frames.files, frames.t_ns, strict=True):
         report.count("files")
         try:
-            shots = _shots(decoder, file, int(stamp) + offset_ns, frames.period_ns)
+            shots = _shots(decoder, file, int(stamp) + offset_ns, period_ns=frames.period_ns)
         except RecordingError as error:
             failed = error
             report.count("files_corrupt")
@@ -99,7 +99,7 @@ def read_frames(
         if not len(shots):
             report.count("frames_empty")
             continue
-        frame = _multiframe(shots, frame_id, start_ns, frames.period_ns)
+        frame = _multiframe(shots, frame_id, start_ns, period_ns=frames.period_ns)
         if last_ns is not None and start_ns <= last_ns:
             report.count("frames_moved")
             report.warn("frames that do not follow each other in time are put one after the other")
@@ -128,7 +128,7 @@ def folder_gaps(frames: FrameFiles, name: str, gap_s: float) -> list[TimeGap]:
     ]
 
 
-def _shots(decoder: CloudDecoder, file: Path, stamp_ns: int, period_ns: int) -> Shots:
+def _shots(decoder: CloudDecoder, file: Path, stamp_ns: int, *, period_ns: int) -> Shots:
     table = read_cloud(file)
     try:
         return decoder.decode(table, t_ns=stamp_ns, period_ns=period_ns)
@@ -136,7 +136,7 @@ def _shots(decoder: CloudDecoder, file: Path, stamp_ns: int, period_ns: int) -> 
         raise CorruptFile(f"{file.name}: {error}") from error
 
 
-def _multiframe(shots: Shots, frame_id: int, start_ns: int, period_ns: int) -> Multiframe:
+def _multiframe(shots: Shots, frame_id: int, start_ns: int, *, period_ns: int) -> Multiframe:
     """The whole cloud as one multiframe."""
     return Multiframe(
         frame_id,

@@ -139,7 +139,7 @@ def describe(path: Path, *, settings: IngestSettings | None = None) -> Recording
         info = _describe_frames(info, path, settings)
     else:
         info = _describe_bag(info, path, report)
-    return _with_head(info, path, settings, report)
+    return _with_head(info, path, settings, report=report)
 
 
 def utc(t_ns: int) -> str:
@@ -330,7 +330,7 @@ def _describe_samples(info: RecordingInfo, path: Path, kind: RecordingKind) -> R
 
 
 def _with_head(
-    info: RecordingInfo, path: Path, settings: IngestSettings, report: ImportReport
+    info: RecordingInfo, path: Path, settings: IngestSettings, *, report: ImportReport
 ) -> RecordingInfo:
     """Add the findings of opening the recording and reading its first second."""
     rates: dict[int, float] = {}

@@ -153,10 +153,10 @@ def ingest(
             raise EmptyRecording(f"{paths[0].name}: no usable points ({counted or 'nothing read'})")
         rig, span = recording.rig, written.span
         jumps = [-round(gap.seconds * 1e9) for gap in assembler.gaps if gap.seconds < 0]
-        kept_imu = _imu(given, found, (rig, span, jumps), report)
-        kept_gnss = _gnss(given, found, (rig, span), report)
+        kept_imu = _imu(given, found, (rig, span, jumps), report=report)
+        kept_gnss = _gnss(given, found, (rig, span), report=report)
         _write_poses(out, found.poses, report)
-        about = _summary(recording, assembler, written, report)
+        about = _summary(recording, assembler, written, report=report)
         about |= {"recordings": [path.name for path in paths]}
         about |= {"frames": len(writer), "points": writer.points}
         about |= {"imu": _about(kept_imu), "gnss": _about(kept_gnss)}
@@ -194,7 +194,7 @@ def _items(
 
 
 def _imu(
-    given: _Samples, found: _Samples, about: tuple[Rig, Span, list[int]], report: ImportReport
+    given: _Samples, found: _Samples, about: tuple[Rig, Span, list[int]], *, report: ImportReport
 ) -> ImuSamples | None:
     rig, span, jumps = about
     samples = join(given.imu or found.imu)
@@ -205,11 +205,11 @@ def _imu(
         report.derive("IMU samples are those of the CSV file, not the recording's")
     offset_s = rig.imu_time_offset_s
     clean = clean_imu(samples, offset_s=offset_s, jumps_ns=jumps, report=report)
-    return _covering(clean, span, bool(given.imu), report)
+    return _covering(clean, span, bool(given.imu), report=report)
 
 
 def _gnss(
-    given: _Samples, found: _Samples, about: tuple[Rig, Span], report: ImportReport
+    given: _Samples, found: _Samples, about: tuple[Rig, Span], *, report: ImportReport
 ) -> GnssSamples | None:
     rig, span = about
     samples = join(given.gnss or found.gnss)
@@ -218,11 +218,11 @@ def _gnss(
     if given.gnss and found.gnss:
         report.derive("GNSS samples are those of the CSV file, not the recording's")
     clean = clean_gnss(samples, offset_s=rig.gnss_time_offset_s, report=report)
-    return _covering(clean, span, bool(given.gnss), report)
+    return _covering(clean, span, bool(given.gnss), report=report)
 
 
 def _covering(
-    samples: Samples | None, span: Span, asked_for: bool, report: ImportReport
+    samples: Samples | None, span: Span, asked_for: bool, *, report: ImportReport
 ) -> Samples | None:
     """The samples, unless their times do not overlap with those of the points.
 
@@ -271,7 +271,7 @@ def _write_poses(out: Path, parts: Sequence[Trajectory], report: ImportReport) -
 
 
 def _summary(
-    recording: Recording, assembler: Assembler, written: _IngestSpan, report: ImportReport
+    recording: Recording, assembler: Assembler, written: _IngestSpan, *, report: ImportReport
 ) -> dict[str, Any]:
     gaps = [*recording.gaps, *assembler.gaps]
     return {

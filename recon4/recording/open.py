@@ -134,7 +134,7 @@ def open_recording(
         read = partial(_read_pcap, pcap)
         return Recording(kind, pcap.rig, read, stream_seconds(pcap.streams), wait_s=WAIT_S)
     if kind is RecordingKind.FRAMES:
-        return _open_frames(paths, rig, settings, report)
+        return _open_frames(paths, rig, settings, report=report)
     bag = BagRecording(
         [f for path in paths for f in bag_paths(path)], rig, settings=settings, report=report
     )
@@ -240,7 +240,7 @@ def _read_pcap(pcap: VelodynePcap) -> Iterator[Item]:
 
 
 def _open_frames(
-    paths: Sequence[Path], rig: Rig | None, settings: IngestSettings, report: ImportReport
+    paths: Sequence[Path], rig: Rig | None, settings: IngestSettings, *, report: ImportReport
 ) -> Recording:
     if len(paths) > 1:
         raise UnknownFormat("give the folder of the frames, not several files or folders")

@@ -94,7 +94,7 @@ def assign_topics(rig: Rig, streams: Sequence[Stream], report: ImportReport) -> 
         raise ConfigError(
             f"no LiDAR of the rig {rig.name!r} is in the recording; it has {_names(streams)}"
         )
-    _warn_unassigned(rig, chosen, _free(topics, chosen), report)
+    _warn_unassigned(rig, chosen, _free(topics, chosen), report=report)
     sensors = [replace(s, topic=chosen.get(s.name, s.topic)) for s in rig.sensors]
     return replace(rig, sensors=tuple(sensors))
 
@@ -104,7 +104,7 @@ def _free(topics: Sequence[str], chosen: dict[str, str]) -> list[str]:
 
 
 def _warn_unassigned(
-    rig: Rig, chosen: dict[str, str], free: Sequence[str], report: ImportReport
+    rig: Rig, chosen: dict[str, str], free: Sequence[str], *, report: ImportReport
 ) -> None:
     for sensor in rig.sensors:
         if sensor.name not in chosen:

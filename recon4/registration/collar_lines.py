@@ -59,7 +59,7 @@ def register_lines(
     errors: list[float] = []
     for iteration in range(1, settings.max_iterations + 1):
         moved = source.moved(T_target_source)
-        rows_target, rows_source = _match(target.tree, moved, portion, settings)
+        rows_target, rows_source = _match(target.tree, moved, portion, settings=settings)
         if len(rows_source) < _MIN_MATCHES:
             return _refused(T_target_source)
         step = solve(target.lines[rows_target], moved[rows_source], settings)
@@ -84,7 +84,7 @@ class _Step:
 
 
 def _match(
-    tree: cKDTree, moved: Lines, portion: float, settings: RegistrationSettings
+    tree: cKDTree, moved: Lines, portion: float, *, settings: RegistrationSettings
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Rows of matched lines in target and source: nearest midpoints, the best portion of them."""
     bound_m = settings.max_distance_m if settings.solver == "common_normal" else np.inf
@@ -108,7 +108,7 @@ def _svd_step(target: Lines, moved: Lines, settings: RegistrationSettings) -> _S
     gap = p_target - T @ p_source
     error_m = float(np.mean(np.linalg.norm(gap, axis=1)))
     n, _ = _normals(target[kept], moved[kept])
-    H, _, degeneracy = _normal_equations(p_source, n, np.zeros(len(n)), np.ones(len(n)))
+    H, _, degeneracy = _normal_equations(p_source, n, np.zeros(len(n)), w=np.ones(len(n)))
     return _Step(T, error_m, H / max(error_m, 1e-3) ** 2, degeneracy)
 
 
@@ -117,7 +117,7 @@ def _common_normal_step(target: Lines, moved: Lines, settings: RegistrationSetti
     n, sine = _normals(target, moved)
     r = np.sum(n * (moved.mid - target.mid), axis=1)
     w = sine**2 / (1.0 + (r / settings.kernel_m) ** 2)
-    H, g, degeneracy = _normal_equations(moved.mid, n, r, w)
+    H, g, degeneracy = _normal_equations(moved.mid, n, r, w=w)
     xi = -np.linalg.solve(H + 1e-9 * np.trace(H) * np.eye(6), g)
     centroid = moved.mid.mean(axis=0)
     turn = SE3.exp(np.concatenate([xi[ROTATION], np.zeros(3)]))
@@ -133,7 +133,7 @@ def _normals(target: Lines, moved: Lines) -> tuple[Array, Array]:
     return n / np.maximum(sine, 1e-9)[:, None], sine
 
 
-def _normal_equations(p: Array, n: Array, r: Array, w: Array) -> tuple[Array, Array, float]:
+def _normal_equations(p: Array, n: Array, r: Array, *, w: Array) -> tuple[Array, Array, float]:
     """``H``, ``g`` of a left correction about the centroid, and the degeneracy measure."""
     J = np.hstack([np.cross(p - p.mean(axis=0), n), n])
     H = J.T @ (w[:, None] * J)

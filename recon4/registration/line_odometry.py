@@ -66,7 +66,7 @@ class LineOdometry:
         T_predicted = T_odom_body = self._T_odom_body @ _times(motion, steps)
         found = None
         for _ in range(_PASSES if self._history else 1):
-            lines = self._lines(segments, frame, T_odom_body, motion)
+            lines = self._lines(segments, frame, T_odom_body, motion=motion)
             if self._history:
                 found = self._register(lines, view, T_odom_body)
                 T_odom_body = found.T_target_source @ T_odom_body
@@ -75,7 +75,7 @@ class LineOdometry:
         lost = found is not None and self._is_lost(found)
         if lost:
             motion, T_odom_body = predicted, T_predicted
-        lines = self._lines(segments, frame, T_odom_body, motion)
+        lines = self._lines(segments, frame, T_odom_body, motion=motion)
         # An empty first frame would leave nothing for any later one to match.
         if not lost and len(lines):
             self._history.append(_HistoryFrame(T_odom_body, LineTarget(lines), view))
@@ -99,7 +99,9 @@ class LineOdometry:
             return SE3(self._imu.turn(start_ns, end_ns), motion.t)
         return motion
 
-    def _lines(self, segments: Segments, frame: Multiframe, T_odom_body: SE3, motion: SE3) -> Lines:
+    def _lines(
+        self, segments: Segments, frame: Multiframe, T_odom_body: SE3, *, motion: SE3
+    ) -> Lines:
         """Lines in odom, undistorted with a constant motion over the frame."""
         t_s = np.array([0.0, frame.duration_ns * 1e-9])
         T = T_odom_body @ SE3.stack([_times(motion, -0.5), _times(motion, 0.5)])

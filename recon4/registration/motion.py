@@ -133,7 +133,7 @@ class ImuMotion:
         gyro, accel = (_at(times, self._t_ns, v) for v in (self._gyro, self._accel))
         if not self._has_accel:
             accel = np.zeros_like(gyro)
-        return _predict(state, times, gyro, accel, noise=self._noise)
+        return _predict(state, times, gyro, accel=accel, noise=self._noise)
 
 
 class FreeMotion:
@@ -183,14 +183,14 @@ class FreeMotion:
         slots = max(2, round((end_ns - state.t_ns) * 1e-9 / _SLOT_S) + 1)
         times = np.linspace(state.t_ns, end_ns, slots).astype(np.int64)
         silent = np.zeros((slots, 3))
-        return _predict(state, times, silent, silent, noise=self._noise)
+        return _predict(state, times, silent, accel=silent, noise=self._noise)
 
 
 Motion = ImuMotion | FreeMotion
 
 
 def _predict(
-    state: MotionState, t_ns: Times, gyro: Array, accel: Array, *, noise: Array
+    state: MotionState, t_ns: Times, gyro: Array, *, accel: Array, noise: Array
 ) -> Prediction:
     t_s = (t_ns - t_ns[0]) * 1e-9
     R, p, v, Phi, P = propagate(t_s, gyro, accel, state.R, state.vector, state.P, noise)

@@ -110,7 +110,7 @@ class Odometry:
         self._count_lost(lost=lost)
         self._state = _updated(prediction, fit, lost=lost, first=first)
         T_dense = prediction.T_odom_body if lost or first else fit.T_dense
-        step = _step(frame, prediction, fit, T_dense, lost=lost)
+        step = _step(frame, prediction, fit, T_dense=T_dense, lost=lost)
         if not lost:
             self._extend_map(segments, prediction.t_s, T_dense)
             if self._chain:
@@ -214,7 +214,7 @@ def _updated(prediction: Prediction, fit: FrameFit, *, lost: bool, first: bool) 
 
 
 def _step(
-    frame: Multiframe, prediction: Prediction, fit: FrameFit, T_dense: SE3, *, lost: bool
+    frame: Multiframe, prediction: Prediction, fit: FrameFit, *, T_dense: SE3, lost: bool
 ) -> OdometryStep:
     end = prediction.T_odom_body[-1]
     middle = prediction.t_s[-1] / 2

@@ -42,18 +42,18 @@ def overlap(
         settings: Tolerances and mode.
     """
     if settings.mode == "target":
-        return _inside(source, target, T_source_target, settings)
-    backward = _inside(target, source, T_source_target.inverse(), settings)
+        return _inside(source, target, T_source_target, settings=settings)
+    backward = _inside(target, source, T_source_target.inverse(), settings=settings)
     if settings.mode == "source":
         return backward
-    forward = _inside(source, target, T_source_target, settings)
+    forward = _inside(source, target, T_source_target, settings=settings)
     if settings.mode == "min":
         return min(forward, backward)
     return 2.0 * forward * backward / max(forward + backward, 1e-12)
 
 
 def _inside(
-    view: RangeImage, other: RangeImage, T_view_other: SE3, settings: OverlapSettings
+    view: RangeImage, other: RangeImage, T_view_other: SE3, *, settings: OverlapSettings
 ) -> float:
     return inside_ratio(
         view.nearest_m,

@@ -61,14 +61,14 @@ def register_to_planes(
         if last_gate and small < settings.converged_step_m:
             stop = StopReason.SMALL_STEP
             break
-    error_m = _error(target, T_target_source, source, zero)
+    error_m = _error(target, T_target_source, source, fraction=zero)
     return Registration(
         T_target_source, stop, rounds, error_m, match.match_ratio, match.H[START, START],
         match.degeneracy,
     )  # fmt: skip
 
 
-def _error(target: PlaneMap, T_target_source: SE3, source: Array, fraction: Array) -> float:
+def _error(target: PlaneMap, T_target_source: SE3, source: Array, *, fraction: Array) -> float:
     """Mean distance within a wide gate: one narrow enough to register hides what does not fit."""
     wide = target.match(
         T_target_source @ source,

@@ -144,7 +144,7 @@ def _start(score: NDArray[Any], yaw: Array, height_m: float) -> SE3:
     near_i, near_j = np.arange(i - 2, i + 3) % _PLAN, np.arange(j - 2, j + 3) % _PLAN
     score[np.ix_(near_yaw, near_i, near_j)] = -np.inf
     shift = (np.array([i, j]) + _PLAN // 2) % _PLAN - _PLAN // 2
-    return SE3.from_rpy(0.0, 0.0, float(yaw[m]), np.append(shift * _PLAN_CELL_M, height_m))
+    return SE3.from_rpy(0.0, 0.0, float(yaw[m]), t=np.append(shift * _PLAN_CELL_M, height_m))
 
 
 def _descend(

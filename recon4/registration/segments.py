@@ -37,7 +37,7 @@ def sample_segments(frame: Multiframe, rig: Rig, settings: SegmentSettings) -> S
 
     The same frame and settings give the same segments.
     """
-    parts = [_of_sensor(frame, row, rig, settings) for row in range(len(rig.sensors))]
+    parts = [_of_sensor(frame, row, rig, settings=settings) for row in range(len(rig.sensors))]
     kept = [part for part in parts if part is not None]
     if not kept:
         return Segments(np.empty((0, 3)), np.empty((0, 3)), np.empty(0), np.empty(0), np.empty(0))
@@ -46,7 +46,7 @@ def sample_segments(frame: Multiframe, rig: Rig, settings: SegmentSettings) -> S
 
 
 def _of_sensor(
-    frame: Multiframe, row: int, rig: Rig, settings: SegmentSettings
+    frame: Multiframe, row: int, rig: Rig, *, settings: SegmentSettings
 ) -> tuple[Array, Array, Array, Array, Array] | None:
     sensor = rig.sensors[row]
     rows = np.flatnonzero(frame.sensor == row)

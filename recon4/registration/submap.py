@@ -78,14 +78,16 @@ class Submaps:
             return self._cache[row]
         frame = self._frames[row]
         segments = sample_segments(frame, self._frames.rig, self._settings.segments)
-        ends = place_segments(segments, frame.t_ns, frame.duration_ns, self._odometry)
+        ends = place_segments(segments, frame.t_ns, frame.duration_ns, trajectory=self._odometry)
         self._cache[row] = ends
         if len(self._cache) > _CACHED_FRAMES:
             self._cache.popitem(last=False)
         return ends
 
 
-def place_segments(segments: Segments, t_ns: int, duration_ns: int, trajectory: Trajectory) -> Ends:
+def place_segments(
+    segments: Segments, t_ns: int, duration_ns: int, *, trajectory: Trajectory
+) -> Ends:
     """Both ends of each segment, placed by the pose at their times, in the trajectory's frame."""
     part = _covering(trajectory, t_ns, duration_ns)
     t_s = (part.t_ns - t_ns).astype(np.float64) * 1e-9

@@ -19,7 +19,7 @@ from recon4.pose_graph.files import load_graph
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.earlier_names import STEPS, current_names
 
-_MOST_JSON_BYTES = 64 << 20
+_MAX_JSON_BYTES = 64 << 20
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,7 +83,7 @@ def _json(artifacts: Mapping[str, Path], stage: str, name: str) -> dict[str, Any
     if path is None:
         return {}
     try:
-        return read_json_object(path, _MOST_JSON_BYTES, failure=StoreError)
+        return read_json_object(path, _MAX_JSON_BYTES, failure=StoreError)
     except StoreError as error:
         raise StoreError(f"{stage}/{name} cannot be read: {error}") from error
 

@@ -17,8 +17,8 @@ from recon4.report.plausibility import MAX_SPEED_M_S, too_fast
 
 _GOAL_M = 0.05
 """Required relative error, V §3 [m]."""
-_MOST_WARNINGS = 12
-_MOST_CONVERGED, _HALF = 0.9, 0.5
+_MAX_WARNINGS = 12
+_MIN_CONVERGED, _HALF = 0.9, 0.5
 _UNOBSERVED_S = 10.0
 """A longer time without observation of a direction makes the map unusable [s]."""
 
@@ -80,7 +80,7 @@ def _tracking(results: Results) -> list[Finding]:
 
 def _converged(results: Results) -> list[Finding]:
     converged = np.asarray(results.steps.get("converged", np.empty(0)), dtype=bool)
-    if not len(converged) or converged.mean() >= _MOST_CONVERGED:
+    if not len(converged) or converged.mean() >= _MIN_CONVERGED:
         return []
     level = Level.WARNING if converged.mean() >= _HALF else Level.BAD
     how_many = f"{converged.sum()} of {len(converged)} multiframes ({percentage(converged.mean())})"
@@ -94,7 +94,7 @@ def _observability(results: Results) -> list[Finding]:
     seconds = sum(stretch.seconds for stretch in stretches)
     positions = results.georeference.get("georeference", {}).get("georeferenced", False)
     level = Level.BAD if seconds >= _UNOBSERVED_S and not positions else Level.WARNING
-    return [Finding(level, _describe_stretch(stretch)) for stretch in stretches[:_MOST_WARNINGS]]
+    return [Finding(level, _describe_stretch(stretch)) for stretch in stretches[:_MAX_WARNINGS]]
 
 
 def _describe_stretch(stretch: WeakStretch) -> str:
@@ -181,9 +181,9 @@ def _imported(results: Results) -> list[Finding]:
     if outcome != "complete":
         out.append(Finding(Level.WARNING, f"The recording was read as: {outcome}."))
     warnings = [str(text) for text in imported.get("warnings", [])]
-    out += [Finding(Level.WARNING, text) for text in warnings[:_MOST_WARNINGS]]
-    if len(warnings) > _MOST_WARNINGS:
-        text = f"{len(warnings) - _MOST_WARNINGS} more warnings under Import."
+    out += [Finding(Level.WARNING, text) for text in warnings[:_MAX_WARNINGS]]
+    if len(warnings) > _MAX_WARNINGS:
+        text = f"{len(warnings) - _MAX_WARNINGS} more warnings under Import."
         out.append(Finding(Level.WARNING, text))
     return out
 

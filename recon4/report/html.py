@@ -67,7 +67,7 @@ def render(facts: ReportFacts) -> str:
         approval=draft_block(),
         level=level.name.lower(),
         verdict=verdict,
-        key_figures=_key_figures(facts, results, drift, tiles),
+        key_figures=_key_figures(facts, results, drift, tiles=tiles),
         maps=chart_groups.map_figures(rasters),
         walk=chart_groups.trajectory_figures(results, drift, rasters),
         edges=chart_groups.edge_figures(results, rasters),
@@ -108,7 +108,7 @@ def changed_settings(settings: Settings, preset_name: str) -> list[tuple[str, st
 
 
 def _key_figures(
-    facts: ReportFacts, results: Results, drift: DriftClosed | None, tiles: TileSet | None
+    facts: ReportFacts, results: Results, drift: DriftClosed | None, *, tiles: TileSet | None
 ) -> list[tuple[str, str, str]]:
     """Name, value and unit of the figures on top."""
     out: list[tuple[str, str, str]] = []

@@ -61,11 +61,13 @@ def _dependency(
     if count is None or before is None or after is None:
         return None
     classes = diagnostics.get(_CLASSES.get(name, ""), np.arange(len(count)))
-    mean = _curve(classes, count, before[0], after[0])
+    mean = _curve(classes, count, before[0], normalized=after[0])
     if mean is None:
         return None
     same, seen = diagnostics.get(f"{name}_same"), diagnostics.get(f"{name}_same_count")
-    compared = None if same is None or seen is None else _curve(classes, seen, same[0], same[1])
+    compared = (
+        None if same is None or seen is None else _curve(classes, seen, same[0], normalized=same[1])
+    )
     return Dependency(name, label, mean, compared)
 
 
@@ -73,6 +75,7 @@ def _curve(
     classes: NDArray[np.generic],
     count: NDArray[np.floating],
     raw: NDArray[np.floating],
+    *,
     normalized: NDArray[np.floating],
 ) -> Curve | None:
     used = (count >= _MIN_POINTS) & np.isfinite(raw) & np.isfinite(normalized)

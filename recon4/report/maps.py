@@ -146,7 +146,7 @@ def rasterize(
         return []
     low, high = bounds
     pixel_m = _pixel_m(float((high - low).max()))
-    rasters = [Raster(view, _frame(view, low, high, pixel_m)) for view in views]
+    rasters = [Raster(view, _frame(view, low, high, pixel_m=pixel_m)) for view in views]
     for chunk in chunks():
         for raster in rasters:
             raster.add(chunk)
@@ -213,7 +213,7 @@ def _pixel_m(extent_m: float) -> float:
     return float(next(step * power for step in (1, 2, 5, 10) if step * power >= wanted * 0.999))
 
 
-def _frame(view: MapProjection, low: Array, high: Array, pixel_m: float) -> ImageFrame:
+def _frame(view: MapProjection, low: Array, high: Array, *, pixel_m: float) -> ImageFrame:
     size = np.ceil((high - low) / pixel_m).astype(int)
     return ImageFrame(
         float(low[view.right]),

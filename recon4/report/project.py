@@ -12,7 +12,7 @@ from recon4.store.json_files import read_object
 from recon4.store.project import read_artifacts, read_description
 from recon4.store.recipes import settings_in
 
-_MOST_BYTES = 16 << 20
+_MAX_BYTES = 16 << 20
 
 
 def project_facts(root: Path, evaluation: Evaluation) -> ReportFacts:
@@ -27,7 +27,7 @@ def project_facts(root: Path, evaluation: Evaluation) -> ReportFacts:
     """
     if not (root / "summary.json").is_file():
         raise StoreError(f"expected a project with a finished run, got {root}")
-    summary = read_object(root / "summary.json", most_bytes=_MOST_BYTES)
+    summary = read_object(root / "summary.json", max_bytes=_MAX_BYTES)
     described = read_description(root)
     artifacts = read_artifacts(root)
     try:

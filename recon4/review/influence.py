@@ -51,11 +51,11 @@ def influence_m(graph: PoseGraph, asked: NDArray[np.bool_]) -> Array:
     A = -adjoint(T_j_i)
     S = _relative_covariance(of, A, rows, nodes=len(graph))
     r = (of.T_i_j[rows].inverse() @ T_j_i[rows].inverse()).log()
-    out[rows] = _size(_changes(S, of.information[rows], r, of.in_graph[rows]))
+    out[rows] = _size(_changes(S, of.information[rows], r, in_graph=of.in_graph[rows]))
     return out
 
 
-def _changes(S: Array, W: Array, r: Array, in_graph: NDArray[np.bool_]) -> Array:
+def _changes(S: Array, W: Array, r: Array, *, in_graph: NDArray[np.bool_]) -> Array:
     """Change of the relative pose of each edge's ends, (M, 6)."""
     out = np.empty_like(r)
     eye = np.eye(6)

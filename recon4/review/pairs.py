@@ -24,7 +24,7 @@ from recon4.registration.overlap import RangeImage, overlap
 from recon4.registration.submap import NodeRangeImages, Submaps
 from recon4.review.apply import is_measured, rows_by_pair
 from recon4.review.decisions import Measurement, Pair, numbers_of, pose_of
-from recon4.review.queue import MOST_PATHS, AlternativePath, alternative_paths
+from recon4.review.queue import MAX_PATHS, AlternativePath, alternative_paths
 from recon4.review.source import Source
 from recon4.store.arrays import load_arrays, load_trajectory
 
@@ -32,13 +32,13 @@ MAGIC = b"R4PP"
 LAYOUT = struct.Struct("<4sIII")
 """Header of the point data: magic, version 1, numbers of points of i and of j. Then float32 x y z
 of each point in the body frame of its multiframe [m], little-endian."""
-MOST_POINTS = 30_000
+MAX_POINTS = 30_000
 """Limit for each multiframe of the pair."""
-MOST_REACH = 10
+MAX_REACH = 10
 """Largest number of multiframes shown before and after each one."""
 _VOXEL_M = 0.04
-_MOST_RANGE_M = 60.0
-_LEAST_SPREAD_M = 0.1
+_MAX_RANGE_M = 60.0
+_MIN_SPREAD_M = 0.1
 """Smallest extent of picked points across their principal line [m]."""
 
 
@@ -71,7 +71,7 @@ class PairFacts:
     """Prediction offset: distance between predicted and measured pose [m]."""
     apart_rad: float
     paths: tuple[AlternativePath, ...]
-    """Worst first; at most `MOST_PATHS`."""
+    """Worst first; at most `MAX_PATHS`."""
     path_count: int
     """Number of all alternative paths."""
 
@@ -95,8 +95,8 @@ def pair_points(source: Source, pair: Pair, reach: int) -> bytes:
         ConfigError: If one of them is no node of the graph, or the reach is too large.
         StoreError: If artifacts are missing or damaged.
     """
-    if not 0 <= reach <= MOST_REACH:
-        raise ConfigError(f"reach must be 0 to {MOST_REACH} multiframes, got {reach}")
+    if not 0 <= reach <= MAX_REACH:
+        raise ConfigError(f"reach must be 0 to {MAX_REACH} multiframes, got {reach}")
     nodes_of(source.verified, pair)
     clouds = [_cloud(source, frame, reach) for frame in pair]
     head = LAYOUT.pack(MAGIC, 1, len(clouds[0]), len(clouds[1]))
@@ -117,7 +117,7 @@ def pair_facts(source: Source, pair: Pair) -> PairFacts:
     predicted = graph.T_map_body[i].inverse() @ graph.T_map_body[j]
     measured = edge is not None and is_measured(edge)
     T_i_j = edge.T_i_j if edge is not None and measured else predicted
-    paths = alternative_paths(graph, i, j, T_i_j, settings=source.settings)
+    paths = alternative_paths(graph, i, j, T_i_j=T_i_j, settings=source.settings)
     return PairFacts(
         pair=pair,
         t_ns=(int(graph.t_ns[i]), int(graph.t_ns[j])),
@@ -127,7 +127,7 @@ def pair_facts(source: Source, pair: Pair) -> PairFacts:
         upright=_upright(source, graph, i),
         apart_m=float(np.linalg.norm((predicted.inverse() @ T_i_j).t)),
         apart_rad=float((predicted.inverse() @ T_i_j).angle()),
-        paths=tuple(paths[:MOST_PATHS]),
+        paths=tuple(paths[:MAX_PATHS]),
         path_count=len(paths),
     )
 
@@ -188,7 +188,7 @@ def fit_points(p_i: Array, p_j: Array) -> tuple[float, ...]:
         raise ConfigError(f"three pairs of points are needed, got {min(len(p_i), len(p_j))}")
     for name, points in (("first", p_i), ("second", p_j)):
         spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
-        if spread[1] < _LEAST_SPREAD_M:
+        if spread[1] < _MIN_SPREAD_M:
             raise ConfigError(f"the points in the {name} place lie on a line; pick another one")
     return numbers_of(align_points(p_i, p_j))
 
@@ -228,17 +228,17 @@ def _cloud(source: Source, frame: int, reach: int) -> NDArray[np.float64]:
     parts = [place(frames[k], odometry, frames.rig) for k in near]
     T_odom_body = odometry.at(frames.t_mid_ns[frame : frame + 1])[0]
     p_body = T_odom_body.inverse() @ np.concatenate(parts)
-    p_body = p_body[np.linalg.norm(p_body, axis=1) < _MOST_RANGE_M]
+    p_body = p_body[np.linalg.norm(p_body, axis=1) < _MAX_RANGE_M]
     return _thinned(p_body)
 
 
 def _thinned(p_body: Array) -> Array:
-    """One point per voxel, then an even sample of at most `MOST_POINTS`."""
+    """One point per voxel, then an even sample of at most `MAX_POINTS`."""
     keys = np.floor(p_body / _VOXEL_M).astype(np.int64) + (1 << 20)
     packed = (keys[:, 0] << 42) | (keys[:, 1] << 21) | keys[:, 2]
     rows = np.sort(np.unique(packed, return_index=True)[1])
-    if len(rows) > MOST_POINTS:
-        rows = rows[np.linspace(0, len(rows) - 1, MOST_POINTS).astype(np.intp)]
+    if len(rows) > MAX_POINTS:
+        rows = rows[np.linspace(0, len(rows) - 1, MAX_POINTS).astype(np.intp)]
     return p_body[rows]
 
 

@@ -20,7 +20,7 @@ from recon4.review.solve import pair_of
 from recon4.review.source import Source
 from recon4.settings import Settings
 
-MOST_PATHS = 60
+MAX_PATHS = 60
 """Largest number of alternative paths listed for a pair, the worst first."""
 _GOOD, _WEAK, _PREDICTED_ONLY, _NO_OVERLAP = range(4)
 _WEAK_REASONS = (Reason.ERROR, Reason.FEW_MATCHES, Reason.DEGENERATE)
@@ -142,7 +142,7 @@ class AlternativePath:
 
 
 def alternative_paths(
-    graph: PoseGraph, i: int, j: int, T_i_j: SE3, *, settings: Settings
+    graph: PoseGraph, i: int, j: int, *, T_i_j: SE3, settings: Settings
 ) -> list[AlternativePath]:
     """All simple paths between two nodes that the verification uses, worst first.
 

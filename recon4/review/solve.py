@@ -26,10 +26,10 @@ from recon4.review.decisions import AUTOMATIC, Pair, Standing
 from recon4.settings import Settings
 from recon4.store.atomic import null_for_nan, write_json
 
-MOST_MOVES = 10
+MAX_MOVES = 10
 _APART_NODES = 5
 """Nodes closer than this along the trajectory count as one move."""
-_LEAST_MOVE_M = 1e-4
+_MIN_MOVE_M = 1e-4
 UNVERIFIED_MODES = ("10", "overlap")
 """Modes of V Table 3.2 without verification."""
 
@@ -297,7 +297,7 @@ def _largest_moves(before: PoseGraph, after: PoseGraph) -> tuple[Move, ...]:
     moved_m = np.linalg.norm(after.T_map_body.t - before.T_map_body.t, axis=1)
     taken: list[int] = []
     for node in np.argsort(-moved_m, kind="stable").tolist():
-        if len(taken) == MOST_MOVES or moved_m[node] < _LEAST_MOVE_M:
+        if len(taken) == MAX_MOVES or moved_m[node] < _MIN_MOVE_M:
             break
         if all(abs(node - other) >= _APART_NODES for other in taken):
             taken.append(node)

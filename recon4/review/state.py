@@ -11,7 +11,7 @@ from recon4.store.earlier_names import SUMMARY, current_names
 from recon4.store.json_files import read_object
 from recon4.store.stage import read_manifest
 
-MOST_SUMMARY_BYTES = 16 << 20
+MAX_SUMMARY_BYTES = 16 << 20
 
 
 def read_summary(root: Path) -> dict[str, Any] | None:
@@ -23,7 +23,7 @@ def read_summary(root: Path) -> dict[str, Any] | None:
     path = root / "summary.json"
     if not path.is_file():
         return None
-    return current_names(read_object(path, most_bytes=MOST_SUMMARY_BYTES), SUMMARY)
+    return current_names(read_object(path, max_bytes=MAX_SUMMARY_BYTES), SUMMARY)
 
 
 def artifact_keys(summary: dict[str, Any]) -> dict[str, str]:

@@ -183,7 +183,7 @@ class _Sweep:
             return None
         frame = self._frames[row]
         segments = sample_segments(frame, self._frames.rig, self._settings.segments)
-        ends = place_segments(segments, frame.t_ns, frame.duration_ns, self._trajectory)
+        ends = place_segments(segments, frame.t_ns, frame.duration_ns, trajectory=self._trajectory)
         return np.ascontiguousarray(ends.reshape(-1, 3))
 
     def _match_one(self, planes: PlaneMap, row: int) -> tuple[Array, Array, float, float] | None:
@@ -191,7 +191,7 @@ class _Sweep:
             return None
         frame = self._frames[row]
         segments = sample_segments(frame, self._frames.rig, self._settings.segments)
-        ends = place_segments(segments, frame.t_ns, frame.duration_ns, self._trajectory)
+        ends = place_segments(segments, frame.t_ns, frame.duration_ns, trajectory=self._trajectory)
         times_s = np.stack([segments.a_s, segments.b_s], axis=1)
         center = self._trajectory.at(np.array([frame.t_mid_ns])).t[0]
         found = planes.match(

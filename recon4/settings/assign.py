@@ -28,7 +28,7 @@ def override(settings: Settings, assignments: list[str]) -> Settings:
         except ConfigError as error:
             problems[path] = str(error)
     changed = {
-        group: _replaced(getattr(settings, group), group, fresh, problems)
+        group: _replaced(getattr(settings, group), group, fresh, problems=problems)
         for group, fresh in values.items()
     }
     if problems:
@@ -53,7 +53,7 @@ def _find(settings: Settings, text: str) -> tuple[str, str, Any]:
     return group_name, name, get_type_hints(type(group))[name]
 
 
-def _replaced(group: Any, name: str, values: dict[str, Any], problems: dict[str, str]) -> Any:
+def _replaced(group: Any, name: str, values: dict[str, Any], *, problems: dict[str, str]) -> Any:
     """The group with other values; invalid ones are skipped and added to ``problems``."""
     left = dict(values)
     while left:

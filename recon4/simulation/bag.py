@@ -74,7 +74,7 @@ class BagWriter:
                 linear_acceleration=vector(*(float(v) for v in accel)),
                 linear_acceleration_covariance=unknown,
             )
-            self._write("/imu/data", "sensor_msgs/msg/Imu", int(t), message)
+            self._write("/imu/data", "sensor_msgs/msg/Imu", int(t), message=message)
 
     def gnss(self, samples: GnssSamples) -> None:
         """Append positions on ``/gnss/fix``."""
@@ -92,7 +92,7 @@ class BagWriter:
                 position_covariance=np.diag(samples.sd_enu_m[k] ** 2).ravel(),
                 position_covariance_type=2,
             )
-            self._write("/gnss/fix", "sensor_msgs/msg/NavSatFix", int(t), message)
+            self._write("/gnss/fix", "sensor_msgs/msg/NavSatFix", int(t), message=message)
 
     def flush(self) -> None:
         """Write the last scans, which are shorter than the others."""
@@ -110,7 +110,7 @@ class BagWriter:
         data = self._store.serialize_cdr(scan, "velodyne_msgs/msg/VelodyneScan")
         self._writer.write(self._scans[row], t_ns, data)
 
-    def _write(self, topic: str, kind: str, t_ns: int, message: Any) -> None:
+    def _write(self, topic: str, kind: str, t_ns: int, *, message: Any) -> None:
         if topic not in self._connections:
             self._connections[topic] = self._connect(topic, kind)
         self._writer.write(self._connections[topic], t_ns, self._store.serialize_cdr(message, kind))

@@ -66,17 +66,25 @@ def simulate_imu(
     force += np.cross(alpha, lever) + np.cross(omega, np.cross(omega, lever))
     gyro, accel = omega @ T_body_imu.R, force @ T_body_imu.R
     gyro += _errors(
-        rng, len(t_ns), model.gyro_noise_rad_s_hz, model.gyro_bias_rad_s, model.gyro_walk_rad_s
+        rng,
+        len(t_ns),
+        model.gyro_noise_rad_s_hz,
+        bias=model.gyro_bias_rad_s,
+        walk=model.gyro_walk_rad_s,
     )
     accel += _errors(
-        rng, len(t_ns), model.accel_noise_m_s2_hz, model.accel_bias_m_s2, model.accel_walk_m_s2
+        rng,
+        len(t_ns),
+        model.accel_noise_m_s2_hz,
+        bias=model.accel_bias_m_s2,
+        walk=model.accel_walk_m_s2,
     )
     offset_ns = round(1e9 * rig.imu_time_offset_s)
     return ImuSamples(epoch_ns + t_ns - offset_ns, gyro, accel)
 
 
-def _errors(  # noqa: PLR0917 - one call a kind of sensor, three numbers each
-    rng: np.random.Generator, count: int, density: float, bias: float, walk: float
+def _errors(
+    rng: np.random.Generator, count: int, density: float, *, bias: float, walk: float
 ) -> Array:
     """White noise, a bias at the start and its random walk, (count, 3)."""
     white = density * np.sqrt(IMU_RATE_HZ) * rng.standard_normal((count, 3))

@@ -141,7 +141,7 @@ class Lidar:
         blocked = np.zeros(count, dtype=np.bool_)
         if self.model.carrier:
             hits_carrier(shot, mount.R, mount.t, CARRIER, blocked)
-        out = self._measure(rays, blocked, surroundings, rng)
+        out = self._measure(rays, blocked, surroundings, rng=rng)
         azimuth = np.mod(shot[:, 0], 2.0 * np.pi).reshape(t_ns.shape)
         return Firings(t_ns, azimuth, *(column.reshape(t_ns.shape) for column in out))
 
@@ -150,6 +150,7 @@ class Lidar:
         rays: NDArray[np.float32],
         blocked: NDArray[np.bool_],
         surroundings: Surroundings,
+        *,
         rng: np.random.Generator,
     ) -> tuple[NDArray[np.uint16], NDArray[np.uint8], NDArray[np.uint8]]:
         count = len(blocked)

@@ -48,7 +48,7 @@ def pack(
         (sensor_epoch_ns + firings.t_ns[:, 0, 0]) // 1000,
         np.rint(np.rad2deg(azimuth) * 100.0).astype(np.int64),
         firings.distance.reshape(count, BLOCKS, CHANNELS),
-        firings.intensity.reshape(count, BLOCKS, CHANNELS),
+        intensity=firings.intensity.reshape(count, BLOCKS, CHANNELS),
     )
     delay = _LATENCY_NS + rng.integers(0, _JITTER_NS, count)
     return Packets(row, sensor_epoch_ns + firings.t_ns[:, -1, -1] + delay, payloads)

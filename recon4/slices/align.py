@@ -17,10 +17,10 @@ _TARGETS = 400_000
 _ROUNDS = 60
 _NEAR_M = 0.5
 _ON_M = 0.10
-_LEAST_POINTS = 100
-_LEAST_NEAR = 0.02
+_MIN_POINTS = 100
+_MIN_NEAR = 0.02
 """Smallest ratio of map points near the reference, which may be one room of a building."""
-_LEAST_ON = 0.6
+_MIN_ON = 0.6
 """Smallest inlier ratio among those points."""
 
 
@@ -82,12 +82,12 @@ def align_by_icp(tiles: TileSet, reference: Reference, *, rng: np.random.Generat
     near = len(fit.distance_m)
     on = fit.distance_m[fit.distance_m < _ON_M]
     near_ratio, inlier_ratio = near / max(1, len(p_map)), len(on) / max(1, near)
-    if near < _LEAST_POINTS or near_ratio < _LEAST_NEAR:
+    if near < _MIN_POINTS or near_ratio < _MIN_NEAR:
         raise ConfigError(
             f"ICP: the map and the reference do not overlap: {100.0 * near_ratio:.1f} % of "
             f"the map is within {100.0 * _NEAR_M:.0f} cm of it; align by pairs"
         )
-    if not fit.converged or inlier_ratio < _LEAST_ON:
+    if not fit.converged or inlier_ratio < _MIN_ON:
         why = f"inlier ratio (10 cm) {100.0 * inlier_ratio:.0f} %"
         if not fit.converged:
             why = f"no convergence after {_ROUNDS} iterations"

@@ -14,9 +14,9 @@ from recon4.names import check_name
 
 Role = Literal["control", "check"]
 Order = Literal["EN", "NE"]
-MOST_POINTS = 5000
-MOST_BYTES = 4 << 20
-_MOST_SKIPPED = 100
+MAX_POINTS = 5000
+MAX_BYTES = 4 << 20
+_MAX_SKIPPED = 100
 """Largest number of skipped lines listed individually."""
 _E = ("x", "e", "east", "easting", "x_m")
 _N = ("y", "n", "north", "northing", "y_m")
@@ -65,8 +65,8 @@ def read_control(data: bytes, *, name: str = "file", order: Order | None = None)
     Raises:
         CorruptFile: If no line has an id and three numbers.
     """
-    if len(data) > MOST_BYTES:
-        raise CorruptFile(f"{name}: expected at most {MOST_BYTES} bytes, got {len(data)}")
+    if len(data) > MAX_BYTES:
+        raise CorruptFile(f"{name}: expected at most {MAX_BYTES} bytes, got {len(data)}")
     text = _decoded(data, name)
     sample = [line for line in text.splitlines() if line.strip()][:20]
     if not sample:
@@ -170,13 +170,13 @@ def _points(
             continue
         if point.id in points:
             skipped.append(f"line {line}: point {point.id[:40]!r} is there already")
-        elif len(points) >= MOST_POINTS:
-            skipped.append(f"line {line}: more than {MOST_POINTS} points")
+        elif len(points) >= MAX_POINTS:
+            skipped.append(f"line {line}: more than {MAX_POINTS} points")
             break
         else:
             points[point.id] = point
-    more = len(skipped) - _MOST_SKIPPED
-    return list(points.values()), skipped[:_MOST_SKIPPED] + [f"{more} more lines"] * (more > 0)
+    more = len(skipped) - _MAX_SKIPPED
+    return list(points.values()), skipped[:_MAX_SKIPPED] + [f"{more} more lines"] * (more > 0)
 
 
 def _point(row: list[str], columns: tuple[int, ...], decimal: str) -> ControlPoint:

@@ -17,8 +17,8 @@ ERROR_THICKNESS_M = 0.02
 """Thickness for error measurement (V §3.2: slices 2 cm wide) [m]."""
 LOOKING_THICKNESS_M = 0.10
 """Thickness for display [m]."""
-MOST_THICKNESS_M = 100.0
-MOST_SLICES = 200
+MAX_THICKNESS_M = 100.0
+MAX_SLICES = 200
 """Repeated slices in one request."""
 
 
@@ -41,9 +41,9 @@ class Cut:
         numbers = np.array([*self.origin_m, *self.u, *self.v, self.thickness_m])
         if not np.isfinite(numbers).all() or np.abs(numbers).max() > 1e8:
             raise ConfigError(f"a cut needs finite coordinates, got {numbers.tolist()}")
-        if not 0.0 < self.thickness_m <= MOST_THICKNESS_M:
+        if not 0.0 < self.thickness_m <= MAX_THICKNESS_M:
             raise ConfigError(
-                f"the thickness must be 0 to {MOST_THICKNESS_M:.0f} m, got {self.thickness_m}"
+                f"the thickness must be 0 to {MAX_THICKNESS_M:.0f} m, got {self.thickness_m}"
             )
 
     @property
@@ -82,8 +82,8 @@ class Cut:
         Raises:
             ConfigError: If there are none or too many, or they do not move.
         """
-        if not 1 <= count <= MOST_SLICES:
-            raise ConfigError(f"1 to {MOST_SLICES} slices at a time, got {count}")
+        if not 1 <= count <= MAX_SLICES:
+            raise ConfigError(f"1 to {MAX_SLICES} slices at a time, got {count}")
         if count > 1 and not 0.001 <= abs(spacing_m) <= 1000.0:
             raise ConfigError(f"slices need 1 mm to 1 km between them, got {spacing_m} m")
         return tuple(self.moved(k * spacing_m) for k in range(count))

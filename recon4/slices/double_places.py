@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 
-MOST_SURFACES = 3000
+MAX_SURFACES = 3000
 _PLACE_M = 1.5
 """Patches within this distance that face alike form one place [m]."""
-_LEAST_PATCHES = 10
+_MIN_PATCHES = 10
 """Smallest number of patches of a place: an edge or a moved chair makes one or two."""
 
 
@@ -50,7 +50,7 @@ class DoubleReport:
     walls: tuple[DoubleWall, ...]
     """Double walls, the largest separation first."""
     surfaces: tuple[DoubleWall, ...]
-    """Other surfaces, the nearest to their limit first; at most `MOST_SURFACES`."""
+    """Other surfaces, the nearest to their limit first; at most `MAX_SURFACES`."""
     patches: int
     """Flat patches with at least two visits: the only ones that can be checked."""
     double_patches: int
@@ -99,7 +99,7 @@ def report(found: list[Patches], points: int) -> DoubleReport:
     surfaces.sort(key=lambda one: (-one.separation_m / one.limit_m, one.middle_m))
     return DoubleReport(
         walls=tuple(sorted(walls.values(), key=lambda one: (-one.separation_m, one.middle_m))),
-        surfaces=tuple(surfaces[:MOST_SURFACES]),
+        surfaces=tuple(surfaces[:MAX_SURFACES]),
         patches=len(separation),
         double_patches=int(every.double.sum()),
         median_separation_m=float(median),
@@ -137,7 +137,7 @@ def _places(every: Patches, chosen: NDArray[np.bool_]) -> dict[tuple[int, ...], 
     return {
         tuple(key): _wall(every, part)
         for key, part in zip(keys.tolist(), parts, strict=False)
-        if len(part) >= _LEAST_PATCHES
+        if len(part) >= _MIN_PATCHES
     }
 
 

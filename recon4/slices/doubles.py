@@ -34,15 +34,15 @@ class DoubleRule:
     """Length of a patch along its normal, in widths."""
     window_s: float = 5.0
     """Points closer in time belong to one visit [s]."""
-    least_points: int = 20
+    min_points: int = 20
     """Smallest number of points of each of the two groups."""
-    least_ratio: float = 0.10
+    min_ratio: float = 0.10
     """Smallest fraction of the patch's points in each of the two groups."""
-    most_sigma_m: float = 0.04
+    max_sigma_m: float = 0.04
     """Largest thickness of a surface within a visit [m] (standard deviation)."""
-    least_spread_m: float = 0.02
+    min_spread_m: float = 0.02
     """Smallest extent of a surface [m] (standard deviation along it)."""
-    most_aside_m: float = 0.04
+    max_aside_m: float = 0.04
     """Largest distance of the centers of the two groups along the surface [m]."""
     pose_sigma_m: float = 0.007
     """Standard deviation of the position of a surface between visits of a good map [m]."""
@@ -138,10 +138,12 @@ def _visits(tile: Tile, rule: DoubleRule, first_ns: int) -> _Visits:
                 size *= 2
                 break
     taken = keys >= 0
-    return _unpacked(keys[taken], sums[taken], base, side)
+    return _unpacked(keys[taken], sums[taken], base, side=side)
 
 
-def _unpacked(keys: NDArray[np.int64], sums: Array, base: NDArray[np.int64], side: int) -> _Visits:
+def _unpacked(
+    keys: NDArray[np.int64], sums: Array, base: NDArray[np.int64], *, side: int
+) -> _Visits:
     cell, face = np.divmod(keys, 6)
     rest, i = np.divmod(cell, side)
     rest, j = np.divmod(rest, side)
@@ -283,9 +285,9 @@ def _patches(
     aside = np.linalg.norm(step - separation[:, None] * normal, axis=1)
     limit = limit_m(sigma, a.n, b.n, rule)
     share = np.minimum(a.n, b.n) / total
-    flat = (sigma <= rule.most_sigma_m) & (spread >= rule.least_spread_m)
-    flat &= (np.minimum(a.n, b.n) >= rule.least_points) & (share >= rule.least_ratio)
-    flat &= aside <= rule.most_aside_m
+    flat = (sigma <= rule.max_sigma_m) & (spread >= rule.min_spread_m)
+    flat &= (np.minimum(a.n, b.n) >= rule.min_points) & (share >= rule.min_ratio)
+    flat &= aside <= rule.max_aside_m
     # Between the faces of a thin wall normals are unreliable; such points fit another plane.
     flat &= np.abs(np.take_along_axis(normal, patch.face[:, None] // 2, axis=1)[:, 0]) >= 0.5
     mean = (a.n[:, None] * a.mean_m + b.n[:, None] * b.mean_m) / total[:, None]

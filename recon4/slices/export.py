@@ -24,7 +24,7 @@ from recon4.slices.points import SliceWindow, TilePart, points_in
 from recon4.slices.slice_image import SliceImage
 from recon4.store.atomic import atomic_file
 
-MOST_DXF_POINTS = 2_000_000
+MAX_DXF_POINTS = 2_000_000
 _DXF_CELL_M = 0.01
 
 
@@ -78,7 +78,7 @@ def write_csv(
     with atomic_file(path) as temporary, temporary.open("w", encoding="utf-8") as file:
         file.write(f"# recon4 slice, {frame.text}\n")
         file.write(",".join(["slice", "u_m", "v_m", "off_m", *axes, *fields]) + "\n")
-        for number, part, p_map in _every(tiles, cuts, fields, window):
+        for number, part, p_map in _every(tiles, cuts, fields, window=window):
             p = frame.to_crs(p_map) if frame.to_crs else p_map
             table = np.column_stack([np.full(len(part), number), part.uvd, p])
             extra = [part.columns[name] for name in fields]
@@ -125,15 +125,15 @@ def write_dxf(
     count = 0
     with atomic_file(path) as temporary, temporary.open("w", encoding="utf-8") as file:
         file.write(before)
-        for number, part, p_map in _every(tiles, cuts, [], window, cell_m=_DXF_CELL_M):
+        for number, part, p_map in _every(tiles, cuts, [], window=window, cell_m=_DXF_CELL_M):
             if flat:
                 p = part.uvd * [1.0, 1.0, 0.0]
             else:
                 p = frame.to_crs(p_map) if frame.to_crs else p_map
             count += len(p)
-            if count > MOST_DXF_POINTS:
+            if count > MAX_DXF_POINTS:
                 raise ConfigError(
-                    f"DXF: expected at most {MOST_DXF_POINTS} points, got more; "
+                    f"DXF: expected at most {MAX_DXF_POINTS} points, got more; "
                     "use a thinner slice or a smaller window, or export LAZ"
                 )
             first = _FIRST_HANDLE + count - len(p)
@@ -251,8 +251,8 @@ def _every(
     tiles: TileSet,
     cuts: Sequence[Cut],
     fields: Sequence[str],
-    window: SliceWindow | None,
     *,
+    window: SliceWindow | None,
     cell_m: float = 0.0,
 ) -> Iterator[tuple[int, TilePart, Array]]:
     """Number of the slice (from 1), points, and their map coordinates; thinned to one per cell."""

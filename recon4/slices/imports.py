@@ -25,7 +25,7 @@ TILE_M = 5.0
 NORMAL_CELLS_M = (0.05, 0.10, 0.20)
 """Cell sizes for normals: the smallest one with enough points is used."""
 _BURST = 4_000_000
-MOST_TILES = 100_000
+MAX_TILES = 100_000
 """Limit of temporary tile files: points scattered over the Earth are no survey."""
 
 
@@ -126,9 +126,9 @@ def _deal_out(chunks: Iterable[Array], place: Path) -> dict[tuple[int, int, int]
 def _refuse_scattered(ijk: NDArray[np.int64], order: NDArray[np.intp], before: int) -> None:
     changes = np.any(np.diff(ijk[order], axis=0) != 0, axis=1)
     count = max(before, int(np.count_nonzero(changes)) + 1)
-    if count > MOST_TILES:
+    if count > MAX_TILES:
         raise CorruptFile(
-            f"expected points in at most {MOST_TILES} cubes of {TILE_M:g} m, got {count} or more: "
+            f"expected points in at most {MAX_TILES} cubes of {TILE_M:g} m, got {count} or more: "
             "are the coordinates in meters?"
         )
 

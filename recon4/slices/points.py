@@ -57,7 +57,7 @@ def points_in(
     """
     low, high = box_of(cut, window)
     for tile in tiles:
-        if not may_meet(tile, cut, low, high):
+        if not may_meet(tile, cut, low, high=high):
             continue
         columns = tile.read(["xyz", *fields])
         shift = cut.to_plane(np.array([tile.origin_m]))[0]
@@ -85,7 +85,7 @@ def box_of(cut: Cut, window: SliceWindow | None) -> tuple[Array, Array]:
     )
 
 
-def may_meet(tile: Tile, cut: Cut, low: Array, high: Array) -> bool:
+def may_meet(tile: Tile, cut: Cut, low: Array, *, high: Array) -> bool:
     """Whether a tile's bounding box can reach into the cut's box (a few more may seem to)."""
     center = (np.array(tile.low_m) + tile.high_m) / 2.0
     half = (np.array(tile.high_m) - tile.low_m) / 2.0 + 1e-5  # float32 rounding of the points
@@ -97,7 +97,7 @@ def may_meet(tile: Tile, cut: Cut, low: Array, high: Array) -> bool:
 def extent(tiles: TileSet, cut: Cut) -> SliceWindow:
     """Window that contains all of a cut: bounds of the tiles it meets [m]."""
     low, high = box_of(cut, None)
-    met = [tile for tile in tiles if may_meet(tile, cut, low, high)]
+    met = [tile for tile in tiles if may_meet(tile, cut, low, high=high)]
     if not met:
         return SliceWindow(-1.0, -1.0, 1.0, 1.0)
     corners = np.array(

@@ -24,7 +24,7 @@ from recon4.store.json_files import read_object
 Method = Literal["plane", "point"]
 FAR_M = 0.5
 """Search radius of distances [m]; larger ones are returned as infinite."""
-MOST_FACTS_BYTES = 1 << 20
+MAX_FACTS_BYTES = 1 << 20
 """Size of ``reference.json``."""
 _MARGIN_M = 2.0
 """Points of a request are measured in cubes of this size, each with its own search tree [m]."""
@@ -137,7 +137,7 @@ def read_facts(folder: Path) -> dict[str, Any]:
     Raises:
         StoreError: If it is missing or damaged.
     """
-    facts = read_object(folder / "reference.json", most_bytes=MOST_FACTS_BYTES)
+    facts = read_object(folder / "reference.json", max_bytes=MAX_FACTS_BYTES)
     missing = {"name", "kind", "T_map_reference"} - set(facts)
     if missing:
         raise StoreError(f"{folder.name}/reference.json lacks {sorted(missing)}")

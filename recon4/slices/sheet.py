@@ -112,10 +112,10 @@ def write_sheet(
     with matplotlib.rc_context({**plain, "font.size": 7, "path.simplify": False}):
         across_mm, up_mm = SIZES_MM[layout.size]
         figure = Figure(figsize=(across_mm / _MM_PER_INCH, up_mm / _MM_PER_INCH), dpi=DPI)
-        _field(figure, drawn, layout, span)
-        _head(figure, drawn, layout, text)
+        _field(figure, drawn, layout, span=span)
+        _head(figure, drawn, layout, text=text)
         _scale_bar(figure, layout)
-        _legend(figure, drawn, span, text)
+        _legend(figure, drawn, span, text=text)
         metadata = {"Date": None} if kind == "svg" else {}
         if kind == "pdf":
             metadata = {"CreationDate": None}
@@ -144,7 +144,7 @@ def _field_mm(size: Size) -> tuple[float, float]:
     return across_mm - _LEFT_MM - _RIGHT_MM, up_mm - _TOP_MM - _BOTTOM_MM
 
 
-def _field(figure: Any, drawn: SliceImage, layout: SheetLayout, span: Span) -> None:
+def _field(figure: Any, drawn: SliceImage, layout: SheetLayout, *, span: Span) -> None:
     across_mm, up_mm = SIZES_MM[layout.size]
     width, height = _field_mm(layout.size)
     axes = figure.add_axes(
@@ -174,7 +174,7 @@ def _field(figure: Any, drawn: SliceImage, layout: SheetLayout, span: Span) -> N
         spine.set_linewidth(0.6)
 
 
-def _head(figure: Any, drawn: SliceImage, layout: SheetLayout, text: SheetText) -> None:
+def _head(figure: Any, drawn: SliceImage, layout: SheetLayout, *, text: SheetText) -> None:
     across_mm, up_mm = SIZES_MM[layout.size]
     x = _LEFT_MM / across_mm
     kind = {"horizontal": "Horizontal slice", "vertical": "Vertical slice", "free": "Slice"}
@@ -209,7 +209,7 @@ def _scale_bar(figure: Any, layout: SheetLayout) -> None:
         spine.set_linewidth(0.5)
 
 
-def _legend(figure: Any, drawn: SliceImage, span: Span, text: SheetText) -> None:
+def _legend(figure: Any, drawn: SliceImage, span: Span, *, text: SheetText) -> None:
     across_mm, up_mm = SIZES_MM[layout_size(figure)]
     color: ColorBy = drawn.color
     right = 1.0 - (_RIGHT_MM + 3.0) / across_mm

@@ -20,10 +20,10 @@ from recon4.slices.points import SliceWindow, TilePart, points_in
 if TYPE_CHECKING:
     from recon4.slices.reference import Reference
 
-MOST_PIXELS = 40_000_000
+MAX_PIXELS = 40_000_000
 _DOT_M = 0.006
 """Smallest size of a drawn point [m]."""
-_MOST_RADIUS_PX = 4
+_MAX_RADIUS_PX = 4
 _FIELD: dict[ColorBy, str] = {
     "intensity": "intensity",
     "normalized": "intensity_normalized",
@@ -50,9 +50,9 @@ class Paper:
             raise ConfigError(
                 f"window: expected left < right and bottom < top, got {corners.tolist()}"
             )
-        if self.width * self.height > MOST_PIXELS:
+        if self.width * self.height > MAX_PIXELS:
             raise ConfigError(
-                f"slice image: expected at most {MOST_PIXELS // 10**6} million pixels, got "
+                f"slice image: expected at most {MAX_PIXELS // 10**6} million pixels, got "
                 f"{self.width} x {self.height}; use larger pixels or a smaller window"
             )
 
@@ -74,7 +74,7 @@ class Paper:
     @property
     def radius_px(self) -> int:
         """Radius of a drawn point: points stay visible where pixels are smaller than `_DOT_M`."""
-        return min(_MOST_RADIUS_PX, int(_DOT_M / self.pixel_m))
+        return min(_MAX_RADIUS_PX, int(_DOT_M / self.pixel_m))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -140,7 +140,7 @@ def draw(
         if color == "distance":
             far.append(part.uvd)  # measured all at once below: at most one a pixel
         else:
-            _add(part.uvd, _values(part, cut, color, tiles), paper, count=count, total=total)
+            _add(part.uvd, _values(part, cut, color, tiles=tiles), paper, count=count, total=total)
     if far and reference is not None:
         uvd = np.concatenate(far)
         _add(uvd, reference.distance(cut.to_map(uvd)), paper, count=count, total=total)
@@ -176,7 +176,7 @@ def _fields(tiles: TileSet, color: ColorBy, reference: Reference | None) -> list
     return [field] if field else []
 
 
-def _values(part: TilePart, cut: Cut, color: ColorBy, tiles: TileSet) -> NDArray[np.float32]:
+def _values(part: TilePart, cut: Cut, color: ColorBy, *, tiles: TileSet) -> NDArray[np.float32]:
     if color == "height":
         z: Array = part.uvd @ cut.axes[:, 2] + cut.origin_m[2]
         return z.astype(np.float32)

@@ -21,9 +21,9 @@ from recon4.model.trajectory import Trajectory
 
 Record = TypeVar("Record")
 
-MOST_ARRAY_BYTES = 1 << 30
+MAX_ARRAY_BYTES = 1 << 30
 """Limit of the size of all arrays that are read from one file [bytes]."""
-_MOST_RATIO = 200
+_MAX_RATIO = 200
 _FREE_BYTES = 64 << 20
 """Size below which any compression ratio is allowed: an intensity table is mostly zeros [bytes]."""
 _HEADERS = {
@@ -73,7 +73,7 @@ def load_arrays(path: Path, names: list[str] | None = None) -> dict[str, NDArray
 
     Raises:
         StoreError: If the file is missing, damaged, lacks one of the names, or its arrays are
-            larger than `MOST_ARRAY_BYTES` together.
+            larger than `MAX_ARRAY_BYTES` together.
     """
     with open_regular(path, failure=StoreError) as raw:
         try:
@@ -90,7 +90,7 @@ def load_array(path: Path, dtype: np.dtype[Any]) -> NDArray[Any]:
         StoreError: If the file is missing, damaged, of another type or length.
     """
     with open_regular(path, failure=StoreError) as raw:
-        check_file_size(raw, path, MOST_ARRAY_BYTES, failure=StoreError)
+        check_file_size(raw, path, MAX_ARRAY_BYTES, failure=StoreError)
         try:
             return _array(raw.read(), path.name, dtype)
         except _DAMAGED as error:
@@ -109,9 +109,9 @@ def _members(
     chosen = {name: found[f"{name}.npy"] for name in names}
     size = sum(info.file_size for info in chosen.values())
     packed = sum(info.compress_size for info in chosen.values())
-    if size > MOST_ARRAY_BYTES or size > _MOST_RATIO * packed + _FREE_BYTES:
+    if size > MAX_ARRAY_BYTES or size > _MAX_RATIO * packed + _FREE_BYTES:
         raise StoreError(
-            f"{where}: expected at most {MOST_ARRAY_BYTES} bytes and {_MOST_RATIO} times the "
+            f"{where}: expected at most {MAX_ARRAY_BYTES} bytes and {_MAX_RATIO} times the "
             f"packed size, got {size} bytes from {packed}"
         )
     out = {}

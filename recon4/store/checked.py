@@ -20,7 +20,7 @@ from pathlib import Path
 from recon4.errors import StoreError
 from recon4.store.hashing import BLOCK_BYTES, FileDigest, files_below
 
-MOST_FILES = 4096
+MAX_FILES = 4096
 """Number of files whose checked blocks are remembered."""
 _Identity = tuple[int, int, int, int, int, str]
 _checked: OrderedDict[_Identity, bytearray] = OrderedDict()
@@ -57,7 +57,7 @@ class CheckedArtifact:
             raise Altered(f"{_short(path)} cannot be read: {error.strerror}") from error
         got = hashlib.sha256(data).hexdigest()
         if manifest_sha256 and got != manifest_sha256:
-            raise Altered(_differs(path, "", manifest_sha256, got))
+            raise Altered(_differs(path, "", manifest_sha256, got=got))
         try:
             found = json.loads(data)["files"]
             files = {str(name): FileDigest.from_json(value) for name, value in found.items()}
@@ -79,7 +79,7 @@ class CheckedArtifact:
         expected = self.files.get(name)
         if expected is None:
             raise Altered(f"{_short(self.folder / name)} is not in the manifest")
-        check_file(self.folder / name, expected, start, stop)
+        check_file(self.folder / name, expected, start, stop=stop)
 
     def check_all(self) -> None:
         """Compare every file, and check that there are no others.
@@ -99,8 +99,8 @@ def check_file(
     path: Path,
     expected: FileDigest,
     start: int = 0,
-    stop: int | None = None,
     *,
+    stop: int | None = None,
     remembered: bool = True,
 ) -> None:
     """Compare the blocks of a byte range of a file with their hashes.
@@ -122,21 +122,21 @@ def check_file(
     try:
         size = os.fstat(descriptor).st_size
         if size != expected.size:
-            raise Altered(_differs(path, "", f"{expected.size} bytes", f"{size} bytes"))
+            raise Altered(_differs(path, "", f"{expected.size} bytes", got=f"{size} bytes"))
         flags = _flags(descriptor, expected) if remembered else _no_flags(expected)
         if not expected.blocks:
-            _check_whole(descriptor, path, expected, flags)
+            _check_whole(descriptor, path, expected, flags=flags)
             return
         last = min(size, stop if stop is not None else size)
         for number in range(start // BLOCK_BYTES, -(-last // BLOCK_BYTES)):
             if not flags[number]:
-                _check_block(descriptor, path, expected, number)
+                _check_block(descriptor, path, expected, number=number)
                 flags[number] = 1
     finally:
         os.close(descriptor)
 
 
-def _check_whole(descriptor: int, path: Path, expected: FileDigest, flags: bytearray) -> None:
+def _check_whole(descriptor: int, path: Path, expected: FileDigest, *, flags: bytearray) -> None:
     """Compare a whole file: a small one, or one without block hashes in its manifest."""
     if flags[0]:
         return
@@ -145,17 +145,17 @@ def _check_whole(descriptor: int, path: Path, expected: FileDigest, flags: bytea
         digest.update(block)
         offset += len(block)
     if digest.hexdigest() != expected.sha256:
-        raise Altered(_differs(path, "", expected.sha256, digest.hexdigest()))
+        raise Altered(_differs(path, "", expected.sha256, got=digest.hexdigest()))
     flags[0] = 1
 
 
-def _check_block(descriptor: int, path: Path, expected: FileDigest, number: int) -> None:
+def _check_block(descriptor: int, path: Path, expected: FileDigest, *, number: int) -> None:
     offset = number * BLOCK_BYTES
     block = os.pread(descriptor, BLOCK_BYTES, offset)
     wanted, got = expected.block(number), hashlib.sha256(block).digest()
     if got != wanted:
         where = f", bytes {offset} to {offset + len(block)}"
-        raise Altered(_differs(path, where, wanted.hex(), got.hex()))
+        raise Altered(_differs(path, where, wanted.hex(), got=got.hex()))
 
 
 def _flags(descriptor: int, expected: FileDigest) -> bytearray:
@@ -166,7 +166,7 @@ def _flags(descriptor: int, expected: FileDigest) -> bytearray:
     with _lock:
         flags = _checked.setdefault(identity, _no_flags(expected))
         _checked.move_to_end(identity)
-        while len(_checked) > MOST_FILES:
+        while len(_checked) > MAX_FILES:
             _checked.popitem(last=False)
     return flags
 
@@ -184,5 +184,5 @@ def _short(path: Path) -> str:
     return path.name
 
 
-def _differs(path: Path, where: str, expected: str, got: str) -> str:
+def _differs(path: Path, where: str, expected: str, *, got: str) -> str:
     return f"{_short(path)}{where}: expected {expected[:16]}, got {got[:16]}"

@@ -43,7 +43,7 @@ INDEX = np.dtype(
 """One row of ``index.npy``."""
 
 _HEADER_BYTES = 128
-_MOST_REPORT_BYTES = 64 << 20
+_MAX_REPORT_BYTES = 64 << 20
 _NO_SPACE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
@@ -185,7 +185,7 @@ class FrameStore:
             raise IndexError(f"frame {k} of {len(self)}")
         row = self.index[k]
         start, stop = int(row["start"]), int(row["stop"])
-        columns = {name: _map_rows(self.folder, name, start, stop) for name in COLUMNS}
+        columns = {name: _map_rows(self.folder, name, start, stop=stop) for name in COLUMNS}
         return Multiframe(
             int(row["frame_id"]), int(row["t_ns"]), int(row["duration_ns"]), **columns
         )
@@ -220,7 +220,7 @@ def _header(name: str, rows: int) -> bytes:
     return b"\x93NUMPY\x01\x00" + len(body).to_bytes(2, "little") + body
 
 
-def _map_rows(folder: Path, name: str, start: int, stop: int) -> NDArray[Any]:
+def _map_rows(folder: Path, name: str, start: int, *, stop: int) -> NDArray[Any]:
     dtype = np.dtype(COLUMNS[name][0])
     if start == stop:
         return np.empty(_shape(name, 0), dtype)
@@ -263,7 +263,7 @@ def _check_columns(folder: Path, points: int) -> None:
 
 def _read_report(path: Path) -> dict[str, Any]:
     try:
-        return read_json_object(path, _MOST_REPORT_BYTES, failure=StoreError)
+        return read_json_object(path, _MAX_REPORT_BYTES, failure=StoreError)
     except StoreError as error:
         if not path.exists():
             return {}

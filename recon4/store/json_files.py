@@ -12,18 +12,18 @@ from typing import Any
 from recon4.bounded import parse_json, read_bytes_limited
 from recon4.errors import StoreError
 
-MOST_BYTES = 64 << 20
+MAX_BYTES = 64 << 20
 """Larger files are not read; files of recon4 are much smaller [bytes]."""
 
 
-def read_object(path: Path, *, most_bytes: int = MOST_BYTES) -> dict[str, Any]:
+def read_object(path: Path, *, max_bytes: int = MAX_BYTES) -> dict[str, Any]:
     """Read the object in a JSON file.
 
     Raises:
         StoreError: If the file cannot be read, is too large, or is no JSON object in UTF-8.
     """
     try:
-        data = read_bytes_limited(path, most_bytes, failure=StoreError)
+        data = read_bytes_limited(path, max_bytes, failure=StoreError)
     except StoreError as error:
         raise StoreError(f"{path.parent}/{error}") from error
     return parse_object(data, str(path))

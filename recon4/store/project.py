@@ -21,7 +21,7 @@ LEDGER = "ledger.sqlite"
 SUMMARY = "summary.json"
 SEALED = ("project.json", LEDGER)
 """Files that change while a project is open and are sealed when it is closed."""
-MOST_DESCRIPTION_BYTES = 4 << 20
+MAX_DESCRIPTION_BYTES = 4 << 20
 
 
 class Project:
@@ -111,7 +111,7 @@ def read_description(root: Path) -> dict[str, Any]:
     path = root / "project.json"
     if not path.exists():
         raise StoreError(f"{root} is not a recon4 project: it has no project.json")
-    found = read_object(path, most_bytes=MOST_DESCRIPTION_BYTES)
+    found = read_object(path, max_bytes=MAX_DESCRIPTION_BYTES)
     if found.get("format") != FORMAT:
         raise StoreError(f"{path}: expected format {FORMAT}")
     return found

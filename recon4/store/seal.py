@@ -138,7 +138,7 @@ def end_change(
     names: tuple[str, ...],
     *,
     left_open: tuple[str, ...] = (),
-    most_bytes: int | None = None,
+    max_bytes: int | None = None,
 ) -> None:
     """Seal files as they are now, and remove the seals of missing files.
 
@@ -146,7 +146,7 @@ def end_change(
         root: The folder that has the seals.
         names: Files and folders below it.
         left_open: Files that may still change; they stay open.
-        most_bytes: Larger files get no seal; None = no limit.
+        max_bytes: Larger files get no seal; None = no limit.
     """
     with _locked(root / LOCK):
         seals = read_seals(root)
@@ -159,15 +159,15 @@ def end_change(
             for one in inside:
                 if one in left_open:
                     seals[one] = OPEN
-                elif _is_sealable(root / one, most_bytes):
+                elif _is_sealable(root / one, max_bytes):
                     seals[one] = seal_of(root / one)
         _write(root, seals)
 
 
-def _is_sealable(path: Path, most_bytes: int | None) -> bool:
+def _is_sealable(path: Path, max_bytes: int | None) -> bool:
     if not path.is_file() or path.is_symlink():
         return False
-    return most_bytes is None or path.stat().st_size <= most_bytes
+    return max_bytes is None or path.stat().st_size <= max_bytes
 
 
 def adopt(root: Path, names: Iterator[str] | list[str]) -> None:

@@ -51,7 +51,7 @@ def _walk(nodes: int) -> SE3:
     z = 0.04 * np.sin(7.0 * s)
     yaw = np.unwrap(np.arctan2(np.gradient(y), np.gradient(x)))
     return SE3.stack(
-        SE3.from_rpy(0.03 * np.sin(3 * a), 0.05 * np.cos(2 * a), b, [c, d, e])
+        SE3.from_rpy(0.03 * np.sin(3 * a), 0.05 * np.cos(2 * a), b, t=[c, d, e])
         for a, b, c, d, e in zip(s, yaw, x, y, z, strict=True)
     )
 
@@ -83,7 +83,9 @@ def inject_random(graph: PoseGraph, rng: np.random.Generator, count: int = 20) -
     models, false = _loops(graph), []
     for k in range(count):
         i, j = sorted(rng.choice(len(graph), 2, replace=False).tolist())
-        T_i_j = SE3.from_rpy(0.0, 0.0, rng.uniform(-np.pi, np.pi), rng.normal(size=3) * [1, 1, 0.1])
+        T_i_j = SE3.from_rpy(
+            0.0, 0.0, rng.uniform(-np.pi, np.pi), t=rng.normal(size=3) * [1, 1, 0.1]
+        )
         j = max(j, i + 2) if i + 2 < len(graph) else j
         false.append(_false(models[k % len(models)], i, j, T_i_j))
     return graph.with_edges((*graph.edges, *false))
@@ -108,7 +110,7 @@ def inject_clusters(
     for group in range(count // size):
         a, b = sorted(rng.choice(len(graph) - size, 2, replace=False).tolist())
         b = min(max(b, a + 30), len(graph) - size)
-        T_start = SE3.from_rpy(0.0, 0.0, rng.uniform(-np.pi, np.pi), rng.normal(size=3))
+        T_start = SE3.from_rpy(0.0, 0.0, rng.uniform(-np.pi, np.pi), t=rng.normal(size=3))
         for k in range(size):
             T_a_i = graph.T_map_body[a].inverse() @ graph.T_map_body[a + k]
             T_b_j = graph.T_map_body[b].inverse() @ graph.T_map_body[b + k]

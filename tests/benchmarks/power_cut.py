@@ -117,7 +117,7 @@ def mounted(top: Path) -> Iterator[Path]:
         [sys.executable, "-m", "tests.power_cut.recording_disk", *arguments], cwd=ROOT
     ) as disk:
         try:
-            wait_for(lambda: os.path.ismount(mount), "the disk is mounted", most_s=20.0)
+            wait_for(lambda: os.path.ismount(mount), "the disk is mounted", max_s=20.0)
             yield mount
         finally:
             subprocess.run(["fusermount3", "-u", str(mount)], check=True)

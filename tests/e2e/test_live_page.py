@@ -171,7 +171,7 @@ def test_a_capture_from_its_start_to_the_map(server, link, walk, page, screensho
     page.wait_for_url(f"{link.url}/projects/walk/")
     job = server.get("/api/projects/walk/jobs").json()[0]["job"]["id"]
     if LONG:
-        server.wait(job, lambda view: view["job"]["state"] == "succeeded", most_s=600.0)
+        server.wait(job, lambda view: view["job"]["state"] == "succeeded", max_s=600.0)
     else:
         server.wait_state(job, "running")
         server.post(f"/api/jobs/{job}/cancel")

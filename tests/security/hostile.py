@@ -31,7 +31,7 @@ from recon4.model.rig import load_rig
 from recon4.sandbox import confine, refuse_new_sockets
 
 PTRACE_SEIZE = 0x4206
-MOST_FORKS = 64
+MAX_FORKS = 64
 """A fork bomb, but one that ends."""
 
 
@@ -50,7 +50,7 @@ def netlink() -> None:
 
 
 def fork_bomb() -> None:
-    for _ in range(MOST_FORKS):
+    for _ in range(MAX_FORKS):
         if os.fork() == 0:
             signal.pause()
 

@@ -43,8 +43,8 @@ class Outcome:
 class ReaderProcess:
     """Reads files in children; use as a context manager."""
 
-    def __init__(self, *, most_bytes: int = GIB, deadline_s: int = 10) -> None:
-        self._arguments = [str(most_bytes), str(deadline_s)]
+    def __init__(self, *, max_bytes: int = GIB, deadline_s: int = 10) -> None:
+        self._arguments = [str(max_bytes), str(deadline_s)]
 
     def __enter__(self) -> Self:
         self._process = subprocess.Popen(
@@ -72,7 +72,7 @@ class ReaderProcess:
         return Outcome(**json.loads(self._process.stdout.readline()))
 
 
-def _serve(most_bytes: int, deadline_s: int) -> None:
+def _serve(max_bytes: int, deadline_s: int) -> None:
     from tests.security.fuzz.seeds_recordings import SEEDS, read_pcap
 
     for kind, (build, read, suffix) in SEEDS.items():
@@ -86,11 +86,11 @@ def _serve(most_bytes: int, deadline_s: int) -> None:
     for line in sys.stdin:
         name, kind = json.loads(line)
         read = SEEDS[kind][1] if kind else read_pcap
-        sys.stdout.write(json.dumps(_in_child(Path(name), read, most_bytes, deadline_s)) + "\n")
+        sys.stdout.write(json.dumps(_in_child(Path(name), read, max_bytes, deadline_s)) + "\n")
         sys.stdout.flush()
 
 
-def _in_child(path: Path, read, most_bytes: int, deadline_s: int) -> dict:
+def _in_child(path: Path, read, max_bytes: int, deadline_s: int) -> dict:
     ours, theirs = os.pipe()
     pid = os.fork()
     if pid == 0:
@@ -99,7 +99,7 @@ def _in_child(path: Path, read, most_bytes: int, deadline_s: int) -> dict:
         # ends a child that waits for something that never comes.
         signal.setitimer(signal.ITIMER_PROF, deadline_s)
         signal.alarm(20 * deadline_s)
-        most = _status("VmSize") + most_bytes
+        most = _status("VmSize") + max_bytes
         resource.setrlimit(resource.RLIMIT_AS, (most, most))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         before = _status("VmRSS")

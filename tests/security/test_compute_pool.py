@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 
 from app.compute_pool import ComputePool, FileAccess, Lane, Terms
-from app.compute_pool.fair_queue import MOST_PASSED, FairQueue
+from app.compute_pool.fair_queue import MAX_PASSED, FairQueue
 from app.compute_pool.model import QUOTAS, Quota
 from app.compute_pool.process import ChildFailed
 from app.errors import AppError, ComputeFailed, TooMany
@@ -166,7 +166,7 @@ def test_children_end_with_a_server_that_is_killed(root):
         server.send_signal(signal.SIGKILL)
         server.wait()
 
-    wait_for(lambda: not alive(child), "the child ends with its server", most_s=5.0)
+    wait_for(lambda: not alive(child), "the child ends with its server", max_s=5.0)
 
 
 def written(path: Path) -> str:
@@ -192,7 +192,7 @@ def test_work_ends_when_its_client_leaves(root, kind):
         asked.cancel()
         with pytest.raises(asyncio.CancelledError):
             await asked
-        await asyncio.to_thread(wait_for, lambda: not alive(pid), "its child ends", most_s=10.0)
+        await asyncio.to_thread(wait_for, lambda: not alive(pid), "its child ends", max_s=10.0)
         await asyncio.wait_for(idle(pool.queues[Lane.SURVEY]), 10.0)
 
     in_pool(root, leave)
@@ -248,11 +248,11 @@ def test_people_take_turns(root):
 
 
 def test_small_calls_go_before_large_ones_but_a_large_one_does_not_starve():
-    arrivals = [("a", True)] + [("b", False)] * (2 * MOST_PASSED)
+    arrivals = [("a", True)] + [("b", False)] * (2 * MAX_PASSED)
 
     granted = order_of(Quota(), arrivals)
 
-    assert granted.index("aL") == MOST_PASSED
+    assert granted.index("aL") == MAX_PASSED
 
 
 def test_six_large_exports_of_one_person_leave_a_slot_for_the_small_one_of_another():

@@ -121,7 +121,7 @@ def test_2000_mute_connections_hold_up_nobody(server, source_of):
     most = table.limits.per_address if source_of is one_address else table.limits.total
     assert most - 5 <= held <= most + 5, "the limit holds, and room is used up to it"
     assert table.counts.evicted["waiting"] >= MUTE - most
-    wait_for(lambda: len(table) == 0, "connections the clients closed are forgotten", most_s=20.0)
+    wait_for(lambda: len(table) == 0, "connections the clients closed are forgotten", max_s=20.0)
 
 
 def test_many_mute_connections_to_a_process_with_few_files_grow_no_log(tmp_path):
@@ -342,9 +342,7 @@ def test_a_client_that_does_not_read_its_download_is_disconnected(hurried):
         file.truncate(200 << 20)
     with slow_client(hurried.url) as connection:
         connection.sendall(head("GET", "/api/projects/office/files/trajectory.tum"))
-        wait_for(
-            lambda: counts_of(hurried).timeouts["response"] == 1, "it is given up", most_s=10.0
-        )
+        wait_for(lambda: counts_of(hurried).timeouts["response"] == 1, "it is given up", max_s=10.0)
         wait_for(lambda: len(hurried.app.state.connections) == 0, "its socket is closed")
 
 

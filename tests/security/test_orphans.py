@@ -118,7 +118,7 @@ def test_the_next_server_ends_a_leftover_it_knows_and_nothing_else(root):
         (register.folder / f"{number}-{identity.split('-')[1]}-another-boot").touch()
 
         with server_process(root):
-            wait_for(lambda: leftover.poll() is not None, "the leftover ends", most_s=10.0)
+            wait_for(lambda: leftover.poll() is not None, "the leftover ends", max_s=10.0)
             assert leftover.returncode == -signal.SIGKILL
             assert stranger.poll() is None
             assert not list(register.folder.glob(f"{leftover.pid}-*"))

@@ -18,13 +18,13 @@ CASES = [
 
 @pytest.fixture(scope="module")
 def quick():
-    with ReaderProcess(most_bytes=GIB, deadline_s=10) as process:
+    with ReaderProcess(max_bytes=GIB, deadline_s=10) as process:
         yield process
 
 
 @pytest.fixture(scope="module")
 def patient():
-    with ReaderProcess(most_bytes=GIB, deadline_s=60) as process:
+    with ReaderProcess(max_bytes=GIB, deadline_s=60) as process:
         yield process
 
 

@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from app.jobs.events import MOST_BYTES, read_events
+from app.jobs.events import MAX_BYTES, read_events
 from app.jobs.folder import JobFolder, Limits
 from app.jobs.model import Inputs
 
@@ -75,7 +75,7 @@ def test_a_folder_in_the_place_of_a_file_is_no_obstacle(folder, tmp_path):
 def test_events_that_are_none_are_skipped_and_a_flood_is_read_in_pieces(tmp_path):
     path = tmp_path / "events.jsonl"
     good = b'{"kind": "run", "t": 1}\n'
-    path.write_bytes(b"[" * 100_000 + b"\n" + b"\xff\n" + b"x" * (3 * MOST_BYTES) + b"\n" + good)
+    path.write_bytes(b"[" * 100_000 + b"\n" + b"\xff\n" + b"x" * (3 * MAX_BYTES) + b"\n" + good)
 
     found, offset, reads = [], 0, 0
     while offset < path.stat().st_size:

@@ -101,7 +101,7 @@ def _live_gated(
     """One server's life; whether the run came to its end in it."""
     while True:
         job = survived.jobs[-1]
-        view = server.wait(job, lambda view: _is_over(view) or _at_gate(view, closed), most_s=300.0)
+        view = server.wait(job, lambda view: _is_over(view) or _at_gate(view, closed), max_s=300.0)
         if view["job"]["state"] == "succeeded":
             return True
         if _is_over(view):
@@ -234,7 +234,7 @@ def _live(
     while True:
         job = survived.jobs[-1]
         moment = plan[0][0] if plan else 2.0
-        view = server.wait(job, lambda view, moment=moment: _is_due(view, moment), most_s=300.0)
+        view = server.wait(job, lambda view, moment=moment: _is_due(view, moment), max_s=300.0)
         state = view["job"]["state"]
         if state == "succeeded":
             return True

@@ -58,10 +58,10 @@ class Running:
         return answer.json()["job"]["id"]
 
     def wait(
-        self, job_id: str, met: Callable[[dict[str, Any]], bool], *, most_s: float = 60.0
+        self, job_id: str, met: Callable[[dict[str, Any]], bool], *, max_s: float = 60.0
     ) -> dict[str, Any]:
         """The first view of the job, from the event stream, that meets a condition."""
-        deadline_s = time.monotonic() + most_s
+        deadline_s = time.monotonic() + max_s
         with httpx.stream(
             "GET", f"{self.url}/api/events", timeout=30.0, verify=WITHOUT_TLS
         ) as stream:
@@ -133,9 +133,9 @@ def server_process(
             process.wait()
 
 
-def wait_for(met: Callable[[], Any], what: str, *, most_s: float = 60.0) -> Any:
+def wait_for(met: Callable[[], Any], what: str, *, max_s: float = 60.0) -> Any:
     """Poll a condition until it is true."""
-    deadline_s = time.monotonic() + most_s
+    deadline_s = time.monotonic() + max_s
     while not (found := met()):
         assert time.monotonic() < deadline_s, what
         time.sleep(0.05)

@@ -5,8 +5,8 @@ import os
 import pytest
 
 from recon4.bounded import (
-    MOST_DEPTH,
-    MOST_LINE_BYTES,
+    MAX_DEPTH,
+    MAX_LINE_BYTES,
     lines_limited,
     parse_json,
     read_bytes_limited,
@@ -58,8 +58,8 @@ def test_bytes_that_are_not_text_are_reported_with_their_line(tmp_path, data, wo
     path.write_bytes(data)
     for read in (
         lambda: read_text_limited(path, 100),
-        lambda: list(lines_limited(path, most_bytes=100)),
-        lambda: list(text_blocks(path, block_bytes=8, most_bytes=100)),
+        lambda: list(lines_limited(path, max_bytes=100)),
+        lambda: list(text_blocks(path, block_bytes=8, max_bytes=100)),
     ):
         with pytest.raises(CorruptFile, match=words.split(" at offset")[0]):
             read()
@@ -69,24 +69,24 @@ def test_lines_and_blocks_make_up_the_text(tmp_path):
     path = tmp_path / "a.txt"
     text = "".join(f"line {k} ä\r\n" for k in range(1000)) + "last"
     path.write_bytes(b"\xef\xbb\xbf" + text.encode())
-    assert "".join(lines_limited(path, most_bytes=1 << 20)) == text
+    assert "".join(lines_limited(path, max_bytes=1 << 20)) == text
     for size in (1, 7, 100, 1 << 20):
-        assert "".join(text_blocks(path, block_bytes=size, most_bytes=1 << 20)) == text
+        assert "".join(text_blocks(path, block_bytes=size, max_bytes=1 << 20)) == text
 
 
 def test_one_long_line_is_refused(tmp_path):
-    path = sparse(tmp_path / "a.csv", 7 << 30, b"a,b\n" + b"1" * (MOST_LINE_BYTES + 1))
+    path = sparse(tmp_path / "a.csv", 7 << 30, b"a,b\n" + b"1" * (MAX_LINE_BYTES + 1))
     with pytest.raises(CorruptFile, match="line 2: expected at most 65536 bytes"):
-        list(lines_limited(path, most_bytes=8 << 30))
+        list(lines_limited(path, max_bytes=8 << 30))
     with pytest.raises(CorruptFile, match="line 2: expected at most 65536 bytes"):
-        list(text_blocks(path, block_bytes=1 << 20, most_bytes=8 << 30))
+        list(text_blocks(path, block_bytes=1 << 20, max_bytes=8 << 30))
 
 
 @pytest.mark.parametrize(
     "text",
     [
         "[" * 100_000,
-        "[" * (MOST_DEPTH + 2) + "]" * (MOST_DEPTH + 2),
+        "[" * (MAX_DEPTH + 2) + "]" * (MAX_DEPTH + 2),
         '{"a":' * 500 + "1" + "}" * 500,
         '{"name": "\\ud800"}',
         '{"name": ',
@@ -101,7 +101,7 @@ def test_json_that_is_damaged_or_too_deep_is_refused(text):
 
 
 def test_json_of_usual_depth_and_paired_surrogates_pass():
-    assert parse_json("[" * MOST_DEPTH + "]" * MOST_DEPTH, "p.json")
+    assert parse_json("[" * MAX_DEPTH + "]" * MAX_DEPTH, "p.json")
     assert parse_json('"\\ud83d\\ude00"', "p.json") == "😀"
 
 

@@ -11,7 +11,7 @@ import { LiveScene } from "./scene.js";
 import { clock, coverageTexts, hint, records, stateText } from "./captions.js";
 
 const HEAD_M = 0.5;
-const LEAST_FREE_PX = 80;
+const MIN_FREE_PX = 80;
 const COLORS = ["path", "gap", "me", "ink", "sky", "accent", "well", "poor"];
 const SUN = "recon4.live.sun";
 const cloud = new CloudCanvas(byId("points"));
@@ -84,7 +84,7 @@ function space() {
     top: beside ? 0 : top.bottom - map.top,
     bottom: beside ? map.height : bottom.top - map.top,
   };
-  if (free.bottom - free.top < LEAST_FREE_PX) [free.top, free.bottom] = [0, map.height];
+  if (free.bottom - free.top < MIN_FREE_PX) [free.top, free.bottom] = [0, map.height];
   return { map, free, middle: [(free.left + free.right) / 2, (free.top + free.bottom) / 2] };
 }
 

@@ -11,7 +11,7 @@ import {
 import { attempt, make } from "../shared/dom.js";
 import "./new_job.js";
 
-const MOST_LETTERS = 200_000;
+const MAX_LETTERS = 200_000;
 
 export class ProjectTools extends HTMLElement {
   #id = decodeURIComponent(location.pathname.split("/")[2]);
@@ -124,7 +124,7 @@ export class JobLog extends HTMLElement {
         this.#next = piece.next;
         const atEnd = this.#pre.scrollHeight - this.#pre.scrollTop - this.#pre.clientHeight < 40;
         if (piece.text)
-          this.#pre.textContent = (this.#pre.textContent + piece.text).slice(-MOST_LETTERS);
+          this.#pre.textContent = (this.#pre.textContent + piece.text).slice(-MAX_LETTERS);
         if (atEnd) this.#pre.scrollTop = this.#pre.scrollHeight;
       }
     } finally {

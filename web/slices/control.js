@@ -10,7 +10,7 @@ import {
 } from "../shared/api.js";
 import { attempt, make } from "../shared/dom.js";
 
-const MOST_ROWS = 300;
+const MAX_ROWS = 300;
 const cm = (m) => (m * 100).toFixed(1);
 
 export function controlPanel({ id, change, point: pointAt, measured }) {
@@ -141,16 +141,16 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
             "tbody",
             {},
             ...kept.points
-              .slice(0, MOST_ROWS)
+              .slice(0, MAX_ROWS)
               .map((one) => row(one, residuals.get(one.id), earlier.has(one.id))),
           ),
         ),
       ),
-      kept.points.length > MOST_ROWS
+      kept.points.length > MAX_ROWS
         ? make(
             "p",
             { className: "quiet" },
-            `The first ${MOST_ROWS} of ${kept.points.length} points; the files have all.`,
+            `The first ${MAX_ROWS} of ${kept.points.length} points; the files have all.`,
           )
         : "",
       make(

@@ -7,7 +7,7 @@ import { distanceFrom } from "./state.js";
 
 /** Half the size of a place [m]. */
 const REACH_M = 0.75;
-const MOST_ROWS = 50;
+const MAX_ROWS = 50;
 
 const cm = (m) => `${(m * 100).toFixed(1)} cm`;
 const span = ([from, to]) => `${from.toFixed(0)}–${to.toFixed(0)} s`;
@@ -90,7 +90,7 @@ export function doublesPanel({ id, change, point, state }) {
     if (!asked.length) return table.replaceChildren();
     const summary = [
       `${meant.length} of ${asked.length} places`,
-      meant.length > MOST_ROWS ? `the ${MOST_ROWS} worst are listed` : "",
+      meant.length > MAX_ROWS ? `the ${MAX_ROWS} worst are listed` : "",
     ];
     const head = [
       "Place",
@@ -102,7 +102,7 @@ export function doublesPanel({ id, change, point, state }) {
       "Weaker layer",
       "Visits",
     ].map((text) => make("th", { scope: "col" }, text));
-    const rows = meant.slice(0, MOST_ROWS).map(row);
+    const rows = meant.slice(0, MAX_ROWS).map(row);
     const caption = make(
       "p",
       { className: "quiet", role: "status" },

@@ -16,11 +16,11 @@ from app.settings import names_from_environment
 
 SHORTEST, LONGEST = 12, 256
 """Characters of a password."""
-LEAST_ATTEMPTS = 10**10
+MIN_ATTEMPTS = 10**10
 """Attempts a new password must withstand (the highest score of zxcvbn)."""
 LONGEST_ESTIMATED = 64
 """Characters the estimate uses; its time grows with the square."""
-MOST_SUBSTITUTES = 8
+MAX_SUBSTITUTES = 8
 """Different substitutes (``4`` for ``a``) in one estimate: zxcvbn tries all combinations."""
 
 HASHER = PasswordHasher(time_cost=2, memory_cost=64 * 1024, parallelism=1)
@@ -85,7 +85,7 @@ def check(password: str, name: str) -> None:
         )
     text = _normal(password)[:LONGEST_ESTIMATED]
     known = _known_words(name)
-    if len(SUBSTITUTES.intersection(text)) <= MOST_SUBSTITUTES:
+    if len(SUBSTITUTES.intersection(text)) <= MAX_SUBSTITUTES:
         _check_reading(text, known, separators=0)
     letters = "".join(one for one in unicodedata.normalize("NFKD", text) if one.isalnum())
     _check_reading(letters, known, separators=len({one for one in text if not one.isalnum()}))
@@ -115,12 +115,12 @@ def _check_reading(text: str, known: list[str], *, separators: int) -> None:
         found = zxcvbn(text, user_inputs=known, max_length=2 * LONGEST_ESTIMATED)
     strings = len(set(text.casefold())) ** len(text)
     attempts = min(int(found["guesses"]), strings) * 10**separators
-    if attempts < LEAST_ATTEMPTS:
+    if attempts < MIN_ATTEMPTS:
         kinds = dict.fromkeys(_kind(match) for match in found["sequence"])
         weak = [WEAKNESS[kind] for kind in kinds if kind != "bruteforce"]
         raise WeakPassword(
             f"the password is found in about {float(f'{attempts:.0e}'):,.0f} attempts, it needs "
-            f"{LEAST_ATTEMPTS:,}: it is mostly {'; '.join(weak) or WEAKNESS['bruteforce']}. "
+            f"{MIN_ATTEMPTS:,}: it is mostly {'; '.join(weak) or WEAKNESS['bruteforce']}. "
             "Add two or three unrelated words; digits or signs at the end, repeating and "
             "reversing help little"
         )

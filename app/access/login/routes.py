@@ -107,7 +107,7 @@ def login(given: Credentials, request: Request, response: Response, server: Serv
     try:
         result = access.logins.sign_in(given.name, given.password, _caller(request))
     except AppError as error:
-        _note_failure(access, request, given.name, error)
+        _note_failure(access, request, given.name, error=error)
         raise
     return _start_session(access, request, response, result=result)
 
@@ -126,7 +126,7 @@ def set_up(given: FirstAdmin, request: Request, response: Response, server: Serv
 
 @router.post("/login/again", dependencies=[SIGNED_IN, INTERACTIVE])
 def login_again(
-    given: PasswordConfirmation, request: Request, response: Response, server: Server
+    given: PasswordConfirmation, request: Request, response: Response, *, server: Server
 ) -> Me:
     """Confirm the password again, as approval requires; the session cookie changes."""
     access = _with_login(server.access)
@@ -134,7 +134,7 @@ def login_again(
     try:
         access.logins.prove(session.person, given.password, _caller(request))
     except AppError as error:
-        _note_failure(access, request, session.person, error)
+        _note_failure(access, request, session.person, error=error)
         raise
     token = access.sessions.prove(session.id)
     _set_cookie(response, token, LIVES[session.role].whole_s)
@@ -161,7 +161,9 @@ def read_me(request: Request, who: Who, server: Server) -> Me:
 
 
 @router.post("/me/password", dependencies=[SIGNED_IN, INTERACTIVE])
-def change_password(given: NewPassword, request: Request, response: Response, server: Server) -> Me:
+def change_password(
+    given: NewPassword, request: Request, response: Response, *, server: Server
+) -> Me:
     """Change one's own password; all other sessions end."""
     access = _with_login(server.access)
     name = request.scope["state"]["session"].person
@@ -181,7 +183,7 @@ def list_my_sessions(request: Request, who: Who, server: Server) -> list[Session
 
 
 @router.delete("/me/sessions/{session_id}", status_code=204, dependencies=[SIGNED_IN, INTERACTIVE])
-def end_my_session(session_id: str, request: Request, who: Who, server: Server) -> None:
+def end_my_session(session_id: str, request: Request, who: Who, *, server: Server) -> None:
     """End one of one's own sessions."""
     server.access.sessions.end(session_id, person=who.name)
     audit(request, "end session", f"{session_id} of {who.name}")
@@ -260,7 +262,7 @@ def _me(access: Access, name: str, *, role: Role, token: str) -> Me:
     return Me(name=name, role=role, may=may, login=access.login, token=given)
 
 
-def _note_failure(access: Access, request: Request, name: str, error: AppError) -> None:
+def _note_failure(access: Access, request: Request, name: str, *, error: AppError) -> None:
     """Log a failed login without an unknown name: people type their password there by mistake."""
     known = access.accounts.password_hash(name) is not None
     outcome = "refused" if isinstance(error, TooMany) else "failed"

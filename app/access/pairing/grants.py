@@ -27,9 +27,9 @@ from app.errors import NotFound, Refused, TooMany
 
 INVITATION_S = 120.0
 REQUEST_S = 300.0
-MOST_OPEN = 20
+MAX_OPEN = 20
 """Invitations, and requests, that wait at the same time …"""
-MOST_OPEN_A_NETWORK = 4
+MAX_OPEN_A_NETWORK = 4
 """… of which requests from one address, so that one client cannot fill the list."""
 TRIES_A_MINUTE = 10
 LONGEST_NAME = 64
@@ -100,7 +100,7 @@ class Pairings:
         token = secrets.token_urlsafe(16)
         with self._lock:
             _drop_old(self._invitations, self._clock())
-            if len(self._invitations) >= MOST_OPEN:
+            if len(self._invitations) >= MAX_OPEN:
                 raise TooMany("too many invitations are open", retry_after_s=INVITATION_S)
             until_s = self._clock() + INVITATION_S
             self._invitations[hash_of(token)] = Invitation(grant=grant, until_s=until_s)
@@ -135,7 +135,7 @@ class Pairings:
         with self._lock:
             _drop_old(self._requests, self._clock())
             from_there = [r for r in self._requests.values() if network(r.address) == place]
-            if len(self._requests) >= MOST_OPEN or len(from_there) >= MOST_OPEN_A_NETWORK:
+            if len(self._requests) >= MAX_OPEN or len(from_there) >= MAX_OPEN_A_NETWORK:
                 raise TooMany("too many phones wait to be paired", retry_after_s=REQUEST_S)
             taken = {request.code for request in self._requests.values()}
             code = _code(taken)

@@ -52,11 +52,11 @@ class Panel:
             gui.add_command(label, hotkey=key).on_trigger(self._commanding(name))
         self._measure_folder()
 
-    def offer(self, content: Content, view: ViewState, most_points: int) -> None:
+    def offer(self, content: Content, view: ViewState, max_points: int) -> None:
         """Create the folders of controls for the content; unchanged folders stay as they are."""
         if content.cloud is not None:
-            offered = (content.colors, most_points)
-            self._fold("points", offered, lambda: self._point_folder(content, view, most_points))
+            offered = (content.colors, max_points)
+            self._fold("points", offered, lambda: self._point_folder(content, view, max_points))
         if content.multiframes is not None:
             frames = len(content.multiframes)
             self._fold("time", frames, lambda: self._time_folder(frames, view))
@@ -131,7 +131,7 @@ class Panel:
         return lambda _: self._callbacks.command(name)
 
     def _point_folder(
-        self, content: Content, view: ViewState, most_points: int
+        self, content: Content, view: ViewState, max_points: int
     ) -> viser.GuiFolderHandle:
         gui, folder = self._gui, self._gui.add_folder("Points", order=1.0)
         mine = view.color_by if view.color_by in content.colors else content.colors[0]
@@ -155,11 +155,11 @@ class Panel:
                 gui.add_slider("Point size, m", 0.005, 0.2, 0.005, view.point_size_m),
                 lambda view, value: replace(view, point_size_m=float(value)),
             )
-            self._detail_widgets(view, most_points)
+            self._detail_widgets(view, max_points)
         return folder
 
-    def _detail_widgets(self, view: ViewState, most_points: int) -> None:
-        thousands = max(most_points // 1000, 100)
+    def _detail_widgets(self, view: ViewState, max_points: int) -> None:
+        thousands = max(max_points // 1000, 100)
         start = min(view.detail // 1000 or thousands, thousands)
         slider = self._gui.add_slider("Most points, thousand", 50, thousands, 50, max(start, 50))
         self._bind("detail", slider, lambda view, value: replace(view, detail=int(value) * 1000))

@@ -18,7 +18,7 @@ from app.viewer.client.captions import (
 )
 from app.viewer.client.panels import Panel, Update
 from app.viewer.client.show import Screen
-from app.viewer.client.view import MOST_MEASUREMENTS, Position, ViewState
+from app.viewer.client.view import MAX_MEASUREMENTS, Position, ViewState
 from app.viewer.cloud.pick import PickedPoint, Ray, pick_edge, pick_gnss, pick_point
 from app.viewer.scene.build import MEASURED_COLOR, as_position, crosses
 from app.viewer.scene.nodes import LinesNode, Node
@@ -107,7 +107,7 @@ class PointerTools:
     def _keep(self, points: tuple[Position, ...]) -> None:
         self._change(
             lambda view: replace(
-                view, measurements=(*view.measurements, points)[-MOST_MEASUREMENTS:]
+                view, measurements=(*view.measurements, points)[-MAX_MEASUREMENTS:]
             )
         )
 

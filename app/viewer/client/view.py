@@ -35,7 +35,7 @@ Points = Literal["map", "map and multiframe", "multiframe"]
 EdgeColor = Literal["verdict", "error / limit", "chi²"]
 
 Position = tuple[float, float, float]
-MOST_MEASUREMENTS = 200
+MAX_MEASUREMENTS = 200
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -114,7 +114,7 @@ def _view(record: dict[str, Any]) -> ViewState:
         edge_color=_one_of(record["edge_color"], get_args(EdgeColor)),
         detail=max(int(record["detail"]), 0),
         adapt=record["adapt"] is True,
-        measurements=tuple(_measurement(m) for m in record["measurements"][:MOST_MEASUREMENTS]),
+        measurements=tuple(_measurement(m) for m in record["measurements"][:MAX_MEASUREMENTS]),
     )
 
 

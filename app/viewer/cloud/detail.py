@@ -16,7 +16,7 @@ BATCH_POINTS = 60_000
 """Points sent before checking whether the camera has moved."""
 COLOR_BATCH_POINTS = 400_000
 """The same where only colors are sent."""
-MOST_BEHIND = 2
+MAX_BEHIND = 2
 """Messages that may wait for the browser before the next batch."""
 
 
@@ -63,7 +63,7 @@ class Detail:
         self.points = len(cloud.base) + sum(int(cloud.boxes.sizes[t][k]) for t, k in chosen)
         style = Style(view.color_by, view.palette, span, view.point_size_m)
         for batch in self._batches(cloud, [None, *chosen], style):
-            while self._screen.behind > MOST_BEHIND:
+            while self._screen.behind > MAX_BEHIND:
                 if self._over(0.002):
                     return False
             self._screen.put(batch, style)
@@ -81,7 +81,7 @@ class Detail:
             if self._screen.has(path, style):
                 continue
             before = self._screen.part(path)
-            node = _node(cloud, chunk, style, before)
+            node = _node(cloud, chunk, style, before=before)
             weight += len(node.p_node) / (COLOR_BATCH_POINTS if before else BATCH_POINTS)
             batch.append(node)
             if weight >= 1.0:
@@ -91,7 +91,9 @@ class Detail:
             yield batch
 
 
-def _node(cloud: Cloud, chunk: Chunk | None, style: Style, before: PointsNode | None) -> PointsNode:
+def _node(
+    cloud: Cloud, chunk: Chunk | None, style: Style, *, before: PointsNode | None
+) -> PointsNode:
     rgb = cloud.painted(chunk, style.color_by, span=style.span, palette=style.palette)
     if before is not None:
         return replace(before, rgb=rgb, size_m=style.size_m)

@@ -135,7 +135,7 @@ def choose(boxes: TileBoxes, camera: Camera, budget: int) -> list[Chunk]:
         return []
     scale_px = camera.focal_px * _weights(boxes, camera) / _distances_m(boxes, camera)
     heap = [
-        (-_spacing_px(boxes, tile, 1, scale_px[tile]), tile, 1)
+        (-_spacing_px(boxes, tile, 1, scale_px=scale_px[tile]), tile, 1)
         for tile in np.flatnonzero(in_sight(boxes, camera)).tolist()
         if len(boxes.sizes[tile]) > 1
     ]
@@ -151,7 +151,7 @@ def choose(boxes: TileBoxes, camera: Camera, budget: int) -> list[Chunk]:
         budget -= size
         chosen.append((tile, chunk))
         if chunk + 1 < len(boxes.sizes[tile]):
-            finer = _spacing_px(boxes, tile, chunk + 1, scale_px[tile])
+            finer = _spacing_px(boxes, tile, chunk + 1, scale_px=scale_px[tile])
             heapq.heappush(heap, (-finer, tile, chunk + 1))
     return chosen
 
@@ -183,7 +183,7 @@ def _weights(boxes: TileBoxes, camera: Camera) -> Array:
     return 1.0 - (1.0 - EDGE_WEIGHT) * np.clip(off, 0.0, 1.0)
 
 
-def _spacing_px(boxes: TileBoxes, tile: int, chunks: int, scale_px: float) -> float:
+def _spacing_px(boxes: TileBoxes, tile: int, chunks: int, *, scale_px: float) -> float:
     """Distance of neighboring points on screen with this number of chunks of a tile shown."""
     shown = max(int(boxes.sizes[tile][:chunks].sum()), 1)
     return float(np.sqrt(boxes.area_m2[tile] / shown) * scale_px)

@@ -18,7 +18,7 @@ from recon4.mapping.place import place
 from recon4.model.trajectory import Times, Trajectory
 from recon4.store.frames import FrameStore
 
-MOST_POINTS = 150_000
+MAX_POINTS = 150_000
 """A window with more points is thinned out."""
 SLACK_NS = 500_000_000
 """Largest time of a point outside the trajectory [ns]."""
@@ -65,7 +65,7 @@ class Multiframes:
         """The points of a window; None outside the trajectory."""
         rows = self.window(moment, window_s)
         total = sum(len(self._frames[k]) for k in rows)
-        step = max(1, -(-total // MOST_POINTS))
+        step = max(1, -(-total // MAX_POINTS))
         parts = []
         for k in rows:
             frame = self._frames[k].take(slice(None, None, step))

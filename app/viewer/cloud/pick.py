@@ -107,7 +107,7 @@ def _first_hit(cloud: Cloud, ray: Ray, widening: float) -> tuple[Tile, int] | No
         if not np.isfinite(entry_m[row]) or (best is not None and entry_m[row] > best[0]):
             break
         tile = cloud.tiles.tiles[row]
-        hit = _hit_in_tile(cloud.column(tile, "xyz"), tile, ray, widening)
+        hit = _hit_in_tile(cloud.column(tile, "xyz"), tile, ray, widening=widening)
         if hit is not None and (best is None or hit[0] < best[0]):
             best = (hit[0], tile, hit[1])
     return best and best[1:]
@@ -132,7 +132,7 @@ def _entries(cloud: Cloud, ray: Ray, widening: float) -> Array:
 
 
 def _hit_in_tile(
-    xyz: NDArray[np.float32], tile: Tile, ray: Ray, widening: float
+    xyz: NDArray[np.float32], tile: Tile, ray: Ray, *, widening: float
 ) -> tuple[float, int] | None:
     """Depth [m] and row of the point hit."""
     to_tile = (tile.origin_m - ray.origin_m).astype(np.float32)

@@ -23,9 +23,9 @@ EVERY_S = 1.0
 """Interval of the multiframes shown [s]."""
 PIECE = 10
 """Multiframes that are sent together."""
-MOST_POINTS = 150_000
+MAX_POINTS = 150_000
 """Most points in total."""
-MOST_OF_ONE = 2000
+MAX_OF_ONE = 2000
 """Most points of one multiframe."""
 SAME_M = 0.02
 """Poses that moved by less count as unchanged [m]."""
@@ -53,7 +53,7 @@ class JobPreview:
     def __init__(self, frames: Multiframes) -> None:
         self._frames = frames
         self._rows = _one_a_second(frames)
-        self._of_one = int(np.clip(MOST_POINTS // max(len(self._rows), 1), 20, MOST_OF_ONE))
+        self._of_one = int(np.clip(MAX_POINTS // max(len(self._rows), 1), 20, MAX_OF_ONE))
         self._pieces: dict[int, _Piece] = {}
         self._painted: dict[tuple[int, Palette], tuple[_Piece, NDArray[np.uint8]]] = {}
         self._lock = threading.Lock()
@@ -64,10 +64,10 @@ class JobPreview:
         # the end of a growing trajectory still changes
         reached = self._rows[(t_ns >= line.t_ns[0]) & (t_ns + 100_000_000 <= line.t_ns[-1])]
         with self._lock:
-            return list(self._draw(reached, line, palette, size_m))
+            return list(self._draw(reached, line, palette, size_m=size_m))
 
     def _draw(
-        self, rows: NDArray[np.intp], line: Trajectory, palette: Palette, size_m: float
+        self, rows: NDArray[np.intp], line: Trajectory, palette: Palette, *, size_m: float
     ) -> Iterator[PointsNode]:
         for number, begin in enumerate(range(0, len(rows), PIECE)):
             piece = self._piece(number, rows[begin : begin + PIECE], line)

@@ -39,9 +39,9 @@ from recon4.model.trajectory import Times, Trajectory
 
 CLOSED_M = 2.0
 """Start and end nearer than this have one label [m]."""
-MOST_FRAMES = 1000
+MAX_FRAMES = 1000
 """More body frames than this are thinned out."""
-MOST_POSES = 20_000
+MAX_POSES = 20_000
 """A trajectory of more poses is thinned out for drawing."""
 PIECE = 500
 """Segments of a line, or edges, that are sent together."""
@@ -177,7 +177,7 @@ def grid_cell_m(box: Bounds) -> float:
 
 
 def _path(layer: Layer, line: Trajectory, visible: bool) -> Iterator[LinesNode]:
-    t = line.T_a_b.t[:: max(1, -(-len(line) // MOST_POSES))]
+    t = line.T_a_b.t[:: max(1, -(-len(line) // MAX_POSES))]
     for piece, begin in enumerate(range(0, len(t) - 1, PIECE)):
         p = t[begin : begin + PIECE + 1]
         yield _lines(
@@ -225,7 +225,7 @@ def _edges(table: EdgeTable, view: ViewState) -> Iterator[LinesNode]:
     t = table.graph.T_map_body.t
     for row, layer in enumerate(table.layers):
         mine = np.flatnonzero(table.layer == row)
-        rgb = _edge_colors(table, mine, layer, view)
+        rgb = _edge_colors(table, mine, layer, view=view)
         for piece, begin in enumerate(range(0, len(mine), PIECE)):
             part = slice(begin, begin + PIECE)
             yield _lines(
@@ -238,7 +238,7 @@ def _edges(table: EdgeTable, view: ViewState) -> Iterator[LinesNode]:
 
 
 def _edge_colors(
-    table: EdgeTable, rows: NDArray[np.intp], layer: Layer, view: ViewState
+    table: EdgeTable, rows: NDArray[np.intp], layer: Layer, *, view: ViewState
 ) -> NDArray[np.uint8] | None:
     """Colors by a value, gray where it is not known; None = the layer's own."""
     if view.edge_color == "verdict":
@@ -252,7 +252,7 @@ def _edge_colors(
 
 def _frames(table: EdgeTable, view: ViewState) -> AxesNode:
     T = table.graph.T_map_body
-    T = T[slice(None, None, max(1, -(-len(T.t) // MOST_FRAMES)))]
+    T = T[slice(None, None, max(1, -(-len(T.t) // MAX_FRAMES)))]
     return _axes("/frames", T, length_m=0.4, visible=view.shows(FRAMES))
 
 
@@ -285,7 +285,7 @@ def _axes(path: str, T: SE3, *, length_m: float, visible: bool) -> AxesNode:
 
 def _gnss(marks: GnssMarks, view: ViewState) -> Iterator[LinesNode]:
     for layer, rows in ((GNSS_USED, marks.used), (GNSS_REJECTED, ~marks.used)):
-        step = max(1, int(rows.sum()) // MOST_POSES)
+        step = max(1, int(rows.sum()) // MAX_POSES)
         p, p_antenna = marks.p_map[rows][::step], marks.p_antenna[rows][::step]
         lines = np.concatenate([crosses(p), np.stack([p_antenna, p], axis=1)])
         yield _lines(f"/{layer.key}", lines, layer.rgb, width_px=1.5, visible=view.shows(layer))

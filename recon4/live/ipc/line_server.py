@@ -18,7 +18,7 @@ from pathlib import Path
 
 from recon4.live.protocol import Message, ProtocolError, Request, decode_request, encode
 
-MOST_UNREAD_BYTES = 16 << 20
+MAX_UNREAD_BYTES = 16 << 20
 """A complete preview and the path of an hour are 5 MB."""
 _LONGEST_LINE = 1 << 16
 
@@ -61,7 +61,7 @@ class LineServer:
         """Send a message to all clients."""
         line = encode(message)
         for writer in list(self._writers):
-            if writer.transport.get_write_buffer_size() > MOST_UNREAD_BYTES:
+            if writer.transport.get_write_buffer_size() > MAX_UNREAD_BYTES:
                 writer.transport.abort()
             else:
                 writer.write(line)

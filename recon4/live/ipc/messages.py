@@ -11,7 +11,7 @@ from recon4.live.preview.cloud import Chunk
 from recon4.live.preview.coverage import CELL_M, Coverage
 from recon4.live.protocol import Gap, Gaps, MapperMessage, Path, Plan, Points
 
-_MOST_GAPS = 50
+_MAX_GAPS = 50
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ def gaps_message(coverage: Coverage) -> Gaps:
     """The message ``gaps``: gaps on this floor, and their count on other floors."""
     gaps = [
         Gap(p=list(gap.p_map), width_m=gap.width_m, away_m=round(gap.away_m, 2))
-        for gap in coverage.gaps()[:_MOST_GAPS]
+        for gap in coverage.gaps()[:_MAX_GAPS]
     ]
     return Gaps(gaps, well=figure(coverage.well_seen_ratio()), elsewhere=coverage.gaps_elsewhere())
 

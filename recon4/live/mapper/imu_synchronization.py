@@ -6,7 +6,7 @@ from collections import deque
 
 from recon4.model.multiframe import Multiframe
 
-MOST_WAITING = 3
+MAX_WAITING = 3
 """Multiframes that wait at most; an IMU that is later than this or silent is not waited for."""
 _SURE_NS = 10_000_000
 """Samples may be missing for this part at the end of a frame; its motion is extrapolated."""
@@ -37,7 +37,7 @@ class ImuSynchronization:
 
     def _ready(self) -> list[Multiframe]:
         ready = []
-        while self._waiting and (self._synchronized() or len(self._waiting) > MOST_WAITING):
+        while self._waiting and (self._synchronized() or len(self._waiting) > MAX_WAITING):
             ready.append(self._waiting.popleft())
         return ready
 

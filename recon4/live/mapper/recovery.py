@@ -12,7 +12,7 @@ from recon4.live.mapper.place_index import PlaceIndex
 _PLACES_TRIED, _PLACES_APART_M = 16, 1.5
 """Number and spacing of the nearest places that are tried in turn, one per search."""
 _SAME_M, _SAME_RAD = 0.3, 0.1
-_MOST_SCORE, _SURE_SCORE, _LEAD = 4.0, 2.0, 1.5
+_MAX_SCORE, _SURE_SCORE, _LEAD = 4.0, 2.0, 1.5
 """Rooms may look alike: a hypothesis is accepted with this score and this lead over the next."""
 
 
@@ -67,7 +67,7 @@ class Recovery:
         if found is None or not _same(found.T_target_source, expected):
             hypothesis.score -= 1.0
             return
-        hypothesis.score = min(hypothesis.score + found.match_ratio, _MOST_SCORE)
+        hypothesis.score = min(hypothesis.score + found.match_ratio, _MAX_SCORE)
         hypothesis.T_map_odom = found.T_target_source @ T_odom_body.inverse()
 
     def _decide(self) -> SE3 | None:

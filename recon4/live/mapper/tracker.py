@@ -22,7 +22,7 @@ _FAR_M = 0.08
 _BETTER = 0.75
 _EARLY_FRAMES = 100
 """If the IMU is rejected before this multiframe, the map made with it is reset."""
-_LEAST_UPRIGHT = 0.5
+_MIN_UPRIGHT = 0.5
 """Cosine of the largest tilt at the start, 60 degrees."""
 _INTERRUPTED_NS = 2_000_000_000
 """Duration of a pause after which the pose is unknown, unless the IMU continued."""
@@ -151,4 +151,4 @@ def _upright(imu: ImuSamples, rig: Rig) -> bool:
     if not np.isfinite(force).all():  # gyroscope only
         return True
     up = force.mean(axis=0)
-    return bool(up[2] > _LEAST_UPRIGHT * np.linalg.norm(up))
+    return bool(up[2] > _MIN_UPRIGHT * np.linalg.norm(up))

@@ -11,7 +11,7 @@ from recon4.geometry.se3 import Array
 from recon4.kernels.live import EMPTY, add_voxels
 
 FIRST_VOXEL_M = 0.1
-MOST_POINTS = 400_000
+MAX_POINTS = 400_000
 """Above this the voxel size is doubled; a phone can draw 500 k points."""
 _LONGEST = 1 << 15
 """Voxel coordinates are sent as int16."""
@@ -35,7 +35,7 @@ class Chunk:
 class PreviewCloud:
     """Keeps one point per voxel."""
 
-    def __init__(self, voxel_m: float = FIRST_VOXEL_M, most: int = MOST_POINTS) -> None:
+    def __init__(self, voxel_m: float = FIRST_VOXEL_M, most: int = MAX_POINTS) -> None:
         self.voxel_m, self._most = voxel_m, most
         self.generation = 0
         self._clear()

@@ -27,7 +27,7 @@ _ETHERNET = b"\xff" * 6 + b"\x60\x76\x88\x00\x00\x01"
 
 WRITE_EVERY_S = 0.05
 SYNC_EVERY_S = 1.0
-MOST_WAITING_BYTES = 64 << 20
+MAX_WAITING_BYTES = 64 << 20
 """Half a minute of two VLP-16; datagrams beyond it are dropped and counted."""
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 
@@ -77,7 +77,7 @@ class CaptureFile:
         """Queue a datagram; it is synced to the disk within `SYNC_EVERY_S`."""
         record = pcap_record(datagram)
         with self._news:
-            if self._waiting.size + len(record) > MOST_WAITING_BYTES:
+            if self._waiting.size + len(record) > MAX_WAITING_BYTES:
                 self._state.dropped += 1
                 return
             self._waiting.records.append(record)

@@ -12,7 +12,7 @@ from recon4.live.protocol import DiskState
 _TREND_S = 60.0
 """The fill rate is measured over this period."""
 _SURE_AFTER_S = 5.0
-_LEAST_PER_S = 1000.0
+_MIN_PER_S = 1000.0
 """Fill rate below which no time left is predicted [bytes/s]."""
 
 
@@ -60,7 +60,7 @@ class DiskWatch:
         left_s = None
         if now_s - since_s >= _SURE_AFTER_S:
             per_s = (before - free) / (now_s - since_s)
-            left_s = (free - self._least) / per_s if per_s > _LEAST_PER_S else None
+            left_s = (free - self._least) / per_s if per_s > _MIN_PER_S else None
         self.state = DiskState(
             free_bytes=free,
             left_s=None if left_s is None else round(left_s),

@@ -49,7 +49,7 @@ from recon4.sandbox import refuse_new_sockets
 from recon4.store.atomic import write_json
 
 STATUS_EVERY_S = 0.5
-_MOST_SENDERS = 64
+_MAX_SENDERS = 64
 """Counted one by one; datagrams of further senders are counted together."""
 _AT_ONCE = 256
 """Datagrams read from a port before the other ports are read."""
@@ -138,7 +138,7 @@ class Recorder:
 
     def _take(self, datagram: Datagram) -> None:
         sender = datagram.source[0], datagram.port
-        if sender not in self._counts and len(self._counts) >= _MOST_SENDERS:
+        if sender not in self._counts and len(self._counts) >= _MAX_SENDERS:
             sender = "others", datagram.port
         self._counts[sender] += 1
         self._data[sender] += len(datagram.payload) == DATA_SIZE

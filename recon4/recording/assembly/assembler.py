@@ -249,7 +249,7 @@ class Assembler:
         if not parts:
             return []
         frame_id = self._held.frame_id + 1 if self._held else 0
-        frame = _multiframe(parts, frame_id, start_ns, self.duration_ns)
+        frame = _multiframe(parts, frame_id, start_ns, duration_ns=self.duration_ns)
         for row, stream in enumerate(self._streams):
             if not np.any(frame.sensor == row):
                 self._report.count(f"frames_without_{stream.name}")
@@ -339,7 +339,7 @@ def moved(shots: Shots, shift_ns: int) -> Shots:
     )
 
 
-def _multiframe(parts: list[Shots], frame_id: int, t_ns: int, duration_ns: int) -> Multiframe:
+def _multiframe(parts: list[Shots], frame_id: int, t_ns: int, *, duration_ns: int) -> Multiframe:
     columns = {
         "xyz": np.concatenate([p.xyz for p in parts]),
         "intensity": np.concatenate([p.intensity for p in parts]),

@@ -91,9 +91,9 @@ def _indexed(file: RecordFile) -> Directory:
     if magic != _MAGIC:
         raise CorruptFile(f"{file.name}: expected {_MAGIC!r}, got {magic!r}")
     header = _header(file, _HEADER)
-    index_at = _uint(header, b"index_pos", 8, file)
-    connections = _uint(header, b"conn_count", 4, file)
-    chunks = _uint(header, b"chunk_count", 4, file)
+    index_at = _uint(header, b"index_pos", 8, file=file)
+    connections = _uint(header, b"conn_count", 4, file=file)
+    chunks = _uint(header, b"chunk_count", 4, file=file)
     if header.get(b"encryptor"):
         raise CorruptFile(f"{file.name}: it is encrypted")
     if not index_at:
@@ -128,7 +128,7 @@ def _connection(file: RecordFile) -> tuple[int, Topic]:
     about = _fields(file.take(file.uint(4, "connection"), "connection"))
     if about is None:
         raise CorruptFile(f"{file.name}: the connection before byte {file.at} has no fields")
-    return _uint(header, b"conn", 4, file), _topic(header, about)
+    return _uint(header, b"conn", 4, file=file), _topic(header, about)
 
 
 def _topic(header: Fields, about: Fields) -> Topic:
@@ -150,12 +150,12 @@ class _Info(NamedTuple):
 def _chunk_info(file: RecordFile) -> _Info:
     header = _header(file, _CHUNK_INFO)
     data = file.take(file.uint(4, "chunk info"), "chunk info")
-    if len(data) % 8 or len(data) // 8 != _uint(header, b"count", 4, file):
+    if len(data) % 8 or len(data) // 8 != _uint(header, b"count", 4, file=file):
         raise CorruptFile(f"{file.name}: the chunk info before byte {file.at} is damaged")
     numbers = struct.unpack(f"<{len(data) // 4}I", data)
     counts = dict(zip(numbers[::2], numbers[1::2], strict=True))
     first, last = (_time(header, name, file) for name in (b"start_time", b"end_time"))
-    return _Info(_uint(header, b"chunk_pos", 8, file), first, last, counts)
+    return _Info(_uint(header, b"chunk_pos", 8, file=file), first, last, counts)
 
 
 def _chunk_at(file: RecordFile, info: _Info, index_at: int) -> ChunkRef:
@@ -170,7 +170,7 @@ def _chunk_at(file: RecordFile, info: _Info, index_at: int) -> ChunkRef:
     return ChunkRef(
         file.at,
         length,
-        _uint(header, b"size", 4, file),
+        _uint(header, b"size", 4, file=file),
         _compression(header),
         info.t_first_ns,
         info.t_last_ns,
@@ -224,7 +224,7 @@ def _load(file: RecordFile, chunk: ChunkRef, topics: dict[int, Topic]) -> ChunkM
         at = stop
         op = _op(header)
         if op == _MESSAGE:
-            _add_message(messages, header, start, stop)
+            _add_message(messages, header, start, stop=stop)
         elif op == _CONNECTION and len(topics) < MAX_TOPICS:
             number = int.from_bytes(header.get(b"conn", b""), "little")
             about = _fields(raw[start:stop])
@@ -235,7 +235,7 @@ def _load(file: RecordFile, chunk: ChunkRef, topics: dict[int, Topic]) -> ChunkM
     return messages
 
 
-def _add_message(messages: ChunkMessages, header: Fields, start: int, stop: int) -> None:
+def _add_message(messages: ChunkMessages, header: Fields, start: int, *, stop: int) -> None:
     conn, time = header.get(b"conn", b""), header.get(b"time", b"")
     if len(conn) != 4 or len(time) != 8 or stop - start > MAX_MESSAGE_BYTES:
         messages.rejected += 1
@@ -290,7 +290,7 @@ def _compression(header: Fields) -> str:
     return header.get(b"compression", b"none").decode("latin1")
 
 
-def _uint(header: Fields, name: bytes, size: int, file: RecordFile) -> int:
+def _uint(header: Fields, name: bytes, size: int, *, file: RecordFile) -> int:
     value = header.get(name, b"")
     if len(value) != size:
         raise CorruptFile(
@@ -301,5 +301,5 @@ def _uint(header: Fields, name: bytes, size: int, file: RecordFile) -> int:
 
 
 def _time(header: Fields, name: bytes, file: RecordFile) -> int:
-    both = _uint(header, name, 8, file)
+    both = _uint(header, name, 8, file=file)
     return (both & 0xFFFF_FFFF) * 1_000_000_000 + (both >> 32)

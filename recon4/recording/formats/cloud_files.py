@@ -15,7 +15,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.bounded import MOST_LINE_BYTES, open_regular
+from recon4.bounded import MAX_LINE_BYTES, open_regular
 from recon4.errors import CorruptFile, UnknownFormat
 from recon4.kernels.lzf import lzf_decompress
 from recon4.recording.formats.cloud_headers import (
@@ -31,7 +31,7 @@ from recon4.recording.formats.cloud_headers import (
 Table = dict[str, NDArray[Any]]
 """Column name -> values, (N,) each."""
 
-MOST_FRAME_BYTES = 256 << 20
+MAX_FRAME_BYTES = 256 << 20
 """The points of a file that is read as a whole (one revolution, or a compressed block)."""
 _CHUNK_BYTES = 32 << 20
 _LZF_MOST = 100
@@ -48,7 +48,7 @@ def is_cloud_file(path: Path) -> bool:
 
 
 def read_cloud(path: Path) -> Table:
-    """Read a PCD, PLY or BIN file of at most `MOST_FRAME_BYTES` as a whole.
+    """Read a PCD, PLY or BIN file of at most `MAX_FRAME_BYTES` as a whole.
 
     Raises:
         CorruptFile: If the bytes do not match what the header promises, or there are too many.
@@ -58,9 +58,9 @@ def read_cloud(path: Path) -> Table:
         layout = _layout(file, path)
         _check_size(file, layout, path.name)
         size = layout.rows * layout.row_bytes
-        if size > MOST_FRAME_BYTES:
+        if size > MAX_FRAME_BYTES:
             raise CorruptFile(
-                f"{path.name}: expected at most {MOST_FRAME_BYTES} bytes of points in one frame, "
+                f"{path.name}: expected at most {MAX_FRAME_BYTES} bytes of points in one frame, "
                 f"got {layout.rows} points of {layout.row_bytes} bytes"
             )
         parts = list(_chunks(file, layout, path.name))
@@ -185,12 +185,12 @@ def _some_lines(file: BinaryIO, most: int, name: str) -> list[str]:
     lines: list[str] = []
     size = 0
     while len(lines) < most and size < _CHUNK_BYTES:
-        line = file.readline(MOST_LINE_BYTES + 1)
+        line = file.readline(MAX_LINE_BYTES + 1)
         if not line:
             break
-        if len(line) > MOST_LINE_BYTES:
+        if len(line) > MAX_LINE_BYTES:
             raise CorruptFile(
-                f"{name}: expected lines of at most {MOST_LINE_BYTES} bytes, got a longer one"
+                f"{name}: expected lines of at most {MAX_LINE_BYTES} bytes, got a longer one"
             )
         size += len(line)
         # Files of old Macs end their lines with \r alone.
@@ -243,9 +243,9 @@ def _compressed(file: BinaryIO, layout: CloudLayout, name: str) -> Iterator[Tabl
             f"{name}: {layout.rows} points are {expected} bytes, "
             f"the compressed block of {packed} bytes says {unpacked}"
         )
-    if max(unpacked, packed) > MOST_FRAME_BYTES + (MOST_FRAME_BYTES >> 4):
+    if max(unpacked, packed) > MAX_FRAME_BYTES + (MAX_FRAME_BYTES >> 4):
         raise CorruptFile(
-            f"{name}: expected a compressed block of at most {MOST_FRAME_BYTES} bytes, "
+            f"{name}: expected a compressed block of at most {MAX_FRAME_BYTES} bytes, "
             f"got {packed} bytes that unpack to {unpacked}"
         )
     out = np.zeros(unpacked, np.uint8)

@@ -10,9 +10,9 @@ from recon4.errors import CorruptFile
 
 HEADER_BYTES = 64 * 1024
 """Largest size of a header."""
-MOST_FIELDS = 256
-MOST_ROW_BYTES = 64 * 1024
-_MOST_COUNT = 4096
+MAX_FIELDS = 256
+MAX_ROW_BYTES = 64 * 1024
+_MAX_COUNT = 4096
 """Values of one field: the longest descriptors of PCL have 1960."""
 _PCD_TYPES = {
     **{("F", "4"): "f4", ("F", "8"): "f8"},
@@ -187,12 +187,12 @@ def whole(text: str) -> int:
 
 
 def _checked(layout: CloudLayout, name: str) -> CloudLayout:
-    if not 1 <= len(layout.fields) <= MOST_FIELDS:
-        raise CorruptFile(f"{name}: expected 1 to {MOST_FIELDS} fields, got {len(layout.fields)}")
+    if not 1 <= len(layout.fields) <= MAX_FIELDS:
+        raise CorruptFile(f"{name}: expected 1 to {MAX_FIELDS} fields, got {len(layout.fields)}")
     counts = [field.count for field in layout.fields]
-    if min(counts) < 1 or max(counts) > _MOST_COUNT or layout.row_bytes > MOST_ROW_BYTES:
+    if min(counts) < 1 or max(counts) > _MAX_COUNT or layout.row_bytes > MAX_ROW_BYTES:
         raise CorruptFile(
-            f"{name}: expected 1 to {_MOST_COUNT} values a field and at most "
-            f"{MOST_ROW_BYTES} bytes a point, got {max(counts)} and {layout.row_bytes}"
+            f"{name}: expected 1 to {_MAX_COUNT} values a field and at most "
+            f"{MAX_ROW_BYTES} bytes a point, got {max(counts)} and {layout.row_bytes}"
         )
     return layout

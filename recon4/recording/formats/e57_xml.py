@@ -21,10 +21,10 @@ from recon4.errors import CorruptFile
 
 _HEADER = struct.Struct("<8sIIQQQQ")
 _PAGE, _DATA = 1024, 1020
-MOST_XML_BYTES = 16 << 20
-MOST_DEPTH = 64
-MOST_ELEMENTS = 1_000_000
-MOST_ATTRIBUTES = 64
+MAX_XML_BYTES = 16 << 20
+MAX_DEPTH = 64
+MAX_ELEMENTS = 1_000_000
+MAX_ATTRIBUTES = 64
 """Of one element."""
 _SCHEMA_NAMESPACE = "http://www.w3.org/2001/XMLSchema-instance"
 _CRC32C = 0x82F63B78
@@ -63,8 +63,8 @@ def _xml_section(path: Path) -> bytes:
         _, _, _, _, offset, length, page_size = _HEADER.unpack(head)
         if page_size != _PAGE:
             raise _Refused(f"expected pages of {_PAGE} bytes, got {page_size}")
-        if length > MOST_XML_BYTES:
-            raise _Refused(f"{length} bytes, at most {MOST_XML_BYTES}")
+        if length > MAX_XML_BYTES:
+            raise _Refused(f"{length} bytes, at most {MAX_XML_BYTES}")
         first, within = divmod(offset, _PAGE)
         if within > _DATA:
             raise _Refused(f"it begins in a checksum, at byte {offset}")
@@ -100,12 +100,12 @@ class _Counts:
     def begin(self, name: str, attributes: dict[str, str]) -> None:
         self.depth += 1
         self.elements += 1
-        if self.depth > MOST_DEPTH:
-            raise _Refused(f"elements nested deeper than {MOST_DEPTH}")
-        if self.elements > MOST_ELEMENTS:
-            raise _Refused(f"more than {MOST_ELEMENTS} elements")
-        if len(attributes) > MOST_ATTRIBUTES:
-            raise _Refused(f"<{name[:80]}> has more than {MOST_ATTRIBUTES} attributes")
+        if self.depth > MAX_DEPTH:
+            raise _Refused(f"elements nested deeper than {MAX_DEPTH}")
+        if self.elements > MAX_ELEMENTS:
+            raise _Refused(f"more than {MAX_ELEMENTS} elements")
+        if len(attributes) > MAX_ATTRIBUTES:
+            raise _Refused(f"<{name[:80]}> has more than {MAX_ATTRIBUTES} attributes")
         for attribute in attributes:
             if attribute.startswith(_SCHEMA_NAMESPACE):
                 raise _Refused("it names a schema, which a reader would fetch")

@@ -23,8 +23,8 @@ _LAYERS = {10: 9, 11: 1, 12: 2, 13: 1}
 """Item of a layered chunk -> its layers; item 14, extra bytes, has one a byte."""
 _EXTRA_BYTES_14 = 14
 _VLR_HEAD = 54
-_MOST_ITEMS = 16
-_MOST_CHUNK_POINTS = 10_000_000
+_MAX_ITEMS = 16
+_MAX_CHUNK_POINTS = 10_000_000
 _VARIABLE = 0xFFFFFFFF
 _LAZ_RECORD = (b"laszip encoded", 22204)
 
@@ -61,7 +61,7 @@ def check_las(file: BinaryIO, name: str) -> LasHeader:
     size = os.fstat(file.fileno()).st_size
     head = _read(file, 0, min(size, 375))
     header = _header(head, size, name)
-    laz = _records(file, head, header, name)
+    laz = _records(file, head, header, name=name)
     if not header.compressed:
         needed = header.points * header.point_bytes
         if needed > size - header.data_at:
@@ -73,7 +73,7 @@ def check_las(file: BinaryIO, name: str) -> LasHeader:
     if laz is None:
         raise CorruptFile(f"{name}: expected a LASzip record in a compressed file, got none")
     if header.points:
-        _check_chunks(file, header, _compression(laz, header, name), name)
+        _check_chunks(file, header, _compression(laz, header, name), name=name)
     return header
 
 
@@ -106,7 +106,7 @@ def _header(head: bytes, size: int, name: str) -> LasHeader:
     return LasHeader(points, point_format, point_bytes, data_at, bool(point_id & 0x80))
 
 
-def _records(file: BinaryIO, head: bytes, header: LasHeader, name: str) -> bytes | None:
+def _records(file: BinaryIO, head: bytes, header: LasHeader, *, name: str) -> bytes | None:
     """Walk the variable length records; returns the body of LASzip's, if there is one."""
     header_bytes, count = struct.unpack_from("<H", head, 94)[0], struct.unpack_from("<I", head, 100)
     at, found = header_bytes, None
@@ -138,9 +138,9 @@ def _compression(laz: bytes, header: LasHeader, name: str) -> _Compression:
         raise CorruptFile(
             f"{name}: expected LASzip's compressor 2 or 3 and coder 0, got {compressor}, {coder}"
         )
-    if not 1 <= count <= _MOST_ITEMS or len(laz) < 34 + 6 * count:
+    if not 1 <= count <= _MAX_ITEMS or len(laz) < 34 + 6 * count:
         raise CorruptFile(
-            f"{name}: expected 1 to {_MOST_ITEMS} LASzip items, got {count} in {len(laz)} bytes"
+            f"{name}: expected 1 to {_MAX_ITEMS} LASzip items, got {count} in {len(laz)} bytes"
         )
     items = [struct.unpack_from("<HHH", laz, 34 + 6 * k) for k in range(count)]
     if sum(size for _, size, _ in items) != header.point_bytes:
@@ -148,9 +148,9 @@ def _compression(laz: bytes, header: LasHeader, name: str) -> _Compression:
             f"{name}: points have {header.point_bytes} bytes, "
             f"the LASzip items {sum(size for _, size, _ in items)}"
         )
-    if chunk_points != _VARIABLE and not 1 <= chunk_points <= _MOST_CHUNK_POINTS:
+    if chunk_points != _VARIABLE and not 1 <= chunk_points <= _MAX_CHUNK_POINTS:
         raise CorruptFile(
-            f"{name}: expected chunks of 1 to {_MOST_CHUNK_POINTS} points, got {chunk_points}"
+            f"{name}: expected chunks of 1 to {_MAX_CHUNK_POINTS} points, got {chunk_points}"
         )
     return _Compression(compressor == 3, chunk_points, _layer_count(items, compressor, name))
 
@@ -164,7 +164,7 @@ def _layer_count(items: list[tuple[int, int, int]], compressor: int, name: str) 
     return sum(size if kind == _EXTRA_BYTES_14 else _LAYERS[kind] for kind, size, _ in items)
 
 
-def _check_chunks(file: BinaryIO, header: LasHeader, laz: _Compression, name: str) -> None:
+def _check_chunks(file: BinaryIO, header: LasHeader, laz: _Compression, *, name: str) -> None:
     size = os.fstat(file.fileno()).st_size
     first = header.data_at + 8
     if size < first + 8:
@@ -190,11 +190,11 @@ def _check_chunks(file: BinaryIO, header: LasHeader, laz: _Compression, name: st
     if chunks * header.point_bytes > table_at - first:
         raise CorruptFile(f"{name}: {chunks} chunks promised in {table_at - first} bytes")
     if laz.layered:
-        _check_layers(file, header, laz, (chunks, table_at), name=name)
+        _check_layers(file, header, laz, table=(chunks, table_at), name=name)
 
 
 def _check_layers(
-    file: BinaryIO, header: LasHeader, laz: _Compression, table: tuple[int, int], *, name: str
+    file: BinaryIO, header: LasHeader, laz: _Compression, *, table: tuple[int, int], name: str
 ) -> None:
     """Walk the chunks: first point, count of points, sizes of the layers, layers."""
     chunks, table_at = table

@@ -275,7 +275,7 @@ def _found_chunks(file: RecordFile, topics: _Topics) -> tuple[list[ChunkRef], bo
             elif op in {_SCHEMA, _CHANNEL}:
                 topics.add(op, file.take(length, "record"), f"{file.name}: record at byte {at}")
             elif op == _MESSAGE:
-                _extend_run(found, at, end, file)
+                _extend_run(found, at, end, file=file)
             elif not op:
                 break  # an opcode of 0 is not allowed: holes of a sparse file
             if end > file.size:
@@ -286,7 +286,7 @@ def _found_chunks(file: RecordFile, topics: _Topics) -> tuple[list[ChunkRef], bo
     return found, False
 
 
-def _extend_run(found: list[ChunkRef], at: int, end: int, file: RecordFile) -> None:
+def _extend_run(found: list[ChunkRef], at: int, end: int, *, file: RecordFile) -> None:
     """Add a message outside of a chunk to the run before it, or begin a new one."""
     if end > file.size:
         return

@@ -136,7 +136,7 @@ def _records(file: IO[bytes], name: str, report: ImportReport) -> Iterator[_Reco
         file.seek(0)
         yield from _next_generation(file, name, report)
     elif magic in _CLASSIC:
-        yield from _classic(file, name, _CLASSIC[magic], report)
+        yield from _classic(file, name, _CLASSIC[magic], report=report)
     else:
         raise UnknownFormat(
             f"{name}: expected a capture file (pcap or pcapng), got first bytes {magic.hex(' ')}"
@@ -144,7 +144,7 @@ def _records(file: IO[bytes], name: str, report: ImportReport) -> Iterator[_Reco
 
 
 def _classic(
-    file: IO[bytes], name: str, kind: tuple[str, int], report: ImportReport
+    file: IO[bytes], name: str, kind: tuple[str, int], *, report: ImportReport
 ) -> Iterator[_Records]:
     order, unit_ns = kind
     header = file.read(20)
@@ -157,7 +157,7 @@ def _classic(
         data = rest + chunk
         stamps, end, broken = _walk(data, order)
         if stamps:
-            yield _batch(stamps, data, unit_ns, link_type)
+            yield _batch(stamps, data, unit_ns, link_type=link_type)
         rest, at = data[end:], at + end
         if broken:
             captured = struct.unpack_from(f"{order}I", rest, 8)[0]
@@ -190,7 +190,7 @@ def _walk(data: bytes, order: str) -> tuple[list[tuple[int, int, int, int]], int
 
 
 def _batch(
-    rows: list[tuple[int, int, int, int]], data: bytes, unit_ns: int, link_type: int
+    rows: list[tuple[int, int, int, int]], data: bytes, unit_ns: int, *, link_type: int
 ) -> _Records:
     seconds, fraction, length, start = np.array(rows, dtype=np.int64).T
     t_ns = seconds * 1_000_000_000 + fraction * unit_ns

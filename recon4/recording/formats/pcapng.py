@@ -56,8 +56,8 @@ def read_packets(file: IO[bytes], skipped: Callable[[str], None]) -> Iterator[Pa
     order, interfaces, at = "<", list[Interface](), 0
     while head := _read(file, 8):
         where = f"block at byte {at}"
-        order = _order(file, head, order, where)
-        kind, body, length = _block(file, head, order, where)
+        order = _order(file, head, order, where=where)
+        kind, body, length = _block(file, head, order, where=where)
         at += length
         if kind == _SECTION:
             interfaces = []
@@ -68,14 +68,14 @@ def read_packets(file: IO[bytes], skipped: Callable[[str], None]) -> Iterator[Pa
         elif kind == _SIMPLE_PACKET:
             skipped("records_without_time")
         elif kind in {_PACKET, _OLD_PACKET}:
-            packet = _packet(kind, body, order, (interfaces, where))
+            packet = _packet(kind, body, order, known=(interfaces, where))
             if 0 <= packet.t_ns < _MAX_TIME_NS:
                 yield packet
             else:
                 skipped("records_without_time")
 
 
-def _order(file: IO[bytes], head: bytes, order: str, where: str) -> str:
+def _order(file: IO[bytes], head: bytes, order: str, *, where: str) -> str:
     """Byte order of the section, from four bytes that `_block` reads again."""
     if head[:4] != MAGIC:
         return order
@@ -86,7 +86,7 @@ def _order(file: IO[bytes], head: bytes, order: str, where: str) -> str:
     return "<" if magic[0] == 0x4D else ">"
 
 
-def _block(file: IO[bytes], head: bytes, order: str, where: str) -> tuple[int, bytes, int]:
+def _block(file: IO[bytes], head: bytes, order: str, *, where: str) -> tuple[int, bytes, int]:
     """Kind, body and length of a block."""
     if len(head) < 8:
         raise CorruptFile(f"{where}: expected 8 bytes, got {len(head)}: the file is cut off")
@@ -134,7 +134,7 @@ def _interface(body: bytes, order: str, where: str) -> Interface:
     return Interface(link_type, ticks_per_s, offset_s)
 
 
-def _packet(kind: int, body: bytes, order: str, known: tuple[list[Interface], str]) -> Packet:
+def _packet(kind: int, body: bytes, order: str, *, known: tuple[list[Interface], str]) -> Packet:
     interfaces, where = known
     layout = f"{order}IIIII" if kind == _PACKET else f"{order}H2xIIII"
     size = struct.calcsize(layout)

@@ -17,8 +17,8 @@ from recon4.model.trajectory import Times, Trajectory
 
 _SECONDS = re.compile(r"([-+]?)([0-9]{1,18})(?:\.([0-9]*))?")
 _ROTATION_TOLERANCE = 1e-2
-_MOST_BYTES = 1 << 30
-_MOST_LINE_BYTES = 4096
+_MAX_BYTES = 1 << 30
+_MAX_LINE_BYTES = 4096
 
 
 def read_tum(path: Path) -> Trajectory:
@@ -151,7 +151,7 @@ class _Table:
 
 def _cells(path: Path) -> Iterator[tuple[int, list[str]]]:
     """Words of each line with its number, without comments and blank lines."""
-    lines = lines_limited(path, most_bytes=_MOST_BYTES, most_line_bytes=_MOST_LINE_BYTES)
+    lines = lines_limited(path, max_bytes=_MAX_BYTES, max_line_bytes=_MAX_LINE_BYTES)
     for number, line in enumerate(lines, start=1):
         cells = line.partition("#")[0].replace(",", " ").split()
         if cells:

@@ -25,8 +25,8 @@ from recon4.recording.formats.e57_xml import check_e57_xml
 from recon4.recording.formats.las_check import check_las
 
 CHUNK = 1_000_000
-MOST_POINTS = 400_000_000
-MOST_BYTES = 20 << 30
+MAX_POINTS = 400_000_000
+MAX_BYTES = 20 << 30
 _TEXT_BLOCK_BYTES = 16 << 20
 TEXT_SUFFIXES = {".xyz", ".csv", ".txt", ".asc", ".pts"}
 
@@ -57,8 +57,8 @@ def _head(path: Path) -> bytes:
     with open_regular(path, failure=RecordingError) as file:
         size = os.fstat(file.fileno()).st_size
         head = file.read(64 * 1024)
-    if size > MOST_BYTES:
-        raise RecordingError(f"{path.name} has {size >> 30} GiB, at most {MOST_BYTES >> 30}")
+    if size > MAX_BYTES:
+        raise RecordingError(f"{path.name} has {size >> 30} GiB, at most {MAX_BYTES >> 30}")
     return head
 
 
@@ -71,8 +71,8 @@ def _checked(chunks: Iterator[Array], name: str) -> Iterator[Array]:
         if len(chunk) and np.abs(chunk).max() > 1e8:
             raise CorruptFile(f"{name}: coordinates beyond 100 000 km are not meters")
         count += len(chunk)
-        if count > MOST_POINTS:
-            raise RecordingError(f"{name} has more than {MOST_POINTS // 10**6} million points")
+        if count > MAX_POINTS:
+            raise RecordingError(f"{name} has more than {MAX_POINTS // 10**6} million points")
         yield chunk
     if not count:
         raise CorruptFile(f"{name} holds no points")
@@ -121,14 +121,14 @@ def _decoding(name: str) -> Iterator[None]:
 
 
 def _refuse_many(points: int, name: str) -> None:
-    if points > MOST_POINTS:
-        raise RecordingError(f"{name}: expected at most {MOST_POINTS} points, got {points}")
+    if points > MAX_POINTS:
+        raise RecordingError(f"{name}: expected at most {MAX_POINTS} points, got {points}")
 
 
 def _refuse_promise(path: Path, promised: int) -> None:
     """Refuse a header with more points than a compressed file of this size can have."""
     most = path.stat().st_size * 40  # a LAZ point takes a byte or more; 40 is generous
-    if promised > min(MOST_POINTS, most):
+    if promised > min(MAX_POINTS, most):
         raise CorruptFile(f"{path.name}: {promised} points promised in {path.stat().st_size} bytes")
 
 
@@ -158,13 +158,13 @@ def _e57(path: Path) -> Iterator[Array]:
 def _text(path: Path) -> Iterator[Array]:
     """Lines of numbers, the first three columns; one head line, ``;`` and decimal comma allowed."""
     layout, line, got = None, 1, 0
-    for text in text_blocks(path, block_bytes=_TEXT_BLOCK_BYTES, most_bytes=MOST_BYTES):
+    for text in text_blocks(path, block_bytes=_TEXT_BLOCK_BYTES, max_bytes=MAX_BYTES):
         if layout is None:
             layout = _TextLayout.of(text)
             if layout.has_head:
                 _, _, text = text.partition("\n")
                 line += 1
-        rows = _rows(text, layout, path.name, line)
+        rows = _rows(text, layout, path.name, line=line)
         yield rows
         got += len(rows)
         line += text.count("\n")
@@ -204,7 +204,7 @@ def _is_row(text: str, delimiter: str | None, *, comma: bool) -> bool:
         return False
 
 
-def _rows(text: str, layout: _TextLayout, name: str, line: int) -> Array:
+def _rows(text: str, layout: _TextLayout, name: str, *, line: int) -> Array:
     if layout.comma:
         text = text.replace(",", ".")
     if not text.strip():
@@ -220,10 +220,10 @@ def _rows(text: str, layout: _TextLayout, name: str, line: int) -> Array:
                 ndmin=2,
             ).reshape(-1, 3)
     except (ValueError, IndexError) as error:
-        raise _wrong_row(text, layout, name, line) from error
+        raise _wrong_row(text, layout, name, line=line) from error
 
 
-def _wrong_row(text: str, layout: _TextLayout, name: str, line: int) -> CorruptFile:
+def _wrong_row(text: str, layout: _TextLayout, name: str, *, line: int) -> CorruptFile:
     """The error with the first line that is not a point."""
     for number, row in enumerate(text.split("\n"), start=line):
         row = row.partition("#")[0].strip()

@@ -60,7 +60,7 @@ def clean_imu(
     whole = np.isfinite(imu.accel_m_s2).sum(axis=1)
     finite &= (whole == 3) | (whole == 0)
     report.count("imu_nan", int(np.count_nonzero(~finite)))
-    imu = _sorted(_take(imu, finite), offset_s, "imu", report)
+    imu = _sorted(_take(imu, finite), offset_s, "imu", report=report)
     report.count("imu_kept", len(imu))
     if not len(imu):
         report.warn("no usable IMU sample")
@@ -76,7 +76,7 @@ def clean_gnss(gnss: GnssSamples, *, offset_s: float, report: ImportReport) -> G
     report.count("gnss_nan", int(np.count_nonzero(~place)))
     invalid = place & (gnss.quality == GnssQuality.INVALID)
     report.count("gnss_no_fix", int(np.count_nonzero(invalid)))
-    gnss = _sorted(_take(gnss, place & ~invalid), offset_s, "gnss", report)
+    gnss = _sorted(_take(gnss, place & ~invalid), offset_s, "gnss", report=report)
     report.count("gnss_kept", len(gnss))
     if not len(gnss):
         report.warn("no usable GNSS position")
@@ -92,7 +92,7 @@ def _take(samples: Samples, rows: NDArray[Any]) -> Samples:
     return _build(samples, lambda name: getattr(samples, name)[rows])
 
 
-def _sorted(samples: Samples, offset_s: float, kind: str, report: ImportReport) -> Samples:
+def _sorted(samples: Samples, offset_s: float, kind: str, *, report: ImportReport) -> Samples:
     t_ns = samples.t_ns
     report.count(f"{kind}_unsorted", int(np.count_nonzero(np.diff(t_ns) < 0)))
     order = np.argsort(t_ns, kind="stable")

@@ -23,9 +23,9 @@ GNSS_HEADER = (
 )
 _OPTIONAL = {*IMU_HEADER[4:], *GNSS_HEADER[3:]}
 _SEPARATORS = ";\t,"
-MOST_BYTES = 1 << 30
+MAX_BYTES = 1 << 30
 """About ten million samples: an IMU of 400 Hz for seven hours."""
-_MOST_LINE_BYTES = 16 * 1024
+_MAX_LINE_BYTES = 16 * 1024
 
 
 def read_imu_csv(path: Path) -> ImuSamples:
@@ -72,7 +72,7 @@ def read_gnss_csv(path: Path) -> GnssSamples:
 def csv_header(path: Path) -> list[str]:
     """Names of the columns; empty when the first line is no text."""
     try:
-        return _names(next(_lines(path, most_bytes=1 << 62), ""))
+        return _names(next(_lines(path, max_bytes=1 << 62), ""))
     except RecordingError:
         return []
 
@@ -85,8 +85,8 @@ def _separator(header: str) -> str:
     return next((sign for sign in _SEPARATORS if sign in header), ",")
 
 
-def _lines(path: Path, *, most_bytes: int = MOST_BYTES) -> Iterator[str]:
-    return lines_limited(path, most_bytes=most_bytes, most_line_bytes=_MOST_LINE_BYTES)
+def _lines(path: Path, *, max_bytes: int = MAX_BYTES) -> Iterator[str]:
+    return lines_limited(path, max_bytes=max_bytes, max_line_bytes=_MAX_LINE_BYTES)
 
 
 def _read(path: Path, known: tuple[str, ...]) -> tuple[Times, dict[str, Array]]:

@@ -55,7 +55,7 @@ def decode_packets(
     parts = []
     for start, stop in zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True):
         pair = 2 if stop > start and dual[start] else 1
-        parts.append(_decode(t_ns[start:stop], payloads[start:stop], pair, (model, settings)))
+        parts.append(_decode(t_ns[start:stop], payloads[start:stop], pair, how=(model, settings)))
     counts = np.sum([part[5] for part in parts], axis=0)
     columns = [
         part[0] if len(parts) == 1 else np.concatenate(part)
@@ -70,7 +70,7 @@ def decode_packets(
 
 
 def _decode(
-    t_ns: Times, payloads: Payloads, pair: int, how: tuple[VelodyneModel, IngestSettings]
+    t_ns: Times, payloads: Payloads, pair: int, *, how: tuple[VelodyneModel, IngestSettings]
 ) -> tuple[NDArray[np.generic], ...]:
     model, settings = how
     unit = model.distance_unit_m

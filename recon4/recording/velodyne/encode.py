@@ -62,13 +62,18 @@ def encode_vlp16(
     t_us: NDArray[np.integer],
     azimuth_cdeg: NDArray[np.integer],
     distance_2mm: NDArray[np.integer],
-    intensity: NDArray[np.integer],
     *,
+    intensity: NDArray[np.integer],
     return_mode: int = STRONGEST,
 ) -> NDArray[np.uint8]:
     """Data packets of a VLP-16, see `encode_packets`."""
     return encode_packets(
-        t_us, azimuth_cdeg, distance_2mm, intensity, model=MODELS["VLP-16"], return_mode=return_mode
+        t_us,
+        azimuth_cdeg,
+        distance_2mm,
+        intensity=intensity,
+        model=MODELS["VLP-16"],
+        return_mode=return_mode,
     )
 
 
@@ -76,8 +81,8 @@ def encode_packets(
     t_us: NDArray[np.integer],
     azimuth_cdeg: NDArray[np.integer],
     distance: NDArray[np.integer],
-    intensity: NDArray[np.integer],
     *,
+    intensity: NDArray[np.integer],
     model: VelodyneModel,
     return_mode: int = STRONGEST,
 ) -> NDArray[np.uint8]:

@@ -43,16 +43,18 @@ def build() -> World:
     """The corridor; its doors are always at the same places."""
     builder = MeshBuilder()
     rng = np.random.default_rng(110)
-    builder.quad([0, 0, 0], [LENGTH_M, 0, 0], [0, WIDTH_M, 0], LINOLEUM)
-    builder.quad([0, 0, HEIGHT_M], [LENGTH_M, 0, 0], [0, WIDTH_M, 0], CEILING)
+    builder.quad([0, 0, 0], [LENGTH_M, 0, 0], [0, WIDTH_M, 0], reflectivity=LINOLEUM)
+    builder.quad([0, 0, HEIGHT_M], [LENGTH_M, 0, 0], [0, WIDTH_M, 0], reflectivity=CEILING)
     for inner_m, outer_m in ((0.0, -_THICK_M), (WIDTH_M, WIDTH_M + _THICK_M)):
-        _side(builder, inner_m, outer_m, rng)
+        _side(builder, inner_m, outer_m, rng=rng)
     for inner_m, outer_m in ((0.0, -_THICK_M), (LENGTH_M, LENGTH_M + _THICK_M)):
         _end(builder, inner_m, outer_m)
     return World(name="corridor", mesh=builder.mesh(), route=_route, stops=_STOPS)
 
 
-def _side(builder: MeshBuilder, inner_m: float, outer_m: float, rng: np.random.Generator) -> None:
+def _side(
+    builder: MeshBuilder, inner_m: float, outer_m: float, *, rng: np.random.Generator
+) -> None:
     """One long wall, its doors set back."""
     back_m = inner_m + np.sign(outer_m - inner_m) * _RECESS_M
     wall, lintel = (inner_m, outer_m), (DOOR_TOP_M, HEIGHT_M)

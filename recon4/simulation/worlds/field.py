@@ -71,7 +71,7 @@ def _ground(builder: MeshBuilder, rng: np.random.Generator) -> None:
     # Tufts: far corners of the mesh are a little off the smooth ground.
     z = height(grid_x, grid_y) + 0.012 * rng.standard_normal(grid_x.shape)
     strips = np.where((grid_y[1:, 1:] // 16) % 2 == 0, GRASS, 0.7 * GRASS)
-    builder.terrain(x, y, z, strips)
+    builder.terrain(x, y, z, reflectivity=strips)
 
 
 def _power_line(builder: MeshBuilder) -> None:
@@ -98,17 +98,17 @@ def _pylon(builder: MeshBuilder, x: float, y: float) -> None:
     ]
     for low, high in pairwise(corner):
         for k in range(4):
-            builder.tube(low[k], high[k], 0.06, STEEL, sides=4)
-            builder.tube(low[k], high[(k + 1) % 4], 0.03, STEEL, sides=4)
-            builder.tube(high[k], high[(k + 1) % 4], 0.03, STEEL, sides=4)
+            builder.tube(low[k], high[k], 0.06, reflectivity=STEEL, sides=4)
+            builder.tube(low[k], high[(k + 1) % 4], 0.03, reflectivity=STEEL, sides=4)
+            builder.tube(high[k], high[(k + 1) % 4], 0.03, reflectivity=STEEL, sides=4)
     for level, half in _ARMS:
         a, b = [x, y - half, z + level], [x, y + half, z + level]
-        builder.tube(a, b, 0.08, STEEL, sides=4)
-        builder.tube([x, y, z + level + 1.2], a, 0.04, STEEL, sides=4)
-        builder.tube([x, y, z + level + 1.2], b, 0.04, STEEL, sides=4)
+        builder.tube(a, b, 0.08, reflectivity=STEEL, sides=4)
+        builder.tube([x, y, z + level + 1.2], a, 0.04, reflectivity=STEEL, sides=4)
+        builder.tube([x, y, z + level + 1.2], b, 0.04, reflectivity=STEEL, sides=4)
         for side in (-half, 0.55 * -half, half):
             top = [x, y + side, z + level]
-            builder.tube(top, [x, y + side, z + level - 0.6], 0.07, 0.5, sides=6)
+            builder.tube(top, [x, y + side, z + level - 0.6], 0.07, reflectivity=0.5, sides=6)
 
 
 def _village_line(builder: MeshBuilder) -> None:
@@ -116,8 +116,10 @@ def _village_line(builder: MeshBuilder) -> None:
     places = [(-120.0 + 34.0 * k, -80.0 - 3.0 * np.sin(k)) for k in range(8)]
     for x, y in places:
         z = float(height(x, y))
-        builder.tube([x, y, z - 0.5], [x, y, z + 8.0], 0.13, WOOD, sides=8, end_radius_m=0.09)
-        builder.tube([x, y - 0.8, z + 7.6], [x, y + 0.8, z + 7.6], 0.05, WOOD, sides=4)
+        builder.tube(
+            [x, y, z - 0.5], [x, y, z + 8.0], 0.13, reflectivity=WOOD, sides=8, end_radius_m=0.09
+        )
+        builder.tube([x, y - 0.8, z + 7.6], [x, y + 0.8, z + 7.6], 0.05, reflectivity=WOOD, sides=4)
     for (x0, y0), (x1, y1) in pairwise(places):
         for side in (-0.7, 0.7):
             start = [x0, y0 + side, float(height(x0, y0)) + 7.7]

@@ -60,7 +60,13 @@ def _piece(
     if choice < 0.85:
         desk(builder, wall_x + 0.42 * side, y, side=side, rng=rng)
         return 1.9
-    builder.tube([wall_x + 0.3 * side, y, 0], [wall_x + 0.3 * side, y, 0.4], 0.16, WOOD, sides=10)
+    builder.tube(
+        [wall_x + 0.3 * side, y, 0],
+        [wall_x + 0.3 * side, y, 0.4],
+        0.16,
+        reflectivity=WOOD,
+        sides=10,
+    )
     builder.ball([wall_x + 0.3 * side, y, 0.85], [0.3, 0.3, 0.45], 0.3)
     return 0.9
 
@@ -86,14 +92,14 @@ def desk(
 
 def chair(builder: MeshBuilder, x: float, y: float, *, yaw_rad: float) -> None:
     """A swivel chair."""
-    builder.tube([x, y, 0.06], [x, y, 0.44], 0.035, STEEL)
+    builder.tube([x, y, 0.06], [x, y, 0.44], 0.035, reflectivity=STEEL)
     builder.block([x, y, 0.44], [0.44, 0.44, 0.07], DARK, yaw_rad=yaw_rad)
     back = 0.21
     place = [x + back * np.cos(yaw_rad), y + back * np.sin(yaw_rad), 0.55]
     builder.block(place, [0.06, 0.42, 0.45], DARK, yaw_rad=yaw_rad)
     for angle in yaw_rad + np.arange(5) * 0.4 * np.pi:
         foot = [x + 0.28 * np.cos(angle), y + 0.28 * np.sin(angle), 0.05]
-        builder.tube([x, y, 0.09], foot, 0.02, STEEL, sides=4)
+        builder.tube([x, y, 0.09], foot, 0.02, reflectivity=STEEL, sides=4)
 
 
 def shelf(
@@ -134,9 +140,11 @@ def board(builder: MeshBuilder, x: float, y: float, *, length_m: float) -> None:
         builder.block([x, y - 0.7 + 0.25 * k, 1.6], [0.034, 0.12, 0.2], DARK)
 
 
-def corridor_things(builder: MeshBuilder, length_m: float, width_m: float, height_m: float) -> None:
+def corridor_things(
+    builder: MeshBuilder, length_m: float, width_m: float, *, height_m: float
+) -> None:
     """Extinguisher, notice boards, exit signs, bins and a cable duct: no two places look alike."""
-    builder.tube([10.1, 0.1, 0.5], [10.1, 0.1, 1.05], 0.08, STEEL, sides=10)
+    builder.tube([10.1, 0.1, 0.5], [10.1, 0.1, 1.05], 0.08, reflectivity=STEEL, sides=10)
     builder.block([8.3, width_m - 0.03, 0.9], [1.2, 0.03, 0.9], 0.25)
     builder.block([17.3, 0.03, 1.0], [1.6, 0.03, 0.8], 0.3)
     for k in range(5):

@@ -49,7 +49,7 @@ def build() -> World:
             furnish(
                 builder, _room(row, column), north=row == 0, kind=(row + 2 * column) % 4, rng=rng
             )
-    corridor_things(builder, LENGTH_M, CORRIDOR_M, CORRIDOR_HEIGHT_M)
+    corridor_things(builder, LENGTH_M, CORRIDOR_M, height_m=CORRIDOR_HEIGHT_M)
     markers = _markers(builder)
     return World(name="office", mesh=builder.mesh(), route=_route, stops=2 * ROOMS, markers=markers)
 
@@ -64,13 +64,15 @@ def _room(row: int, column: int) -> tuple[float, float, float, float]:
 
 def _shell(builder: MeshBuilder) -> None:
     """Floor, ceilings and walls."""
-    builder.quad([0, SOUTH_M, 0], [LENGTH_M, 0, 0], [0, NORTH_M - SOUTH_M, 0], LINOLEUM)
+    builder.quad(
+        [0, SOUTH_M, 0], [LENGTH_M, 0, 0], [0, NORTH_M - SOUTH_M, 0], reflectivity=LINOLEUM
+    )
     for low, high, z in [
         (SOUTH_M, 0.0, HEIGHT_M),
         (0.0, CORRIDOR_M, CORRIDOR_HEIGHT_M),
         (CORRIDOR_M, NORTH_M, HEIGHT_M),
     ]:
-        builder.quad([0, low, z], [LENGTH_M, 0, 0], [0, high - low, 0], CEILING)
+        builder.quad([0, low, z], [LENGTH_M, 0, 0], [0, high - low, 0], reflectivity=CEILING)
     doors = [door(column * ROOM_M + _DOOR_AT_M) for column in range(ROOMS)]
     south_doors = [door((column + 1) * ROOM_M - _DOOR_AT_M) for column in range(ROOMS)]
     wall(builder, (0, CORRIDOR_M + 0.06), (LENGTH_M, CORRIDOR_M + 0.06), openings=doors)
@@ -125,7 +127,7 @@ def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:
         way.append(_look_around(row, column, rng))
         side = -1 if row != rows[0] else 1
         inside = following == (row, column + side) and rng.random() < 0.5
-        way += _pass_through(row, column, side, rng) if inside else _leave(row, column, rng)
+        way += _pass_through(row, column, side, rng=rng) if inside else _leave(row, column, rng)
     return [*way, _in_corridor(0.9, rng, wiggle=0.0)]
 
 
@@ -158,7 +160,7 @@ def _look_around(row: int, column: int, rng: np.random.Generator) -> Waypoint:
     return Waypoint(x, y, stop=True, look_deg=float(rng.choice([-180, -120, -90, 90, 120, 180])))
 
 
-def _pass_through(row: int, column: int, side: int, rng: np.random.Generator) -> list[Waypoint]:
+def _pass_through(row: int, column: int, side: int, *, rng: np.random.Generator) -> list[Waypoint]:
     """By the inner door into the next room of the row."""
     x = (column + (1 if side > 0 else 0)) * ROOM_M
     y = CORRIDOR_M + 0.12 + _PASSAGE_AT_M if row == 0 else -0.12 - _PASSAGE_AT_M

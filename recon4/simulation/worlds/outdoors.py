@@ -28,11 +28,11 @@ def tree(
     crown = rng.uniform(1.3, 2.3)
     height = rng.uniform(2.3, 3.2) + 0.5 * crown
     top = np.array([x + rng.uniform(-0.2, 0.2), y + rng.uniform(-0.2, 0.2), z + height])
-    builder.tube([x, y, z - 0.3], top, 0.16, WOOD, sides=8, end_radius_m=0.1)
+    builder.tube([x, y, z - 0.3], top, 0.16, reflectivity=WOOD, sides=8, end_radius_m=0.1)
     for _ in range(2):
         angle = rng.uniform(0.0, 2.0 * np.pi)
         bough = top + np.array([np.cos(angle), np.sin(angle), 1.2])
-        builder.tube(top - [0, 0, 0.4], bough, 0.07, WOOD, sides=5, end_radius_m=0.03)
+        builder.tube(top - [0, 0, 0.4], bough, 0.07, reflectivity=WOOD, sides=5, end_radius_m=0.03)
     bumps = rng.uniform(0.75, 1.15, (7, 12))
     builder.ball(
         top + np.array([0, 0, 0.8 * crown]), [crown, crown, 1.1 * crown], LEAVES, bumps=bumps
@@ -51,17 +51,19 @@ def bush(
 def pole(builder: MeshBuilder, x: float, y: float, *, ground: Ground, arm: ArrayLike) -> None:
     """A street lamp with an arm (dx, dy) [m]."""
     z, (dx, dy) = float(ground(x, y)), np.asarray(arm, dtype=np.float64)
-    builder.tube([x, y, z - 0.3], [x, y, z + 6.0], 0.08, STEEL, sides=10, end_radius_m=0.05)
-    builder.tube([x, y, z + 5.9], [x + dx, y + dy, z + 6.2], 0.04, STEEL)
+    builder.tube(
+        [x, y, z - 0.3], [x, y, z + 6.0], 0.08, reflectivity=STEEL, sides=10, end_radius_m=0.05
+    )
+    builder.tube([x, y, z + 5.9], [x + dx, y + dy, z + 6.2], 0.04, reflectivity=STEEL)
     builder.block([x + dx, y + dy, z + 6.1], [0.5, 0.5, 0.12], 0.6)
 
 
 def sign(builder: MeshBuilder, x: float, y: float, *, ground: Ground, along: ArrayLike) -> None:
     """A traffic sign: a retro-reflective square on a pole, in the plane of a direction."""
     z, (ux, uy) = float(ground(x, y)), np.asarray(along, dtype=np.float64)
-    builder.tube([x, y, z - 0.3], [x, y, z + 2.7], 0.03, STEEL)
+    builder.tube([x, y, z - 0.3], [x, y, z + 2.7], 0.03, reflectivity=STEEL)
     corner = np.array([x - 0.3 * ux + 0.04 * uy, y - 0.3 * uy - 0.04 * ux, z + 2.1])
-    builder.quad(corner, [0.6 * ux, 0.6 * uy, 0.0], [0.0, 0.0, 0.6], RETRO)
+    builder.quad(corner, [0.6 * ux, 0.6 * uy, 0.0], [0.0, 0.0, 0.6], reflectivity=RETRO)
 
 
 def car(
@@ -85,7 +87,7 @@ def car(
         for side in (-0.8, 0.8):
             hub = np.array([x + ahead * c - side * s, y + ahead * s + side * c, z + 0.31])
             axle = 0.1 * np.array([-s, c, 0.0])
-            builder.tube(hub - axle, hub + axle, 0.31, DARK, sides=12)
+            builder.tube(hub - axle, hub + axle, 0.31, reflectivity=DARK, sides=12)
     for end in (-0.5 * length - 0.01, 0.5 * length + 0.01):
         plate = [x + end * c, y + end * s, z + 0.5]
         builder.block(plate, [0.01, 0.5, 0.11], RETRO, yaw_rad=yaw_rad)
@@ -100,7 +102,7 @@ def wire(
     points = a + fraction * (b - a)
     points[:, 2:] -= 4.0 * sag_m * fraction * (1.0 - fraction)
     for p, q in pairwise(points):
-        builder.tube(p, q, radius_m, STEEL, sides=5)
+        builder.tube(p, q, radius_m, reflectivity=STEEL, sides=5)
 
 
 def ground_marker(

@@ -91,8 +91,10 @@ def _well(builder: MeshBuilder) -> None:
             thickness_m=0.3,
             openings=[view],
         )
-    builder.quad([LANDING_M, 0, 0], [LENGTH_M - LANDING_M, 0, 0], [0, WIDTH_M, 0], LINOLEUM)
-    builder.quad([0, 0, top], [LENGTH_M, 0, 0], [0, WIDTH_M, 0], CEILING)
+    builder.quad(
+        [LANDING_M, 0, 0], [LENGTH_M - LANDING_M, 0, 0], [0, WIDTH_M, 0], reflectivity=LINOLEUM
+    )
+    builder.quad([0, 0, top], [LENGTH_M, 0, 0], [0, WIDTH_M, 0], reflectivity=CEILING)
     lamp(builder, 3.0, WIDTH_M / 2, ceiling_m=top)
 
 
@@ -106,19 +108,23 @@ def _flight(builder: MeshBuilder, z: float, *, up: bool) -> None:
         a, b = sorted([start + sign * k * TREAD_M, start + sign * (k + 1) * TREAD_M])
         builder.box([a, south, z + k * RISER_M], [b, north, z + (k + 1) * RISER_M], LINOLEUM)
     run, rise = sign * FLIGHT_M, (RISERS - 1) * RISER_M
-    builder.quad([start, south, z - 0.15], [run, 0, rise], [0, FLIGHT_WIDTH_M, 0], PLASTER)
+    builder.quad(
+        [start, south, z - 0.15], [run, 0, rise], [0, FLIGHT_WIDTH_M, 0], reflectivity=PLASTER
+    )
     inner = north if up else south
-    builder.quad([start, inner, z - 0.15], [run, 0, rise], [0, 0, 0.2], PLASTER)
+    builder.quad([start, inner, z - 0.15], [run, 0, rise], [0, 0, 0.2], reflectivity=PLASTER)
     _rail(builder, [start, inner, z + RISER_M], [start + run, inner, z + RISER_M + rise])
 
 
 def _rail(builder: MeshBuilder, start: list[float], end: list[float]) -> None:
     a, b = np.array(start), np.array(end)
     up = np.array([0.0, 0.0, 0.9])
-    builder.tube(a + up, b + up, 0.025, WOOD)
+    builder.tube(a + up, b + up, 0.025, reflectivity=WOOD)
     for fraction in np.linspace(0.0, 1.0, 10):
         foot = a + fraction * (b - a)
-        builder.tube(foot, foot + up, 0.03 if fraction in {0.0, 1.0} else 0.009, STEEL, sides=4)
+        builder.tube(
+            foot, foot + up, 0.03 if fraction in {0.0, 1.0} else 0.009, reflectivity=STEEL, sides=4
+        )
 
 
 def _top_rail(builder: MeshBuilder) -> None:
@@ -131,8 +137,10 @@ def _hall(builder: MeshBuilder, floor: int, rng: np.random.Generator) -> None:
     """A furnished hall west of the stairs, open towards them by a door."""
     z, height = floor * STOREY_M, 2.9
     west, south, north = -HALL_M - 0.12, _HALL_SOUTH_M, _HALL_NORTH_M
-    builder.quad([west, south, z], [-west, 0, 0], [0, north - south, 0], LINOLEUM)
-    builder.quad([west, south, z + height], [-west, 0, 0], [0, north - south, 0], CEILING)
+    builder.quad([west, south, z], [-west, 0, 0], [0, north - south, 0], reflectivity=LINOLEUM)
+    builder.quad(
+        [west, south, z + height], [-west, 0, 0], [0, north - south, 0], reflectivity=CEILING
+    )
     rise = STOREY_M if floor + 1 < FLOORS else height
     wall(
         builder,
@@ -176,7 +184,7 @@ def _signs(builder: MeshBuilder, floor: int) -> None:
     x = 0.2 + 0.3 * floor
     builder.box([x, WIDTH_M - 0.02, z + 1.1], [x + 0.4 + 0.1 * floor, WIDTH_M, z + 1.7], PAPER)
     if floor % 2:
-        builder.tube([0.15, 2.4, z + 0.4], [0.15, 2.4, z + 0.95], 0.08, DARK, sides=10)
+        builder.tube([0.15, 2.4, z + 0.4], [0.15, 2.4, z + 0.95], 0.08, reflectivity=DARK, sides=10)
 
 
 def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:

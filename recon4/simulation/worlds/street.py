@@ -85,7 +85,7 @@ def _ground(builder: MeshBuilder) -> None:
         np.maximum(-middle_x, middle_x - LENGTH_M), np.maximum(-middle_y, middle_y - WIDTH_M)
     )
     road = (out > KERB_M) & (out < FAR_KERB_M)
-    builder.terrain(x, y, height(grid_x, grid_y), np.where(road, ASPHALT, CONCRETE))
+    builder.terrain(x, y, height(grid_x, grid_y), reflectivity=np.where(road, ASPHALT, CONCRETE))
 
 
 def _row(

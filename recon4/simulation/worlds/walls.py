@@ -59,13 +59,13 @@ def wall(
     for hole in sorted(openings, key=lambda opening: opening.at_m):
         left = start[along] + hole.at_m - hole.width_m / 2
         right = left + hole.width_m
-        bricks.lay((at, left), full, thickness_m, reflectivity)
-        bricks.lay((left, right), (0.0, hole.bottom_m), thickness_m, reflectivity)
-        bricks.lay((left, right), (hole.top_m, height_m), thickness_m, reflectivity)
+        bricks.lay((at, left), full, thickness_m, value=reflectivity)
+        bricks.lay((left, right), (0.0, hole.bottom_m), thickness_m, value=reflectivity)
+        bricks.lay((left, right), (hole.top_m, height_m), thickness_m, value=reflectivity)
         if hole.glazed:
-            _glaze(bricks, left, right, hole)
+            _glaze(bricks, left, right, hole=hole)
         at = right
-    bricks.lay((at, end[along]), full, thickness_m, reflectivity)
+    bricks.lay((at, end[along]), full, thickness_m, value=reflectivity)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,7 +78,7 @@ class _Bricks:
     bottom_m: float
 
     def lay(
-        self, span: tuple[float, float], level: tuple[float, float], depth: float, value: float
+        self, span: tuple[float, float], level: tuple[float, float], depth: float, *, value: float
     ) -> None:
         """One box, unless there is nothing of it."""
         if span[1] - span[0] < 1e-6 or level[1] - level[0] < 1e-6:
@@ -105,11 +105,11 @@ def slab(
     builder.box(corners[0], corners[1], reflectivity)
 
 
-def _glaze(bricks: _Bricks, left: float, right: float, hole: Opening) -> None:
+def _glaze(bricks: _Bricks, left: float, right: float, *, hole: Opening) -> None:
     """Pane and frame with a mullion."""
     full, frame, middle = (hole.bottom_m, hole.top_m), 0.06, 0.5 * (left + right)
-    bricks.lay((left, right), full, 0.01, PANE)
+    bricks.lay((left, right), full, 0.01, value=PANE)
     for a, b in [(left, left + frame), (right - frame, right), (middle - 0.03, middle + 0.03)]:
-        bricks.lay((a, b), full, 0.07, PAPER)
-    bricks.lay((left, right), (hole.bottom_m, hole.bottom_m + frame), 0.07, PAPER)
-    bricks.lay((left, right), (hole.top_m - frame, hole.top_m), 0.07, PAPER)
+        bricks.lay((a, b), full, 0.07, value=PAPER)
+    bricks.lay((left, right), (hole.bottom_m, hole.bottom_m + frame), 0.07, value=PAPER)
+    bricks.lay((left, right), (hole.top_m - frame, hole.top_m), 0.07, value=PAPER)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from tests.security.fuzz.kind import Kind
 
-MOST_BYTES = 1 << 20
+MAX_BYTES = 1 << 20
 MAGIC = (
     *(
         0,
@@ -77,7 +77,7 @@ def mutant(kind: Kind, seeds: Sequence[bytes], seed: int, number: int) -> Mutant
     data, names = seeds[row], []
     for _ in range(rng.choice((1, 1, 1, 2, 2, 3, 5))):
         name, change = rng.choice(_MUTATIONS)
-        data = change(rng, data, kind, seeds)[:MOST_BYTES]
+        data = change(rng, data, kind, seeds)[:MAX_BYTES]
         names.append(name)
     if kind.repair is not None and rng.random() < 0.7:
         data = kind.repair(data)

@@ -7,8 +7,8 @@ import pytest
 
 from app.access.pairing.grants import (
     INVITATION_S,
-    MOST_OPEN,
-    MOST_OPEN_A_NETWORK,
+    MAX_OPEN,
+    MAX_OPEN_A_NETWORK,
     REQUEST_S,
     TRIES_A_MINUTE,
     Pairings,
@@ -137,7 +137,7 @@ def test_tokens_cannot_be_guessed_by_trying(pairings):
 
 
 def test_a_flood_of_requests_keeps_no_other_phone_out(pairings, clock):
-    for _ in range(MOST_OPEN_A_NETWORK):
+    for _ in range(MAX_OPEN_A_NETWORK):
         pairings.request("flood", "192.0.2.66")
     with pytest.raises(TooMany):
         pairings.request("flood", "192.0.2.66")
@@ -146,8 +146,8 @@ def test_a_flood_of_requests_keeps_no_other_phone_out(pairings, clock):
 
 
 def test_never_more_than_twenty_wait(pairings, clock):
-    codes = {pairings.request("x", f"192.0.{k}.1").code for k in range(MOST_OPEN)}
-    assert len(codes) == MOST_OPEN
+    codes = {pairings.request("x", f"192.0.{k}.1").code for k in range(MAX_OPEN)}
+    assert len(codes) == MAX_OPEN
     with pytest.raises(TooMany):
         pairings.request("x", "198.51.100.1")
     clock.now_s += REQUEST_S + 0.1

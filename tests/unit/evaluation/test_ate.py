@@ -25,7 +25,7 @@ def wavy(n: int = 200, *, seed: int = 1) -> Trajectory:
 def noisy(truth: Trajectory, *, seed: int = 2) -> Trajectory:
     rng = np.random.default_rng(seed)
     jitter = SE3.exp(rng.normal(0.0, [0.01] * 3 + [0.03] * 3, (len(truth), 6)))
-    T_other_true = SE3.from_rpy(0.2, -0.1, 1.0, [10.0, -5.0, 2.0])
+    T_other_true = SE3.from_rpy(0.2, -0.1, 1.0, t=[10.0, -5.0, 2.0])
     return Trajectory(truth.t_ns, T_other_true @ (truth.T_a_b @ jitter))
 
 
@@ -50,7 +50,7 @@ def test_statistics_of_errors_worked_out_on_paper() -> None:
 def test_position_error_does_not_grow_with_the_distance_from_the_origin() -> None:
     far = np.array([[1000.0, 0, 0], [1001, 0, 0], [1001, 1, 0]])
     T_true = SE3(np.broadcast_to(np.eye(3), (3, 3, 3)), far)
-    turned = SE3.from_rpy(0.0, 0.0, 0.1, [0, 0, 0]).R
+    turned = SE3.from_rpy(0.0, 0.0, 0.1, t=[0, 0, 0]).R
 
     error = absolute_error(
         pairs_of(SE3(np.broadcast_to(turned, (3, 3, 3)), far), T_true), alignment="none"
@@ -62,7 +62,7 @@ def test_position_error_does_not_grow_with_the_distance_from_the_origin() -> Non
 
 def test_yaw_alone_hides_a_tilt() -> None:
     truth = wavy().T_a_b
-    tilted = SE3(SE3.from_rpy(0.2, 0.0, 0.0, [0, 0, 0]).R @ truth.R, truth.t)
+    tilted = SE3(SE3.from_rpy(0.2, 0.0, 0.0, t=[0, 0, 0]).R @ truth.R, truth.t)
 
     error = absolute_error(pairs_of(tilted, truth), alignment="none")
 
@@ -72,7 +72,7 @@ def test_yaw_alone_hides_a_tilt() -> None:
 
 def test_yaw_error_beyond_half_a_turn_is_counted_the_short_way() -> None:
     truth = wavy().T_a_b
-    turned = SE3(SE3.from_rpy(0.0, 0.0, np.deg2rad(190), [0, 0, 0]).R @ truth.R, truth.t)
+    turned = SE3(SE3.from_rpy(0.0, 0.0, np.deg2rad(190), t=[0, 0, 0]).R @ truth.R, truth.t)
 
     error = absolute_error(pairs_of(turned, truth), alignment="none")
 
@@ -83,7 +83,7 @@ def test_yaw_error_beyond_half_a_turn_is_counted_the_short_way() -> None:
 def test_an_aligned_error_does_not_depend_on_the_frames(alignment: str) -> None:
     truth = wavy()
     estimate = noisy(truth)
-    T_new_old = SE3.from_rpy(0.5, 0.4, -2.0, [100, 20, -3])
+    T_new_old = SE3.from_rpy(0.5, 0.4, -2.0, t=[100, 20, -3])
     moved = Trajectory(estimate.t_ns, T_new_old @ estimate.T_a_b)
 
     before = absolute_error(pair_poses(estimate, truth), alignment=alignment)

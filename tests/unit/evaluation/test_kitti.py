@@ -51,7 +51,7 @@ def test_heading_drift_is_in_radians_per_metre() -> None:
 
 def test_drift_does_not_depend_on_the_frame_of_the_estimate() -> None:
     truth, estimate = straight(400), straight(400, scale=1.01, yaw_per_frame=1e-4)
-    moved = SE3.from_rpy(0.3, 0.2, 2.0, [5, 6, 7]) @ estimate
+    moved = SE3.from_rpy(0.3, 0.2, 2.0, t=[5, 6, 7]) @ estimate
 
     before = thesis_drift(pairs_of(estimate, truth))
     after = thesis_drift(pairs_of(moved, truth))

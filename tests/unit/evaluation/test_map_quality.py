@@ -34,7 +34,7 @@ def test_points_on_a_patch_are_counted_by_hand() -> None:
 
 
 def test_a_patch_turns_with_the_map() -> None:
-    T_new_old = SE3.from_rpy(0.4, -0.7, 1.1, [3, 4, 5])
+    T_new_old = SE3.from_rpy(0.4, -0.7, 1.1, t=[3, 4, 5])
     patch = PlanePatch(np.array([1.0, 1, 0]), np.array([1.0, 0, 0]), np.array([0.3, 1, 0]))
     turned = PlanePatch(
         T_new_old @ patch.corner, T_new_old.R @ patch.side_u, T_new_old.R @ patch.side_v

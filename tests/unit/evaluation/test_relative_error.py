@@ -121,7 +121,7 @@ def test_gaussian_noise_gives_its_mean_absolute_deviation() -> None:
 
 
 def test_icp_brings_a_displaced_map_back_onto_the_model() -> None:
-    T_map_model = SE3.from_rpy(0.01, -0.02, 0.03, [0.15, -0.1, 0.12])
+    T_map_model = SE3.from_rpy(0.01, -0.02, 0.03, t=[0.15, -0.1, 0.12])
     p_map = T_map_model @ on_walls(noise_m=0.01)
 
     T_model_map = align_to_mesh(
@@ -146,7 +146,7 @@ def test_people_in_the_map_do_not_pull_the_alignment() -> None:
 
 
 def test_a_map_far_from_the_model_keeps_the_start() -> None:
-    start = SE3.from_rpy(0, 0, 0, [500.0, 0, 0])
+    start = SE3.from_rpy(0, 0, 0, t=[500.0, 0, 0])
 
     assert map_onto_model([on_walls()], room(), start=start, rng=np.random.default_rng(0)) is start
 
@@ -235,7 +235,7 @@ def test_wrong_poses_raise_e_r_above_the_floor_but_another_frame_does_not() -> N
     frames = [seen_from(truth.T_a_b[k], k, rig) for k in range(len(truth))]
     rng = np.random.default_rng(3)
     shaken = SE3(truth.T_a_b.R, truth.T_a_b.t + rng.normal(0, 0.05, (len(truth), 3)))
-    elsewhere = SE3.from_rpy(0.1, 0.2, 2.0, [30, 40, 5]) @ truth.T_a_b
+    elsewhere = SE3.from_rpy(0.1, 0.2, 2.0, t=[30, 40, 5]) @ truth.T_a_b
 
     bad = relative_error_floor(
         frames, rig, room(), estimate=Trajectory(truth.t_ns, shaken), truth=truth, every=5

@@ -40,7 +40,7 @@ def test_the_connection_is_square_to_both_lines():
 def test_closest_points_move_with_the_world():
     rng = np.random.default_rng(2)
     a, b = (Lines.through(*rng.normal(0, 5, (2, 50, 3))) for _ in range(2))
-    T = SE3.from_rpy(0.3, -1.0, 2.0, [10.0, -20.0, 5.0])
+    T = SE3.from_rpy(0.3, -1.0, 2.0, t=[10.0, -20.0, 5.0])
 
     on_a, on_b = closest_points(a, b)
     moved_a, moved_b = closest_points(a.moved(T), b.moved(T))

@@ -53,7 +53,7 @@ def test_the_exponential_of_a_turning_walk_is_a_quarter_circle():
 
 
 def test_roll_pitch_yaw_turn_about_the_fixed_axes_x_y_z_in_this_order():
-    T = SE3.from_rpy(np.pi / 2, 0.0, np.pi / 2, [0.0, 0.0, 0.0])
+    T = SE3.from_rpy(np.pi / 2, 0.0, np.pi / 2, t=[0.0, 0.0, 0.0])
 
     assert np.allclose(T @ np.array([0.0, 1.0, 0.0]), [0.0, 0.0, 1.0])
     assert np.allclose(T @ np.array([1.0, 0.0, 0.0]), [0.0, 1.0, 0.0])
@@ -145,7 +145,7 @@ def test_every_rotation_is_proper_and_survives_quaternion_and_matrix(a):
 
 @given(st.floats(-3.1, 3.1), st.floats(-1.5, 1.5), st.floats(-3.1, 3.1))
 def test_roll_pitch_yaw_come_back(roll, pitch, yaw):
-    assert np.allclose(SE3.from_rpy(roll, pitch, yaw, np.zeros(3)).rpy(), [roll, pitch, yaw])
+    assert np.allclose(SE3.from_rpy(roll, pitch, yaw, t=np.zeros(3)).rpy(), [roll, pitch, yaw])
 
 
 @settings(max_examples=30)

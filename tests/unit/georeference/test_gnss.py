@@ -15,7 +15,7 @@ from recon4.settings import GnssSettings
 LOOPS = 25
 PLACE = GeodeticOrigin(np.deg2rad(49.2), np.deg2rad(16.6), 250.0)
 RIG = replace(load_rig("4recon"), p_body_antenna=np.array([-0.3, 0.1, 0.8]))
-START = SE3.from_rpy(0.0, 0.0, 2.2, [40.0, -15.0, 3.0])
+START = SE3.from_rpy(0.0, 0.0, 2.2, t=[40.0, -15.0, 3.0])
 """T_odom_enu: the map's own frame is level, but turned and shifted."""
 
 
@@ -25,7 +25,7 @@ def track(seconds: float, *, straight: bool = False) -> Trajectory:
     yaw = 0.3 * np.ones_like(t) if straight else 1.2 * np.sin(0.02 * t) + 0.2 * np.sin(0.3 * t)
     step = 0.13 * np.stack([np.cos(yaw), np.sin(yaw), 0.02 * np.sin(0.01 * t)], 1)
     T = SE3.stack(
-        SE3.from_rpy(0.04 * np.sin(3 * a), 0.03, b, c)
+        SE3.from_rpy(0.04 * np.sin(3 * a), 0.03, b, t=c)
         for a, b, c in zip(t, yaw, np.cumsum(step, axis=0), strict=True)
     )
     return Trajectory((t * 1e9).astype(np.int64) + 10**18, T)

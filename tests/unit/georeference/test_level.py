@@ -8,7 +8,7 @@ from recon4.model.rig import Rig, load_rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory
 
-TILT = SE3.from_rpy(np.deg2rad(4.0), np.deg2rad(-7.0), np.deg2rad(100.0), [3.0, -2.0, 1.0])
+TILT = SE3.from_rpy(np.deg2rad(4.0), np.deg2rad(-7.0), np.deg2rad(100.0), t=[3.0, -2.0, 1.0])
 """T_odom_level: how the odometry's frame hangs in the simulated walks."""
 
 
@@ -25,7 +25,9 @@ def walk(seconds: float = 60.0, rate_hz: float = 100.0) -> Trajectory:
         1,
     )
     roll, pitch = 0.05 * np.sin(6.0 * t), 0.1 + 0.04 * np.cos(12.0 * t)
-    T = SE3.stack(SE3.from_rpy(r, q, y, x) for r, q, y, x in zip(roll, pitch, yaw, p, strict=True))
+    T = SE3.stack(
+        SE3.from_rpy(r, q, y, t=x) for r, q, y, x in zip(roll, pitch, yaw, p, strict=True)
+    )
     return Trajectory((t * 1e9).astype(np.int64) + 10**18, T)
 
 
@@ -123,7 +125,7 @@ def test_shaken_seconds_are_trimmed() -> None:
 def test_a_turned_imu_levels_all_the_same() -> None:
     from dataclasses import replace
 
-    rig = replace(load_rig("4recon"), T_body_imu=SE3.from_rpy(np.pi, 0.2, 0.7, [0.1, 0.0, -0.2]))
+    rig = replace(load_rig("4recon"), T_body_imu=SE3.from_rpy(np.pi, 0.2, 0.7, t=[0.1, 0.0, -0.2]))
     true = walk()
 
     leveling = level_by_gravity(tilted(true), imu_of(true, rig, bias=np.zeros(3)), rig)
@@ -173,7 +175,7 @@ def floor_points(rng: np.random.Generator, tilt: SE3) -> tuple[Array, Array]:
 
 
 def test_the_dominant_floor_levels_a_map_without_imu() -> None:
-    tilt = SE3.from_rpy(np.deg2rad(3.0), np.deg2rad(-2.0), 0.5, [1.0, 2.0, 3.0])
+    tilt = SE3.from_rpy(np.deg2rad(3.0), np.deg2rad(-2.0), 0.5, t=[1.0, 2.0, 3.0])
     p, origin = floor_points(np.random.default_rng(3), tilt)
 
     leveling = level_by_floor(p, origin)

@@ -307,7 +307,7 @@ def test_samples_lie_inside_the_walk_and_are_few(frames):
 def test_rotating_the_world_changes_nothing():
     walk = room_walk(frames=20, points=5000, intensity=law)
     turned = Walk(walk.frames, walk.rig, walk.trajectory)
-    T_world_map = SE3.from_rpy(0.0, 0.0, np.pi / 2, [1000.0, 2000.0, 30.0])
+    T_world_map = SE3.from_rpy(0.0, 0.0, np.pi / 2, t=[1000.0, 2000.0, 30.0])
     turned.trajectory = type(walk.trajectory)(
         walk.trajectory.t_ns, T_world_map @ walk.trajectory.T_a_b
     )

@@ -169,7 +169,7 @@ def poses(count=12, seed=5):
     rng = np.random.default_rng(seed)
     t_ns = np.cumsum(rng.integers(1_000_000, 9_000_000, count)).astype(np.int64)
     steps = SE3.exp(rng.normal(0, 0.08, (count, 6)))
-    T = [SE3.from_rpy(0.3, -0.2, 2.0, [5.0, 4.0, 3.0])]
+    T = [SE3.from_rpy(0.3, -0.2, 2.0, t=[5.0, 4.0, 3.0])]
     for k in range(count - 1):
         T.append(T[-1] @ steps[k])
     return Trajectory(t_ns, SE3.stack(T))
@@ -188,7 +188,7 @@ def test_each_point_is_placed_by_the_pose_at_its_time():
 
 
 def test_half_way_computed_by_hand():
-    T = SE3.stack([SE3.identity(), SE3.from_rpy(0, 0, 0.4, [1.0, 0, 0])])
+    T = SE3.stack([SE3.identity(), SE3.from_rpy(0, 0, 0.4, t=[1.0, 0, 0])])
 
     placed = place_points(np.array([0.0, 0.1]), T.R, T.t, np.array([0.05]), np.array([[2.0, 0, 0]]))
 

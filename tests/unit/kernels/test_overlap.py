@@ -90,7 +90,7 @@ def test_the_four_modes():
 
 def test_the_target_is_moved_into_the_source():
     source = make_range_image(ring_of(0, 4.0), SETTINGS)
-    T_source_target = SE3.from_rpy(0, 0, np.pi / 2, [0.3, 0.0, 0.0])
+    T_source_target = SE3.from_rpy(0, 0, np.pi / 2, t=[0.3, 0.0, 0.0])
     target = make_range_image(T_source_target.inverse() @ ring_of(0, 4.0), SETTINGS)
 
     assert overlap(source, target, T_source_target, SETTINGS) == 1.0

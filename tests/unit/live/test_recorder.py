@@ -246,7 +246,7 @@ print(state.datagrams, state.dropped, state.problem)
 
 
 def test_too_much_waiting_for_the_disk_is_dropped_and_counted(tmp_path, monkeypatch):
-    monkeypatch.setattr("recon4.live.recorder.capture_file.MOST_WAITING_BYTES", 10_000)
+    monkeypatch.setattr("recon4.live.recorder.capture_file.MAX_WAITING_BYTES", 10_000)
     file = CaptureFile(tmp_path / "walk.pcap", on_written=lambda size: None)
 
     for _ in range(30):

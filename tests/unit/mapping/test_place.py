@@ -39,7 +39,7 @@ def walk(t_ns, rng, *, rate_hz=100.0, seconds=0.2):
 
 def test_a_point_half_way_between_two_poses_is_moved_half_way():
     frame = frame_of([[1.0, 0.0, 0.0]], [50_000_000])
-    T_map_body = SE3.stack([SE3.identity(), SE3.from_rpy(0, 0, np.pi / 2, [2.0, 0, 0])])
+    T_map_body = SE3.stack([SE3.identity(), SE3.from_rpy(0, 0, np.pi / 2, t=[2.0, 0, 0])])
     trajectory = Trajectory(np.array([frame.t_ns, frame.t_ns + 100_000_000]), T_map_body)
 
     p_map = place(frame, trajectory, rig_of(SE3.identity()))
@@ -49,7 +49,9 @@ def test_a_point_half_way_between_two_poses_is_moved_half_way():
 
 def test_thousands_of_points_agree_with_interpolating_each_pose():
     rng = np.random.default_rng(4)
-    rig = rig_of(SE3.from_rpy(0.1, 0.2, 0.3, [0.1, 0, 0.4]), SE3.from_rpy(1.5, 0, 0, [0, 0.2, 0]))
+    rig = rig_of(
+        SE3.from_rpy(0.1, 0.2, 0.3, t=[0.1, 0, 0.4]), SE3.from_rpy(1.5, 0, 0, t=[0, 0.2, 0])
+    )
     n = 5000
     dt_ns = np.concatenate([np.sort(rng.integers(0, 100_000_000, n // 2)) for _ in range(2)])
     frame = frame_of(rng.uniform(-60, 60, (n, 3)), dt_ns, np.repeat([0, 1], n // 2))

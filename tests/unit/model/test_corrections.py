@@ -38,7 +38,7 @@ def test_the_nodes_arrive_exactly_where_they_were_moved() -> None:
 
 def test_a_rigid_motion_of_all_nodes_moves_everything_rigidly() -> None:
     dense = walk()
-    T_c_a = SE3.from_rpy(0.1, -0.4, 2.5, [500.0, -80.0, 3.0])
+    T_c_a = SE3.from_rpy(0.1, -0.4, 2.5, t=[500.0, -80.0, 3.0])
     rows = np.array([5, 20, 30])
 
     moved = apply_corrections(
@@ -50,7 +50,7 @@ def test_a_rigid_motion_of_all_nodes_moves_everything_rigidly() -> None:
 
 def test_the_result_does_not_depend_on_where_the_origin_is() -> None:
     dense = walk()
-    far = SE3.from_rpy(0.0, 0.0, 1.0, [4000.0, 9000.0, 200.0])
+    far = SE3.from_rpy(0.0, 0.0, 1.0, t=[4000.0, 9000.0, 200.0])
     rows = np.array([0, 20, 40])
     turned = dense.T_a_b[rows] @ SE3.exp([[0.0] * 6, [0.0, 0.0, 0.3, 0.1, 0, 0], [0.0] * 6])
 

@@ -185,6 +185,6 @@ def test_an_edge_from_a_later_to_an_earlier_node_is_reversed(tmp_path: Path) -> 
     edge = read_g2o(tmp_path / "graph.g2o").edges[0]
 
     assert (edge.i, edge.j) == (0, 1)
-    expected = SE3.from_rpy(0, 0, -1.4, [-1.0, 0.5, 0.0]).inverse()
+    expected = SE3.from_rpy(0, 0, -1.4, t=[-1.0, 0.5, 0.0]).inverse()
     np.testing.assert_allclose(edge.T_i_j.matrix(), expected.matrix(), atol=1e-12)
     assert np.linalg.eigvalsh(edge.information)[0] > 0.0

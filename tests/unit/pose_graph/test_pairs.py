@@ -52,7 +52,7 @@ def try_one(stroll, *assignments, i=0, j=3, wrong=None, **options):
 
 
 def test_a_good_pair_is_accepted_with_all_its_figures(stroll):
-    wrong = SE3.from_rpy(0.01, 0.0, 0.03, [0.15, -0.10, 0.05])
+    wrong = SE3.from_rpy(0.01, 0.0, 0.03, t=[0.15, -0.10, 0.05])
 
     edge = try_one(stroll, wrong=wrong)
 
@@ -78,7 +78,7 @@ def test_the_limit_is_a_hundredth_of_the_median_range_and_five_centimeters(strol
 
 
 @pytest.mark.parametrize(("assignments", "wrong", "reason"), [
-    ([], SE3.from_rpy(0, 0, 0, [40.0, 0, 0]), Reason.OVERLAP),
+    ([], SE3.from_rpy(0, 0, 0, t=[40.0, 0, 0]), Reason.OVERLAP),
     (["overlap.threshold=1.01"], None, Reason.OVERLAP),
     (["registration.max_iterations=2"], None, Reason.NOT_CONVERGED),
     (["graph.error_relative=0.0", "graph.error_absolute_m=0.001"], None, Reason.ERROR),
@@ -94,7 +94,7 @@ def test_each_reason_to_reject_a_pair(stroll, assignments, wrong, reason):
 
 
 def test_a_pair_without_overlap_keeps_its_initial_pose(stroll):
-    wrong = SE3.from_rpy(0, 0, 0, [40.0, 0, 0])
+    wrong = SE3.from_rpy(0, 0, 0, t=[40.0, 0, 0])
 
     edge = try_one(stroll, wrong=wrong)
 
@@ -105,7 +105,7 @@ def test_a_pair_without_overlap_keeps_its_initial_pose(stroll):
 
 def test_the_mode_of_overlap_counts(stroll):
     # From outside the room all walls of the other are behind the nearest one.
-    wrong = SE3.from_rpy(0, 0, 0, [3.0, 0, 0])
+    wrong = SE3.from_rpy(0, 0, 0, t=[3.0, 0, 0])
     found = {
         mode: try_one(stroll, f"overlap.mode={mode}", "overlap.threshold=1.01", wrong=wrong).overlap
         for mode in ("target", "source", "min", "harmonic")
@@ -150,7 +150,7 @@ def test_the_solvers_of_lines_try_pairs_too(stroll, solver):
         stroll,
         f"registration.solver={solver}",
         "registration.max_iterations=60",
-        wrong=SE3.from_rpy(0, 0, 0.01, [0.05, -0.03, 0.02]),
+        wrong=SE3.from_rpy(0, 0, 0.01, t=[0.05, -0.03, 0.02]),
     )
 
     off = true_motion(stroll, 0, 3).inverse() @ edge.T_i_j

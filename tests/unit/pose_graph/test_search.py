@@ -278,7 +278,7 @@ def test_an_odometry_edge_is_never_surer_than_its_floor():
 
 def test_deviations_of_the_motion_between_two_nodes_add_up_in_the_axes_of_the_second():
     # A corridor along odom's x leaves 2 cm a frame open; the body looks along odom's y.
-    looking_along_y = SE3.from_rpy(0, 0, np.pi / 2, [0.0, 0.0, 0.0])
+    looking_along_y = SE3.from_rpy(0, 0, np.pi / 2, t=[0.0, 0.0, 0.0])
     T = SE3.stack([looking_along_y] * 3)
     cov = np.diag([0, 0, 0, 0.02**2, 0, 0])
 
@@ -292,7 +292,7 @@ def test_deviations_of_the_motion_between_two_nodes_add_up_in_the_axes_of_the_se
 
 
 def test_an_odometry_edge_is_open_along_what_odometry_left_open():
-    askew = SE3.from_rpy(0, 0, 0.5, [0.0, 0.0, 0.0])
+    askew = SE3.from_rpy(0, 0, 0.5, t=[0.0, 0.0, 0.0])
 
     edge = consecutive(SE3.stack([askew] * 3), motion_cov=np.diag([0, 0, 0, 0.02**2, 0, 0]))[0]
 
@@ -429,10 +429,10 @@ def test_a_pair_turned_down_is_tried_again_once_its_poses_have_moved():
     edges = [edge(0, 3, refused), edge(1, 3, kept), edge(0, 2, refused), edge(1, 2, refused)]
     graph = graph_at([[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0.3, 0]], edges)
     before = {
-        (0, 3): SE3.from_rpy(0, 0, 0, [3, 0, 0]),
-        (1, 3): SE3.from_rpy(0, 0, 0, [9, 0, 0]),
-        (0, 2): SE3.from_rpy(0, 0, 0, [2, 0.15, 0]),
-        (1, 2): SE3.from_rpy(0, 0, 0.05, [1, 0, 0]),
+        (0, 3): SE3.from_rpy(0, 0, 0, t=[3, 0, 0]),
+        (1, 3): SE3.from_rpy(0, 0, 0, t=[9, 0, 0]),
+        (0, 2): SE3.from_rpy(0, 0, 0, t=[2, 0.15, 0]),
+        (1, 2): SE3.from_rpy(0, 0, 0.05, t=[1, 0, 0]),
     }
 
     again = retry_pairs(graph, before, move_m=0.2)

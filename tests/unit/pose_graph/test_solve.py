@@ -74,7 +74,7 @@ def test_rejected_edges_do_not_count_but_are_measured() -> None:
 
 def test_moving_the_whole_graph_moves_the_whole_solution() -> None:
     graph, _ = office_graph(np.random.default_rng(1), nodes=40)
-    T_c_map = SE3.from_rpy(0.1, -0.2, 2.0, [100.0, -50.0, 7.0])
+    T_c_map = SE3.from_rpy(0.1, -0.2, 2.0, t=[100.0, -50.0, 7.0])
 
     here = optimize(graph, kernel="none")
     there = optimize(graph.with_poses(T_c_map @ graph.T_map_body), kernel="none")

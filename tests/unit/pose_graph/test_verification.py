@@ -16,7 +16,7 @@ PATHS_ONLY = VerificationSettings(robust="none")
 
 def line(*loops: tuple[int, int, float], nodes: int = 6, turn: float = 0.0) -> PoseGraph:
     """Steps of 1 m along x, and loops with the given lateral errors [m]."""
-    steps = [SE3.from_rpy(0, 0, turn, [1.0, 0.0, 0.0])] * (nodes - 1)
+    steps = [SE3.from_rpy(0, 0, turn, t=[1.0, 0.0, 0.0])] * (nodes - 1)
     poses = [SE3.identity()]
     for step in steps:
         poses.append(poses[-1] @ step)

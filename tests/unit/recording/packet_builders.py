@@ -40,7 +40,7 @@ def spin(
         (t_ns + clock_off_ns) // 1000,
         azimuth,
         distance,
-        (channel * 7 + np.arange(12)[:, None]) % 256 + np.zeros((count, 1, 1), dtype=int),
+        intensity=(channel * 7 + np.arange(12)[:, None]) % 256 + np.zeros((count, 1, 1), dtype=int),
         model=table,
         return_mode=return_mode,
     )

@@ -21,7 +21,7 @@ def one_packet(model="VLP-16", *, azimuth=0, step=40, mode=STRONGEST):
 def decoded(azimuth, distance, intensity, *, model="VLP-16", mode=STRONGEST, settings=WIDE):
     report = ImportReport()
     payloads = encode_packets(
-        np.array([0]), azimuth, distance, intensity, model=MODELS[model], return_mode=mode
+        np.array([0]), azimuth, distance, intensity=intensity, model=MODELS[model], return_mode=mode
     )
     shots = decode_packets(
         np.array([0]),
@@ -216,7 +216,7 @@ def test_a_change_of_the_return_mode_inside_a_batch_is_followed():
 def test_an_azimuth_of_exactly_360_degrees_is_zero():
     azimuth, distance, intensity = one_packet()
     distance[0, 0, 0] = 500
-    payloads = encode_vlp16(np.array([0]), azimuth, distance, intensity)
+    payloads = encode_vlp16(np.array([0]), azimuth, distance, intensity=intensity)
     payloads.view("<u2")[0, 1] = 36000
 
     shots = decode_packets(

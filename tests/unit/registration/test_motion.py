@@ -85,7 +85,7 @@ def test_an_imu_upside_down_levels_too():
 
 
 def test_mounting_and_lever_arm_of_the_imu_are_compensated():
-    T_body_imu = SE3.from_rpy(0.1, 0.2, 1.0, [0.3, -0.2, 0.4])
+    T_body_imu = SE3.from_rpy(0.1, 0.2, 1.0, t=[0.3, -0.2, 0.4])
     rig = replace(RIG, T_body_imu=T_body_imu)
 
     def of_imu(t_s):
@@ -160,7 +160,7 @@ def test_a_stationary_state_stays():
 
 def test_a_steady_motion_through_two_poses_reaches_the_second():
     motion = FreeMotion(SETTINGS)
-    first = SE3.from_rpy(0.1, -0.2, 0.5, [1.0, 2.0, 0.5])
+    first = SE3.from_rpy(0.1, -0.2, 0.5, t=[1.0, 2.0, 0.5])
     second = SE3(first.R @ so3_exp([0.02, -0.01, 0.15]), first.t + np.array([0.1, 0.05, -0.02]))
     ends_ns = (T0_NS, T0_NS + S_NS // 10)
     start_ns = T0_NS + S_NS // 20

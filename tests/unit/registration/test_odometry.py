@@ -272,7 +272,7 @@ def test_lines_keep_the_matches_that_overlap_and_not_a_fixed_half():
 
 def test_the_poses_against_a_history_are_averaged_over_those_that_converged():
     def found(x_m, stop):
-        T = SE3.from_rpy(0.0, 0.0, x_m, [x_m, 0.0, 0.0])
+        T = SE3.from_rpy(0.0, 0.0, x_m, t=[x_m, 0.0, 0.0])
         return Registration(T, stop, 30, 0.02, 0.5, np.eye(6), 0.1)
 
     good, bad = StopReason.STEADY_ERROR, StopReason.LIMIT

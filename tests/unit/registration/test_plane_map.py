@@ -251,7 +251,7 @@ def test_fitting_all_at_once_changes_nothing():
 
 def test_a_map_of_a_moved_world_gives_nearly_the_same_distances():
     points, asked = patch((0, 0, 1), 0.05), patch((0, 0, 1), 0.08, count=500, seed=2)
-    T = SE3.from_rpy(0.4, 0.3, 1.0, [30.0, -20.0, 3.0])
+    T = SE3.from_rpy(0.4, 0.3, 1.0, t=[30.0, -20.0, 3.0])
 
     moved = hold(made_of(T @ points), T @ asked, center=T.t)
 

@@ -18,7 +18,7 @@ from tests.room_walks import T0_NS
 from tests.scanned_room import RIG, scan, standing, walk
 
 PLANES = PlaneSettings()
-T_TRUE = SE3.from_rpy(0.01, -0.02, 0.06, [0.25, -0.10, 0.04])
+T_TRUE = SE3.from_rpy(0.01, -0.02, 0.06, t=[0.25, -0.10, 0.04])
 SOLVERS = ("planes", "common_normal", "svd")
 # Lines are sampled again in each frame: without a plane between them they agree less well.
 TOLERANCE_M = {"planes": 0.004, "common_normal": 0.012, "svd": 0.06}
@@ -95,7 +95,7 @@ def test_forward_and_backward_are_inverse(solver, target_ends, source_ends):
 def test_registration_of_lines_does_not_depend_on_where_the_world_is(
     solver, target_ends, source_ends
 ):
-    W = SE3.from_rpy(0.4, -0.3, 2.0, [60.0, -35.0, 8.0])
+    W = SE3.from_rpy(0.4, -0.3, 2.0, t=[60.0, -35.0, 8.0])
     moved_ends = (W @ target_ends.reshape(-1, 3)).reshape(-1, 2, 3)
 
     here = register(solver, target_ends, source_ends, SE3.identity())
@@ -106,7 +106,7 @@ def test_registration_of_lines_does_not_depend_on_where_the_world_is(
 
 def test_registration_to_planes_hardly_depends_on_where_the_world_is(target_ends, source_ends):
     # Cubes cut a turned world elsewhere, so not bit for bit.
-    W = SE3.from_rpy(0.4, -0.3, 2.0, [60.0, -35.0, 8.0])
+    W = SE3.from_rpy(0.4, -0.3, 2.0, t=[60.0, -35.0, 8.0])
     moved_ends = (W @ target_ends.reshape(-1, 3)).reshape(-1, 2, 3)
 
     there = register("planes", moved_ends, source_ends, W)
@@ -118,7 +118,7 @@ def test_registration_to_planes_hardly_depends_on_where_the_world_is(target_ends
 
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_a_shifted_source_gives_the_shifted_motion(solver, target_ends, source_ends):
-    S = SE3.from_rpy(0.0, 0.0, 0.5, [3.0, 1.0, 0.0])
+    S = SE3.from_rpy(0.0, 0.0, 0.5, t=[3.0, 1.0, 0.0])
     shifted = (S.inverse() @ source_ends.reshape(-1, 3)).reshape(-1, 2, 3)
 
     plain = register(solver, target_ends, source_ends, SE3.identity())
@@ -318,7 +318,9 @@ def test_an_empty_frame_has_no_segments():
     frame = scan(standing, T0_NS).take(slice(0, 0))
 
     segments = sample_segments(frame, RIG, SegmentSettings())
-    placed = place_segments(segments, frame.t_ns, frame.duration_ns, walk(standing, 1).truth)
+    placed = place_segments(
+        segments, frame.t_ns, frame.duration_ns, trajectory=walk(standing, 1).truth
+    )
 
     assert len(segments) == 0
     assert placed.shape == (0, 2, 3)

@@ -53,9 +53,9 @@ def test_a_walking_body_is_not_stationary():
     T = recording.true_poses()
 
     assert not is_stationary(T[0].inverse() @ T[1])
-    assert not is_stationary(SE3.from_rpy(0.0, 0.0, 0.0, [0.0, 0.0, 0.02]))
-    assert is_stationary(SE3.from_rpy(0.001, 0.0, 0.0, [0.004, 0.0, 0.0]))
-    assert not is_stationary(SE3.from_rpy(0.0, 0.0, 0.01, np.zeros(3)))
+    assert not is_stationary(SE3.from_rpy(0.0, 0.0, 0.0, t=[0.0, 0.0, 0.02]))
+    assert is_stationary(SE3.from_rpy(0.001, 0.0, 0.0, t=[0.004, 0.0, 0.0]))
+    assert not is_stationary(SE3.from_rpy(0.0, 0.0, 0.01, t=np.zeros(3)))
 
 
 def test_scans_with_oscillating_matches_are_not_lost():
@@ -91,7 +91,7 @@ def test_both_ends_of_a_segment_are_matched_to_the_planes(slow):
 
 
 def test_the_zero_velocity_update_does_not_depend_on_the_prediction(slow):
-    T = SE3.stack([SE3.identity(), SE3.from_rpy(0.0, 0.0, 0.06, [0.1, 0.04, 0.0])])
+    T = SE3.stack([SE3.identity(), SE3.from_rpy(0.0, 0.0, 0.06, t=[0.1, 0.04, 0.0])])
     t_ns = slow[1].t_ns, slow[1].t_ns + FRAME_NS
     turning = FreeMotion(Settings().odometry).between(T, t_ns, slow[1].t_ns)
     prediction, free, _ = fit_of_second_frame(slow, turning)

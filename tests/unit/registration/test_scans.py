@@ -81,7 +81,7 @@ def test_normal_equations_of_one_match_worked_out_by_hand():
 
 
 def test_another_sampling_of_the_room_is_brought_onto_it():
-    T_true = SE3.from_rpy(0.02, -0.03, 0.15, [0.4, -0.2, 0.1])
+    T_true = SE3.from_rpy(0.02, -0.03, 0.15, t=[0.4, -0.2, 0.1])
 
     found = register_scans(scan(), scan(T_true, seed=2), initial=SE3.identity(), settings=SCANS)
 
@@ -90,7 +90,7 @@ def test_another_sampling_of_the_room_is_brought_onto_it():
 
 
 def test_exchanging_the_scans_gives_the_inverse():
-    T_true = SE3.from_rpy(0.0, 0.02, 0.1, [0.3, 0.1, 0.0])
+    T_true = SE3.from_rpy(0.0, 0.02, 0.1, t=[0.3, 0.1, 0.0])
     a, b = scan(), scan(T_true, seed=2)
 
     there = register_scans(a, b, initial=SE3.identity(), settings=SCANS)
@@ -100,7 +100,7 @@ def test_exchanging_the_scans_gives_the_inverse():
 
 
 def test_a_large_rotation_is_found_by_the_ground_plans():
-    T_true = SE3.from_rpy(0.0, 0.0, 2.2, [2.5, 1.0, 0.0])
+    T_true = SE3.from_rpy(0.0, 0.0, 2.2, t=[2.5, 1.0, 0.0])
     a, b = scan(), scan(T_true, seed=2)
 
     # A room is nearly its own mirror image: without this the wrong half turn would pass as good.
@@ -154,7 +154,7 @@ def test_the_chain_keeps_the_last_good_scan_as_target():
     chain = ScanChain(SCANS)
     rng = np.random.default_rng(7)
     nowhere = rng.uniform(-30.0, 30.0, (4000, 3))
-    T_true = SE3.from_rpy(0.0, 0.0, 0.1, [0.2, 0.0, 0.0])
+    T_true = SE3.from_rpy(0.0, 0.0, 0.1, t=[0.2, 0.0, 0.0])
     assert chain.locate(room()) is None
     chain.keep(SE3.identity(), 0)
 

@@ -299,7 +299,7 @@ def test_only_settings_that_differ_from_the_preset_are_listed() -> None:
 
 
 def test_drift_is_the_distance_after_the_first_poses_were_made_equal() -> None:
-    turned = SE3.from_rpy(0.1, 0.2, 0.3, [5, 6, 7])
+    turned = SE3.from_rpy(0.1, 0.2, 0.3, t=[5, 6, 7])
     odometry = Trajectory(loop_walk().t_ns, turned @ loop_walk(drift_m=0.5).T_a_b)
 
     drift = drift_closed(odometry, loop_walk(), graph_of(loop_walk()))

@@ -169,7 +169,7 @@ def test_alternative_paths_one_by_one_have_the_median_of_the_verification():
     rows = {row[:2]: row for row in queue_rows(graph, settings=Settings())}
     edge = next(e for e in graph.edges if (e.i, e.j) == (3, 32))
 
-    paths = alternative_paths(graph, 3, 32, edge.T_i_j, settings=Settings())
+    paths = alternative_paths(graph, 3, 32, T_i_j=edge.T_i_j, settings=Settings())
 
     assert len(paths) == edge.paths == rows[17, 162].paths
     assert np.median([path.residual_m for path in paths]) == pytest.approx(edge.verification_m)

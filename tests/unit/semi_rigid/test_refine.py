@@ -160,7 +160,7 @@ def test_the_map_is_whole_again_after_a_sweep_but_for_the_end(stroll):
 
     frame, early = stroll[2], stroll.truth.at(stroll.t_mid_ns[2:3]).t[0]
     segments = sample_segments(frame, stroll.rig, settings.segments)
-    ends = place_segments(segments, frame.t_ns, frame.duration_ns, stroll.truth)
+    ends = place_segments(segments, frame.t_ns, frame.duration_ns, trajectory=stroll.truth)
     fraction = np.full(len(ends), 0.5)
     a, b = (
         p.match(ends.mean(axis=1), fraction, center=early, finest=0, gate_m=0.1)
@@ -244,12 +244,12 @@ def test_odometry_moves_along_with_the_nodes(stroll):
     shifted = PoseGraph(
         np.arange(2, 30, 5),
         stroll.t_mid_ns[2::5],
-        SE3.from_rpy(0, 0, 1.0, [5.0, 0, 0]) @ stroll.truth.at(stroll.t_mid_ns[2::5]),
+        SE3.from_rpy(0, 0, 1.0, t=[5.0, 0, 0]) @ stroll.truth.at(stroll.t_mid_ns[2::5]),
         (),
     )
 
     moved = corrected_by_graph(stroll.truth, shifted)
 
-    expected = SE3.from_rpy(0, 0, 1.0, [5.0, 0, 0]) @ stroll.truth.T_a_b
+    expected = SE3.from_rpy(0, 0, 1.0, t=[5.0, 0, 0]) @ stroll.truth.T_a_b
     np.testing.assert_allclose(moved.T_a_b.t, expected.t, atol=1e-9)
     np.testing.assert_allclose(moved.T_a_b.R, expected.R, atol=1e-9)

@@ -31,7 +31,7 @@ def walls(*distances_m, reflectivity=0.5, half_width_m=50.0):
     builder = MeshBuilder()
     for x in distances_m:
         w = half_width_m
-        builder.quad([x, -w, -w], [0, 2 * w, 0], [0, 0, 2 * w], reflectivity)
+        builder.quad([x, -w, -w], [0, 2 * w, 0], [0, 0, 2 * w], reflectivity=reflectivity)
     return around(builder)
 
 

@@ -36,7 +36,7 @@ def test_a_wall_is_seen_at_the_range_geometry_says():
 
 def test_beams_leave_the_sensor_at_their_own_heights():
     builder = MeshBuilder()
-    builder.quad([-60, -60, 0], [120, 0, 0], [0, 120, 0], 0.5)
+    builder.quad([-60, -60, 0], [120, 0, 0], [0, 120, 0], reflectivity=0.5)
     shots = fire(PERFECT, around(builder), still(height_m=1.5))
 
     range_m, _, elevation, height = returns(shots)
@@ -97,8 +97,8 @@ def test_range_noise_has_the_stated_deviation_and_no_bias():
 
 def test_edges_give_mixed_ranges_only_through_the_opening_of_the_beam():
     builder = MeshBuilder()
-    builder.quad([3.0, -0.5, -5], [0, 1.0, 0], [0, 0, 10], 0.5)
-    builder.quad([3.4, -50, -50], [0, 100, 0], [0, 0, 100], 0.5)
+    builder.quad([3.0, -0.5, -5], [0, 1.0, 0], [0, 0, 10], reflectivity=0.5)
+    builder.quad([3.4, -50, -50], [0, 100, 0], [0, 0, 100], reflectivity=0.5)
     scene = around(builder)
 
     def between(model):
@@ -142,7 +142,7 @@ def test_returns_nearer_than_the_sensor_can_measure_are_lost():
 def test_the_person_hides_what_is_in_front_of_the_vertical_sensor():
     vertical = load_rig("4recon").sensors[1]
     builder = MeshBuilder()
-    builder.quad([-60, -60, 0], [120, 0, 0], [0, 120, 0], 0.5)
+    builder.quad([-60, -60, 0], [120, 0, 0], [0, 120, 0], reflectivity=0.5)
     scene = around(builder)
 
     free = fire(PERFECT, scene, still(), sensor=vertical)

@@ -61,7 +61,7 @@ def test_angular_rate_is_the_derivative_of_the_pose(office_walk):
 
 
 def test_an_imu_off_the_body_feels_the_motion_of_its_own_place(office_walk):
-    mount = SE3.from_rpy(0.1, -0.2, 0.3, [0.2, -0.1, 0.3])
+    mount = SE3.from_rpy(0.1, -0.2, 0.3, t=[0.2, -0.1, 0.3])
     samples = imu_of(office_walk, replace(RIG, T_body_imu=mount))
     rows = np.arange(400, 5600, 37)
     t_s, h = 0.005 * rows, 1e-3

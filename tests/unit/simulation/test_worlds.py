@@ -87,7 +87,7 @@ def test_distance_to_a_mesh_is_that_to_its_nearest_triangle():
 def test_bricks_have_the_sizes_asked_for():
     builder = MeshBuilder()
     builder.block([1.0, 2.0, 0.5], [0.4, 2.0, 1.0], 0.5, yaw_rad=np.pi / 2)
-    builder.tube([10, 0, 0], [10, 0, 2], 0.5, 0.3, sides=64)
+    builder.tube([10, 0, 0], [10, 0, 2], 0.5, reflectivity=0.3, sides=64)
 
     vertices = builder.mesh().vertices_m
 

@@ -99,7 +99,7 @@ def test_far_from_the_origin_nothing_is_lost(tmp_path):
 
 
 def test_a_moved_cut_gives_moved_points_the_same_place():
-    T = SE3.from_rpy(0.1, -0.2, 2.0, [5.0, -3.0, 1.0])
+    T = SE3.from_rpy(0.1, -0.2, 2.0, t=[5.0, -3.0, 1.0])
     p = np.random.default_rng(2).uniform(-5, 5, (10, 3))
 
     moved = moved_cut(CUTS[1], T)

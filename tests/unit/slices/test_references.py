@@ -216,7 +216,7 @@ def test_distances_to_a_mesh_are_those_to_its_triangles(tmp_path):
 
 def test_an_alignment_moves_the_reference_and_its_outline(tmp_path):
     reference_wall(tmp_path)
-    T = SE3.from_rpy(0.0, 0.0, np.pi / 2, [5.0, 0.0, 0.0])
+    T = SE3.from_rpy(0.0, 0.0, np.pi / 2, t=[5.0, 0.0, 0.0])
 
     set_alignment(tmp_path / "reference", T, description="test")
     moved = load_reference(tmp_path / "reference")
@@ -254,7 +254,7 @@ def test_eight_slices_are_spread_over_the_map(tmp_path):
 
 
 def test_pairs_of_points_lay_a_reference_onto_the_map():
-    T = SE3.from_rpy(0.02, 0.01, 1.0, [3.0, 2.0, 1.0])
+    T = SE3.from_rpy(0.02, 0.01, 1.0, t=[3.0, 2.0, 1.0])
     q = np.array([[0, 0, 0], [4, 0, 0], [0, 3, 0], [1, 1, 2.0]])
 
     found, left_m = align_by_pairs(T @ q, q)
@@ -284,7 +284,7 @@ def three_sides(rng, *, noise_m=0.0):
 
 def test_icp_finds_a_small_offset_and_says_what_remains(tmp_path, box_reference):
     rng = np.random.default_rng(3)
-    T = SE3.from_rpy(0.0, 0.0, 0.02, [0.05, -0.03, 0.04])
+    T = SE3.from_rpy(0.0, 0.0, 0.02, t=[0.05, -0.03, 0.04])
     elsewhere = np.add(rng.uniform(size=(24_000, 3)), [9.0, 0.0, 0.0])
     p = np.concatenate([three_sides(rng, noise_m=0.01), elsewhere])
     tiles = write_map(tmp_path / "map", T @ p)
