@@ -18,8 +18,8 @@ from app.uploads.store import UploadStore
 
 log = logging.getLogger(__name__)
 
-EVERY_S = 3600.0
-ROTATE_LOGS_S = 20.0
+MAINTENANCE_INTERVAL_S = 3600.0
+LOG_ROTATION_INTERVAL_S = 20.0
 """Interval of checking the logs of workers, viewers and captures [s]."""
 
 
@@ -36,21 +36,21 @@ async def maintain(jobs: JobStore, uploads: UploadStore, trash: Trash, *, slices
                 await asyncio.to_thread(task)
             except Exception:
                 log.exception("could not clean up or back up; trying again in an hour")
-        await asyncio.sleep(EVERY_S)
+        await asyncio.sleep(MAINTENANCE_INTERVAL_S)
 
 
 async def rotate_logs(state: Path, jobs: JobStore, captures: Captures) -> None:
     """Rotate the logs that other processes append to, until cancelled."""
     while True:
         try:
-            for path in await asyncio.to_thread(lambda: list(growing_logs(state, jobs, captures))):
+            for path in await asyncio.to_thread(lambda: list(active_logs(state, jobs, captures))):
                 await asyncio.to_thread(rotate_grown, path)
         except Exception:
             log.exception("could not rotate the logs; trying again")
-        await asyncio.sleep(ROTATE_LOGS_S)
+        await asyncio.sleep(LOG_ROTATION_INTERVAL_S)
 
 
-def growing_logs(state: Path, jobs: JobStore, captures: Captures) -> Iterator[Path]:
+def active_logs(state: Path, jobs: JobStore, captures: Captures) -> Iterator[Path]:
     """Logs of the processes that may be running.
 
     Args:

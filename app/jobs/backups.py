@@ -14,7 +14,7 @@ from recon4.store.sqlite_files import connect
 
 log = logging.getLogger(__name__)
 
-KEPT = 7
+MAX_BACKUPS = 7
 
 
 class Backups:
@@ -32,7 +32,7 @@ class Backups:
         self._folder.mkdir(exist_ok=True)
         with atomic_file(today) as part, closing(connect(self._path)) as source:
             source.execute("VACUUM INTO ?", (str(part),))
-        for old in self._all()[KEPT:]:
+        for old in self._all()[MAX_BACKUPS:]:
             old.unlink()
 
     def repair(self) -> str:
@@ -41,7 +41,7 @@ class Backups:
         Returns:
             A notice about what was restored and lost; empty when nothing was damaged.
         """
-        if not self._path.exists() or (damage := damage_of(self._path)) == "":
+        if not self._path.exists() or (damage := integrity_error(self._path)) == "":
             return ""
         stamp = f"{datetime.now(UTC):%Y%m%dT%H%M%S%f}"
         aside = self._path.with_name(f"{self._path.name}.damaged-{stamp}")
@@ -57,7 +57,7 @@ class Backups:
 
     def _restore(self) -> str:
         for copy in self._all():
-            if damage_of(copy) == "":
+            if integrity_error(copy) == "":
                 with atomic_file(self._path) as part:
                     part.write_bytes(copy.read_bytes())
                 day = copy.stem.removeprefix(f"{self._path.stem}-")
@@ -76,7 +76,7 @@ class Backups:
         return sorted(self._folder.glob(f"{self._path.stem}-*.sqlite"), reverse=True)
 
 
-def damage_of(path: Path) -> str:
+def integrity_error(path: Path) -> str:
     """The first problem of SQLite's quick check of a file; empty = none.
 
     Raises:

@@ -18,7 +18,7 @@ from recon4.review.stamp import stamp_file
 from recon4.slices.export import write_csv, write_dxf, write_geotiff, write_laz
 from recon4.slices.points import SliceWindow
 from recon4.slices.sheet import SheetText, lay_out, source_text, write_sheet
-from recon4.slices.slice_image import Paper, draw
+from recon4.slices.slice_image import RasterGrid, draw
 
 FINEST_M = 0.005
 """Pixel of a GeoTIFF, unless it would get too large [m]."""
@@ -68,7 +68,7 @@ def _export_geotiff(
     tiles, cut = map_of(artifacts, context.evidence), ask.cut.cut()
     window = window_of(ask, tiles, cut)
     side_m = max(window.right - window.left, window.top - window.bottom)
-    paper = Paper(window, max(FINEST_M, side_m / MAX_GEOTIFF_PX))
+    paper = RasterGrid(window, max(FINEST_M, side_m / MAX_GEOTIFF_PX))
     against = reference_of(reference, ask.method)
     made = draw(tiles, cut, paper, color=ask.color, reference=against)
     description = f"{context.project}: {stamp_text(context.evidence)}"

@@ -34,7 +34,7 @@ from recon4.slices.acceptance import AcceptanceText, render_acceptance
 from recon4.slices.align import align_by_icp, align_by_pairs
 from recon4.slices.colors import SENSOR_COLORS, ColorBy, Ground, Span, table
 from recon4.slices.compare import Comparison, compare, to_csv, usual_cuts
-from recon4.slices.control import ControlPoint, ControlPreview, Order, read_control
+from recon4.slices.control_points import AxisOrder, ControlPoint, ControlPreview, read_control
 from recon4.slices.cut import Cut, horizontal
 from recon4.slices.doubles import find_double_walls
 from recon4.slices.frames import MapFrame, frame_of
@@ -48,7 +48,7 @@ from recon4.slices.sheet import (
     axis_labels,
     source_text,
 )
-from recon4.slices.slice_image import Paper, SliceImage, draw, png
+from recon4.slices.slice_image import RasterGrid, SliceImage, draw, png
 from recon4.store.atomic import atomic_file, null_for_nan, write_json
 from recon4.store.checked import CheckedArtifact
 
@@ -128,7 +128,7 @@ def slice_image(
     began = time.perf_counter()
     tiles, cut = map_of({"map": map_folder}, evidence), ask.cut.cut()
     window = _shaped(window_of(ask, tiles, cut), ask.width / ask.height)
-    paper = Paper(window, (window.right - window.left) / ask.width)
+    paper = RasterGrid(window, (window.right - window.left) / ask.width)
     made = draw(tiles, cut, paper, color=ask.color, reference=reference_of(reference, ask.method))
     span = span_of(ask, made)
     image = base64.b64encode(png(made.rgba(span, ask.ground))).decode()
@@ -161,7 +161,7 @@ def overview(map_folder: str, image: str, about: str) -> None:
     margin = 0.02 * float((high - low)[:2].max()) + 0.1
     window = SliceWindow(low[0] - margin, low[1] - margin, high[0] + margin, high[1] + margin)
     pixel_m = max(window.right - window.left, window.top - window.bottom) / 1200.0
-    made = draw(tiles, cut, Paper(window, pixel_m))
+    made = draw(tiles, cut, RasterGrid(window, pixel_m))
     dense = np.log1p(made.count / max(1.0, float(np.percentile(made.count[made.count > 0], 75))))
     rgba = np.zeros((*dense.shape, 4), np.uint8)
     rgba[..., :3] = (100, 116, 130)
@@ -243,7 +243,7 @@ def align_reference(
     return set_alignment(folder, fit.T_map_reference, description=fit.description)
 
 
-def preview_control(data: bytes, name: str, order: Order | None) -> ControlPreview:
+def preview_control(data: bytes, name: str, order: AxisOrder | None) -> ControlPreview:
     """Points and open questions of a survey file."""
     return read_control(data, name=name, order=order)
 
@@ -350,7 +350,7 @@ def _shaped(window: SliceWindow, aspect: float) -> SliceWindow:
     """Widened to an aspect ratio, about its center."""
     width, height = window.right - window.left, window.top - window.bottom
     if not (width > 0.0 and height > 0.0):
-        return window  # `Paper` rejects it with a message
+        return window  # `RasterGrid` rejects it with a message
     more_u = max(0.0, height * aspect - width) / 2.0
     more_v = max(0.0, width / aspect - height) / 2.0
     return replace(

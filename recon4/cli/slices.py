@@ -134,7 +134,7 @@ def _write_image(
     from recon4.slices.export import write_geotiff
     from recon4.slices.points import extent
     from recon4.slices.sheet import SheetText, approval_text, lay_out, source_text, write_sheet
-    from recon4.slices.slice_image import Paper, draw
+    from recon4.slices.slice_image import RasterGrid, draw
 
     if about["color"] not in LABELS:
         raise ConfigError(f"colors are {', '.join(LABELS)}; got {about['color']!r}")
@@ -142,7 +142,7 @@ def _write_image(
     window = extent(tiles, cut)
     if file.suffix.lower() == ".tif":
         side_m = max(window.right - window.left, window.top - window.bottom)
-        made = draw(tiles, cut, Paper(window, max(0.005, side_m / 6000)), color=about["color"])
+        made = draw(tiles, cut, RasterGrid(window, max(0.005, side_m / 6000)), color=about["color"])
         title = f"{about['name']}: {approval}"
         write_geotiff(made, file, frame=frame, span=made.span, description=title)
         return made.points

@@ -18,7 +18,16 @@ from recon4.model.trajectory import Times, Trajectory
 from recon4.recording.assembly.assembler import moved
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.cloud_points import CloudDecoder, model_of_points
-from recon4.recording.formats.bags import CLOUD, FIX, IMU, ODOMETRY, SCAN, Bag, BagMessage, BagTopic
+from recon4.recording.formats.bags import (
+    CLOUD,
+    IMU,
+    NAVSATFIX,
+    ODOMETRY,
+    SCAN,
+    Bag,
+    BagMessage,
+    BagTopic,
+)
 from recon4.recording.formats.cloud_files import Table
 from recon4.recording.formats.message_limits import MAX_CLOUD_POINTS, require_apart_fields
 from recon4.recording.report import ImportReport
@@ -68,7 +77,7 @@ class BagRecording:
         chosen = rig or choose_rig(self.streams, report)
         self.rig = assign_topics(chosen, self.streams, report)
         self.imu_topic = _most(self.topics, IMU, report)
-        self.fix_topic = _most(self.topics, FIX, report)
+        self.fix_topic = _most(self.topics, NAVSATFIX, report)
         self.odometry_topic = _most(self.topics, ODOMETRY, report)
 
     def read(self) -> Iterator[Item]:

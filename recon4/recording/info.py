@@ -21,7 +21,7 @@ from recon4.recording.assembly.shots import Shots
 from recon4.recording.bag_recording import cloud_table, lidar_streams
 from recon4.recording.cloud_points import INTENSITY_FIELDS, RING_FIELDS, TIME_FIELDS, find_field
 from recon4.recording.folders import folder_gaps, frames_label, list_frames
-from recon4.recording.formats.bags import CLOUD, FIX, IMU, ODOMETRY, Bag, BagTopic
+from recon4.recording.formats.bags import CLOUD, IMU, NAVSATFIX, ODOMETRY, Bag, BagTopic
 from recon4.recording.formats.cloud_files import cloud_fields
 from recon4.recording.formats.poses import pose_format, read_tum
 from recon4.recording.open import (
@@ -268,7 +268,7 @@ def _gaps(name: str, t_ns: Times) -> list[TimeGap]:
 
 
 def _topic_line(topic: BagTopic, seconds: float) -> str:
-    names = {IMU: "IMU", FIX: "GNSS positions", ODOMETRY: "poses (kept for comparison)"}
+    names = {IMU: "IMU", NAVSATFIX: "GNSS positions", ODOMETRY: "poses (kept for comparison)"}
     rate = f", {topic.messages / seconds:.1f} a second" if seconds > 0 else ""
     return (
         f"{topic.name}: {names.get(topic.type, f'{topic.type}, not read')}, {topic.messages}{rate}"

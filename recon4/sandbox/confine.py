@@ -13,7 +13,7 @@ from recon4.sandbox import landlock, seccomp
 from recon4.sandbox.environment import allowed_environment
 from recon4.sandbox.installation import WRITABLE, readable_paths
 from recon4.sandbox.kernel import PR_SET_NO_NEW_PRIVS, prctl, threads_of_this_process
-from recon4.sandbox.limits import set_limits
+from recon4.sandbox.limits import apply_rlimits
 from recon4.sandbox.namespaces import drop_capabilities, own_network
 from recon4.sandbox.policy import Barrier, Confinement, Network, Policy
 
@@ -112,7 +112,7 @@ def _capabilities() -> str:
 
 
 def _limits(policy: Policy) -> str:
-    set_limits(policy)
+    apply_rlimits(policy)
     return "memory, files, threads"
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from recon4.sandbox.policy import Policy
 
 
-def set_limits(policy: Policy) -> None:
+def apply_rlimits(policy: Policy) -> None:
     """Set the limits of a policy on this process and all it starts; never raises one.
 
     Raises:

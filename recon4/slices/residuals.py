@@ -17,7 +17,7 @@ from recon4.evaluation.markers import (
     MEAN_VERTICAL_LIMIT_M,
 )
 from recon4.geometry.se3 import Array
-from recon4.slices.control import ControlPoint, Role
+from recon4.slices.control_points import ControlPoint, Role
 
 RELATIVE_LIMIT_M = 0.05
 """Limit for the error of distances between points of the map (requirements, relative)."""

@@ -22,7 +22,7 @@ from recon4.slices.colors import (
 )
 from recon4.slices.cut import Cut
 from recon4.slices.points import SliceWindow
-from recon4.slices.slice_image import Paper, SliceImage
+from recon4.slices.slice_image import RasterGrid, SliceImage
 from recon4.store.atomic import atomic_file
 
 Size = Literal["a4", "a3", "a2", "a1"]
@@ -65,9 +65,9 @@ class SheetLayout:
     """The printed window [m]: the requested one, centered in the printable area."""
 
     @property
-    def paper(self) -> Paper:
+    def paper(self) -> RasterGrid:
         """Window and pixel size of the image to draw, at `DPI`."""
-        return Paper(self.window, self.scale * _MM_PER_INCH / 1000.0 / DPI)
+        return RasterGrid(self.window, self.scale * _MM_PER_INCH / 1000.0 / DPI)
 
 
 def lay_out(window: SliceWindow, size: Size = "a4", scale: int = 0) -> SheetLayout:

@@ -35,7 +35,7 @@ _FIRST_OF_PIXEL = {"sensor", "distance"}
 
 
 @dataclass(frozen=True, slots=True)
-class Paper:
+class RasterGrid:
     """Drawn part of a cut and its pixel size."""
 
     window: SliceWindow
@@ -82,7 +82,7 @@ class SliceImage:
     """A drawn slice; colors come later (`rgba`)."""
 
     cut: Cut
-    paper: Paper
+    paper: RasterGrid
     color: ColorBy
     points: int
     """Points of the map in the window."""
@@ -110,7 +110,7 @@ class SliceImage:
 def draw(
     tiles: TileSet,
     cut: Cut,
-    paper: Paper,
+    paper: RasterGrid,
     *,
     color: ColorBy = "height",
     reference: Reference | None = None,
@@ -187,7 +187,7 @@ def _values(part: TilePart, cut: Cut, color: ColorBy, *, tiles: TileSet) -> NDAr
     return column.astype(np.float32)
 
 
-def _firsts(part: TilePart, paper: Paper, taken: NDArray[np.bool_]) -> TilePart:
+def _firsts(part: TilePart, paper: RasterGrid, taken: NDArray[np.bool_]) -> TilePart:
     chosen = np.empty(len(part), np.int32)
     count = first_of_pixels(part.uvd, paper.corner, paper.pixel_m, taken, chosen)
     rows = chosen[:count]
@@ -196,7 +196,7 @@ def _firsts(part: TilePart, paper: Paper, taken: NDArray[np.bool_]) -> TilePart:
 
 
 def _add(
-    uvd: Array, values: NDArray[Any], paper: Paper, *, count: NDArray[np.int32], total: Array
+    uvd: Array, values: NDArray[Any], paper: RasterGrid, *, count: NDArray[np.int32], total: Array
 ) -> None:
     splat(
         uvd,
@@ -209,7 +209,7 @@ def _add(
     )
 
 
-def _reference_mask(reference: Reference | None, cut: Cut, paper: Paper) -> NDArray[np.bool_]:
+def _reference_mask(reference: Reference | None, cut: Cut, paper: RasterGrid) -> NDArray[np.bool_]:
     shape = (paper.height, paper.width)
     if reference is None:
         return np.zeros(shape, np.bool_)

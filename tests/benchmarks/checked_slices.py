@@ -16,7 +16,7 @@ from recon4.progress import Silent
 from recon4.settings import Settings
 from recon4.slices.cut import horizontal
 from recon4.slices.points import extent
-from recon4.slices.slice_image import Paper, draw
+from recon4.slices.slice_image import RasterGrid, draw
 from recon4.store.checked import CheckedArtifact
 from recon4.store.project import Project, read_artifacts
 from recon4.store.stage import Input, Stage, StageRunner
@@ -27,7 +27,7 @@ def _seconds(tiles: TileSet) -> float:
     cut = horizontal(1.5, thickness_m=0.1)
     window = extent(tiles, cut)
     began = time.perf_counter()
-    draw(tiles, cut, Paper(window, 0.02))
+    draw(tiles, cut, RasterGrid(window, 0.02))
     return time.perf_counter() - began
 
 

@@ -16,7 +16,7 @@ from recon4.mapping.tiles import TileSet
 from recon4.slices.cut import Cut, free, horizontal, vertical
 from recon4.slices.doubles import find_double_walls
 from recon4.slices.points import SliceWindow, extent
-from recon4.slices.slice_image import Paper, draw, png
+from recon4.slices.slice_image import RasterGrid, draw, png
 from recon4.store.project import read_artifacts
 
 
@@ -61,7 +61,7 @@ def time_image(tiles: TileSet, cut: Cut, color: str) -> tuple[float, float, int]
     began, used = time.perf_counter(), time.process_time()
     seen: SliceWindow = extent(tiles, cut)
     pixel_m = max((seen.right - seen.left) / 1600.0, (seen.top - seen.bottom) / 1200.0)
-    made = draw(tiles, cut, Paper(seen, pixel_m), color=color)
+    made = draw(tiles, cut, RasterGrid(seen, pixel_m), color=color)
     png(made.rgba(made.span, "light"))
     return time.perf_counter() - began, time.process_time() - used, made.points
 

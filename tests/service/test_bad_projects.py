@@ -155,7 +155,7 @@ def test_a_name_in_tus_metadata_is_refused_in_words(server):
 
 
 def test_a_survey_point_with_a_hidden_name_is_left_out_and_counted():
-    from recon4.slices.control import read_control
+    from recon4.slices.control_points import read_control
 
     found = read_control("A,1,2,3\nB\u202e,1,2,3\n".encode())
 

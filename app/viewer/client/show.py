@@ -24,12 +24,12 @@ from app.viewer.scene.nodes import AxesNode, GridNode, LabelNode, LinesNode, Nod
 from recon4.geometry.se3 import Array, matrix_from_quat
 
 PHONE_WIDTH_PX = 700
-KEPT = "recon4.view."
+STORAGE_PREFIX = "recon4.view."
 """Name under which a browser keeps the view of a project."""
 NARROW_FOV_RAD, USUAL_FOV_RAD = np.deg2rad(6.0), np.deg2rad(75.0)
-GROWN = 0.2
+REDRAW_GROWTH = 0.2
 """Relative growth of the map after which the camera is moved to fit it."""
-AWAY = np.array([0.0, -0.75, 0.75])
+DEFAULT_VIEW_DIRECTION = np.array([0.0, -0.75, 0.75])
 """Camera position relative to a box, in units of its size: south and above."""
 
 
@@ -49,7 +49,7 @@ class Screen:
         self._box_m = begins_at.size_m
         if _is_fresh(client.camera):
             self.look_at(begins_at)
-        self._key = KEPT + project
+        self._key = STORAGE_PREFIX + project
         self._shown: dict[str, tuple[Node, Any]] = {}
         self._points: OrderedDict[str, _Drawn] = OrderedDict()
         self._map = client.scene.add_frame("/map", show_axes=False)
@@ -174,7 +174,7 @@ class Screen:
         """Have the browser keep a view."""
         self._client.local_storage.set_item(self._key, text)
 
-    def look_at(self, box: Bounds, direction: Array = AWAY) -> None:
+    def look_at(self, box: Bounds, direction: Array = DEFAULT_VIEW_DIRECTION) -> None:
         """Move the camera so that all of a box is visible from a direction."""
         self._put_m = start_m(box, direction, aspect=self.camera.aspect)
         with self._client.atomic():
@@ -183,7 +183,7 @@ class Screen:
 
     def follow(self, box: Bounds) -> None:
         """Keep a growing map in view as long as the person does not move the camera."""
-        if self._put_m is None or abs(box.size_m - self._box_m) < GROWN * self._box_m:
+        if self._put_m is None or abs(box.size_m - self._box_m) < REDRAW_GROWTH * self._box_m:
             return
         if np.allclose(self._client.camera.position, self._put_m, atol=1e-3):
             self._box_m = box.size_m
@@ -305,7 +305,7 @@ class Viewer:
         self._on_leave(client)
 
 
-def start_m(box: Bounds, direction: Array = AWAY, *, aspect: float) -> Array:
+def start_m(box: Bounds, direction: Array = DEFAULT_VIEW_DIRECTION, *, aspect: float) -> Array:
     """Camera position from which all of a box is visible at an aspect ratio [m], (3,)."""
     away = max(box.size_m, 5.0) * max(1.0, 0.9 / max(aspect, 0.1))
     return np.asarray(box.center_m + away * direction)

@@ -37,7 +37,7 @@ from recon4.recording.report import ImportReport
 SCAN = "velodyne_msgs/msg/VelodyneScan"
 CLOUD = "sensor_msgs/msg/PointCloud2"
 IMU = "sensor_msgs/msg/Imu"
-FIX = "sensor_msgs/msg/NavSatFix"
+NAVSATFIX = "sensor_msgs/msg/NavSatFix"
 ODOMETRY = "nav_msgs/msg/Odometry"
 
 _DEFINITIONS = {

@@ -26,7 +26,7 @@ from recon4.recording.info import describe
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
 from recon4.settings import IngestSettings
-from recon4.slices.control import read_control
+from recon4.slices.control_points import read_control
 from recon4.slices.meshes import is_mesh, load_mesh
 from recon4.slices.reference import load_reference, read_facts
 from recon4.store.arrays import load_trajectory

@@ -11,7 +11,7 @@ import rasterio.transform
 from recon4.errors import ConfigError, CorruptFile, GeoreferenceError
 from recon4.georeference.crs import CrsTransform, GeodeticOrigin
 from recon4.slices.acceptance import AcceptanceText, render_acceptance
-from recon4.slices.control import ControlPoint, read_control
+from recon4.slices.control_points import ControlPoint, read_control
 from recon4.slices.cut import horizontal, vertical
 from recon4.slices.export import write_csv, write_dxf, write_geotiff, write_laz
 from recon4.slices.frames import MapFrame, frame_of
@@ -19,7 +19,7 @@ from recon4.slices.pick import nearest_surface, pick
 from recon4.slices.points import SliceWindow, points_in
 from recon4.slices.residuals import residual_csv, residuals
 from recon4.slices.sheet import SheetText, approval_text, grid_step_m, lay_out, write_sheet
-from recon4.slices.slice_image import Paper, draw
+from recon4.slices.slice_image import RasterGrid, draw
 from tests.unit.slices.room_map import wall, write_map
 
 BRNO = CrsTransform(
@@ -97,7 +97,7 @@ def test_a_csv_holds_every_point_with_place_and_coordinates(tiles, tmp_path):
 
 
 def test_a_geotiff_lies_where_the_crs_says(tiles, tmp_path):
-    drawn = draw(tiles, CUT, Paper(SliceWindow(0.0, -1.0, 3.0, 5.0), 0.02), color="intensity")
+    drawn = draw(tiles, CUT, RasterGrid(SliceWindow(0.0, -1.0, 3.0, 5.0), 0.02), color="intensity")
 
     write_geotiff(drawn, tmp_path / "s.tif", frame=PLACED, span=drawn.span)
 
@@ -115,7 +115,7 @@ def test_a_geotiff_lies_where_the_crs_says(tiles, tmp_path):
 
 def test_a_geotiff_of_a_section_has_its_own_meters(tiles, tmp_path):
     cut = vertical((0.0, 1.0), (4.0, 1.0), thickness_m=0.5)
-    drawn = draw(tiles, cut, Paper(SliceWindow(0.0, -1.0, 4.0, 3.0), 0.01))
+    drawn = draw(tiles, cut, RasterGrid(SliceWindow(0.0, -1.0, 4.0, 3.0), 0.01))
 
     write_geotiff(drawn, tmp_path / "s.tif", frame=PLACED, span=drawn.span)
 
@@ -126,8 +126,8 @@ def test_a_geotiff_of_a_section_has_its_own_meters(tiles, tmp_path):
 
 
 def test_an_image_too_large_for_one_transformation_is_rejected(tiles, tmp_path):
-    drawn = draw(tiles, CUT, Paper(SliceWindow(-40e3, -40e3, 40e3, 40e3), 100.0))
-    small = draw(tiles, CUT, Paper(SliceWindow(-40e3, -40e3, 40e3, 40e3), 100.0))
+    drawn = draw(tiles, CUT, RasterGrid(SliceWindow(-40e3, -40e3, 40e3, 40e3), 100.0))
+    small = draw(tiles, CUT, RasterGrid(SliceWindow(-40e3, -40e3, 40e3, 40e3), 100.0))
     object.__setattr__(small.paper, "pixel_m", 0.01)
 
     with pytest.raises(GeoreferenceError, match="smaller window"):

@@ -10,11 +10,11 @@ from recon4.slices.cut import horizontal
 from recon4.slices.imports import import_reference
 from recon4.slices.points import SliceWindow
 from recon4.slices.reference import load_reference
-from recon4.slices.slice_image import Paper, draw, png
+from recon4.slices.slice_image import RasterGrid, draw, png
 from tests.unit.slices.room_map import T0_NS, write_map
 
 CUT = horizontal(1.0, thickness_m=0.2)
-PAPER = Paper(SliceWindow(0.0, 0.0, 4.0, 2.0), 0.1)
+PAPER = RasterGrid(SliceWindow(0.0, 0.0, 4.0, 2.0), 0.1)
 POINTS = np.array(
     [[0.05, 1.95, 1.0], [0.07, 1.93, 1.05], [3.95, 0.05, 0.95], [2.05, 1.05, 2.0], [5.0, 1.0, 1.0]]
 )
@@ -57,7 +57,7 @@ def test_time_counts_from_the_start_and_height_is_that_of_the_map(tiles):
 
 
 def test_points_grow_when_pixels_become_smaller_than_the_grid_of_the_map(tiles):
-    paper = Paper(SliceWindow(3.9, 0.0, 4.0, 0.1), 0.001)
+    paper = RasterGrid(SliceWindow(3.9, 0.0, 4.0, 0.1), 0.001)
 
     drawn = draw(tiles, CUT, paper, color="height")
 
@@ -99,7 +99,7 @@ def test_an_image_is_a_png_transparent_without_points(tiles):
 
 def test_a_too_large_image_is_rejected_before_it_is_drawn():
     with pytest.raises(ConfigError, match="larger pixels"):
-        Paper(SliceWindow(0.0, 0.0, 1000.0, 1000.0), 0.001)
+        RasterGrid(SliceWindow(0.0, 0.0, 1000.0, 1000.0), 0.001)
 
 
 def test_what_the_map_lacks_is_said(tiles):

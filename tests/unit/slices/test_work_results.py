@@ -17,7 +17,7 @@ from recon4.review.preview import DecidedEdge, Effect
 from recon4.review.queue import AlternativePath
 from recon4.review.solve import Difference, EdgeConflict, Move, ReviewProblems
 from recon4.slices.compare import Comparison
-from recon4.slices.control import ControlPoint
+from recon4.slices.control_points import ControlPoint
 from recon4.slices.residuals import residuals
 
 WORK = [

@@ -13,7 +13,7 @@ from recon4.errors import ConfigError, CorruptFile
 from recon4.names import check_name
 
 Role = Literal["control", "check"]
-Order = Literal["EN", "NE"]
+AxisOrder = Literal["EN", "NE"]
 MAX_POINTS = 5000
 MAX_BYTES = 4 << 20
 _MAX_SKIPPED = 100
@@ -44,7 +44,7 @@ class ControlPreview:
     points: tuple[ControlPoint, ...]
     delimiter: str
     decimal: str
-    order: Order
+    order: AxisOrder
     """Order of the first two coordinates in the file, as used."""
     question: str
     """Question to the operator; empty = none."""
@@ -52,7 +52,9 @@ class ControlPreview:
     """Skipped lines, with the reason."""
 
 
-def read_control(data: bytes, *, name: str = "file", order: Order | None = None) -> ControlPreview:
+def read_control(
+    data: bytes, *, name: str = "file", order: AxisOrder | None = None
+) -> ControlPreview:
     """Read ``ID,X,Y,Z[,Radius]``, with or without a header line.
 
     A byte order mark, ``;`` or tabs, and decimal commas are accepted.
@@ -81,7 +83,7 @@ def read_control(data: bytes, *, name: str = "file", order: Order | None = None)
         raise CorruptFile(
             f"{name}: no line of ID,X,Y,Z found; {skipped[0] if skipped else 'it has no lines'}"
         )
-    known: Order | None = _order_of(head, columns) if named else None
+    known: AxisOrder | None = _order_of(head, columns) if named else None
     flip = order == "NE"
     question = "" if order or known else _question(points)
     return ControlPreview(
@@ -141,7 +143,7 @@ def _number_at(row: list[str], place: int) -> bool:
     return True
 
 
-def _order_of(head: list[str], columns: tuple[int, ...]) -> Order | None:
+def _order_of(head: list[str], columns: tuple[int, ...]) -> AxisOrder | None:
     """Order of the coordinates if the header names east and north; x and y are ambiguous."""
     if (
         max(columns[1:3]) < len(head)
