@@ -81,7 +81,7 @@ def test_a_viewers_phone_has_no_buttons_and_a_used_code_is_rejected(server, lapt
 
     phone.goto(f"{server.url}/pair#{token}")
     phone.wait_for_url(f"{server.url}/live")
-    expect(phone.locator("#hint")).to_contain_text("looking on")
+    expect(phone.locator("#hint")).to_contain_text("View only")
     expect(phone.locator("#actions button")).to_have_count(0)
 
     for another in opened(browser, "phone"):
