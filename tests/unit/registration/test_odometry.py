@@ -127,7 +127,7 @@ def test_with_an_imu_a_new_map_is_begun_in_an_unknown_place(stroll):
     steps = push_all(Odometry(stroll.rig, settings, stroll.imu), frames)
 
     assert [k for k, step in enumerate(steps) if step.lost] == [4, 5, 6]
-    assert steps[7].match_ratio == 0.0  # held against an empty map
+    assert steps[7].match_ratio == 0.0  # matched against an empty map
     assert steps[8].match_ratio > 0.4
 
 
