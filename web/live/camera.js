@@ -87,7 +87,8 @@ export class Camera {
 
 /**
  * One finger pans (or orbits in 3-D), two zoom, rotate and pan, a wheel zooms. `middle()` is the
- * target's position on the screen; while `following()` fingers zoom and rotate about it and do not pan.
+ * target's position on the screen; while `following()` fingers zoom and rotate about it and do not
+ * pan.
  */
 export function moveByPointer(element, camera, { onMove, onPan, middle, following }) {
   const held = new Map();

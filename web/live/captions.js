@@ -35,7 +35,8 @@ export function stateText(state, linked) {
 /** The warning shown in place of all others while there is no link. */
 export const linkLost = (state, seconds) => ({
   level: "error",
-  text: `No link for ${seconds} s, trying again.${records(state) ? " The recording continues" : ""}`,
+  text:
+    `No link for ${seconds} s, trying again.` + (records(state) ? " The recording continues" : ""),
 });
 
 /** Sensors, disk and batteries in brief: [{text, error}]. */
@@ -100,11 +101,13 @@ export function supplies({ rates = {}, fix, status, battery, notes }, phone) {
     ],
     [
       "Disk",
-      `${(free / 1e9).toFixed(0)} GB free${left === null ? "" : `, for ${duration(left)} at this rate`}`,
+      `${(free / 1e9).toFixed(0)} GB free` +
+        (left === null ? "" : `, for ${duration(left)} at this rate`),
     ],
     [
       "Recorded",
-      `${(status.file.written_bytes / 1e6).toFixed(0)} MB, ${lost ? `${lost} packets lost` : "nothing lost"}`,
+      `${(status.file.written_bytes / 1e6).toFixed(0)} MB, ` +
+        (lost ? `${lost} packets lost` : "nothing lost"),
     ],
     [
       "Computer",
@@ -164,7 +167,9 @@ export function hint(state, { loop }, { mayCapture, mapped }) {
   if (!loop || !(loop.walked_m > LOOP_WALKED_M))
     return "Open all rooms and walk slowly through each";
   if (loop.closed)
-    return `✓ Loop closed${loop.drift_m == null ? "" : `, drift ${Math.round(100 * loop.drift_m)} cm`}`;
+    return loop.drift_m == null
+      ? "✓ Loop closed"
+      : `✓ Loop closed, drift ${Math.round(100 * loop.drift_m)} cm`;
   if (loop.start_m < NEAR_START_M) return "At the start, loop not closed yet";
   return `Loop open: return to the start, ${Math.round(loop.start_m)} m`;
 }
@@ -187,7 +192,8 @@ export function coverageTexts(gaps, chosen) {
     ? `${count} ${count === 1 ? "place" : "places"} not seen${others}, show the next`
     : `No gaps near your path${others}`;
   const one = gap
-    ? `Not seen: ${gap.width_m.toFixed(1)} m wide, ${gap.away_m.toFixed(0)} m from your path${others}`
+    ? `Not seen: ${gap.width_m.toFixed(1)} m wide, ` +
+      `${gap.away_m.toFixed(0)} m from your path${others}`
     : "";
   return {
     well: ratio(gaps?.well),

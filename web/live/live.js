@@ -69,7 +69,7 @@ function redraw() {
   due = true;
 }
 
-/** Area of the map no bar covers, {left, top, right, bottom}, and its center, in pixels of the map. */
+/** Area of the map no bar covers, {left, top, right, bottom}, and its center [px]. */
 function space() {
   const [map, top, bottom, views] = [
     byId("map"),
@@ -236,9 +236,9 @@ function showAll(yes) {
 }
 
 function help() {
-  byId("about").textContent = me
-    ? `${me.login ? `Signed in as ${me.name}, ${me.role}. ` : ""}${scene.total.toLocaleString("en")} points on this phone.`
-    : "";
+  const who = me?.login ? `Signed in as ${me.name}, ${me.role}. ` : "";
+  const points = `${scene.total.toLocaleString("en")} points on this phone.`;
+  byId("about").textContent = me ? who + points : "";
   byId("name-it").hidden = !me?.may.includes("capture") || !records(scene.state);
   byId("more", HTMLDialogElement).showModal();
 }

@@ -11,8 +11,9 @@ const INKS = {
 const LONGEST_NOTE = 24;
 
 /**
- * The plan as an image of 4 x 4 pixels per cell, x to the right and y up; cells seen poorly are hatched.
- * `box` is the bounding box of the cells seen well, [[x, y], [x, y]] in meters; null if there are none.
+ * The plan as an image of 4 x 4 pixels per cell, x to the right and y up; cells seen poorly are
+ * hatched. `box` is the bounding box of the cells seen well, [[x, y], [x, y]] in meters; null if
+ * there are none.
  */
 export async function planImage(plan, [poor, well]) {
   const bytes = Uint8Array.from(atob(plan.seen), (letter) => letter.charCodeAt(0));
@@ -64,7 +65,10 @@ function boxOf({ first_cell: first, cell_m: size }, { from, to }) {
 
 const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
 
-/** Draws; `middle` is the target's position, `free` the area no bar covers: {left, top, right, bottom} [px]. */
+/**
+ * Draws; `middle` is the target's position, `free` the area no bar covers: {left, top, right,
+ * bottom} [px].
+ */
 export function drawOverlay(
   context,
   { width, height, ratio, middle, free },

@@ -1,4 +1,4 @@
-// State of the capture on this page, kept when the link is lost: a new link sends only what is missing.
+// State of the capture on this page, kept when the link is lost: a new link sends what is missing.
 
 import { openLiveStream, readMe } from "../shared/api.js";
 

@@ -80,7 +80,8 @@ export class NewJob extends HTMLElement {
           "Project name",
           this.#project,
           this.#again
-            ? "The same name runs again in this project, another name makes a new one. Finished stages with unchanged inputs are reused."
+            ? "The same name runs again in this project, another name makes a new one. " +
+                "Finished stages with unchanged inputs are reused."
             : "",
         ),
         field("Preset", this.#preset),

@@ -12,7 +12,7 @@ export class RecordingLook extends HTMLElement {
     this.hidden = true;
   }
 
-  /** Reads the summary of a recording; null if it cannot be read or another was requested meanwhile. */
+  /** The summary of a recording; null if unreadable or if another was requested meanwhile. */
   async look(path) {
     const mine = (this.#asked += 1);
     this.hidden = !path;

@@ -18,7 +18,10 @@ const RATE_OVER_S = 10;
 const LONGEST_WAIT_S = 30;
 const SYSTEM_FILES = new Set(["Thumbs.db", "desktop.ini"]);
 
-/** Of picked or dropped {file, name} the name of the whole, the files with names below it, and how many were left out. */
+/**
+ * Of picked or dropped {file, name}: the name of the whole, the files with names below it, and how
+ * many were left out.
+ */
 export function sorted(picked) {
   const meant = picked.filter(({ name }) =>
     name.split("/").every((part) => !part.startsWith(".") && !SYSTEM_FILES.has(part)),
@@ -154,7 +157,7 @@ export class Sending extends EventTarget {
     } while (this.#known.get(name).offset < file.size);
   }
 
-  /** Chunks take about a second or more, so that a slow line shows progress and a fast one is used. */
+  /** Chunks take about a second or more: a slow line shows progress, a fast one is used. */
   #suit(tookS) {
     if (tookS > 4) this.#chunk = Math.max(this.#chunk / 2, SMALLEST_CHUNK);
     else if (tookS < 1) this.#chunk = Math.min(this.#chunk * 2, CHUNK);

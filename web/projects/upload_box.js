@@ -168,7 +168,8 @@ export class UploadBox extends HTMLElement {
         make(
           "small",
           {},
-          ` ${bytes(received)} of ${bytes(total)} received. Select the same ${name.includes(".") ? "file" : "folder"} again to continue, until ${when(expires)}`,
+          ` ${bytes(received)} of ${bytes(total)} received. Select the same ` +
+            `${name.includes(".") ? "file" : "folder"} again to continue, until ${when(expires)}`,
         ),
       ),
       make(

@@ -41,7 +41,8 @@ export const KEYS = [
   ["?", "This list"],
   [
     "A key held down",
-    "Acts once, except for moving, turning, cut and zoom. After a decision A and R act again once another pair is drawn",
+    "Acts once, except for moving, turning, cut and zoom. " +
+      "After a decision A and R act again once another pair is drawn",
   ],
 ];
 
@@ -56,6 +57,7 @@ export function length(m) {
   return m < 0.995 ? `${(m * 100).toFixed(0)} cm` : `${m.toFixed(2)} m`;
 }
 
+export const degrees = (rad, digits = 1) => `${((rad * 180) / Math.PI).toFixed(digits)}°`;
 export const percent = (v) => (v === null || v === undefined ? "–" : `${Math.round(v * 100)} %`);
 export const plain = (v, digits = 3) =>
   v === null || v === undefined ? "–" : Number(v.toPrecision(digits)).toString();

@@ -50,7 +50,8 @@ export function askToSign(conflicts, sign) {
     make(
       "p",
       {},
-      "Your name, the time, the figures and the hashes of all results are signed. A version is kept that no later run or decision changes.",
+      "Your name, the time, the figures and the hashes of all results are signed. " +
+        "A version is kept that no later run or decision changes.",
     ),
     make("label", {}, make("span", {}, conflicts ? "Reason (needed)" : "Remark"), why),
     conflicts

@@ -98,7 +98,7 @@ export function drawHandle(context, /** @type {number[]} */ [u, v]) {
   context.fill();
 }
 
-/** The points picked in both places, numbered; `toScreen` maps points of the first place's frame. */
+/** Numbers the points picked in both places; `toScreen` maps from the first place's frame. */
 export function drawPicked(context, picking, pose, toScreen) {
   const pins = [
     ...picking.i.map((p, k) => [p, k, "#ff8f86"]),

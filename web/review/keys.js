@@ -1,4 +1,4 @@
-// The keyboard of the review page. A key held down acts once, except where it moves, turns or zooms.
+// The keyboard of the review page. A key held down acts once, unless it moves, turns or zooms.
 
 import { targetOf } from "../shared/dom.js";
 
@@ -42,7 +42,8 @@ function onMoveKey(event, actions) {
 function onPressKey(event, { press }) {
   const onControl = targetOf(event).matches("button, summary, a");
   const held = isHeld(event);
-  if (onControl && held) event.preventDefault(); // a held Enter would press the button again and again
+  // A held Enter would press the button again and again.
+  if (onControl && held) event.preventDefault();
   if (event.key === "Enter" && onControl) return;
   const action = press[event.key] ?? (event.altKey ? undefined : press[event.key.toLowerCase()]);
   if (!action) return;

@@ -49,8 +49,8 @@ function product(/** @type {number[]} */ [ax, ay, az, aw], [bx, by, bz, bw]) {
 }
 
 /**
- * The pose moved by `shift` and rotated by `angle` about `axis` through its own position, all in the
- * frame it maps into.
+ * The pose moved by `shift` and rotated by `angle` about `axis` through its own position, all in
+ * the frame it maps into.
  */
 export function nudged(pose, shift, axis, angle) {
   const s = Math.sin(angle / 2);

@@ -2,7 +2,7 @@
 
 import { fill, make } from "../shared/dom.js";
 import { when } from "../shared/format.js";
-import { KINDS, length, plain, seconds, percent } from "./captions.js";
+import { KINDS, degrees, length, plain, seconds, percent } from "./captions.js";
 
 const put = (panel, ...children) => panel.replaceChildren(...children.filter(Boolean));
 /** A row of a list of figures; `note` stands beside the value, `title` explains the term. */
@@ -67,7 +67,8 @@ export function showPair(panel, row, facts, found, limit_m) {
         "Degeneracy",
         plain(figures.degeneracy, 2),
         "0 unobservable, 0.33 isotropic",
-        "Smallest eigenvalue of the normalized information: near 0 the places can slide along each other",
+        "Smallest eigenvalue of the normalized information: " +
+          "near 0 the places can slide along each other",
       ),
       fact(
         "Path discrepancy",
@@ -84,7 +85,7 @@ export function showPair(panel, row, facts, found, limit_m) {
       fact(
         "Residual to the graph",
         facts ? length(facts.apart_m) : "…",
-        facts ? `${((facts.apart_rad * 180) / Math.PI).toFixed(2)}°` : "",
+        facts ? `${degrees(facts.apart_rad, 2)}` : "",
         "Difference between this edge and the relative pose in the optimized graph",
       ),
       fact("Decided by", row.who || "program", row.why),
@@ -159,7 +160,7 @@ export function showEffect(panel, effect, { working, choose }) {
       "✕ Accepted, but does not fit the graph",
       effect.conflicts.map((one) => [
         pair(one.pair),
-        ` residual ${length(one.residual_m)}, ${((one.residual_rad * 180) / Math.PI).toFixed(1)}°, by ${one.who}`,
+        ` residual ${length(one.residual_m)}, ${degrees(one.residual_rad)}, by ${one.who}`,
       ]),
       "bad",
     ),

@@ -1,5 +1,5 @@
-// <review-queue>: the loop closures to decide about, in the order of the server: large influence and
-// doubtful ones first.
+// <review-queue>: the loop closures to decide about, in the order of the server: large influence
+// and doubtful ones first.
 
 import { make } from "../shared/dom.js";
 import { VERDICTS, length, seconds } from "./captions.js";

@@ -81,7 +81,8 @@ function inTurn(action) {
   last = last.then(async () => {
     byId("news").textContent = "";
     await attempt(message, action);
-    if (message.textContent) update(await readReview(id).catch(() => null)); // others may have decided
+    // Others may have decided.
+    if (message.textContent) update(await readReview(id).catch(() => null));
   });
   return last;
 }
@@ -212,7 +213,8 @@ async function updateEffect() {
   if (state.hasDecisions) {
     effect = await attempt(message, () => readEffect(id));
     if (request !== effects.requested || !effect) return;
-    if (effect.superseded) return updateEffect(); // decided meanwhile, or an earlier request came late
+    // Decided meanwhile, or an earlier request came late.
+    if (effect.superseded) return updateEffect();
   }
   state.setEffect(effect);
   effects.shown = request;

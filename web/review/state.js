@@ -1,5 +1,5 @@
-// What the review page knows: the server's state, the pairs, the selected pair and the effect of the
-// decisions. No DOM, no network.
+// What the review page knows: the server's state, the pairs, the selected pair and the effect of
+// the decisions. No DOM, no network.
 
 import { keyOf, length } from "./captions.js";
 import { apart } from "./math.js";

@@ -89,8 +89,9 @@ export class PairView extends HTMLElement {
   }
 
   /**
-   * Shows a pair: points of both, poses {odometry, predicted, after}, rotation to upright as a quaternion.
-   * The promise resolves once the points are drawn; never if another pair is set before.
+   * Shows a pair: points of both, poses {odometry, predicted, after}, rotation to upright as a
+   * quaternion. The promise resolves once the points are drawn; never if another pair is set
+   * before.
    */
   set(points, poses, upright) {
     this.#points = points;

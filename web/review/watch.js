@@ -4,7 +4,7 @@ import { watchJobs } from "../shared/api.js";
 
 const POLL_MS = 4000; // others decide too, in other browsers or through another server
 
-/** Calls `poll` when something may have changed; shows in the page head whether the server answers. */
+/** Calls `poll` when something may have changed; the page head shows whether the server answers. */
 export function watchProject(id, poll) {
   const states = new Map();
   watchJobs(

@@ -8,6 +8,11 @@ import "./page_head.js";
 const api = await attempt(byId("message"), readOpenApi);
 const me = await readMe();
 const schemas = api?.components?.schemas ?? {};
+const EXAMPLES = {
+  "Tus-Resumable": "1.0.0",
+  "Upload-Offset": "0",
+  "Upload-Length": "114359304",
+};
 const anchor = (text) => text.replace(/[^A-Za-z0-9]+/g, "-").toLowerCase();
 
 function table(heads, rows) {
@@ -109,10 +114,7 @@ function curl(path, method, operation, body) {
   if (method !== "get") parts.push(`-X ${method.toUpperCase()}`);
   if (me.login)
     parts.push("-b cookies.txt", ...(method === "get" ? [] : ["-H 'X-Recon4-Token: TOKEN'"]));
-  for (const one of headers)
-    parts.push(
-      `-H '${one.name}: ${{ "Tus-Resumable": "1.0.0", "Upload-Offset": "0", "Upload-Length": "114359304" }[one.name] ?? "…"}'`,
-    );
+  for (const one of headers) parts.push(`-H '${one.name}: ${EXAMPLES[one.name] ?? "…"}'`);
   if (body?.json)
     parts.push("-H 'Content-Type: application/json'", `-d '${JSON.stringify(body.json)}'`);
   if (body?.binary) parts.push(`-H 'Content-Type: ${body.binary}'`, "--data-binary @walk.pcap");

@@ -2,7 +2,8 @@
 
 const VERTEX = `#version 300 es
 in vec3 voxel; in float value;
-uniform mat3 turn; uniform vec3 target; uniform vec2 scale; uniform vec2 shift; uniform float size; uniform float voxelM; uniform vec2 heights; uniform float top; uniform bool byHeight; uniform bool ink;
+uniform mat3 turn; uniform vec3 target; uniform vec2 scale; uniform vec2 shift; uniform float size;
+uniform float voxelM; uniform vec2 heights; uniform float top; uniform bool byHeight, ink;
 out vec3 color;
 vec3 ramp(float t) {
   vec3 a = vec3(0.27, 0.0, 0.33), b = vec3(0.13, 0.57, 0.55), c = vec3(0.99, 0.91, 0.14);
@@ -11,7 +12,8 @@ vec3 ramp(float t) {
 void main() {
   vec3 p = (voxel + 0.5) * voxelM;
   vec3 q = turn * (p - target);
-  gl_Position = p.z > top ? vec4(2.0, 2.0, 2.0, 1.0) : vec4(q.xy * scale + shift, -q.z * 0.002, 1.0);
+  gl_Position = vec4(q.xy * scale + shift, -q.z * 0.002, 1.0);
+  if (p.z > top) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
   gl_PointSize = size;
   float t = clamp((p.z - heights.x) / (heights.y - heights.x), 0.0, 1.0);
   float v = value / 255.0;
@@ -67,8 +69,8 @@ export class CloudCanvas {
   }
 
   /**
-   * Draws the points below the height `top`; `turn` is a rotation by columns, `scale` clip units per
-   * meter, `shift` the target in clip units.
+   * Draws the points below the height `top`; `turn` is a rotation by columns, `scale` clip units
+   * per meter, `shift` the target in clip units.
    */
   draw({ turn, target, scale, shift, size, top, byHeight, ink }) {
     const gl = this.#gl;

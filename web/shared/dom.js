@@ -37,7 +37,7 @@ export function fill(element, ...children) {
   if (fresh.innerHTML !== element.innerHTML) element.replaceChildren(...fresh.childNodes);
 }
 
-/** Runs an action and returns its result; an error is shown in `message`, the result is undefined. */
+/** Returns the result of an action; an error is shown in `message`, the result is undefined. */
 export async function attempt(message, action) {
   message.textContent = "";
   try {

@@ -1,13 +1,13 @@
-// Pointer, touch and wheel gestures on a map or view. Positions are [x, y] in pixels of the element.
+// Pointer, touch and wheel gestures on a map or view. Positions are [x, y] in px of the element.
 
 /**
  * @typedef {number[]} Position
- * @typedef {{middle: Position, apart: number, angle: number}} Pair two pointers: distance, direction
+ * @typedef {{middle: Position, apart: number, angle: number}} Pair two pointers
  * @typedef {object} Gestures
- * @property {(at: Position, event: PointerEvent, count: number) => void} [onDown] `count` pointers now
+ * @property {(at: Position, event: PointerEvent, count: number) => void} [onDown] the count-th
  * @property {(from: Position, to: Position, event: PointerEvent) => void} [onDrag] one pointer
  * @property {(before: Pair, after: Pair) => void} [onPinch] two pointers
- * @property {(at: Position, event: PointerEvent, count: number) => void} [onUp] `count` pointers before
+ * @property {(at: Position, event: PointerEvent, count: number) => void} [onUp] one of `count`
  * @property {(at: Position, event: PointerEvent) => void} [onHover] a pointer moves, pressed or not
  * @property {(deltaY: number, at: Position) => void} [onWheel]
  */

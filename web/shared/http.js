@@ -17,7 +17,7 @@ export class ApiError extends Error {
 
 /** @typedef {import("./http_types").Operations} Operations */
 /**
- * What goes with a request: path and query parameters and the body, as far as the operation has them.
+ * What goes with a request, as far as the operation has it: path and query parameters, body.
  * @template {keyof Operations} K
  * @typedef {Omit<Operations[K], "response">} Parts
  */
@@ -60,7 +60,7 @@ export async function request(operation, ...parts) {
 
 export const name = encodeURIComponent;
 
-/** The URL of a path template, `{x}` filled from `path`; parameters that are undefined are left out. */
+/** The URL of a path template, `{x}` filled from `path`; undefined parameters are left out. */
 export function urlOf(template, path, query = {}) {
   const given = Object.entries(query).filter(([, value]) => value !== undefined);
   const search = given.map(([key, value]) => `${key}=${name(value)}`).join("&");
@@ -92,7 +92,8 @@ export async function changeHeaders(method = "POST") {
 
 function leaveForLogin() {
   if (BEFORE_LOGIN.includes(location.pathname)) return;
-  const paired = location.pathname === LIVE_URL; // a phone may have no password; the pairing page offers both
+  // A phone may have no password; the pairing page offers both.
+  const paired = location.pathname === LIVE_URL;
   location.assign(paired ? "/pair#again" : `/login#next=${encodeURIComponent(location.pathname)}`);
 }
 

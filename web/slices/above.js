@@ -1,5 +1,5 @@
-// <slice-above>: the map from above with the cut on it. Drag the line or its ends; drag beside it for a
-// new cut.
+// <slice-above>: the map from above with the cut on it. Drag the line or its ends; drag beside it
+// for a new cut.
 //
 // Event: "cut" with detail {a, b} [m].
 

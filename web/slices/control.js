@@ -11,7 +11,11 @@ import {
 import { attempt, make } from "../shared/dom.js";
 
 const MAX_ROWS = 300;
+const MAX_NAMED = 10;
 const cm = (m) => (m * 100).toFixed(1);
+const named = (ids) =>
+  ids.slice(0, MAX_NAMED).join(", ") +
+  (ids.length > MAX_NAMED ? ` and ${ids.length - MAX_NAMED} more` : "");
 
 export function controlPanel({ id, change, point: pointAt, measured }) {
   const message = make("p", { className: "error", role: "alert" });
@@ -52,7 +56,8 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
       make(
         "p",
         {},
-        `${found.points.length} points, separated by "${found.delimiter}", decimal "${found.decimal}"`,
+        `${found.points.length} points, separated by "${found.delimiter}", ` +
+          `decimal "${found.decimal}"`,
       ),
       make(
         "table",
@@ -82,7 +87,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
     );
   }
 
-  /** Applies changes one after the other to the stored state: another tab or person may change it, too. */
+  /** Applies changes one after the other to the stored state, which others may change too. */
   function keep(edit) {
     const done = last.then(() => write(edit));
     last = done.catch(() => {});
@@ -194,8 +199,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
       else without.push(one.id);
     }
     await put(places);
-    if (without.length)
-      message.textContent = `No surface within 30 cm of ${without.slice(0, 10).join(", ")}${without.length > 10 ? ` and ${without.length - 10} more` : ""}`;
+    if (without.length) message.textContent = `No surface within 30 cm of ${named(without)}`;
   }
 
   function row(one, residual, earlier) {
@@ -306,7 +310,8 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
       make(
         "p",
         { className: "quiet" },
-        `RMSE E ${cm(one.rmse_m[0])}  N ${cm(one.rmse_m[1])}  U ${cm(one.rmse_m[2])}  3D ${cm(one.rmse_3d_m)} cm`,
+        `RMSE ${one.rmse_m.map((rmse, axis) => `${"ENU"[axis]} ${cm(rmse)}`).join("  ")}  ` +
+          `3D ${cm(one.rmse_3d_m)} cm`,
       ),
     );
   }

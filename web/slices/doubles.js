@@ -10,9 +10,10 @@ const REACH_M = 0.75;
 const MAX_ROWS = 50;
 
 const cm = (m) => `${(m * 100).toFixed(1)} cm`;
+const range = ([from, to]) => `${from}–${to}`;
 const span = ([from, to]) => `${from.toFixed(0)}–${to.toFixed(0)} s`;
 
-/** A horizontal cut through the middle, close up; a vertical one across, where the surface is level. */
+/** A close horizontal cut through the middle; if the surface is level, a vertical one across. */
 function cutAt(wall) {
   const [x, y, z] = wall.middle_m;
   const close = { t: 0.1, color: "time", lo: null, hi: null, m: 0.003 };
@@ -62,7 +63,9 @@ export function doublesPanel({ id, change, point, state }) {
 
   function show(found) {
     const seen = found.patches
-      ? `${count(found.patches)} patches were visited twice; distance between the visits ${cm(found.median_separation_m)} (median), ${cm(found.p95_separation_m)} (95 %); a surface is ${cm(found.median_sigma_m)} thick (σ).`
+      ? `${count(found.patches)} patches were visited twice; distance between the visits ` +
+        `${cm(found.median_separation_m)} (median), ${cm(found.p95_separation_m)} (95 %); ` +
+        `a surface is ${cm(found.median_sigma_m)} thick (σ).`
       : "No surface was visited twice: double walls cannot be detected.";
     const verdict = found.walls.length
       ? make("p", { className: "verdict bad" }, `✕ ${found.walls.length} double walls`)
@@ -153,7 +156,8 @@ export function doublesPanel({ id, change, point, state }) {
       make(
         "td",
         {},
-        `${wall.spans_s.map(span).join(" and ")}; multiframes ${wall.frames.map(([from, to]) => `${from}–${to}`).join(" and ")}`,
+        `${wall.spans_s.map(span).join(" and ")}; ` +
+          `multiframes ${wall.frames.map(range).join(" and ")}`,
       ),
     );
   }

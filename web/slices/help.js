@@ -26,7 +26,8 @@ export function help(dialog) {
     make(
       "p",
       {},
-      "On the map from above: drag for a vertical cut, drag its line or its ends A and B. The arrow shows the viewing direction.",
+      "On the map from above: drag for a vertical cut, drag its line or its ends A and B. " +
+        "The arrow shows the viewing direction.",
     ),
     make("form", { method: "dialog" }, make("button", { className: "primary" }, "Close")),
   );

@@ -11,6 +11,7 @@ import {
 } from "../shared/api.js";
 import { byId, fill, make, targetOf } from "../shared/dom.js";
 import { count } from "../shared/format.js";
+import { cutText, distanceText, imageText, lengthText, pointText } from "./captions.js";
 import { controls } from "./controls.js";
 import { findings } from "./findings.js";
 import { legend } from "./legend.js";
@@ -127,24 +128,23 @@ async function loadSecond(mine) {
   );
   if (mine !== turn) return;
   await second.show(image);
-  captions[1].textContent = `${sourceText(state.beside)} · ${COLORS[color]} · ${count(image.points)} points`;
+  captions[1].textContent = imageText(
+    { source: state.beside, color, points: count(image.points) },
+    facts.sources,
+  );
 }
-
-const sourceText = (source) =>
-  source ? (facts.sources.find((one) => one.id === source)?.words ?? source) : "This map";
 
 function describe() {
   const [name, points] = [shown.name, count(shown.points)];
-  captions[0].textContent = `${sourceText(state.source)} · ${COLORS[state.color]} · ${points} points`;
+  captions[0].textContent = imageText(
+    { source: state.source, color: state.color, points },
+    facts.sources,
+  );
   first.label = `Slice ${name}, ${points} points, colored by ${COLORS[state.color]}`;
   second.label = captions[1].textContent;
   fill(
     facing,
-    make(
-      "strong",
-      {},
-      `${{ horizontal: "Horizontal", vertical: "Vertical", free: "Free plane" }[state.kind]} ${name}`,
-    ),
+    make("strong", {}, cutText(state.kind, name)),
     make("span", {}, `${Number((state.t * 100).toFixed(1))} cm thick`),
     make("span", {}, `${points} points`),
     make("span", { className: "frame" }, facts.frame),
@@ -176,33 +176,12 @@ async function place({ u, v, reach }) {
   if (measuring) measured = measured.length >= 2 ? [answer] : [...measured, answer];
   found.picked(answer);
   mark();
-  reading.textContent = measured.length === 2 ? distanceText(...measured) : pointText(answer);
-}
-
-const fixed = (xs) => xs.map((x) => x.toFixed(3)).join("  ");
-
-function pointText({ p_map, p_crs, about }) {
-  const parts = [`x y z  ${fixed(p_map)} m`];
-  if (p_crs) parts.push(`${facts.crs}  E N H  ${fixed(p_crs)} m`);
-  if (about.intensity !== undefined) parts.push(`intensity ${about.intensity}`);
-  if (facts.sensors.length) parts.push(facts.sensors[about.sensor] ?? `sensor ${about.sensor}`);
-  if (about.time_s !== undefined)
-    parts.push(`${about.time_s.toFixed(1)} s, multiframe ${about.frame_id}`);
-  return parts.join(" · ");
-}
-
-function lengths(a, b) {
-  const d = b.p_map.map((x, k) => x - a.p_map[k]);
-  return { all: Math.hypot(...d), flat: Math.hypot(d[0], d[1]), up: d[2] };
-}
-
-function distanceText(a, b) {
-  const { all, flat, up } = lengths(a, b);
-  return `Distance ${all.toFixed(3)} m · horizontal ${flat.toFixed(3)} m · vertical ${up.toFixed(3)} m · from ${fixed(a.p_map)} to ${fixed(b.p_map)}`;
+  reading.textContent =
+    measured.length === 2 ? distanceText(measured[0], measured[1]) : pointText(answer, facts);
 }
 
 function mark() {
-  const line = measured.length === 2 ? `${lengths(...measured).all.toFixed(3)} m` : "";
+  const line = measured.length === 2 ? lengthText(measured[0], measured[1]) : "";
   const marks =
     measuring || measured.length
       ? [{ points: measured.map((one) => one.uv), text: line }]

@@ -1,6 +1,7 @@
 // <slice-view>: a slice with grid, coordinates, scale bar; pan, zoom, pick. No network.
 //
-// Events: "frame" (panned or zoomed), "moving" (while it moves), "place" (a click, detail {u, v, reach}).
+// Events: "frame" (panned or zoomed), "moving" (while it moves), "place" (a click; its detail is
+// {u, v, reach}).
 
 import { make } from "../shared/dom.js";
 import { listenToGestures } from "../shared/gestures.js";

@@ -1,0 +1,23 @@
+import assert from "node:assert/strict";
+import { readFileSync, readdirSync } from "node:fs";
+import { test } from "node:test";
+import { fileURLToPath } from "node:url";
+
+const ROOT = new URL("../../", import.meta.url);
+const MAX_CHARACTERS = 100;
+const GENERATED = "web/shared/http_types.d.ts";
+
+/** Files written by people, with their lines. */
+const files = ["web/", "tests/web/"].flatMap((folder) =>
+  readdirSync(fileURLToPath(new URL(folder, ROOT)), { recursive: true })
+    .map((name) => folder + name)
+    .filter((path) => /\.(js|ts|css|html)$/.test(path) && path !== GENERATED)
+    .map((path) => ({ path, lines: readFileSync(new URL(path, ROOT), "utf8").split("\n") })),
+);
+
+test("no line of the pages has more than 100 characters", () => {
+  const wide = files.flatMap(({ path, lines }) =>
+    lines.flatMap((line, k) => ([...line].length > MAX_CHARACTERS ? [`${path}:${k + 1}`] : [])),
+  );
+  assert.deepEqual(wide, []);
+});

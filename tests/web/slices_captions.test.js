@@ -1,0 +1,34 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { cutText, distanceText, imageText, pointText } from "../../web/slices/captions.js";
+
+test("a caption names the map, the color and the points", () => {
+  const sources = [{ id: "v1", words: "Version 1" }];
+  const of = (source) => imageText({ source, color: "time", points: "12" }, sources);
+  assert.equal(of(""), "This map · Time · 12 points");
+  assert.equal(of("v1"), "Version 1 · Time · 12 points");
+  assert.equal(of("gone"), "gone · Time · 12 points");
+  assert.equal(cutText("free", "B"), "Free plane B");
+});
+
+test("a point is given in the map and in the coordinate reference system", () => {
+  const point = {
+    p_map: [1, 2, 3],
+    p_crs: [500001, 5, 6],
+    about: { intensity: 7, sensor: 1, time_s: 8.04, frame_id: 9 },
+  };
+  assert.equal(
+    pointText(point, { crs: "EPSG:25832", sensors: ["front"] }),
+    "x y z  1.000  2.000  3.000 m · EPSG:25832  E N H  500001.000  5.000  6.000 m · " +
+      "intensity 7 · sensor 1 · 8.0 s, multiframe 9",
+  );
+});
+
+test("a distance has its horizontal and its vertical part", () => {
+  assert.equal(
+    distanceText({ p_map: [0, 0, 0] }, { p_map: [3, 4, 12] }),
+    "Distance 13.000 m · horizontal 5.000 m · vertical 12.000 m · " +
+      "from 0.000  0.000  0.000 to 3.000  4.000  12.000",
+  );
+});

@@ -1,0 +1,45 @@
+// Captions of slices, of points picked on them and of distances. No DOM, no network.
+
+import { COLORS } from "./state.js";
+
+const KINDS = { horizontal: "Horizontal", vertical: "Vertical", free: "Free plane" };
+const fixed = (xs) => xs.map((x) => x.toFixed(3)).join("  ");
+
+/** The kind of the cut and its name. */
+export const cutText = (kind, name) => `${KINDS[kind]} ${name}`;
+
+/** What a slice image shows. */
+export function imageText({ source, color, points }, sources) {
+  const name = source ? (sources.find((one) => one.id === source)?.words ?? source) : "This map";
+  return `${name} · ${COLORS[color]} · ${points} points`;
+}
+
+/** Coordinates and attributes of a picked point. */
+export function pointText({ p_map, p_crs, about }, { crs, sensors }) {
+  const parts = [`x y z  ${fixed(p_map)} m`];
+  if (p_crs) parts.push(`${crs}  E N H  ${fixed(p_crs)} m`);
+  if (about.intensity !== undefined) parts.push(`intensity ${about.intensity}`);
+  if (sensors.length) parts.push(sensors[about.sensor] ?? `sensor ${about.sensor}`);
+  if (about.time_s !== undefined)
+    parts.push(`${about.time_s.toFixed(1)} s, multiframe ${about.frame_id}`);
+  return parts.join(" · ");
+}
+
+function lengths(a, b) {
+  const d = b.p_map.map((x, k) => x - a.p_map[k]);
+  return { all: Math.hypot(...d), flat: Math.hypot(d[0], d[1]), up: d[2] };
+}
+
+/** The distance of two picked points, to stand beside the line between them. */
+export const lengthText = (a, b) => `${lengths(a, b).all.toFixed(3)} m`;
+
+/** The distance of two picked points in full. */
+export function distanceText(a, b) {
+  const { all, flat, up } = lengths(a, b);
+  return [
+    `Distance ${all.toFixed(3)} m`,
+    `horizontal ${flat.toFixed(3)} m`,
+    `vertical ${up.toFixed(3)} m`,
+    `from ${fixed(a.p_map)} to ${fixed(b.p_map)}`,
+  ].join(" · ");
+}
