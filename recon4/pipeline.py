@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from recon4 import stages
 from recon4.errors import RecordingError, StoreError
@@ -18,9 +19,14 @@ from recon4.store.hashing import hash_json, size_of
 from recon4.store.inputs import input_file, input_files
 from recon4.store.project import Project, read_artifacts, read_description
 from recon4.store.recipes import check_recipes, settings_in
-from recon4.store.stage import Artifact, Input, StageRunner
+from recon4.store.stage import Artifact, Input, Stage, StageRunner
 
-BEFORE_REVIEW = (stages.FRAMES, stages.ODOMETRY, stages.GRAPH, stages.VERIFICATION)
+BEFORE_REVIEW: tuple[Stage[Any], ...] = (
+    stages.FRAMES,
+    stages.ODOMETRY,
+    stages.GRAPH,
+    stages.VERIFICATION,
+)
 """What decisions of people do not change."""
 
 
@@ -109,7 +115,7 @@ def remake(out: Path, *, progress: Progress | None = None) -> Summary:
     settings = settings_in(made[name] for name in sorted(made, key=before.__contains__))
     with Project.open(out) as project:
         runner = StageRunner(project, settings, progress)
-        frames, odometry, _, graph = (runner.keep(stage.name) for stage in BEFORE_REVIEW)
+        frames, odometry, _, graph = (runner.keep(stage) for stage in BEFORE_REVIEW)
         run_from_review(
             runner, frames=frames, odometry=odometry, graph=graph, decided=read_decided(out)
         )

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
+from recon4 import stages
 from recon4.errors import ConfigError, StoreError
 from recon4.export.laz import export_laz
 from recon4.export.names import check_name
 from recon4.export.ply import export_ply
 from recon4.georeference.stage import read_crs
 from recon4.mapping.tiles import TileSet
-from recon4.model.pose_graph import Verdict
+from recon4.model.figures import Figures
+from recon4.model.plain import to_plain
 from recon4.pose_graph.files import load_graph
 from recon4.pose_graph.g2o import write_g2o
 from recon4.progress import Progress, track
@@ -22,10 +24,10 @@ from recon4.recording.formats.poses import write_tum
 from recon4.report.artifacts import path_length_m
 from recon4.report.facts import InputFile, ReportFacts, StageTiming
 from recon4.report.html import write_report
-from recon4.report.verdict import assess
+from recon4.report.verdict import MapVerdict, assess
 from recon4.review.approval import put_back
 from recon4.review.approved import Approval, approval_of
-from recon4.review.stamp import stamp_file
+from recon4.review.stamp import Stamp, stamp_file
 from recon4.settings import Settings, to_json
 from recon4.store.arrays import load_trajectory
 from recon4.store.atomic import atomic_file, copy_file, write_json
@@ -33,7 +35,7 @@ from recon4.store.checked import Altered
 from recon4.store.hashing import hash_file
 from recon4.store.project import SUMMARY, read_artifacts
 from recon4.store.seal import changing
-from recon4.store.stage import StageRun, versions
+from recon4.store.stage import StageRun, figures_of, versions
 
 RESULTS = (
     "trajectory.tum",
@@ -61,6 +63,42 @@ FORMAT = 2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class StageSummary:
+    """How a stage went; the fields are its keys in ``summary.json``."""
+
+    key: str
+    """Of its artifact."""
+    stage: str
+    version: int
+    finished: str
+    """When its artifact was made, ISO 8601 UTC."""
+    seconds: float
+    """Wall clock [s]."""
+    cpu_seconds: float
+    """Processor time, children included [s]."""
+    peak_bytes: int
+    reused: bool
+    """Whether an earlier run made it."""
+    figures: Figures
+
+    @staticmethod
+    def of(run: StageRun[Any]) -> StageSummary:
+        """The summary of a stage that ran."""
+        done = run.done
+        return StageSummary(
+            key=done.key,
+            stage=done.stage,
+            version=done.version,
+            finished=done.finished,
+            seconds=round(done.seconds, 3),
+            cpu_seconds=round(done.cpu_seconds, 3),
+            peak_bytes=done.peak_bytes,
+            reused=run.reused,
+            figures=run.figures,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Summary:
     """Contents of ``summary.json``; the fields are its keys."""
 
@@ -85,18 +123,17 @@ class Summary:
     """In the map."""
     edges: Mapping[str, int]
     """Pairs tried by verdict, as ``edges.json`` has them: positions had the last word."""
-    verdict: Mapping[str, Any]
-    """``usability``: good, check or do not use; ``reasons``: the findings that led to it."""
+    verdict: MapVerdict
     warnings: tuple[str, ...]
     seconds: float
     """Wall clock of all stages, of the earlier run where reused [s]."""
     peak_bytes: int
     """Largest resident memory of any stage [bytes]."""
-    stages: tuple[dict[str, Any], ...]
-    """How each stage went, in order: key, version, times, memory, reused, figures."""
+    stages: tuple[StageSummary, ...]
+    """How each stage went, in order."""
     versions: Mapping[str, str]
     settings: Mapping[str, Any]
-    approval: Mapping[str, Any] | None
+    approval: Stamp | None
     """Who approved these results, when, as which version; null = a draft."""
     hashes: Mapping[str, Mapping[str, str]]
     """SHA-256 of ``inputs`` and of ``results``, by file name."""
@@ -105,12 +142,13 @@ class Summary:
 
     def to_json(self) -> dict[str, Any]:
         """Plain JSON values."""
-        values = {name: value for name, value in asdict(self).items() if name != "folder"}
+        names = [one.name for one in fields(self) if one.name != "folder"]
+        values: dict[str, Any] = to_plain({name: getattr(self, name) for name in names})
         return {"format": FORMAT} | values
 
 
 def publish(
-    root: Path, runs: Mapping[str, StageRun], about: About, *, progress: Progress
+    root: Path, runs: Mapping[str, StageRun[Any]], about: About, *, progress: Progress
 ) -> Summary:
     """Write the results; ``summary.json`` comes last and vouches for the others.
 
@@ -128,7 +166,7 @@ def publish(
 
 
 def _publish(
-    root: Path, runs: Mapping[str, StageRun], about: About, *, progress: Progress
+    root: Path, runs: Mapping[str, StageRun[Any]], about: About, *, progress: Progress
 ) -> Summary:
     (root / SUMMARY).unlink(missing_ok=True)
     created = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
@@ -137,26 +175,27 @@ def _publish(
     for write in track(_writers(root, runs, facts), progress, what="results", unit="files"):
         write()
     approval, warning = _put_back(root, {name: run.artifact.key for name, run in runs.items()})
+    frames, level = figures_of(runs, stages.FRAMES), figures_of(runs, stages.LEVEL)
     summary = Summary(
         name=about.project["name"],
         created=created,
         preset=about.project["preset"],
-        rig=runs["frames"].figures["rig"],
-        crs=runs["level"].figures["crs"],
+        rig=frames.rig,
+        crs=level.crs,
         duration_s=round(int(trajectory.t_ns[-1] - trajectory.t_ns[0]) / 1e9, 3),
         path_length_m=round(float(path_length_m(trajectory)[-1]), 3),
-        multiframes=runs["frames"].figures["multiframes"],
-        lost=runs["odometry"].figures["lost"],
-        points=runs["map"].figures["points"],
-        edges=edges_by_verdict(runs["level"].artifact.folder),
-        verdict=asdict(assess(facts)),
-        warnings=(*runs["frames"].figures["warnings"], *_later_warnings(runs), *warning),
+        multiframes=frames.multiframes,
+        lost=figures_of(runs, stages.ODOMETRY).lost,
+        points=figures_of(runs, stages.MAP).points,
+        edges=load_graph(runs["level"].artifact.folder).verdict_counts(),
+        verdict=assess(facts),
+        warnings=(*frames.warnings, *_later_warnings(runs), *warning),
         seconds=round(sum(run.done.seconds for run in runs.values()), 3),
         peak_bytes=max(run.done.peak_bytes for run in runs.values()),
-        stages=tuple(_stage(run) for run in runs.values()),
+        stages=tuple(StageSummary.of(run) for run in runs.values()),
         versions=versions(),
         settings=to_json(about.settings),
-        approval=asdict(approval.stamp) if approval else None,
+        approval=approval.stamp if approval else None,
         hashes={
             "inputs": {file["name"]: file["sha256"] for file in about.project["inputs"]},
             "results": {name: hash_file(root / name) for name in RESULTS},
@@ -176,16 +215,6 @@ def _put_back(root: Path, keys: Mapping[str, str]) -> tuple[Approval | None, tup
     except Altered as error:
         return None, (f"the approved files were not put back, this is a draft: {error}",)
     return approval, ()
-
-
-def edges_by_verdict(artifact: Path) -> dict[str, int]:
-    """How many pairs a graph holds of each verdict.
-
-    Args:
-        artifact: Folder of a stage that leaves a graph; ``level`` for the finished one.
-    """
-    edges = load_graph(artifact).edges
-    return {str(v): sum(edge.verdict is v for edge in edges) for v in Verdict}
 
 
 def export_map(project: Path, path: Path, *, crs: str, progress: Progress) -> int:
@@ -234,7 +263,7 @@ def export_map(project: Path, path: Path, *, crs: str, progress: Progress) -> in
 
 
 def _writers(
-    root: Path, runs: Mapping[str, StageRun], facts: ReportFacts
+    root: Path, runs: Mapping[str, StageRun[Any]], facts: ReportFacts
 ) -> list[Callable[[], None]]:
     """One function a file of `RESULTS`."""
     folder = {name: run.artifact.folder for name, run in runs.items()}
@@ -258,7 +287,7 @@ def _write_g2o(artifact: Path, path: Path) -> None:
         write_g2o(temporary, load_graph(artifact))
 
 
-def _facts(runs: Mapping[str, StageRun], about: About, *, created: str) -> ReportFacts:
+def _facts(runs: Mapping[str, StageRun[Any]], about: About, *, created: str) -> ReportFacts:
     return ReportFacts(
         title=about.project["name"],
         created=created,
@@ -276,23 +305,18 @@ def _facts(runs: Mapping[str, StageRun], about: About, *, created: str) -> Repor
             for file in about.project["inputs"]
         ),
         versions=versions(),
-        rig=runs["frames"].figures["rig"],
-        crs=runs["level"].figures["crs"],
+        rig=figures_of(runs, stages.FRAMES).rig,
+        crs=figures_of(runs, stages.LEVEL).crs,
         warnings=_later_warnings(runs),
     )
 
 
-def _later_warnings(runs: Mapping[str, StageRun]) -> tuple[str, ...]:
+def _later_warnings(runs: Mapping[str, StageRun[Any]]) -> tuple[str, ...]:
     """What stages after the import have to say."""
-    record = tuple(runs["odometry"].figures.get("warnings", []))
-    if "review" in runs:
-        record += tuple(runs["review"].figures["warnings"])
-    level = runs["level"].figures
-    if runs["frames"].figures["gnss"] and not level["crs"]:
-        record += (f"the positions were not used, the map is local: {level['local']}",)
-    return record
-
-
-def _stage(run: StageRun) -> dict[str, Any]:
-    record = asdict(run.done) | {"reused": run.reused, "figures": dict(run.figures)}
-    return {name: round(v, 3) if isinstance(v, float) else v for name, v in record.items()}
+    warnings = figures_of(runs, stages.ODOMETRY).warnings
+    if stages.REVIEW.name in runs:
+        warnings += figures_of(runs, stages.REVIEW).warnings
+    level = figures_of(runs, stages.LEVEL)
+    if figures_of(runs, stages.FRAMES).gnss and not level.crs:
+        warnings += (f"the positions were not used, the map is local: {level.local}",)
+    return warnings

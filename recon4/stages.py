@@ -6,8 +6,18 @@ A version goes up whenever the same inputs give another result than before.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
+from recon4.model.figures import (
+    Figures,
+    FrameFigures,
+    GraphFigures,
+    LevelFigures,
+    MapFigures,
+    OdometryFigures,
+    RefineFigures,
+    ReviewFigures,
+    VerificationFigures,
+)
 from recon4.model.rig import Rig
 from recon4.progress import Progress
 from recon4.review.decisions import Standing
@@ -26,7 +36,7 @@ def _frames(
     rig: Rig | None,
     imu: Path | None,
     gnss: Path | None,
-) -> dict[str, Any]:
+) -> FrameFigures:
     from recon4.recording.ingest import ingest
 
     ingest(
@@ -35,23 +45,25 @@ def _frames(
     return frames_figures(out)
 
 
-def frames_figures(folder: Path) -> dict[str, Any]:
+def frames_figures(folder: Path) -> FrameFigures:
     """Figures of the stage ``frames``; a live capture has made its artifact by itself."""
     from recon4.store.frames import FrameStore
 
     store = FrameStore.open(folder)
-    return {
-        "multiframes": len(store),
-        "points": store.points,
-        "rig": store.rig.name,
-        "imu": store.imu is not None,
-        "gnss": store.gnss is not None,
-        "outcome": store.report.get("outcome", "complete"),
-        "warnings": store.report.get("warnings", []),
-    }
+    return FrameFigures(
+        multiframes=len(store),
+        points=store.points,
+        rig=store.rig.name,
+        imu=store.imu is not None,
+        gnss=store.gnss is not None,
+        outcome=store.report.get("outcome", "complete"),
+        warnings=tuple(store.report.get("warnings", [])),
+    )
 
 
-def _odometry(*, out: Path, settings: Settings, progress: Progress, frames: Path) -> dict[str, Any]:
+def _odometry(
+    *, out: Path, settings: Settings, progress: Progress, frames: Path
+) -> OdometryFigures:
     from recon4.georeference.gnss_aiding import make_gnss_aiding
     from recon4.registration.stage import run_odometry
     from recon4.store.frames import FrameStore
@@ -63,7 +75,7 @@ def _odometry(*, out: Path, settings: Settings, progress: Progress, frames: Path
 
 def _graph(
     *, out: Path, settings: Settings, progress: Progress, frames: Path, odometry: Path
-) -> dict[str, Any]:
+) -> GraphFigures:
     from recon4.pose_graph.search import build_graph
     from recon4.store.frames import FrameStore
 
@@ -72,19 +84,23 @@ def _graph(
 
 def _verification(
     *, out: Path, settings: Settings, progress: Progress, graph: Path
-) -> dict[str, Any]:
+) -> VerificationFigures:
     from recon4.pose_graph.files import load_graph, save_graph
     from recon4.pose_graph.verification import verify
     from recon4.store.atomic import write_json
 
     if settings.graph.mode in ("10", "overlap"):  # V Table 3.2: these stop before verification
         save_graph(out, load_graph(graph))
-        return {}
+        return VerificationFigures()
     found = verify(load_graph(graph), settings=settings.verification, progress=progress)
     save_graph(out, found.graph)
     record = found.to_json()
     write_json(out / "verification.json", record)
-    return {name: record[name] for name in ("edges", "chi2_before", "chi2_after")}
+    return VerificationFigures(
+        edges=found.graph.verdict_counts(),
+        chi2_before=found.chi2_before,
+        chi2_after=found.chi2_after,
+    )
 
 
 def _review(
@@ -94,7 +110,7 @@ def _review(
     progress: Progress,
     graph: Path,
     decisions: tuple[Standing, ...],
-) -> dict[str, Any]:
+) -> ReviewFigures:
     from recon4.review.solve import run_review
 
     return run_review(graph, decisions, out, settings=settings, progress=progress)
@@ -102,7 +118,7 @@ def _review(
 
 def _refine(
     *, out: Path, settings: Settings, progress: Progress, frames: Path, odometry: Path, graph: Path
-) -> dict[str, Any]:
+) -> RefineFigures:
     from recon4.semi_rigid.refine import refine
     from recon4.store.frames import FrameStore
 
@@ -112,7 +128,7 @@ def _refine(
 
 def _level(
     *, out: Path, settings: Settings, progress: Progress, frames: Path, refined: Path, graph: Path
-) -> dict[str, Any]:
+) -> LevelFigures:
     from recon4.georeference.stage import run_level
     from recon4.store.frames import FrameStore
 
@@ -144,7 +160,7 @@ def _map(
     frames: Path,
     level: Path,
     intensity: Path,
-) -> dict[str, Any]:
+) -> MapFigures:
     from recon4.export.laz import export_laz
     from recon4.georeference.stage import read_crs
     from recon4.intensity.table import IntensityTable
@@ -168,17 +184,26 @@ def _map(
         to_crs=crs.to_crs if crs else None,
         progress=progress,
     )
-    return {"points": len(tiles), "bounds_m": [corner.tolist() for corner in tiles.bounds_m]}
+    low, high = (tuple(corner.tolist()) for corner in tiles.bounds_m)
+    return MapFigures(points=len(tiles), bounds_m=(low, high))
 
 
-FRAMES = Stage("frames", 5, ("ingest",), _frames)
+FRAMES = Stage("frames", 5, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
-    "odometry", 9, ("segments", "registration", "planes", "scans", "odometry"), _odometry
+    "odometry",
+    9,
+    ("segments", "registration", "planes", "scans", "odometry"),
+    _odometry,
+    OdometryFigures,
 )
-GRAPH = Stage("graph", 6, _MATCHING, _graph)
-VERIFICATION = Stage("verification", 2, ("verification", "graph"), _verification)
-REVIEW = Stage("review", 2, ("verification", "graph"), _review)
-REFINE = Stage("refine", 3, ("segments", "planes", "odometry", "graph", "refine"), _refine)
-LEVEL = Stage("level", 4, ("level", "gnss", "verification"), _level)
-INTENSITY = Stage("intensity", 2, ("intensity",), _intensity)
-MAP = Stage("map", 1, ("map",), _map)
+GRAPH = Stage("graph", 6, _MATCHING, _graph, GraphFigures)
+VERIFICATION = Stage(
+    "verification", 2, ("verification", "graph"), _verification, VerificationFigures
+)
+REVIEW = Stage("review", 2, ("verification", "graph"), _review, ReviewFigures)
+REFINE = Stage(
+    "refine", 3, ("segments", "planes", "odometry", "graph", "refine"), _refine, RefineFigures
+)
+LEVEL = Stage("level", 4, ("level", "gnss", "verification"), _level, LevelFigures)
+INTENSITY: Stage[Figures] = Stage("intensity", 2, ("intensity",), _intensity)
+MAP = Stage("map", 1, ("map",), _map, MapFigures)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Mapping
-from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, TextIO
 
 if TYPE_CHECKING:
     from rich.progress import ProgressColumn, Task, TaskID
+
+    from recon4.report.verdict import MapVerdict
+    from recon4.results import Summary
 
 _LINE_EVERY_S = 5.0
 _EVENTS = {
@@ -170,26 +171,26 @@ def describe_event(kind: str, facts: dict[str, object]) -> str:
     return f"{_EVENTS[kind]}: " + ", ".join(text)
 
 
-def describe_summary(summary: Mapping[str, Any], folder: Path) -> str:
+def describe_summary(summary: Summary) -> str:
     """What a finished run came to, and where its results are."""
-    edges = ", ".join(f"{count} {verdict}" for verdict, count in summary["edges"].items())
+    edges = ", ".join(f"{count} {verdict}" for verdict, count in summary.edges.items())
     lines = [
-        f"{summary['duration_s']:.1f} s, {summary['path_length_m']:.1f} m, "
-        f"{summary['multiframes']} multiframes ({summary['lost']} lost)",
-        f"{sum(summary['edges'].values())} pairs tried: {edges}",
-        f"{summary['points']} points in the map",
-        f"{summary['seconds']:.1f} s of work, {summary['peak_bytes'] / 1e9:.2f} GB at most",
-        *(f"warning: {text}" for text in summary["warnings"]),
-        *_describe_verdict(summary["verdict"]),
-        f"map     {folder / 'map.laz'}",
-        f"report  {folder / 'report.html'}",
+        f"{summary.duration_s:.1f} s, {summary.path_length_m:.1f} m, "
+        f"{summary.multiframes} multiframes ({summary.lost} lost)",
+        f"{sum(summary.edges.values())} pairs tried: {edges}",
+        f"{summary.points} points in the map",
+        f"{summary.seconds:.1f} s of work, {summary.peak_bytes / 1e9:.2f} GB at most",
+        *(f"warning: {text}" for text in summary.warnings),
+        *_describe_verdict(summary.verdict),
+        f"map     {summary.folder / 'map.laz'}",
+        f"report  {summary.folder / 'report.html'}",
     ]
     return "\n".join(lines)
 
 
-def _describe_verdict(verdict: Mapping[str, Any]) -> list[str]:
+def _describe_verdict(verdict: MapVerdict) -> list[str]:
     """The verdict on the map and its reasons, a line each."""
-    return [f"verdict: {verdict['usability']}", *(f"  - {text}" for text in verdict["reasons"])]
+    return [f"verdict: {verdict.usability}", *(f"  - {text}" for text in verdict.reasons)]
 
 
 def _describe_stage(facts: dict[str, object]) -> str:

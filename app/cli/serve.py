@@ -86,7 +86,7 @@ def demo(
             imu=recording / "imu.csv",
             progress=progress,
         )
-    write(describe_summary(summary.to_json(), project))
+    write(describe_summary(summary))
     if not headless:
         from app.settings import ServerSettings, recordings_from_environment
 

@@ -122,6 +122,13 @@ class ReviewView:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class SupersededEffect:
+    """A newer decision was made meanwhile."""
+
+    superseded: Literal[True] = True
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class RowView:
     """A row of the journal."""
 

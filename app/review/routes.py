@@ -31,6 +31,7 @@ from app.review.model import (
     RowView,
     StandingView,
     Step,
+    SupersededEffect,
 )
 from app.review.store import terms_of
 from recon4.review.approval import NotApprovable, make_read_only
@@ -39,6 +40,7 @@ from recon4.review.approved import Approval, approval_of, latest_approval
 from recon4.review.decisions import Decided, Decision, DecisionKind, fold
 from recon4.review.journal import JournalChanged, NothingToUndo, Row, append, read_rows
 from recon4.review.pairs import align, fit_points, pair_facts, pair_points, trajectory_nodes
+from recon4.review.preview import Effect
 from recon4.review.signature import ensure_key
 from recon4.review.source import Source, graph_key
 from recon4.review.state import artifact_keys, decisions_in_map, read_summary
@@ -190,7 +192,9 @@ def redo(project_id: str, step: Step, server: Server, who: Who) -> ReviewView:
 
 
 @router.get("/effect", dependencies=LOOK, summary="Effect of the decisions")
-async def read_effect(project_id: str, server: Server, caller: CalledBy) -> dict[str, Any]:
+async def read_effect(
+    project_id: str, server: Server, caller: CalledBy
+) -> Effect | SupersededEffect:
     """The graph solved with the decisions in force: chi², moves, conflicts. The map is not rebuilt.
 
     The response is ``{"superseded": true}`` when a newer decision was made meanwhile.
@@ -201,7 +205,7 @@ async def read_effect(project_id: str, server: Server, caller: CalledBy) -> dict
     effect = await caller.wait(
         server.reviews.effect(root, source, decided=decided, before=before, person=caller.name)
     )
-    return {"superseded": True} if effect is None else effect.to_json()
+    return effect or SupersededEffect()
 
 
 @router.get("/journal", dependencies=LOOK, summary="Journal")

@@ -110,7 +110,7 @@ def process(
     if as_json:
         _write_json(summary.to_json())
     else:
-        write(describe_summary(summary.to_json(), out))
+        write(describe_summary(summary))
 
 
 @app.command()

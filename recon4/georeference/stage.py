@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -17,6 +16,8 @@ from recon4.georeference.gnss import georeference
 from recon4.georeference.level import NOT_LEVELED, Leveling, level
 from recon4.mapping.place import place_with_origins
 from recon4.model.corrections import apply_corrections
+from recon4.model.figures import LevelFigures
+from recon4.model.plain import to_plain
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph, save_graph
 from recon4.pose_graph.relations import with_residuals
@@ -24,7 +25,7 @@ from recon4.pose_graph.verification import confirmed_again
 from recon4.progress import Progress
 from recon4.settings import Settings
 from recon4.store.arrays import load_trajectory, save_trajectory
-from recon4.store.atomic import null_for_nan, write_json
+from recon4.store.atomic import write_json
 from recon4.store.frames import FrameStore
 
 _FLOOR_FRAMES = 200
@@ -57,7 +58,7 @@ def run_level(
     out: Path,
     settings: Settings,
     progress: Progress,
-) -> dict[str, Any]:
+) -> LevelFigures:
     """Level a finished trajectory and, if there are GNSS positions, georeference it.
 
     Args:
@@ -90,17 +91,17 @@ def run_level(
     record = {
         "levelling": leveling.to_json(),
         "georeference": placed.to_json(),
-        "crs": asdict(crs) if crs else {},
+        "crs": crs or {},
     }
-    write_json(out / "georeference.json", null_for_nan(record))
+    write_json(out / "georeference.json", to_plain(record))
     progress.advance()
-    return {
-        "levelled_by": leveling.source,
-        "tilt_deg": round(float(np.rad2deg(leveling.tilt_rad)), 4),
-        "crs": crs.name if crs else "",
-        "local": placed.reason,
-        "edges_rejected": len(placed.rejected),
-    }
+    return LevelFigures(
+        levelled_by=leveling.source,
+        tilt_deg=round(float(np.rad2deg(leveling.tilt_rad)), 4),
+        crs=crs.name if crs else "",
+        local=placed.reason,
+        edges_rejected=len(placed.rejected),
+    )
 
 
 def find_level(frames: FrameStore, trajectory: Trajectory, *, source: str) -> Leveling:

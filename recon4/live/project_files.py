@@ -11,6 +11,7 @@ from recon4 import stages
 from recon4.errors import StoreError
 from recon4.live.recorder.ports import check_sources
 from recon4.live.session import CaptureSession
+from recon4.model.figures import FrameFigures
 from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.progress import Silent
 from recon4.settings import Settings
@@ -18,7 +19,7 @@ from recon4.store.atomic import make_folders, write_text
 from recon4.store.hashing import hash_json, size_of
 from recon4.store.inputs import input_file, input_files
 from recon4.store.project import Project, is_project
-from recon4.store.stage import Input, StageRunner
+from recon4.store.stage import Input, StageRunner, figures_of
 
 
 def begin(project: Path, rig: Rig, **how: Any) -> CaptureSession:
@@ -78,7 +79,7 @@ def finish(session: CaptureSession, frames: Path, settings: Settings) -> int:
         StoreError: If the project is in use or cannot be written.
     """
 
-    def moved(*, out: Path, **_: Any) -> dict[str, Any]:
+    def moved(*, out: Path, **_: Any) -> FrameFigures:
         for path in frames.iterdir():
             shutil.move(path, out / path.name)
         return stages.frames_figures(out)
@@ -90,7 +91,7 @@ def finish(session: CaptureSession, frames: Path, settings: Settings) -> int:
         about = {"name": session.capture.name, "bytes": size_of(session.capture), "sha256": key}
         project.describe(preset=session.preset, rig=rig.name, inputs=[about])
         runner = StageRunner(project, settings, progress)
-        artifact = runner.run(
+        runner.run(
             replace(stages.FRAMES, function=moved),
             recordings=input_files([session.capture], project.ledger, progress),
             rig=Input(hash_json(format_rig(rig)), rig),
@@ -98,4 +99,4 @@ def finish(session: CaptureSession, frames: Path, settings: Settings) -> int:
             gnss=None,
         )
         shutil.rmtree(frames, ignore_errors=True)
-        return int(artifact.manifest()["figures"]["multiframes"])
+        return figures_of(runner.runs, stages.FRAMES).multiframes

@@ -155,6 +155,10 @@ class PoseGraph:
         """The edges as arrays, created on first access."""
         return relations_of(self.edges)
 
+    def verdict_counts(self) -> dict[str, int]:
+        """Number of edges with each verdict."""
+        return {str(v): sum(edge.verdict is v for edge in self.edges) for v in Verdict}
+
     def with_edges(self, edges: tuple[Edge, ...]) -> PoseGraph:
         """The same nodes with other edges."""
         return replace(self, edges=edges)

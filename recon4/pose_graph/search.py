@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array
+from recon4.model.figures import GraphFigures
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.candidates import Ends, retry_pairs, rounds
@@ -32,7 +33,7 @@ _LOST_SD_FACTOR = 200.0
 
 def build_graph(
     frames: FrameStore, odometry: Path, out: Path, *, settings: Settings, progress: Progress
-) -> dict[str, object]:
+) -> GraphFigures:
     """Run the stage ``graph``: create nodes and odometry edges, search for loop closures.
 
     Args:
@@ -53,11 +54,11 @@ def build_graph(
         scratch=out,
     )
     save_graph(out, graph)
-    return {
-        "nodes": len(graph),
-        "edges": len(graph.edges),
-        "accepted": sum(e.in_graph for e in graph.edges),
-    }
+    return GraphFigures(
+        nodes=len(graph),
+        edges=len(graph.edges),
+        accepted=sum(e.in_graph for e in graph.edges),
+    )
 
 
 def search(

@@ -42,11 +42,8 @@ class Verification:
     def to_json(self) -> dict[str, Any]:
         """Plain JSON values for ``verification.json``."""
         edges = self.graph.edges
-        counts = {
-            str(verdict): sum(edge.verdict is verdict for edge in edges) for verdict in Verdict
-        }
         return {
-            "edges": counts,
+            "edges": self.graph.verdict_counts(),
             "rounds": [[_edge_record(edges[row], row) for row in rows] for rows in self.rounds],
             "flagged": [_edge_record(edges[row], row) for row in self.flagged],
             "outliers": [_edge_record(edges[row], row) for row in self.outliers],

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.geometry.se3 import SE3
+from recon4.model.figures import OdometryFigures
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, track
 from recon4.registration.aiding import GnssAiding
@@ -30,7 +31,7 @@ def run_odometry(
     settings: Settings,
     progress: Progress,
     aiding: GnssAiding | None = None,
-) -> dict[str, object]:
+) -> OdometryFigures:
     """Register all multiframes in order.
 
     Args:
@@ -56,13 +57,13 @@ def run_odometry(
     save_trajectory(out / "trajectory.npz", dense_trajectory(steps))
     _save_steps(out / "steps.npz", steps)
     lost = sum(step.lost for step in steps)
-    return {
-        "multiframes": len(steps),
-        "lost": lost,
-        "imu": imu is not None,
-        "warnings": [remark] if remark else [],
-        "gnss": aiding is not None,
-    }
+    return OdometryFigures(
+        multiframes=len(steps),
+        lost=lost,
+        imu=imu is not None,
+        warnings=(remark,) if remark else (),
+        gnss=aiding is not None,
+    )
 
 
 def _report_poses(steps: list[OdometryStep], progress: Progress) -> None:

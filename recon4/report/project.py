@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+
+import msgspec
 
 from recon4.errors import StoreError
 from recon4.evaluation.evaluate import Evaluation
@@ -13,6 +14,34 @@ from recon4.store.project import read_artifacts, read_description
 from recon4.store.recipes import settings_in
 
 _MAX_BYTES = 16 << 20
+
+
+class _Stage(msgspec.Struct):
+    """A stage in ``summary.json``."""
+
+    stage: str
+    seconds: float
+    cpu_seconds: float
+    peak_bytes: int
+    reused: bool
+    figures: _StageWarnings
+
+
+class _StageWarnings(msgspec.Struct):
+    warnings: tuple[str, ...] = ()
+
+
+class _Summary(msgspec.Struct):
+    """The fields of ``summary.json`` that the report shows."""
+
+    name: str
+    created: str
+    preset: str
+    rig: str
+    crs: str
+    versions: dict[str, str]
+    warnings: tuple[str, ...]
+    stages: tuple[_Stage, ...]
 
 
 def project_facts(root: Path, evaluation: Evaluation) -> ReportFacts:
@@ -27,43 +56,38 @@ def project_facts(root: Path, evaluation: Evaluation) -> ReportFacts:
     """
     if not (root / "summary.json").is_file():
         raise StoreError(f"expected a project with a finished run, got {root}")
-    summary = read_object(root / "summary.json", max_bytes=_MAX_BYTES)
+    record = read_object(root / "summary.json", max_bytes=_MAX_BYTES)
     described = read_description(root)
     artifacts = read_artifacts(root)
     try:
+        summary = msgspec.convert(record, _Summary)
         return ReportFacts(
-            title=summary["name"],
-            created=summary["created"],
-            preset=summary["preset"],
+            title=summary.name,
+            created=summary.created,
+            preset=summary.preset,
             settings=settings_in(artifacts.values()),
             artifacts=artifacts,
-            stages=tuple(_timing(stage) for stage in summary["stages"]),
+            stages=tuple(_timing(stage) for stage in summary.stages),
             inputs=tuple(
                 InputFile(file["name"], file["bytes"], file["sha256"])
                 for file in described.get("inputs", [])
             ),
-            versions=summary["versions"],
-            rig=summary["rig"],
-            crs=summary["crs"],
+            versions=summary.versions,
+            rig=summary.rig,
+            crs=summary.crs,
             evaluation=evaluation,
             warnings=_later_warnings(summary),
         )
-    except (KeyError, TypeError) as error:
+    except (KeyError, TypeError, msgspec.ValidationError) as error:
         raise StoreError(f"{root.name}/summary.json cannot be read: {error!r}") from error
 
 
-def _timing(stage: dict[str, Any]) -> StageTiming:
-    return StageTiming(
-        stage["stage"],
-        stage["seconds"],
-        stage["cpu_seconds"],
-        stage["peak_bytes"],
-        stage["reused"],
-    )
+def _timing(one: _Stage) -> StageTiming:
+    return StageTiming(one.stage, one.seconds, one.cpu_seconds, one.peak_bytes, one.reused)
 
 
-def _later_warnings(summary: dict[str, Any]) -> tuple[str, ...]:
+def _later_warnings(summary: _Summary) -> tuple[str, ...]:
     """Warnings of the stages after the import; the report reads those of the import itself."""
-    imported = [stage["figures"] for stage in summary["stages"] if stage["stage"] == "frames"]
-    known = {text for figures in imported for text in figures["warnings"]}
-    return tuple(text for text in summary["warnings"] if text not in known)
+    imported = [one.figures.warnings for one in summary.stages if one.stage == "frames"]
+    known = {text for warnings in imported for text in warnings}
+    return tuple(text for text in summary.warnings if text not in known)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any
 
@@ -15,6 +15,7 @@ import numpy as np
 
 from recon4.errors import ConfigError, StoreError
 from recon4.geometry.se3 import SE3, Array
+from recon4.model.plain import to_plain
 from recon4.store.hashing import hash_json
 
 Pair = tuple[int, int]
@@ -104,8 +105,8 @@ class Decision:
 
     def body(self) -> dict[str, Any]:
         """Fields that the journal stores beside its columns, as JSON values."""
-        measured = asdict(self.measurement) if self.measurement else None
-        return {"T_i_j": list(self.T_i_j), "measurement": _plain(measured), "facts": self.facts}
+        measured = to_plain(self.measurement)
+        return {"T_i_j": list(self.T_i_j), "measurement": measured, "facts": self.facts}
 
     @staticmethod
     def of(kind: str, who: str, why: str, *, pair: Pair | None, body: dict[str, Any]) -> Decision:
@@ -143,11 +144,6 @@ class Standing:
     measurement: Measurement | None = None
     """Replaces the automatic measurement; None = that one applies."""
 
-    def to_json(self) -> dict[str, Any]:
-        """Plain JSON values."""
-        record: dict[str, Any] = _plain(asdict(self))
-        return record
-
 
 @dataclass(frozen=True, slots=True)
 class Decided:
@@ -163,7 +159,7 @@ class Decided:
     @property
     def key(self) -> str:
         """SHA-256 of the decisions in force, independent of when they were made."""
-        return hash_json([one.to_json() for one in self.standing])
+        return hash_json(to_plain(self.standing))
 
     def __bool__(self) -> bool:
         return bool(self.standing)
@@ -231,12 +227,3 @@ def _measurement(record: dict[str, Any]) -> Measurement:
     known: dict[str, Any] = {n: math.nan if v is None else v for n, v in record.items()}
     known |= {name: tuple(record[name]) for name in ("T_i_j", "information")}
     return Measurement(**known)
-
-
-def _plain(value: Any) -> Any:
-    """JSON values: lists for tuples, null for NaN."""
-    if isinstance(value, dict):
-        return {name: _plain(item) for name, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from time import perf_counter
-from typing import Any
 
+from recon4.model.plain import finite_or_none
 from recon4.model.pose_graph import PoseGraph
 from recon4.review.decisions import AUTOMATIC, Decided, Pair
 from recon4.review.solve import (
     Difference,
+    EdgeConflict,
     Reviewed,
-    ReviewProblems,
     difference,
     pair_of,
     review,
@@ -30,12 +30,12 @@ class DecidedEdge:
     """Verdict of a pair with a decision."""
 
     pair: Pair
-    chi2: float
-    """Chi-square contribution."""
+    chi2: float | None
+    """Chi-square contribution; None = not in the graph."""
     verdict: str
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Effect:
     """Effect of the decisions on the graph."""
 
@@ -46,19 +46,16 @@ class Effect:
     all: Difference
     """To the graph without decisions."""
     edges: tuple[DecidedEdge, ...]
-    problems: ReviewProblems
+    conflicts: tuple[EdgeConflict, ...]
+    """Accepted edges that do not fit the graph, worst first."""
+    missing: tuple[Pair, ...]
+    """Pairs of decisions without effect."""
+    changed: tuple[Pair, ...]
+    """Pairs whose measurement has changed since the decision."""
+    warnings: tuple[str, ...]
+    """The same in sentences."""
     seconds: float
     """Computing time [s]."""
-
-    def to_json(self) -> dict[str, Any]:
-        """Plain JSON values, with the fields of `ReviewProblems`."""
-        fields = {
-            "key": self.key,
-            "last": self.last.to_json(),
-            "all": self.all.to_json(),
-            "edges": [asdict(edge) | {"pair": list(edge.pair)} for edge in self.edges],
-        }
-        return fields | self.problems.to_json() | {"seconds": self.seconds}
 
 
 def preview(source: Source, decided: Decided, before: Decided) -> Effect:
@@ -81,7 +78,10 @@ def preview(source: Source, decided: Decided, before: Decided) -> Effect:
         last=difference(earlier, now.graph),
         all=difference(source.verified, now.graph),
         edges=_decided_edges(now.graph),
-        problems=now.problems,
+        conflicts=now.conflicts,
+        missing=now.problems.missing,
+        changed=now.problems.changed,
+        warnings=now.problems.warnings,
         seconds=round(perf_counter() - began_s, 3),
     )
 
@@ -110,7 +110,7 @@ def _known(found: Source) -> Source:
 
 def _decided_edges(graph: PoseGraph) -> tuple[DecidedEdge, ...]:
     return tuple(
-        DecidedEdge(pair_of(graph, edge), edge.chi2, str(edge.verdict))
+        DecidedEdge(pair_of(graph, edge), finite_or_none(edge.chi2), str(edge.verdict))
         for edge in graph.edges
         if edge.decided_by != AUTOMATIC
     )

@@ -8,13 +8,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3
-from recon4.model.pose_graph import Edge, PoseGraph, Verdict
+from recon4.model.figures import ReviewFigures
+from recon4.model.plain import to_plain
+from recon4.model.pose_graph import Edge, PoseGraph
 from recon4.pose_graph.files import load_graph, save_graph
 from recon4.pose_graph.relations import squared_residuals
 from recon4.pose_graph.robust import outlier_limit
@@ -24,7 +25,7 @@ from recon4.progress import Progress, Silent
 from recon4.review.apply import apply_decisions
 from recon4.review.decisions import AUTOMATIC, Pair, Standing
 from recon4.settings import Settings
-from recon4.store.atomic import null_for_nan, write_json
+from recon4.store.atomic import write_json
 
 MAX_MOVES = 10
 _APART_NODES = 5
@@ -70,18 +71,6 @@ class ReviewProblems:
     """Pairs whose measurement has changed since the decision."""
     warnings: tuple[str, ...]
     """The same in sentences."""
-
-    def to_json(self) -> dict[str, Any]:
-        """Plain JSON values."""
-        fields: dict[str, Any] = null_for_nan(
-            {
-                "conflicts": [_fields(one) for one in self.conflicts],
-                "missing": self.missing,
-                "changed": self.changed,
-                "warnings": self.warnings,
-            }
-        )
-        return fields
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -132,7 +121,7 @@ class Reviewed:
         return fields
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True)
 class Difference:
     """Difference between two solved graphs with the same nodes."""
 
@@ -148,21 +137,6 @@ class Difference:
     accepted_automatically: tuple[Pair, ...]
     """Pairs that verification now accepts."""
 
-    def to_json(self) -> dict[str, Any]:
-        """Plain JSON values."""
-        fields: dict[str, Any] = null_for_nan(
-            {
-                "chi2_before": self.chi2_before,
-                "chi2_after": self.chi2_after,
-                "edges_before": self.edges_before,
-                "edges_after": self.edges_after,
-                "moves": [_fields(move) for move in self.moves],
-                "rejected_automatically": [list(pair) for pair in self.rejected_automatically],
-                "accepted_automatically": [list(pair) for pair in self.accepted_automatically],
-            }
-        )
-        return fields
-
 
 def run_review(
     graph: Path,
@@ -171,7 +145,7 @@ def run_review(
     *,
     settings: Settings,
     progress: Progress,
-) -> dict[str, Any]:
+) -> ReviewFigures:
     """Run the stage ``review``: apply decisions to the verified graph and solve it.
 
     Args:
@@ -184,20 +158,18 @@ def run_review(
     verified = load_graph(graph)
     reviewed = review(verified, decisions, settings=settings, progress=progress)
     save_graph(out, reviewed.graph)
-    fields = difference(verified, reviewed.graph).to_json()
-    fields["decisions"] = [one.to_json() for one in decisions]
-    fields |= reviewed.problems.to_json()
-    write_json(out / "review.json", fields)
-    counts = {str(v): sum(e.verdict is v for e in reviewed.graph.edges) for v in Verdict}
-    return {
-        "edges": counts,
-        "decisions": len(decisions),
-        "conflicts": len(reviewed.conflicts),
-        "missing": len(reviewed.missing),
-        "chi2_before": fields["chi2_before"],
-        "chi2_after": fields["chi2_after"],
-        "warnings": reviewed.warnings(),
-    }
+    changed = difference(verified, reviewed.graph)
+    record = to_plain(changed) | {"decisions": decisions} | to_plain(reviewed.problems)
+    write_json(out / "review.json", to_plain(record))
+    return ReviewFigures(
+        edges=reviewed.graph.verdict_counts(),
+        decisions=len(decisions),
+        conflicts=len(reviewed.conflicts),
+        missing=len(reviewed.missing),
+        chi2_before=changed.chi2_before,
+        chi2_after=changed.chi2_after,
+        warnings=reviewed.problems.warnings,
+    )
 
 
 def review(
@@ -310,11 +282,6 @@ def _largest_moves(before: PoseGraph, after: PoseGraph) -> tuple[Move, ...]:
 def _residual(graph: PoseGraph, edge: Edge) -> SE3:
     predicted = graph.T_map_body[edge.i].inverse() @ graph.T_map_body[edge.j]
     return edge.T_i_j.inverse() @ predicted
-
-
-def _fields(record: EdgeConflict | Move) -> dict[str, Any]:
-    fields = {name: getattr(record, name) for name in record.__slots__}
-    return {name: list(v) if isinstance(v, tuple) else v for name, v in fields.items()}
 
 
 def _named(pair: Pair) -> str:

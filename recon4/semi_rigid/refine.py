@@ -10,7 +10,6 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TypeVar
 
@@ -19,6 +18,8 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import TRANSLATION, Array
 from recon4.model.corrections import apply_corrections
+from recon4.model.figures import RefineFigures, RefineRound
+from recon4.model.plain import to_plain
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Times, Trajectory
 from recon4.pose_graph.files import load_graph
@@ -40,18 +41,6 @@ _SHORT = 3
 """A recording shorter than this many time gaps is matched without a gap."""
 
 
-@dataclass(frozen=True, slots=True)
-class Round:
-    """Result of one round."""
-
-    mean_m: float
-    """Mean distance of the matched segments from the planes [m], before the step."""
-    match_ratio: float
-    """Part of the segment ends that found a plane, 0..1."""
-    largest_step_m: float
-    """Largest shift of a multiframe in this round [m]."""
-
-
 def refine(
     frames: FrameStore,
     odometry: Path,
@@ -60,7 +49,7 @@ def refine(
     *,
     settings: Settings,
     progress: Progress,
-) -> dict[str, object]:
+) -> RefineFigures:
     """Run the stage ``refine``.
 
     Args:
@@ -74,13 +63,13 @@ def refine(
     dense = load_trajectory(odometry / "trajectory.npz")
     lost = load_arrays(odometry / "steps.npz", ["lost"])["lost"]
     start = corrected_by_graph(dense, load_graph(graph))
-    done: list[Round] = []
+    done: list[RefineRound] = []
     if settings.graph.mode == "beyond":
         start, done = refine_trajectory(frames, start, lost, settings=settings, progress=progress)
     save_trajectory(out / "trajectory.npz", start)
-    record: dict[str, object] = {"rounds": [asdict(one) for one in done]}
-    (out / "refine.json").write_text(json.dumps(record, indent=1))
-    return record
+    figures = RefineFigures(rounds=tuple(done))
+    (out / "refine.json").write_text(json.dumps(to_plain(figures), indent=1))
+    return figures
 
 
 def corrected_by_graph(odometry: Trajectory, graph: PoseGraph) -> Trajectory:
@@ -96,7 +85,7 @@ def refine_trajectory(
     *,
     settings: Settings,
     progress: Progress,
-) -> tuple[Trajectory, list[Round]]:
+) -> tuple[Trajectory, list[RefineRound]]:
     """Build the plane map and correct all multiframes to fit it, in several rounds.
 
     Args:
@@ -122,7 +111,7 @@ def refine_trajectory(
         correction = correction + step
         trajectory = apply_knots(trajectory, knot_ns, step)
         largest_m = float(np.linalg.norm(step[:, TRANSLATION], axis=1).max())
-        rounds.append(Round(mean_m, match_ratio, largest_m))
+        rounds.append(RefineRound(mean_m=mean_m, match_ratio=match_ratio, largest_step_m=largest_m))
         progress.event("refine", mean_m=mean_m, match_ratio=match_ratio, largest_step_m=largest_m)
         if largest_m < r.converged_step_m:
             break

@@ -9,10 +9,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, fields, replace
 from importlib import metadata
 from pathlib import Path
-from typing import Any
+from typing import Any, Generic, TypeVar
+
+import msgspec
 
 import recon4
 from recon4.errors import StoreError
+from recon4.model.figures import Figures
+from recon4.model.plain import to_plain
 from recon4.progress import Progress
 from recon4.settings import Settings, to_json
 from recon4.store.atomic import atomic_folder, write_json
@@ -26,11 +30,14 @@ from recon4.store.usage import Meter
 
 SAVING = "save"
 """Name of the task in which an artifact is hashed and written to disk."""
+
+OfStage = TypeVar("OfStage", bound=Figures)
+"""Figures of a stage."""
 _KEY_PACKAGES = ("numpy", "scipy", "numba", "gtsam", "laspy", "pyproj")
 
 
 @dataclass(frozen=True, slots=True)
-class Stage:
+class Stage(Generic[OfStage]):
     """A stage: a pure function of its inputs and of some groups of settings."""
 
     name: str
@@ -38,9 +45,11 @@ class Stage:
     """Increased whenever the same inputs give another result than before."""
     groups: tuple[str, ...]
     """Groups of `Settings` it reads; the others are None when it runs."""
-    function: Callable[..., Mapping[str, Any] | None]
+    function: Callable[..., OfStage | None]
     """``function(out=folder, settings=…, progress=…, **inputs)``. Writes into the empty folder
-    ``out``; may return figures for the manifest as plain JSON values."""
+    ``out``; returns the figures for the manifest, None = it has none."""
+    figures: type[OfStage] = Figures  # type: ignore[assignment]  # those of a stage without any
+    """Record of its figures."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +85,7 @@ class Artifact:
 
 
 @dataclass(frozen=True, slots=True)
-class StageRun:
+class StageRun(Generic[OfStage]):
     """Result of a stage in this run."""
 
     artifact: Artifact
@@ -84,7 +93,7 @@ class StageRun:
     """Record of the run that made the artifact."""
     reused: bool
     """Whether a finished artifact was reused."""
-    figures: Mapping[str, Any]
+    figures: OfStage
     """Return value of its function."""
 
 
@@ -92,13 +101,13 @@ class StageRunner:
     """Runs the stages of a project in the given order, each at most once for the same inputs."""
 
     def __init__(self, project: Project, settings: Settings, progress: Progress) -> None:
-        self.runs: dict[str, StageRun] = {}
+        self.runs: dict[str, StageRun[Any]] = {}
         """Stage name -> result, in order."""
         self._project = project
         self._settings = settings
         self._progress = progress
 
-    def run(self, stage: Stage, **inputs: Input | Artifact | None) -> Artifact:
+    def run(self, stage: Stage[Any], **inputs: Input | Artifact | None) -> Artifact:
         """Run a stage, or reuse its finished artifact.
 
         Args:
@@ -116,35 +125,38 @@ class StageRunner:
         reused = done is not None
         if done is None:
             done = self._make(stage, artifact, inputs)
-        return self._took(artifact, done, reused=reused)
+        return self._took(stage, artifact, done, reused=reused)
 
-    def keep(self, name: str) -> Artifact:
+    def keep(self, stage: Stage[Any]) -> Artifact:
         """Reuse the artifact of a stage in the latest run without a check of its recipe.
 
         Raises:
             StoreError: If there is none, or it is damaged.
         """
-        key = self._project.ledger.current().get(name, "")
-        artifact = Artifact(name, key, self._project.artifacts / key)
+        key = self._project.ledger.current().get(stage.name, "")
+        artifact = Artifact(stage.name, key, self._project.artifacts / key)
         done = self._finished(artifact) if key else None
         if done is None:
             raise StoreError(
-                f"{self._project.root.name} has no finished stage {name} to go on from: "
+                f"{self._project.root.name} has no finished stage {stage.name} to go on from: "
                 "process its recording again"
             )
-        return self._took(artifact, done, reused=True)
+        return self._took(stage, artifact, done, reused=True)
 
-    def _took(self, artifact: Artifact, done: FinishedStage, *, reused: bool) -> Artifact:
+    def _took(
+        self, stage: Stage[Any], artifact: Artifact, done: FinishedStage, *, reused: bool
+    ) -> Artifact:
         name, key = artifact.stage, artifact.key
         self._project.ledger.set_current(name, key)
-        self.runs[name] = StageRun(artifact, done, reused, artifact.manifest()["figures"])
+        figures = read_figures(artifact.folder, stage.figures)
+        self.runs[name] = StageRun(artifact, done, reused, figures)
         state = "reused" if reused else "done"
         self._progress.event(
             "stage", stage=name, key=key, state=state, seconds=round(done.seconds, 3)
         )
         return artifact
 
-    def skip(self, stage: Stage) -> None:
+    def skip(self, stage: Stage[Any]) -> None:
         """Omit a stage in this run: an artifact of an earlier run does not belong to it."""
         self._project.ledger.clear_current(stage.name)
 
@@ -180,7 +192,7 @@ class StageRunner:
         )
 
     def _make(
-        self, stage: Stage, artifact: Artifact, inputs: Mapping[str, Input | Artifact | None]
+        self, stage: Stage[Any], artifact: Artifact, inputs: Mapping[str, Input | Artifact | None]
     ) -> FinishedStage:
         values = {name: None if given is None else given.value for name, given in inputs.items()}
         settings = only(self._settings, stage.groups)
@@ -200,13 +212,13 @@ class StageRunner:
             )
             recipe = _recipe(stage, self._settings, inputs)
             files = _hash_files(folder, self._progress)
-            _write_manifest(folder, done, recipe, figures=figures or {}, files=files)
+            _write_manifest(folder, done, recipe, figures=figures or Figures(), files=files)
         self._project.ledger.add(done)
         return done
 
 
 def stage_key(
-    stage: Stage, settings: Settings, inputs: Mapping[str, Input | Artifact | None]
+    stage: Stage[Any], settings: Settings, inputs: Mapping[str, Input | Artifact | None]
 ) -> str:
     """Key of a stage: SHA-256 of its name and version, its settings and the keys of its inputs."""
     return hash_json(_recipe(stage, settings, inputs))
@@ -233,6 +245,30 @@ def read_manifest(folder: Path) -> dict[str, Any]:
         return {name: found[name] for name in ("recipe", "done", "figures", "versions", "files")}
     except KeyError as error:
         raise StoreError(f"{path} cannot be read: it lacks {error}") from error
+
+
+def read_figures(folder: Path, kind: type[OfStage]) -> OfStage:
+    """Read the figures of an artifact; fields of other versions are ignored.
+
+    Args:
+        folder: The artifact.
+        kind: Record of the stage that made it.
+
+    Raises:
+        StoreError: If they are missing or damaged.
+    """
+    try:
+        return msgspec.convert(read_manifest(folder)["figures"], kind)
+    except msgspec.ValidationError as error:
+        raise StoreError(
+            f"{folder / 'manifest.json'}: its figures make no sense: {error}"
+        ) from error
+
+
+def figures_of(runs: Mapping[str, StageRun[Any]], stage: Stage[OfStage]) -> OfStage:
+    """The figures of a stage that ran."""
+    figures: OfStage = runs[stage.name].figures
+    return figures
 
 
 def damage_of(folder: Path, *, hashes: bool) -> list[str]:
@@ -272,7 +308,7 @@ def versions() -> dict[str, str]:
 
 
 def _recipe(
-    stage: Stage, settings: Settings, inputs: Mapping[str, Input | Artifact | None]
+    stage: Stage[Any], settings: Settings, inputs: Mapping[str, Input | Artifact | None]
 ) -> dict[str, Any]:
     return {
         "stage": stage.name,
@@ -294,7 +330,7 @@ def _write_manifest(
     done: FinishedStage,
     recipe: dict[str, Any],
     *,
-    figures: Mapping[str, Any],
+    figures: Figures,
     files: dict[str, Any],
 ) -> None:
     write_json(
@@ -302,7 +338,7 @@ def _write_manifest(
         {
             "recipe": recipe,
             "done": asdict(done),
-            "figures": dict(figures),
+            "figures": to_plain(figures),
             "versions": versions(),
             "files": files,
         },

@@ -1,8 +1,7 @@
 import numpy as np
 
 from recon4.model.pose_graph import Reason, Verdict
-from recon4.pose_graph.files import save_graph
-from recon4.results import edges_by_verdict
+from recon4.pose_graph.files import load_graph, save_graph
 from tests.benchmarks.false_loops import office_graph
 
 
@@ -14,6 +13,6 @@ def test_edges_are_counted_as_the_finished_graph_has_them(tmp_path):
     unverified = graph.edges[-4].evolve(verdict=Verdict.UNVERIFIED)
     save_graph(tmp_path, graph.with_edges((*graph.edges[:-4], unverified, *rejected)))
 
-    assert edges_by_verdict(tmp_path) == {
+    assert load_graph(tmp_path).verdict_counts() == {
         "accepted": len(graph.edges) - 4, "rejected": 3, "unverified": 1
     }  # fmt: skip

@@ -122,11 +122,48 @@ export interface CutSpec {
   thickness_m?: number;
 }
 
+export interface DecidedEdge {
+  pair: [number, number];
+  chi2: number | null;
+  verdict: string;
+}
+
 export interface Deleted {
   id: string;
   project: string;
   deleted: string;
   goes: string;
+}
+
+export interface Difference {
+  chi2_before: number;
+  chi2_after: number;
+  edges_before: number;
+  edges_after: number;
+  moves: Array<Move>;
+  rejected_automatically: Array<[number, number]>;
+  accepted_automatically: Array<[number, number]>;
+}
+
+export interface EdgeConflict {
+  pair: [number, number];
+  chi2: number;
+  limit: number;
+  residual_m: number;
+  residual_rad: number;
+  who: string;
+}
+
+export interface Effect {
+  key: string;
+  last: Difference;
+  all: Difference;
+  edges: Array<DecidedEdge>;
+  conflicts: Array<EdgeConflict>;
+  missing: Array<[number, number]>;
+  changed: Array<[number, number]>;
+  warnings: Array<string>;
+  seconds: number;
 }
 
 export interface Entry {
@@ -230,6 +267,13 @@ export interface Me {
   may: Array<Permission>;
   login: boolean;
   token: string;
+}
+
+export interface Move {
+  node: number;
+  frame_id: number;
+  t_ns: number;
+  moved_m: number;
 }
 
 export interface NewCapture {
@@ -573,6 +617,10 @@ export interface Step {
   why?: string;
 }
 
+export interface SupersededEffect {
+  superseded: true;
+}
+
 export interface Token {
   token: string;
 }
@@ -705,7 +753,7 @@ export interface Operations {
   };
   "GET /api/projects/{project_id}/review/effect": {
     path: { project_id: string };
-    response: Record<string, any>;
+    response: Effect | SupersededEffect;
   };
   "GET /api/projects/{project_id}/review/journal": {
     path: { project_id: string };

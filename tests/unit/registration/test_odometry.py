@@ -55,17 +55,17 @@ def office_odometry(office_walk, tmp_path_factory):
     from recon4.store.frames import FrameStore
 
     out, watch = tmp_path_factory.mktemp("odometry"), Silent()
-    facts = run_odometry(FrameStore.open(office_walk), out, settings=Settings(), progress=watch)
-    return out, facts, watch
+    figures = run_odometry(FrameStore.open(office_walk), out, settings=Settings(), progress=watch)
+    return out, figures, watch
 
 
 def test_a_walk_through_the_office_is_followed_within_two_centimeters(office_odometry, office_walk):
-    out, facts, watch = office_odometry
+    out, figures, watch = office_odometry
     steps = load_arrays(out / "steps.npz", list(STEPS))
     truth = read_tum(office_walk / "truth.tum").at(steps["t_mid_ns"])
     T = SE3.from_quat(steps["quat_xyzw"], steps["t_m"])
 
-    assert (facts["multiframes"], facts["lost"], facts["imu"]) == (60, 0, True)
+    assert (figures.multiframes, figures.lost, figures.imu) == (60, 0, True)
     assert not steps["lost"].any()
     assert "lost" not in [kind for kind, _ in watch.events]
     assert ate_m(T, truth) < 0.02
@@ -155,13 +155,13 @@ def test_the_stage_reports_a_lost_frame(stroll, tmp_path):
     frames[7] = without_points(frames[7])
     watch = Silent()
 
-    facts = run_odometry(
+    figures = run_odometry(
         replace(stroll, frames=frames), tmp_path, settings=Settings(), progress=watch
     )
 
     said = [facts for kind, facts in watch.events if kind == "lost"]
     assert said == [{"frame_id": 7, "t_ns": frames[7].t_mid_ns}]
-    assert facts["lost"] == 1
+    assert figures.lost == 1
     lost = load_arrays(tmp_path / "steps.npz", ["lost"])["lost"]
     assert np.flatnonzero(lost).tolist() == [7]
 

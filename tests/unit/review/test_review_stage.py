@@ -7,6 +7,7 @@ import pytest
 
 from recon4 import stages
 from recon4.geometry.se3 import SE3
+from recon4.model.plain import to_plain
 from recon4.model.pose_graph import Reason, Verdict
 from recon4.pose_graph.files import load_graph, save_graph
 from recon4.pose_graph.verification import verify
@@ -66,7 +67,7 @@ def test_decisions_make_a_graph_of_their_own_and_undoing_them_finds_the_old_one(
     after = run()
 
     assert "review" not in before
-    assert with_decision["review"].figures["decisions"] == 1
+    assert with_decision["review"].figures.decisions == 1
     assert "review" not in after
     assert after["verification"].artifact.key == before["verification"].artifact.key
     assert "review" not in read_artifacts(run.root)
@@ -98,8 +99,8 @@ def test_review_json_names_what_happened(run):
     assert record["moves"][0]["moved_m"] > 0.01
     assert record["chi2_after"] > record["chi2_before"]
     assert {one["why"] for one in record["decisions"]} == {"seen", ""}
-    assert found.figures["conflicts"] == 1
-    assert len(found.figures["warnings"]) == 2
+    assert found.figures.conflicts == 1
+    assert len(found.figures.warnings) == 2
 
 
 def test_the_preview_has_the_result_of_the_stage(run):
@@ -112,7 +113,7 @@ def test_the_preview_has_the_result_of_the_stage(run):
 
     artifact = run()["review"].artifact.folder
     record = json.loads((artifact / "review.json").read_text())
-    fields = quick.to_json()
+    fields = to_plain(quick)
     assert fields["all"] == {name: record[name] for name in fields["all"]}
     assert fields["conflicts"] == record["conflicts"]
     assert fields["last"] == fields["all"]

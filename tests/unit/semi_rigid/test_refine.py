@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3, so3_exp
+from recon4.model.figures import RefineFigures
+from recon4.model.plain import to_plain
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import save_graph
@@ -203,7 +205,7 @@ def prepared(stroll, folder):
 def test_other_modes_keep_the_trajectory_of_the_graph(stroll, tmp_path, mode):
     graph = prepared(stroll, tmp_path)
 
-    facts = refine(
+    figures = refine(
         stroll,
         tmp_path / "odometry",
         tmp_path / "graph",
@@ -212,7 +214,7 @@ def test_other_modes_keep_the_trajectory_of_the_graph(stroll, tmp_path, mode):
         progress=Silent(),
     )
 
-    assert facts == {"rounds": []}
+    assert figures == RefineFigures(rounds=())
     found = load_trajectory(tmp_path / "out" / "trajectory.npz")
     odometry = load_trajectory(tmp_path / "odometry" / "trajectory.npz")
     expected = corrected_by_graph(odometry, graph)
@@ -222,7 +224,7 @@ def test_other_modes_keep_the_trajectory_of_the_graph(stroll, tmp_path, mode):
 def test_mode_beyond_writes_a_better_trajectory_and_its_rounds(stroll, tmp_path):
     graph = prepared(stroll, tmp_path)
 
-    facts = refine(
+    figures = refine(
         stroll,
         tmp_path / "odometry",
         tmp_path / "graph",
@@ -232,8 +234,8 @@ def test_mode_beyond_writes_a_better_trajectory_and_its_rounds(stroll, tmp_path)
     )
 
     found = load_trajectory(tmp_path / "out" / "trajectory.npz")
-    assert json.loads((tmp_path / "out" / "refine.json").read_text()) == facts
-    assert 1 <= len(facts["rounds"]) <= 6
+    assert json.loads((tmp_path / "out" / "refine.json").read_text()) == to_plain(figures)
+    assert 1 <= len(figures.rounds) <= 6
     inner = slice(30, -30)
     at_nodes = found.at(graph.t_ns)
     np.testing.assert_allclose(at_nodes.t, graph.T_map_body.t, atol=0.006)

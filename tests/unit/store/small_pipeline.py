@@ -10,6 +10,7 @@ import signal
 import sys
 from pathlib import Path
 
+from recon4.model.figures import Figures
 from recon4.progress import Silent
 from recon4.settings import Settings
 from recon4.store.project import Project
@@ -18,11 +19,15 @@ from recon4.store.stage import Input, Stage, StageRunner
 FILE_OPERATIONS = {"open", "os.rename", "os.mkdir", "os.remove", "os.rmdir", "shutil.rmtree"}
 
 
+class WordCount(Figures, frozen=True, kw_only=True):
+    words: int
+
+
 def count(*, out, settings, progress, text):
     (out / "deep").mkdir()
     (out / "deep" / "lengths.json").write_text(json.dumps([len(w) for w in text.split()]))
     (out / "range.txt").write_text(str(settings.ingest.max_range_m))
-    return {"words": len(text.split())}
+    return WordCount(words=len(text.split()))
 
 
 def scale(*, out, settings, progress, counted):
@@ -40,7 +45,7 @@ def total(*, out, settings, progress, counted, scaled):
     (out / "total.txt").write_text(f"{found * range_m:.6f}")
 
 
-COUNT = Stage("count", 1, ("ingest",), count)
+COUNT = Stage("count", 1, ("ingest",), count, WordCount)
 SCALE = Stage("scale", 1, ("map",), scale)
 TOTAL = Stage("total", 1, (), total)
 TEXT = "a walk through an office and back"
