@@ -206,7 +206,7 @@ def _figures_column() -> ProgressColumn:
     from rich.progress import ProgressColumn
     from rich.text import Text
 
-    class Figures(ProgressColumn):
+    class FiguresColumn(ProgressColumn):
         def render(self, task: Task) -> Text:
             line = describe_progress(
                 "",
@@ -217,7 +217,7 @@ def _figures_column() -> ProgressColumn:
             )
             return Text(line.strip())
 
-    return Figures()
+    return FiguresColumn()
 
 
 def _count(number: float, unit: str) -> str:

@@ -96,7 +96,7 @@ def run_level(
     write_json(out / "georeference.json", to_plain(record))
     progress.advance()
     return LevelFigures(
-        levelled_by=leveling.source,
+        leveled_by=leveling.source,
         tilt_deg=round(float(np.rad2deg(leveling.tilt_rad)), 4),
         crs=crs.name if crs else "",
         local=placed.reason,

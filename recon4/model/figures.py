@@ -99,7 +99,7 @@ class RefineFigures(Figures, frozen=True, kw_only=True):
 class LevelFigures(Figures, frozen=True, kw_only=True):
     """The leveled map and its place on earth."""
 
-    levelled_by: str
+    leveled_by: str = msgspec.field(name="levelled_by")
     """``ins``, ``imu``, ``floor`` or ``none``."""
     tilt_deg: float
     """Tilt of the map before leveling [°]."""

@@ -214,7 +214,7 @@ async function updateEffect() {
     effect = await attempt(message, () => readEffect(id));
     if (request !== effects.requested || !effect) return;
     // Decided meanwhile, or an earlier request came late.
-    if (effect.superseded) return updateEffect();
+    if ("superseded" in effect) return updateEffect();
   }
   state.setEffect(effect);
   effects.shown = request;
