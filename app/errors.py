@@ -29,7 +29,6 @@ import math
 import secrets
 from collections.abc import Mapping, Sequence
 from http import HTTPStatus
-from pathlib import Path
 from types import MappingProxyType
 from typing import Any, ClassVar
 
@@ -39,11 +38,12 @@ from fastapi.responses import HTMLResponse, JSONResponse, Response
 from pydantic import BaseModel
 from starlette.exceptions import HTTPException
 
+from app.pages import html_of
 from recon4.errors import Recon4Error, WrongSettings
 
 log = logging.getLogger(__name__)
 
-LOST = Path(__file__).parents[1] / "web" / "shared" / "lost.html"
+LOST = "shared/lost.html"
 """The error page of browsers; ``{title}`` and ``{detail}`` are filled in."""
 TITLES = {403: "Not for you", 404: "There is nothing here"}
 FRAMEWORK_MESSAGES: Mapping[int, str] = {
@@ -223,7 +223,7 @@ def _wants_page(request: Request) -> bool:
 
 def _page(status: int, detail: str, headers: Mapping[str, str] | None) -> HTMLResponse:
     title = TITLES.get(status, "That did not work")
-    page = LOST.read_text("utf-8").replace("{title}", title)
+    page = html_of(LOST).replace("{title}", title)
     filled = page.replace("{detail}", html.escape(detail))
     return HTMLResponse(filled, status_code=status, headers=dict(headers or {}))
 

@@ -7,11 +7,10 @@ import logging
 import signal
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
-from pathlib import Path
 from typing import Any
 
 from fastapi import Depends, FastAPI
-from fastapi.responses import FileResponse, JSONResponse
+from fastapi.responses import HTMLResponse, JSONResponse
 from fastapi.staticfiles import StaticFiles
 from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 
@@ -55,6 +54,7 @@ from app.network.listen import (
     uvicorn_config,
 )
 from app.network.streams import StreamLimits, Streams
+from app.pages import WEB, page_response
 from app.projects import routes as project_routes
 from app.projects.import_folders import ImportFolders
 from app.projects.store import ProjectStore
@@ -75,7 +75,6 @@ from recon4.verify import STATE, open_state, seal_state
 
 log = logging.getLogger(__name__)
 
-WEB = Path(__file__).parents[1] / "web"
 EVENT_STREAMS = StreamLimits(most=128, per_person=16, per_address=48, reserved=8)
 REQUIRES_LOOK = [Depends(needs(Permission.LOOK))]
 
@@ -258,8 +257,8 @@ def _add_pages(app: FastAPI) -> None:
 
     def page(path: str, file: str, who: list[Any]) -> None:
         @app.get(path, include_in_schema=False, dependencies=who, name=file)
-        def read() -> FileResponse:
-            return FileResponse(WEB / file)
+        def read() -> HTMLResponse:
+            return page_response(file)
 
     page("/", "projects/index.html", REQUIRES_LOOK)
     page("/account", "account/account.html", REQUIRES_LOOK)
@@ -270,7 +269,7 @@ def _add_pages(app: FastAPI) -> None:
     page("/api", "shared/api.html", REQUIRES_LOOK)
 
     @app.get("/projects/{project_id}/", include_in_schema=False, dependencies=REQUIRES_LOOK)
-    def project(project_id: str, server: Server) -> FileResponse:
+    def project(project_id: str, server: Server) -> HTMLResponse:
         if not server.jobs.of_project(project_id):
             server.projects.folder(project_id)  # a waiting job's project has no folder yet
-        return FileResponse(WEB / "projects/project.html")
+        return page_response("projects/project.html")

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Literal
 
 from fastapi import APIRouter, Depends, WebSocket, WebSocketDisconnect
-from fastapi.responses import FileResponse
+from fastapi.responses import HTMLResponse
 from pydantic import BaseModel, ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
@@ -23,13 +23,13 @@ from app.live.store import Captures
 from app.names import Name, Note
 from app.network.request_caller import CalledBy
 from app.network.streams import TOO_MANY
+from app.pages import page_response
 from app.rig_files import check_rig_file
 from recon4.live.protocol import AddMark, Pause, Resume
 from recon4.settings import PRESETS
 
 LOOK = [Depends(needs(Permission.LOOK))]
 CAPTURE = [Depends(needs(Permission.CAPTURE))]
-WEB = Path(__file__).parents[2] / "web"
 
 router = APIRouter(
     prefix="/api/live",
@@ -87,8 +87,8 @@ class CaptureView(BaseModel):
 
 
 @page.get("/live", include_in_schema=False, dependencies=LOOK)
-def live_page() -> FileResponse:
-    return FileResponse(WEB / "live/live.html")
+def live_page() -> HTMLResponse:
+    return page_response("live/live.html")
 
 
 @router.get("", dependencies=LOOK, summary="State of the capture")

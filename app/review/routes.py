@@ -9,7 +9,7 @@ from typing import Annotated, Any, TypeVar
 
 import numpy as np
 from fastapi import APIRouter, Depends, Query, Response
-from fastapi.responses import FileResponse
+from fastapi.responses import HTMLResponse
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 
@@ -20,6 +20,7 @@ from app.deps import Parts, Server
 from app.errors import Conflict, ProblemDetail
 from app.jobs.model import JobState
 from app.network.request_caller import CalledBy, Caller
+from app.pages import page_response
 from app.review.model import (
     AlignmentView,
     Approve,
@@ -67,13 +68,11 @@ router = APIRouter(
 )
 page = APIRouter()
 
-WEB = Path(__file__).parents[2] / "web"
-
 
 @page.get("/projects/{project_id}/review/", include_in_schema=False, dependencies=LOOK)
-def review_page(project_id: str, server: Server) -> FileResponse:
+def review_page(project_id: str, server: Server) -> HTMLResponse:
     server.projects.folder(project_id)
-    return FileResponse(WEB / "review/review.html")
+    return page_response("review/review.html")
 
 
 @router.get("", dependencies=LOOK, summary="State of the review")

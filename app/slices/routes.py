@@ -17,6 +17,7 @@ from app.compute_pool import FileAccess, Terms
 from app.deps import Server
 from app.errors import BadRequest, ProblemDetail
 from app.network.request_caller import CalledBy, Caller
+from app.pages import page_response
 from app.projects.routes import REPORT_POLICY
 from app.slices import work
 from app.slices.exports import ExportRequest
@@ -41,7 +42,6 @@ from recon4.store.atomic import null_for_nan
 
 LOOK = [Depends(needs(Permission.LOOK))]
 PROCESS = [Depends(needs(Permission.PROCESS))]
-WEB = Path(__file__).parents[2] / "web"
 SURFACES, REFERENCE = "surfaces.json", "reference"
 """File names that child processes write in their working folder."""
 
@@ -55,9 +55,9 @@ page = APIRouter()
 
 
 @page.get("/projects/{project_id}/slices/", include_in_schema=False, dependencies=LOOK)
-def slices_page(project_id: str, server: Server) -> FileResponse:
+def slices_page(project_id: str, server: Server) -> HTMLResponse:
     server.projects.folder(project_id)
-    return FileResponse(WEB / "slices/slices.html")
+    return page_response("slices/slices.html")
 
 
 @router.get("", summary="Facts about the map")

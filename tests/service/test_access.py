@@ -39,7 +39,7 @@ def test_without_a_session_only_the_login_is_answered(server):
         }
         nothing = client.get("/no/such/page").status_code
         open_ones = [client.get(path).status_code for path in ("/login", "/healthz")]
-        static = client.get("/web/shared/style.css").status_code
+        static = client.get("/web/shared/base.css").status_code
 
     assert set(answers.values()) == {401}
     assert nothing == 401

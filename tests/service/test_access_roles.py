@@ -202,7 +202,7 @@ def test_a_session_above_its_rate_limit_gets_retry_after(server):
 
     with server.signed_in("vera") as client, server.signed_in("otto") as other:
         answers = asyncio.run(many(client.cookies))
-        static = client.get("/web/shared/style.css")
+        static = client.get("/web/shared/base.css")
         others = other.get("/api/me")
 
     refused = [one for one in answers if one.status_code == 429]

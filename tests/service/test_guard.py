@@ -89,7 +89,7 @@ def test_every_answer_carries_the_security_headers(server):
     paths = (
         "/",
         "/projects/office/",
-        "/web/shared/style.css",
+        "/web/shared/base.css",
         "/api/projects",
         "/api/nothing",
         "/api",

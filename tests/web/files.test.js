@@ -5,6 +5,7 @@ import { fileURLToPath } from "node:url";
 
 const ROOT = new URL("../../", import.meta.url);
 const MAX_CHARACTERS = 100;
+const MAX_LINES = 400;
 const GENERATED = "web/shared/http_types.d.ts";
 
 /** Files written by people, with their lines. */
@@ -20,4 +21,9 @@ test("no line of the pages has more than 100 characters", () => {
     lines.flatMap((line, k) => ([...line].length > MAX_CHARACTERS ? [`${path}:${k + 1}`] : [])),
   );
   assert.deepEqual(wide, []);
+});
+
+test("no file of the pages has more than 400 lines", () => {
+  const long = files.filter(({ lines }) => lines.length - 1 > MAX_LINES).map(({ path }) => path);
+  assert.deepEqual(long, []);
 });

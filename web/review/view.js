@@ -80,7 +80,7 @@ export class PairView extends HTMLElement {
       this.#buttons[key] = make("button", { type: "button", onclick: () => action(key) }, text);
       return this.#buttons[key];
     });
-    return make("div", { role: "group", ariaLabel: label, className: "choice" }, ...buttons);
+    return make("div", { role: "group", ariaLabel: label, className: "segmented" }, ...buttons);
   }
 
   /** Multiframes shown around each place. */

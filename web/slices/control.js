@@ -137,7 +137,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
       ...found.figures.map(figures),
       make(
         "div",
-        { className: "wide" },
+        { className: "scroll" },
         make(
           "table",
           {},
@@ -299,7 +299,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
       { className: "figures" },
       make(
         "div",
-        { className: "wide" },
+        { className: "scroll" },
         make(
           "table",
           {},

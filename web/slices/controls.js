@@ -39,7 +39,7 @@ function select(options, value, onValue) {
 
 /** Fills the panel; `show(state)` and `facts(facts)` update it. */
 export function controls(root, { change, toKind }) {
-  const kinds = make("div", { className: "kinds", role: "group", ariaLabel: "Kind of cut" });
+  const kinds = make("div", { className: "segmented", role: "group", ariaLabel: "Kind of cut" });
   const where = make("div", { className: "where" });
   const how = make("div", { className: "how" });
   const besideMap = make("select", { ariaLabel: "Map beside" });
@@ -140,7 +140,7 @@ export function controls(root, { change, toKind }) {
       ),
       make(
         "div",
-        { className: "kinds", role: "group", ariaLabel: "Usual thickness" },
+        { className: "segmented", role: "group", ariaLabel: "Usual thickness" },
         thick(state, "2 cm, errors", 0.02),
         thick(state, "10 cm, looking", 0.1),
       ),

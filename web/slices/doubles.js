@@ -46,7 +46,7 @@ export function doublesPanel({ id, change, point, state }) {
     all: "All visited twice, worst first",
   });
   const where = choose("Where", { all: "Whole map", slice: "In this slice" });
-  const table = make("div", { className: "wide" });
+  const table = make("div", { className: "scroll" });
   let walls = [];
   let surfaces = [];
 

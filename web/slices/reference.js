@@ -202,7 +202,7 @@ export function referencePanel({ id, change, state, reload }) {
     table.replaceChildren(
       make(
         "div",
-        { className: "wide" },
+        { className: "scroll" },
         make("table", {}, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...rows)),
       ),
       make(
