@@ -1,5 +1,7 @@
 // Orthographic camera of the map, from above or tilted, and its control by fingers and mouse.
 
+import { listenToGestures } from "../shared/gestures.js";
+
 const ABOVE = Math.PI / 2;
 const TILTED = 0.62;
 const MEANT_TURN = 0.2; // smaller rotations of a pinch are unintended [rad]
@@ -54,7 +56,7 @@ export class Camera {
   }
 
   /** Zooms about the pixel `x`, `y` relative to the target. */
-  zoom(factor, [x, y] = [0, 0]) {
+  zoom(factor, /** @type {number[]} */ [x, y] = [0, 0]) {
     const before = this.pxPerM;
     this.pxPerM = Math.min(Math.max(before * factor, 1), 400);
     const grown = this.pxPerM / before;
@@ -62,7 +64,7 @@ export class Camera {
   }
 
   /** Rotates the image clockwise about the pixel `x`, `y` relative to the target. */
-  rotate(angle, [x, y] = [0, 0]) {
+  rotate(angle, /** @type {number[]} */ [x, y] = [0, 0]) {
     this.yaw += angle;
     const [c, s] = [Math.cos(angle), Math.sin(angle)];
     this.pan(x - (c * x - s * y), y - (s * x + c * y));
@@ -87,68 +89,44 @@ export class Camera {
 
 /**
  * One finger pans (or orbits in 3-D), two zoom, rotate and pan, a wheel zooms. `middle()` is the
- * target's position on the screen; while `following()` fingers zoom and rotate about it and do not
- * pan.
+ * target's position in the element [px]; while `following()` fingers zoom and rotate about it and
+ * do not pan.
  */
 export function moveByPointer(element, camera, { onMove, onPan, middle, following }) {
-  const held = new Map();
   let turned = 0; // rotation of the current touch
-  const about = ({ x, y }) => {
+  const about = (/** @type {number[]} */ [x, y]) => {
     const [left, top] = middle();
     return following() ? [0, 0] : [x - left, y - top];
   };
-  const pair = () => {
-    const [a, b] = [...held.values()];
-    const [dx, dy] = [b.x - a.x, b.y - a.y];
-    return {
-      x: (a.x + b.x) / 2,
-      y: (a.y + b.y) / 2,
-      wide: Math.hypot(dx, dy),
-      angle: Math.atan2(dy, dx),
-    };
-  };
 
-  function movePair(before, after) {
-    camera.zoom(after.wide / Math.max(before.wide, 1), about(after));
-    const turn = Math.atan2(
-      Math.sin(after.angle - before.angle),
-      Math.cos(after.angle - before.angle),
-    );
+  function rotate(angle, place) {
+    const turn = Math.atan2(Math.sin(angle), Math.cos(angle));
     turned += turn;
-    if (Math.abs(turned) > MEANT_TURN) camera.rotate(turn, about(after));
-    if (!following()) camera.pan(after.x - before.x, after.y - before.y);
+    if (Math.abs(turned) > MEANT_TURN) camera.rotate(turn, place);
   }
 
-  function moveOne(dx, dy, shift) {
-    if (!camera.above && !shift) return camera.orbit(dx, dy);
-    camera.pan(dx, dy);
-    if (dx || dy) onPan();
-  }
-
-  element.addEventListener("pointerdown", (event) => {
-    element.setPointerCapture(event.pointerId);
-    held.set(event.pointerId, { x: event.clientX, y: event.clientY });
-    turned = 0;
-  });
-  element.addEventListener("pointermove", (event) => {
-    const before = held.get(event.pointerId);
-    if (!before) return;
-    const both = held.size === 2 ? pair() : null;
-    held.set(event.pointerId, { x: event.clientX, y: event.clientY });
-    if (both) movePair(both, pair());
-    else if (held.size === 1)
-      moveOne(event.clientX - before.x, event.clientY - before.y, event.shiftKey);
-    onMove();
-  });
-  for (const end of ["pointerup", "pointercancel"])
-    element.addEventListener(end, (event) => held.delete(event.pointerId));
-  element.addEventListener(
-    "wheel",
-    (event) => {
-      event.preventDefault();
-      camera.zoom(Math.exp(-event.deltaY * 0.0015), about({ x: event.clientX, y: event.clientY }));
+  listenToGestures(element, {
+    onDown: () => (turned = 0),
+    onDrag(from, to, { shiftKey }) {
+      const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+      if (!camera.above && !shiftKey) camera.orbit(dx, dy);
+      else {
+        camera.pan(dx, dy);
+        if (dx || dy) onPan();
+      }
       onMove();
     },
-    { passive: false },
-  );
+    onPinch(before, after) {
+      const place = about(before.middle);
+      camera.zoom(after.apart / Math.max(before.apart, 1), place);
+      rotate(after.angle - before.angle, place);
+      if (!following())
+        camera.pan(after.middle[0] - before.middle[0], after.middle[1] - before.middle[1]);
+      onMove();
+    },
+    onWheel(deltaY, at) {
+      camera.zoom(Math.exp(-deltaY * 0.0015), about(at));
+      onMove();
+    },
+  });
 }

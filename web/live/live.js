@@ -284,10 +284,7 @@ moveByPointer(byId("overlay"), camera, {
   onMove: () => ((fitted = false), redraw()),
   onPan: () => follow && press("follow", (follow = false)),
   following: () => follow && scene.me !== null,
-  middle: () => {
-    const { map, middle } = space();
-    return [map.left + middle[0], map.top + middle[1]];
-  },
+  middle: () => space().middle,
 });
 
 /** Keeps the screen on, so that warnings are visible, where the browser supports it. */

@@ -1,5 +1,7 @@
 // Draws over the points: coverage plan, path, gaps, marks and position.
 
+import { drawScaleBar } from "../shared/scale_bar.js";
+
 const SEEN = { FREE: 1, POOR: 2, WELL: 3 };
 
 const PX = 4;
@@ -95,7 +97,12 @@ export function drawOverlay(
   if (scene.path.length) drawStart(context, camera, scene.path[0], inside, styles);
   for (const mark of scene.marks) drawMark(context, camera, mark, styles);
   if (scene.me) drawMe(context, camera, scene.me, styles);
-  drawScale(context, camera, { x: inside.left + 14, y: inside.bottom - 12 }, styles);
+  drawScaleBar(context, camera.pxPerM, {
+    left: inside.left + 14,
+    bottom: inside.bottom - 12,
+    ink: styles.ink,
+    halo: styles.sky,
+  });
 }
 
 function drawPlan(context, camera, plan) {
@@ -206,24 +213,6 @@ function drawMe(context, camera, me, styles) {
     styles.sky,
   );
   context.restore();
-}
-
-function drawScale(context, camera, { x, y }, styles) {
-  const meters = [0.5, 1, 2, 5, 10, 20, 50, 100].find((m) => m * camera.pxPerM >= 60) ?? 200;
-  context.beginPath();
-  context.moveTo(x, y - 5);
-  context.lineTo(x, y);
-  context.lineTo(x + meters * camera.pxPerM, y);
-  context.lineTo(x + meters * camera.pxPerM, y - 5);
-  for (const [width, color] of [
-    [5, styles.sky],
-    [2, styles.ink],
-  ]) {
-    context.lineWidth = width;
-    context.strokeStyle = color;
-    context.stroke();
-  }
-  label(context, `${meters} m`, x + 4, y - 12, styles.ink, styles.sky, "left");
 }
 
 function circle(context, x, y, r, inside, around) {

@@ -1,6 +1,5 @@
 // Drawing the pair view: points of two places, scale bar, handle, picked points. No events.
 
-import { scaleBar } from "../shared/scale_bar.js";
 import { apply, rotationOf, times, turn } from "./math.js";
 
 export const RED = 0xff4a52ff; // A B G R
@@ -8,6 +7,8 @@ export const GREEN = 0xff7fd62f;
 export const HANDLE_PX = 22;
 export const RING_PX = 66;
 const GROUND = 0xff18140f;
+export const INK = "#e6ebf0";
+export const HALO = "#0f1418";
 
 /** Image of the size of a canvas, to draw points into: {pixels, width, height, ratio, show}. */
 export function pointImage(canvas) {
@@ -56,20 +57,6 @@ export function drawPoints(
     for (const at of [p, p + 1, q, q + 1])
       pixels[at] = pixels[at] === GROUND || pixels[at] === color ? color : pixels[at] | color;
   }
-}
-
-export function drawScaleBar(context, height, pxPerM) {
-  const { px, text } = scaleBar(pxPerM);
-  context.strokeStyle = context.fillStyle = "#e6ebf0";
-  context.lineWidth = 2;
-  context.beginPath();
-  context.moveTo(14, height - 20);
-  context.lineTo(14, height - 14);
-  context.lineTo(14 + px, height - 14);
-  context.lineTo(14 + px, height - 20);
-  context.stroke();
-  context.font = "13px system-ui, sans-serif";
-  context.fillText(text, 18, height - 22);
 }
 
 /** A disc to move the second place by, a ring with a knob to turn it. */

@@ -49,7 +49,7 @@ export function listenToPointer(canvas, view) {
     },
     onPinch(before, after) {
       if (drag !== "pinch") return;
-      view.zoom(after.apart / Math.max(before.apart, 1), ...after.middle);
+      view.zoom(after.apart / Math.max(before.apart, 1), ...before.middle);
       view.camera.pan(after.middle[0] - before.middle[0], after.middle[1] - before.middle[1]);
       view.draw();
     },

@@ -2,15 +2,8 @@
 // Events: "laid" (the person moved the second place), "reach" (another number of multiframes).
 
 import { make } from "../shared/dom.js";
-import {
-  GREEN,
-  RED,
-  drawHandle,
-  drawPicked,
-  drawPoints,
-  drawScaleBar,
-  pointImage,
-} from "./draw.js";
+import { drawScaleBar } from "../shared/scale_bar.js";
+import { GREEN, HALO, INK, RED, drawHandle, drawPicked, drawPoints, pointImage } from "./draw.js";
 import { Camera, IDENTITY, nudged, rotationOf, transposed, turn } from "./math.js";
 import { Picking } from "./picking.js";
 import { listenToPointer } from "./pointer.js";
@@ -244,7 +237,8 @@ export class PairView extends HTMLElement {
     image.show();
     context.scale(ratio, ratio);
     if (this.#points) {
-      drawScaleBar(context, image.height / ratio, this.camera.scale);
+      const bottom = image.height / ratio - 14;
+      drawScaleBar(context, this.camera.scale, { left: 14, bottom, ink: INK, halo: HALO });
       if (this.hasHandle) drawHandle(context, this.on(pose));
       if (this.#picking) drawPicked(context, this.#picking, pose, (p) => this.on(p));
     }

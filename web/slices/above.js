@@ -5,7 +5,7 @@
 
 import { make } from "../shared/dom.js";
 import { listenToGestures } from "../shared/gestures.js";
-import { scaleBar } from "../shared/scale_bar.js";
+import { drawScaleBar } from "../shared/scale_bar.js";
 import { normalOf } from "./state.js";
 
 const GRIP_PX = 22;
@@ -94,7 +94,12 @@ export class SliceAbove extends HTMLElement {
       pen.arc(x, y, 9, 0, 2 * Math.PI);
       pen.stroke();
     }
-    this.#bar(pen, color);
+    drawScaleBar(pen, this.#fit().scale, {
+      left: 10,
+      bottom: height - 10,
+      ink: color("--quiet"),
+      halo: color("--panel"),
+    });
   }
 
   /** Ends of the cut's line in the map; null for a level plane. */
@@ -149,21 +154,6 @@ export class SliceAbove extends HTMLElement {
       pen.textBaseline = "middle";
       pen.fillText("AB"[k], x, y + 0.5);
     });
-  }
-
-  #bar(pen, color) {
-    const { height, scale } = this.#fit();
-    const { px, text } = scaleBar(scale, 50);
-    pen.fillStyle = color("--panel");
-    pen.globalAlpha = 0.8;
-    pen.fillRect(4, height - 32, px + 12, 28);
-    pen.globalAlpha = 1;
-    pen.fillStyle = color("--quiet");
-    pen.fillRect(10, height - 12, px, 3);
-    pen.font = "12px system-ui, sans-serif";
-    pen.textAlign = "left";
-    pen.textBaseline = "alphabetic";
-    pen.fillText(text, 10, height - 17);
   }
 
   #down(at) {

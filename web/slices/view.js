@@ -5,7 +5,7 @@
 
 import { make } from "../shared/dom.js";
 import { listenToGestures } from "../shared/gestures.js";
-import { roundStep, scaleBar } from "../shared/scale_bar.js";
+import { drawScaleBar, roundStep } from "../shared/scale_bar.js";
 
 const EDGE = { left: 56, bottom: 26 };
 const FINEST_M = 0.0002;
@@ -154,7 +154,12 @@ export class SliceView extends HTMLElement {
       pen.drawImage(this.#image, x0, y0, x1 - x0, y1 - y0);
     }
     this.#labels(pen, step, color);
-    this.#bar(pen, color);
+    drawScaleBar(pen, 1 / this.#metersPerPx, {
+      right: width - 16,
+      bottom: height - EDGE.bottom - 14,
+      ink: color("--ink"),
+      halo: color("--paper"),
+    });
     for (const mark of this.#marks) this.#mark(pen, mark, color);
   }
 
@@ -212,23 +217,6 @@ export class SliceView extends HTMLElement {
     pen.fillText(this.#axes[1].replace("height ", ""), 8, 12);
     pen.strokeStyle = color("--line");
     pen.strokeRect(EDGE.left + 0.5, -1, width, height - EDGE.bottom + 0.5);
-  }
-
-  #bar(pen, color) {
-    const { width, height } = this.#size();
-    const { px, text } = scaleBar(1 / this.#metersPerPx);
-    const [x, y] = [width - px - 16, height - EDGE.bottom - 16];
-    pen.fillStyle = color("--paper");
-    pen.globalAlpha = 0.85;
-    pen.fillRect(x - 8, y - 22, px + 16, 32);
-    pen.globalAlpha = 1;
-    pen.fillStyle = color("--ink");
-    pen.fillRect(x, y, px, 4);
-    pen.fillStyle = color("--paper");
-    pen.fillRect(x + px / 2, y + 1, px / 2 - 1, 2);
-    pen.fillStyle = color("--ink");
-    pen.textAlign = "center";
-    pen.fillText(text, x + px / 2, y - 9);
   }
 
   #mark(pen, { points, text, tone }, color) {
