@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sized
 from dataclasses import dataclass, field
-from typing import Protocol, TypeVar
+from typing import TYPE_CHECKING, Protocol, TypeVar
+
+if TYPE_CHECKING:
+    from recon4.model.events import Event
 
 Item = TypeVar("Item")
 
@@ -22,15 +25,15 @@ class Progress(Protocol):
             Cancelled: If the watcher requested to stop.
         """
 
-    def event(self, kind: str, **facts: object) -> None:
-        """Say what was found (an edge, a repair, a warning), as plain JSON values."""
+    def event(self, event: Event) -> None:
+        """Say what was found: an edge, a warning, the end of a stage."""
 
 
 @dataclass(slots=True)
 class Silent:
     """Watches nothing: the default of every library call. Keeps the events, for tests."""
 
-    events: list[tuple[str, dict[str, object]]] = field(default_factory=list)
+    events: list[Event] = field(default_factory=list)
 
     def start(self, what: str, total: int, unit: str) -> None:
         """Ignore."""
@@ -38,9 +41,9 @@ class Silent:
     def advance(self, done: int = 1) -> None:
         """Ignore."""
 
-    def event(self, kind: str, **facts: object) -> None:
+    def event(self, event: Event) -> None:
         """Remember."""
-        self.events.append((kind, facts))
+        self.events.append(event)
 
 
 def track(

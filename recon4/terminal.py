@@ -10,16 +10,11 @@ from typing import TYPE_CHECKING, TextIO
 if TYPE_CHECKING:
     from rich.progress import ProgressColumn, Task, TaskID
 
+    from recon4.model.events import Event, StageChanged
     from recon4.report.verdict import MapVerdict
     from recon4.results import Summary
 
 _LINE_EVERY_S = 5.0
-_EVENTS = {
-    "damaged": "an artifact was damaged and is made again",
-    "warning": "warning",
-    "repair": "repaired",
-}
-"""Events shown during a run; the others are in the results."""
 
 
 def write(text: str, end: str = "\n") -> None:
@@ -49,9 +44,9 @@ class PlainLines:
             self._say(self._line())
             self._said_s = time.monotonic()
 
-    def event(self, kind: str, **facts: object) -> None:
+    def event(self, event: Event) -> None:
         """A line for what a person should know."""
-        text = describe_event(kind, facts)
+        text = describe_event(event)
         if text:
             self._finish()
             self._say(text)
@@ -109,9 +104,9 @@ class Bars:
         if self._task is not None:
             self._rich.advance(self._task, done)
 
-    def event(self, kind: str, **facts: object) -> None:
+    def event(self, event: Event) -> None:
         """A line above the bars for what a person should know."""
-        text = describe_event(kind, facts)
+        text = describe_event(event)
         if text:
             self._rich.console.print(text, markup=False, highlight=False)
 
@@ -161,14 +156,21 @@ def describe_progress(what: str, done: int, total: int, *, unit: str, seconds: f
     return "  ".join(part for part in parts if part)
 
 
-def describe_event(kind: str, facts: dict[str, object]) -> str:
-    """A line for a person, or nothing if the event is none of his business just now."""
-    if kind == "stage":
-        return _describe_stage(facts)
-    if kind not in _EVENTS:
-        return ""
-    text = [str(v) if name == "text" else f"{name} {v}" for name, v in facts.items()]
-    return f"{_EVENTS[kind]}: " + ", ".join(text)
+def describe_event(event: Event) -> str:
+    """A line for a person; empty for events that are in the results only."""
+    from recon4.model.events import ArtifactDamaged, StageChanged, Warned
+
+    match event:
+        case StageChanged():
+            return _describe_stage(event)
+        case Warned(text=text):
+            return f"warning: {text}"
+        case ArtifactDamaged(stage=stage, moved_to=moved_to, files=files):
+            return (
+                f"an artifact of the stage {stage} was damaged and is made again; "
+                f"the damaged one is {moved_to}: {'; '.join(files)}"
+            )
+    return ""
 
 
 def describe_summary(summary: Summary) -> str:
@@ -193,12 +195,12 @@ def _describe_verdict(verdict: MapVerdict) -> list[str]:
     return [f"verdict: {verdict.usability}", *(f"  - {text}" for text in verdict.reasons)]
 
 
-def _describe_stage(facts: dict[str, object]) -> str:
-    match facts.get("state"):
+def _describe_stage(event: StageChanged) -> str:
+    match event.state:
         case "reused":
-            return f"{facts['stage']}: already there"
+            return f"{event.stage}: already there"
         case "done":
-            return f"{facts['stage']}: done in {facts['seconds']} s"
+            return f"{event.stage}: done in {event.seconds} s"
     return ""
 
 

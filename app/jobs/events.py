@@ -10,13 +10,13 @@ import json
 import logging
 import time
 from collections.abc import Mapping
-from dataclasses import asdict
 from pathlib import Path
 
 import msgspec
 
 from recon4.errors import Cancelled, StoreError
 from recon4.model.events import KINDS, Event, RunStarted, WorkProgress
+from recon4.model.plain import to_plain
 from recon4.store.json_files import parse_object
 
 log = logging.getLogger("recon4.job")
@@ -43,7 +43,7 @@ class EventWriter:
         self._what, self._unit = "", ""
         self._done, self._total = 0, 0
         self._began_s = self._due_s = 0.0
-        self._write_record(RunStarted())
+        self._write(RunStarted())
 
     def start(self, what: str, total: int, unit: str) -> None:
         """Begin a piece of work of ``total`` units (0 = unknown)."""
@@ -65,16 +65,13 @@ class EventWriter:
         if time.monotonic() >= self._due_s or self._done == self._total:
             self._report()
 
-    def event(self, kind: str, **facts: object) -> None:
+    def event(self, event: Event) -> None:
         """Write an event of a stage."""
         self._beat()
-        if kind not in MANY:
-            log.info(
-                "%s %s",
-                kind,
-                " ".join(str(value) for name, value in facts.items() if name != "key"),
-            )
-        self._write(kind, facts)
+        if event.kind not in MANY:
+            shown = [value for name, value in _facts(event).items() if name != "key"]
+            log.info("%s %s", event.kind, " ".join(str(v) for v in shown if v is not None))
+        self._write(event)
 
     def close(self) -> None:
         """Close the file."""
@@ -90,7 +87,7 @@ class EventWriter:
     def _report(self) -> None:
         now_s = time.monotonic()
         self._due_s = now_s + EVERY_S
-        self._write_record(
+        self._write(
             WorkProgress(
                 what=self._what,
                 done=self._done,
@@ -102,14 +99,16 @@ class EventWriter:
         if self._stop.exists():
             raise Cancelled("stopped on request; finished stages are kept")
 
-    def _write_record(self, record: Event) -> None:
-        fields = asdict(record)
-        del fields["t"]  # the time of writing
-        self._write(record.kind, fields)
+    def _write(self, event: Event) -> None:
+        line = {"t": round(time.time(), 3), **_facts(event), "kind": event.kind}
+        self._file.write(json.dumps(line).encode() + b"\n")
 
-    def _write(self, kind: str, fields: Mapping[str, object]) -> None:
-        line = json.dumps({"t": round(time.time(), 3), **fields, "kind": kind}, default=str)
-        self._file.write(line.encode() + b"\n")
+
+def _facts(event: Event) -> dict[str, object]:
+    """The fields of an event as JSON values, without its time."""
+    fields: dict[str, object] = to_plain(event)
+    del fields["t"]
+    return fields
 
 
 def read_events(path: Path, offset: int) -> tuple[list[Event], int]:

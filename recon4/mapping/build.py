@@ -19,6 +19,7 @@ from recon4.mapping.place import place_with_origins
 from recon4.mapping.records import Records, Tile, split_into_tiles
 from recon4.mapping.tile import FIELDS, MadeTile, Recipe, make_tile
 from recon4.mapping.tiles import MapCrs, TileSet, TileWriter
+from recon4.model.events import MapBuilt
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, Silent, track
 from recon4.settings import MapSettings
@@ -81,7 +82,7 @@ def build_map(
             "removed": dict(removed),
         }
     made = TileSet.open(out)
-    progress.event("map", points=len(made), removed=dict(removed))
+    progress.event(MapBuilt(points=len(made), removed=dict(removed)))
     return made
 
 

@@ -7,9 +7,13 @@ earlier and later versions stay readable.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
+from recon4.geometry.se3 import Array
 from recon4.model.pose_graph import EdgeKind, Reason, Verdict
 
 Position = tuple[float, float, float]
@@ -54,6 +58,8 @@ class StageChanged(Event):
     stage: str
     state: str
     """``running``, ``done`` or ``reused``."""
+    key: str = ""
+    """Of its artifact."""
     seconds: float | None = None
     """Duration [s]; None while it runs."""
 
@@ -99,6 +105,60 @@ class VerdictsChanged(Event):
 
     kind: ClassVar[str] = "verdicts"
     edges: tuple[tuple[int, int, EdgeKind, Verdict, Reason], ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArtifactDamaged(Event):
+    """An artifact was damaged; it is kept under another name and made again."""
+
+    kind: ClassVar[str] = "damaged"
+    stage: str
+    moved_to: str
+    """Path below the project."""
+    files: tuple[str, ...]
+    """What is wrong with the first of its files."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Warned(Event):
+    """A warning for the operator."""
+
+    kind: ClassVar[str] = "warning"
+    text: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrackingLost(Event):
+    """The odometry could not place a multiframe."""
+
+    kind: ClassVar[str] = "lost"
+    frame_id: int
+    t_ns: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RoundRefined(Event):
+    """Result of a round of the refinement; see `recon4.model.figures.RefineRound`."""
+
+    kind: ClassVar[str] = "refine"
+    mean_m: float
+    match_ratio: float
+    largest_step_m: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapBuilt(Event):
+    """The tiles of the map are complete."""
+
+    kind: ClassVar[str] = "map"
+    points: int
+    removed: Mapping[str, int]
+    """Points left out, by reason."""
+
+
+def positions_of(t_m: Array) -> tuple[Position, ...]:
+    """Positions (N, 3) for an event, rounded to a millimeter [m]."""
+    return tuple((x, y, z) for x, y, z in np.round(t_m, 3).tolist())
 
 
 KINDS: dict[str, type[Event]] = {

@@ -10,6 +10,8 @@ import numpy as np
 
 from recon4.geometry.lines import Lines
 from recon4.geometry.se3 import SE3, Array
+from recon4.model.events import EdgeTried
+from recon4.model.plain import finite_or_none
 from recon4.model.pose_graph import Edge, EdgeKind, Reason, Verdict
 from recon4.progress import Progress
 from recon4.registration.collar_lines import LineTarget, register_lines
@@ -65,7 +67,7 @@ class PairRegistrar:
             for done in pool.map(lambda chunk: self._try_chunk(chunk, pairs), chunks):
                 edges.update(done)
                 for edge in done.values():
-                    progress.event("edge", **edge_event(edge))
+                    progress.event(tried_event(edge))
                 progress.advance(len(done))
         return [edges[k] for k in range(len(pairs))]
 
@@ -155,23 +157,18 @@ class PairRegistrar:
         )
 
 
-def edge_event(edge: Edge) -> dict[str, object]:
-    """Fields of the event ``edge``, as plain JSON values."""
-    return {
-        "i": edge.i,
-        "j": edge.j,
-        "edge_kind": edge.kind.value,
-        "verdict": edge.verdict.value,
-        "reason": edge.reason.value,
-        "overlap": _or_null(edge.overlap),
-        "error_m": _or_null(edge.error_m),
-        "limit_m": _or_null(edge.limit_m),
-    }
-
-
-def _or_null(figure: float) -> float | None:
-    """A number for JSON, which has no NaN, rounded to five digits for display."""
-    return float(f"{figure:.5g}") if np.isfinite(figure) else None
+def tried_event(edge: Edge) -> EdgeTried:
+    """The event about a registered pair; figures are rounded to five digits for display."""
+    return EdgeTried(
+        i=edge.i,
+        j=edge.j,
+        edge_kind=edge.kind,
+        verdict=edge.verdict,
+        reason=edge.reason,
+        overlap=finite_or_none(edge.overlap, 5),
+        error_m=finite_or_none(edge.error_m, 5),
+        limit_m=finite_or_none(edge.limit_m, 5),
+    )
 
 
 def _edge(pair: Pair, overlap_ratio: float, reason: Reason) -> Edge:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array
+from recon4.model.events import NodesPlaced, positions_of
 from recon4.model.figures import GraphFigures
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
 from recon4.model.trajectory import Trajectory
@@ -88,7 +89,7 @@ def search(
     T_odom_body = trajectory.at(t_ns)
     edges = odometry_edges(T_odom_body, rows, lost, motion_cov=motion_cov, settings=g)
     graph = PoseGraph(rows.astype(np.int64), t_ns, T_odom_body, edges)
-    progress.event("nodes", t_ns=t_ns.tolist(), t_m=np.round(T_odom_body.t, 3).tolist())
+    progress.event(NodesPlaced(t_ns=tuple(t_ns.tolist()), t_m=positions_of(T_odom_body.t)))
     views = NodeRangeImages(len(rows), settings, scratch)
     registrar = PairRegistrar(
         lambda: Submaps(frames, trajectory, rows, settings, skip=lost), views, settings
@@ -154,7 +155,7 @@ def _try(
     edges = registrar.register(pairs, progress)
     graph = graph.with_edges(_newest(graph.edges, edges))
     solution = optimize(graph, kernel="cauchy")
-    progress.event("nodes", t_m=np.round(solution.T_map_body.t, 3).tolist())
+    progress.event(NodesPlaced(t_m=positions_of(solution.T_map_body.t)))
     return graph.with_poses(solution.T_map_body)
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from recon4.geometry.se3 import Array
+from recon4.model.events import VerdictsChanged
 from recon4.model.pose_graph import Edge, PoseGraph, Reason, Relations, Verdict
 from recon4.pose_graph.checks import check_relations
 from recon4.pose_graph.paths import PathIndex, reject_worst_first
@@ -180,11 +181,10 @@ def _with_figures(edges: tuple[Edge, ...], paths: PathIndex, edge_chi2: Array) -
 def _report_verdicts(edges: tuple[Edge, ...], rows: list[int], watcher: Progress) -> None:
     """Report the verdicts of some edges as an event, for the display of a running job."""
     if rows:
-        record = [
-            [e.i, e.j, e.kind.value, e.verdict.value, e.reason.value]
-            for e in (edges[row] for row in rows)
-        ]
-        watcher.event("verdicts", edges=record)
+        judged = tuple(edges[row] for row in rows)
+        watcher.event(
+            VerdictsChanged(edges=tuple((e.i, e.j, e.kind, e.verdict, e.reason) for e in judged))
+        )
 
 
 def _edge_record(edge: Edge, row: int) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError, EmptyRecording
 from recon4.geometry.se3 import SE3
+from recon4.model.events import Warned
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
@@ -162,7 +163,7 @@ def ingest(
         about |= {"imu": _about(kept_imu), "gnss": _about(kept_gnss)}
         writer.add(imu=kept_imu, gnss=kept_gnss, report=about)
     for text in report.warnings:
-        progress.event("warning", text=text)
+        progress.event(Warned(text=text))
 
 
 def _sort_out(

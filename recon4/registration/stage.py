@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.geometry.se3 import SE3
+from recon4.model.events import PosesAdded, TrackingLost, Warned, positions_of
 from recon4.model.figures import OdometryFigures
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, track
@@ -44,13 +45,13 @@ def run_odometry(
     """
     imu, remark = consistent_imu(frames, settings)
     if remark:
-        progress.event("warning", text=remark)
+        progress.event(Warned(text=remark))
     odometry = make_odometry(frames.rig, settings, imu, aiding=aiding)
     steps: list[OdometryStep] = []
     for frame in track(frames, progress, what="odometry", unit="multiframe"):
         step = odometry.push(frame)
         if step.lost:
-            progress.event("lost", frame_id=step.frame_id, t_ns=step.t_mid_ns)
+            progress.event(TrackingLost(frame_id=step.frame_id, t_ns=step.t_mid_ns))
         steps.append(step)
         if len(steps) % (_REPORT_EVERY * _REPORT_AT_ONCE) == 0:
             _report_poses(steps[-_REPORT_EVERY * _REPORT_AT_ONCE :: _REPORT_EVERY], progress)
@@ -69,11 +70,13 @@ def run_odometry(
 def _report_poses(steps: list[OdometryStep], progress: Progress) -> None:
     """Report some poses as an event, for a display of the growing trajectory."""
     T = SE3.stack(step.T_odom_body for step in steps)
+    quaternions = np.round(T.quat_xyzw(), 5).tolist()
     progress.event(
-        "poses",
-        t_ns=[step.t_mid_ns for step in steps],
-        t_m=np.round(T.t, 3).tolist(),
-        quat_xyzw=np.round(T.quat_xyzw(), 5).tolist(),
+        PosesAdded(
+            t_ns=tuple(step.t_mid_ns for step in steps),
+            t_m=positions_of(T.t),
+            quat_xyzw=tuple((x, y, z, w) for x, y, z, w in quaternions),
+        )
     )
 
 

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import TRANSLATION, Array
 from recon4.model.corrections import apply_corrections
+from recon4.model.events import RoundRefined
 from recon4.model.figures import RefineFigures, RefineRound
 from recon4.model.plain import to_plain
 from recon4.model.pose_graph import PoseGraph
@@ -112,7 +113,9 @@ def refine_trajectory(
         trajectory = apply_knots(trajectory, knot_ns, step)
         largest_m = float(np.linalg.norm(step[:, TRANSLATION], axis=1).max())
         rounds.append(RefineRound(mean_m=mean_m, match_ratio=match_ratio, largest_step_m=largest_m))
-        progress.event("refine", mean_m=mean_m, match_ratio=match_ratio, largest_step_m=largest_m)
+        progress.event(
+            RoundRefined(mean_m=mean_m, match_ratio=match_ratio, largest_step_m=largest_m)
+        )
         if largest_m < r.converged_step_m:
             break
     return trajectory, rounds

@@ -15,6 +15,7 @@ import msgspec
 
 import recon4
 from recon4.errors import StoreError
+from recon4.model.events import ArtifactDamaged, StageChanged
 from recon4.model.figures import Figures
 from recon4.model.plain import to_plain
 from recon4.progress import Progress
@@ -120,7 +121,7 @@ class StageRunner:
         """
         key = stage_key(stage, self._settings, inputs)
         artifact = Artifact(stage.name, key, self._project.artifacts / key)
-        self._progress.event("stage", stage=stage.name, key=key, state="running")
+        self._progress.event(StageChanged(stage=stage.name, key=key, state="running"))
         done = self._finished(artifact)
         reused = done is not None
         if done is None:
@@ -152,7 +153,7 @@ class StageRunner:
         self.runs[name] = StageRun(artifact, done, reused, figures)
         state = "reused" if reused else "done"
         self._progress.event(
-            "stage", stage=name, key=key, state=state, seconds=round(done.seconds, 3)
+            StageChanged(stage=name, key=key, state=state, seconds=round(done.seconds, 3))
         )
         return artifact
 
@@ -187,9 +188,8 @@ class StageRunner:
         with changing(self._project.root, f"artifacts/{artifact.key}", compared=False):
             artifact.folder.rename(aside)
         self._project.ledger.forget(artifact.key)
-        self._progress.event(
-            "damaged", stage=artifact.stage, moved_to=f"artifacts/{aside.name}", files=damage[:10]
-        )
+        moved_to, files = f"artifacts/{aside.name}", tuple(damage[:10])
+        self._progress.event(ArtifactDamaged(stage=artifact.stage, moved_to=moved_to, files=files))
 
     def _make(
         self, stage: Stage[Any], artifact: Artifact, inputs: Mapping[str, Input | Artifact | None]

@@ -12,6 +12,7 @@ from pathlib import Path
 from app.jobs.folder import JobFolder
 from app.jobs.limits import worker_policy
 from app.jobs.worker import main, process
+from recon4.model.events import Event, StageChanged
 from recon4.progress import Progress
 from recon4.sandbox import Policy
 
@@ -39,10 +40,10 @@ class Gated:
                 fcntl.flock(gate, fcntl.LOCK_SH)
             self._progress.start(*self._piece)
 
-    def event(self, kind: str, **facts: object) -> None:
-        if kind == "stage":
-            self._stage = str(facts["stage"]) if facts["state"] == "running" else ""
-        self._progress.event(kind, **facts)
+    def event(self, event: Event) -> None:
+        if isinstance(event, StageChanged):
+            self._stage = event.stage if event.state == "running" else ""
+        self._progress.event(event)
 
 
 def work(folder: JobFolder, progress: Progress) -> None:

@@ -20,7 +20,8 @@ from app.viewer import proxy
 from app.viewer.client.legend_html import count
 from app.viewer.page import SHIMS
 from app.viewer.proxy import Rate, allowed, passes
-from recon4.model.pose_graph import Reason
+from recon4.model.events import EdgeTried, NodesPlaced, StageChanged, VerdictsChanged
+from recon4.model.pose_graph import EdgeKind, Reason, Verdict
 from tests.benchmarks.viewer_figures import PEOPLE, own_server
 from tests.processes import command_of
 from tests.project_builder import add_multiframes, build_project, loop_walk, verified_graph
@@ -330,13 +331,17 @@ def test_what_a_running_job_finds_appears_while_it_runs(tmp_path):
     job = EventWriter(folder)
     with server_thread(tmp_path) as server, viewing(server.url) as client:
         client.send(camera())
-        job.event("stage", stage="graph", state="running")
-        job.event("nodes", t_ns=[1, 2, 3], t_m=[[0, 0, 0], [4, 0, 0], [4, 4, 0]])
-        job.event("edge", i=0, j=2, edge_kind="loop", verdict="accepted", reason="", overlap=0.4)
+        job.event(StageChanged(stage="graph", state="running"))
+        corner = ((0.0, 0.0, 0.0), (4.0, 0.0, 0.0), (4.0, 4.0, 0.0))
+        job.event(NodesPlaced(t_ns=(1, 2, 3), t_m=corner))
+        loop, accepted = EdgeKind.LOOP, Verdict.ACCEPTED
+        job.event(
+            EdgeTried(i=0, j=2, edge_kind=loop, verdict=accepted, reason=Reason.NONE, overlap=0.4)
+        )
         client.until(lambda c: "/edges/accepted/loop/0" in c.nodes)
 
-        verdict = [0, 2, "loop", "rejected", "verification median > limit"]
-        job.event("verdicts", edges=[verdict])
+        judged = (0, 2, loop, Verdict.REJECTED, Reason.VERIFICATION)
+        job.event(VerdictsChanged(edges=(judged,)))
         client.until(lambda c: "/edges/rejected/verification-median-limit/0" in c.nodes)
 
         assert "/edges/accepted/loop/0" not in client.nodes

@@ -30,7 +30,7 @@ MAY_IMPORT = {
     "recon4/errors.py": set(),
     "recon4/bounded.py": {"recon4.errors"},
     "recon4/names.py": {"recon4.errors"},
-    "recon4/progress.py": {"recon4.errors"},
+    "recon4/progress.py": {"recon4.errors", "recon4.model.events"},
     "recon4/settings": {"recon4.errors", "recon4.settings"},
     "recon4/geometry": {"recon4.geometry"},
     "recon4/model": MODEL,

@@ -4,6 +4,7 @@ import io
 
 import pytest
 
+from recon4.model.events import ArtifactDamaged, NodesPlaced, StageChanged, Warned
 from recon4.progress import track
 from recon4.terminal import Bars, PlainLines, describe_event, describe_progress, watcher
 
@@ -63,7 +64,7 @@ def test_at_a_terminal_there_are_bars_with_the_same_figures():
 
     with watcher(out) as progress:
         list(track(range(3), progress, what="reading", unit="packets"))
-        progress.event("stage", stage="frames", state="done", seconds=1.5)
+        progress.event(StageChanged(stage="frames", state="done", seconds=1.5))
 
     assert isinstance(progress, Bars)
     assert "reading" in out.getvalue()
@@ -72,9 +73,13 @@ def test_at_a_terminal_there_are_bars_with_the_same_figures():
 
 
 def test_stages_and_damage_are_printed_but_not_every_edge():
-    assert describe_event("stage", {"stage": "map", "state": "reused"}) == "map: already there"
-    assert describe_event("stage", {"stage": "map", "state": "running"}) == ""
-    assert describe_event("edge", {"i": 1, "j": 2}) == ""
-    assert describe_event("damaged", {"stage": "map"}) == (
-        "an artifact was damaged and is made again: stage map"
+    damaged = ArtifactDamaged(stage="map", moved_to="artifacts/d-1", files=("a is missing",))
+
+    assert describe_event(StageChanged(stage="map", state="reused")) == "map: already there"
+    assert describe_event(StageChanged(stage="map", state="running")) == ""
+    assert describe_event(NodesPlaced(t_m=())) == ""
+    assert describe_event(Warned(text="no vertical LiDAR")) == "warning: no vertical LiDAR"
+    assert describe_event(damaged) == (
+        "an artifact of the stage map was damaged and is made again; "
+        "the damaged one is artifacts/d-1: a is missing"
     )

@@ -126,7 +126,7 @@ def test_an_event_of_a_later_version_is_read_without_its_new_fields():
 def test_events_are_read_as_they_come_and_a_line_cut_by_a_kill_is_skipped(tmp_path):
     path = tmp_path / "events.jsonl"
     first = EventWriter(tmp_path)
-    first.event("nodes", t_m=[[0, 0, 0]])
+    first.event(NodesPlaced(t_m=((0.0, 0.0, 0.0),)))
     first.close()
     events, offset = read_events(path, 0)
     with path.open("ab") as file:

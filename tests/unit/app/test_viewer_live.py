@@ -10,6 +10,7 @@ import pytest
 from app.jobs.events import EventWriter, event_of
 from app.viewer.scene.live import JobWatch, LiveGraph
 from app.viewer.scene.source import ProjectSource
+from recon4.model.plain import to_plain
 from recon4.model.pose_graph import EdgeKind, Reason, Verdict
 from recon4.pose_graph.files import load_graph
 from recon4.pose_graph.search import build_graph
@@ -113,7 +114,7 @@ def job(tmp_path):
 
 
 def append(writer, event):
-    writer.event(event["kind"], **{k: v for k, v in event.items() if k != "kind"})
+    writer.event(event_of(event))
 
 
 def test_the_events_of_the_projects_own_job_are_followed(tmp_path, job):
@@ -182,7 +183,7 @@ def test_events_of_real_stages_make_the_graph_they_leave(tmp_path):
     verify(searched, settings=VerificationSettings(limit_m=1e-4), progress=events)
     verified = verify(searched, settings=VerificationSettings(limit_m=1e-4)).graph
 
-    reported = [{"kind": kind, **json.loads(json.dumps(facts))} for kind, facts in events.events]
+    reported = [{"kind": event.kind, **to_plain(event)} for event in events.events]
     live = fed(running("graph"), *reported)
 
     read = {"nodes", "poses", "edge", "verdicts"}

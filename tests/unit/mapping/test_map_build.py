@@ -13,6 +13,7 @@ from recon4.mapping.grid import Grid
 from recon4.mapping.place import place
 from recon4.mapping.tile import FIELDS
 from recon4.mapping.tiles import MapCrs, TileSet
+from recon4.model.events import MapBuilt
 from recon4.progress import Silent
 from recon4.settings import MapSettings
 from tests.room_walks import FRAME_NS, T0_NS, Walk, room_walk
@@ -258,7 +259,7 @@ def test_progress_is_reported_and_can_stop_it(tmp_path):
 
     silent = Silent()
     build(room_walk(frames=2), tmp_path / "a", MapSettings(), progress=silent)
-    assert silent.events[-1][0] == "map"
+    assert isinstance(silent.events[-1], MapBuilt)
 
     with pytest.raises(KeyboardInterrupt):
         build(room_walk(frames=30), tmp_path / "b", MapSettings(), progress=Stop())

@@ -7,6 +7,8 @@ import pytest
 
 from recon4.errors import Cancelled, ConfigError
 from recon4.geometry.se3 import SE3
+from recon4.model.events import EdgeTried
+from recon4.model.plain import to_plain
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
 from recon4.pose_graph.candidates import (
     distance_schedule,
@@ -17,7 +19,7 @@ from recon4.pose_graph.candidates import (
     rounds,
 )
 from recon4.pose_graph.files import load_graph, save_graph
-from recon4.pose_graph.pairs import edge_event
+from recon4.pose_graph.pairs import tried_event
 from recon4.pose_graph.search import build_graph, odometry_edges, search
 from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
@@ -360,9 +362,9 @@ def test_the_stage_keeps_and_reports_every_registered_pair(searched):
     assert figures.nodes == len(graph) == 8
     tried = [(e.i, e.j) for e in graph.edges if e.kind is not EdgeKind.ODOMETRY]
     assert len(tried) == len(set(tried))
-    reported = [fields for kind, fields in watch.events if kind == "edge"]
-    assert sorted((f["i"], f["j"]) for f in reported) == sorted(tried)
-    json.loads(json.dumps(reported, allow_nan=False))
+    reported = [event for event in watch.events if isinstance(event, EdgeTried)]
+    assert sorted((event.i, event.j) for event in reported) == sorted(tried)
+    json.dumps(to_plain(reported), allow_nan=False)
 
 
 def test_the_poses_of_the_graph_are_true(searched, stroll):
@@ -381,8 +383,8 @@ def test_the_event_of_an_edge_never_registered_has_no_error():
         i=0, j=1, T_i_j=SE3.identity(), kind=EdgeKind.LOOP, verdict=Verdict.REJECTED, overlap=0.1
     )
 
-    assert edge_event(edge)["error_m"] is None
-    assert edge_event(edge.evolve(error_m=0.02))["error_m"] == 0.02
+    assert tried_event(edge).error_m is None
+    assert tried_event(edge.evolve(error_m=0.02)).error_m == 0.02
 
 
 def test_two_threads_find_the_same_edges_as_one(searched, stroll):
@@ -472,7 +474,7 @@ def test_pairs_rejected_because_of_a_poor_pose_are_registered_again(stroll, tmp_
     # One edge per pair, that of the last registration; every registration was reported.
     pairs = [(e.i, e.j) for e in again.edges if e.kind is not EdgeKind.ODOMETRY]
     assert len(pairs) == len(set(pairs)) == len(once.edges) - len(once) + 1
-    reported = [(f["i"], f["j"]) for kind, f in watch.events if kind == "edge"]
+    reported = [(e.i, e.j) for e in watch.events if isinstance(e, EdgeTried)]
     assert len(reported) > len(pairs)
     assert set(reported) == set(pairs)
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3, align_points
+from recon4.model.events import TrackingLost
 from recon4.model.samples import ImuSamples
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
@@ -67,7 +68,7 @@ def test_a_walk_through_the_office_is_followed_within_two_centimeters(office_odo
 
     assert (figures.multiframes, figures.lost, figures.imu) == (60, 0, True)
     assert not steps["lost"].any()
-    assert "lost" not in [kind for kind, _ in watch.events]
+    assert not any(isinstance(event, TrackingLost) for event in watch.events)
     assert ate_m(T, truth) < 0.02
     turned = (T[:-1].inverse() @ T[1:]).inverse() @ (truth[:-1].inverse() @ truth[1:])
     assert np.rad2deg(turned.angle()).max() < 0.3
@@ -159,8 +160,7 @@ def test_the_stage_reports_a_lost_frame(stroll, tmp_path):
         replace(stroll, frames=frames), tmp_path, settings=Settings(), progress=watch
     )
 
-    said = [facts for kind, facts in watch.events if kind == "lost"]
-    assert said == [{"frame_id": 7, "t_ns": frames[7].t_mid_ns}]
+    assert watch.events == [TrackingLost(frame_id=7, t_ns=frames[7].t_mid_ns)]
     assert figures.lost == 1
     lost = load_arrays(tmp_path / "steps.npz", ["lost"])["lost"]
     assert np.flatnonzero(lost).tolist() == [7]

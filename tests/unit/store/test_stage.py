@@ -1,11 +1,11 @@
 """A stage runs once for the same inputs, settings and code version."""
 
-import json
 from dataclasses import replace
 
 import pytest
 
 from recon4.errors import Recon4Error
+from recon4.model.events import ArtifactDamaged
 from recon4.progress import Silent
 from recon4.settings import Settings, override, to_json
 from recon4.store.project import Project, read_artifacts, read_stages
@@ -118,7 +118,9 @@ def test_a_damaged_artifact_is_set_aside_and_made_again(tmp_path):
     assert reused(again) == {"count": True, "scale": False, "total": True}
     aside = list((tmp_path / "p" / "artifacts").glob("damaged-*"))
     assert [(path / "0.txt").read_text() for path in aside] == ["longer than it was"]
-    assert [kind for kind, _ in progress.events if kind == "damaged"] == ["damaged"]
+    assert [event.stage for event in progress.events if isinstance(event, ArtifactDamaged)] == [
+        "scale"
+    ]
 
 
 def test_an_artifact_somebody_deleted_is_made_again(tmp_path):
@@ -153,7 +155,7 @@ def test_the_watcher_hears_of_every_stage(tmp_path):
 
     run_all(tmp_path / "p", override(SETTINGS, ["map.voxel_m=0.5"]), progress)
 
-    said = [(facts["stage"], facts["state"]) for kind, facts in progress.events if kind == "stage"]
+    said = [(event.stage, event.state) for event in progress.events]
     assert said == [
         ("count", "running"),
         ("count", "reused"),
@@ -162,4 +164,3 @@ def test_the_watcher_hears_of_every_stage(tmp_path):
         ("total", "running"),
         ("total", "done"),
     ]
-    json.dumps(progress.events)
