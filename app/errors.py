@@ -45,7 +45,7 @@ log = logging.getLogger(__name__)
 
 LOST = "shared/lost.html"
 """The error page of browsers; ``{title}`` and ``{detail}`` are filled in."""
-TITLES = {403: "Not for you", 404: "There is nothing here"}
+TITLES = {403: "Not allowed", 404: "Page not found"}
 FRAMEWORK_MESSAGES: Mapping[int, str] = {
     404: "there is no such address on this server",
     405: "this address does not take that method",
@@ -222,7 +222,7 @@ def _wants_page(request: Request) -> bool:
 
 
 def _page(status: int, detail: str, headers: Mapping[str, str] | None) -> HTMLResponse:
-    title = TITLES.get(status, "That did not work")
+    title = TITLES.get(status, "The request failed")
     page = html_of(LOST).replace("{title}", title)
     filled = page.replace("{detail}", html.escape(detail))
     return HTMLResponse(filled, status_code=status, headers=dict(headers or {}))

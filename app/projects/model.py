@@ -9,8 +9,8 @@ RESULTS: dict[str, str] = {
     "report.html": "Quality report",
     "map.laz": "Map, LAZ 1.4",
     "trajectory.tum": "Trajectory, TUM",
-    "odometry.tum": "Trajectory before the graph, TUM",
-    "edges.json": "All pairs tried, with verdicts",
+    "odometry.tum": "Odometry trajectory, TUM",
+    "edges.json": "Edges with verdicts",
     "graph.g2o": "Pose graph, g2o",
     "summary.json": "Figures, settings and hashes",
 }

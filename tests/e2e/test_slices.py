@@ -149,7 +149,7 @@ def test_findings_are_those_of_the_map_that_is_shown(server, page):
     expect(page.locator("#legend")).to_contain_text("Distance to reference [cm]")
     with page.expect_request("**/compare") as asked:
         page.get_by_role("button", name="Compare", exact=True).click()
-    expect(page.get_by_role("row", name=re.compile("Average by points"))).to_be_visible()
+    expect(page.get_by_role("row", name=re.compile("Mean of all points"))).to_be_visible()
     page.get_by_role("button", name="Remove").click()
     expect(page.get_by_role("button", name="Remove")).to_have_count(0)
 
@@ -174,7 +174,7 @@ def test_a_reference_is_compared_and_shown(server, page, screenshot):
     page.get_by_label("Slices to compare").select_option("this")
     page.get_by_role("button", name="Compare", exact=True).click()
 
-    expect(page.get_by_role("row", name=re.compile("Average by points"))).to_be_visible()
+    expect(page.get_by_role("row", name=re.compile("Mean of all points"))).to_be_visible()
     expect(page.get_by_role("link", name="Download CSV")).to_be_visible()
     fits(page)
     page.get_by_role("link", name="Download CSV").scroll_into_view_if_needed()

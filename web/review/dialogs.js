@@ -53,7 +53,7 @@ export function askToSign(conflicts, sign) {
       "Your name, the time, the figures and the hashes of all results are signed. " +
         "A version is kept that no later run or decision changes.",
     ),
-    make("label", {}, make("span", {}, conflicts ? "Reason (needed)" : "Remark"), why),
+    make("label", {}, make("span", {}, conflicts ? "Reason (required)" : "Remark"), why),
     conflicts
       ? make(
           "label",

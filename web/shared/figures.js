@@ -9,9 +9,9 @@ const ROWS = [
   ["Duration of the walk", "duration_s", seconds],
   ["Multiframes", "multiframes", count],
   ["Multiframes, tracking lost", "lost", count],
-  ["Pairs accepted", "edges", (edges) => count(edges.accepted ?? 0)],
-  ["Pairs rejected", "edges", (edges) => count(edges.rejected ?? 0)],
-  ["Pairs unverified", "edges", (edges) => count(edges.unverified ?? 0)],
+  ["Edges accepted", "edges", (edges) => count(edges.accepted ?? 0)],
+  ["Edges rejected", "edges", (edges) => count(edges.rejected ?? 0)],
+  ["Edges unverified", "edges", (edges) => count(edges.unverified ?? 0)],
   ["Processing time", "seconds", seconds],
   ["Peak memory", "peak_bytes", bytes],
 ];

@@ -82,7 +82,7 @@ export class PageHead extends HTMLElement {
       "nav",
       { ariaLabel: "Where you are", className: "way" },
       make("a", { href: "/" }, "Projects"),
-      make("span", { ariaHidden: "true" }, " / "),
+      make("span", { ariaHidden: "true" }, "/"),
       this.#name,
     );
   }

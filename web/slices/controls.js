@@ -84,7 +84,7 @@ export function controls(root, { change, toKind }) {
       make(
         "div",
         { className: "pair" },
-        number("Normal to, azimuth [°]", angles.azimuth, 1, turn("azimuth")),
+        number("Azimuth of the normal [°]", angles.azimuth, 1, turn("azimuth")),
         number("Tilt from level [°]", angles.tilt, 1, turn("tilt")),
         through(0),
         through(1),
@@ -141,8 +141,8 @@ export function controls(root, { change, toKind }) {
       make(
         "div",
         { className: "segmented", role: "group", ariaLabel: "Usual thickness" },
-        thick(state, "2 cm, errors", 0.02),
-        thick(state, "10 cm, looking", 0.1),
+        thick(state, "Thin, 2 cm", 0.02),
+        thick(state, "Thick, 10 cm", 0.1),
       ),
       field(
         "Color by",

@@ -18,7 +18,7 @@ export function exportPanel({ id, change, state, ask }) {
   const part = make(
     "select",
     { ariaLabel: "What is exported" },
-    make("option", { value: "all" }, "All of the slice"),
+    make("option", { value: "all" }, "Whole slice"),
     make("option", { value: "seen" }, "What is seen"),
   );
   const size = make(
@@ -29,7 +29,7 @@ export function exportPanel({ id, change, state, ask }) {
   const scale = make(
     "select",
     { ariaLabel: "Scale" },
-    make("option", { value: "0" }, "Scale that fits"),
+    make("option", { value: "0" }, "Largest scale that fits"),
     ...SCALES.map((one) => make("option", { value: String(one) }, `1 : ${one}`)),
   );
   const flat = make("input", { type: "checkbox", id: "flat" });

@@ -9,7 +9,7 @@ const KEYS = [
   ["+ −", "Twice as thick, half as thick"],
   ["C", "Next color"],
   ["M", "Measure: two points"],
-  ["0", "All of the slice"],
+  ["0", "Whole slice"],
   ["Arrows", "Pan the slice, when it has the focus"],
   ["Enter", "Pick the point in the middle"],
   ["Esc", "End measuring"],

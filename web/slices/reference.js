@@ -29,7 +29,7 @@ export function referencePanel({ id, change, state, reload }) {
   const folder = make("div", { className: "folder", hidden: true });
   const frame = make(
     "select",
-    { ariaLabel: "Its coordinates" },
+    { ariaLabel: "Coordinates of the reference" },
     make("option", { value: "map" }, "In the map's frame"),
     make("option", { value: "crs" }, "In the map's CRS"),
   );
@@ -42,7 +42,7 @@ export function referencePanel({ id, change, state, reload }) {
   );
   const method = make(
     "select",
-    { ariaLabel: "How distances are measured" },
+    { ariaLabel: "Method of the distances" },
     ...Object.entries(METHODS).map(([key, text]) =>
       make("option", { value: key }, `Distances ${text}`),
     ),
@@ -189,13 +189,13 @@ export function referencePanel({ id, change, state, reload }) {
     );
     const rows = [
       ...found.slices.map((one) => row(one.name, one)),
-      row("Average by points", found.point_weighted),
+      row("Mean of all points", found.point_weighted),
     ];
     rows.push(
       make(
         "tr",
         {},
-        make("th", { scope: "row" }, "Plain average of the slices"),
+        make("th", { scope: "row" }, "Mean of the slices"),
         figure(found.plain_mean_m),
       ),
     );

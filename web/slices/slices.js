@@ -312,12 +312,12 @@ function tools() {
       button("−", () => first.zoom(1.5), { title: "Zoom out", ariaLabel: "Zoom out" }),
       button("+", () => first.zoom(1 / 1.5), { title: "Zoom in", ariaLabel: "Zoom in" }),
       button("All", () => change(unframed(state), { keep: true }), {
-        title: "All of the slice  0",
+        title: "Whole slice  0",
       }),
       button("Measure", () => measure(), {
         id: "measure",
         ariaPressed: "false",
-        title: "Distance of two points  M",
+        title: "Distance between two points  M",
       }),
     ),
     make(

@@ -55,7 +55,7 @@ HIDDEN_AT_FIRST = {Reason.OVERLAP}
 """Candidates without overlap are many and not informative."""
 
 FINAL = Layer("trajectory", "Trajectory", (255, 179, 0))
-ODOMETRY = Layer("odometry", "Trajectory before the graph", (128, 110, 200), shown=False)
+ODOMETRY = Layer("odometry", "Odometry trajectory", (128, 110, 200), shown=False)
 FRAMES = Layer("frames", "Multiframes: body frames", (144, 164, 174), shown=False)
 LIDARS = Layer("lidars", "LiDAR frames at the multiframe", (0, 188, 212), shown=False)
 GNSS_USED = Layer("gnss/used", "GNSS, used", (102, 187, 106), shown=False)
