@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import io
 import os
 from collections.abc import Iterator
 from functools import cache
+from pathlib import Path
 
 import pytest
+from PIL import Image
 from playwright.sync_api import BrowserContext, Page, expect
 
 from tests.service.running import ROOT
@@ -101,6 +104,21 @@ SHORTEN_PATHS = r"""() => {
 """Where a test keeps its files is left out of a screenshot."""
 
 
+COVERED = """() => document.querySelector("dialog[open]") !== null"""
+"""A dialog and what it covers fill the window; what is outside it would not look covered."""
+
+MAX_HEIGHT_PX = 1800
+"""The rest of a long page is left out of a screenshot."""
+
+
+def keep_small(png: bytes, file: Path) -> None:
+    """Writes a screenshot with 256 colors."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    image = Image.open(io.BytesIO(png)).convert("RGB")
+    image = image.crop((0, 0, image.width, min(image.height, MAX_HEIGHT_PX)))
+    image.quantize(256, dither=Image.Dither.NONE).save(file, optimize=True)
+
+
 @cache
 def pages() -> str:
     """The documentation as one text."""
@@ -122,7 +140,8 @@ def screenshot(look):
             file = f"{name}-{screen}-{scheme}.png"
             folder = ROOT / ("docs/images" if file in pages() else "out/screenshots")
             page.evaluate(SHORTEN_PATHS)
-            page.screenshot(path=folder / file, full_page=screen == "phone")
+            png = page.screenshot(full_page=screen == "phone" and not page.evaluate(COVERED))
             page.evaluate("() => shortened.forEach(([field, path]) => (field.value = path))")
+            keep_small(png, folder / file)
 
     return keep
