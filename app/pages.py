@@ -1,4 +1,4 @@
-"""The pages in `web/`: HTML files that share one head."""
+"""The pages in `web/`: HTML files with a common head."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from fastapi.responses import HTMLResponse
 
 WEB = Path(__file__).parents[1] / "web"
 HEAD_HERE = "<!-- shared/head.html -->"
-"""Stands in each page where the elements that all heads share belong."""
+"""Stands in each page where the common elements of the heads belong."""
 
 
 def html_of(file: str) -> str:
