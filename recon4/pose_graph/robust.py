@@ -12,7 +12,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
-from scipy.stats import chi2 as chi2_distribution
+from scipy.special import gammaincinv
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import Flags, PoseGraph, Relations
@@ -85,8 +85,13 @@ def outlier_limit(edge_chi2: Array, *, probability: float) -> float:
     The chi-square quantile with six degrees of freedom, times the ratio of actual to stated
     variance of these edges (from their median, 1 to 10): registrations tend to be overconfident.
     """
-    ratio = float(np.median(edge_chi2)) / chi2_distribution.median(6) if len(edge_chi2) else 1.0
-    return float(chi2_distribution.ppf(probability, 6) * np.clip(ratio, 1.0, _MAX_NOISE))
+    ratio = float(np.median(edge_chi2)) / _chi2_quantile(0.5) if len(edge_chi2) else 1.0
+    return float(_chi2_quantile(probability) * np.clip(ratio, 1.0, _MAX_NOISE))
+
+
+def _chi2_quantile(probability: float) -> float:
+    """With six degrees of freedom; as scipy.stats, which takes a second to import, computes it."""
+    return float(2.0 * gammaincinv(3.0, probability))
 
 
 def _starts(

@@ -168,6 +168,13 @@ def test_nothing_that_runs_code_from_files_is_imported(path):
     assert {name for name in imported(path) if name.split(".")[0] in NEVER} == allowed
 
 
+def test_nothing_imports_the_whole_of_scipy_stats():
+    """It alone would be a third of the start of every process that runs stages or serves."""
+    slow = [path for path in SOURCES if "scipy.stats" in (ROOT / path).read_text("utf-8")]
+
+    assert [path for path in slow if any(n.startswith("scipy.stats") for n in imported(path))] == []
+
+
 def test_the_page_names_every_package():
     page = (ROOT / "docs" / "architecture.md").read_text("utf-8")
     packages = {
