@@ -44,12 +44,22 @@ looks = pytest.mark.looks
 """Only on these screens, where a test sees the same on the others; ``@looks("desktop light")``."""
 
 
+LONG = ("test_review", "test_slices", "test_whole_way", "test_pages", "test_live_page")
+"""These files take longest; they come first, longest first, so that two workers end together."""
+
+
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave out the looks a test does not ask for before anything is set up for them."""
+    items.sort(key=lambda item: _rank(item.path))
     left_out = [item for item in items if not _asked_for(item)]
     if left_out:
         config.hook.pytest_deselected(items=left_out)
         items[:] = [item for item in items if _asked_for(item)]
+
+
+def _rank(path: Path) -> int:
+    long = path.parent == Path(__file__).parent and path.stem in LONG
+    return LONG.index(path.stem) if long else len(LONG)
 
 
 def _asked_for(item: pytest.Item) -> bool:

@@ -13,6 +13,8 @@ from tests.project_builder import build_project
 from tests.security.test_cross_site import EXPORT
 from tests.service.running import server_thread
 
+pytestmark = pytest.mark.e2e
+
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory):
