@@ -33,6 +33,9 @@ _STYLE: dict[Any, Any] = {
     "grid.linewidth": 0.6,
     "legend.frameon": False,
     "figure.constrained_layout.use": True,
+    "figure.facecolor": "none",
+    "figure.edgecolor": "none",
+    "axes.facecolor": "none",
 }
 
 
@@ -59,9 +62,9 @@ class Chart:
             if legend and self.axes.get_legend_handles_labels()[0]:
                 self.axes.legend(fontsize=8)
             buffer = StringIO()
-            self.figure.savefig(
-                buffer, format="svg", transparent=True, metadata={"Date": None, "Creator": None}
-            )
+            # `savefig` draws twice, first for a layout that drawing makes anyway.
+            canvas: Any = self.figure.canvas
+            canvas.print_svg(buffer, metadata={"Date": None, "Creator": None})
         text = buffer.getvalue()
         text = text[text.index("<svg") :].replace(_INK, "currentColor")
         text = re.sub(r'(<svg[^>]*?) width="[^"]*"', r"\1", text, count=1)
