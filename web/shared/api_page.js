@@ -88,7 +88,7 @@ function fields(record) {
     row(
       name,
       typeLink(one),
-      [needed.has(name) ? "needed" : "", limits(one)].filter(Boolean).join(", "),
+      [needed.has(name) ? "required" : "", limits(one)].filter(Boolean).join(", "),
       plain(one.description),
     ),
   );
@@ -146,7 +146,7 @@ function parts(path, method, operation) {
       one.name,
       one.in,
       typeText(one.schema),
-      [one.required ? "needed" : "", limits(one.schema ?? {})].filter(Boolean).join(", "),
+      [one.required ? "required" : "", limits(one.schema ?? {})].filter(Boolean).join(", "),
       plain(one.description),
     ),
   );

@@ -33,6 +33,7 @@ const swipe = make("input", {
   value: 50,
   ariaLabel: "Swipe between the two slices",
   className: "swipe",
+  hidden: true,
 });
 const captions = [make("p", { className: "caption" }), make("p", { className: "caption second" })];
 const reading = make("p", { className: "readout", role: "status" });
