@@ -17,10 +17,11 @@ from recon4.georeference.stage import read_crs
 from recon4.mapping.tiles import TileSet
 from recon4.model.figures import Figures
 from recon4.model.plain import to_plain
+from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
 from recon4.pose_graph.g2o import write_g2o
 from recon4.progress import Progress, track
-from recon4.recording.formats.poses import write_tum
+from recon4.recording.formats.poses import write_kitti, write_tum
 from recon4.report.artifacts import path_length_m
 from recon4.report.facts import InputFile, ReportFacts, StageTiming
 from recon4.report.html import write_report
@@ -32,6 +33,7 @@ from recon4.settings import Settings, to_json
 from recon4.store.arrays import load_trajectory
 from recon4.store.atomic import atomic_file, copy_file, write_json
 from recon4.store.checked import Altered
+from recon4.store.frames import FrameStore
 from recon4.store.hashing import hash_file
 from recon4.store.project import SUMMARY, read_artifacts
 from recon4.store.seal import changing
@@ -260,6 +262,38 @@ def export_map(project: Path, path: Path, *, crs: str, progress: Progress) -> in
         if approval:
             stamp_file(temporary, temporary, approval.stamp)
     return count
+
+
+def export_poses(project: Path, path: Path) -> int:
+    """Write the poses ``T_map_body`` of all multiframes as KITTI poses, a line each.
+
+    The format has no times and no comments: an approval cannot be noted in it.
+
+    Args:
+        project: The project folder.
+        path: File to write, ``.txt``.
+
+    Returns:
+        How many poses were written.
+
+    Raises:
+        Altered: If the trajectory was approved and is not what was approved; nothing is written.
+        ConfigError: If the ending is another.
+        StoreError: If there is no finished trajectory yet or the file cannot be written.
+    """
+    check_name(path, ".txt")
+    artifacts = read_artifacts(project)
+    if not {"frames", "level"} <= artifacts.keys():
+        raise StoreError(f"{project} has no finished trajectory yet: run recon4 process")
+    approval = approval_of(project, {name: folder.name for name, folder in artifacts.items()})
+    if approval:
+        for stage in ("frames", "level"):
+            approval.evidence.artifact(stage, artifacts[stage]).check_all()
+    dense = load_trajectory(artifacts["level"] / "trajectory.npz")
+    t_ns = FrameStore.open(artifacts["frames"]).t_mid_ns
+    with atomic_file(path) as temporary:
+        write_kitti(temporary, Trajectory(t_ns, dense.at(t_ns)))
+    return len(t_ns)
 
 
 def _writers(

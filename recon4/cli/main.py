@@ -137,14 +137,22 @@ def simulate(
 def export(
     project: Annotated[Path, typer.Argument(help="Folder that `recon4 process --out` made.")],
     file: Annotated[
-        Path, typer.Argument(help="File to write; the suffix selects the format: .laz, .ply.")
+        Path,
+        typer.Argument(
+            help="File to write; the suffix selects the format: .laz, .ply; .txt = KITTI poses."
+        ),
     ],
     crs: Annotated[str, typer.Option(help="As EPSG:5514+8357; default: the map's.")] = "",
 ) -> None:
-    """Write the map of a project to a file, in any CRS when it is georeferenced."""
-    from recon4.results import export_map
+    """Write the map of a project, in any CRS when it is georeferenced, or its poses."""
+    from recon4.results import export_map, export_poses
     from recon4.terminal import watcher
 
+    if file.suffix.lower() == ".txt":
+        if crs:
+            raise typer.BadParameter("--crs is for maps; poses are written in the map's frame")
+        write(f"{export_poses(project, file)} poses in {file}")
+        return
     with watcher() as progress:
         points = export_map(project, file, crs=crs, progress=progress)
     write(f"{points} points in {file}")

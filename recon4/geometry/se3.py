@@ -15,6 +15,8 @@ Array = NDArray[np.float64]
 
 ROTATION, TRANSLATION = slice(0, 3), slice(3, 6)
 """Rows of a twist, and of a tangent or its information matrix: rotation first, (6,)."""
+ARM_M = 5.0
+"""Distance at which a rotation is converted to a displacement, where one number is needed [m]."""
 _SMALL_ANGLE = 1e-7
 
 

@@ -15,9 +15,9 @@ from recon4.intensity.surfaces import Observations, cells_of, learn_surfaces, ob
 from recon4.intensity.table import IntensityTable
 from recon4.kernels.intensity import accumulate
 from recon4.kernels.voxels import face_sensor
-from recon4.mapping.frames import Frames
 from recon4.mapping.normals import local_normals
 from recon4.mapping.place import place_with_origins
+from recon4.model.frames import Frames
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, Silent, track
 from recon4.settings import IntensitySettings

@@ -13,13 +13,13 @@ import numpy as np
 
 from recon4.intensity.table import IntensityTable
 from recon4.mapping.buckets import BURST, TileBuckets
-from recon4.mapping.frames import Frames
 from recon4.mapping.grid import Grid
 from recon4.mapping.place import place_with_origins
 from recon4.mapping.records import Records, Tile, split_into_tiles
 from recon4.mapping.tile import FIELDS, MadeTile, Recipe, make_tile
 from recon4.mapping.tiles import MapCrs, TileSet, TileWriter
 from recon4.model.events import MapBuilt
+from recon4.model.frames import Frames
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, Silent, track
 from recon4.settings import MapSettings

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from recon4.model.frames import RecordedFrames
 from recon4.model.samples import ImuSamples
 from recon4.registration.odometry import Odometry
 from recon4.settings import Settings
-from recon4.store.frames import FrameStore
 
 _FRAMES = 10
 """Multiframes of one trial."""
@@ -45,7 +45,7 @@ class Trial:
         )
 
 
-def consistent_imu(frames: FrameStore, settings: Settings) -> tuple[ImuSamples | None, str]:
+def consistent_imu(frames: RecordedFrames, settings: Settings) -> tuple[ImuSamples | None, str]:
     """The IMU samples as recorded, with the gyroscope bias removed, or None.
 
     The first multiframes and those of the fastest turn are registered with each variant. A variant
@@ -88,7 +88,7 @@ def consistent_imu(frames: FrameStore, settings: Settings) -> tuple[ImuSamples |
     return chosen
 
 
-def _try(frames: FrameStore, imu: ImuSamples | None, settings: Settings) -> Trial:
+def _try(frames: RecordedFrames, imu: ImuSamples | None, settings: Settings) -> Trial:
     lost, errors = 0, []
     for first in _starts(frames):
         odometry = Odometry(frames.rig, settings, imu)
@@ -99,7 +99,7 @@ def _try(frames: FrameStore, imu: ImuSamples | None, settings: Settings) -> Tria
     return Trial(lost, float(np.quantile(known, _TYPICAL)) if len(known) else 0.0)
 
 
-def _starts(frames: FrameStore) -> list[int]:
+def _starts(frames: RecordedFrames) -> list[int]:
     """The first multiframe, and the one from which the IMU turns most."""
     imu = frames.imu
     last = len(frames) - _FRAMES
@@ -113,7 +113,7 @@ def _starts(frames: FrameStore) -> list[int]:
     return [0, int(np.argmax(at[_FRAMES:] - at[:-_FRAMES]))]
 
 
-def _zero(imu: ImuSamples, frames: FrameStore) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+def _zero(imu: ImuSamples, frames: RecordedFrames) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
     start_ns = max(int(imu.t_ns[0]), int(frames[0].t_ns))
     rows = (imu.t_ns >= start_ns) & (imu.t_ns < start_ns + _REST_NS)
     return np.asarray(imu.gyro_rad_s[rows].mean(axis=0)) if rows.any() else np.zeros(3)

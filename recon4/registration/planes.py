@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, so3_exp
+from recon4.geometry.se3 import ARM_M, ROTATION, SE3, TRANSLATION, Array, so3_exp
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.result import Registration, StopReason
 from recon4.registration.state import START
@@ -57,7 +57,7 @@ def register_to_planes(
         if not np.isfinite(step).all() or _moved(initial, T_target_source) > settings.max_move_m:
             stop = StopReason.UNSTABLE
             break
-        small = 5.0 * np.linalg.norm(step[ROTATION]) + np.linalg.norm(step[TRANSLATION])
+        small = ARM_M * np.linalg.norm(step[ROTATION]) + np.linalg.norm(step[TRANSLATION])
         if last_gate and small < settings.converged_step_m:
             stop = StopReason.SMALL_STEP
             break
@@ -82,7 +82,7 @@ def _error(target: PlaneMap, T_target_source: SE3, source: Array, *, fraction: A
 
 def _moved(initial: SE3, T_target_source: SE3) -> float:
     delta = initial.inverse() @ T_target_source
-    return float(np.linalg.norm(delta.t)) + 5.0 * float(delta.angle())
+    return float(np.linalg.norm(delta.t)) + ARM_M * float(delta.angle())
 
 
 def _empty(count: int) -> Match:

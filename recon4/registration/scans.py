@@ -16,13 +16,12 @@ from numpy.typing import NDArray
 from scipy import fft, ndimage
 from scipy.spatial import cKDTree
 
-from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, so3_exp
+from recon4.geometry.se3 import ARM_M, ROTATION, SE3, TRANSLATION, Array, so3_exp
 from recon4.kernels.scans import accumulate_symmetric, count_from_above, neighbor_normals
 from recon4.registration.result import Registration, StopReason
 from recon4.settings import ScanSettings
 
 _MIN_MATCHES = 50
-_STEP_ARM_M = 5.0
 _COARSE_POINTS = 1500
 _COARSE_ROUNDS = 10
 _WIDE = 3.0
@@ -176,8 +175,7 @@ def _descend(
         T = SE3(so3_exp(step[ROTATION]) @ T.R, T.t + step[TRANSLATION])
         if (
             done > 2
-            and _STEP_ARM_M * np.linalg.norm(step[ROTATION]) + np.linalg.norm(step[TRANSLATION])
-            < 1e-3
+            and ARM_M * np.linalg.norm(step[ROTATION]) + np.linalg.norm(step[TRANSLATION]) < 1e-3
         ):
             stop = StopReason.SMALL_STEP
             break

@@ -9,6 +9,7 @@ import numpy as np
 from recon4.geometry.se3 import SE3
 from recon4.model.events import PosesAdded, TrackingLost, Warned, positions_of
 from recon4.model.figures import OdometryFigures
+from recon4.model.frames import RecordedFrames
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, track
 from recon4.registration.aiding import GnssAiding
@@ -17,7 +18,6 @@ from recon4.registration.make import make_odometry
 from recon4.registration.odometry import OdometryStep
 from recon4.settings import Settings
 from recon4.store.arrays import save_trajectory
-from recon4.store.frames import FrameStore
 
 _REPORT_EVERY, _REPORT_AT_ONCE = 5, 4
 """The pose of every n-th multiframe is reported while the stage runs, some per event."""
@@ -26,7 +26,7 @@ _DENSE_NS = 9_000_000
 
 
 def run_odometry(
-    frames: FrameStore,
+    frames: RecordedFrames,
     out: Path,
     *,
     settings: Settings,

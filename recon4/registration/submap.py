@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.kernels.imu import place_points
+from recon4.model.frames import RecordedFrames
 from recon4.model.trajectory import Times, Trajectory
 from recon4.registration.overlap import make_range_image
 from recon4.registration.segments import Segments, sample_segments
 from recon4.settings import Settings
-from recon4.store.frames import FrameStore
 
 _CACHED_FRAMES = 64
 
@@ -33,7 +33,7 @@ class Submaps:
 
     def __init__(
         self,
-        frames: FrameStore,
+        frames: RecordedFrames,
         odometry: Trajectory,
         rows: NDArray[np.intp],
         settings: Settings,

@@ -20,13 +20,11 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 
-from recon4.geometry.se3 import Array
+from recon4.geometry.se3 import ARM_M, Array
 from recon4.kernels.selected_inverse import entries, selected_inverse
 from recon4.model.pose_graph import PoseGraph, Relations
 from recon4.pose_graph.relations import adjoint
 
-ARM_M = 5.0
-"""Lever arm that converts a rotation to a displacement [m]."""
 _NOTHING = 1e-12
 """Weight of structural entries, as a fraction of the largest information."""
 _GAUGE = 1e9

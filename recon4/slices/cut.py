@@ -122,18 +122,6 @@ def vertical(
     return Cut("vertical", origin, u, (0.0, 0.0, 1.0), thickness_m)
 
 
-def vertical_at(
-    position_m: tuple[float, float],
-    azimuth_rad: float,
-    *,
-    thickness_m: float = LOOKING_THICKNESS_M,
-) -> Cut:
-    """A section through one point; the azimuth of its line is clockwise from the map's y."""
-    x, y = position_m
-    ahead = (x + float(np.sin(azimuth_rad)), y + float(np.cos(azimuth_rad)))
-    return vertical(position_m, ahead, thickness_m=thickness_m)
-
-
 def free(origin_m: Vector, normal: Vector, *, thickness_m: float = LOOKING_THICKNESS_M) -> Cut:
     """Any plane. v is as near to the map's z as it can be (to y, if the plane is level).
 

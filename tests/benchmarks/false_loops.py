@@ -15,9 +15,9 @@ import numpy as np
 
 from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
-from recon4.pose_graph.g2o import read_g2o
 from recon4.pose_graph.verification import verify
 from recon4.settings import VerificationSettings
+from tests.g2o_reader import read_g2o
 
 SD = np.array([0.002, 0.002, 0.002, 0.01, 0.01, 0.01])
 """Stated standard deviations of the edges: rotation [rad], translation [m]."""

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from recon4.pose_graph.g2o import read_g2o
 from recon4.pose_graph.solve import initialize, optimize
 from recon4.settings import VerificationSettings
 from tests.benchmarks.false_loops import ATTACKS, office_graph, score
+from tests.g2o_reader import read_g2o
 
 Data = Callable[[str], Path]
 

@@ -23,7 +23,6 @@ from recon4.evaluation.trajectories import find_trajectory
 from recon4.georeference.stage import read_crs
 from recon4.mapping.tiles import TileSet
 from recon4.model.rig import load_rig, parse_rig
-from recon4.pose_graph.g2o import read_g2o
 from recon4.recording.formats.cloud_files import read_cloud
 from recon4.recording.formats.poses import read_kitti
 from recon4.recording.formats.reference_clouds import read_points
@@ -142,7 +141,6 @@ SPARSE_FILES = {
     "tum": ("a.tum", "1 0 0 0 0 0 0 1\n", find_trajectory, "at most 1073741824 bytes"),
     "tum-line": ("a.tum", "1 0 0 0 0 0 0 1\n", find_trajectory, "line 2"),
     "kitti": ("a.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n", kitti, "at most 1073741824 bytes"),
-    "g2o": ("a.g2o", "VERTEX_SE2 0 0 0 0\n", read_g2o, "at most 1073741824 bytes"),
     "rig": ("rig.toml", 'name = "a"\n', load_rig, "expected at most 131072 bytes, got 7516192768"),
 }
 SIZES = {"obj-4-gib": 3 << 30, "csv-imu-line": 1 << 30, "tum-line": 1 << 30}

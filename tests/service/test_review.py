@@ -14,13 +14,13 @@ import pytest
 from app.review.store import Reviews
 from recon4.cli.main import main
 from recon4.pipeline import remake
-from recon4.pose_graph.g2o import read_g2o
 from recon4.recording.formats.poses import read_tum
 from recon4.results import RESULTS
 from recon4.review.decisions import Decision, DecisionKind, fold
 from recon4.review.journal import NAME, append, read_rows
 from recon4.review.source import Source
 from recon4.store.hashing import hash_file
+from tests.g2o_reader import read_g2o
 from tests.review_project import make
 from tests.service.running import Running, server_thread
 

@@ -18,7 +18,6 @@ from recon4.evaluation.trajectories import find_trajectory
 from recon4.mapping.tiles import TileSet
 from recon4.model.rig import load_rig
 from recon4.pose_graph.files import load_graph
-from recon4.pose_graph.g2o import read_g2o
 from recon4.recording.folders import list_frames, read_frames
 from recon4.recording.formats.poses import read_kitti, read_tum
 from recon4.recording.formats.reference_clouds import read_points
@@ -96,11 +95,6 @@ def _kitti(path: Path) -> Reading:
 
 def _rig(path: Path) -> Reading:
     return Reading(len(load_rig(path).sensors))
-
-
-def _g2o(path: Path) -> Reading:
-    graph = read_g2o(path)
-    return Reading(len(graph) + len(graph.edges))
 
 
 def _graph(path: Path) -> Reading:
@@ -239,7 +233,6 @@ _ALL = (
     Kind(name="toml", file_name="rig.toml", seeds=tables.rig_toml, read=_rig, knows_end=False),
     Kind(name="tum", file_name="a.tum", seeds=tables.tum, read=_tum, knows_end=False),
     Kind(name="kitti", file_name="poses.txt", seeds=tables.kitti, read=_kitti),
-    Kind(name="g2o", file_name="a.g2o", seeds=tables.g2o, read=_g2o, knows_end=False),
     Kind(
         name="npz-trajectory",
         file_name="trajectory.npz",

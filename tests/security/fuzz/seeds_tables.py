@@ -17,7 +17,6 @@ from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import save_graph
-from recon4.pose_graph.g2o import write_g2o
 from recon4.recording.formats.poses import write_kitti, write_tum
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
 from recon4.slices.imports import write_tiles
@@ -104,15 +103,6 @@ def tum() -> tuple[bytes, ...]:
 def kitti() -> tuple[bytes, ...]:
     """Twelve numbers a line."""
     return (_file(lambda path: write_kitti(path, walk())),)
-
-
-@cache
-def g2o() -> tuple[bytes, ...]:
-    """Ours, and 2-D as from elsewhere."""
-    ours = _file(lambda path: write_g2o(path, graph()))
-    flat = "".join(f"VERTEX_SE2 {k} {k} 0 0.1\n" for k in range(8))
-    flat += "".join(f"EDGE_SE2 {k} {k + 1} 1 0 0 100 0 0 100 0 1000\n" for k in range(7))
-    return ours, (flat + "FIX 0\n").encode()
 
 
 def rig() -> Rig:

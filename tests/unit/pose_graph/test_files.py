@@ -11,9 +11,10 @@ from recon4.errors import CorruptFile, StoreError
 from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import Edge, PoseGraph, Reason, Verdict
 from recon4.pose_graph.files import load_graph, save_graph
-from recon4.pose_graph.g2o import read_g2o, write_g2o
+from recon4.pose_graph.g2o import write_g2o
 from recon4.pose_graph.relations import squared_residuals
 from tests.benchmarks.false_loops import office_graph
+from tests.g2o_reader import read_g2o
 
 
 def sample() -> PoseGraph:

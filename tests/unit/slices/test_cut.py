@@ -3,7 +3,7 @@ import pytest
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3
-from recon4.slices.cut import Cut, free, horizontal, vertical, vertical_at
+from recon4.slices.cut import Cut, free, horizontal, vertical
 from recon4.slices.points import SliceWindow, extent, points_in
 from recon4.slices.reference import moved_cut
 from tests.unit.slices.room_map import write_map
@@ -22,7 +22,7 @@ def tiles(cloud, tmp_path_factory):
 CUTS = [
     horizontal(0.7, thickness_m=0.3),
     vertical((-3.0, -2.0), (5.0, 4.0), thickness_m=0.2),
-    vertical_at((1.0, 1.0), np.deg2rad(200.0), thickness_m=0.05),
+    vertical((1.0, 1.0), (0.66, 0.06), thickness_m=0.05),
     free((0.5, 0.3, 0.1), (0.3, -0.5, 0.8), thickness_m=0.4),
     free((0.0, 0.0, 0.5), (0.0, 0.0, 1.0), thickness_m=0.4),
 ]
