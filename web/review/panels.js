@@ -67,8 +67,7 @@ export function showPair(panel, row, facts, found, limit_m) {
         "Degeneracy",
         plain(figures.degeneracy, 2),
         "0 unobservable, 0.33 isotropic",
-        "Smallest eigenvalue of the normalized information: " +
-          "near 0 the places can slide along each other",
+        "Smallest eigenvalue of the normalized information; near 0 the places can slide",
       ),
       fact(
         "Path discrepancy",
@@ -85,7 +84,7 @@ export function showPair(panel, row, facts, found, limit_m) {
       fact(
         "Residual to the graph",
         facts ? length(facts.apart_m) : "…",
-        facts ? `${degrees(facts.apart_rad, 2)}` : "",
+        facts ? degrees(facts.apart_rad, 2) : "",
         "Difference between this edge and the relative pose in the optimized graph",
       ),
       fact("Decided by", row.who || "program", row.why),

@@ -81,8 +81,7 @@ function inTurn(action) {
   last = last.then(async () => {
     byId("news").textContent = "";
     await attempt(message, action);
-    // Others may have decided.
-    if (message.textContent) update(await readReview(id).catch(() => null));
+    if (message.textContent) update(await readReview(id).catch(() => null)); // others decided
   });
   return last;
 }
