@@ -84,6 +84,27 @@ def add_points(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def empty_beyond(
+    keys: NDArray[np.int64],
+    sums: NDArray[np.float64],
+    sizes: NDArray[np.float64],
+    center: NDArray[np.float64],
+    radius: float,
+) -> None:
+    """Empty the cubes whose center is farther from ``center`` than ``radius``."""
+    for row in range(len(keys)):
+        key = keys[row]
+        if key == EMPTY:
+            continue
+        size = sizes[key >> 60]
+        dx = (((key >> 40) & _MASK) - _OFFSET + 0.5) * size - center[0]
+        dy = (((key >> 20) & _MASK) - _OFFSET + 0.5) * size - center[1]
+        dz = ((key & _MASK) - _OFFSET + 0.5) * size - center[2]
+        if dx * dx + dy * dy + dz * dz > radius * radius:
+            sums[row] = 0.0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def rehash(
     keys: NDArray[np.int64], sums: NDArray[np.float64], capacity: int
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], int]:
@@ -151,6 +172,8 @@ def _fit(
     size: float,
     min_points: float,
     max_sd: float,
+    min_along: float,
+    max_ratio: float,
     f: NDArray[np.float64],
     work: NDArray[np.float64],
 ) -> np.uint8:
@@ -169,7 +192,7 @@ def _fit(
     a[1, 0], a[2, 0], a[2, 1] = a[0, 1], a[0, 2], a[1, 2]
     _eigen_sym3(a, vals, vecs)
     across, along = max(vals[0], 0.0), max(vals[1], 1e-12)
-    if across > max_sd * max_sd or along < (0.1 * size) ** 2 or across > 0.1 * along:
+    if across > max_sd * max_sd or along < max(0.1 * size, min_along) ** 2 or across > max_ratio * along:
         return NO_PLANE
     ix = ((key >> 40) & _MASK) - _OFFSET
     iy = ((key >> 20) & _MASK) - _OFFSET
@@ -191,6 +214,8 @@ def fit_all(
     sizes: NDArray[np.float64],
     min_points: float,
     max_sd: float,
+    min_along: float,
+    max_ratio: float,
 ) -> None:
     """Fit the planes of all cubes, so that several threads can match without writing."""
     work = np.empty((7, 3))
@@ -198,8 +223,42 @@ def fit_all(
         if keys[row] != EMPTY and state[row] == DIRTY:
             level = keys[row] >> 60
             state[row] = _fit(
-                keys[row], sums[row], sizes[level], min_points, max_sd, fits[row], work
+                keys[row], sums[row], sizes[level], min_points, max_sd, min_along, max_ratio, fits[row], work
             )
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def normals(
+    keys: NDArray[np.int64],
+    sums: NDArray[np.float64],
+    fits: NDArray[np.float64],
+    state: NDArray[np.uint8],
+    sizes: NDArray[np.float64],
+    q: NDArray[np.float64],
+    gate: float,
+    min_points: float,
+    max_sd: float,
+    min_along: float,
+    max_ratio: float,
+    out: NDArray[np.float64],
+) -> None:
+    """Normals of the finest planes at points (N, 3), written to ``out`` (N, 3)."""
+    work = np.empty((7, 3))
+    for k in range(len(q)):
+        for level in range(len(sizes)):
+            key = _key(level, q[k, 0], q[k, 1], q[k, 2], sizes[level])
+            row = _slot(keys, key)
+            if keys[row] == EMPTY:
+                continue
+            if state[row] == DIRTY:
+                state[row] = _fit(key, sums[row], sizes[level], min_points, max_sd, min_along, max_ratio, fits[row], work)
+            if state[row] != PLANE:
+                continue
+            f = fits[row]
+            r = f[3] * (q[k, 0] - f[0]) + f[4] * (q[k, 1] - f[1]) + f[5] * (q[k, 2] - f[2])
+            if abs(r) <= gate:
+                out[k, 0], out[k, 1], out[k, 2] = f[3], f[4], f[5]
+            break
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -218,6 +277,8 @@ def accumulate(
     point_var: float,
     min_points: float,
     max_sd: float,
+    min_along: float,
+    max_ratio: float,
     H: NDArray[np.float64],
     g: NDArray[np.float64],
     residual: NDArray[np.float64],
@@ -255,7 +316,7 @@ def accumulate(
             if keys[row] == EMPTY:
                 continue
             if state[row] == DIRTY:
-                state[row] = _fit(key, sums[row], sizes[level], min_points, max_sd, fits[row], work)
+                state[row] = _fit(key, sums[row], sizes[level], min_points, max_sd, min_along, max_ratio, fits[row], work)
             if state[row] != PLANE:
                 continue
             f = fits[row]

@@ -12,6 +12,7 @@ from recon4.registration.aiding import GnssAiding
 from recon4.registration.degeneracy import observable_directions
 from recon4.registration.motion import Prediction
 from recon4.registration.plane_map import Match, PlaneMap
+from recon4.registration.point_map import WeakDirections
 from recon4.registration.segments import Segments
 from recon4.registration.state import END_POSE, POSES, START, STATE
 from recon4.settings import OdometrySettings
@@ -46,8 +47,17 @@ class FrameFitter:
     """First level of cubes, 0 = the finest. Larger cubes allow a larger prediction error."""
     aiding: GnssAiding | None = None
 
-    def fit(self, target: PlaneMap, segments: Segments, prediction: Prediction) -> FrameFit:
+    def fit(
+        self,
+        target: PlaneMap,
+        segments: Segments,
+        prediction: Prediction,
+        *,
+        weak: WeakDirections,
+    ) -> FrameFit:
         """Correct a predicted motion until the ends of the segments lie on the planes.
+
+        Where these observe a direction weakly, ``weak`` adds points that observe it.
 
         Both ends of a segment are used, not its midpoint: planes are fitted to ends. While
         stationary this halves the scatter of the pose.
@@ -67,6 +77,12 @@ class FrameFitter:
                 finest=max(self.coarse + 1 - rounds, 0), gate_m=self._gate_m(rounds),
             )  # fmt: skip
             H_lidar, g_lidar = self._weighted(match)
+            points = weak.match(
+                match, rounds=rounds, t_s=prediction.t_s, T_odom_body=T_dense, center=center,
+                gate_m=self._gate_m(rounds),
+            )  # fmt: skip
+            if points is not None:
+                H_lidar, g_lidar = H_lidar + points.H, g_lidar + points.g
             H, g = information.copy(), information @ delta
             H[POSES, POSES] += H_lidar
             g[POSES] += g_lidar

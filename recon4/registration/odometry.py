@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass, field
+from functools import cache
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from recon4.registration.aiding import GnssAiding
 from recon4.registration.frame_fit import FrameFit, FrameFitter
 from recon4.registration.motion import FreeMotion, ImuMotion, Motion, MotionState, Prediction
 from recon4.registration.plane_map import PlaneMap
+from recon4.registration.point_map import PointMap, WeakDirections, frame_points
 from recon4.registration.scan_chain import ScanChain, body_points
 from recon4.registration.segments import Segments, sample_segments
 from recon4.registration.state import END, END_POSE, START, STATE, VECTOR
@@ -51,6 +53,8 @@ class OdometryStep:
     """Covariance of the motion over the frame, turn and shift in odom axes, (6, 6)."""
     weak_direction: Array = field(default_factory=lambda: np.full(3, np.nan))
     """See `Match.weak_direction`, in odom axes; NaN where it is unknown."""
+    weak_sd_m: float = float("nan")
+    """Standard deviation of the position along it by the LiDARs of this frame alone [m]."""
 
 
 class Odometry:
@@ -88,6 +92,7 @@ class Odometry:
             aiding=aiding,
         )
         self._map = PlaneMap(settings.planes)
+        self._points = PointMap(settings.planes)
         self._keyframes: deque[Array] = deque()
         self._last_keyframe = SE3.identity()
         self._lost_frames = 0
@@ -103,7 +108,9 @@ class Odometry:
         first = not self._keyframes
         found = self._place(frame)
         prediction = self._predict(frame)
-        fit = self._fitter.fit(self._map, segments, prediction)
+        points = cache(lambda: frame_points(frame, self._rig))
+        weak = WeakDirections(self._points, points, self._settings.odometry.weak_eigenvalue)
+        fit = self._fitter.fit(self._map, segments, prediction, weak=weak)
         lost = not first and (not found or self._is_lost(fit))
         if self._chain and not lost and is_stationary(self._chain.located):
             fit = zero_velocity_update(fit, prediction, self._chain.last[0])
@@ -112,7 +119,9 @@ class Odometry:
         T_dense = prediction.T_odom_body if lost or first else fit.T_dense
         step = _step(frame, prediction, fit, T_dense=T_dense, lost=lost)
         if not lost:
-            self._extend_map(segments, prediction.t_s, T_dense)
+            if self._is_keyframe(T_dense[-1]):
+                self._extend_map(segments, prediction.t_s, T_dense)
+                self._points.add(points(), prediction.t_s, T_dense)
             if self._chain:
                 self._chain.keep(step.T_odom_body, frame.t_mid_ns)
         return step
@@ -125,6 +134,7 @@ class Odometry:
         self._lost_frames = self._lost_frames + 1 if lost else 0
         if self._chain is None and self._lost_frames >= self._settings.odometry.restart_after:
             self._map.clear()
+            self._points.clear()
             self._keyframes.clear()
             self._lost_frames = 0
 
@@ -186,13 +196,15 @@ class Odometry:
         bad = fit.match.match_ratio < o.lost_match_ratio or not fit.match.mean_m < o.lost_error_m
         return bad or not np.isfinite(fit.delta).all()
 
+    def _is_keyframe(self, T_odom_body: SE3) -> bool:
+        """Whether the body moved or turned far enough since the last keyframe."""
+        o = self._settings.odometry
+        T_last_now = self._last_keyframe.inverse() @ T_odom_body
+        moved = np.linalg.norm(T_last_now.t) > o.keyframe_m or T_last_now.angle() > o.keyframe_rad
+        return bool(moved) or not self._keyframes
+
     def _extend_map(self, segments: Segments, t_s: Array, T_dense: SE3) -> None:
         if len(segments) == 0:
-            return
-        o = self._settings.odometry
-        T_last_now = self._last_keyframe.inverse() @ T_dense[-1]
-        moved = np.linalg.norm(T_last_now.t) > o.keyframe_m or T_last_now.angle() > o.keyframe_rad
-        if self._keyframes and not moved:
             return
         self._last_keyframe = T_dense[-1]
         ends_odom = np.concatenate(
@@ -203,7 +215,7 @@ class Odometry:
         )
         self._map.add(ends_odom)
         self._keyframes.append(ends_odom)
-        if len(self._keyframes) > o.history:
+        if len(self._keyframes) > self._settings.odometry.history:
             self._map.remove(self._keyframes.popleft())
 
 
@@ -236,7 +248,17 @@ def _step(
         lost,
         _motion_cov(prediction.prior if lost else fit.P),
         fit.match.weak_direction,
+        _weak_sd_m(fit),
     )
+
+
+def _weak_sd_m(fit: FrameFit) -> float:
+    """Standard deviation along the weak direction by the points alone [m], at most 100 m."""
+    H = fit.H_lidar
+    H6 = H[START, START] + H[START, END_POSE] + H[END_POSE, START] + H[END_POSE, END_POSE]
+    direction = np.zeros(6)
+    direction[STATE.position] = fit.match.weak_direction
+    return float(np.sqrt(direction @ np.linalg.solve(H6 + 1e-4 * np.eye(6), direction)))
 
 
 def _motion_cov(P: Array) -> Array:

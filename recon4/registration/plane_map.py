@@ -28,10 +28,26 @@ class Match:
     mean_m: float
     """Mean absolute distance [m]; NaN without a match."""
     chi2: float
-    degeneracy: float
-    """Smallest eigenvalue of the mean of n n^T: 0 = unobservable direction, 1/3 = isotropic."""
-    weak_direction: Array = field(default_factory=lambda: np.full(3, np.nan))
-    """Its eigenvector: the unit direction least constrained by the planes, map axes, (3,)."""
+    normals: Array = field(default_factory=lambda: np.zeros((3, 3)))
+    """Mean of n n^T over the matches, map axes, (3, 3)."""
+
+    @property
+    def degeneracy(self) -> float:
+        """Smallest eigenvalue of `normals`: 0 = unobservable direction, 1/3 = isotropic."""
+        return float(np.linalg.eigvalsh(self.normals)[0])
+
+    @property
+    def weak_direction(self) -> Array:
+        """Unit direction least constrained by the planes, map axes, (3,); NaN without a match."""
+        if not self.matches:
+            return np.full(3, np.nan)
+        direction: Array = np.linalg.eigh(self.normals)[1][:, 0]
+        return direction
+
+    def weak_directions(self, max_eigenvalue: float) -> Array:
+        """Unit directions in which `normals` has an eigenvalue below a bound, (M, 3), M ≤ 3."""
+        values, vectors = np.linalg.eigh(self.normals)
+        return vectors[:, values < max_eigenvalue].T
 
     @property
     def match_ratio(self) -> float:
@@ -50,6 +66,10 @@ class PlaneMap:
         self._used = 0
         self._make_room_for_fits()
 
+    def __len__(self) -> int:
+        """Number of cubes, of all sizes."""
+        return self._used
+
     def add(self, p_map: Array) -> None:
         """Add points [m], (N, 3)."""
         self._sum(p_map, 1.0)
@@ -65,12 +85,20 @@ class PlaneMap:
         self._state.fill(0)
         self._used = 0
 
+    def forget_beyond(self, radius_m: float, center: Array) -> None:
+        """Forget all cubes farther from ``center`` (3,) than ``radius_m``."""
+        planes.empty_beyond(self._keys, self._sums, self._sizes, center, radius_m)
+        self._keys, self._sums, self._used = planes.rehash(
+            self._keys, self._sums, len(self._keys)
+        )
+        self._make_room_for_fits()
+
     def fit(self) -> None:
         """Fit all planes now, so that several threads may call `match` at once."""
         s = self._settings
         planes.fit_all(
             self._keys, self._sums, self._fits, self._state, self._sizes, float(s.min_points),
-            s.max_sd_m,
+            s.max_sd_m, s.min_extent_m, s.max_variance_ratio,
         )  # fmt: skip
 
     def _sum(self, p_map: Array, sign: float) -> None:
@@ -93,6 +121,16 @@ class PlaneMap:
     def _make_room_for_fits(self) -> None:
         self._fits = np.empty((len(self._keys), 9))
         self._state = np.zeros(len(self._keys), np.uint8)
+
+    def normals(self, p_map: Array, gate_m: float) -> Array:
+        """Normal of the finest plane at each point, zero where there is none, (N, 3)."""
+        s = self._settings
+        out = np.zeros((len(p_map), 3))
+        planes.normals(
+            self._keys, self._sums, self._fits, self._state, self._sizes, p_map, gate_m,
+            float(s.min_points), s.max_sd_m, s.min_extent_m, s.max_variance_ratio, out,
+        )  # fmt: skip
+        return out
 
     def match(
         self,
@@ -118,12 +156,7 @@ class PlaneMap:
         matches, total, chi2, normals = planes.accumulate(
             self._keys, self._sums, self._fits, self._state, self._sizes,
             p_map, fraction, center, finest, gate_m, s.kernel_m, s.point_sd_m**2,
-            float(s.min_points), s.max_sd_m, H, g, residual_m,
+            float(s.min_points), s.max_sd_m, s.min_extent_m, s.max_variance_ratio, H, g, residual_m,
         )  # fmt: skip
-        if not matches:
-            return Match(H, g, residual_m, 0, float("nan"), float(chi2), 0.0)
-        values, vectors = np.linalg.eigh(normals / matches)
-        return Match(
-            H, g, residual_m, int(matches), total / matches, float(chi2), float(values[0]),
-            vectors[:, 0],
-        )  # fmt: skip
+        mean_m = total / matches if matches else float("nan")
+        return Match(H, g, residual_m, int(matches), mean_m, float(chi2), normals / max(matches, 1))

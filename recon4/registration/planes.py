@@ -87,4 +87,4 @@ def _moved(initial: SE3, T_target_source: SE3) -> float:
 
 def _empty(count: int) -> Match:
     nan = np.full(count, np.nan)
-    return Match(np.zeros((12, 12)), np.zeros(12), nan, 0, float("nan"), 0.0, 0.0)
+    return Match(np.zeros((12, 12)), np.zeros(12), nan, 0, float("nan"), 0.0)

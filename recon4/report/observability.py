@@ -17,6 +17,9 @@ from recon4.geometry.se3 import Array
 
 WEAK_DEGENERACY = 0.005
 """Below this a direction counts as unobservable, as for pairs (`GraphSettings.min_degeneracy`)."""
+WEAK_SD_M = 0.05
+"""With a larger standard deviation of its LiDAR measurement a multiframe observes a direction
+weakly [m]. Files of earlier versions do not state it: there the degeneracy decides."""
 MIN_SECONDS = 2.0
 """Shorter stretches are bridged by the motion before them [s]."""
 _BRIDGED_S = 1.0
@@ -32,6 +35,8 @@ class WeakStretch:
     end_s: float
     degeneracy: float
     """Median of the smallest eigenvalue of the mean of n n^T."""
+    sd_m: float
+    """Median standard deviation of a multiframe's LiDAR measurement [m]; NaN = not stated."""
     direction_odom: Array
     """Unit vector of the weak direction, in odom axes, (3,); NaN = unknown."""
 
@@ -57,7 +62,8 @@ def weak_stretches(steps: Mapping[str, NDArray[np.generic]]) -> list[WeakStretch
     t_s = (steps["t_mid_ns"] - steps["t_mid_ns"][0]) / 1e9
     degeneracy = np.asarray(steps["degeneracy"], np.float64)
     directions = np.asarray(steps.get("weak_direction", np.full((len(t_s), 3), np.nan)), np.float64)
-    weak = degeneracy < WEAK_DEGENERACY
+    sd_m = np.asarray(steps.get("weak_sd_m", np.full(len(t_s), np.nan)), np.float64)
+    weak = np.where(np.isnan(sd_m), degeneracy < WEAK_DEGENERACY, sd_m > WEAK_SD_M)
     weak[0] = False  # there is no map yet to observe anything against
     weak &= ~np.asarray(steps["lost"], bool)  # lost tracking is reported by itself
     rows = np.flatnonzero(weak)
@@ -69,6 +75,7 @@ def weak_stretches(steps: Mapping[str, NDArray[np.generic]]) -> list[WeakStretch
             start_s=float(t_s[run[0]]),
             end_s=float(t_s[run[-1]]),
             degeneracy=float(np.median(degeneracy[run])),
+            sd_m=float(np.median(sd_m[run])),
             direction_odom=_mean_direction(directions[run]),
         )
         for run in runs

@@ -32,6 +32,9 @@ class OdometrySettings:
     """Smallest standard deviation of a fix [m]: its errors are correlated over seconds."""
     heading_sd_rad: float = 0.01
     """Standard deviation of the INS heading [rad]."""
+    weak_eigenvalue: float = 0.05
+    """A direction is weak if the mean squared component of the planes' normals along it is smaller
+    (1/3 = isotropic, 0 = unobservable): there single points are registered beside the segments."""
     normal_noise_rad: float = 0.03
     """Error of a plane's normal [rad]: directions with no more information than such errors create
     count as unobservable."""

@@ -16,7 +16,7 @@ def match_of(normals, *, residual_m=0.01, seed=1):
     J = np.hstack([np.cross(p, normals), normals])
     H, g = np.zeros((12, 12)), np.zeros(12)
     H[:6, :6], g[:6] = J.T @ J, J.T @ np.full(len(normals), residual_m)
-    return Match(H, g, np.full(len(normals), residual_m), len(normals), residual_m, 1.0, 0.1)
+    return Match(H, g, np.full(len(normals), residual_m), len(normals), residual_m, 1.0)
 
 
 def around(directions, *, off_rad=0.0, seed=2):

@@ -113,7 +113,7 @@ class Asked:
     def match(self, p_map, fraction, **_):
         self.p_map, self.fraction = p_map, fraction
         nan = np.full(len(p_map), np.nan)
-        return Match(np.zeros((12, 12)), np.zeros(12), nan, 0, np.nan, 0.0, 0.0)
+        return Match(np.zeros((12, 12)), np.zeros(12), nan, 0, np.nan, 0.0)
 
 
 def test_both_ends_of_a_segment_are_matched_each_at_its_own_time(stroll):

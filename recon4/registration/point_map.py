@@ -1,0 +1,180 @@
+"""Single points where segments observe too little: far walls, the reveals of doors.
+
+A collar line segment needs two neighboring rings on one surface. The wall at the end of a long
+corridor is hit by one ring, and of a door's reveal, a few centimeters deep, hardly a segment is
+drawn; yet along the corridor nothing else observes the motion. So where the segments leave a
+direction weak, single points are registered too: only those on surfaces that face this direction,
+against planes that are remembered much longer than the keyframes of the segments.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from recon4.geometry.se3 import SE3, Array
+from recon4.kernels.imu import place_points
+from recon4.model.multiframe import Multiframe
+from recon4.model.rig import Rig
+from recon4.registration.plane_map import Match, PlaneMap
+from recon4.settings import PlaneSettings
+
+_NEAR_M, _NEAR_STRIDE = 2.5, 4
+"""Of points nearer than this [m] every fourth is used: near surfaces have more than enough."""
+_MIN_EXTENT_M, _MAX_VARIANCE_RATIO = 0.03, 0.2
+"""Planes of the map: a reveal is only 10 cm deep, but wider than the noise of a single ring."""
+_MIN_FACING = 0.5
+"""Cosine between a plane's normal and a weak direction above which its points are used."""
+_MIN_INCIDENCE = 0.25
+"""Cosine of the angle of incidence above which a point is used. Where one ring sweeps around an
+edge, its points span the plane of the ring itself, which moves with the sensor: a false plane, but
+one that contains the line of sight."""
+_MAX_POINTS = 1500
+_GATE_M = 0.3
+"""Largest distance from its plane of a point that is chosen [m]."""
+_RADIUS_M = 120.0
+"""Planes farther away are forgotten [m], a little more than the range of the sensors."""
+_FORGET_EVERY = 50
+"""Number of keyframes between two such clean-ups."""
+_MAX_CUBES = 300_000
+"""With more cubes than this after a clean-up the radius is halved: about 100 MB."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FramePoints:
+    """Points of a multiframe."""
+
+    body: Array
+    """In the body frame of their own time [m], (N, 3)."""
+    s: Array
+    """Time of each after the start of the frame [s], (N,)."""
+
+    def __len__(self) -> int:
+        return len(self.s)
+
+    def __getitem__(self, rows: Array) -> FramePoints:
+        return FramePoints(self.body[rows], self.s[rows])
+
+    def placed(self, t_s: Array, T_odom_body: SE3) -> Array:
+        """The points in odom [m], (N, 3), by the poses (K,) of the body at the times ``t_s``."""
+        return place_points(t_s, T_odom_body.R, T_odom_body.t, self.s, self.body)
+
+
+def frame_points(frame: Multiframe, rig: Rig) -> FramePoints:
+    """Points of all enabled sensors; of the near ones, every fourth."""
+    body, s = [np.empty((0, 3))], [np.empty(0)]
+    for number, sensor in enumerate(rig.sensors):
+        rows = np.flatnonzero(frame.sensor == number) if sensor.enabled else np.empty(0, np.intp)
+        xyz = frame.xyz[rows]
+        near = np.einsum("ij,ij->i", xyz, xyz) < _NEAR_M**2
+        kept = ~near | (np.arange(len(rows)) % _NEAR_STRIDE == 0)
+        body.append(sensor.T_body_sensor @ xyz[kept].astype(np.float64))
+        s.append(frame.dt_ns[rows[kept]] * 1e-9)
+    return FramePoints(np.concatenate(body), np.concatenate(s))
+
+
+class PointMap:
+    """Planes of the points of all keyframes within `_RADIUS_M`."""
+
+    def __init__(self, settings: PlaneSettings) -> None:
+        self._planes = PlaneMap(
+            replace(settings, min_extent_m=_MIN_EXTENT_M, max_variance_ratio=_MAX_VARIANCE_RATIO)
+        )
+        self._keyframes = 0
+
+    def add(self, points: FramePoints, t_s: Array, T_odom_body: SE3) -> None:
+        """Add the points of a keyframe; its poses ``T_odom_body`` (K,) are at ``t_s`` (K,)."""
+        self._planes.add(points.placed(t_s, T_odom_body))
+        self._keyframes += 1
+        if self._keyframes % _FORGET_EVERY == 0:
+            self._forget_far(T_odom_body.t[-1])
+
+    def _forget_far(self, center: Array) -> None:
+        radius_m = _RADIUS_M
+        self._planes.forget_beyond(radius_m, center)
+        while len(self._planes) > _MAX_CUBES:
+            radius_m /= 2
+            self._planes.forget_beyond(radius_m, center)
+
+    def clear(self) -> None:
+        """Forget all keyframes."""
+        self._planes.clear()
+        self._keyframes = 0
+
+    def choose(
+        self, points: FramePoints, t_s: Array, T_odom_body: SE3, *, weak: Array
+    ) -> FramePoints:
+        """Points on surfaces that face a weak direction.
+
+        Args:
+            points: All points of a frame.
+            t_s: Times of the poses after the start of the frame [s], (K,).
+            T_odom_body: Poses of the body, (K,).
+            weak: Unit vectors of the weak directions in odom, (M, 3).
+        """
+        if not self._keyframes:
+            return points[np.empty(0, np.intp)]
+        p_odom = points.placed(t_s, T_odom_body)
+        n = self._planes.normals(p_odom, _GATE_M)
+        sight = p_odom - T_odom_body.t[-1]
+        incidence = np.abs(np.sum(n * sight, axis=1)) > _MIN_INCIDENCE * np.linalg.norm(
+            sight, axis=1
+        )
+        rows = np.flatnonzero(incidence & (np.abs(n @ weak.T).max(axis=1) > _MIN_FACING))
+        return points[rows[:: -(-len(rows) // _MAX_POINTS) or 1]]
+
+    def match(
+        self, points: FramePoints, t_s: Array, T_odom_body: SE3, *, center: Array, gate_m: float
+    ) -> Match:
+        """Match points that were chosen; see `PlaneMap.match`."""
+        return self._planes.match(
+            points.placed(t_s, T_odom_body),
+            points.s / t_s[-1],
+            center=center,
+            finest=0,
+            gate_m=gate_m,
+        )
+
+
+class WeakDirections:
+    """Adds points to the segments of one frame in directions that these observe weakly."""
+
+    _CHOSEN_IN = (1, 3)
+    """Rounds in which points are chosen: by the prediction, and once more when it is corrected."""
+
+    def __init__(
+        self, point_map: PointMap, points: Callable[[], FramePoints], max_eigenvalue: float
+    ) -> None:
+        self._map, self._points, self._max_eigenvalue = point_map, points, max_eigenvalue
+        self._chosen: FramePoints | None = None
+
+    def match(
+        self,
+        segments: Match,
+        *,
+        rounds: int,
+        t_s: Array,
+        T_odom_body: SE3,
+        center: Array,
+        gate_m: float,
+    ) -> Match | None:
+        """Match of the points of this round; None if no direction is weak.
+
+        Args:
+            segments: Match of the segments in this round.
+            rounds: Number of the round, from 1.
+            t_s: Times of the poses after the start of the frame [s], (K,).
+            T_odom_body: Poses of the body, (K,).
+            center: Point about which a correction rotates [m], (3,).
+            gate_m: Points farther from their plane do not match [m].
+        """
+        if rounds in self._CHOSEN_IN:
+            weak = segments.weak_directions(self._max_eigenvalue)
+            self._chosen = (
+                self._map.choose(self._points(), t_s, T_odom_body, weak=weak) if len(weak) else None
+            )
+        if self._chosen is None or not len(self._chosen):
+            return None
+        return self._map.match(self._chosen, t_s, T_odom_body, center=center, gate_m=gate_m)
