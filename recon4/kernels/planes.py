@@ -2,7 +2,7 @@
 
 The ten sums of a cube (count, first and second moments) can be added and subtracted with
 sufficient accuracy, so a multiframe can be removed from a map, for good or for a while.
-The tables are plain arrays: ``keys`` (C,), ``sums`` (C, 10), ``fits`` (C, 9), ``state`` (C,).
+The tables are plain arrays: ``keys`` (C,), ``sums`` (C, 12), ``fits`` (C, 9), ``state`` (C,).
 """
 
 from __future__ import annotations
@@ -13,6 +13,11 @@ from numpy.typing import NDArray
 
 EMPTY = np.int64(-1)
 DIRTY, PLANE, NO_PLANE = np.uint8(0), np.uint8(1), np.uint8(2)
+MIN_POINTS, MAX_SD, MIN_EXTENT, MAX_RATIO, MIN_BATCHES = range(5)
+"""Rows of the array of criteria that a cube's points have to meet to count as a plane."""
+COLUMNS = 12
+"""Columns of ``sums``: ten moments, the number of batches and the number of the newest batch."""
+BATCHES, _NEWEST = 10, 11
 _OFFSET = np.int64(1 << 19)
 _MASK = np.int64((1 << 20) - 1)
 
@@ -46,8 +51,11 @@ def add_points(
     first: int,
     used: int,
     sign: float,
+    batch: int,
 ) -> tuple[int, int]:
     """Add (``sign`` 1) or remove (-1) points, (N, 3), beginning with row ``first``.
+
+    Points of one ``batch`` were seen from the same place; a cube counts its batches.
 
     Stops early if the tables are half full. Returns the row to continue with and the number of
     cubes used.
@@ -79,6 +87,9 @@ def add_points(
             s[7] += sign * y * y
             s[8] += sign * y * z
             s[9] += sign * z * z
+            if s[_NEWEST] != batch:
+                s[_NEWEST] = batch
+                s[BATCHES] += 1.0
             state[row] = DIRTY
     return len(p), used
 
@@ -110,7 +121,7 @@ def rehash(
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], int]:
     """Copy the non-empty cubes to tables of another size (a power of two)."""
     new_keys = np.full(capacity, EMPTY, np.int64)
-    new_sums = np.zeros((capacity, 10), np.float64)
+    new_sums = np.zeros((capacity, COLUMNS), np.float64)
     used = 0
     for row in range(len(keys)):
         if keys[row] != EMPTY and sums[row, 0] > 0.5:
@@ -170,16 +181,13 @@ def _fit(
     key: np.int64,
     s: NDArray[np.float64],
     size: float,
-    min_points: float,
-    max_sd: float,
-    min_along: float,
-    max_ratio: float,
+    criteria: NDArray[np.float64],
     f: NDArray[np.float64],
     work: NDArray[np.float64],
 ) -> np.uint8:
     """Fit the plane of one cube into ``f``: center, normal, variances across and along."""
     n = s[0]
-    if n < min_points:
+    if n < criteria[MIN_POINTS] or s[BATCHES] < criteria[MIN_BATCHES]:
         return NO_PLANE
     mx, my, mz = s[1] / n, s[2] / n, s[3] / n
     a, vecs, vals = work[0:3], work[3:6], work[6]
@@ -192,7 +200,10 @@ def _fit(
     a[1, 0], a[2, 0], a[2, 1] = a[0, 1], a[0, 2], a[1, 2]
     _eigen_sym3(a, vals, vecs)
     across, along = max(vals[0], 0.0), max(vals[1], 1e-12)
-    if across > max_sd * max_sd or along < max(0.1 * size, min_along) ** 2 or across > max_ratio * along:
+    min_sd = max(0.1 * size, criteria[MIN_EXTENT])
+    if across > criteria[MAX_SD] ** 2 or along < min_sd * min_sd:
+        return NO_PLANE
+    if across > criteria[MAX_RATIO] * along:
         return NO_PLANE
     ix = ((key >> 40) & _MASK) - _OFFSET
     iy = ((key >> 20) & _MASK) - _OFFSET
@@ -212,19 +223,14 @@ def fit_all(
     fits: NDArray[np.float64],
     state: NDArray[np.uint8],
     sizes: NDArray[np.float64],
-    min_points: float,
-    max_sd: float,
-    min_along: float,
-    max_ratio: float,
+    criteria: NDArray[np.float64],
 ) -> None:
     """Fit the planes of all cubes, so that several threads can match without writing."""
     work = np.empty((7, 3))
     for row in range(len(keys)):
         if keys[row] != EMPTY and state[row] == DIRTY:
             level = keys[row] >> 60
-            state[row] = _fit(
-                keys[row], sums[row], sizes[level], min_points, max_sd, min_along, max_ratio, fits[row], work
-            )
+            state[row] = _fit(keys[row], sums[row], sizes[level], criteria, fits[row], work)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -236,10 +242,7 @@ def normals(
     sizes: NDArray[np.float64],
     q: NDArray[np.float64],
     gate: float,
-    min_points: float,
-    max_sd: float,
-    min_along: float,
-    max_ratio: float,
+    criteria: NDArray[np.float64],
     out: NDArray[np.float64],
 ) -> None:
     """Normals of the finest planes at points (N, 3), written to ``out`` (N, 3)."""
@@ -251,7 +254,7 @@ def normals(
             if keys[row] == EMPTY:
                 continue
             if state[row] == DIRTY:
-                state[row] = _fit(key, sums[row], sizes[level], min_points, max_sd, min_along, max_ratio, fits[row], work)
+                state[row] = _fit(key, sums[row], sizes[level], criteria, fits[row], work)
             if state[row] != PLANE:
                 continue
             f = fits[row]
@@ -275,10 +278,7 @@ def accumulate(
     gate: float,
     kernel: float,
     point_var: float,
-    min_points: float,
-    max_sd: float,
-    min_along: float,
-    max_ratio: float,
+    criteria: NDArray[np.float64],
     H: NDArray[np.float64],
     g: NDArray[np.float64],
     residual: NDArray[np.float64],
@@ -316,7 +316,7 @@ def accumulate(
             if keys[row] == EMPTY:
                 continue
             if state[row] == DIRTY:
-                state[row] = _fit(key, sums[row], sizes[level], min_points, max_sd, min_along, max_ratio, fits[row], work)
+                state[row] = _fit(key, sums[row], sizes[level], criteria, fits[row], work)
             if state[row] != PLANE:
                 continue
             f = fits[row]

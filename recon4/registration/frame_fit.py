@@ -14,11 +14,14 @@ from recon4.registration.motion import Prediction
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.point_map import WeakDirections
 from recon4.registration.segments import Segments
-from recon4.registration.state import END_POSE, POSES, START, STATE
+from recon4.registration.state import END_POSE, END_VELOCITY, POSES, START, STATE, VECTOR
 from recon4.settings import OdometrySettings
 
 _GATES_M = (1.0, 0.5, 0.3, 0.2)
 """Largest distance of a point from its plane in each round [m]; the last one is for all further."""
+
+_STATIONARY_SD_M_S = 0.02
+"""Standard deviation of the velocity of a person who stands [m/s]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,16 +56,18 @@ class FrameFitter:
         segments: Segments,
         prediction: Prediction,
         *,
-        weak: WeakDirections,
+        weak: WeakDirections | None = None,
+        stationary: bool = False,
     ) -> FrameFit:
         """Correct a predicted motion until the ends of the segments lie on the planes.
 
-        Where these observe a direction weakly, ``weak`` adds points that observe it.
+        Where these observe a direction weakly, ``weak`` adds points that observe it. A body known
+        to be ``stationary`` at the end has no velocity there.
 
         Both ends of a segment are used, not its midpoint: planes are fitted to ends. While
         stationary this halves the scatter of the pose.
         """
-        information = np.linalg.inv(prediction.prior + 1e-12 * np.eye(24))
+        information, g_prior = _prior(prediction, stationary=stationary)
         center = prediction.T_odom_body.t[-1]
         p_body = np.concatenate([segments.a_body, segments.b_body])
         p_s = np.concatenate([segments.a_s, segments.b_s])
@@ -77,13 +82,13 @@ class FrameFitter:
                 finest=max(self.coarse + 1 - rounds, 0), gate_m=self._gate_m(rounds),
             )  # fmt: skip
             H_lidar, g_lidar = self._weighted(match)
-            points = weak.match(
-                match, rounds=rounds, t_s=prediction.t_s, T_odom_body=T_dense, center=center,
-                gate_m=self._gate_m(rounds),
-            )  # fmt: skip
-            if points is not None:
-                H_lidar, g_lidar = H_lidar + points.H, g_lidar + points.g
-            H, g = information.copy(), information @ delta
+            if weak is not None:
+                H_points, g_points = weak.pull(
+                    match, rounds=rounds, t_s=prediction.t_s, T_odom_body=T_dense, center=center,
+                    gate_m=self._gate_m(rounds),
+                )  # fmt: skip
+                H_lidar, g_lidar = H_lidar + H_points, g_lidar + g_points
+            H, g = information.copy(), information @ delta + g_prior
             H[POSES, POSES] += H_lidar
             g[POSES] += g_lidar
             if self.aiding is not None:
@@ -104,6 +109,16 @@ class FrameFitter:
     def _weighted(self, match: Match) -> tuple[Array, Array]:
         H, g = observable_directions(match, self.settings.normal_noise_rad)
         return self.settings.information_scale * H, self.settings.information_scale * g
+
+
+def _prior(prediction: Prediction, *, stationary: bool) -> tuple[Array, Array]:
+    """Information (24, 24) of the prediction and gradient (24,) where nothing is corrected."""
+    information = np.linalg.inv(prediction.prior + 1e-12 * np.eye(24))
+    g = np.zeros(24)
+    if stationary:
+        information[END_VELOCITY, END_VELOCITY] += np.eye(3) / _STATIONARY_SD_M_S**2
+        g[END_VELOCITY] += prediction.end.vector[VECTOR.velocity] / _STATIONARY_SD_M_S**2
+    return information, g
 
 
 def _correct(prediction: Prediction, delta: Array, center: Array) -> SE3:

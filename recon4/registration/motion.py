@@ -19,6 +19,10 @@ _FREE_SD = (0.01, 0.05, 0.3, 0.3)
 rate [rad/s]."""
 _REST_NS = 500_000_000
 """The vertical is averaged over samples this near in time [ns]; if there is none, the nearest."""
+_MIN_REST_SAMPLES = 10
+_REST_RAD_S, _REST_M_S2, _REST_M_S = 0.12, 0.3, 0.1
+"""Largest turn rate [rad/s], shaking [m/s²] and speed [m/s] of a person who stands; who walks turns
+by 0.5 rad/s and shakes by 1 m/s² and more."""
 _KEPT_NS = 60_000_000_000
 """During live capture IMU samples are kept for this time [ns]."""
 _SLOT_S = 0.02
@@ -108,6 +112,24 @@ class ImuMotion:
         outside = start_ns < times[0] - 50_000_000 or end_ns > times[-1] + 50_000_000
         return len(times) > 1 and not outside and bool(np.diff(times).max() <= 50_000_000)
 
+    def is_stationary(self, state: MotionState) -> bool:
+        """Whether the samples of the last half second and the velocity fit a body that stands.
+
+        A cart that rolls evenly shakes as little as a person who stands: the velocity decides.
+        """
+        first, last = np.searchsorted(self._t_ns, [state.t_ns - _REST_NS, state.t_ns + 1])
+        if not self._has_accel or last - first < _MIN_REST_SAMPLES:
+            return False
+        turn = self._gyro[first:last] - state.vector[VECTOR.gyro_bias]
+        shaking = np.linalg.norm(self._accel[first:last].std(axis=0))
+        speed = np.linalg.norm(state.vector[VECTOR.velocity])
+        speed_sd = np.sqrt(np.trace(state.P[STATE.velocity, STATE.velocity]))
+        return bool(
+            np.abs(turn).max() < _REST_RAD_S
+            and shaking < _REST_M_S2
+            and speed < _REST_M_S + 3.0 * min(speed_sd, _REST_M_S)
+        )
+
     def initial(self, t_ns: int) -> MotionState:
         """Initial state at ``t_ns``: roll and pitch from the mean specific force."""
         away_ns = np.abs(self._t_ns - t_ns)
@@ -171,6 +193,10 @@ class FreeMotion:
         """State without IMU after a gap began: no gravity, no biases, the turn rate unknown."""
         sd = np.repeat([_FREE_SD[-1], 1e-9, 1e-9], 3)
         return state.with_biases(np.zeros(9), np.diag(sd**2))
+
+    def is_stationary(self, state: MotionState) -> bool:
+        """Nothing is known of it without an IMU: registration decides (`zero_velocity`)."""
+        return False
 
     def at_rest(self, state: MotionState, t_ns: int) -> MotionState:
         """Stationary state at ``t_ns`` at the last position, because the motion is unknown."""

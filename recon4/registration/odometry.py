@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 
 import numpy as np
@@ -55,6 +55,8 @@ class OdometryStep:
     """See `Match.weak_direction`, in odom axes; NaN where it is unknown."""
     weak_sd_m: float = float("nan")
     """Standard deviation of the position along it by the LiDARs of this frame alone [m]."""
+    stationary: bool = False
+    """Whether the IMU says that the body stands."""
 
 
 class Odometry:
@@ -110,7 +112,8 @@ class Odometry:
         prediction = self._predict(frame)
         points = cache(lambda: frame_points(frame, self._rig))
         weak = WeakDirections(self._points, points, self._settings.odometry.weak_eigenvalue)
-        fit = self._fitter.fit(self._map, segments, prediction, weak=weak)
+        stationary = self._motion.is_stationary(prediction.end)
+        fit = self._fitter.fit(self._map, segments, prediction, weak=weak, stationary=stationary)
         lost = not first and (not found or self._is_lost(fit))
         if self._chain and not lost and is_stationary(self._chain.located):
             fit = zero_velocity_update(fit, prediction, self._chain.last[0])
@@ -118,6 +121,7 @@ class Odometry:
         self._state = _updated(prediction, fit, lost=lost, first=first)
         T_dense = prediction.T_odom_body if lost or first else fit.T_dense
         step = _step(frame, prediction, fit, T_dense=T_dense, lost=lost)
+        step = replace(step, stationary=stationary)
         if not lost:
             if self._is_keyframe(T_dense[-1]):
                 self._extend_map(segments, prediction.t_s, T_dense)

@@ -58,11 +58,34 @@ class Match:
 class PlaneMap:
     """Planes fitted to the points in cubes of several sizes; points can be removed again."""
 
-    def __init__(self, settings: PlaneSettings) -> None:
+    def __init__(
+        self,
+        settings: PlaneSettings,
+        *,
+        min_extent_m: float = 0.0,
+        max_variance_ratio: float = 0.1,
+        min_viewpoints: int = 1,
+    ) -> None:
+        """An empty map.
+
+        Args:
+            settings: Sizes of the cubes, and what a plane is.
+            min_extent_m: Smallest standard deviation along a plane in its narrower direction [m].
+            max_variance_ratio: Largest ratio of the variance across a plane to that along it.
+            min_viewpoints: A cube to which `add` added points less often has no plane.
+        """
         self._settings = settings
+        self._criteria = np.array(
+            [
+                settings.min_points, settings.max_sd_m, min_extent_m, max_variance_ratio,
+                min_viewpoints,
+            ],
+            np.float64,
+        )  # fmt: skip
         self._sizes: Array = settings.finest_m * np.exp2(np.arange(settings.levels))
         self._keys = np.full(_FIRST_CAPACITY, planes.EMPTY, np.int64)
-        self._sums = np.zeros((_FIRST_CAPACITY, 10))
+        self._sums = np.zeros((_FIRST_CAPACITY, planes.COLUMNS))
+        self._batch = 0
         self._used = 0
         self._make_room_for_fits()
 
@@ -71,7 +94,8 @@ class PlaneMap:
         return self._used
 
     def add(self, p_map: Array) -> None:
-        """Add points [m], (N, 3)."""
+        """Add points [m], (N, 3), that were seen from one place."""
+        self._batch += 1
         self._sum(p_map, 1.0)
 
     def remove(self, p_map: Array) -> None:
@@ -88,25 +112,22 @@ class PlaneMap:
     def forget_beyond(self, radius_m: float, center: Array) -> None:
         """Forget all cubes farther from ``center`` (3,) than ``radius_m``."""
         planes.empty_beyond(self._keys, self._sums, self._sizes, center, radius_m)
-        self._keys, self._sums, self._used = planes.rehash(
-            self._keys, self._sums, len(self._keys)
-        )
+        self._keys, self._sums, self._used = planes.rehash(self._keys, self._sums, len(self._keys))
         self._make_room_for_fits()
 
     def fit(self) -> None:
         """Fit all planes now, so that several threads may call `match` at once."""
-        s = self._settings
         planes.fit_all(
-            self._keys, self._sums, self._fits, self._state, self._sizes, float(s.min_points),
-            s.max_sd_m, s.min_extent_m, s.max_variance_ratio,
+            self._keys, self._sums, self._fits, self._state, self._sizes, self._criteria,
         )  # fmt: skip
 
     def _sum(self, p_map: Array, sign: float) -> None:
         row = 0
         while True:
             row, self._used = planes.add_points(
-                self._keys, self._sums, self._state, self._sizes, p_map, row, self._used, sign
-            )
+                self._keys, self._sums, self._state, self._sizes, p_map, row, self._used, sign,
+                self._batch,
+            )  # fmt: skip
             if row == len(p_map):
                 return
             self._grow()
@@ -124,11 +145,10 @@ class PlaneMap:
 
     def normals(self, p_map: Array, gate_m: float) -> Array:
         """Normal of the finest plane at each point, zero where there is none, (N, 3)."""
-        s = self._settings
         out = np.zeros((len(p_map), 3))
         planes.normals(
             self._keys, self._sums, self._fits, self._state, self._sizes, p_map, gate_m,
-            float(s.min_points), s.max_sd_m, s.min_extent_m, s.max_variance_ratio, out,
+            self._criteria, out,
         )  # fmt: skip
         return out
 
@@ -156,7 +176,7 @@ class PlaneMap:
         matches, total, chi2, normals = planes.accumulate(
             self._keys, self._sums, self._fits, self._state, self._sizes,
             p_map, fraction, center, finest, gate_m, s.kernel_m, s.point_sd_m**2,
-            float(s.min_points), s.max_sd_m, s.min_extent_m, s.max_variance_ratio, H, g, residual_m,
+            self._criteria, H, g, residual_m,
         )  # fmt: skip
         mean_m = total / matches if matches else float("nan")
         return Match(H, g, residual_m, int(matches), mean_m, float(chi2), normals / max(matches, 1))

@@ -10,7 +10,7 @@ against planes that are remembered much longer than the keyframes of the segment
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -25,6 +25,9 @@ _NEAR_M, _NEAR_STRIDE = 2.5, 4
 """Of points nearer than this [m] every fourth is used: near surfaces have more than enough."""
 _MIN_EXTENT_M, _MAX_VARIANCE_RATIO = 0.03, 0.2
 """Planes of the map: a reveal is only 10 cm deep, but wider than the noise of a single ring."""
+_MIN_VIEWPOINTS = 5
+"""Far away a scan is a few sparse lines, which move with the sensor and seem to be surfaces until
+they were seen from this many keyframes."""
 _MIN_FACING = 0.5
 """Cosine between a plane's normal and a weak direction above which its points are used."""
 _MIN_INCIDENCE = 0.25
@@ -80,7 +83,10 @@ class PointMap:
 
     def __init__(self, settings: PlaneSettings) -> None:
         self._planes = PlaneMap(
-            replace(settings, min_extent_m=_MIN_EXTENT_M, max_variance_ratio=_MAX_VARIANCE_RATIO)
+            settings,
+            min_extent_m=_MIN_EXTENT_M,
+            max_variance_ratio=_MAX_VARIANCE_RATIO,
+            min_viewpoints=_MIN_VIEWPOINTS,
         )
         self._keyframes = 0
 
@@ -150,7 +156,7 @@ class WeakDirections:
         self._map, self._points, self._max_eigenvalue = point_map, points, max_eigenvalue
         self._chosen: FramePoints | None = None
 
-    def match(
+    def pull(
         self,
         segments: Match,
         *,
@@ -159,8 +165,8 @@ class WeakDirections:
         T_odom_body: SE3,
         center: Array,
         gate_m: float,
-    ) -> Match | None:
-        """Match of the points of this round; None if no direction is weak.
+    ) -> tuple[Array, Array]:
+        """Information (12, 12) and gradient (12,) of the points of a round, as in `Match`.
 
         Args:
             segments: Match of the segments in this round.
@@ -176,5 +182,6 @@ class WeakDirections:
                 self._map.choose(self._points(), t_s, T_odom_body, weak=weak) if len(weak) else None
             )
         if self._chosen is None or not len(self._chosen):
-            return None
-        return self._map.match(self._chosen, t_s, T_odom_body, center=center, gate_m=gate_m)
+            return np.zeros((12, 12)), np.zeros(12)
+        match = self._map.match(self._chosen, t_s, T_odom_body, center=center, gate_m=gate_m)
+        return match.H, match.g

@@ -111,5 +111,6 @@ def _save_steps(path: Path, steps: list[OdometryStep]) -> None:
         lost=np.array([s.lost for s in steps]),
         motion_cov=np.array([s.motion_cov for s in steps]).reshape(-1, 6, 6),
         weak_direction=np.array([s.weak_direction for s in steps]).reshape(-1, 3),
+        stationary=np.array([s.stationary for s in steps]),
         weak_sd_m=np.array([s.weak_sd_m for s in steps]),
     )

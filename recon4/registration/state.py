@@ -65,5 +65,7 @@ END_POSE = slice(6, 12)
 """Rows of the pose at the end of a frame in the joint error of a frame (24,)."""
 POSES = slice(0, 12)
 """Rows of both poses in the joint error of a frame (24,)."""
+END_VELOCITY = slice(12, 15)
+"""Rows of the velocity at the end of a frame in the joint error of a frame (24,)."""
 END_MOTION = slice(12, 18)
 """Rows of velocity and gyroscope bias at the end of a frame in the joint error (24,)."""

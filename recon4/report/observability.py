@@ -66,6 +66,7 @@ def weak_stretches(steps: Mapping[str, NDArray[np.generic]]) -> list[WeakStretch
     weak = np.where(np.isnan(sd_m), degeneracy < WEAK_DEGENERACY, sd_m > WEAK_SD_M)
     weak[0] = False  # there is no map yet to observe anything against
     weak &= ~np.asarray(steps["lost"], bool)  # lost tracking is reported by itself
+    weak &= ~np.asarray(steps.get("stationary", np.zeros(len(t_s))), bool)  # it cannot drift
     rows = np.flatnonzero(weak)
     if not len(rows):
         return []

@@ -100,10 +100,6 @@ class PlaneSettings:
     """A cube with fewer points has no plane."""
     max_sd_m: float = 0.03
     """Largest standard deviation of the points of a plane across it [m]."""
-    min_extent_m: float = 0.0
-    """Smallest standard deviation along a plane in its narrower direction [m]."""
-    max_variance_ratio: float = 0.1
-    """Largest ratio of the variance across a plane to that in its narrower direction."""
     point_sd_m: float = 0.02
     """Standard deviation of one measured point [m]."""
     kernel_m: float = 0.02
