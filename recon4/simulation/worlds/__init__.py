@@ -3,21 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from importlib import import_module
 
 from recon4.errors import ConfigError
 from recon4.simulation.world import World
 
-WORLDS = ("office", "staircase", "street", "field", "corridor")
+FIXED = ("office", "staircase", "street", "field")
+"""Worlds of one geometry."""
+PROCEDURAL = ("corridor", "tunnel", "garage", "plaza", "storeys")
+"""Worlds of which there are variants: ``corridor`` is variant 0, ``corridor:7`` another one."""
+WORLDS = FIXED + PROCEDURAL
+_MAX_VARIANT = 1_000_000
 
 
 def build_world(name: str) -> World:
     """A world by its name.
 
+    Args:
+        name: One of `WORLDS`; of one in `PROCEDURAL` also ``NAME:VARIANT``. The variant draws the
+            geometry.
+
     Raises:
-        ConfigError: If there is no such world.
+        ConfigError: If there is no such world or no such variant.
     """
-    if name not in WORLDS:
-        raise ConfigError(f"no world named {name!r}; there are: {', '.join(WORLDS)}")
-    build: Callable[[], World] = import_module(f"recon4.simulation.worlds.{name}").build
-    return build()
+    base, colon, number = name.partition(":")
+    if base not in WORLDS:
+        raise ConfigError(f"no world named {base!r}; there are: {', '.join(WORLDS)}")
+    module = import_module(f"recon4.simulation.worlds.{base}")
+    if base in FIXED:
+        if colon:
+            raise ConfigError(f"{base} has no variants, got {name!r}")
+        build: Callable[[], World] = module.build
+        return build()
+    variant = int(number) if number.isascii() and number.isdecimal() else 0 if not colon else -1
+    if not 0 <= variant <= _MAX_VARIANT:
+        raise ConfigError(f"a variant is a number of 0 to {_MAX_VARIANT}, got {name!r}")
+    build_variant: Callable[[int], World] = module.build
+    return replace(build_variant(variant), name=name)

@@ -45,35 +45,54 @@ FLIGHT_WIDTH_M = 1.2
 HALL_M = 4.0
 _HALL_SOUTH_M, _HALL_NORTH_M = -1.2, 4.0
 _SLAB_M = 0.2
+_HALL_HEIGHT_M = 2.9
 _DOOR_Y_M = 1.3
 
 
 def build() -> World:
     """The staircase; every floor is furnished in another way."""
+    return stack("staircase", floors=FLOORS, alike=False)
+
+
+def stack(name: str, *, floors: int, alike: bool) -> World:
+    """A staircase of any number of storeys.
+
+    Args:
+        name: Of the world.
+        floors: Number of halls, 2 or more.
+        alike: Every floor looks like the ground floor: same furniture, same signs.
+    """
     builder = MeshBuilder()
     rng = np.random.default_rng(1907)
-    _well(builder)
-    for floor in range(FLOORS):
+    _well(builder, floors)
+    for floor in range(floors):
         z = floor * STOREY_M
         builder.box([0, 0, z - _SLAB_M], [LANDING_M, WIDTH_M, z], LINOLEUM)
-        _hall(builder, floor, rng)
-        _signs(builder, floor)
-        if floor + 1 < FLOORS:
+        rise = STOREY_M if floor + 1 < floors else _HALL_HEIGHT_M
+        _hall(builder, floor, rise_m=rise)
+        look = 0 if alike else floor
+        _furnish(builder, z, look, rng=np.random.default_rng(1907) if alike else rng)
+        _signs(builder, z, look)
+        if floor + 1 < floors:
             _flight(builder, z, up=True)
             _flight(builder, z + STOREY_M / 2, up=False)
             half = z + STOREY_M / 2
             start = LENGTH_M - LANDING_M
             builder.box([start, 0, half - _SLAB_M], [LENGTH_M, WIDTH_M, half], LINOLEUM)
-    _top_rail(builder)
-    return World(name="staircase", mesh=builder.mesh(), route=_route, stops=10)
+    _top_rail(builder, floors)
+
+    def route(rng: np.random.Generator, stops: int) -> list[Waypoint]:
+        return _route(rng, stops, floors=floors)
+
+    return World(name=name, mesh=builder.mesh(), route=route, stops=4 * floors - 6)
 
 
-def _well(builder: MeshBuilder) -> None:
+def _well(builder: MeshBuilder, floors: int) -> None:
     """The walls around the stairs, windows at the half-landings, ground and roof."""
-    top = (FLOORS - 1) * STOREY_M + 2.9
+    top = (floors - 1) * STOREY_M + _HALL_HEIGHT_M
     for y in (-0.15, WIDTH_M + 0.15):
         wall(builder, (0, y), (LENGTH_M, y), height_m=top, thickness_m=0.3)
-    for storey in range(FLOORS):
+    for storey in range(floors):
         bottom = storey * STOREY_M + STOREY_M / 2 if storey else 0.0
         height = min(STOREY_M, top - bottom) if storey else STOREY_M * 1.5
         sill = 0.9 if storey else STOREY_M / 2 + 0.9
@@ -127,27 +146,26 @@ def _rail(builder: MeshBuilder, start: list[float], end: list[float]) -> None:
         )
 
 
-def _top_rail(builder: MeshBuilder) -> None:
+def _top_rail(builder: MeshBuilder, floors: int) -> None:
     """Keeps people from falling into the well on the last floor."""
-    z = (FLOORS - 1) * STOREY_M
+    z = (floors - 1) * STOREY_M
     _rail(builder, [LANDING_M, 0.05, z], [LANDING_M, FLIGHT_WIDTH_M + 0.1, z])
 
 
-def _hall(builder: MeshBuilder, floor: int, rng: np.random.Generator) -> None:
-    """A furnished hall west of the stairs, open towards them by a door."""
-    z, height = floor * STOREY_M, 2.9
+def _hall(builder: MeshBuilder, floor: int, *, rise_m: float) -> None:
+    """The walls of a hall west of the stairs, open towards them by a door."""
+    z, height = floor * STOREY_M, _HALL_HEIGHT_M
     west, south, north = -HALL_M - 0.12, _HALL_SOUTH_M, _HALL_NORTH_M
     builder.quad([west, south, z], [-west, 0, 0], [0, north - south, 0], reflectivity=LINOLEUM)
     builder.quad(
         [west, south, z + height], [-west, 0, 0], [0, north - south, 0], reflectivity=CEILING
     )
-    rise = STOREY_M if floor + 1 < FLOORS else height
     wall(
         builder,
         (-0.06, south),
         (-0.06, north),
         bottom_m=z,
-        height_m=rise,
+        height_m=rise_m,
         openings=[door(_DOOR_Y_M - south)],
     )
     wall(
@@ -161,35 +179,39 @@ def _hall(builder: MeshBuilder, floor: int, rng: np.random.Generator) -> None:
     )
     wall(builder, (west, south), (0, south), bottom_m=z, height_m=height)
     wall(builder, (west, north), (0, north), bottom_m=z, height_m=height)
+
+
+def _furnish(builder: MeshBuilder, z: float, look: int, *, rng: np.random.Generator) -> None:
+    """What stands in a hall; the look is the number of the floor of which it is typical."""
+    west, south, north = -HALL_M - 0.12, _HALL_SOUTH_M, _HALL_NORTH_M
     things = MeshBuilder()
     radiator(things, -2.0, north - 0.12)
-    lamp(things, -2.0, 1.3, ceiling_m=height)
-    if floor % 2 == 0:
+    lamp(things, -2.0, 1.3, ceiling_m=_HALL_HEIGHT_M)
+    if look % 2 == 0:
         desk(things, west + 0.6, north - 1.1, side=1.0, rng=rng)
         shelf(things, -0.35, north - 0.7, height_m=1.8, rng=rng)
     else:
         shelf(things, west + 0.4, south + 0.8, height_m=2.0, rng=rng)
         chair(things, -1.0, south + 0.5, yaw_rad=1.2)
-    if floor == 0:
+    if look == 0:
         things.block([-1.8, south + 0.2, 0.8], [1.6, 0.25, 0.8], STEEL)
     builder.place(things, [0.0, 0.0, z])
 
 
-def _signs(builder: MeshBuilder, floor: int) -> None:
-    """As many bars as the number of the floor, and a notice board and an extinguisher."""
-    z = floor * STOREY_M
-    for bar in range(floor + 1):
+def _signs(builder: MeshBuilder, z: float, look: int) -> None:
+    """One bar more than the look, and a notice board and an extinguisher."""
+    for bar in range(look + 1):
         x = 0.3 + 0.12 * bar
         builder.box([x, -0.001, z + 1.5], [x + 0.06, 0.004, z + 1.8], 0.95)
-    x = 0.2 + 0.3 * floor
-    builder.box([x, WIDTH_M - 0.02, z + 1.1], [x + 0.4 + 0.1 * floor, WIDTH_M, z + 1.7], PAPER)
-    if floor % 2:
+    x = 0.2 + 0.3 * look
+    builder.box([x, WIDTH_M - 0.02, z + 1.1], [x + 0.4 + 0.1 * look, WIDTH_M, z + 1.7], PAPER)
+    if look % 2:
         builder.tube([0.15, 2.4, z + 0.4], [0.15, 2.4, z + 0.95], 0.08, reflectivity=DARK, sides=10)
 
 
-def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:
-    """A number of half-storeys up and down again; beyond six, halls are visited too."""
-    halves = min(stops, 2 * (FLOORS - 1))
+def _route(rng: np.random.Generator, stops: int, *, floors: int) -> list[Waypoint]:
+    """A number of half-storeys up and down again; beyond the last one, halls are visited too."""
+    halves = min(stops, 2 * (floors - 1))
     top = halves // 2
     between = [(floor, way) for floor in range(1, top) for way in (0, 1)]
     picks = rng.permutation(len(between))[: stops - halves]

@@ -6,12 +6,19 @@ from recon4.geometry.mesh import MeshBuilder, write_ply
 from recon4.geometry.raycast import Scene, distance_to_mesh
 from recon4.simulation.gait import plan_walk
 from recon4.simulation.walk import BODY_HEIGHT_M
-from recon4.simulation.worlds import WORLDS, build_world
+from recon4.simulation.worlds import PROCEDURAL, WORLDS, build_world
+
+ROUND_S = {
+    "office": 250, "staircase": 200, "street": 220, "field": 450, "corridor": 170, "tunnel": 110,
+    "garage": 110, "plaza": 150, "storeys": 150,
+}  # fmt: skip
+"""About a full round [s]."""
+VARIANTS = [f"{name}:{variant}" for name in PROCEDURAL for variant in (1, 2)]
 
 
 @pytest.fixture(scope="module")
 def worlds():
-    return {name: build_world(name) for name in WORLDS}
+    return {name: build_world(name) for name in [*WORLDS, *VARIANTS]}
 
 
 def test_an_unknown_world_is_refused_with_the_names_there_are():
@@ -19,7 +26,25 @@ def test_an_unknown_world_is_refused_with_the_names_there_are():
         build_world("moon")
 
 
-@pytest.mark.parametrize("name", WORLDS)
+@pytest.mark.parametrize("name", ["corridor:", "corridor:-1", "corridor:x", "corridor:2000000"])
+def test_a_variant_is_a_number(name):
+    with pytest.raises(ConfigError, match="a variant is a number of 0 to 1000000"):
+        build_world(name)
+
+
+def test_a_world_of_one_geometry_has_no_variants():
+    with pytest.raises(ConfigError, match="office has no variants"):
+        build_world("office:1")
+
+
+@pytest.mark.parametrize("name", PROCEDURAL)
+def test_variants_differ(name, worlds):
+    shapes = [worlds[key].mesh.vertices_m for key in (name, f"{name}:1", f"{name}:2")]
+
+    assert len({shape.tobytes() for shape in shapes}) > 1
+
+
+@pytest.mark.parametrize("name", [*WORLDS, *VARIANTS])
 def test_a_world_is_always_the_same_and_sound(name, worlds):
     mesh, again = worlds[name].mesh, build_world(name).mesh
 
@@ -31,11 +56,10 @@ def test_a_world_is_always_the_same_and_sound(name, worlds):
 
 
 @pytest.mark.parametrize("seed", [2, 3])
-@pytest.mark.parametrize(
-    ("name", "seconds"), list(zip(WORLDS, (250, 200, 220, 450, 170), strict=True))
-)
-def test_the_person_walks_into_nothing(name, seconds, seed, worlds):
+@pytest.mark.parametrize("name", [*WORLDS, *VARIANTS])
+def test_the_person_walks_into_nothing(name, seed, worlds):
     world = worlds[name]
+    seconds = ROUND_S[name.partition(":")[0]]
     walk = plan_walk(world, seconds=float(seconds), rng=np.random.default_rng(seed))
     foot = walk.state(np.arange(0.0, walk.seconds, 0.1))[:, :3] - [0.0, 0.0, BODY_HEIGHT_M]
     scene = Scene(world.mesh)
@@ -47,7 +71,7 @@ def test_the_person_walks_into_nothing(name, seconds, seed, worlds):
     assert min(clearance) > 0.24
 
 
-@pytest.mark.parametrize("name", WORLDS)
+@pytest.mark.parametrize("name", [*WORLDS, *VARIANTS])
 def test_the_person_walks_on_the_floor(name, worlds):
     world = worlds[name]
     walk = plan_walk(world, seconds=60.0, rng=np.random.default_rng(4))
