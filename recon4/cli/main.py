@@ -115,21 +115,40 @@ def process(
 
 @app.command()
 def simulate(
-    world: Annotated[str, typer.Argument(help="office, staircase, street, field or corridor.")],
+    world: Annotated[str, typer.Argument(help="As office or corridor:7, see docs/simulation.md.")],
     out: Annotated[Path, typer.Argument(help="New folder for the recording and its truth.")],
     *,
     seconds: Annotated[float, typer.Option(help="Length of the walk in seconds.")] = 60.0,
     seed: Annotated[int, typer.Option(help="Draws the walk and the noise.")] = 1,
     rig: Annotated[str, typer.Option(help="Rig preset or .toml file.")] = "4recon",
     bag: Annotated[bool, typer.Option(help="Also write a rosbag2.")] = True,
+    degrade: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME[=VALUE]",
+            help="An error that the rig file does not know, as extrinsics=1.4; repeatable. "
+            "All are in docs/simulation.md.",
+        ),
+    ] = None,
 ) -> None:
     """Simulate a walk: packets, IMU, GNSS, and the truth they can be judged by."""
     from recon4.model.rig import load_rig
+    from recon4.simulation.degradation import parse_degradations
     from recon4.simulation.simulate import simulate as run
     from recon4.terminal import watcher
 
+    degradations = parse_degradations(degrade or [])
     with watcher() as progress:
-        run(world, out, seconds=seconds, seed=seed, rig=load_rig(rig), bag=bag, progress=progress)
+        run(
+            world,
+            out,
+            seconds=seconds,
+            seed=seed,
+            rig=load_rig(rig),
+            bag=bag,
+            degradations=degradations,
+            progress=progress,
+        )
     write(f"{out}")
 
 

@@ -15,6 +15,7 @@ from recon4.recording.velodyne.encode import (
     rmc_sentence,
 )
 from recon4.recording.velodyne.models import BLOCKS, CHANNELS
+from recon4.simulation.degradation import Degradation
 from recon4.simulation.gnss import geodetic
 from recon4.simulation.lidar import Firings
 from recon4.simulation.setup import SimulationSetup
@@ -38,14 +39,20 @@ class Packets:
 
 
 def pack(
-    firings: Firings, row: int, setup: SimulationSetup, *, rng: np.random.Generator
+    firings: Firings,
+    row: int,
+    setup: SimulationSetup,
+    degradation: Degradation,
+    *,
+    rng: np.random.Generator,
 ) -> Packets:
     """Data packets, which arrive a tenth of a millisecond after their last shot."""
     sensor_epoch_ns = setup.epoch_ns - round(1e9 * setup.rig.sensors[row].time_offset_s)
     count = len(firings.t_ns)
     azimuth = firings.azimuth_rad[:, ::2, 0]
+    t_ns = degradation.stamps(row, firings.t_ns[:, 0, 0], sensors=len(setup.lidars))
     payloads = encode_vlp16(
-        (sensor_epoch_ns + firings.t_ns[:, 0, 0]) // 1000,
+        (sensor_epoch_ns + t_ns) // 1000,
         np.rint(np.rad2deg(azimuth) * 100.0).astype(np.int64),
         firings.distance.reshape(count, BLOCKS, CHANNELS),
         intensity=firings.intensity.reshape(count, BLOCKS, CHANNELS),

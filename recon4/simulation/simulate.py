@@ -2,35 +2,22 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
-from dataclasses import asdict, fields
 from pathlib import Path
-from typing import TypeVar
 
 import numpy as np
 
 from recon4.errors import StoreError
-from recon4.geometry.mesh import write_ply
-from recon4.model.rig import Rig, format_rig
-from recon4.model.samples import GnssSamples, ImuSamples
+from recon4.model.rig import Rig
 from recon4.progress import Progress
-from recon4.recording.formats.poses import write_tum
-from recon4.recording.velodyne.encode import PcapWriter
-from recon4.simulation.bag import BagWriter, open_bag
-from recon4.simulation.csv_tables import write_gnss, write_imu, write_markers
-from recon4.simulation.gnss import simulate_gnss
-from recon4.simulation.imu import simulate_imu
+from recon4.simulation.degradation import Degradation
 from recon4.simulation.lidar import Firings
-from recon4.simulation.packets import pack, write_packets, write_positions
-from recon4.simulation.reflectivity import ReflectivityWriter
+from recon4.simulation.recorder import Recorder
 from recon4.simulation.setup import EPOCH_NS, Models, SimulationSetup, prepare
-from recon4.simulation.truth import true_trajectory
 from recon4.store.atomic import atomic_folder
 
 _SECOND_NS = 1_000_000_000
-Samples = TypeVar("Samples", ImuSamples, GnssSamples)
 
 
 def simulate(  # noqa: PLR0913 - every part of a recording can be chosen
@@ -44,6 +31,7 @@ def simulate(  # noqa: PLR0913 - every part of a recording can be chosen
     models: Models | None = None,
     bag: bool = True,
     epoch_ns: int = EPOCH_NS,
+    degradations: Mapping[str, float] | None = None,
 ) -> None:
     """Write a recording and its truth to a new folder (see ``docs/simulation.md``).
 
@@ -57,72 +45,54 @@ def simulate(  # noqa: PLR0913 - every part of a recording can be chosen
         models: Errors of the sensors; None = those of the real ones.
         bag: Also write the rosbag2, which doubles the size.
         epoch_ns: UTC of the start [ns].
+        degradations: Errors that the rig file does not know, see
+            `recon4.simulation.degradation.KINDS`; None = none.
 
     Raises:
-        ConfigError: If the world, the duration or the rig cannot be simulated.
+        ConfigError: If the world, the duration, the rig or a degradation cannot be simulated.
         StoreError: If the folder exists with something in it or cannot be written.
     """
-    _check_empty(out)
     setup = prepare(world, seconds=seconds, seed=seed, rig=rig, models=models, epoch_ns=epoch_ns)
-    with atomic_folder(out) as folder:
-        with _Recorder(folder, setup, bag=bag) as recorder:
-            progress.start("simulate", int(np.ceil(seconds)), "s")
-            for second, parts in enumerate(_seconds(setup)):
-                recorder.write(second, parts)
-                progress.advance()
-        _write_truth(folder, setup)
+    record(setup, {out: degradations or {}}, bag=bag, progress=progress)
 
 
-class _Recorder:
-    """Everything a recording computer would have written, second by second."""
+def record(
+    setup: SimulationSetup,
+    folders: Mapping[Path, Mapping[str, float]],
+    *,
+    bag: bool,
+    progress: Progress,
+) -> None:
+    """Write recordings of one walk that differ in their degradations; rays are cast once.
 
-    def __init__(self, folder: Path, setup: SimulationSetup, *, bag: bool) -> None:
-        self._setup = setup
-        self._imu = simulate_imu(
-            setup.walk,
-            setup.rig,
-            setup.models.imu,
-            epoch_ns=setup.epoch_ns,
-            rng=setup.rng(2),
-        )
-        self._gnss = _receive(setup)
-        write_imu(folder / "imu.csv", self._imu)
-        if self._gnss is not None:
-            write_gnss(folder / "gnss.csv", self._gnss)
-        (folder / "rig.toml").write_text(format_rig(setup.rig), "utf-8")
-        self._open = ExitStack()
-        self._pcap = self._open.enter_context(PcapWriter(folder / "recording.pcap"))
-        self._reflectivity = self._open.enter_context(
-            ReflectivityWriter(folder / "reflectivity.npz", len(setup.lidars))
-        )
-        self._bag: BagWriter | None = None
-        if bag:
-            self._bag = self._open.enter_context(open_bag(folder / "rosbag2", setup.rig))
+    Args:
+        setup: The walk and the rig.
+        folders: Degradations by the folder to make, which must not exist, or be empty.
+        bag: Also write the rosbag2.
+        progress: Receives every simulated second.
 
-    def __enter__(self) -> _Recorder:
-        return self
-
-    def __exit__(self, *error: object) -> None:
-        self._open.__exit__(*error)  # type: ignore[arg-type]
-
-    def write(self, second: int, parts: list[Firings]) -> None:
-        """Append one second of all sensors."""
-        setup = self._setup
-        packets = [
-            pack(firings, row, setup, rng=setup.rng(4, row, second))
-            for row, firings in enumerate(parts)
+    Raises:
+        ConfigError: If a degradation cannot be simulated.
+        StoreError: If a folder exists with something in it or cannot be written.
+    """
+    degraded = {
+        folder: Degradation.drawn(values, sensors=len(setup.lidars), seed=setup.seed)
+        for folder, values in folders.items()
+    }
+    for folder in folders:
+        _check_empty(folder)
+    with ExitStack() as opened:
+        recorders = [
+            opened.enter_context(
+                Recorder(opened.enter_context(atomic_folder(folder)), setup, degradation, bag=bag)
+            )
+            for folder, degradation in degraded.items()
         ]
-        write_positions(self._pcap, second, setup)
-        write_packets(self._pcap, packets, setup)
-        for row, firings in enumerate(parts):
-            self._reflectivity.append(row, firings.reflectivity)
-        if self._bag is not None:
-            for part in packets:
-                self._bag.packets(part.row, part.t_arrival_ns, part.payloads)
-            start_ns = setup.epoch_ns + second * _SECOND_NS
-            self._bag.imu(_during(self._imu, start_ns))
-            if self._gnss is not None:
-                self._bag.gnss(_during(self._gnss, start_ns))
+        progress.start("simulate", int(np.ceil(setup.walk.seconds)), "s")
+        for second, parts in enumerate(_seconds(setup)):
+            for recorder in recorders:
+                recorder.write(second, parts)
+            progress.advance()
 
 
 def _seconds(setup: SimulationSetup) -> Iterator[list[Firings]]:
@@ -137,58 +107,6 @@ def _seconds(setup: SimulationSetup) -> Iterator[list[Firings]]:
             rng = setup.rng(3, row, second)
             parts.append(lidar.fire(packets, setup.walk, setup.surroundings, rng))
         yield parts
-
-
-def _receive(setup: SimulationSetup) -> GnssSamples | None:
-    if not setup.world.outdoors:
-        return None
-    return simulate_gnss(
-        setup.walk,
-        setup.rig,
-        setup.models.gnss,
-        origin=setup.world.origin,
-        epoch_ns=setup.epoch_ns,
-        rng=setup.rng(5),
-    )
-
-
-def _during(samples: Samples, start_ns: int) -> Samples:
-    """Samples of the second that starts then."""
-    first, last = np.searchsorted(samples.t_ns, [start_ns, start_ns + _SECOND_NS])
-    columns = [getattr(samples, column.name)[first:last] for column in fields(samples)]
-    return type(samples)(*columns)
-
-
-def _write_truth(folder: Path, setup: SimulationSetup) -> None:
-    write_tum(folder / "truth.tum", true_trajectory(setup.walk, epoch_ns=setup.epoch_ns))
-    write_ply(folder / "model.ply", setup.world.mesh)
-    write_markers(folder / "markers.csv", setup.world)
-    text = json.dumps(_parameters(setup), indent=1, allow_nan=False)
-    (folder / "world.json").write_text(text + "\n", "utf-8")
-
-
-def _parameters(setup: SimulationSetup) -> dict[str, object]:
-    """All that was chosen or drawn, so that a result can be judged by it."""
-    return {
-        "world": setup.world.name,
-        "outdoors": setup.world.outdoors,
-        "origin": asdict(setup.world.origin),
-        "seconds": setup.walk.seconds,
-        "seed": setup.seed,
-        "epoch_ns": setup.epoch_ns,
-        "rig": setup.rig.name,
-        "models": asdict(setup.models),
-        "lidars": [
-            {
-                "sensor": lidar.sensor.name,
-                "first_packet_ns": lidar.first_packet_ns,
-                "azimuth_rad": lidar.azimuth_rad,
-                "turn_rate_hz": lidar.turn_rate_hz,
-                "gain_by_laser": lidar.gain.tolist(),
-            }
-            for lidar in setup.lidars
-        ],
-    }
 
 
 def _check_empty(out: Path) -> None:

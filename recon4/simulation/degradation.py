@@ -1,0 +1,234 @@
+"""Errors of a recording that its rig file does not know: ``recon4 simulate --degrade``.
+
+Nothing here changes the walk or the rays. A degradation changes what is written: what the rig file
+says, the clocks of the stamps, the samples of the IMU, which shots and packets there are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import ConfigError
+from recon4.geometry.se3 import SE3, Array
+from recon4.model.rig import Rig
+from recon4.model.samples import STANDARD_GRAVITY_M_S2, GnssSamples, ImuSamples
+from recon4.model.trajectory import Times
+from recon4.simulation.imu import ImuModel
+from recon4.simulation.lidar import LASERS, RESOLUTION_M, Firings
+
+_BURST_PACKETS = 6
+"""Packets are lost in runs of this length on average."""
+_SWITCH = 1.0
+"""Value of a degradation that is there or not."""
+
+
+@dataclass(frozen=True, slots=True)
+class DegradationKind:
+    """What one degradation means."""
+
+    usual: float
+    """Value without ``=VALUE``."""
+    largest: float
+    unit: str
+    text: str
+
+
+KINDS: Mapping[str, DegradationKind] = {
+    "extrinsics": DegradationKind(1.4, 180, "°", "the last LiDAR is rotated against the rig file"),
+    "mount-shift": DegradationKind(0.05, 5, "m", "the last LiDAR is not where the rig file says"),
+    "swap-lidars": DegradationKind(_SWITCH, 1, "", "the mounts of two LiDARs are exchanged"),
+    "wrong-model": DegradationKind(_SWITCH, 1, "", "the rig file calls the last LiDAR an HDL-32E"),
+    "lidar-clock": DegradationKind(0.02, 100, "s", "the clock of the last LiDAR is ahead"),
+    "lidar-drift": DegradationKind(300, 1e5, "ppm", "the clock of the last LiDAR is too fast"),
+    "imu-clock": DegradationKind(0.02, 100, "s", "the clock of the IMU is ahead"),
+    "imu-drift": DegradationKind(300, 1e5, "ppm", "the clock of the IMU is too fast"),
+    "gnss-clock": DegradationKind(0.1, 100, "s", "the clock of the receiver is ahead"),
+    "imu-rotation": DegradationKind(1.5, 180, "°", "the IMU is rotated against the rig file"),
+    "imu-axes": DegradationKind(_SWITCH, 1, "", "x and y of the IMU are exchanged, z is turned"),
+    "imu-grade": DegradationKind(5, 1e4, "", "noise and biases of the IMU are larger by this"),
+    "imu-scale": DegradationKind(0.03, 10, "", "ratio by which the IMU measures too much"),
+    "imu-unit": DegradationKind(_SWITCH, 1, "", "accelerations are in g in place of m/s²"),
+    "no-imu": DegradationKind(_SWITCH, 1, "", "no IMU was recorded"),
+    "no-gnss": DegradationKind(_SWITCH, 1, "", "no GNSS was recorded"),
+    "lever-arm": DegradationKind(0.15, 10, "m", "the antenna is not where the rig file says"),
+    "dead-beams": DegradationKind(6, LASERS, "", "number of lasers that return nothing"),
+    "beam-bias": DegradationKind(0.03, 1, "m", "standard deviation of a range bias of each laser"),
+    "packet-loss": DegradationKind(0.25, 0.95, "", "ratio of packets lost, in runs"),
+}
+
+
+def parse_degradations(words: Sequence[str]) -> dict[str, float]:
+    """Read ``NAME`` or ``NAME=VALUE``; without a value the usual one.
+
+    Raises:
+        ConfigError: If there is no such degradation, or the value is no number in its range.
+    """
+    found = {}
+    for word in words:
+        name, equals, text = word.partition("=")
+        if name not in KINDS:
+            raise ConfigError(f"no degradation named {name!r:.80}; there are: {', '.join(KINDS)}")
+        try:
+            value = float(text) if equals else KINDS[name].usual
+        except ValueError:
+            raise ConfigError(f"{name}: expected a number, got {text!r:.80}") from None
+        found[name] = value
+    check_degradations(found)
+    return found
+
+
+def check_degradations(values: Mapping[str, float]) -> None:
+    """Check names and values.
+
+    Raises:
+        ConfigError: Naming the degradation, the expected and the found value.
+    """
+    for name, value in values.items():
+        if name not in KINDS:
+            raise ConfigError(f"no degradation named {name!r:.80}; there are: {', '.join(KINDS)}")
+        if not 0.0 < value <= KINDS[name].largest:
+            largest = KINDS[name].largest
+            raise ConfigError(f"{name}: expected more than 0 and at most {largest}, got {value}")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Degradation:
+    """The degradations of one recording, with everything that is drawn at random."""
+
+    values: Mapping[str, float]
+    """Of `KINDS`; empty = a recording as it should be."""
+    axis_lidar: Array
+    """Unit vector of the rotation and shift of the last LiDAR, in the body, (3,)."""
+    axis_imu: Array
+    """Unit vector of the rotation of the IMU, in the body, (3,)."""
+    direction_antenna: Array
+    """Unit vector of the shift of the antenna, in the body, (3,)."""
+    dead: NDArray[np.int64]
+    """Lasers that return nothing, in the order of firing, (sensors, K)."""
+    bias_m: Array
+    """Range bias of each laser in the order of firing [m], (sensors, 16)."""
+    seed: int
+
+    @staticmethod
+    def drawn(values: Mapping[str, float], *, sensors: int, seed: int) -> Degradation:
+        """Draw what is random in some degradations.
+
+        Raises:
+            ConfigError: If a name or a value is not allowed.
+        """
+        check_degradations(values)
+        rng = np.random.default_rng([seed, 7])
+        axes = rng.standard_normal((3, 3))
+        axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+        count = int(values.get("dead-beams", 0))
+        dead = np.stack([np.sort(rng.permutation(LASERS)[:count]) for _ in range(sensors)])
+        bias = values.get("beam-bias", 0.0) * rng.standard_normal((sensors, LASERS))
+        return Degradation(dict(values), axes[0], axes[1], axes[2], dead, bias, seed)
+
+    def rig_file(self, true: Rig) -> Rig:
+        """What the rig file says of a rig."""
+        sensors = list(true.sensors)
+        last = sensors[-1]
+        turned = _turned(last.T_body_sensor, self.axis_lidar, self._get("extrinsics"))
+        shifted = SE3(turned.R, turned.t + self._get("mount-shift") * self.axis_lidar)
+        model = "HDL-32E" if "wrong-model" in self.values else last.model
+        sensors[-1] = replace(last, T_body_sensor=shifted, model=model)
+        if "swap-lidars" in self.values and len(sensors) > 1:
+            first, second = (sensor.T_body_sensor for sensor in sensors[:2])
+            sensors[0] = replace(sensors[0], T_body_sensor=second)
+            sensors[1] = replace(sensors[1], T_body_sensor=first)
+        antenna = true.p_body_antenna + self._get("lever-arm") * self.direction_antenna
+        T_body_imu = _turned(true.T_body_imu, self.axis_imu, self._get("imu-rotation"))
+        return replace(true, sensors=tuple(sensors), T_body_imu=T_body_imu, p_body_antenna=antenna)
+
+    def imu_model(self, model: ImuModel) -> ImuModel:
+        """Errors of the IMU that was really mounted."""
+        grade = self.values.get("imu-grade", 1.0)
+        return ImuModel(**{f.name: grade * getattr(model, f.name) for f in fields(model)})
+
+    def imu(self, samples: ImuSamples) -> ImuSamples:
+        """Samples as they are written."""
+        scale = 1.0 + self._get("imu-scale")
+        unit = 1.0 / STANDARD_GRAVITY_M_S2 if "imu-unit" in self.values else 1.0
+        gyro, accel = scale * samples.gyro_rad_s, scale * unit * samples.accel_m_s2
+        if "imu-axes" in self.values:  # a rotation, so the axes stay right-handed
+            gyro, accel = (v[:, [1, 0, 2]] * [1.0, 1.0, -1.0] for v in (gyro, accel))
+        t_ns = self._stamps("imu", samples.t_ns, samples.t_ns[0])
+        return ImuSamples(t_ns, gyro, accel)
+
+    def gnss(self, samples: GnssSamples) -> GnssSamples:
+        """Positions as they are written."""
+        return replace(samples, t_ns=self._stamps("gnss", samples.t_ns, samples.t_ns[0]))
+
+    def stamps(self, row: int, t_ns: Times, *, sensors: int) -> Times:
+        """Times since the start of the walk by the clock of a LiDAR [ns], (N,)."""
+        return self._stamps("lidar", t_ns, 0) if row == sensors - 1 else t_ns
+
+    def shots(self, shots: Firings, row: int, second: int) -> Firings:
+        """Shots of one sensor in one second that are recorded."""
+        distance, truth = shots.distance.copy(), shots.reflectivity.copy()
+        distance[..., self.dead[row]] = 0
+        truth[..., self.dead[row]] = 0
+        units = np.rint(self.bias_m[row] / RESOLUTION_M).astype(np.int64)
+        biased = np.clip(distance + units, 1, 65535)
+        distance = np.where(distance > 0, biased, 0).astype(np.uint16)
+        kept = self._kept(len(distance), row, second)
+        return Firings(
+            shots.t_ns[kept],
+            shots.azimuth_rad[kept],
+            distance[kept],
+            shots.intensity[kept],
+            truth[kept],
+        )
+
+    def to_json(self) -> dict[str, object]:
+        """What was degraded, with all that was drawn, for ``world.json``."""
+        return {
+            name: {"value": value, "unit": KINDS[name].unit, "text": KINDS[name].text}
+            | self._drawn(name)
+            for name, value in self.values.items()
+        }
+
+    def _drawn(self, name: str) -> dict[str, object]:
+        drawn = {
+            "extrinsics": {"axis_body": self.axis_lidar.tolist()},
+            "mount-shift": {"direction_body": self.axis_lidar.tolist()},
+            "imu-rotation": {"axis_body": self.axis_imu.tolist()},
+            "lever-arm": {"direction_body": self.direction_antenna.tolist()},
+            "dead-beams": {"lasers_by_sensor": self.dead.tolist()},
+            "beam-bias": {"bias_m_by_sensor": self.bias_m.tolist()},
+        }
+        return drawn.get(name, {})
+
+    def _get(self, name: str) -> float:
+        return self.values.get(name, 0.0)
+
+    def _stamps(self, clock: str, t_ns: Times, start_ns: int) -> Times:
+        ahead_ns = round(1e9 * self._get(f"{clock}-clock"))
+        drift = 1e-6 * self._get(f"{clock}-drift")
+        return t_ns + ahead_ns + np.rint(drift * (t_ns - start_ns)).astype(np.int64)
+
+    def _kept(self, count: int, row: int, second: int) -> NDArray[np.bool_]:
+        """Packets that arrive: a chain of two states, lost and not lost, (N,) bool."""
+        ratio = self._get("packet-loss")
+        if not ratio:
+            return np.ones(count, dtype=bool)
+        rng = np.random.default_rng([self.seed, 8, row, second])
+        back = 1.0 / _BURST_PACKETS
+        away = back * ratio / (1.0 - ratio)
+        lost = np.empty(count, dtype=bool)
+        state = bool(rng.random() < ratio)
+        for k, draw in enumerate(rng.random(count)):
+            state = draw > back if state else draw < away
+            lost[k] = state
+        return ~lost
+
+
+def _turned(T_body_x: SE3, axis_body: Array, angle_deg: float) -> SE3:
+    """A mount turned about its own origin."""
+    turn = SE3.exp(np.concatenate([np.deg2rad(angle_deg) * axis_body, np.zeros(3)]))
+    return SE3(turn.R @ T_body_x.R, T_body_x.t)

@@ -1,0 +1,148 @@
+"""Everything a recording computer would have written, second by second, and the truth."""
+
+from __future__ import annotations
+
+import json
+from contextlib import ExitStack
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+
+from recon4.geometry.mesh import write_ply
+from recon4.model.rig import format_rig
+from recon4.model.samples import GnssSamples, ImuSamples
+from recon4.recording.formats.poses import write_tum
+from recon4.recording.velodyne.encode import PcapWriter
+from recon4.simulation.bag import BagWriter, open_bag
+from recon4.simulation.csv_tables import write_gnss, write_imu, write_markers
+from recon4.simulation.degradation import Degradation
+from recon4.simulation.gnss import simulate_gnss
+from recon4.simulation.imu import simulate_imu
+from recon4.simulation.lidar import Firings
+from recon4.simulation.packets import pack, write_packets, write_positions
+from recon4.simulation.reflectivity import ReflectivityWriter
+from recon4.simulation.setup import SimulationSetup
+from recon4.simulation.truth import true_trajectory
+
+_SECOND_NS = 1_000_000_000
+Samples = TypeVar("Samples", ImuSamples, GnssSamples)
+
+
+class Recorder:
+    """Writes one recording; the truth is written when it is closed without an error."""
+
+    def __init__(
+        self, folder: Path, setup: SimulationSetup, degradation: Degradation, *, bag: bool
+    ) -> None:
+        self._folder, self._setup, self._degradation = folder, setup, degradation
+        self._imu, self._gnss = _sense(setup, degradation), _receive(setup, degradation)
+        if self._imu is not None:
+            write_imu(folder / "imu.csv", self._imu)
+        if self._gnss is not None:
+            write_gnss(folder / "gnss.csv", self._gnss)
+        (folder / "rig.toml").write_text(format_rig(degradation.rig_file(setup.rig)), "utf-8")
+        self._open = ExitStack()
+        self._pcap = self._open.enter_context(PcapWriter(folder / "recording.pcap"))
+        self._reflectivity = self._open.enter_context(
+            ReflectivityWriter(folder / "reflectivity.npz", len(setup.lidars))
+        )
+        self._bag: BagWriter | None = None
+        if bag:
+            self._bag = self._open.enter_context(open_bag(folder / "rosbag2", setup.rig))
+
+    def __enter__(self) -> Recorder:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
+        self._open.__exit__(kind, *error)  # type: ignore[arg-type]
+        if kind is None:
+            self._write_truth()
+
+    def write(self, second: int, parts: list[Firings]) -> None:
+        """Append one second of all sensors."""
+        setup, degradation = self._setup, self._degradation
+        if degradation.values:
+            parts = [degradation.shots(part, row, second) for row, part in enumerate(parts)]
+        packets = [
+            pack(firings, row, setup, degradation, rng=setup.rng(4, row, second))
+            for row, firings in enumerate(parts)
+        ]
+        write_positions(self._pcap, second, setup)
+        write_packets(self._pcap, packets, setup)
+        for row, firings in enumerate(parts):
+            self._reflectivity.append(row, firings.reflectivity)
+        if self._bag is not None:
+            for part in packets:
+                self._bag.packets(part.row, part.t_arrival_ns, part.payloads)
+            start_ns = setup.epoch_ns + second * _SECOND_NS
+            if self._imu is not None:
+                self._bag.imu(_during(self._imu, start_ns))
+            if self._gnss is not None:
+                self._bag.gnss(_during(self._gnss, start_ns))
+
+    def _write_truth(self) -> None:
+        folder, setup = self._folder, self._setup
+        write_tum(folder / "truth.tum", true_trajectory(setup.walk, epoch_ns=setup.epoch_ns))
+        write_ply(folder / "model.ply", setup.world.mesh)
+        write_markers(folder / "markers.csv", setup.world)
+        if self._degradation.values:
+            (folder / "rig_true.toml").write_text(format_rig(setup.rig), "utf-8")
+        parameters = _parameters(setup) | {"degradations": self._degradation.to_json()}
+        text = json.dumps(parameters, indent=1, allow_nan=False)
+        (folder / "world.json").write_text(text + "\n", "utf-8")
+
+
+def _sense(setup: SimulationSetup, degradation: Degradation) -> ImuSamples | None:
+    if "no-imu" in degradation.values:
+        return None
+    model = degradation.imu_model(setup.models.imu)
+    rng = setup.rng(2)
+    samples = simulate_imu(setup.walk, setup.rig, model, epoch_ns=setup.epoch_ns, rng=rng)
+    return degradation.imu(samples)
+
+
+def _receive(setup: SimulationSetup, degradation: Degradation) -> GnssSamples | None:
+    if not setup.world.outdoors or "no-gnss" in degradation.values:
+        return None
+    samples = simulate_gnss(
+        setup.walk,
+        setup.rig,
+        setup.models.gnss,
+        origin=setup.world.origin,
+        epoch_ns=setup.epoch_ns,
+        rng=setup.rng(5),
+    )
+    return degradation.gnss(samples)
+
+
+def _during(samples: Samples, start_ns: int) -> Samples:
+    """Samples of the second that starts then."""
+    first, last = np.searchsorted(samples.t_ns, [start_ns, start_ns + _SECOND_NS])
+    columns = [getattr(samples, column.name)[first:last] for column in fields(samples)]
+    return type(samples)(*columns)
+
+
+def _parameters(setup: SimulationSetup) -> dict[str, object]:
+    """All that was chosen or drawn, so that a result can be judged by it."""
+    return {
+        "world": setup.world.name,
+        "outdoors": setup.world.outdoors,
+        "origin": asdict(setup.world.origin),
+        "seconds": setup.walk.seconds,
+        "seed": setup.seed,
+        "epoch_ns": setup.epoch_ns,
+        "rig": setup.rig.name,
+        "models": asdict(setup.models),
+        "lidars": [
+            {
+                "sensor": lidar.sensor.name,
+                "first_packet_ns": lidar.first_packet_ns,
+                "azimuth_rad": lidar.azimuth_rad,
+                "turn_rate_hz": lidar.turn_rate_hz,
+                "gain_by_laser": lidar.gain.tolist(),
+            }
+            for lidar in setup.lidars
+        ],
+    }
