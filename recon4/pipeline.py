@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -133,12 +133,25 @@ def run_stages(
     decided: Decided = NOTHING_DECIDED,
 ) -> None:
     """Every stage in order; each is skipped when its artifact is there."""
+    inputs = {"recordings": recordings, "rig": rig, "imu": imu, "gnss": gnss}
+    frames, odometry, graph = run_before_review(runner, inputs)
+    run_from_review(runner, frames=frames, odometry=odometry, graph=graph, decided=decided)
+
+
+def run_before_review(
+    runner: StageRunner, inputs: Mapping[str, Input | None]
+) -> tuple[Artifact, Artifact, Artifact]:
+    """The stages that decisions of people do not change: multiframes, odometry, verified graph.
+
+    Args:
+        runner: Runs them.
+        inputs: ``recordings``, ``rig``, ``imu`` and ``gnss``; None = there is none.
+    """
     run = runner.run
-    frames = run(stages.FRAMES, recordings=recordings, rig=rig, imu=imu, gnss=gnss)
+    frames = run(stages.FRAMES, **inputs)
     odometry = run(stages.ODOMETRY, frames=frames)
     searched = run(stages.GRAPH, frames=frames, odometry=odometry)
-    graph = run(stages.VERIFICATION, graph=searched)
-    run_from_review(runner, frames=frames, odometry=odometry, graph=graph, decided=decided)
+    return frames, odometry, run(stages.VERIFICATION, graph=searched)
 
 
 def run_from_review(
@@ -155,7 +168,14 @@ def run_from_review(
         graph = run(stages.REVIEW, graph=graph, decisions=decisions)
     else:
         runner.skip(stages.REVIEW)
-    refined = run(stages.REFINE, frames=frames, odometry=odometry, graph=graph)
-    level = run(stages.LEVEL, frames=frames, refined=refined, graph=graph)
+    level = run_trajectory(runner, frames=frames, odometry=odometry, graph=graph)
     intensity = run(stages.INTENSITY, frames=frames, level=level)
     run(stages.MAP, frames=frames, level=level, intensity=intensity)
+
+
+def run_trajectory(
+    runner: StageRunner, *, frames: Artifact, odometry: Artifact, graph: Artifact
+) -> Artifact:
+    """From the graph to the final trajectory: refined, leveled, georeferenced."""
+    refined = runner.run(stages.REFINE, frames=frames, odometry=odometry, graph=graph)
+    return runner.run(stages.LEVEL, frames=frames, refined=refined, graph=graph)

@@ -173,7 +173,7 @@ def _publish(
     (root / SUMMARY).unlink(missing_ok=True)
     created = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
     trajectory = load_trajectory(runs["level"].artifact.folder / "trajectory.npz")
-    facts = _facts(runs, about, created=created)
+    facts = report_facts(runs, about, created=created)
     for write in track(_writers(root, runs, facts), progress, what="results", unit="files"):
         write()
     approval, warning = _put_back(root, {name: run.artifact.key for name, run in runs.items()})
@@ -321,7 +321,8 @@ def _write_g2o(artifact: Path, path: Path) -> None:
         write_g2o(temporary, load_graph(artifact))
 
 
-def _facts(runs: Mapping[str, StageRun[Any]], about: About, *, created: str) -> ReportFacts:
+def report_facts(runs: Mapping[str, StageRun[Any]], about: About, *, created: str) -> ReportFacts:
+    """What the report and the verdict are made of; the stages up to ``level`` are enough."""
     return ReportFacts(
         title=about.project["name"],
         created=created,

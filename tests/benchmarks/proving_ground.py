@@ -1,0 +1,322 @@
+"""The proving ground: walks through many worlds with errors the rig file does not know.
+
+    python -m tests.benchmarks.proving_ground OUT [--walks W,…] [--degradations D,…] [--seconds S]
+    python -m tests.benchmarks.proving_ground OUT --table
+
+Every walk is simulated once and written with every degradation. Each recording goes through the
+stages up to the final trajectory and the verdict; no map is made. Each run is one line of
+``OUT/runs.jsonl``; runs that are there are not repeated, so a stopped table continues. The table
+is ``OUT/table.md``. What the classes mean is in `Judgment.of` and in ``docs/trust.md``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shutil
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from recon4.errors import Recon4Error
+from recon4.evaluation.ate import absolute_error, pair_poses
+from recon4.geometry.se3 import Array
+from recon4.georeference.crs import GeodeticOrigin, to_enu, to_geodetic
+from recon4.georeference.stage import read_crs
+from recon4.model.rig import Rig, format_rig, load_rig
+from recon4.model.trajectory import Trajectory
+from recon4.model.usability import Usability
+from recon4.pipeline import run_before_review, run_trajectory
+from recon4.progress import Silent
+from recon4.recording.formats.poses import read_tum
+from recon4.report.verdict import MapVerdict, assess
+from recon4.results import About, report_facts
+from recon4.settings import preset
+from recon4.simulation.degradation import parse_degradations
+from recon4.simulation.setup import prepare
+from recon4.simulation.simulate import record
+from recon4.simulation.world import BRNO
+from recon4.store.arrays import load_arrays, load_trajectory
+from recon4.store.hashing import hash_json
+from recon4.store.project import Project
+from recon4.store.stage import Input, StageRun, StageRunner
+
+WALKS = (
+    "corridor/1", "corridor:1/2", "corridor:2/3", "corridor:3/4", "tunnel/1", "tunnel:1/2",
+    "garage/1", "garage:1/2", "plaza/1", "plaza:3/2", "storeys/1", "storeys:1/2",
+    "office/1", "office/2", "staircase/1", "street/1", "field/1", "field/2",
+)  # fmt: skip
+"""World with its variant, and the seed of walk and noise."""
+DEGRADATIONS = (
+    "none", "extrinsics", "imu-rotation", "imu-clock", "lidar-clock", "imu-grade", "imu-unit",
+    "imu-axes", "swap-lidars", "wrong-model", "dead-beams", "packet-loss", "beam-bias", "lever-arm",
+)  # fmt: skip
+ONLY_OUTDOORS = {"lever-arm", "gnss-clock", "no-gnss"}
+BASE_M, PER_METER = 0.05, 0.001
+"""A right trajectory has at most this error: 5 cm and 0.1 % of the path length [m]."""
+GROSS = 3.0
+"""No pose of a right trajectory is farther off than this multiple of it."""
+PLACED_M = 0.10
+"""A georeferenced trajectory has at most this error on the earth [m]."""
+_REASON_LENGTH = 160
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Errors:
+    """Errors of one run against the truth."""
+
+    length_m: float
+    """True path length."""
+    ate_m: float
+    """RMSE of the positions of the final trajectory after the best rigid alignment."""
+    largest_m: float
+    """Largest of these errors."""
+    closing_m: float
+    """Error of the odometry's motion from the first to the last pose."""
+    stated_m: float
+    """Stated 2 sigma of that motion."""
+    placed_m: float | None
+    """RMSE on the earth without any alignment; None = not georeferenced."""
+
+    @property
+    def right(self) -> bool:
+        """Whether the trajectory is right, whatever the program says of it."""
+        limit = BASE_M + PER_METER * self.length_m
+        placed = self.placed_m is None or self.placed_m <= PLACED_M
+        return self.ate_m <= limit and self.largest_m <= GROSS * limit and placed
+
+
+def judge(errors: Errors | None, verdict: MapVerdict) -> str:
+    """The class of a run.
+
+    ``right``: the trajectory is right. ``announced``: it is wrong or there is none, and the
+    verdict is *check* or *do not use* with at least one reason. ``SILENT``: it is wrong and the
+    verdict is *good*.
+    """
+    if errors is not None and errors.right:
+        return "right"
+    announced = verdict.usability is not Usability.GOOD and len(verdict.reasons) > 0
+    return "announced" if announced else "SILENT"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Run:
+    """One line of ``runs.jsonl``."""
+
+    walk: str
+    degradation: str
+    seconds: float
+    errors: Errors | None
+    """None = the program refused the recording."""
+    lost: int
+    multiframes: int
+    warnings: int
+    verdict: str
+    reasons: tuple[str, ...]
+    outcome: str
+    """As `judge` names it."""
+    cpu_s: float
+    """Processor time of the stages [s]."""
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain JSON values."""
+        return asdict(self)
+
+
+def prove(recording: Path, work: Path, *, walk: str, degradation: str) -> Run:
+    """Map a simulated recording up to its trajectory and verdict, and judge both.
+
+    Args:
+        recording: Folder of ``recon4 simulate``.
+        work: Folder to make a project in.
+        walk: Name of the walk.
+        degradation: Name of the degradation.
+    """
+    begun = time.process_time()
+    truth = read_tum(recording / "truth.tum")
+    seconds = round((truth.t_ns[-1] - truth.t_ns[0]) / 1e9, 3)
+    errors, lost, multiframes, warnings = None, 0, 0, 0
+    try:
+        runs, verdict = _process(recording, work)
+        errors = measure(runs, truth)
+        frames, odometry = runs["frames"].figures, runs["odometry"].figures
+        lost, multiframes = odometry.lost, frames.multiframes
+        warnings = len(frames.warnings) + len(odometry.warnings)
+    except Recon4Error as error:
+        verdict = MapVerdict(Usability.DO_NOT_USE, (f"refused: {error}",))
+    return Run(
+        walk=walk,
+        degradation=degradation,
+        seconds=seconds,
+        errors=errors,
+        lost=lost,
+        multiframes=multiframes,
+        warnings=warnings,
+        verdict=str(verdict.usability),
+        reasons=verdict.reasons,
+        outcome=judge(errors, verdict),
+        cpu_s=round(time.process_time() - begun, 1),
+    )
+
+
+def _process(recording: Path, work: Path) -> tuple[Mapping[str, StageRun[Any]], MapVerdict]:
+    """The stages up to the trajectory, and the verdict on what they leave."""
+    outdoors = json.loads((recording / "world.json").read_text("utf-8"))["outdoors"]
+    name = "outdoor" if outdoors else "indoor"
+    settings, rig = preset(name), load_rig(recording / "rig.toml")
+    with Project.open(work) as project:
+        project.describe(preset=name, rig=rig.name, inputs=[])
+        runner = StageRunner(project, settings, Silent())
+        frames, odometry, graph = run_before_review(runner, _inputs(recording, rig))
+        run_trajectory(runner, frames=frames, odometry=odometry, graph=graph)
+        about = About({"name": recording.name, "preset": name, "inputs": []}, settings)
+        return runner.runs, assess(report_facts(runner.runs, about, created=""))
+
+
+def _inputs(recording: Path, rig: Rig) -> dict[str, Input | None]:
+    """A project is used for one recording only, so names are keys enough."""
+    samples = {name: recording / f"{name}.csv" for name in ("imu", "gnss")}
+    return {
+        "recordings": Input("recording", (recording / "recording.pcap",)),
+        "rig": Input(hash_json(format_rig(rig)), rig),
+    } | {n: Input(n, path) if path.exists() else None for n, path in samples.items()}
+
+
+def measure(runs: Mapping[str, StageRun[Any]], truth: Trajectory) -> Errors:
+    """Compare the trajectories of a run with the truth."""
+    level, odometry = runs["level"].artifact.folder, runs["odometry"].artifact.folder
+    final, raw = (load_trajectory(folder / "trajectory.npz") for folder in (level, odometry))
+    pairs = pair_poses(final, truth)
+    error = absolute_error(pairs).position_m
+    ends = pair_poses(raw, truth)
+    motion = ends.T_map_body[0].inverse() @ ends.T_map_body[-1]
+    true_motion = ends.T_true_body[0].inverse() @ ends.T_true_body[-1]
+    cov = load_arrays(odometry / "steps.npz", ["motion_cov"])["motion_cov"]
+    # Errors of consecutive multiframes are correlated: standard deviations add up.
+    sd_m = np.sqrt(np.trace(cov[1:, 3:, 3:], axis1=1, axis2=2))
+    placed = _on_earth(level, pairs.T_map_body.t)
+    return Errors(
+        length_m=_length_m(truth),
+        ate_m=error.rmse,
+        largest_m=error.maximum,
+        closing_m=float(np.linalg.norm((true_motion.inverse() @ motion).t)),
+        stated_m=2.0 * float(sd_m.sum()),
+        placed_m=None if placed is None else _rms(placed - pairs.T_true_body.t),
+    )
+
+
+def _on_earth(level: Path, p_map: Array) -> Array | None:
+    """Positions in the axes of the truth by the map's place on earth; None = it has none."""
+    crs = read_crs(level)
+    if crs is None:
+        return None
+    lat_rad, lon_rad = np.deg2rad([BRNO.lat_deg, BRNO.lon_deg]).tolist()
+    true = GeodeticOrigin(lat_rad, lon_rad, BRNO.height_m)
+    lat, lon, height_m = to_geodetic(crs.origin, p_map)
+    return to_enu(true, lat, lon, height_m=height_m)
+
+
+def _rms(difference: Array) -> float:
+    return float(np.sqrt((difference**2).sum(axis=1).mean()))
+
+
+def _length_m(truth: Trajectory) -> float:
+    """Path length in steps of half a second, without the sway of the body."""
+    places = truth.T_a_b.t[:: max(1, round(0.5e9 / np.diff(truth.t_ns).mean()))]
+    return float(np.linalg.norm(np.diff(places, axis=0), axis=1).sum())
+
+
+def applies(degradation: str, *, outdoors: bool) -> bool:
+    """Whether a degradation changes anything in a world."""
+    return outdoors or degradation not in ONLY_OUTDOORS
+
+
+def values_of(degradation: str) -> dict[str, float]:
+    """``none`` or degradations joined by ``+``, as ``--degrade`` reads them."""
+    return {} if degradation == "none" else parse_degradations(degradation.split("+"))
+
+
+def table(lines: Sequence[Mapping[str, Any]]) -> str:
+    """All runs as a table in Markdown, silent ones first, then a count of each class."""
+    order = {"SILENT": 0, "announced": 1, "right": 2}
+    rows = [
+        "| walk | degradation | length m | ATE cm | largest cm | closing cm | stated 2σ cm "
+        "| on earth cm | lost | warnings | verdict | class | first reason |",
+        "|---|---|" + "---:|" * 8 + "---|---|---|",
+    ]
+    for line in sorted(lines, key=lambda r: (order[r["outcome"]], r["walk"], r["degradation"])):
+        e = line["errors"] or {}
+        figures = [_number(e.get("length_m"), 1.0, 0)]
+        figures += [
+            _number(e.get(name), 100.0, 1)
+            for name in ("ate_m", "largest_m", "closing_m", "stated_m", "placed_m")
+        ]
+        reason = (line["reasons"] or [""])[0][:_REASON_LENGTH].replace("|", "/")
+        cells = [f"{line['walk']}, {line['seconds']:g} s", line["degradation"], *figures]
+        cells += [f"{line['lost']} of {line['multiframes']}", str(line["warnings"])]
+        rows.append("| " + " | ".join([*cells, line["verdict"], line["outcome"], reason]) + " |")
+    counts = {name: sum(line["outcome"] == name for line in lines) for name in order}
+    total = ", ".join(f"{count} {name}" for name, count in counts.items())
+    return "\n".join([*rows, "", f"{len(lines)} runs: {total}."]) + "\n"
+
+
+def _number(value: float | None, factor: float, digits: int) -> str:
+    return "-" if value is None else f"{factor * value:.{digits}f}"
+
+
+def read_lines(path: Path) -> list[dict[str, Any]]:
+    """Finished runs; a last line that was cut off is left out."""
+    if not path.exists():
+        return []
+    whole = path.read_text("utf-8").split("\n")[:-1]
+    return [json.loads(line) for line in whole]
+
+
+def run_walk(walk: str, degradations: Sequence[str], out: Path, *, seconds: float) -> Iterator[Run]:
+    """Simulate a walk with every degradation and prove each recording."""
+    world, seed = walk.split("/")
+    setup = prepare(world, seconds=seconds, seed=int(seed))
+    wanted = [d for d in degradations if applies(d, outdoors=setup.world.outdoors)]
+    work = out / "work"
+    shutil.rmtree(work, ignore_errors=True)
+    work.mkdir(parents=True)
+    folders = {work / f"recording{k}": values_of(d) for k, d in enumerate(wanted)}
+    record(setup, folders, bag=False, progress=Silent())
+    for k, degradation in enumerate(wanted):
+        project = work / f"project{k}"
+        yield prove(work / f"recording{k}", project, walk=walk, degradation=degradation)
+        shutil.rmtree(project)
+        shutil.rmtree(work / f"recording{k}")
+    shutil.rmtree(work)
+
+
+def main() -> None:
+    """Run what is missing and write the table."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("out", type=Path)
+    parser.add_argument("--walks", default=",".join(WALKS))
+    parser.add_argument("--degradations", default=",".join(DEGRADATIONS))
+    parser.add_argument("--seconds", type=float, default=20.0)
+    parser.add_argument("--table", action="store_true", help="only write the table")
+    a = parser.parse_args()
+    a.out.mkdir(parents=True, exist_ok=True)
+    path = a.out / "runs.jsonl"
+    for walk in [] if a.table else a.walks.split(","):
+        done = {(r["walk"], r["degradation"], r["seconds"]) for r in read_lines(path)}
+        missing = [d for d in a.degradations.split(",") if (walk, d, a.seconds) not in done]
+        for run in run_walk(walk, missing, a.out, seconds=a.seconds) if missing else ():
+            with path.open("a", encoding="utf-8") as file:
+                file.write(json.dumps(run.to_json()) + "\n")
+            ate = _number(run.errors.ate_m if run.errors else None, 100.0, 1)
+            print(f"{walk} {run.degradation}: ATE {ate} cm, {run.verdict}, {run.outcome}, "
+                  f"{run.cpu_s} s", flush=True)  # fmt: skip
+    (a.out / "table.md").write_text(table(read_lines(path)), "utf-8")
+    print(table(read_lines(path)))
+
+
+if __name__ == "__main__":
+    main()
