@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
@@ -35,17 +34,25 @@ from app.review.model import (
     SupersededEffect,
 )
 from app.review.store import terms_of
+from recon4.model.plain import finite_or_none
 from recon4.review.approval import NotApprovable, make_read_only
 from recon4.review.approval import approve as sign
 from recon4.review.approved import Approval, approval_of, latest_approval
 from recon4.review.decisions import Decided, Decision, DecisionKind, fold
 from recon4.review.journal import JournalChanged, NothingToUndo, Row, append, read_rows
-from recon4.review.pairs import align, fit_points, pair_facts, pair_points, trajectory_nodes
+from recon4.review.pairs import (
+    PairFacts,
+    TrajectoryNodes,
+    align,
+    fit_points,
+    pair_facts,
+    pair_points,
+    trajectory_nodes,
+)
 from recon4.review.preview import Effect
 from recon4.review.signature import ensure_key
 from recon4.review.source import Source, graph_key
 from recon4.review.state import artifact_keys, decisions_in_map, read_summary
-from recon4.store.atomic import null_for_nan
 from recon4.store.checked import Altered
 
 T = TypeVar("T")
@@ -94,19 +101,17 @@ async def read_queue(project_id: str, server: Server, caller: CalledBy) -> Respo
 
 
 @router.get("/walk", dependencies=LOOK, summary="Nodes along the trajectory")
-async def read_walk(project_id: str, server: Server, caller: CalledBy) -> dict[str, Any]:
+async def read_walk(project_id: str, server: Server, caller: CalledBy) -> TrajectoryNodes:
     """Nodes of the graph: multiframe, seconds since the start, position."""
-    return asdict(await _of_pairs(project_id, server, caller, trajectory_nodes))
+    return await _of_pairs(project_id, server, caller, trajectory_nodes)
 
 
 @router.get("/pair", dependencies=LOOK, summary="One pair")
 async def read_pair(
     project_id: str, server: Server, caller: CalledBy, *, frame_i: Frame, frame_j: Frame
-) -> dict[str, Any]:
+) -> PairFacts:
     """Poses of a pair, registered or not, and its alternative paths."""
-    facts = await _of_pairs(project_id, server, caller, pair_facts, (frame_i, frame_j))
-    record: dict[str, Any] = null_for_nan(asdict(facts))
-    return record
+    return await _of_pairs(project_id, server, caller, pair_facts, (frame_i, frame_j))
 
 
 @router.get("/points", dependencies=LOOK, summary="Points of a pair")
@@ -144,10 +149,10 @@ async def align_pair(
         T_i_j=list(measured.T_i_j),
         converged=found.converged,
         reason=found.reason,
-        overlap=null_for_nan(measured.overlap),
-        error_m=null_for_nan(measured.error_m),
-        limit_m=null_for_nan(measured.limit_m),
-        degeneracy=null_for_nan(measured.degeneracy),
+        overlap=finite_or_none(measured.overlap),
+        error_m=finite_or_none(measured.error_m),
+        limit_m=finite_or_none(measured.limit_m),
+        degeneracy=finite_or_none(measured.degeneracy),
         iterations=measured.iterations,
     )
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import binascii
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -34,11 +34,16 @@ from app.slices.model import (
     SliceFacts,
     SliceImageRequest,
     SliceImageView,
+    SurfacePoint,
+    WindowSpec,
     Xyz,
 )
 from app.slices.store import Asking
 from recon4.errors import ConfigError
-from recon4.store.atomic import null_for_nan
+from recon4.slices.compare import Comparison
+from recon4.slices.control_points import ControlPreview
+from recon4.slices.double_places import DoubleReport
+from recon4.slices.residuals import ControlReport
 
 LOOK = [Depends(needs(Permission.LOOK))]
 PROCESS = [Depends(needs(Permission.PROCESS))]
@@ -110,10 +115,11 @@ async def overview(
 @router.get("/overview/window", summary="Window of the image from above")
 async def overview_window(
     project_id: str, server: Server, caller: CalledBy, *, source: str = ""
-) -> dict[str, Any]:
+) -> WindowSpec:
     """Left, bottom, right and top in the map [m]."""
     image = await _overview(project_id, server, caller, source=source)
-    return await run_in_threadpool(work.read_kept, image.with_suffix(".json"))
+    kept = await run_in_threadpool(work.read_kept, image.with_suffix(".json"))
+    return WindowSpec.model_validate(kept)
 
 
 @router.post("/pick", summary="The point of the map at a position on a slice")
@@ -130,7 +136,7 @@ async def pick(project_id: str, ask: PickRequest, server: Server, caller: Called
 @router.get("/doubles", summary="Double walls")
 async def doubles(
     project_id: str, server: Server, caller: CalledBy, source: str = ""
-) -> dict[str, Any]:
+) -> DoubleReport:
     """Surfaces visited twice: double walls, then the others by ratio of separation and limit."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, source)
     folder = artifacts["map"]
@@ -143,22 +149,20 @@ async def doubles(
             ),
         )
     )
-    return await run_in_threadpool(work.read_kept, path)
+    return await run_in_threadpool(work.read_double_walls, path)
 
 
 @router.post("/compare", summary="Compare slices with a reference")
 async def compare(
     project_id: str, ask: CompareRequest, server: Server, caller: CalledBy
-) -> dict[str, Any]:
+) -> Comparison:
     """Mean distance and ratios within 2 and 5 cm of every slice (V Table 3.2)."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, ask.source)
     reference = server.slices.reference(project_id, ask.reference)
     terms = server.slices.terms(project_id, caller.name, ask.source)
-    comparison = await caller.wait(
+    return await caller.wait(
         server.slices.run_background(terms, work.comparison, artifacts["map"], reference, ask)
     )
-    record: dict[str, Any] = null_for_nan(asdict(comparison))
-    return record
 
 
 @router.post("/references", status_code=201, dependencies=PROCESS, summary="Add a reference")
@@ -261,7 +265,7 @@ async def export(
 @router.post("/control/preview", dependencies=PROCESS, summary="Preview a survey file")
 async def preview_control(
     project_id: str, file: ControlFile, server: Server, caller: CalledBy
-) -> dict[str, Any]:
+) -> ControlPreview:
     """Points found in a CSV file, and the question to answer before they are stored."""
     server.projects.folder(project_id)
     try:
@@ -269,10 +273,9 @@ async def preview_control(
     except (binascii.Error, ValueError) as error:
         raise BadRequest("the file must be sent as base64") from error
     terms = Terms(person=caller.name)
-    preview = await caller.wait(
+    return await caller.wait(
         server.slices.run_background(terms, work.preview_control, data, file.name, file.order)
     )
-    return asdict(preview)
 
 
 @router.get("/control", summary="Control and check points")
@@ -288,16 +291,14 @@ def keep_control(project_id: str, state: ControlState, server: Server) -> Contro
 
 
 @router.get("/control/report", summary="Residuals")
-async def control_report(project_id: str, server: Server, caller: CalledBy) -> dict[str, Any]:
+async def control_report(project_id: str, server: Server, caller: CalledBy) -> ControlReport:
     """Map minus survey, separate for control and check points, with every limit."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     state = await run_in_threadpool(server.slices.control, project_id)
     terms = server.slices.terms(project_id, caller.name)
-    report = await caller.wait(
+    return await caller.wait(
         server.slices.run_interactive(terms, work.control_report, artifacts, state)
     )
-    record: dict[str, Any] = null_for_nan(asdict(report))
-    return record | {"passed": report.passed}
 
 
 @router.get("/control/report.{ending}", summary="Residuals as a file")
@@ -322,7 +323,7 @@ async def control_file(
 
 
 @router.get("/control/surface", summary="The map's surface at a surveyed point")
-async def surface(project_id: str, point: str, server: Server, caller: CalledBy) -> dict[str, Any]:
+async def surface(project_id: str, point: str, server: Server, caller: CalledBy) -> SurfacePoint:
     """Position of a surveyed point in the map, and its foot on the nearest surface."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     state = await run_in_threadpool(server.slices.control, project_id)
@@ -330,10 +331,9 @@ async def surface(project_id: str, point: str, server: Server, caller: CalledBy)
     if not found:
         raise ConfigError(f"no point {point[:64]!r}")
     terms = server.slices.terms(project_id, caller.name)
-    at = await caller.wait(
+    return await caller.wait(
         server.slices.run_interactive(terms, work.surface_at, artifacts, found[0], state.frame)
     )
-    return asdict(at)
 
 
 @router.get("/compare.csv", response_class=PlainTextResponse, summary="The table as CSV")

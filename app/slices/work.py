@@ -9,6 +9,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 
 from app.slices.model import (
@@ -28,6 +29,7 @@ from recon4.bounded import read_json_object
 from recon4.errors import ConfigError, StoreError
 from recon4.geometry.se3 import SE3
 from recon4.mapping.tiles import TileSet
+from recon4.model.plain import to_plain
 from recon4.names import visible
 from recon4.review.evidence import Evidence
 from recon4.slices.acceptance import AcceptanceText, render_acceptance
@@ -36,6 +38,7 @@ from recon4.slices.colors import SENSOR_COLORS, ColorBy, Ground, Span, table
 from recon4.slices.compare import Comparison, compare, to_csv, usual_cuts
 from recon4.slices.control_points import AxisOrder, ControlPoint, ControlPreview, read_control
 from recon4.slices.cut import Cut, horizontal
+from recon4.slices.double_places import DoubleReport
 from recon4.slices.doubles import find_double_walls
 from recon4.slices.frames import MapFrame, frame_of
 from recon4.slices.imports import import_reference, set_alignment
@@ -49,7 +52,7 @@ from recon4.slices.sheet import (
     source_text,
 )
 from recon4.slices.slice_image import RasterGrid, SliceImage, draw, png
-from recon4.store.atomic import atomic_file, null_for_nan, write_json
+from recon4.store.atomic import atomic_file, write_json
 from recon4.store.checked import CheckedArtifact
 
 Artifacts = dict[str, str]
@@ -197,7 +200,7 @@ def pick_point(
 def double_walls(map_folder: str, out: str) -> None:
     """Write the double wall check of the whole map as JSON."""
     found = find_double_walls(tiles_of(map_folder))
-    write_json(Path(out), null_for_nan(asdict(found) | {"share": found.share}))
+    write_json(Path(out), to_plain(found))
 
 
 def comparison(map_folder: str, reference: str, ask: CompareRequest) -> Comparison:
@@ -389,3 +392,15 @@ def read_kept(path: Path) -> dict[str, Any]:
         StoreError: If it is damaged or too large.
     """
     return read_json_object(path, MAX_KEPT_BYTES, failure=StoreError)
+
+
+def read_double_walls(path: Path) -> DoubleReport:
+    """Read what `double_walls` wrote.
+
+    Raises:
+        StoreError: If it is damaged or too large.
+    """
+    try:
+        return msgspec.convert(read_kept(path), DoubleReport)
+    except msgspec.ValidationError as error:
+        raise StoreError(f"{path.name} cannot be read: {error}") from error

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from recon4.errors import ConfigError
-from recon4.store.atomic import null_for_nan
+from recon4.model.plain import to_plain
 from recon4.terminal import write
 
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ def evaluate(
         record["patch"] = asdict(density)
         texts.append(density_text(density))
     if as_json:
-        write(json.dumps(null_for_nan(record), indent=1, ensure_ascii=False))
+        write(json.dumps(to_plain(record), indent=1, ensure_ascii=False))
     else:
         write("\n\n".join(texts))
 

@@ -365,9 +365,9 @@ def _show_settings(chosen: Settings) -> None:
 
 
 def _write_json(value: Any) -> None:
-    from recon4.store.atomic import null_for_nan
+    from recon4.model.plain import to_plain
 
-    write(json.dumps(null_for_nan(value), indent=1, ensure_ascii=False))
+    write(json.dumps(to_plain(value), indent=1, ensure_ascii=False))
 
 
 def _complain(text: str) -> None:

@@ -6,7 +6,6 @@ import math
 from typing import Any
 
 import msgspec
-import numpy as np
 
 
 def to_plain(value: object) -> Any:
@@ -39,7 +38,7 @@ def _without_nan(value: Any) -> Any:
 
 def _builtin(value: object) -> object:
     """The built-in value of a type msgspec does not know."""
-    if isinstance(value, np.ndarray | np.generic):
+    if hasattr(value, "tolist"):  # of numpy, which is not imported before it is needed
         return value.tolist()
     if isinstance(value, str):
         return str.__str__(value)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import StoreError
 from recon4.geometry.se3 import SE3
+from recon4.model.plain import finite_or_none
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
 from recon4.store.arrays import load_arrays
 
@@ -109,18 +109,14 @@ def edge_record(graph: PoseGraph, edge: Edge) -> dict[str, Any]:
         "kind": str(edge.kind),
         "verdict": str(edge.verdict),
         "reason": str(edge.reason),
-        "overlap": _or_null(edge.overlap),
-        "error_m": _or_null(edge.error_m),
-        "limit_m": _or_null(edge.limit_m),
-        "degeneracy": _or_null(edge.degeneracy),
+        "overlap": finite_or_none(edge.overlap),
+        "error_m": finite_or_none(edge.error_m),
+        "limit_m": finite_or_none(edge.limit_m),
+        "degeneracy": finite_or_none(edge.degeneracy),
         "converged": edge.converged,
         "iterations": edge.iterations,
-        "verification_m": _or_null(edge.verification_m),
+        "verification_m": finite_or_none(edge.verification_m),
         "paths": edge.paths,
-        "chi2": _or_null(edge.chi2),
+        "chi2": finite_or_none(edge.chi2),
         "decided_by": edge.decided_by,
     }
-
-
-def _or_null(number: float) -> float | None:
-    return float(number) if math.isfinite(number) else None

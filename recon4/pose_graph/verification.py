@@ -9,6 +9,7 @@ import numpy as np
 
 from recon4.geometry.se3 import Array
 from recon4.model.events import VerdictsChanged
+from recon4.model.plain import finite_or_none
 from recon4.model.pose_graph import Edge, PoseGraph, Reason, Relations, Verdict
 from recon4.pose_graph.checks import check_relations
 from recon4.pose_graph.paths import PathIndex, reject_worst_first
@@ -192,11 +193,7 @@ def _edge_record(edge: Edge, row: int) -> dict[str, Any]:
         "edge": row,
         "nodes": [edge.i, edge.j],
         "kind": str(edge.kind),
-        "verification_m": _or_null(edge.verification_m),
+        "verification_m": finite_or_none(edge.verification_m),
         "paths": edge.paths,
-        "chi2": _or_null(edge.chi2),
+        "chi2": finite_or_none(edge.chi2),
     }
-
-
-def _or_null(number: float) -> float | None:
-    return number if np.isfinite(number) else None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.paths import path_medians
+from recon4.model.plain import finite_or_none
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason
 from recon4.pose_graph.paths import PathIndex
 from recon4.review.apply import is_measured
@@ -205,17 +205,12 @@ def _row(
         verdict=str(edge.verdict),
         reason=str(edge.reason),
         measured=is_measured(edge),
-        influence_m=_rounded(influence),
-        overlap=_rounded(edge.overlap),
-        error_m=_rounded(edge.error_m),
-        limit_m=_rounded(edge.limit_m),
-        degeneracy=_rounded(edge.degeneracy),
-        verification_m=_rounded(median_m),
+        influence_m=finite_or_none(influence, 5),
+        overlap=finite_or_none(edge.overlap, 5),
+        error_m=finite_or_none(edge.error_m, 5),
+        limit_m=finite_or_none(edge.limit_m, 5),
+        degeneracy=finite_or_none(edge.degeneracy, 5),
+        verification_m=finite_or_none(median_m, 5),
         paths=paths,
-        chi2=_rounded(edge.chi2),
+        chi2=finite_or_none(edge.chi2, 5),
     )
-
-
-def _rounded(value: float) -> float | None:
-    """Five significant digits; None if not finite."""
-    return float(f"{value:.5g}") if math.isfinite(value) else None

@@ -13,20 +13,45 @@ from recon4.errors import ConfigError
 from recon4.evaluation.slices import RelativeError, Slice, SliceError, merge_slices, relative_error
 from recon4.geometry.se3 import SE3
 from recon4.mapping.tiles import TileSet
+from recon4.model.plain import finite_or_none
 from recon4.slices.cut import ERROR_THICKNESS_M, Cut, horizontal, vertical
 from recon4.slices.points import points_in
 from recon4.slices.reference import FAR_M, Method, Reference
 
 
 @dataclass(frozen=True, slots=True)
+class ComparedSlice:
+    """A `SliceError` whose figures are None without points."""
+
+    name: str
+    points: int
+    outliers: int
+    mean_m: float | None
+    ratio_within_2cm: float | None
+    ratio_within_5cm: float | None
+
+    @staticmethod
+    def of(row: SliceError) -> ComparedSlice:
+        """The row of a slice."""
+        return ComparedSlice(
+            name=row.name,
+            points=row.points,
+            outliers=row.outliers,
+            mean_m=finite_or_none(row.mean_m),
+            ratio_within_2cm=finite_or_none(row.ratio_within_2cm),
+            ratio_within_5cm=finite_or_none(row.ratio_within_5cm),
+        )
+
+
+@dataclass(frozen=True, slots=True)
 class Comparison:
     """Errors of map slices against a reference (V Table 3.2), as plain values."""
 
-    slices: tuple[SliceError, ...]
-    point_weighted: SliceError
+    slices: tuple[ComparedSlice, ...]
+    point_weighted: ComparedSlice
     """All slices together, weighted by points."""
-    plain_mean_m: float
-    """Unweighted mean of the slices' means [m]; NaN = no points."""
+    plain_mean_m: float | None
+    """Unweighted mean of the slices' means [m]; None = no points."""
     outlier_m: float
     """Points farther from the reference are only counted [m]."""
     histogram: tuple[int, ...]
@@ -39,9 +64,9 @@ class Comparison:
     def of(found: RelativeError, reference: Reference) -> Comparison:
         """The comparison with a reference."""
         return Comparison(
-            slices=found.slices,
-            point_weighted=found.point_weighted,
-            plain_mean_m=found.plain_mean_m,
+            slices=tuple(ComparedSlice.of(row) for row in found.slices),
+            point_weighted=ComparedSlice.of(found.point_weighted),
+            plain_mean_m=finite_or_none(found.plain_mean_m),
             outlier_m=found.outlier_m,
             histogram=tuple(found.histogram[:100].tolist()),
             reference=reference.name,

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
+from recon4.model.plain import finite_or_none
 
 MAX_SURFACES = 3000
 _PLACE_M = 1.5
@@ -54,17 +55,14 @@ class DoubleReport:
     patches: int
     """Flat patches with at least two visits: the only ones that can be checked."""
     double_patches: int
-    median_separation_m: float
-    """Median separation of all patches visited twice [m]; NaN = none."""
-    p95_separation_m: float
-    median_sigma_m: float
+    share: float
+    """Fraction of double patches among those visited twice, 0..1."""
+    median_separation_m: float | None
+    """Median separation of all patches visited twice [m]; None = there are none."""
+    p95_separation_m: float | None
+    median_sigma_m: float | None
     """Thickness of a surface within a visit [m]."""
     points: int
-
-    @property
-    def share(self) -> float:
-        """Fraction of double patches among those visited twice, 0..1."""
-        return self.double_patches / self.patches if self.patches else 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -93,6 +91,8 @@ def report(found: list[Patches], points: int) -> DoubleReport:
     every = _joined(found)
     separation = every.separation_m
     median, p95 = np.percentile(separation, [50, 95]) if len(separation) else (np.nan, np.nan)
+    sigma = float(np.median(every.sigma_m)) if len(separation) else np.nan
+    double = int(every.double.sum())
     walls = _places(every, every.double)
     others = _places(every, ~every.double)
     surfaces = [others[place] for place in others.keys() - walls.keys()]
@@ -101,10 +101,11 @@ def report(found: list[Patches], points: int) -> DoubleReport:
         walls=tuple(sorted(walls.values(), key=lambda one: (-one.separation_m, one.middle_m))),
         surfaces=tuple(surfaces[:MAX_SURFACES]),
         patches=len(separation),
-        double_patches=int(every.double.sum()),
-        median_separation_m=float(median),
-        p95_separation_m=float(p95),
-        median_sigma_m=float(np.median(every.sigma_m)) if len(separation) else float("nan"),
+        double_patches=double,
+        share=double / len(separation) if len(separation) else 0.0,
+        median_separation_m=finite_or_none(median),
+        p95_separation_m=finite_or_none(p95),
+        median_sigma_m=finite_or_none(sigma),
         points=points,
     )
 

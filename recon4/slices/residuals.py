@@ -17,6 +17,7 @@ from recon4.evaluation.markers import (
     MEAN_VERTICAL_LIMIT_M,
 )
 from recon4.geometry.se3 import Array
+from recon4.model.plain import finite_or_none
 from recon4.slices.control_points import ControlPoint, Role
 
 RELATIVE_LIMIT_M = 0.05
@@ -60,8 +61,8 @@ class ResidualStatistics:
     max_2d_m: float
     max_up_m: float
     rmse_3d_m: float
-    relative_m: float
-    """Largest error of the distance between two of the points; NaN with one point."""
+    relative_m: float | None
+    """Largest error of the distance between two of the points; None with one point."""
     requirements: tuple[Requirement, ...]
 
 
@@ -78,11 +79,8 @@ class ControlReport:
     """Statistics of check points, then of control points; a role without points is omitted."""
     judged_by: Role | None
     """Role that decides about acceptance; None = no point was measured."""
-
-    @property
-    def passed(self) -> bool | None:
-        """Whether the deciding points are within all limits; None = no point was measured."""
-        return all(one.holds for one in self.figures[0].requirements) if self.figures else None
+    passed: bool | None
+    """Whether the deciding points are within all limits; None = no point was measured."""
 
 
 def residuals(
@@ -112,6 +110,7 @@ def residuals(
         outdated=tuple(p.id for p in points if p.id not in measured and p.id in outdated),
         figures=tuple(figures),
         judged_by=figures[0].role if figures else None,
+        passed=all(one.holds for one in figures[0].requirements) if figures else None,
     )
 
 
@@ -169,7 +168,7 @@ def _figures(rows: list[Residual], points: list[ControlPoint]) -> ResidualStatis
         max_2d_m=float(flat.max()),
         max_up_m=float(up.max()),
         rmse_3d_m=float(np.sqrt((d**2).sum(axis=1).mean())),
-        relative_m=relative,
+        relative_m=finite_or_none(relative),
         requirements=_requirements(flat, up, relative),
     )
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import errno
 import json
-import math
 import os
 import re
 import secrets
@@ -17,7 +16,6 @@ import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
 
 from recon4.errors import NoSpace, StoreError
 
@@ -111,15 +109,6 @@ def write_text(path: Path, text: str) -> None:
 def write_json(path: Path, value: object) -> None:
     """Write a JSON file atomically: indented, keys in the given order, no NaN."""
     write_text(path, json.dumps(value, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
-
-
-def null_for_nan(value: Any) -> Any:
-    """Replace numbers that are not finite by null: JSON has no NaN."""
-    if isinstance(value, dict):
-        return {name: null_for_nan(item) for name, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [null_for_nan(item) for item in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def copy_file(source: Path, target: Path) -> None:

@@ -31,6 +31,12 @@ export interface AlignmentView {
   iterations: number;
 }
 
+export interface AlternativePath {
+  frames: Array<number>;
+  residual_m: number;
+  residual_rad: number;
+}
+
 export interface Approve {
   why?: string;
   confirmed?: boolean;
@@ -86,10 +92,54 @@ export interface CompareRequest {
   source?: string;
 }
 
+export interface ComparedSlice {
+  name: string;
+  points: number;
+  outliers: number;
+  mean_m: number | null;
+  ratio_within_2cm: number | null;
+  ratio_within_5cm: number | null;
+}
+
+export interface Comparison {
+  slices: Array<ComparedSlice>;
+  point_weighted: ComparedSlice;
+  plain_mean_m: number | null;
+  outlier_m: number;
+  histogram: Array<number>;
+  reference: string;
+  method: "plane" | "point";
+}
+
 export interface ControlFile {
   name?: string;
   base64: string;
   order?: "EN" | "NE" | null;
+}
+
+export interface ControlPoint {
+  id: string;
+  xyz_m: [number, number, number];
+  role: "control" | "check";
+  radius_m: number;
+}
+
+export interface ControlPreview {
+  points: Array<ControlPoint>;
+  delimiter: string;
+  decimal: string;
+  order: "EN" | "NE";
+  question: string;
+  skipped: Array<string>;
+}
+
+export interface ControlReport {
+  rows: Array<Residual>;
+  missing: Array<string>;
+  outdated: Array<string>;
+  figures: Array<ResidualStatistics>;
+  judged_by: "control" | "check" | null;
+  passed: boolean | null;
 }
 
 export interface ControlSpec {
@@ -143,6 +193,32 @@ export interface Difference {
   moves: Array<Move>;
   rejected_automatically: Array<[number, number]>;
   accepted_automatically: Array<[number, number]>;
+}
+
+export interface DoubleReport {
+  walls: Array<DoubleWall>;
+  surfaces: Array<DoubleWall>;
+  patches: number;
+  double_patches: number;
+  share: number;
+  median_separation_m: number | null;
+  p95_separation_m: number | null;
+  median_sigma_m: number | null;
+  points: number;
+}
+
+export interface DoubleWall {
+  middle_m: [number, number, number];
+  normal: [number, number, number];
+  separation_m: number;
+  limit_m: number;
+  sigma_m: number;
+  bimodality: number;
+  share: number;
+  patches: number;
+  points: number;
+  spans_s: [[number, number], [number, number]];
+  frames: [[number, number], [number, number]];
 }
 
 export interface EdgeConflict {
@@ -336,6 +412,19 @@ export interface NewUpload {
   fingerprint?: string;
 }
 
+export interface PairFacts {
+  pair: [number, number];
+  t_ns: [number, number];
+  predicted: Array<number>;
+  odometry: Array<number>;
+  measured: Array<number> | null;
+  upright: Array<number>;
+  apart_m: number;
+  apart_rad: number;
+  paths: Array<AlternativePath>;
+  path_count: number;
+}
+
 export interface PairingApproval {
   code: string;
   role: Role;
@@ -447,6 +536,36 @@ export interface RecordingSummary {
 
 export interface Rename {
   name: string;
+}
+
+export interface Requirement {
+  words: string;
+  value_m: number;
+  limit_m: number;
+  holds: boolean;
+}
+
+export interface Residual {
+  id: string;
+  role: "control" | "check";
+  east_m: number;
+  north_m: number;
+  up_m: number;
+  d2_m: number;
+  d3_m: number;
+}
+
+export interface ResidualStatistics {
+  role: "control" | "check";
+  points: number;
+  rmse_m: [number, number, number];
+  mean_2d_m: number;
+  mean_up_m: number;
+  max_2d_m: number;
+  max_up_m: number;
+  rmse_3d_m: number;
+  relative_m: number | null;
+  requirements: Array<Requirement>;
 }
 
 export interface Restored {
@@ -621,8 +740,19 @@ export interface SupersededEffect {
   superseded: true;
 }
 
+export interface SurfacePoint {
+  p_map: [number, number, number];
+  surface: [number, number, number] | null;
+}
+
 export interface Token {
   token: string;
+}
+
+export interface TrajectoryNodes {
+  frames: Array<number>;
+  t_s: Array<number>;
+  xyz_m: Array<Array<number>>;
 }
 
 export interface UploadView {
@@ -763,7 +893,7 @@ export interface Operations {
   "GET /api/projects/{project_id}/review/pair": {
     path: { project_id: string };
     query: { frame_i: number; frame_j: number };
-    response: Record<string, any>;
+    response: PairFacts;
   };
   "GET /api/projects/{project_id}/review/points": {
     path: { project_id: string };
@@ -776,7 +906,7 @@ export interface Operations {
   };
   "GET /api/projects/{project_id}/review/walk": {
     path: { project_id: string };
-    response: Record<string, any>;
+    response: TrajectoryNodes;
   };
   "GET /api/projects/{project_id}/slices": {
     path: { project_id: string };
@@ -794,7 +924,7 @@ export interface Operations {
   };
   "GET /api/projects/{project_id}/slices/control/report": {
     path: { project_id: string };
-    response: Record<string, any>;
+    response: ControlReport;
   };
   "GET /api/projects/{project_id}/slices/control/report.{ending}": {
     path: { project_id: string; ending: string };
@@ -803,12 +933,12 @@ export interface Operations {
   "GET /api/projects/{project_id}/slices/control/surface": {
     path: { project_id: string };
     query: { point: string };
-    response: Record<string, any>;
+    response: SurfacePoint;
   };
   "GET /api/projects/{project_id}/slices/doubles": {
     path: { project_id: string };
     query?: { source?: string };
-    response: Record<string, any>;
+    response: DoubleReport;
   };
   "GET /api/projects/{project_id}/slices/export.{ending}": {
     path: { project_id: string; ending: string };
@@ -823,7 +953,7 @@ export interface Operations {
   "GET /api/projects/{project_id}/slices/overview/window": {
     path: { project_id: string };
     query?: { source?: string };
-    response: Record<string, any>;
+    response: WindowSpec;
   };
   "GET /api/projects/{project_id}/thumbnail": {
     path: { project_id: string };
@@ -989,12 +1119,12 @@ export interface Operations {
   "POST /api/projects/{project_id}/slices/compare": {
     path: { project_id: string };
     body: CompareRequest;
-    response: Record<string, any>;
+    response: Comparison;
   };
   "POST /api/projects/{project_id}/slices/control/preview": {
     path: { project_id: string };
     body: ControlFile;
-    response: Record<string, any>;
+    response: ControlPreview;
   };
   "POST /api/projects/{project_id}/slices/image": {
     path: { project_id: string };

@@ -5,11 +5,10 @@ from __future__ import annotations
 import zlib
 from dataclasses import dataclass
 
-import numpy as np
-
 from recon4.live.preview.cloud import Chunk
 from recon4.live.preview.coverage import CELL_M, Coverage
 from recon4.live.protocol import Gap, Gaps, MapperMessage, Path, Plan, Points
+from recon4.model.plain import finite_or_none
 
 _MAX_GAPS = 50
 
@@ -58,9 +57,8 @@ def gaps_message(coverage: Coverage) -> Gaps:
         Gap(p=list(gap.p_map), width_m=gap.width_m, away_m=round(gap.away_m, 2))
         for gap in coverage.gaps()[:_MAX_GAPS]
     ]
-    return Gaps(gaps, well=figure(coverage.well_seen_ratio()), elsewhere=coverage.gaps_elsewhere())
-
-
-def figure(value: float) -> float | None:
-    """A number rounded to four digits; None if it is not finite."""
-    return float(f"{value:.4g}") if np.isfinite(value) else None
+    return Gaps(
+        gaps,
+        well=finite_or_none(coverage.well_seen_ratio(), 4),
+        elsewhere=coverage.gaps_elsewhere(),
+    )

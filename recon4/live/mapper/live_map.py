@@ -12,7 +12,7 @@ import numpy as np
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.imu import place_points
-from recon4.live.ipc.messages import Snapshot, figure, gaps_message, plan_message, points_message
+from recon4.live.ipc.messages import Snapshot, gaps_message, plan_message, points_message
 from recon4.live.mapper.live_intensity import LiveIntensity
 from recon4.live.mapper.loops import LoopGate
 from recon4.live.mapper.place_index import PlaceIndex
@@ -23,6 +23,7 @@ from recon4.live.preview.coverage import Coverage
 from recon4.live.protocol import Gaps, Loop, MapperMessage, Plan, Points, Pose, RecentFrames
 from recon4.live.protocol import Path as PathMessage
 from recon4.model.multiframe import Multiframe
+from recon4.model.plain import finite_or_none
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.registration.odometry import OdometryStep
@@ -183,11 +184,11 @@ class LiveMap:
             lost=lost,
             lost_frames=self._lost,
             relocated=self._relocated,
-            error_m=figure(step.error_m),
-            match_ratio=figure(step.match_ratio),
-            degeneracy=figure(step.degeneracy),
-            prediction_offset_m=figure(offset_m),
-            turn_rad_s=figure(_turn_rate(step)),
+            error_m=finite_or_none(step.error_m, 4),
+            match_ratio=finite_or_none(step.match_ratio, 4),
+            degeneracy=finite_or_none(step.degeneracy, 4),
+            prediction_offset_m=finite_or_none(offset_m, 4),
+            turn_rad_s=finite_or_none(_turn_rate(step), 4),
             points=np.bincount(frame.sensor, minlength=len(self._rig.sensors)).tolist(),
             thinned=self._thinned,
             lately=self._counts_recently(frame.t_ns),

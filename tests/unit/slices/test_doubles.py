@@ -98,7 +98,7 @@ def test_a_step_whose_sides_were_seen_at_different_times_is_not_double(tmp_path)
 def test_one_visit_says_nothing(tmp_path):
     found = checked(tmp_path, **visits(np.random.default_rng(1), [0.0]))
 
-    assert found.patches == 0 and np.isnan(found.median_separation_m)
+    assert found.patches == 0 and found.median_separation_m is None
 
 
 def test_an_empty_map_has_no_double_walls(tmp_path):

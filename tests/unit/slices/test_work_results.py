@@ -11,12 +11,12 @@ import app.slices.work
 from app.compute_pool.messages import declared, decode_result, encode_result
 from app.review.work import pair_facts, preview
 from app.slices.work import comparison, control_report
-from recon4.evaluation.slices import RelativeError, SliceError
+from recon4.evaluation.slices import SliceError
 from recon4.review.pairs import PairFacts
 from recon4.review.preview import DecidedEdge, Effect
 from recon4.review.queue import AlternativePath
 from recon4.review.solve import Difference, EdgeConflict, Move
-from recon4.slices.compare import Comparison
+from recon4.slices.compare import ComparedSlice, Comparison
 from recon4.slices.control_points import ControlPoint
 from recon4.slices.residuals import residuals
 
@@ -57,10 +57,8 @@ def test_records_come_back_as_they_were():
         (1, 2), (10**18, 10**18 + 1), POSE, POSE, None, POSE[3:], 0.1, 0.2,
         (AlternativePath((1, 3, 2), 0.1, 0.01),), 1,
     )  # fmt: skip
-    found = RelativeError((ROW,), ROW, 0.01, 0.5, np.arange(500), "given")
-    table = Comparison(
-        found.slices, ROW, 0.01, 0.5, tuple(found.histogram[:100].tolist()), "model", "plane"
-    )
+    row = ComparedSlice.of(ROW)
+    table = Comparison((row,), row, None, 0.5, tuple(range(100)), "model", "plane")
     report = residuals([ControlPoint("A", (0.0, 0.0, 0.0))], {"A": np.array([0.01, 0.0, 0.0])})
 
     assert decode_result(preview, encode_result(preview, effect)) == effect

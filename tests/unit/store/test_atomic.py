@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from recon4.errors import NoSpace, StoreError
+from recon4.model.plain import to_plain
 from recon4.store.atomic import (
     atomic_file,
     atomic_folder,
     copy_file,
-    null_for_nan,
     sweep,
     write_json,
     write_text,
@@ -86,7 +86,7 @@ def test_json_refuses_nan(tmp_path):
 
 
 def test_what_is_not_a_number_becomes_null():
-    assert null_for_nan({"a": [float("nan"), 1.5, (float("inf"), "x")], "b": 0}) == {
+    assert to_plain({"a": [float("nan"), 1.5, (float("inf"), "x")], "b": 0}) == {
         "a": [None, 1.5, [None, "x"]],
         "b": 0,
     }
