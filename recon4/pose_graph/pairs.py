@@ -129,7 +129,7 @@ class PairRegistrar:
             )
         return register_to_planes(
             target, ends.reshape(-1, 3), initial=pair.T_i_j, planes=self._settings.planes,
-            settings=settings,
+            settings=settings, normal_noise_rad=self._settings.graph.normal_noise_rad,
         )  # fmt: skip
 
     def _judge(self, pair: Pair, overlap_ratio: float, found: Registration) -> Edge:

@@ -26,15 +26,27 @@ def observable_directions(match: Match, normal_noise_rad: float) -> tuple[Array,
     """
     H = match.H
     H6 = H[START, START] + H[START, END_POSE] + H[END_POSE, START] + H[END_POSE, END_POSE]
-    weight = float(np.trace(H6[TRANSLATION, TRANSLATION]))
+    root, full = _reductions(H6, normal_noise_rad)
+    both = np.kron(np.eye(2), root)
+    return both.T @ match.H @ both, np.kron(np.eye(2), full).T @ match.g
+
+
+def observable_pose(H: Array, g: Array, normal_noise_rad: float) -> tuple[Array, Array]:
+    """The same for one rigid pose: ``H`` (6, 6) and ``g`` (6,), rotation first."""
+    root, full = _reductions(H, normal_noise_rad)
+    return root.T @ H @ root, full.T @ g
+
+
+def _reductions(H: Array, normal_noise_rad: float) -> tuple[Array, Array]:
+    """Matrices (6, 6) that reduce information: the square root for ``H``, the whole for ``g``."""
+    weight = float(np.trace(H[TRANSLATION, TRANSLATION]))
     if weight <= 0.0:
-        return match.H, match.g
+        return np.eye(6), np.eye(6)
     # Rotations in meters at the typical distance, so that they compare with shifts.
-    arm_m = np.sqrt(float(np.trace(H6[ROTATION, ROTATION])) / weight)
+    arm_m = np.sqrt(float(np.trace(H[ROTATION, ROTATION])) / weight)
     scale = np.repeat([1.0 / max(arm_m, 1e-3), 1.0], 3)
-    normalized, V = np.linalg.eigh(scale[:, None] * H6 * scale / weight)
+    normalized, V = np.linalg.eigh(scale[:, None] * H * scale / weight)
     kept = np.clip(1.0 - normal_noise_rad**2 / np.maximum(normalized, 1e-12), 0.0, 1.0)
     root = scale[:, None] * (V * np.sqrt(kept)) @ V.T / scale
     full = scale[:, None] * (V * kept) @ V.T / scale
-    both = np.kron(np.eye(2), root)
-    return both.T @ match.H @ both, np.kron(np.eye(2), full).T @ match.g
+    return root, full

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from recon4.geometry.se3 import ARM_M, ROTATION, SE3, TRANSLATION, Array, so3_exp
+from recon4.registration.degeneracy import observable_pose
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.result import Registration, StopReason
 from recon4.registration.state import START
@@ -22,6 +23,7 @@ def register_to_planes(
     initial: SE3,
     planes: PlaneSettings,
     settings: RegistrationSettings,
+    normal_noise_rad: float = 0.0,
 ) -> Registration:
     """Estimate ``T_target_source`` by Gauss-Newton on the distances from the target's planes.
 
@@ -32,8 +34,11 @@ def register_to_planes(
             be off by up to a meter.
         planes: How many sizes of cubes there are.
         settings: Stop rules.
+        normal_noise_rad: Error of a plane's normal [rad]. Directions with no more information than
+            such errors create keep the initial pose, and the result has no information there.
     """
     T_target_source = initial
+    information = np.zeros((6, 6))
     zero = np.zeros(len(source))
     stop, rounds = StopReason.LIMIT, 0
     match = _empty(len(source))
@@ -49,7 +54,8 @@ def register_to_planes(
         if match.matches < _MIN_MATCHES:
             stop = StopReason.TOO_FEW
             break
-        H, g = match.H[START, START], match.g[START]
+        H, g = observable_pose(match.H[START, START], match.g[START], normal_noise_rad)
+        information = H
         step = -np.linalg.solve(H + 1e-6 * np.trace(H) / 6 * np.eye(6), g)
         T_target_source = SE3(
             so3_exp(step[ROTATION]) @ T_target_source.R, T_target_source.t + step[TRANSLATION]
@@ -63,7 +69,7 @@ def register_to_planes(
             break
     error_m = _error(target, T_target_source, source, fraction=zero)
     return Registration(
-        T_target_source, stop, rounds, error_m, match.match_ratio, match.H[START, START],
+        T_target_source, stop, rounds, error_m, match.match_ratio, information,
         match.degeneracy,
     )  # fmt: skip
 

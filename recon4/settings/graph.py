@@ -49,6 +49,10 @@ class GraphSettings:
     """t_r of the acceptance limit ``median_range * t_r + t_a`` (A0 no. 12)."""
     error_absolute_m: float = 0.05
     """t_a of that limit [m]."""
+    normal_noise_rad: float = 0.08
+    """Error of the normals of a sub-map's planes [rad]: directions with no more information than
+    such errors create count as unobservable. Pairs of one place share these errors, unlike the
+    multiframes of odometry."""
     odometry_sd_m: float = 0.001
     """Smallest standard deviation of an odometry edge [m]."""
     odometry_sd_rad: float = 0.0002
