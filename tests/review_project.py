@@ -16,6 +16,7 @@ from app.jobs.folder import JobFolder
 from app.jobs.worker import main
 from recon4 import stages
 from recon4.geometry.se3 import SE3, so3_exp
+from recon4.model.figures import FrameFigures, GraphFigures, OdometryFigures
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
 from recon4.model.trajectory import Trajectory
 from recon4.pipeline import remake
@@ -58,9 +59,9 @@ def make(root: Path, *, graph_only: bool = False, progress: Progress | None = No
         project.describe(preset="indoor", rig="test", inputs=[])
         runner = StageRunner(project, SETTINGS, progress or Silent())
         walk = Input("two rounds", None)
-        frames = runner.run(Stage("frames", 1, (), _frames), walk=walk)
-        odometry = runner.run(Stage("odometry", 1, (), _odometry), frames=frames)
-        searched = runner.run(Stage("graph", 1, (), _graph), frames=frames)
+        frames = runner.run(Stage("frames", 1, (), _frames, FrameFigures), walk=walk)
+        odometry = runner.run(Stage("odometry", 1, (), _odometry, OdometryFigures), frames=frames)
+        searched = runner.run(Stage("graph", 1, (), _graph, GraphFigures), frames=frames)
         graph = runner.run(stages.VERIFICATION, graph=searched)
         if decided := read_decided(root):
             decisions = Input(decided.key, decided.standing)
@@ -77,20 +78,17 @@ def make(root: Path, *, graph_only: bool = False, progress: Progress | None = No
         publish(root, runner.runs, about, progress=progress or Silent())
 
 
-def _frames(*, out: Path, settings: Settings, progress: Progress, walk: None) -> dict[str, object]:
+def _frames(*, out: Path, settings: Settings, progress: Progress, walk: None) -> FrameFigures:
     with FrameWriter(out, RIG) as writer:
         for k in range(NODES):
             writer.append(scan(rounds, T0_NS + k * FRAME_NS, frame_id=k, columns=240))
     points = FrameStore.open(out).points
-    return {
-        "multiframes": NODES, "points": points, "rig": RIG.name, "imu": False, "gnss": False,
-        "outcome": "complete", "warnings": [],
-    }  # fmt: skip
+    return FrameFigures(multiframes=NODES, points=points, rig=RIG.name, imu=False, gnss=False)
 
 
 def _odometry(
     *, out: Path, settings: Settings, progress: Progress, frames: Path
-) -> dict[str, object]:
+) -> OdometryFigures:
     store = FrameStore.open(frames)
     t_s = np.arange(-0.1, NODES * 0.1 + 0.15, 0.01)
     t_ns = T0_NS + np.rint(t_s * 1e9).astype(np.int64)
@@ -105,10 +103,10 @@ def _odometry(
         prediction_offset_m=nothing, lost=nothing > 0,
         motion_cov=np.tile(1e-6 * np.eye(6), (NODES, 1, 1)),
     )  # fmt: skip
-    return {"multiframes": NODES, "lost": 0, "imu": False, "warnings": [], "gnss": False}
+    return OdometryFigures(multiframes=NODES, lost=0)
 
 
-def _graph(*, out: Path, settings: Settings, progress: Progress, frames: Path) -> dict[str, object]:
+def _graph(*, out: Path, settings: Settings, progress: Progress, frames: Path) -> GraphFigures:
     mid = FrameStore.open(frames).t_mid_ns
     t_s = (mid - T0_NS) * 1e-9
     true, odom = rounds(t_s), drifting(t_s)
@@ -121,7 +119,7 @@ def _graph(*, out: Path, settings: Settings, progress: Progress, frames: Path) -
     edges += [_apart(odom, k, k + 25) for k in range(0, 40, 8)]
     frame_ids = np.arange(NODES, dtype=np.int64)
     save_graph(out, PoseGraph(frame_ids, mid, odom, tuple(edges)))
-    return {"nodes": NODES, "edges": len(edges), "accepted": len(edges)}
+    return GraphFigures(nodes=NODES, edges=len(edges), accepted=len(edges))
 
 
 def _edge(T, i, j, kind, rng, off_m=None) -> Edge:
