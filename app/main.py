@@ -173,7 +173,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
     access = open_access(settings.state, login=settings.lan)
     jobs = JobStore(settings.state / "jobs.sqlite")
     supervisor = Supervisor(jobs, settings)
-    pool = ComputePool(settings.state / "compute")
+    pool = ComputePool(settings.state / "compute", children=child_register(settings))
     checks = ApprovalChecks()
     captures = Captures(settings.root)
     projects = ProjectStore(settings.root, _import_folders(settings))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import shutil
 from collections import OrderedDict
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
@@ -15,6 +15,7 @@ from app.compute_pool.messages import Call, declared
 from app.compute_pool.model import QUOTAS, FileAccess, Lane, Quota, Terms
 from app.compute_pool.process import ChildProcess
 from app.errors import ComputeFailed
+from recon4.processes import ChildRegister
 
 T = TypeVar("T")
 
@@ -53,14 +54,18 @@ class ComputePool:
     `bytes` go as they are.
     """
 
-    def __init__(self, scratch: Path, quotas: Mapping[Lane, Quota] = QUOTAS) -> None:
+    def __init__(
+        self, scratch: Path, quotas: Mapping[Lane, Quota] = QUOTAS, *, children: ChildRegister
+    ) -> None:
         """Create the pool; no child is started yet.
 
         Args:
             scratch: Folder for the working folders of children; it is emptied.
             quotas: Limits of each lane.
+            children: Where the processes are registered.
         """
         self._scratch = scratch
+        self._children = children
         shutil.rmtree(scratch, ignore_errors=True)
         self.queues = {lane: FairQueue(lane, quota) for lane, quota in quotas.items()}
         self._kept: OrderedDict[_Permission, list[ChildProcess]] = OrderedDict()
@@ -154,7 +159,7 @@ class ComputePool:
     async def _child(self, permission: _Permission, *, background: bool) -> ChildProcess:
         """A kept child that may open these files, else a fresh one; background always fresh."""
         if background:
-            return await ChildProcess.start(self._scratch, background=True)
+            return await self._start_child(background=True)
         while kept := self._kept.get(permission):
             child = kept.pop()
             if not kept:
@@ -168,7 +173,12 @@ class ComputePool:
             return spare
         if spare is not None:
             await spare.end()
-        return await ChildProcess.start(self._scratch, background=False)
+        return await self._start_child(background=False)
+
+    async def _start_child(self, *, background: bool, modules: Sequence[str] = ()) -> ChildProcess:
+        return await ChildProcess.start(
+            self._scratch, background=background, children=self._children, modules=modules
+        )
 
     async def _put_away(
         self, permission: _Permission, child: ChildProcess | None, *, keep: bool
@@ -198,9 +208,7 @@ class ComputePool:
 
     async def _add_spare(self) -> None:
         if self._spare is None:
-            self._spare = await ChildProcess.start(
-                self._scratch, background=False, modules=INTERACTIVE_MODULES
-            )
+            self._spare = await self._start_child(background=False, modules=INTERACTIVE_MODULES)
 
     def _start(self, work: Any) -> asyncio.Task[Any]:
         task = asyncio.ensure_future(work)

@@ -27,6 +27,7 @@ from app.compute_pool.messages import (
 from app.compute_pool.model import FileAccess
 from app.errors import ComputeFailed
 from app.settings import worker_environment
+from recon4.processes import ChildRegister
 
 
 class ChildFailed(RuntimeError):
@@ -36,15 +37,28 @@ class ChildFailed(RuntimeError):
 class ChildProcess:
     """A child, its scratch folder, and whether it is confined yet."""
 
-    def __init__(self, process: asyncio.subprocess.Process, scratch: Path, lifeline: int) -> None:
+    def __init__(
+        self,
+        process: asyncio.subprocess.Process,
+        scratch: Path,
+        lifeline: int,
+        *,
+        children: ChildRegister,
+    ) -> None:
         self._process = process
+        self._children = children
+        children.add(process.pid)
         self._lifeline = lifeline
         self.scratch = scratch
         self._set_up = False
 
     @staticmethod
     async def start(
-        scratch_of_all: Path, *, background: bool, modules: Sequence[str] = ()
+        scratch_of_all: Path,
+        *,
+        background: bool,
+        children: ChildRegister,
+        modules: Sequence[str] = (),
     ) -> ChildProcess:
         """Start a child; it imports ``modules`` and waits for its first call."""
         scratch = scratch_of_all / secrets.token_hex(8)
@@ -70,7 +84,7 @@ class ChildProcess:
             raise
         finally:
             os.close(watched)
-        return ChildProcess(process, scratch, held)
+        return ChildProcess(process, scratch, held, children=children)
 
     @property
     def alive(self) -> bool:
@@ -115,6 +129,7 @@ class ChildProcess:
         if self.alive:
             self._process.kill()
         await self._process.wait()
+        self._children.remove(self._process.pid)
         if self._lifeline >= 0:
             os.close(self._lifeline)
             self._lifeline = -1

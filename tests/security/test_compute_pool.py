@@ -23,6 +23,7 @@ from app.compute_pool.model import QUOTAS, Quota
 from app.compute_pool.process import ChildFailed
 from app.errors import AppError, ComputeFailed, TooMany
 from recon4.errors import Recon4Error
+from recon4.processes import ChildRegister
 from tests import pool_functions as work
 from tests.service.running import wait_for
 
@@ -33,7 +34,9 @@ def in_pool(root: Path, scenario, **options):
     """What ``scenario(pool)`` returns; the pool is closed at its end."""
 
     async def run():
-        pool = ComputePool(root / ".recon4" / "compute", **options)
+        state = root / ".recon4"
+        register = ChildRegister(state / "children")
+        pool = ComputePool(state / "compute", children=register, **options)
         try:
             return await scenario(pool)
         finally:
@@ -152,10 +155,12 @@ def test_children_end_with_a_server_that_is_killed(root):
         "import asyncio, sys\n"
         "from pathlib import Path\n"
         "from app.compute_pool import ComputePool, FileAccess, Lane, Terms\n"
+        "from recon4.processes import ChildRegister\n"
         "from tests import pool_functions as work\n"
         "root = Path(sys.argv[1])\n"
         "terms = Terms(person='Eve', access=FileAccess(write=(root / 'mine',)))\n"
-        "pool = ComputePool(root / '.recon4' / 'compute')\n"
+        "register = ChildRegister(root / '.recon4' / 'children')\n"
+        "pool = ComputePool(root / '.recon4' / 'compute', children=register)\n"
         "asyncio.run(pool.run_background(\n"
         "    Lane.SURVEY, terms, work.note_and_pause, str(root / 'mine' / 'pid')))\n"
     )
@@ -167,6 +172,27 @@ def test_children_end_with_a_server_that_is_killed(root):
         server.wait()
 
     wait_for(lambda: not alive(child), "the child ends with its server", max_s=5.0)
+    register = ChildRegister(root / ".recon4" / "children")
+    assert [path.name.split("-")[0] for path in register.folder.iterdir()] == [str(child)]
+    register.end_leftovers()
+    assert not list(register.folder.iterdir())
+
+
+def test_a_child_is_registered_while_it_lives(root):
+    folder = root / ".recon4" / "children"
+
+    async def scenario(pool):
+        _, pid = await pool.run_interactive(Lane.SLICE, EVE, work.identity, 7)
+        return pid, [path.name for path in folder.iterdir()]
+
+    pid, registered = in_pool(root, scenario)
+
+    assert pid in process_number(registered)
+    assert not list(folder.iterdir()), "the pool is closed"
+
+
+def process_number(names: list[str]) -> list[int]:
+    return [int(name.split("-")[0]) for name in names]
 
 
 def written(path: Path) -> str:

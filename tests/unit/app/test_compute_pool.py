@@ -11,6 +11,7 @@ import pytest
 from app.compute_pool import ComputePool, FileAccess, Lane, Terms
 from app.errors import ComputeFailed
 from recon4.errors import ConfigError, GraphError, WrongSettings
+from recon4.processes import ChildRegister
 from tests import pool_functions as work
 
 EVA = Terms(person="Eva")
@@ -20,7 +21,7 @@ def in_pool(scratch, scenario):
     """What ``scenario(pool)`` returns; the pool is closed at its end."""
 
     async def run():
-        pool = ComputePool(scratch)
+        pool = ComputePool(scratch, children=ChildRegister(scratch.with_name("children")))
         try:
             return await scenario(pool)
         finally:
