@@ -127,19 +127,19 @@ class JobFolder:
 
     def kill(self, sign: signal.Signals = signal.SIGKILL) -> None:
         """Send a signal to the worker and its children. Call only while `alive`."""
-        number = self._group()
+        number = self.group()
         if number is not None and _is_worker_of(number, self.path):
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(number, sign)
 
     def end_orphans(self) -> None:
         """End the children of a dead worker. Its process group id is not reused while they live."""
-        number = self._group()
+        number = self.group()
         if number is not None and _state(number) in ("", "Z"):
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(number, signal.SIGKILL)
 
-    def _group(self) -> int | None:
+    def group(self) -> int | None:
         """The worker's process group from its file, None if that is not valid."""
         with contextlib.suppress(OSError, ValueError):
             number = int(_start(self.path / "pid"))

@@ -3,9 +3,15 @@
 Stages that read files of users report every unit, so the server's setting applies to them as it is.
 Later stages compute on our own artifacts: a solver with a bounded number of iterations, or writing
 a large artifact, may report nothing for longer.
+Time in which the worker was ready to run but other programs had the processors does not count: on a
+busy computer a worker at low priority gets hardly any time, and to end it would not help.
 """
 
 from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from pathlib import Path
 
 from app.jobs.run_progress import AFTER
 from app.jobs.status import JobStatus
@@ -20,3 +26,31 @@ def allowed_silence_s(status: JobStatus, hung_after_s: float) -> float:
     """Seconds without progress after which a worker at this point is killed."""
     running = {row.stage for row in status.stages if row.state == "running"}
     return hung_after_s * (COMPUTING_FACTOR if COMPUTING & {*running, status.what} else 1.0)
+
+
+@dataclass(slots=True)
+class SilenceClock:
+    """Measures how long one worker has made no progress."""
+
+    _beat_ns: int | None = None
+    _since_s: float = 0.0
+
+    def silent_s(self, beat_ns: int, pid: int | None) -> float:
+        """Seconds since the heartbeat last changed, without those waited for a processor.
+
+        Args:
+            beat_ns: Last heartbeat, on any clock [ns].
+            pid: The worker; None = not known yet.
+        """
+        now_s = time.monotonic() - (waited_for_processor_s(pid) if pid else 0.0)
+        if beat_ns != self._beat_ns:
+            self._beat_ns, self._since_s = beat_ns, now_s
+        return now_s - self._since_s
+
+
+def waited_for_processor_s(pid: int) -> float:
+    """Time the first thread of a process was ready to run but did not [s]; 0 if unknown."""
+    try:
+        return int(Path(f"/proc/{pid}/schedstat").read_text("ascii").split()[1]) / 1e9
+    except (OSError, ValueError, IndexError):
+        return 0.0

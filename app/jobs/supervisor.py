@@ -12,7 +12,6 @@ import logging
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -26,7 +25,7 @@ from app.jobs.limits import allowed_memory
 from app.jobs.model import Job, JobState
 from app.jobs.run_progress import RunProgress
 from app.jobs.run_progress import after as progress_after
-from app.jobs.silence import allowed_silence_s
+from app.jobs.silence import SilenceClock, allowed_silence_s
 from app.jobs.status import JobStatus, after
 from app.jobs.store import JobStore
 from app.settings import ServerSettings, worker_environment
@@ -74,8 +73,8 @@ class Supervisor:
         self._settings = settings
         self._workers: dict[str, subprocess.Popen[bytes]] = {}
         self._tails: dict[str, Tail] = {}
-        self._beats: dict[str, tuple[int, float]] = {}
-        """Running jobs -> last heartbeat seen [ns], and its time on the monotonic clock [s]."""
+        self._clocks: dict[str, SilenceClock] = {}
+        """Of running jobs."""
         self._hung: dict[str, float] = {}
         """Jobs whose worker is being ended -> time without progress [s]."""
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -226,7 +225,7 @@ class Supervisor:
         self._store.change(job, self._ended(job, folder.outcome(), code))
         self._workers.pop(job.id, None)
         self._hung.pop(job.id, None)
-        self._beats.pop(job.id, None)
+        self._clocks.pop(job.id, None)
         return True
 
     def _exit_code(self, job: Job) -> int | None:
@@ -241,7 +240,9 @@ class Supervisor:
             return worker.wait()
 
     def _end_if_stuck(self, job: Job, folder: JobFolder) -> None:
-        asked_s, silent_s = folder.stop_requested_s(), self._silent_s(job, folder)
+        clock = self._clocks.setdefault(job.id, SilenceClock())
+        asked_s = folder.stop_requested_s()
+        silent_s = clock.silent_s(folder.heartbeat_ns(), folder.group())
         if asked_s is not None and asked_s > self._settings.stop_within_s:
             folder.kill()
         elif job.id in self._hung:
@@ -250,15 +251,6 @@ class Supervisor:
             self._hung[job.id] = silent_s
             log.warning("worker %s made no progress for %.0f s: killed", job.id, silent_s)
             folder.kill(signal.SIGABRT)  # it writes the stack of every thread to its log
-
-    def _silent_s(self, job: Job, folder: JobFolder) -> float:
-        """Seconds since the heartbeat last changed, on the monotonic clock."""
-        now_s, beat_ns = time.monotonic(), folder.heartbeat_ns()
-        seen_ns, since_s = self._beats.get(job.id, (None, now_s))
-        if beat_ns != seen_ns:
-            since_s = now_s
-        self._beats[job.id] = beat_ns, since_s
-        return now_s - since_s
 
     def _ended(self, job: Job, outcome: Outcome | None, code: int | None) -> Job:
         """The job after its worker is gone."""

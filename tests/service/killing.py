@@ -35,6 +35,8 @@ RESULTS = ("trajectory.tum", "odometry.tum", "edges.json", "map.laz", "graph.g2o
 VICTIMS = ("worker", "server", "both")
 QUICK = ["map.voxel_m=0.1", "graph.node_stride=4", "segments.preserved=2"]
 """Settings that make a short run short."""
+WITHIN_S = 1800.0
+"""For a step of a run on a computer that is busy otherwise."""
 
 
 @dataclass
@@ -101,7 +103,9 @@ def _live_gated(
     """One server's life; whether the run came to its end in it."""
     while True:
         job = survived.jobs[-1]
-        view = server.wait(job, lambda view: _is_over(view) or _at_gate(view, closed), max_s=300.0)
+        view = server.wait(
+            job, lambda view: _is_over(view) or _at_gate(view, closed), max_s=WITHIN_S
+        )
         if view["job"]["state"] == "succeeded":
             return True
         if _is_over(view):
@@ -185,7 +189,7 @@ def orphans(root: Path) -> list[psutil.Process]:
 
 def leftover_files(root: Path) -> list[str]:
     """Unfinished files, sockets and records of children below a folder of projects."""
-    patterns = (".tmp-*", "buckets-*", ".slice-*", "room", "children/*")
+    patterns = (".tmp-*", "buckets-*", "room", "children/*")
     found = [path for pattern in patterns for path in root.rglob(pattern)]
     sockets = socket_folder(root / ".recon4")
     return sorted(map(str, [*found, *(sockets.iterdir() if sockets.is_dir() else [])]))
@@ -234,7 +238,7 @@ def _live(
     while True:
         job = survived.jobs[-1]
         moment = plan[0][0] if plan else 2.0
-        view = server.wait(job, lambda view, moment=moment: _is_due(view, moment), max_s=300.0)
+        view = server.wait(job, lambda view, moment=moment: _is_due(view, moment), max_s=WITHIN_S)
         state = view["job"]["state"]
         if state == "succeeded":
             return True

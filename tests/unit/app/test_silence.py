@@ -1,0 +1,50 @@
+"""When a worker counts as hung: time it waited for a processor is not silence."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+
+import pytest
+
+from app.jobs.silence import SilenceClock, waited_for_processor_s
+from tests.service.running import wait_for
+
+SPIN = "import os; os.sched_setaffinity(0, {int(__import__('sys').argv[1])})\nwhile True: pass"
+
+
+@pytest.fixture
+def starved():
+    """A process that shares one processor with two others."""
+    processor = str(min(os.sched_getaffinity(0)))
+    command = [sys.executable, "-c", SPIN, processor]
+    processes = [subprocess.Popen(command) for _ in range(3)]
+    yield processes[0].pid
+    for process in processes:
+        process.kill()
+        process.wait()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux measures it")
+def test_waiting_for_a_processor_is_not_silence(starved):
+    clock = SilenceClock()
+    clock.silent_s(1, starved)
+    began_s, waited_s = time.monotonic(), waited_for_processor_s(starved)
+
+    wait_for(lambda: waited_for_processor_s(starved) > waited_s + 1.0, "it waits for a processor")
+
+    assert clock.silent_s(1, starved) <= time.monotonic() - began_s - 0.9
+
+
+def test_a_sleeping_worker_is_silent_until_its_heart_beats():
+    clock = SilenceClock()
+    clock.silent_s(1, None)
+    time.sleep(0.05)
+    assert clock.silent_s(1, None) >= 0.05
+    assert clock.silent_s(2, None) == 0.0
+
+
+def test_a_process_that_is_gone_has_not_waited():
+    assert waited_for_processor_s(2**22 + 1) == 0.0
