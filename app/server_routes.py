@@ -34,7 +34,7 @@ class ServerView(BaseModel):
 def read_server(server: Server) -> ServerView:
     """Version of the server, disk space, and notices for users."""
     disk = shutil.disk_usage(server.settings.root)
-    notices = [server.jobs.notice] if server.jobs.notice else []
+    notices = [*filter(None, [server.jobs.notice]), *server.uploads.notices()]
     if disk.free < max(LITTLE_ROOM * disk.total, server.settings.reserve_bytes):
         notices.append(
             f"The disk is nearly full: {disk.free / 1e9:.1f} GB of {disk.total / 1e9:.0f} GB are "

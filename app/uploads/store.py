@@ -19,6 +19,7 @@ import shutil
 import threading
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import fields
 from datetime import UTC, datetime
 from pathlib import Path, PurePosixPath
@@ -48,6 +49,8 @@ class UploadStore:
         self.recordings = settings.root.resolve() / "recordings"
         self._lock = threading.Lock()
         self._uploads: dict[str, Upload] = {}
+        self._damaged: dict[str, str] = {}
+        """Folders that cannot be read -> why."""
         self._read()
 
     # -- used by routes
@@ -57,6 +60,14 @@ class UploadStore:
         with self._lock:
             found = sorted(self._uploads.values(), key=lambda u: u.created, reverse=True)
         return found
+
+    def notices(self) -> list[str]:
+        """For users: the uploads that cannot be resumed, because their files are damaged."""
+        return [
+            f"Upload {name} cannot be resumed, its files are damaged ({why}). Send the recording "
+            f"again. What was received is kept for a while in {self._folder / name}."
+            for name, why in self._damaged.items()
+        ]
 
     def get(self, upload_id: str) -> Upload:
         """One upload.
@@ -185,7 +196,17 @@ class UploadStore:
             if not upload.finished:
                 log.info("upload %s of %s expired: removed", upload.id, upload.by)
             self.remove(upload)
-        return [upload.id for upload in stale]
+        return [upload.id for upload in stale] + self._sweep_damaged(now_s)
+
+    def _sweep_damaged(self, now_s: float) -> list[str]:
+        with self._lock:
+            folders = [self._folder / name for name in self._damaged]
+            stale = [f for f in folders if _newest_s(f) + self._settings.upload_stale_s < now_s]
+            for folder in stale:
+                shutil.rmtree(folder, ignore_errors=True)
+                log.info("damaged upload %s expired: removed", folder.name)
+                del self._damaged[folder.name]
+        return [folder.name for folder in stale]
 
     # -- room
 
@@ -249,6 +270,7 @@ class UploadStore:
                 upload = self._read_one(folder)
             except (OSError, ValueError, TypeError, KeyError, StoreError) as error:
                 log.warning("upload %s is damaged and ignored: %s", folder.name, error)
+                self._damaged[folder.name] = visible(f"{type(error).__name__}: {error}")
                 continue
             self._uploads[upload.id] = upload
             self.finish(upload)
@@ -278,6 +300,15 @@ def _upload(facts: dict[str, Any]) -> Upload:
             raise TypeError(f"{fact.name}: expected {fact.type}, got {facts[fact.name]!r}"[:200])
     upload.name = visible(upload.name)
     return upload
+
+
+def _newest_s(folder: Path) -> float:
+    """Time of the newest change in a folder [s since 1970]; 0 if there is none."""
+    times = [0.0]
+    for path in (folder, *folder.rglob("*")):
+        with suppress(OSError):
+            times.append(path.lstat().st_mtime)
+    return max(times)
 
 
 def fsync(path: Path) -> None:

@@ -178,8 +178,12 @@ def test_an_upload_with_bad_facts_does_not_hide_the_others(tmp_path):
 
     with server_thread(tmp_path) as running:
         found = running.get("/api/uploads")
+        notices = running.get("/api/server").json()["notices"]
 
     assert [one["name"] for one in found.json()] == ["walk<U+202E>"]
+    damaged = [notice for notice in notices if "cannot be resumed" in notice]
+    assert len(damaged) == 4
+    assert all(f"{number:012x}" in damaged[number - 1] for number in range(1, 5))
 
 
 def test_one_damaged_row_of_the_queue_is_one_failed_job(tmp_path):

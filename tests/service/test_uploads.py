@@ -247,6 +247,23 @@ def test_an_upload_nothing_comes_for_is_given_up_and_a_recording_is_not(tmp_path
     assert whole.recording(store.recordings).exists()
 
 
+def test_a_damaged_upload_is_reported_until_it_expires(tmp_path):
+    broken = UploadStore(ServerSettings(root=tmp_path)).begin(
+        "walk", files=1, total=3, fingerprint="", by="me"
+    )
+    folder = tmp_path / ".recon4" / "uploads" / broken.id
+    (folder / "upload.json").write_text("{")
+    store = UploadStore(ServerSettings(root=tmp_path))
+
+    (notice,) = store.notices()
+
+    assert broken.id in notice and "Send the recording again" in notice
+    assert store.sweep(time.time()) == []
+    assert store.sweep(time.time() + 8 * 86400.0) == [broken.id]
+    assert store.notices() == []
+    assert not folder.exists()
+
+
 def test_a_server_killed_between_the_last_byte_and_the_end_ends_it(tmp_path):
     store = UploadStore(ServerSettings(root=tmp_path))
     upload = store.begin("walk", files=1, total=3, fingerprint="", by="me")
