@@ -6,7 +6,6 @@ import csv
 import io
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -17,6 +16,7 @@ from recon4.export.names import check_name
 from recon4.geometry.se3 import Array
 from recon4.mapping.tile import progressive
 from recon4.mapping.tiles import TileSet, TileWriter
+from recon4.recording.formats.scratch import scratch_folder
 from recon4.slices.colors import Ground, Span
 from recon4.slices.cut import Cut
 from recon4.slices.frames import MapFrame, jacobian
@@ -45,8 +45,9 @@ def write_laz(
         ConfigError: If the slices are empty.
         StoreError: If the file cannot be written or does not read back.
     """
-    with TemporaryDirectory(dir=path.parent, prefix=".slice-") as folder:
-        out = Path(folder)
+    with scratch_folder(0) as folder:
+        out = folder / "tiles"
+        out.mkdir()
         with TileWriter(out, tiles.fields, tile_m=float(tiles.facts["tile_m"])) as writer:
             writer.facts = {name: tiles.facts[name] for name in ("voxel_m", "crs")}
             for cut in cuts:

@@ -1,5 +1,9 @@
 import csv
 import math
+import signal
+import subprocess
+import sys
+import tempfile
 
 import ezdxf
 import laspy
@@ -10,6 +14,7 @@ import rasterio.transform
 
 from recon4.errors import ConfigError, CorruptFile, GeoreferenceError
 from recon4.georeference.crs import CrsTransform, GeodeticOrigin
+from recon4.recording.formats.scratch import sweep_scratch
 from recon4.slices.acceptance import AcceptanceText, render_acceptance
 from recon4.slices.control_points import ControlPoint, read_control
 from recon4.slices.cut import horizontal, vertical
@@ -83,6 +88,41 @@ def test_a_laz_holds_the_points_of_the_slice_in_the_crs(tiles, tmp_path):
     assert crs.to_epsg() == 32633 and len(found) == count == len(expected)
     assert np.sort(found.x) == pytest.approx(np.sort(expected[:, 0]), abs=0.0006)
     assert list(tmp_path.iterdir()) == [tmp_path / "s.laz"]
+
+
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+from recon4.mapping.tiles import TileSet
+from recon4.slices import export
+from recon4.slices.cut import horizontal
+from recon4.slices.frames import MapFrame
+
+def killed(*_, **__):
+    os.kill(os.getpid(), signal.SIGKILL)
+
+export.export_laz = killed
+cut = horizontal(0.5, thickness_m=0.2)
+export.write_laz(
+    TileSet.open(Path(sys.argv[1])), [cut], Path(sys.argv[2]), frame=MapFrame("", "", None)
+)
+"""
+
+
+def test_a_laz_whose_writer_was_killed_leaves_nothing_beside_it(tiles, tmp_path, monkeypatch):
+    out, temporary = tmp_path / "out", tmp_path / "tmp"
+    out.mkdir()
+    temporary.mkdir()
+    monkeypatch.setenv("TMPDIR", str(temporary))
+    monkeypatch.setattr(tempfile, "tempdir", str(temporary))
+    command = [sys.executable, "-c", KILLED, str(tiles.tiles[0].folder.parent), str(out / "s.laz")]
+
+    ended = subprocess.run(command, capture_output=True, check=False, timeout=300.0)
+
+    assert ended.returncode == -signal.SIGKILL, ended.stderr
+    assert list(out.iterdir()) == []
+    assert sweep_scratch() == 1
+    assert [*temporary.glob("*/*")] == []
 
 
 def test_a_csv_holds_every_point_with_place_and_coordinates(tiles, tmp_path):
