@@ -11,8 +11,10 @@ def main() -> None:
     """Run the command of this process and end it."""
     with StopSignals() as stop:  # before the imports, which take half a second
         try:
+            from recon4.cli.confinement import begin_own_process
             from recon4.cli.main import run
 
+            begin_own_process()
             code = run(sys.argv[1:], stop)
         except BaseException:
             if stop.received is None:

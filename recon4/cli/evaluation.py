@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from recon4.cli.confinement import confine_command
 from recon4.errors import ConfigError
 from recon4.model.plain import to_plain
 from recon4.terminal import write
@@ -53,6 +54,7 @@ def evaluate(
     as_json: Annotated[bool, typer.Option("--json", help="Write JSON for programs.")] = False,
 ) -> None:
     """Evaluate a result: ATE, KITTI drift, e_r in slices, density, survey markers."""
+    confine_command(write=[report.parent] if report else [])
     from recon4.evaluation.text import density_text, marker_text
 
     if truth is None and markers is None and not patch:

@@ -20,6 +20,7 @@ import recon4
 from app.cli.serve import server
 from app.cli.users import users
 from recon4.cli.backup import backups
+from recon4.cli.confinement import confine_command
 from recon4.cli.evaluation import evaluation
 from recon4.cli.live import live
 from recon4.cli.slices import slices
@@ -66,6 +67,7 @@ def info(
     as_json: JsonOption = False,
 ) -> None:
     """Say what a recording holds, what will be derived and what is missing."""
+    confine_command()
     from dataclasses import asdict
 
     from recon4.recording.info import describe
@@ -90,7 +92,13 @@ def process(
     as_json: JsonOption = False,
 ) -> None:
     """Make a map of a recording; started again, it continues where it stopped."""
+    from recon4.sandbox.private_cache import is_compiled, mark_compiled
+
     chosen = _settings(preset, assignments)
+    compiled = is_compiled()
+    if compiled:  # else this run compiles them, for every later process
+        out.mkdir(parents=True, exist_ok=True)
+        confine_command(write=[out])
 
     from recon4.model.rig import load_rig
     from recon4.pipeline import process as run
@@ -107,6 +115,8 @@ def process(
             preset=preset,
             progress=progress,
         )
+    if not compiled:
+        mark_compiled()
     if as_json:
         _write_json(summary.to_json())
     else:
@@ -164,6 +174,7 @@ def export(
     crs: Annotated[str, typer.Option(help="As EPSG:5514+8357; default: the map's.")] = "",
 ) -> None:
     """Write the map of a project, in any CRS when it is georeferenced, or its poses."""
+    confine_command(write=[file.parent])
     from recon4.results import export_map, export_poses
     from recon4.terminal import watcher
 

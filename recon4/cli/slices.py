@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from recon4.cli.confinement import confine_command
 from recon4.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -37,6 +38,7 @@ def cut_map(  # noqa: PLR0913 - options of a command
     ] = "height",
 ) -> None:
     """Cut a map and write the slice, at full resolution. It carries the map's approval."""
+    confine_command(write=[file.parent])
     from recon4.mapping.tiles import TileSet
     from recon4.review.approved import approval_of
     from recon4.slices.frames import frame_of
@@ -59,6 +61,7 @@ def cut_map(  # noqa: PLR0913 - options of a command
 @slices.command("doubles")
 def double_walls(project: ProjectArgument) -> None:
     """Look for walls that two visits put at two places; exit code 1 if there are any."""
+    confine_command()
     from recon4.mapping.tiles import TileSet
     from recon4.slices.doubles import find_double_walls
     from recon4.slices.frames import frame_of

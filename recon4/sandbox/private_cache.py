@@ -13,6 +13,7 @@ import os
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
+from importlib.metadata import version
 from pathlib import Path
 
 import recon4
@@ -74,6 +75,27 @@ def _font_lists() -> Iterator[Path]:
     if chosen := os.environ.get("MPLCONFIGDIR"):
         yield from _files(Path(chosen).resolve(), ".json")
     yield from _files(_user_caches() / "matplotlib", ".json")
+
+
+def is_compiled() -> bool:
+    """Whether an unconfined process has run a whole recording with the kernels as they are now."""
+    return any((cache / _mark()).exists() for cache in shared_caches())
+
+
+def mark_compiled() -> None:
+    """Note that an unconfined process has run a whole recording: its kernels are cached."""
+    for cache in shared_caches():
+        if _files(cache, ".nbi"):
+            with suppress(OSError):
+                (cache / _mark()).touch()
+                return
+
+
+def _mark() -> str:
+    """A name that changes with the kernels, Numba and Python."""
+    versions = f"{sys.implementation.cache_tag} {version('numba')}".encode()
+    sources = (path.read_bytes() for path in sorted(KERNELS.glob("*.py")))
+    return f"compiled-{hashlib.sha256(b'|'.join((versions, *sources))).hexdigest()[:16]}"
 
 
 def is_cold() -> bool:

@@ -53,6 +53,17 @@ def scratch_folder(needed_bytes: int) -> Iterator[Path]:
         os.close(lock)
 
 
+def keep_scratch_folder() -> Path:
+    """Give a folder for temporary files until this process ends; a later start removes it.
+
+    Raises:
+        StoreError: If the folder of the user is not theirs alone.
+    """
+    folder = Path(tempfile.mkdtemp(dir=_base()))
+    wait_for_lock(open_lock_file(folder / _LOCK))  # held until the process ends
+    return folder
+
+
 def sweep_scratch() -> int:
     """Remove what killed processes left behind; gives the number of folders removed."""
     removed = 0

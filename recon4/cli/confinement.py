@@ -1,0 +1,63 @@
+"""Confinement of the commands that read files of users, when they have a process of their own.
+
+Such a command may read what its user may read. It may write only where its results belong, open no
+socket and start no program: a hostile file that takes over a parser can neither send anything out
+nor change other files. `recon4.__main__` turns it on; a caller of `recon4.cli.main.main` in another
+program is not confined, because it could not be undone.
+"""
+
+from __future__ import annotations
+
+import atexit
+import logging
+import shutil
+from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
+
+from recon4.sandbox import Policy, confine
+from recon4.sandbox.private_cache import use_private_cache
+
+_OPEN_FILES = 4096
+_own_process = False
+
+
+def begin_own_process() -> None:
+    """Let `confine_command` confine this process; it runs one command and ends."""
+    global _own_process
+    _own_process = True
+
+
+def confine_command(*, write: Iterable[Path] = ()) -> None:
+    """Confine this process to the work of a command, before it opens a file of a user.
+
+    Without effect in a process that does not belong to the command (`begin_own_process`). Where
+    the kernel lacks a barrier the others still go up; ``recon4 doctor`` reports them.
+
+    Args:
+        write: Folders of the results. One that does not exist yet cannot be written later.
+    """
+    if not _own_process:
+        return
+    from recon4.recording.formats.scratch import keep_scratch_folder
+
+    scratch = keep_scratch_folder()
+    atexit.register(_empty, scratch)
+    use_private_cache(scratch / "caches")
+    logging.getLogger("recon4.sandbox").setLevel(logging.ERROR)
+    confine(
+        Policy(
+            read=(Path("/"),),
+            write=(*(folder.resolve() for folder in write), scratch),
+            temporary=scratch / "tmp",
+            open_files=_OPEN_FILES,
+        )
+    )
+
+
+def _empty(scratch: Path) -> None:
+    """Remove what is in a folder but its lock, by which the next command finds it."""
+    with suppress(OSError):
+        for path in scratch.iterdir():
+            if path.is_dir():
+                shutil.rmtree(path, ignore_errors=True)
