@@ -10,6 +10,7 @@ PROJECT/live/outcome.json       written last by the recorder: why it ended
 from __future__ import annotations
 
 import hashlib
+import math
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -22,6 +23,13 @@ _DAY_NS = 86_400_000_000_000
 
 
 MAX_JSON_BYTES = 1 << 20
+_TYPES: dict[str, tuple[type, ...]] = {
+    "preset": (str,),
+    "address": (str,),
+    "least_free_bytes": (int,),
+    "speed": (int, float),
+}
+"""JSON types of the fields of a session."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -91,7 +99,17 @@ def load_session(project: Path) -> CaptureSession:
         StoreError: If the project has no session, or the file is damaged.
     """
     path = project / "live" / "session.json"
+    facts = read_object(path, max_bytes=MAX_JSON_BYTES)
     try:
-        return CaptureSession(project=project, **read_object(path, max_bytes=MAX_JSON_BYTES))
+        session = CaptureSession(**{**facts, "project": project})
     except TypeError as error:
         raise StoreError(f"{path} cannot be read: {error}") from error
+    for name, kind in _TYPES.items():
+        if type(getattr(session, name)) not in kind:
+            raise StoreError(f"{path}: {name}: got {getattr(session, name)!r:.80}")
+    if not (0.0 < session.speed < math.inf and 0 <= session.least_free_bytes < 1 << 63):
+        raise StoreError(
+            f"{path}: expected speed > 0 and least_free_bytes >= 0, "
+            f"got {session.speed:.6g} and {session.least_free_bytes:.6g}"
+        )
+    return session

@@ -21,7 +21,7 @@ import numpy as np
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
-from recon4.recording.velodyne.position_packets import parse_fix
+from recon4.recording.velodyne.position_packets import is_on_earth, parse_fix
 from recon4.recording.velodyne.sensor_clock import SECOND_NS
 
 _UTC_WITHIN_NS = 5 * SECOND_NS // 2
@@ -82,8 +82,8 @@ class SampleDecoder:
         except (ValueError, TypeError, AttributeError, OverflowError, RecursionError):
             self.report.count("samples_damaged")
             return
-        needed = values[:3] if kind == "imu" else values[:2]
-        if not all(map(math.isfinite, needed)) or not 0 < t_ns < 1 << 62:
+        sound = all(map(math.isfinite, values[:3])) if kind == "imu" else is_on_earth(*values[:2])
+        if not sound or not 0 < t_ns < 1 << 62:
             self.report.count("samples_damaged")
             return
         yield kind, t_ns, values

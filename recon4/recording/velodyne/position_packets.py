@@ -52,7 +52,7 @@ def nmea_text(payload: NDArray[np.uint8]) -> bytes:
 def parse_fix(sentence: bytes, near_ns: int, report: ImportReport) -> NmeaFix | None:
     """Read an RMC or GGA sentence; None if it has no valid position.
 
-    Counts ``nmea_no_fix`` and ``nmea_damaged`` (checksum or fields).
+    Counts ``nmea_no_fix`` and ``nmea_damaged`` (checksum, fields, or no place on earth).
 
     Args:
         sentence: From ``$`` to the checksum.
@@ -75,7 +75,15 @@ def parse_fix(sentence: bytes, near_ns: int, report: ImportReport) -> NmeaFix | 
         report.count("nmea_damaged")
         return None
     report.count("nmea_no_fix", int(fix is None))
+    if fix is not None and not is_on_earth(fix.lat_deg, fix.lon_deg):
+        report.count("nmea_damaged")
+        return None
     return fix
+
+
+def is_on_earth(lat_deg: float, lon_deg: float) -> bool:
+    """Whether a latitude and longitude are those of a place [deg]; False if one is NaN."""
+    return abs(lat_deg) <= 90.0 and abs(lon_deg) <= 360.0
 
 
 def _fix(message: Any, near_ns: int) -> NmeaFix | None:

@@ -12,6 +12,8 @@ from recon4.recording.samples.datagrams import SampleDecoder
 NOON_NS = 1_790_000_000_000_000_000 // 86_400_000_000_000 * 86_400_000_000_000 + 43_200 * 10**9
 _GGA = b"GPGGA,120000.00,4912.0,N,01636.0,E,4,12,0.8,250.0,M,44.0,M,1.0,0001"
 GGA = b"$%s*%02X\r\n" % (_GGA, reduce(xor, _GGA))
+_NOWHERE = _GGA.replace(b"4912.0", b"9912.0")
+NOWHERE = b"$%s*%02X\r\n" % (_NOWHERE, reduce(xor, _NOWHERE))
 IMU = b'{"gx_rad_s": 0.1, "gy_rad_s": 0, "gz_rad_s": 0.5}\n'
 
 
@@ -49,9 +51,10 @@ def test_an_absolute_time_is_left_alone():
 
 def test_what_is_no_sample_is_counted():
     lines = b'{"lat_deg": 49.2}\n[1]\n{"gx_rad_s": 1, "gy_rad_s": 2, "gz_rad_s": NaN}\nhello\n'
+    lines += b'{"lat_deg": 1e300, "lon_deg": 16.6}\n{"lat_deg": 49.2, "lon_deg": -361}\n'
 
-    (imu, gnss), report = pushed(NOON_NS, lines, b"\xff\xfe", b"$GPGGA,broken*00\r\n")
+    (imu, gnss), report = pushed(NOON_NS, lines, b"\xff\xfe", b"$GPGGA,broken*00\r\n", NOWHERE)
 
     assert imu is gnss is None
-    assert report.counts["samples_damaged"] == 5
-    assert report.counts["nmea_damaged"] == 1
+    assert report.counts["samples_damaged"] == 7
+    assert report.counts["nmea_damaged"] == 2
