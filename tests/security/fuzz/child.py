@@ -86,6 +86,11 @@ def _judge(kind: Kind, path: Path, made: Mutant, whole: Sequence[int]) -> tuple[
     return "ok", ""
 
 
+def judge_whole(kind: Kind, path: Path, data: bytes) -> tuple[str, str]:
+    """How reading a file ended that is at ``path`` already, and words to it."""
+    return _judge(kind, path, Mutant(data, "", None), ())
+
+
 def _place(error: BaseException) -> str:
     frames = traceback.extract_tb(error.__traceback__)
     ours = [f for f in frames if "/recon4/" in f.filename or "/app/" in f.filename] or frames

@@ -37,6 +37,7 @@ from tests.security.fuzz import seeds_clouds as clouds
 from tests.security.fuzz import seeds_recordings as recordings
 from tests.security.fuzz import seeds_tables as tables
 from tests.security.fuzz.kind import Kind, Reading
+from tests.security.fuzz.kinds_live import LIVE_KINDS
 
 
 def _info(path: Path) -> None:
@@ -340,5 +341,5 @@ def _made(makers: tuple[Callable[[], bytes], ...]) -> tuple[bytes, ...]:
     return tuple(make() for make in makers)
 
 
-KINDS: dict[str, Kind] = {kind.name: kind for kind in (*_ALL, *_recordings())}
+KINDS: dict[str, Kind] = {kind.name: kind for kind in (*_ALL, *_recordings(), *LIVE_KINDS)}
 """By name."""

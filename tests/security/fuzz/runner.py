@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import select
@@ -9,6 +10,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,8 +18,10 @@ from typing import Any, Self
 
 ROOT = Path(__file__).parents[3]
 HANG_S = 10.0
-START_S = 120.0
+START_S = 600.0
 """The child imports the readers and reads the seeds before the first mutant."""
+STARVED_S = 600.0
+"""A reader that is ready to run but gets no processor on a busy computer does not hang."""
 BATCH = 2500
 """Mutants of one child: what a library leaks stays small against the limit of memory."""
 GOOD = ("ok", "rejected", "salvaged")
@@ -90,17 +94,22 @@ class Readers:
         self._child.stdin.write(json.dumps(request).encode() + b"\n")
         self._child.stdin.flush()
         pid, running, hung = 0, -1, False
+        since = used_s = 0.0
         wait_s: float = START_S
         while True:
             line = self._next(wait_s)
             if line is None:
                 assert pid, f"the readers do not start: {self._tail(began)}"
-                os.kill(pid, signal.SIGKILL)
+                if (wait_s := _patience_s(pid, used_s, hang_s, time.monotonic() - since)) > 0:
+                    continue
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(pid, signal.SIGKILL)
                 hung, wait_s = True, START_S
             elif "pid" in line:
                 pid, wait_s = line["pid"], hang_s
             elif "start" in line:
-                running = line["start"]
+                running, since, used_s = line["start"], time.monotonic(), _processor_s(pid)
+                wait_s = hang_s
             elif "end" in line:
                 break
             else:
@@ -159,10 +168,35 @@ def fuzz(
     number, stop = first, first + count
     while number < stop:
         batch = range(number, min(stop, number + BATCH))
-        with tempfile.TemporaryDirectory(prefix="fuzz-", dir=_fast_folder()) as folder:
+        with tempfile.TemporaryDirectory(prefix="fuzz-", dir=fast_folder()) as folder:
             number = readers.read(tally, batch, Path(folder), hang_s=hang_s)
     return tally
 
 
-def _fast_folder() -> str | None:
+def _patience_s(pid: int, used_before_s: float, hang_s: float, waited_s: float) -> float:
+    """How long a reader that has not answered may go on [s]: 0 = it hangs.
+
+    It hangs if it sleeps, or if it used that much processor time for one file.
+    """
+    state = (_fields(pid) or ["R"])[0]
+    left_s = hang_s - (_processor_s(pid) - used_before_s)
+    return max(1.0, left_s) if state in "RDZ" and left_s > 0 and waited_s < STARVED_S else 0.0
+
+
+def _processor_s(pid: int) -> float:
+    """Processor time a process has used [s]."""
+    fields = _fields(pid)
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK") if fields else 0.0
+
+
+def _fields(pid: int) -> list[str]:
+    """Of ``/proc/PID/stat``, from the state on; none if the process is gone."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return []
+
+
+def fast_folder() -> str | None:
+    """A folder in memory for the files of trials, if there is one."""
     return "/dev/shm" if os.access("/dev/shm", os.W_OK) else None

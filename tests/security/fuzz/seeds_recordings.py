@@ -12,6 +12,7 @@ import struct
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -156,6 +157,7 @@ def seed_bag1_lz4() -> bytes:
     return _bag("bag1", "lz4")
 
 
+@cache
 def seed_db3() -> bytes:
     """rosbag2 storage file in SQLite."""
     return _bag("db3")
