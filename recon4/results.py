@@ -18,6 +18,7 @@ from recon4.mapping.tiles import TileSet
 from recon4.model.figures import Figures
 from recon4.model.plain import to_plain
 from recon4.model.trajectory import Trajectory
+from recon4.model.usability import MapVerdict
 from recon4.pose_graph.files import load_graph
 from recon4.pose_graph.g2o import write_g2o
 from recon4.progress import Progress, track
@@ -25,7 +26,7 @@ from recon4.recording.formats.poses import write_kitti, write_tum
 from recon4.report.artifacts import path_length_m
 from recon4.report.facts import InputFile, ReportFacts, StageTiming
 from recon4.report.html import write_report
-from recon4.report.verdict import MapVerdict, assess
+from recon4.report.verdict import Assessment, assess
 from recon4.review.approval import put_back
 from recon4.review.approved import Approval, approval_of
 from recon4.review.stamp import Stamp, stamp_file
@@ -173,8 +174,8 @@ def _publish(
     (root / SUMMARY).unlink(missing_ok=True)
     created = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
     trajectory = load_trajectory(runs["level"].artifact.folder / "trajectory.npz")
-    facts = report_facts(runs, about, created=created)
-    for write in track(_writers(root, runs, facts), progress, what="results", unit="files"):
+    assessed = assess(report_facts(runs, about, created=created))
+    for write in track(_writers(root, runs, assessed), progress, what="results", unit="files"):
         write()
     approval, warning = _put_back(root, {name: run.artifact.key for name, run in runs.items()})
     frames, level = figures_of(runs, stages.FRAMES), figures_of(runs, stages.LEVEL)
@@ -190,7 +191,7 @@ def _publish(
         lost=figures_of(runs, stages.ODOMETRY).lost,
         points=figures_of(runs, stages.MAP).points,
         edges=load_graph(runs["level"].artifact.folder).verdict_counts(),
-        verdict=assess(facts),
+        verdict=assessed.verdict,
         warnings=(*frames.warnings, *_later_warnings(runs), *warning),
         seconds=round(sum(run.done.seconds for run in runs.values()), 3),
         peak_bytes=max(run.done.peak_bytes for run in runs.values()),
@@ -297,7 +298,7 @@ def export_poses(project: Path, path: Path) -> int:
 
 
 def _writers(
-    root: Path, runs: Mapping[str, StageRun[Any]], facts: ReportFacts
+    root: Path, runs: Mapping[str, StageRun[Any]], assessed: Assessment
 ) -> list[Callable[[], None]]:
     """One function a file of `RESULTS`."""
     folder = {name: run.artifact.folder for name, run in runs.items()}
@@ -307,7 +308,7 @@ def _writers(
         lambda: copy_file(folder["map"] / "map.laz", root / "map.laz"),
         lambda: copy_file(folder["level"] / "edges.json", root / "edges.json"),
         lambda: _write_g2o(folder["level"], root / "graph.g2o"),
-        lambda: write_report(root / "report.html", facts=facts),
+        lambda: write_report(root / "report.html", assessed),
     ]
 
 

@@ -56,6 +56,7 @@ def build_project(root: Path, *, points: int = 60_000, with_map: bool = True) ->
         "multiframes": 600,
         "lost": 0,
         "edges": {"accepted": 108, "rejected": 8, "unverified": 6},
+        "verdict": {"usability": "good", "reasons": [], "unobserved": []},
         "seconds": 41.5,
         "peak_bytes": 812_000_000,
     }

@@ -9,7 +9,7 @@ import shutil
 import threading
 from collections import OrderedDict
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -136,7 +136,7 @@ class Slices:
             return f"ALTERED: {error}"
         from recon4.slices.sheet import approval_text
 
-        text = approval_text(asdict(found.evidence.stamp) if found else None)
+        text = approval_text(found.evidence.stamp.to_json() if found else None)
         if found is None:
             return text
         check = self._checks.state(root, found)

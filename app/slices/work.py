@@ -332,7 +332,7 @@ def span_of(ask: SliceView, made: SliceImage) -> Span:
 
 def stamp_text(evidence: Evidence | None) -> str:
     """Who approved a map, as one line."""
-    return approval_text(asdict(evidence.stamp) if evidence else None)
+    return approval_text(evidence.stamp.to_json() if evidence else None)
 
 
 def window_of(ask: SliceView, tiles: TileSet, cut: Cut) -> SliceWindow:

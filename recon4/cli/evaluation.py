@@ -103,8 +103,9 @@ def _against_truth(result: Path, truth: Path, *, model: Path | None, floor: bool
 def _write_report(project: Path, found: Evaluation, path: Path) -> None:
     from recon4.report.html import write_report
     from recon4.report.project import project_facts
+    from recon4.report.verdict import assess
 
-    write_report(path, facts=project_facts(project, found))
+    write_report(path, assess(project_facts(project, found)))
 
 
 def _marker_table(surveyed: Path, measured: Path) -> MarkerTable:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -141,7 +140,7 @@ def _write_image(
 
     if about["color"] not in LABELS:
         raise ConfigError(f"colors are {', '.join(LABELS)}; got {about['color']!r}")
-    approval = approval_text(asdict(about["stamp"]) if about["stamp"] else None)
+    approval = approval_text(about["stamp"].to_json() if about["stamp"] else None)
     window = extent(tiles, cut)
     if file.suffix.lower() == ".tif":
         side_m = max(window.right - window.left, window.top - window.bottom)

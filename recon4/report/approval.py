@@ -3,10 +3,21 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from html import escape
+from typing import Any
+
+from recon4.model.usability import Usability
 
 _BEGIN, _END = "<!-- approval -->", "<!-- /approval -->"
 _BLOCK = re.compile(f"{re.escape(_BEGIN)}.*?{re.escape(_END)}", re.DOTALL)
+
+_LEVELS: dict[str, str] = {
+    "": "good",  # of an earlier version, which signed no verdict
+    Usability.GOOD: "good",
+    Usability.CHECK: "warning",
+    Usability.DO_NOT_USE: "bad",
+}
 
 
 def draft_block() -> str:
@@ -14,16 +25,22 @@ def draft_block() -> str:
     return _block("note", "draft", "Not approved by anybody.")
 
 
-def approved_block(*, version: int, who: str, role: str, time: str, hash: str) -> str:
-    """HTML for an approved map; names are escaped."""
-    shown = time[:16].replace("T", " ")
-    return _block(
-        "good",
-        "approved",
-        f"Version {version}, approved by {escape(who)} ({escape(role)}) on {escape(shown)} UTC. "
-        f'Approval <span class="hash">{escape(hash)}</span>, signed in '
-        f"versions/{version}/approval.json.",
-    )
+def approved_block(stamp: Mapping[str, Any]) -> str:
+    """HTML for an approved map, from the fields of its stamp; all of them are escaped.
+
+    A map approved in spite of its verdict says so, with the reason of the signer.
+    """
+    text = {name: escape(str(value)) for name, value in stamp.items()}
+    verdict = text.get("verdict", "")
+    day = text["time"][:16].replace("T", " ")
+    words = [
+        f"Version {text['version']}, approved by {text['who']} ({text['role']}) on {day} UTC.",
+        f"Verdict on the map when it was approved: {verdict}." if verdict else "",
+        f"Reason of the signer: “{text['why']}”." if "why" in text else "",
+        f'Approval <span class="hash">{text["hash"]}</span>, signed in '
+        f"versions/{text['version']}/approval.json.",
+    ]
+    return _block(_LEVELS.get(verdict, "note"), "approved", " ".join(filter(None, words)))
 
 
 def replace_block(page: str, block: str) -> str:

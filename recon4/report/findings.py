@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -48,7 +49,7 @@ _HEADLINES = {
 }
 
 
-def headline(findings: list[Finding]) -> tuple[Level, str]:
+def headline(findings: Sequence[Finding]) -> tuple[Level, str]:
     """The worst level and one sentence for it."""
     worst = max((finding.level for finding in findings), default=Level.NOTE)
     return worst, _HEADLINES[worst]

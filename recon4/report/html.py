@@ -15,38 +15,37 @@ from recon4.mapping.tiles import TileSet
 from recon4.model.pose_graph import EdgeKind
 from recon4.report import chart_groups
 from recon4.report.approval import draft_block
-from recon4.report.artifacts import Results, path_length_m, read_results
-from recon4.report.drift import DriftClosed, closed_drift
+from recon4.report.artifacts import Results, path_length_m
+from recon4.report.drift import DriftClosed
 from recon4.report.edges import EdgeRow, edge_rows
 from recon4.report.facts import ReportFacts
-from recon4.report.findings import find, headline
+from recon4.report.findings import headline
 from recon4.report.maps import map_chunks, rasterize
 from recon4.report.rows import imported_rows, placed_rows
+from recon4.report.verdict import Assessment
 from recon4.settings import Settings, preset
 from recon4.store.atomic import write_text
 
 
-def write_report(path: Path, *, facts: ReportFacts) -> None:
+def write_report(path: Path, assessed: Assessment) -> None:
     """Write the report of a finished run.
 
     Args:
         path: The ``.html`` file; replaced only when the new one is complete.
-        facts: Facts from the pipeline; sections without facts are left out.
+        assessed: The run as read and judged; sections without facts are left out.
 
     Raises:
         StoreError: If an artifact is damaged or the file cannot be written.
     """
-    write_text(path, render(facts))
+    write_text(path, render(assessed))
 
 
-def render(facts: ReportFacts) -> str:
+def render(assessed: Assessment) -> str:
     """The report as HTML text; all names are escaped."""
-    results = read_results(facts.artifacts)
-    drift = closed_drift(results)
+    facts, results, drift = assessed.facts, assessed.results, assessed.drift
     tiles = TileSet.open(facts.artifacts["map"]) if "map" in facts.artifacts else None
     rasters = rasterize(lambda: map_chunks(tiles)) if tiles is not None else []
-    findings = find(facts, results, drift)
-    level, verdict = headline(findings)
+    level, verdict = headline(assessed.findings)
     environment = Environment(
         loader=PackageLoader("recon4.report", "."),
         autoescape=True,
@@ -63,7 +62,7 @@ def render(facts: ReportFacts) -> str:
     page = environment.get_template("template.html.jinja").render(
         facts=facts,
         results=results,
-        findings=findings,
+        findings=assessed.findings,
         approval=draft_block(),
         level=level.name.lower(),
         verdict=verdict,

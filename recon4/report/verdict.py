@@ -9,21 +9,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from recon4.model.usability import Usability
-from recon4.report.artifacts import read_results
-from recon4.report.drift import closed_drift
+import numpy as np
+
+from recon4.geometry.se3 import Array
+from recon4.model.trajectory import Trajectory
+from recon4.model.usability import MapVerdict, Unobserved, Usability
+from recon4.report.artifacts import Results, read_results
+from recon4.report.drift import DriftClosed, closed_drift
 from recon4.report.facts import ReportFacts
 from recon4.report.findings import Finding, Level, find
-
-
-@dataclass(frozen=True, slots=True)
-class MapVerdict:
-    """A usability and why it is not better."""
-
-    usability: Usability
-    reasons: tuple[str, ...]
-    """The findings that led to it, worst first; empty for a good map."""
-
+from recon4.report.observability import WeakStretch, weak_stretches
 
 _USABILITY = {
     Level.GOOD: Usability.GOOD,
@@ -33,21 +28,73 @@ _USABILITY = {
 }
 
 
-def assess(facts: ReportFacts) -> MapVerdict:
-    """The verdict on the map of a run, from its artifacts.
+@dataclass(frozen=True, slots=True, eq=False)
+class Assessment:
+    """What the report and the summary say of a run, from one reading of its artifacts."""
+
+    facts: ReportFacts
+    results: Results
+    drift: DriftClosed | None
+    """Correction of the odometry; None without both trajectories."""
+    findings: Sequence[Finding]
+    """Worst first."""
+    verdict: MapVerdict
+
+
+def assess(facts: ReportFacts) -> Assessment:
+    """Read the artifacts of a run once and judge its map.
 
     Raises:
         StoreError: If an artifact is damaged.
     """
     results = read_results(facts.artifacts)
-    return map_verdict(find(facts, results, closed_drift(results)))
+    drift = closed_drift(results)
+    findings = find(facts, results, drift)
+    verdict = map_verdict(findings, unobserved=unobserved(results))
+    return Assessment(facts, results, drift, findings=findings, verdict=verdict)
 
 
-def map_verdict(findings: Sequence[Finding]) -> MapVerdict:
+def map_verdict(
+    findings: Sequence[Finding], *, unobserved: Sequence[Unobserved] = ()
+) -> MapVerdict:
     """The worst finding decides. Without any finding nothing was checked: not good."""
     if not findings:
         return MapVerdict(Usability.CHECK, ("Nothing of this map could be checked.",))
     worst = max(finding.level for finding in findings)
     reasons = [finding for finding in findings if finding.level >= Level.WARNING]
     ordered = sorted(reasons, key=lambda finding: -finding.level)
-    return MapVerdict(_USABILITY[worst], tuple(finding.text for finding in ordered))
+    texts = tuple(finding.text for finding in ordered)
+    return MapVerdict(_USABILITY[worst], texts, tuple(unobserved))
+
+
+def unobserved(results: Results) -> tuple[Unobserved, ...]:
+    """The stretches along which one direction is hardly observed, with their places in the map."""
+    return tuple(_located(stretch, results) for stretch in weak_stretches(results.steps))
+
+
+def _located(stretch: WeakStretch, results: Results) -> Unobserved:
+    t_ns = int(results.steps["t_mid_ns"][0]) + np.rint(
+        1e9 * np.array([stretch.start_s, stretch.end_s])
+    ).astype(np.int64)
+    known = bool(np.isfinite(stretch.direction_odom).all())
+    start_m, end_m = _places(results.final, t_ns)
+    return Unobserved(
+        start_s=round(stretch.start_s, 2),
+        end_s=round(stretch.end_s, 2),
+        direction=("horizontal" if stretch.horizontal else "vertical") if known else "",
+        degeneracy=float(stretch.degeneracy),
+        from_m=start_m,
+        to_m=end_m,
+    )
+
+
+def _places(walk: Trajectory | None, t_ns: Array) -> list[tuple[float, ...]]:
+    """Positions at these times [m], rounded to 1 cm; empty where the trajectory has none."""
+    if walk is None or not len(walk):
+        return [() for _ in t_ns]
+    covered = (t_ns >= walk.t_ns[0]) & (t_ns <= walk.t_ns[-1])
+    at = walk.at(np.clip(t_ns, walk.t_ns[0], walk.t_ns[-1])).t
+    return [
+        tuple(round(float(x), 2) for x in p) if inside else ()
+        for p, inside in zip(at, covered, strict=True)
+    ]

@@ -15,13 +15,16 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from recon4.errors import StoreError
+from recon4.model.usability import MapVerdict, Usability, verdict_in
 from recon4.review.approved import VERSIONS, Approval, approval_of
 from recon4.review.decisions import Decided, Decision, DecisionKind, fold
 from recon4.review.journal import Row, append, broken, head, read_rows
 from recon4.review.signature import sign
 from recon4.review.source import graph_key
-from recon4.review.stamp import Stamp, stamp_file
+from recon4.review.stamp import NO_VERDICT, Stamp, stamp_file
 from recon4.review.state import artifact_keys, decisions_in_map, read_summary
 from recon4.store.atomic import atomic_file, atomic_folder, make_folders, sweep, write_json
 from recon4.store.checked import Altered, CheckedArtifact
@@ -29,8 +32,10 @@ from recon4.store.hashing import hash_file, hash_json
 from recon4.store.project import SUMMARY, Project
 from recon4.store.seal import changing, check_sealed
 
-FORMAT = 2
-"""Format of the statement. 2: it contains the manifest hash of every artifact."""
+FORMAT = 3
+"""Format of the statement. 2: it contains the manifest hash of every artifact. 3: the verdict."""
+MIN_REASON_CHARACTERS = 10
+"""A shorter text is no reason to approve a map in spite of its verdict."""
 _FIGURES = (
     "points",
     "path_length_m",
@@ -56,6 +61,8 @@ class _ApprovalRequest:
     rows: Sequence[Row]
     signer: Mapping[str, str]
     conflicts: int
+    verdict: MapVerdict | None
+    """On the map; None = the run worked none out."""
 
     @property
     def keys(self) -> dict[str, str]:
@@ -81,8 +88,8 @@ def approve(
 
     Raises:
         NotApprovable: If there is no finished run, it lacks decisions, is damaged, has conflicts
-            that are not confirmed with a reason, is approved already, or differs from what the
-            signer saw.
+            that are not confirmed with a reason, is approved already, differs from what the
+            signer saw, or its verdict needs a reason (`reason_needed`).
         StoreError: If the project is in use or cannot be written (`NoSpace`: disk full).
     """
     with Project.open(root):
@@ -95,13 +102,30 @@ def approve(
         sweep(root / VERSIONS)
         version = 1 + sum(row.kind == DecisionKind.APPROVE for row in asked.rows)
         approval = _issue(root, asked, version=version, key_file=key_file)
-        facts = {"version": version, "approval": approval.hash, "artifacts": hash_json(asked.keys)}
+        facts = {
+            "version": version,
+            "approval": approval.hash,
+            "artifacts": hash_json(asked.keys),
+            "verdict": approval.stamp.verdict,
+        }
         decision = Decision(
             kind=DecisionKind.APPROVE, who=signer["who"], why=signer["why"], facts=facts
         )
         append(root, decision, after_seq=len(asked.rows))
         _hand_out(root, approval)
     return approval
+
+
+def reason_needed(verdict: MapVerdict | None) -> str:
+    """Why a map with this verdict is approved only with a typed reason; empty = without one."""
+    if verdict is None:
+        return "this map has no verdict: an earlier version of recon4 made it"
+    if verdict.usability is Usability.DO_NOT_USE:
+        return f'the verdict on this map is "{verdict.usability}": {" ".join(verdict.reasons)}'
+    if verdict.unobserved:
+        count = len(verdict.unobserved)
+        return f"a direction of this map is not observable along {count} of its stretches"
+    return ""
 
 
 def put_back(root: Path, approval: Approval) -> None:
@@ -162,7 +186,21 @@ def _asked(root: Path, signer: Mapping[str, str]) -> _ApprovalRequest:
     if record := broken(rows):
         raise NotApprovable(f"the journal was altered: {record[0]}")
     decided = fold(row.decision() for row in rows)
-    return _ApprovalRequest(summary, decided, rows, signer, _conflicts(root, summary))
+    return _ApprovalRequest(
+        summary,
+        decided,
+        rows,
+        signer,
+        conflicts=_conflicts(root, summary),
+        verdict=_verdict(summary),
+    )
+
+
+def _verdict(summary: Mapping[str, Any]) -> MapVerdict | None:
+    try:
+        return verdict_in(summary)
+    except StoreError as error:
+        raise NotApprovable(f"{error}: make a new map first") from error
 
 
 def _conflicts(root: Path, summary: dict[str, Any]) -> int:
@@ -183,6 +221,12 @@ def _refuse(root: Path, asked: _ApprovalRequest, *, confirmed: bool) -> None:
         raise NotApprovable(
             f"{asked.conflicts} accepted loop closures do not fit the graph: reject them, or "
             "confirm them with a reason"
+        )
+    why_not = reason_needed(asked.verdict)
+    if why_not and len(asked.signer["why"].strip()) < MIN_REASON_CHARACTERS:
+        raise NotApprovable(
+            f"{why_not}; to approve it in spite of that, give a reason of at least "
+            f"{MIN_REASON_CHARACTERS} characters"
         )
     for name, sha256 in asked.summary["hashes"]["results"].items():
         path = root / name
@@ -208,6 +252,8 @@ def _issue(root: Path, asked: _ApprovalRequest, *, version: int, key_file: Path)
         role=asked.signer["role"],
         time=time,
         hash=hash_json(statement),
+        verdict=statement["verdict"]["usability"],
+        why=statement["why"],
     )
     with atomic_folder(folder) as made:
         for name in asked.summary["hashes"]["results"]:
@@ -231,6 +277,7 @@ def _statement(root: Path, asked: _ApprovalRequest, *, version: int, time: str) 
         "version": version,
         **{name: asked.signer[name] for name in ("who", "role", "why")},
         "time": time,
+        "verdict": _judged(asked.verdict),
         "figures": figures | {"chi2": graph.get("chi2_after"), "conflicts": asked.conflicts},
         "artifacts": asked.keys,
         "manifests": {
@@ -245,6 +292,14 @@ def _statement(root: Path, asked: _ApprovalRequest, *, version: int, time: str) 
             "decisions": asked.decided.key,
         },
     }
+
+
+def _judged(verdict: MapVerdict | None) -> dict[str, Any]:
+    """The verdict as signed; `NO_VERDICT` as usability if the run worked none out."""
+    if verdict is None:
+        return {"usability": NO_VERDICT, "reasons": [], "unobserved": []}
+    record: dict[str, Any] = msgspec.to_builtins(verdict)
+    return record
 
 
 def _write_summary(folder: Path, summary: dict[str, Any], stamp: Stamp) -> None:

@@ -118,6 +118,7 @@ def latest_approval(root: Path, rows: Sequence[Row]) -> dict[str, Any] | None:
                 "who": row.who,
                 "time": row.time,
                 "why": row.why,
+                "verdict": facts.get("verdict", ""),
                 "current": named == facts["approval"],
             }
     return None
@@ -170,4 +171,6 @@ def _facts(row: Row) -> dict[str, Any]:
 
 def _stamp(version: int, statement: dict[str, Any], sha256: str) -> Stamp:
     who = {name: str(statement[name]) for name in ("who", "role", "time")}
+    if "verdict" in statement:  # since format 3
+        who |= {"verdict": str(statement["verdict"]["usability"]), "why": str(statement["why"])}
     return Stamp(version=version, hash=sha256, **who)

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from recon4.model.usability import Usability
+from recon4.names import visible
 from recon4.progress import Progress, track
 from recon4.review.approved import VERSIONS, read_approval
 from recon4.review.decisions import DecisionKind
@@ -45,9 +47,19 @@ def audit_review(root: Path, progress: Progress) -> ReviewAudit:
         wrong, key = _check(root / VERSIONS / str(version), row)
         damaged += [f"version {version}: {what}" for what in wrong]
         if not wrong:
-            approvals.append(f"version {version}, approved by {row.who}, {row.time}, key {key}")
+            signed = f"version {version}, approved by {row.who}, {row.time}, key {key}"
+            approvals.append(signed + _in_spite_of(facts.get("verdict", ""), row.why))
     damaged += _surplus(root / VERSIONS, counted)
     return ReviewAudit(len(rows), tuple(approvals), tuple(damaged))
+
+
+def _in_spite_of(verdict: str, why: str) -> str:
+    """The verdict that a map was approved in spite of, and the reason; empty for a good one."""
+    if verdict in ("", Usability.GOOD):
+        return ""
+    return f', verdict "{verdict}"' + (
+        f', reason "{visible(" ".join(why.split()))}"' if why else ""
+    )
 
 
 def _check(folder: Path, row: Row) -> tuple[list[str], str]:

@@ -9,14 +9,16 @@ import json
 import shutil
 import struct
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 from recon4.errors import StoreError
 from recon4.report.approval import approved_block, replace_block
 from recon4.store.atomic import atomic_file
 
+NO_VERDICT = "unknown"
+"""Verdict in the approval of a map whose run worked none out."""
 VLR_USER = b"recon4"
 VLR_RECORD = 1
 _VLR = struct.Struct("<H16sHH32s")
@@ -36,10 +38,19 @@ class Stamp:
     """UTC, ISO 8601."""
     hash: str
     """SHA-256 of the signed statement in ``versions/<version>/approval.json``."""
+    verdict: str = ""
+    """On the map (`Usability`), or `NO_VERDICT`; empty before statement format 3."""
+    why: str = ""
+    """The signer's reason or remark; empty before statement format 3."""
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain JSON values, without the fields that are empty."""
+        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        return {name: value for name, value in values.items() if value != ""}
 
     def json_line(self) -> str:
         """JSON in ASCII on one line."""
-        return json.dumps(asdict(self))
+        return json.dumps(self.to_json())
 
 
 def stamp_file(source: Path, target: Path, stamp: Stamp) -> None:
@@ -101,7 +112,7 @@ def _json(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
 
 
 def _html(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
-    block = approved_block(**asdict(stamp))
+    block = approved_block(stamp.to_json())
     target.write(replace_block(source.read().decode("utf-8"), block).encode("utf-8"))
 
 

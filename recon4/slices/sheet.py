@@ -11,6 +11,8 @@ import numpy as np
 
 import recon4
 from recon4.errors import ConfigError
+from recon4.model.usability import Usability
+from recon4.names import visible
 from recon4.slices.colors import (
     LABELS,
     REFERENCE_COLOR,
@@ -36,6 +38,8 @@ SCALES = (1, 2, 5, 10, 20, 25, 50, 100, 200, 250, 500, 1000, 2000, 2500, 5000, 1
 DPI = 300
 _LEFT_MM, _RIGHT_MM, _TOP_MM, _BOTTOM_MM = 18.0, 8.0, 20.0, 30.0
 _MM_PER_INCH = 25.4
+_REASON_CHARACTERS = 90
+"""Of a signer's reason that fit on one line; all of it is in the statement."""
 _INK, _QUIET, _GRID = "#17202a", "#56636f", "#b9c3cc"
 
 
@@ -261,7 +265,16 @@ def approval_text(approval: Mapping[str, Any] | None) -> str:
         return "Not approved"
     who, role, when = (str(approval.get(key, ""))[:80] for key in ("who", "role", "time"))
     version, digest = str(approval.get("version", ""))[:10], str(approval.get("hash", ""))[:16]
-    return f"Approved by {who} ({role}) {when}, version {version}, statement {digest}"
+    signed = f"Approved by {who} ({role}) {when}, version {version}, statement {digest}"
+    verdict, why = str(approval.get("verdict", "")), str(approval.get("why", ""))
+    if verdict in ("", Usability.GOOD):
+        return signed
+    reason = (
+        f", signed because: {visible(' '.join(why.split()), most=_REASON_CHARACTERS)}"
+        if why
+        else ""
+    )
+    return f"{signed}. Verdict on the map: {verdict}{reason}"
 
 
 def source_text(artifact_key: str) -> str:

@@ -49,7 +49,9 @@ def test_its_map_can_be_sliced_and_names_its_approver(server, root, capsys):
     out = root / "slice.csv"
 
     assert main(["slice", str(root / "format1"), str(out), "--z", "0.5"]) == 0
-    assert '"who": "anna"' in out.read_text().splitlines()[1]
+    stamp = out.read_text().splitlines()[1]
+    assert '"who": "anna"' in stamp
+    assert '"verdict"' not in stamp and '"why"' not in stamp  # it was signed without them
 
 
 def test_nothing_of_it_counts_as_damaged(root, capsys):

@@ -19,6 +19,7 @@ from recon4.report.drift import drift_closed
 from recon4.report.edges import edge_rows, spanning
 from recon4.report.facts import InputFile, ReportFacts, StageTiming
 from recon4.report.html import changed_settings, render, write_report
+from recon4.report.verdict import assess
 from recon4.settings import override, preset
 from recon4.store.arrays import save_trajectory
 
@@ -155,7 +156,7 @@ def facts(tmp_path: Path) -> ReportFacts:
 
 
 def test_the_report_says_what_was_found(facts: ReportFacts) -> None:
-    text = Tags(render(facts)).text
+    text = Tags(render(assess(facts))).text
 
     for words in (
         "office walk",
@@ -185,7 +186,7 @@ def test_names_and_texts_from_files_are_shown_as_text(facts: ReportFacts) -> Non
         versions={EVIL: EVIL}, stages=(StageTiming(EVIL, 1.0, 1.0, 1),),
     )  # fmt: skip
 
-    page = Tags(render(hostile))
+    page = Tags(render(assess(hostile)))
 
     assert "script" not in page.tags
     assert "img" not in page.tags
@@ -195,7 +196,7 @@ def test_names_and_texts_from_files_are_shown_as_text(facts: ReportFacts) -> Non
 
 
 def test_the_page_asks_nothing_of_the_network(facts: ReportFacts) -> None:
-    text = render(facts)
+    text = render(assess(facts))
     page = Tags(text)
 
     assert not {"script", "link", "iframe", "object", "embed", "form"} & set(page.tags)
@@ -206,7 +207,7 @@ def test_the_page_asks_nothing_of_the_network(facts: ReportFacts) -> None:
 
 
 def test_the_same_facts_give_the_same_page(facts: ReportFacts) -> None:
-    assert render(facts) == render(facts)
+    assert render(assess(facts)) == render(assess(facts))
 
 
 def test_lost_tracking_is_the_first_thing_said(facts: ReportFacts, tmp_path: Path) -> None:
@@ -214,7 +215,7 @@ def test_lost_tracking_is_the_first_thing_said(facts: ReportFacts, tmp_path: Pat
     lost[50:60] = True
     np.savez(tmp_path / "odometry" / "steps.npz", t_mid_ns=loop_walk().t_ns, lost=lost)
 
-    text = Tags(render(facts)).text
+    text = Tags(render(assess(facts))).text
 
     assert "Do not use this map without checking the points below." in text
     assert "lost in 10 of 200 multiframes (5.0 %), first 5.0 s after the start" in text
@@ -224,7 +225,7 @@ def test_no_accepted_loop_is_a_warning(facts: ReportFacts, tmp_path: Path) -> No
     graph = graph_of(loop_walk())
     save_graph(tmp_path / "verification", graph.with_edges(graph.edges[:19]))
 
-    text = render(facts)
+    text = render(assess(facts))
     assert "No loop closure was accepted" in text
     assert "largest correction" in text
     assert "largest drift corrected" not in text
@@ -236,7 +237,7 @@ def test_a_recording_of_one_place_has_no_empty_table_of_pairs(
     graph = graph_of(loop_walk())
     save_graph(tmp_path / "verification", graph.with_edges(()))
 
-    text = Tags(render(facts)).text
+    text = Tags(render(assess(facts))).text
 
     assert "None: the recording has too few nodes for a pair." in text
     assert "verdict" not in text.split("Loop closures and odometry edges")[1].split("Positions")[0]
@@ -247,7 +248,7 @@ def test_a_report_without_any_artifact_can_still_be_written(
 ) -> None:
     bare = replace(facts, artifacts={}, stages=(), inputs=(), versions={})
 
-    write_report(tmp_path / "report.html", facts=bare)
+    write_report(tmp_path / "report.html", assess(bare))
 
     text = (tmp_path / "report.html").read_text("utf-8")
     assert "The run has no results to assess." in text
@@ -259,7 +260,7 @@ def test_a_map_without_points_has_no_charts_of_it(facts: ReportFacts, tmp_path: 
     with TileWriter(empty, ["xyz", "intensity"], tile_m=10.0) as writer:
         writer.facts["crs"] = None
 
-    page = render(replace(facts, artifacts={"map": empty}))
+    page = render(assess(replace(facts, artifacts={"map": empty})))
 
     assert "<image" not in page
 
@@ -268,7 +269,7 @@ def test_a_damaged_artifact_is_refused_by_name(facts: ReportFacts, tmp_path: Pat
     (tmp_path / "level" / "georeference.json").write_text("{")
 
     with pytest.raises(StoreError, match=r"level/georeference\.json"):
-        render(facts)
+        render(assess(facts))
 
 
 def test_a_name_that_is_not_text_does_not_stop_the_report(
@@ -276,7 +277,7 @@ def test_a_name_that_is_not_text_does_not_stop_the_report(
 ) -> None:
     inputs = (InputFile(b"walk-\xff.pcap".decode("utf-8", "surrogateescape"), 1, "0"),)
 
-    write_report(tmp_path / "r.html", facts=replace(facts, inputs=inputs))
+    write_report(tmp_path / "r.html", assess(replace(facts, inputs=inputs)))
 
     assert "walk-?.pcap" in (tmp_path / "r.html").read_text("utf-8")
 
@@ -286,7 +287,7 @@ def test_an_evaluation_is_shown_with_its_figures(facts: ReportFacts, tmp_path: P
         tmp_path / "level" / "trajectory.npz", truth=tmp_path / "odometry" / "trajectory.npz"
     )
 
-    text = Tags(render(replace(facts, evaluation=found))).text
+    text = Tags(render(assess(replace(facts, evaluation=found)))).text
 
     assert "Accuracy against ground truth" in text
     assert f"{100 * found.aligned.position_m.rmse:.2f}" in text

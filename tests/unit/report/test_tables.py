@@ -10,6 +10,7 @@ from recon4.report.figures import broken_at_holes
 from recon4.report.findings import Level, find
 from recon4.report.html import render
 from recon4.report.rows import imported_rows, placed_rows, quantity
+from recon4.report.verdict import assess
 from tests.unit.report.test_report import facts  # noqa: F401
 
 TIME = ("t first", "2014-11-04 02:46:49.554 (sensor's clock, UTC)")
@@ -87,7 +88,7 @@ def test_a_map_that_is_not_level_is_a_warning_and_not_called_z_up(facts, tmp_pat
     unlevel = '{"levelling": {"source": "none"}}'
     (tmp_path / "level" / "georeference.json").write_text(unlevel)
 
-    page = render(facts)
+    page = render(assess(facts))
     found = find(facts, Results(georeference={"levelling": {"source": "none"}}), None)
 
     assert "local map frame, not leveled (meters)" in page

@@ -1,9 +1,11 @@
 """Signing results: when it is refused, what stays after a crash, what a check finds."""
 
 import json
+import shutil
 import sqlite3
 import stat
 from dataclasses import replace
+from html import escape
 
 import pytest
 
@@ -40,7 +42,14 @@ def make_artifact(root, key):
     write_json(folder / "manifest.json", empty | {"files": files})
 
 
-def publish(root, key="ab"):
+GOOD = {"usability": "good", "reasons": [], "unobserved": []}
+LOST = "Tracking was lost in 314 of 545 multiframes (58 %)."
+BAD = {"usability": "do not use", "reasons": [LOST], "unobserved": []}
+CORRIDOR = {"start_s": 33.0, "end_s": 62.0, "direction": "horizontal", "degeneracy": 0.001}
+WEAK = {"usability": "check", "reasons": ["Between …"], "unobserved": [CORRIDOR]}
+
+
+def publish(root, key="ab", verdict=GOOD):
     """What a run leaves, small."""
     make_artifact(root, key)
     for name, text in FILES.items():
@@ -50,6 +59,7 @@ def publish(root, key="ab"):
         "name": "office",
         "points": 7,
         "approval": None,
+        "verdict": verdict,
         "stages": [{"stage": "map", "key": key, "figures": {}}],
         "hashes": {"inputs": {}, "results": {name: hash_file(root / name) for name in FILES}},
     }
@@ -63,6 +73,14 @@ def root(tmp_path):
     root = tmp_path / "office"
     Project.open(root).close()
     publish(root)
+    return root
+
+
+@pytest.fixture
+def unusable(root):
+    """The project with a map that must not be used."""
+    shutil.rmtree(root / "artifacts" / "ab")
+    publish(root, verdict=BAD)
     return root
 
 
@@ -134,6 +152,57 @@ def test_what_is_not_as_it_was_made_is_not_signed(root, key, spoil, words):
 
     assert not (root / "versions").exists()
     assert "approve" not in {row.kind for row in read_rows(root)}
+
+
+@pytest.mark.parametrize(
+    ("verdict", "words"),
+    [
+        (BAD, 'the verdict on this map is "do not use": Tracking was lost in 314 of 545'),
+        (WEAK, "a direction of this map is not observable along 1 of its stretches"),
+        (None, "this map has no verdict"),
+    ],
+)
+@pytest.mark.parametrize("why", ["", "  fine \n\t   "])
+def test_a_map_that_may_be_wrong_is_not_signed_without_a_reason(root, key, verdict, words, why):
+    publish(root, "cd", verdict)
+
+    with pytest.raises(NotApprovable, match=f"{words}.* give a reason of at least 10 characters"):
+        approve(root, key, SIGNER | {"why": why}, True)
+
+    assert not (root / "versions").exists()
+
+
+def test_the_reason_stands_wherever_the_signer_stands(unusable, key, capsys):
+    why = "only the hall <is> used, checked with the total station"
+
+    found = approve(unusable, key, SIGNER | {"why": why}, False)
+
+    statement = json.loads((found.folder / "approval.json").read_text())["statement"]
+    assert (statement["why"], statement["verdict"]) == (why, BAD)
+    report = (unusable / "report.html").read_text()
+    assert "do not use" in report and 'class="bad"' in report and escape(why) in report
+    for name in ("trajectory.tum", "graph.g2o", "edges.json", "summary.json"):
+        text = (unusable / name).read_text()
+        assert '"verdict": "do not use"' in text and f'"why": "{why}"' in text
+    (line,) = audit_review(unusable, Silent()).approvals
+    assert line.endswith(f', verdict "do not use", reason "{why}"')
+    latest = latest_approval(unusable, read_rows(unusable))
+    assert (latest["verdict"], latest["why"]) == ("do not use", why)
+
+
+def test_a_verdict_that_was_changed_after_the_run_is_not_signed(unusable, key):
+    path = unusable / "summary.json"
+    path.write_text(path.read_text().replace("do not use", "good"))
+
+    with pytest.raises(NotApprovable, match=r"summary.json"):
+        approve(unusable, key, SIGNER, False)
+
+
+def test_a_verdict_that_cannot_be_read_is_not_signed(root, key):
+    publish(root, "cd", {"usability": "splendid", "reasons": []})
+
+    with pytest.raises(NotApprovable, match="its verdict cannot be read"):
+        approve(root, key, SIGNER, False)
 
 
 def test_the_same_results_are_signed_once(root, key):
