@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.names import Note
+from recon4.model.usability import MapVerdict
 
 Frame = Annotated[int, Field(ge=0, le=1 << 40)]
 Finite = Annotated[float, Field(ge=-1e8, le=1e8, allow_inf_nan=False)]
@@ -73,7 +74,8 @@ class Approve(BaseModel):
 
     why: Why = ""
     confirmed: bool = False
-    """Approve although accepted loop closures do not fit the graph; ``why`` is then required."""
+    """Approve although accepted loop closures do not fit the graph; ``why`` is then required. It is
+    also required if ``map.reason_needed`` of the state is not empty."""
     after_seq: Annotated[int | None, Field(ge=0, le=1 << 53)] = None
     """``seq`` of the state the signer saw; None = not checked."""
     graph: Annotated[str | None, Field(max_length=64)] = None
@@ -96,6 +98,21 @@ class StandingView:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class MapFacts:
+    """What a person must know of a finished map before they approve it."""
+
+    verdict: MapVerdict | None
+    """None = the run worked none out: an earlier version of recon4 made the map."""
+    reason_needed: str
+    """Why the map is approved only with a typed reason; empty = without one."""
+    min_reason_characters: int
+    """Shortest reason that is accepted then."""
+    warnings: list[str]
+    figures: dict[str, Any]
+    """The figures that an approval signs, by their names in ``summary.json``."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ReviewView:
     """The state of a review."""
 
@@ -112,6 +129,8 @@ class ReviewView:
     """Whether the results include these decisions."""
     finished: bool
     """Whether the project has results."""
+    map: MapFacts | None
+    """Of the results; None = there are none yet."""
     busy: bool
     """Whether a job is queued or running."""
     may_review: bool

@@ -24,6 +24,7 @@ from app.review.model import (
     AlignmentView,
     Approve,
     Frame,
+    MapFacts,
     NewDecision,
     PointPairs,
     PredictedPose,
@@ -35,7 +36,14 @@ from app.review.model import (
 )
 from app.review.store import terms_of
 from recon4.model.plain import finite_or_none
-from recon4.review.approval import NotApprovable, make_read_only
+from recon4.model.usability import verdict_in
+from recon4.review.approval import (
+    MIN_REASON_CHARACTERS,
+    NotApprovable,
+    make_read_only,
+    reason_needed,
+    signed_figures,
+)
 from recon4.review.approval import approve as sign
 from recon4.review.approved import Approval, approval_of, latest_approval
 from recon4.review.decisions import Decided, Decision, DecisionKind, fold
@@ -226,7 +234,11 @@ def read_journal(
 async def approve(
     project_id: str, asked: Approve, request: Request, *, server: Server, who: Who
 ) -> ReviewView:
-    """Sign the current results; no later run or decision changes the approved version."""
+    """Sign the current results; no later run or decision changes the approved version.
+
+    409 if they cannot be signed as they are, or if ``map.reason_needed`` of the state is not empty
+    and ``why`` is shorter than ``map.min_reason_characters``.
+    """
     root = server.projects.folder(project_id)
     if await run_in_threadpool(_busy, project_id, server):
         raise Conflict("a job of this project is queued or running; approve when it is done")
@@ -309,10 +321,25 @@ def _view(project_id: str, server: Parts, who: Person) -> ReviewView:
         ],
         in_map=in_map == decided.key,
         finished=in_map is not None,
+        map=_map_facts(root),
         busy=_busy(project_id, server),
         may_review=who.may(Permission.REVIEW),
         may_process=who.may(Permission.PROCESS),
         approval=_approval(root, rows, server),
+    )
+
+
+def _map_facts(root: Path) -> MapFacts | None:
+    summary = read_summary(root)
+    if summary is None:
+        return None
+    verdict = verdict_in(summary)
+    return MapFacts(
+        verdict=verdict,
+        reason_needed=reason_needed(verdict),
+        min_reason_characters=MIN_REASON_CHARACTERS,
+        warnings=[str(text) for text in summary.get("warnings", [])],
+        figures=signed_figures(summary),
     )
 
 

@@ -11,8 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from recon4.geometry.se3 import Array
-from recon4.model.trajectory import Trajectory
+from recon4.model.trajectory import Times, Trajectory
 from recon4.model.usability import MapVerdict, Unobserved, Usability
 from recon4.report.artifacts import Results, read_results
 from recon4.report.drift import DriftClosed, closed_drift
@@ -88,7 +87,7 @@ def _located(stretch: WeakStretch, results: Results) -> Unobserved:
     )
 
 
-def _places(walk: Trajectory | None, t_ns: Array) -> list[tuple[float, ...]]:
+def _places(walk: Trajectory | None, t_ns: Times) -> list[tuple[float, ...]]:
     """Positions at these times [m], rounded to 1 cm; empty where the trajectory has none."""
     if walk is None or not len(walk):
         return [() for _ in t_ns]

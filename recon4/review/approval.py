@@ -128,6 +128,11 @@ def reason_needed(verdict: MapVerdict | None) -> str:
     return ""
 
 
+def signed_figures(summary: Mapping[str, Any]) -> dict[str, Any]:
+    """The figures of a run that an approval signs, by their names in ``summary.json``."""
+    return {name: summary[name] for name in _FIGURES if name in summary}
+
+
 def put_back(root: Path, approval: Approval) -> None:
     """Restore the issued results in the project folder.
 
@@ -268,7 +273,7 @@ def _issue(root: Path, asked: _ApprovalRequest, *, version: int, key_file: Path)
 
 def _statement(root: Path, asked: _ApprovalRequest, *, version: int, time: str) -> dict[str, Any]:
     summary = asked.summary
-    figures = {name: summary[name] for name in _FIGURES if name in summary}
+    figures = signed_figures(summary)
     last = {stage["stage"]: stage.get("figures", {}) for stage in summary["stages"]}
     graph = last.get("review") or last.get("verification", {})
     return {

@@ -9,7 +9,7 @@ from playwright.sync_api import expect
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append, broken, read_rows
 from tests.e2e.conftest import looks
-from tests.review_project import make
+from tests.review_project import LOST, judge, make
 from tests.service.running import server_thread
 
 pytestmark = pytest.mark.e2e
@@ -61,17 +61,17 @@ def fits(page):
 
 
 def colored(page):
-    """How many pixels of the pair view are red, green and both."""
+    """How many pixels of the pair view are of the first place, of the second and of both."""
     return page.evaluate(
         """() => {
         const canvas = document.querySelector('.view-stage canvas');
         const data = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
-        let [red, green, both] = [0, 0, 0];
+        let [first, second, both] = [0, 0, 0];
         for (let k = 0; k < data.length; k += 4) {
-          const [r, g] = [data[k] > 200, data[k + 1] > 180];
-          if (r && g) both += 1; else if (r) red += 1; else if (g) green += 1;
+          const [r, b] = [data[k] > 200, data[k + 2] > 200];
+          if (r && b) both += 1; else if (b) first += 1; else if (r) second += 1;
         }
-        return [red, green, both];
+        return [first, second, both];
       }"""
     )
 
@@ -86,8 +86,8 @@ def nearest_pixel(page, color, x, y):
         for (let v = 0; v < canvas.height; v += 1)
           for (let u = 0; u < canvas.width; u += 1) {
             const k = 4 * (v * canvas.width + u);
-            const [r, g] = [data[k] > 200, data[k + 1] > 180];
-            if ((color === 'red' ? r && !g : g && !r) && Math.hypot(u - x, v - y) < far)
+            const [r, b] = [data[k] > 200, data[k + 2] > 200];
+            if ((color === 'first' ? b && !r : r && !b) && Math.hypot(u - x, v - y) < far)
               [best, far] = [[u, v], Math.hypot(u - x, v - y)];
           }
         return best;
@@ -304,6 +304,26 @@ def test_views_and_comparison_show_different_images(opened):
     expect(page.locator(".view-words")).to_contain_text("at 0.20 m")
 
 
+@looks("desktop dark", "phone light")
+def test_the_difference_colors_only_what_one_place_has_alone(opened, screenshot):
+    page = opened
+    page.keyboard.press("j")
+    settled(page)
+    words = page.locator(".view-words")
+    over_each_other = colored(page)
+
+    page.keyboard.press("d")
+    expect(words).to_contain_text("% of what is drawn agrees within 5 cm")
+    screenshot(page, "review-difference")
+    alone = colored(page)
+    page.get_by_role("button", name="Difference").click()
+    expect(words).to_be_empty()
+
+    assert colored(page) == over_each_other
+    assert alone[2] < over_each_other[2]  # what agrees is gray; the handle stays white
+    assert 0 < alone[0] + alone[1] < over_each_other[0] + over_each_other[1]
+
+
 @looks("desktop dark")
 def test_a_wrong_loop_closure_is_aligned_by_keys_and_becomes_an_edge(opened, root, screenshot):
     page = opened
@@ -374,9 +394,9 @@ def test_three_picked_pairs_align_the_second_place(opened):
     box = page.locator(".view-stage canvas").bounding_box()
     said = page.locator(".view-words")
 
-    expect(said).to_contain_text("point 1 of 3 in the first (red)")
+    expect(said).to_contain_text("point 1 of 3 in the first (blue)")
     for dx, dy in ((-150, -120), (150, -120), (0, 130)):
-        for color in ("red", "green"):
+        for color in ("first", "second"):
             u, v = nearest_pixel(page, color, box["width"] / 2 + dx, box["height"] / 2 + dy)
             page.mouse.click(box["x"] + u, box["y"] + v)
 
@@ -391,8 +411,8 @@ def test_a_loop_closure_is_added_between_two_multiframes(opened, root, screensho
     dialog = page.get_by_role("dialog")
     expect(dialog).to_contain_text("multiframe 119")
     screenshot(page, "review-moments")
-    page.get_by_label("Second multiframe (green)").fill("62")
-    page.get_by_label("First multiframe (red)").fill("31")
+    page.get_by_label("Second multiframe (orange)").fill("62")
+    page.get_by_label("First multiframe (blue)").fill("31")
     page.get_by_role("button", name="Look at this pair").click()
     settled(page)
     expect(page.locator("#pair")).to_contain_text("Multiframes 31 and 62")
@@ -452,3 +472,57 @@ def test_decide_make_a_new_map_approve_export(opened, root, screenshot):
         page.evaluate(f"open('/api/projects/{root.name}/report')")
     expect(report.value.get_by_text("Version 1, approved by local")).to_be_visible()
     expect(report.value.get_by_text(approval["hash"])).to_be_visible()
+
+
+REASON = "only the hall is used; it was checked by total station"
+
+
+@pytest.fixture
+def unusable(root):
+    """The project as after a walk on which tracking was lost in a corridor."""
+    stretch = {
+        **{"start_s": 2.0, "end_s": 9.5, "direction": "horizontal", "degeneracy": 0.0011},
+        **{"from_m": [0.5, 1.0, 0.0], "to_m": [1.2, -0.4, 0.0]},
+    }
+    judge(root, usability="do not use", reasons=[LOST], unobserved=[stretch])
+    return root
+
+
+@looks("desktop light", "phone dark")
+def test_an_unusable_map_looks_so_and_is_signed_only_with_a_reason(unusable, opened, screenshot):
+    page, bar = opened, opened.locator("map-verdict")
+    expect(bar).to_contain_text("Do not use this map")
+    expect(bar).to_contain_text(LOST)
+    fits(page)
+    screenshot(page, "review-unusable")
+
+    page.get_by_role("button", name="Approve verification…").click()
+    dialog, sign = page.get_by_role("dialog"), page.get_by_role("button", name="Sign", exact=True)
+    for text in ("Do not use this map", LOST, "2 s to 10 s: a horizontal direction", "Multiframes"):
+        expect(dialog).to_contain_text(text)
+    expect(sign).to_be_disabled()
+    page.get_by_label("Reason (required)").fill("  .        ")
+    expect(sign).to_be_disabled()
+    page.get_by_label("Reason (required)").fill(REASON)
+    screenshot(page, "review-sign-unusable")
+    sign.click()
+
+    expect(page.locator("#signing")).to_contain_text(
+        f"in spite of the verdict “do not use”: “{REASON}"
+    )
+    assert REASON in (unusable / "report.html").read_text()
+
+
+@looks("desktop dark", "phone light")
+def test_slices_and_project_say_that_a_map_is_unusable(running, unusable, page, screenshot):
+    page.goto(f"{running.url}/projects/{unusable.name}/slices/")
+    bar = page.locator("map-verdict")
+    expect(bar).to_contain_text("Do not use this map")
+    bar.locator("summary").click()
+    expect(bar).to_contain_text("Hardly observable")
+    fits(page)
+    screenshot(page, "slices-unusable")
+
+    page.goto(f"{running.url}/projects/{unusable.name}/")
+    expect(page.locator("#state")).to_contain_text("Do not use this map")
+    expect(page.locator("#verdict")).to_contain_text("2 s to 10 s: a horizontal direction")

@@ -21,7 +21,7 @@ from recon4.review.journal import NAME, append, read_rows
 from recon4.review.source import Source
 from recon4.store.hashing import hash_file
 from tests.g2o_reader import read_g2o
-from tests.review_project import make
+from tests.review_project import LOST, judge, make
 from tests.service.running import Running, server_thread
 
 WRONG = {"frame_i": 20, "frame_j": 90}
@@ -312,6 +312,36 @@ def test_an_approval_is_signed_and_every_export_carries_it(server, root):
     assert json.loads(vlr.record_data_bytes())["hash"] == sha
     read_g2o(root / "graph.g2o")
     read_tum(root / "trajectory.tum")
+
+
+@pytest.mark.parametrize("why", ["", "   ok     "])
+def test_an_unusable_map_is_not_approved_without_a_reason(server, root, why):
+    judge(root, usability="do not use", reasons=[LOST], unobserved=[])
+
+    facts = server.get().json()["map"]
+    answer = approve(server, why=why, confirmed=True)
+
+    assert facts["verdict"]["reasons"] == [LOST]
+    assert LOST in facts["reason_needed"] and facts["figures"]["multiframes"] == 120
+    assert answer.status_code == 409
+    assert 'the verdict on this map is "do not use"' in answer.json()["detail"]
+    assert not (root / "versions").exists()
+
+
+def test_the_reason_for_an_unusable_map_is_signed_and_verified(server, root, capsys):
+    why = "only the hall is used; it was checked by total station"
+    judge(root, usability="do not use", reasons=[LOST], unobserved=[])
+
+    answer = approve(server, why=why)
+
+    assert answer.status_code == 201, answer.text
+    assert answer.json()["approval"]["verdict"] == "do not use"
+    assert why in (root / "report.html").read_text()
+    with laspy.open(root / "map.laz") as file:
+        (vlr,) = file.header.vlrs.get_by_id("recon4")
+    assert json.loads(vlr.record_data_bytes())["why"] == why
+    assert main(["verify", str(root)]) == 0
+    assert f'verdict "do not use", reason "{why}"' in capsys.readouterr().out
 
 
 def test_a_map_that_changed_during_the_login_is_not_signed(server):

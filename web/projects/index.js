@@ -11,10 +11,11 @@ import {
   restoreProject,
   watchJobs,
 } from "../shared/api.js";
+import { badge } from "../shared/badge.js";
 import { attempt, byId, fill, make } from "../shared/dom.js";
 import { stateOf, when } from "../shared/format.js";
 import { headline } from "../shared/figures.js";
-import { badge } from "./job_status.js";
+import "./job_status.js";
 import "./new_job.js";
 import "../shared/page_head.js";
 

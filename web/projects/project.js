@@ -9,10 +9,13 @@ import {
   viewerUrl,
   watchJobs,
 } from "../shared/api.js";
+import { badge } from "../shared/badge.js";
 import { byId, fill, make } from "../shared/dom.js";
 import { figures } from "../shared/figures.js";
 import { bytes, seconds, stateOf, when } from "../shared/format.js";
-import { badge } from "./job_status.js";
+import "./job_status.js";
+import { verdictDetails } from "../shared/map_verdict.js";
+import { factsIn, verdictLists } from "../shared/verdict.js";
 import "../shared/page_head.js";
 import "./project_tools.js";
 
@@ -59,9 +62,9 @@ function drawFigures() {
     byId("figures").querySelector("dl"),
     ...rows.map(([text, value]) => make("div", {}, make("dt", {}, text), make("dd", {}, value))),
   );
-  const reasons = project?.summary?.verdict?.reasons ?? [];
-  byId("verdict").hidden = reasons.length === 0;
-  fill(byId("verdict").querySelector("ul"), ...reasons.map((text) => make("li", {}, text)));
+  const facts = factsIn(project?.summary);
+  byId("verdict").hidden = !facts || verdictLists(facts).length === 0;
+  if (facts) fill(byId("reasons"), ...verdictDetails(facts));
 }
 
 function drawFiles() {

@@ -35,6 +35,7 @@ export const KEYS = [
   ["L", "Add a loop closure between any two multiframes"],
   ["V", "Next view: above, side, free, cut"],
   ["B", "Compare: odometry, graph, aligned"],
+  ["D", "Difference: in color only what one place has alone"],
   ["[ and ]", "Move the cut"],
   ["+ and −", "Zoom"],
   ["W", "Write a reason"],

@@ -1,9 +1,10 @@
-// Dialogs of the review: the keys, signing, and a loop closure between any two multiframes.
+// Dialogs of the review: the keys, and a loop closure between any two multiframes.
 
-import { attempt, make } from "../shared/dom.js";
+import { make } from "../shared/dom.js";
 import { KEYS, seconds } from "./captions.js";
+import { FIRST_CSS, SECOND_CSS } from "./draw.js";
 
-function open(title, ...children) {
+export function open(title, ...children) {
   const dialog = make(
     "dialog",
     { "aria-labelledby": "dialog-title" },
@@ -26,51 +27,6 @@ export function showKeys() {
     make("button", { type: "button", onclick: () => dialog.close() }, "Close"),
   );
   dialog.classList.add("wide");
-}
-
-/** Asks for a reason and, if there are conflicts, for confirmation; `sign(why, confirmed)`. */
-export function askToSign(conflicts, sign) {
-  const why = make("input", { maxLength: 500, autocomplete: "off" });
-  const confirmed = make("input", { type: "checkbox" });
-  const message = make("p", { className: "error", role: "alert" });
-  const button = make("button", { className: "primary" }, "Sign");
-  const form = make(
-    "form",
-    {
-      async onsubmit(event) {
-        event.preventDefault();
-        button.disabled = true;
-        message.textContent = "";
-        button.textContent = "Signing…";
-        const done = await attempt(message, () => sign(why.value, confirmed.checked));
-        [button.disabled, button.textContent] = [false, "Sign"];
-        if (done) dialog.close();
-      },
-    },
-    make(
-      "p",
-      {},
-      "Your name, the time, the figures and the hashes of all results are signed. " +
-        "A version is kept that no later run or decision changes.",
-    ),
-    make("label", {}, make("span", {}, conflicts ? "Reason (required)" : "Remark"), why),
-    conflicts
-      ? make(
-          "label",
-          { className: "check" },
-          confirmed,
-          make("span", {}, `${conflicts} accepted loop closures do not fit the graph; sign anyway`),
-        )
-      : null,
-    message,
-    make(
-      "div",
-      { className: "buttons" },
-      make("button", { type: "button", onclick: () => dialog.close() }, "Cancel"),
-      button,
-    ),
-  );
-  const dialog = open("Approve verification", form);
 }
 
 /** Asks for two multiframes by sliders or on the plan of the walk; `look([frame_i, frame_j])`. */
@@ -129,8 +85,8 @@ export function askForFrames(walk, chosen, look) {
       },
     },
     plan,
-    make("label", {}, make("span", {}, "First multiframe (red)"), sliders[0], captions[0]),
-    make("label", {}, make("span", {}, "Second multiframe (green)"), sliders[1], captions[1]),
+    make("label", {}, make("span", {}, "First multiframe (blue)"), sliders[0], captions[0]),
+    make("label", {}, make("span", {}, "Second multiframe (orange)"), sliders[1], captions[1]),
     message,
     make(
       "div",
@@ -168,7 +124,7 @@ function planner(walk, canvas) {
       xs.forEach((_, node) => context[node ? "lineTo" : "moveTo"](...at(node)));
       context.stroke();
       nodes.forEach((node, k) => {
-        context.fillStyle = k ? "#2fd67f" : "#ff524a";
+        context.fillStyle = k ? SECOND_CSS : FIRST_CSS;
         context.beginPath();
         context.arc(...at(node), 9, 0, 7);
         context.fill();

@@ -1,12 +1,19 @@
 // Drawing the pair view: points of two places, scale bar, handle, picked points. No events.
 
+import { BOTH, ONLY_FIRST, ONLY_SECOND, difference } from "./difference.js";
 import { apply, rotationOf, times, turn } from "./math.js";
 
-export const RED = 0xff4a52ff; // A B G R
-export const GREEN = 0xff7fd62f;
+// Every color vision tells blue from orange; where both places have points it is white.
+const FIRST = 0xffff9e3d; // A B G R
+const SECOND = 0xff2899ff;
+export const FIRST_CSS = "#3d9eff";
+export const SECOND_CSS = "#ff9928";
 export const HANDLE_PX = 22;
 export const RING_PX = 66;
 const GROUND = 0xff18140f;
+const MIXED = 0xffffffff;
+const AGREEING = 0xff6b6058;
+const AGREE_WITHIN_M = 0.05;
 export const INK = "#e6ebf0";
 export const HALO = "#0f1418";
 
@@ -24,16 +31,10 @@ export function pointImage(canvas) {
 }
 
 /**
- * Draws points, two by two pixels each; where both colors meet they add up to a bright one.
- * `pose` maps the points into the frame that `upright` turns; `slab` is the range along the line of
- * sight that is shown [m].
+ * Calls `plot(at)` for the pixels of points, two by two each. `pose` maps the points into the frame
+ * that `upright` turns; `slab` is the range along the line of sight that is shown [m].
  */
-export function drawPoints(
-  { pixels, width, height, ratio },
-  points,
-  color,
-  { pose, upright, camera, slab },
-) {
+function project({ width, height, ratio }, points, { pose, upright, camera, slab }, plot) {
   const R = times(upright, rotationOf(pose.slice(3)));
   const t = turn(upright, pose);
   const [x, y, eye] = camera.axes();
@@ -54,15 +55,38 @@ export function drawPoints(
     if (u < 0 || v < 0 || u >= width - 1 || v >= height - 1) continue;
     const p = v * width + u;
     const q = p + width;
-    for (const at of [p, p + 1, q, q + 1])
-      pixels[at] = pixels[at] === GROUND || pixels[at] === color ? color : pixels[at] | color;
+    for (const at of [p, p + 1, q, q + 1]) plot(at);
   }
+}
+
+/** Draws both places over each other; white where both have points. */
+export function drawBoth(image, points, poses, projection) {
+  const { pixels } = image;
+  const plot = (color) => (at) =>
+    (pixels[at] = pixels[at] === GROUND || pixels[at] === color ? color : MIXED);
+  project(image, points.i, { pose: poses.i, ...projection }, plot(FIRST));
+  project(image, points.j, { pose: poses.j, ...projection }, plot(SECOND));
+}
+
+/** Draws in color what one place has alone; returns the fraction of pixels that agree. */
+export function drawDifference(image, points, poses, projection) {
+  const { pixels, width, ratio } = image;
+  const marked = (key) => {
+    const mask = new Uint8Array(pixels.length);
+    project(image, points[key], { pose: poses[key], ...projection }, (at) => (mask[at] = 1));
+    return mask;
+  };
+  const reach = Math.max(1, Math.round(AGREE_WITHIN_M * projection.camera.scale * ratio));
+  const { codes, agreeing } = difference(marked("i"), marked("j"), { width, reach });
+  const colors = { [ONLY_FIRST]: FIRST, [ONLY_SECOND]: SECOND, [BOTH]: AGREEING };
+  for (let at = 0; at < codes.length; at += 1) if (codes[at]) pixels[at] = colors[codes[at]];
+  return agreeing;
 }
 
 /** A disc to move the second place by, a ring with a knob to turn it. */
 export function drawHandle(context, /** @type {number[]} */ [u, v]) {
   context.strokeStyle = "#ffffff";
-  context.fillStyle = "rgb(47 214 127 / 35%)";
+  context.fillStyle = "rgb(255 153 40 / 35%)";
   context.lineWidth = 2;
   context.beginPath();
   context.arc(u, v, HANDLE_PX / 2, 0, 7);
@@ -88,8 +112,8 @@ export function drawHandle(context, /** @type {number[]} */ [u, v]) {
 /** Numbers the points picked in both places; `toScreen` maps from the first place's frame. */
 export function drawPicked(context, picking, pose, toScreen) {
   const pins = [
-    ...picking.i.map((p, k) => [p, k, "#ff8f86"]),
-    ...picking.j.map((p, k) => [apply(pose, p), k, "#7bf0b3"]),
+    ...picking.i.map((p, k) => [p, k, "#9ccbff"]),
+    ...picking.j.map((p, k) => [apply(pose, p), k, "#ffc98a"]),
   ];
   context.font = "bold 14px system-ui, sans-serif";
   for (const [p, k, color] of pins) {

@@ -190,10 +190,17 @@ export function showEffect(panel, effect, { working, choose }) {
   );
 }
 
+/** The verdict that a map was approved in spite of, with the signer's reason. */
+const inSpiteOf = ({ verdict, why }) =>
+  !verdict || verdict === "good"
+    ? ""
+    : `, in spite of the verdict “${verdict}”${why ? `: “${why}”` : ""}`;
+
 /** Who approved which version; a decision after the approval makes the map a draft again. */
 function approvalText({ approval, in_map }) {
   if (!approval) return "Draft, not approved";
-  const version = `version ${approval.version} by ${approval.who}, ${when(approval.time)}`;
+  const signed = `version ${approval.version} by ${approval.who}, ${when(approval.time)}`;
+  const version = signed + inSpiteOf(approval);
   if (approval.check === "altered") return `✗ Altered since the approval: ${approval.altered}`;
   if (!approval.current) return `Draft. An earlier map was approved: ${version}`;
   if (in_map && approval.check === "checking")

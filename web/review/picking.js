@@ -19,7 +19,7 @@ export class Picking {
 
   /** What to pick next. */
   get text() {
-    const place = this.#isFirst ? "first (red)" : "second (green)";
+    const place = this.#isFirst ? "first (blue)" : "second (orange)";
     return `Pick point ${this.j.length + 1} of ${PAIRS} in the ${place} place`;
   }
 

@@ -16,14 +16,16 @@ import {
   undoDecision,
 } from "../shared/api.js";
 import { attempt, byId } from "../shared/dom.js";
-import { askForFrames, askToSign, showKeys } from "./dialogs.js";
+import { askForFrames, showKeys } from "./dialogs.js";
 import { journalNews, showEffect, showJournal, showPair, showSigning } from "./panels.js";
 import { keyOf } from "./captions.js";
 import { PairLoader } from "./loader.js";
+import { askToSign } from "./signing.js";
 import { ReviewState } from "./state.js";
 import { listenToActions, makeTools } from "./tools.js";
 import { watchProject } from "./watch.js";
 import { withPassword } from "../account/recent_login.js";
+import "../shared/map_verdict.js";
 import "../shared/page_head.js";
 import "./queue.js";
 import "./view.js";
@@ -91,6 +93,7 @@ function update(server) {
   const seqBefore = state.server?.seq;
   for (const row of state.update(server)) queue.add(row);
   queue.refresh(state.refreshRows());
+  document.querySelector("map-verdict").facts = server.map;
   showSigning(byId("signing"), server, { remake, approve });
   drawSelected();
   if (seqBefore !== server.seq) updateEffect();
@@ -241,8 +244,8 @@ async function remake(error) {
 }
 
 function approve() {
-  const { seq: after_seq, graph } = state.server;
-  askToSign(state.effect?.conflicts.length ?? 0, async (why, confirmed) => {
+  const { seq: after_seq, graph, map } = state.server;
+  askToSign(map, state.effect?.conflicts.length ?? 0, async (why, confirmed) => {
     update(await withPassword(() => approveMap(id, { why, confirmed, after_seq, graph })));
     return true;
   });

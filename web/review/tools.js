@@ -72,6 +72,7 @@ const keyActions = (act, view, reason) => ({
   l: act.add,
   v: () => view.viewNext(),
   b: () => view.compareNext(),
+  d: () => view.toggleDifference(),
   w: () => reason.focus(),
   "[": () => view.moveCut(-1),
   "]": () => view.moveCut(1),

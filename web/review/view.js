@@ -1,9 +1,10 @@
-// <pair-view>: the points of two places laid over each other, first red, second green.
+// <pair-view>: the points of two places laid over each other, first blue, second orange, or their
+// difference.
 // Events: "laid" (the person moved the second place), "reach" (another number of multiframes).
 
 import { make } from "../shared/dom.js";
 import { drawScaleBar } from "../shared/scale_bar.js";
-import { GREEN, HALO, INK, RED, drawHandle, drawPicked, drawPoints, pointImage } from "./draw.js";
+import { HALO, INK, drawBoth, drawDifference, drawHandle, drawPicked, pointImage } from "./draw.js";
 import { Camera, IDENTITY, nudged, rotationOf, transposed, turn } from "./math.js";
 import { Picking } from "./picking.js";
 import { listenToPointer } from "./pointer.js";
@@ -17,6 +18,8 @@ export class PairView extends HTMLElement {
   camera = new Camera();
   #view = "above";
   #shown = "after";
+  #difference = false;
+  #agreeing = 0; // fraction of the pixels, in the difference
   #points = null;
   #poses = { odometry: IDENTITY, predicted: IDENTITY, after: IDENTITY };
   #upright = [1, 0, 0, 0, 1, 0, 0, 0, 1];
@@ -40,6 +43,11 @@ export class PairView extends HTMLElement {
   #cut = make("div", { className: "cut", hidden: true });
   #reach = make("select", { ariaLabel: "Multiframes shown around each place" });
   #buttons = {};
+  #differs = make(
+    "button",
+    { type: "button", onclick: () => this.toggleDifference() },
+    "Difference",
+  );
 
   connectedCallback() {
     const reaches = [0, 2, 5, 10].map((n) =>
@@ -57,7 +65,7 @@ export class PairView extends HTMLElement {
     const shown = this.#group("Show", SHOWN, (key) => this.compare(key));
     const stage = [this.#canvas, this.#over, this.#legend(), this.#empty];
     this.replaceChildren(
-      make("div", { className: "view-tools" }, views, shown, this.#reach),
+      make("div", { className: "view-tools" }, views, shown, this.#differs, this.#reach),
       make("div", { className: "view-stage" }, ...stage),
       this.#cut,
     );
@@ -65,6 +73,7 @@ export class PairView extends HTMLElement {
     listenToPointer(this.#canvas, this);
     this.show("above");
     this.compare("after");
+    this.#drawDifferenceButton();
   }
 
   /** Buttons of which one is pressed. */
@@ -142,6 +151,18 @@ export class PairView extends HTMLElement {
     this.compare(keys[(keys.indexOf(this.#shown) + 1) % keys.length]);
   }
 
+  /** Shows both places over each other, or in color only what one of them has alone. */
+  toggleDifference() {
+    this.#difference = !this.#difference;
+    this.#drawDifferenceButton();
+    this.draw();
+  }
+
+  #drawDifferenceButton() {
+    this.#differs.ariaPressed = String(this.#difference);
+    this.classList.toggle("difference", this.#difference);
+  }
+
   viewNext() {
     const keys = Object.keys(VIEWS);
     this.show(keys[(keys.indexOf(this.#view) + 1) % keys.length]);
@@ -196,7 +217,8 @@ export class PairView extends HTMLElement {
 
   #legend() {
     const key = (name, text) => make("span", { className: `key ${name}` }, text);
-    return make("div", { className: "view-key" }, key("red", "first"), key("green", "second"));
+    const keys = [key("first", "first"), key("second", "second"), key("both", "both")];
+    return make("div", { className: "view-key" }, ...keys);
   }
 
   #emit(name) {
@@ -231,8 +253,9 @@ export class PairView extends HTMLElement {
     const slab = this.#view === "cut" ? this.#slab() : EVERYTHING;
     const projection = { upright: this.#upright, camera: this.camera, slab };
     if (this.#points) {
-      drawPoints(image, this.#points.i, RED, { pose: IDENTITY, ...projection });
-      drawPoints(image, this.#points.j, GREEN, { pose, ...projection });
+      const poses = { i: IDENTITY, j: pose };
+      if (this.#difference) this.#agreeing = drawDifference(image, this.#points, poses, projection);
+      else drawBoth(image, this.#points, poses, projection);
     }
     image.show();
     context.scale(ratio, ratio);
@@ -260,6 +283,8 @@ export class PairView extends HTMLElement {
       this.#cutText.textContent = at;
       texts.push(`Cut of 20 cm at ${at}`);
     }
+    if (this.#difference)
+      texts.push(`${Math.round(100 * this.#agreeing)} % of what is drawn agrees within 5 cm`);
     if (this.#picking) texts.push(this.#picking.text);
     this.#over.textContent = this.#points ? texts.join(" · ") : "";
   }

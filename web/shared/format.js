@@ -35,6 +35,8 @@ export const STATES = {
   finished: { mark: "✓", word: "Finished" },
   check: { mark: "▲", word: "Check this map" },
   unusable: { mark: "✕", word: "Do not use this map" },
+  sound: { mark: "✓", word: "No problem found in this map" },
+  unjudged: { mark: "▲", word: "No verdict on this map" },
   unfinished: { mark: "◌", word: "Not finished" },
 };
 

@@ -337,6 +337,20 @@ export interface LogPiece {
   next: number;
 }
 
+export interface MapFacts {
+  verdict: MapVerdict | null;
+  reason_needed: string;
+  min_reason_characters: number;
+  warnings: Array<string>;
+  figures: Record<string, any>;
+}
+
+export interface MapVerdict {
+  usability: Usability;
+  reasons: Array<string>;
+  unobserved: Array<Unobserved>;
+}
+
 export interface Me {
   name: string;
   role: Role;
@@ -587,6 +601,7 @@ export interface ReviewView {
   standing: Array<StandingView>;
   in_map: boolean;
   finished: boolean;
+  map: MapFacts | null;
   busy: boolean;
   may_review: boolean;
   may_process: boolean;
@@ -755,6 +770,15 @@ export interface TrajectoryNodes {
   xyz_m: Array<Array<number>>;
 }
 
+export interface Unobserved {
+  start_s: number;
+  end_s: number;
+  direction: string;
+  degeneracy: number;
+  from_m: Array<number>;
+  to_m: Array<number>;
+}
+
 export interface UploadView {
   id: string;
   name: string;
@@ -768,6 +792,8 @@ export interface UploadView {
   finished: boolean;
   recording: string;
 }
+
+export type Usability = "good" | "check" | "do not use";
 
 export interface WindowSpec {
   left: number;

@@ -17,6 +17,8 @@ import { findings } from "./findings.js";
 import { legend } from "./legend.js";
 import { help } from "./help.js";
 import { COLORS, cutOf, format, moved, normalFrom, parse, unframed } from "./state.js";
+import { factsIn } from "../shared/verdict.js";
+import "../shared/map_verdict.js";
 import "../shared/page_head.js";
 import "./above.js";
 import "./view.js";
@@ -364,6 +366,7 @@ async function begin() {
   try {
     const [project] = await Promise.all([readProject(id), reload()]);
     document.querySelector("page-head").name = project.name;
+    document.querySelector("map-verdict").facts = factsIn(project.summary);
     document.title = `Slices · ${project.name} · recon4`;
     if (!state.given) state = { ...state, ...start("horizontal"), given: true };
     if (state.u !== null && state.v !== null && state.m !== null)

@@ -1,0 +1,61 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import {
+  factsIn,
+  isReason,
+  unobservedText,
+  verdictLists,
+  verdictState,
+} from "../../web/shared/verdict.js";
+
+const LOST = "Tracking was lost in 314 of 545 multiframes.";
+const CORRIDOR = {
+  start_s: 33.2,
+  end_s: 61.8,
+  direction: "horizontal",
+  degeneracy: 0.00123,
+  from_m: [1, 2, 0],
+  to_m: [31, 2.04, 0.1],
+};
+
+test("a map without a verdict is not good", () => {
+  const states = ["good", "check", "do not use"].map((usability) => verdictState({ usability }));
+  assert.deepEqual(states, ["sound", "check", "unusable"]);
+  assert.equal(verdictState(null), "unjudged");
+  assert.equal(verdictState({ usability: "splendid" }), "unjudged");
+});
+
+test("every warning stands there once, findings first", () => {
+  const verdict = { usability: "do not use", reasons: [LOST], unobserved: [CORRIDOR] };
+  const lists = verdictLists({ verdict, warnings: [LOST, "half of the clocks are missing"] });
+
+  assert.deepEqual(
+    lists.map(([, texts]) => texts),
+    [[LOST], [unobservedText(CORRIDOR)], ["half of the clocks are missing"]],
+  );
+  assert.deepEqual(verdictLists({ verdict: null, warnings: [] }), []);
+});
+
+test("what is not observable has time, direction and place", () => {
+  assert.equal(
+    unobservedText(CORRIDOR),
+    "33 s to 62 s: a horizontal direction, degeneracy 0.0012, " +
+      "from x 1.0, y 2.0, z 0.0 m to x 31.0, y 2.0, z 0.1 m",
+  );
+  const unknown = { ...CORRIDOR, direction: "", from_m: [], to_m: [] };
+  assert.equal(unobservedText(unknown), "33 s to 62 s: one direction, degeneracy 0.0012");
+});
+
+test("a project before its first map has no facts of one", () => {
+  assert.equal(factsIn({}), null);
+  assert.equal(factsIn(undefined), null);
+  assert.deepEqual(factsIn({ points: 3 }), { verdict: null, warnings: [] });
+});
+
+test("blanks are no reason", () => {
+  const map = { reason_needed: "the verdict is do not use", min_reason_characters: 10 };
+  assert.equal(isReason("         checked          ", map), false);
+  assert.equal(isReason("checked with tape", map), true);
+  assert.equal(isReason("", { ...map, reason_needed: "" }), true);
+});

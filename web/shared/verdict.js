@@ -1,0 +1,50 @@
+// The verdict on a map as text. No DOM, no network.
+
+/**
+ * @typedef {object} MapFacts what is known of a map
+ * @property {any} verdict usability, reasons, what is not observable; null = none was worked out
+ * @property {string[]} warnings of the run
+ */
+
+/** What a project's summary says of its map; null before there is one. */
+export const factsIn = (summary) =>
+  summary?.points === undefined
+    ? null
+    : { verdict: summary.verdict ?? null, warnings: summary.warnings ?? [] };
+
+/** The badge of a verdict, by its name in STATES. */
+export function verdictState(/** @type {any} */ verdict) {
+  const states = { good: "sound", check: "check", "do not use": "unusable" };
+  return states[verdict?.usability] ?? "unjudged";
+}
+
+const place = (p) => `x ${p[0].toFixed(1)}, y ${p[1].toFixed(1)}, z ${p[2].toFixed(1)} m`;
+
+/** When, where and in which direction the LiDAR hardly observes the motion. */
+export function unobservedText({ start_s, end_s, direction, degeneracy, from_m, to_m }) {
+  const times = `${start_s.toFixed(0)} s to ${end_s.toFixed(0)} s`;
+  const known = direction === "vertical" ? "the vertical direction" : `a ${direction} direction`;
+  const what = `${direction ? known : "one direction"}, degeneracy ${degeneracy.toFixed(4)}`;
+  const where = from_m?.length && to_m?.length ? `, from ${place(from_m)} to ${place(to_m)}` : "";
+  return `${times}: ${what}${where}`;
+}
+
+/**
+ * All that is to be known of a map, as titled lists without the empty ones.
+ * @param {MapFacts} facts
+ * @returns {Array<[string, string[]]>}
+ */
+export function verdictLists({ verdict, warnings }) {
+  const reasons = verdict?.reasons ?? [];
+  /** @type {Array<[string, string[]]>} */
+  const lists = [
+    ["Findings", reasons],
+    ["Hardly observable (0 = unobservable)", (verdict?.unobserved ?? []).map(unobservedText)],
+    ["Warnings of the run", warnings.filter((text) => !reasons.includes(text))],
+  ];
+  return lists.filter(([, texts]) => texts.length > 0);
+}
+
+/** Whether a text is long enough as a reason to approve a map in spite of its verdict. */
+export const isReason = (text, { reason_needed, min_reason_characters }) =>
+  !reason_needed || text.trim().length >= min_reason_characters;
