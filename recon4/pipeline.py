@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from recon4 import stages
-from recon4.errors import RecordingError, StoreError
+from recon4.errors import ConfigError, RecordingError, StoreError
 from recon4.model.rig import Rig, format_rig
 from recon4.progress import Progress, Silent
 from recon4.results import About, Summary, publish
@@ -17,7 +18,13 @@ from recon4.settings import Settings
 from recon4.settings import preset as settings_of
 from recon4.store.hashing import hash_json, size_of
 from recon4.store.inputs import input_file, input_files
-from recon4.store.project import Project, read_artifacts, read_description
+from recon4.store.project import (
+    Project,
+    discard_unbegun,
+    is_project,
+    read_artifacts,
+    read_description,
+)
 from recon4.store.recipes import check_recipes, settings_in
 from recon4.store.stage import Artifact, Input, Stage, StageRunner
 
@@ -61,15 +68,49 @@ def process(
         StoreError: If ``out`` is in use, damaged or cannot be written (`NoSpace`: disk full).
         Recon4Error: Whatever else stops a stage.
         Cancelled: If the watcher requested to stop; the next call continues from there.
+
+    A new project that the recording or the rig keeps from its first stage is removed again.
     """
     if not recordings:
         raise RecordingError("no recording given")
     progress = progress or Silent()
     settings = settings or settings_of(preset)
-    files = [*recordings, *(path for path in (imu, gnss) if path)]
-    for path in files:
+    for path in (*recordings, *(path for path in (imu, gnss) if path)):
         if not path.exists():  # before a project is made for nothing
             raise RecordingError(f"cannot read {path}: there is no such file or folder")
+    is_new = not is_project(out)
+    try:
+        return _process(
+            out,
+            _Given(recordings, rig=rig, imu=imu, gnss=gnss),
+            settings=settings,
+            preset=preset,
+            progress=progress,
+        )
+    except (RecordingError, ConfigError):
+        if is_new:
+            discard_unbegun(out)
+        raise
+
+
+@dataclass(frozen=True, slots=True)
+class _Given:
+    """Input of a run."""
+
+    recordings: Sequence[Path]
+    rig: Rig | None
+    imu: Path | None
+    gnss: Path | None
+
+    @property
+    def files(self) -> list[Path]:
+        return [*self.recordings, *(path for path in (self.imu, self.gnss) if path)]
+
+
+def _process(
+    out: Path, given: _Given, *, settings: Settings, preset: str, progress: Progress
+) -> Summary:
+    files, rig, imu, gnss = given.files, given.rig, given.imu, given.gnss
     with Project.open(out) as project:
         keys = {path: input_file(path, project.ledger, progress).key for path in files}
         project.describe(
@@ -80,7 +121,7 @@ def process(
         runner = StageRunner(project, settings, progress)
         run_stages(
             runner,
-            recordings=input_files(recordings, project.ledger, progress),
+            recordings=input_files(given.recordings, project.ledger, progress),
             rig=Input(hash_json(format_rig(rig)), rig) if rig else None,
             imu=Input(keys[imu], imu) if imu else None,
             gnss=Input(keys[gnss], gnss) if gnss else None,

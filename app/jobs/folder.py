@@ -44,6 +44,9 @@ class Outcome:
     state: Literal["succeeded", "failed", "cancelled"]
     note: str = ""
     """Why, and what to do."""
+    startable: bool = True
+    """False = its recording or rig cannot be used, and no project was made: running it again would
+    fail alike."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

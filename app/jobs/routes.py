@@ -83,6 +83,8 @@ class JobView:
     """Fraction of the whole run."""
     overall_eta_s: float | None
     """Remaining time of the whole run [s], None = not known yet."""
+    resumable: bool
+    """Whether it ended early and can be run again."""
 
 
 class LogPiece(BaseModel):
@@ -295,6 +297,13 @@ def _add(server: Parts, project: str, inputs: Inputs) -> JobView:
     return _view(server, job)
 
 
+def _is_resumable(server: Parts, job: Job) -> bool:
+    if job.state is not JobState.FAILED:
+        return job.state is JobState.CANCELLED
+    outcome = server.supervisor.folder(job.id).outcome()
+    return outcome is None or outcome.startable
+
+
 def _view(server: Parts, job: Job) -> JobView:
     status, overall = server.supervisor.status(job), server.supervisor.overall(job)
     return JobView(
@@ -303,4 +312,5 @@ def _view(server: Parts, job: Job) -> JobView:
         fraction=status.fraction,
         overall=overall.fraction,
         overall_eta_s=overall.eta_s,
+        resumable=_is_resumable(server, job),
     )

@@ -221,6 +221,8 @@ class Supervisor:
         code = self._exit_code(job)
         folder.end_orphans()
         folder.sweep()
+        with contextlib.suppress(OSError):  # not empty: there is a project
+            (self._settings.root.resolve() / job.project).rmdir()
         self._tail(job).read()
         self._store.change(job, self._ended(job, folder.outcome(), code))
         self._workers.pop(job.id, None)

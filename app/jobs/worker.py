@@ -15,10 +15,11 @@ from app.jobs.events import EventWriter
 from app.jobs.folder import JobFolder, Outcome
 from app.jobs.limits import prepare_worker, worker_policy
 from app.jobs.space import refuse_if_full
-from recon4.errors import Cancelled, NoSpace, Recon4Error
+from recon4.errors import Cancelled, ConfigError, NoSpace, Recon4Error, RecordingError
 from recon4.progress import Progress
 from recon4.sandbox import Policy
 from recon4.store.atomic import raise_if_full
+from recon4.store.project import is_project
 
 log = logging.getLogger("recon4.job")
 
@@ -50,6 +51,9 @@ def run(folder: JobFolder, work: Work) -> Outcome:
         work(folder, events)
     except Cancelled as stop:
         return Outcome(state="cancelled", note=str(stop))
+    except (RecordingError, ConfigError) as error:
+        project, _ = folder.request()
+        return Outcome(state="failed", note=str(error), startable=is_project(project))
     except Recon4Error as error:
         return Outcome(state="failed", note=str(error))
     except MemoryError:

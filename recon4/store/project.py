@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -100,6 +101,17 @@ class Project:
 def is_project(root: Path) -> bool:
     """Whether a folder is a recon4 project."""
     return (root / "project.json").is_file()
+
+
+def discard_unbegun(root: Path) -> None:
+    """Remove a project that has no finished stage; its folder stays if that may not be removed.
+
+    Raises:
+        StoreError: If its ledger is damaged.
+    """
+    if (root / LEDGER).exists() and read_stages(root):
+        return
+    shutil.rmtree(root, ignore_errors=True)
 
 
 def read_description(root: Path) -> dict[str, Any]:

@@ -190,12 +190,15 @@ def test_a_rejected_request_shows_its_message(server, page, look):
     page.get_by_label("Project name").fill("office")
     page.get_by_role("button", name="Start").click()
 
-    expect(page.get_by_role("alert").filter(has_text="recordings may only lie in")).to_be_visible()
+    expect(page.locator("recording-look")).to_contain_text("recordings may only lie in")
+    expect(page.get_by_role("alert").filter(has_text="nothing was started")).to_be_visible()
+    assert server.get("/api/jobs").json() == []
 
 
 @looks("desktop light")
 def test_a_job_is_started_by_keyboard_alone(server, page, tmp_path):
     (tmp_path / "empty.pcap").write_bytes(b"")
+    recording_with_gate(tmp_path / "walk")
     build_project(server.root / "empty", with_map=False)
     page.goto(server.url)
 
@@ -208,7 +211,17 @@ def test_a_job_is_started_by_keyboard_alone(server, page, tmp_path):
     expect(page.get_by_label("Project name")).to_be_focused()
     page.keyboard.press("Enter")
 
-    expect(page.locator("job-status")).to_contain_text("empty.pcap holds no points")
+    expect(page.locator("recording-look")).to_contain_text("empty.pcap")
+    expect(page.get_by_role("alert").filter(has_text="nothing was started")).to_be_visible()
+    assert server.get("/api/jobs").json() == []
+    recording = page.get_by_label("Or a recording on the server")
+    expect(recording).to_be_focused()
+    page.keyboard.press("Control+A")
+    page.keyboard.type(str(tmp_path / "walk"))
+    page.keyboard.press("Enter")  # at once: the form looks at the recording before it starts
+
+    expect(page.get_by_role("heading", name="walk")).to_be_visible()
+    expect(page.locator("job-status")).to_contain_text("Odometry")
 
 
 @looks("desktop light")

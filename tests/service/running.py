@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import httpx
+import numpy as np
 from fastapi import FastAPI
 
 from app.jobs.folder import JobFolder
@@ -156,8 +157,10 @@ def _ended(folder: JobFolder) -> bool:
 
 
 def recording_with_gate(folder: Path) -> Path:
-    """A folder the slow worker takes for a recording."""
+    """A folder the slow worker takes for a recording; it has one cloud, which the form reads."""
     folder.mkdir()
+    points = np.random.default_rng(3).uniform(-5.0, 5.0, (200, 4)).astype("<f4")
+    (folder / "000000.bin").write_bytes(points.tobytes())
     os.mkfifo(folder / "gate")
     return folder
 

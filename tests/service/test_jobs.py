@@ -53,6 +53,21 @@ def test_an_error_of_the_recording_is_reported_with_its_message(server, tmp_path
     assert view["job"]["note"] == "empty.pcap holds no points; record again"
 
 
+def test_a_job_that_cannot_start_leaves_no_project_and_its_name_is_free(server, tmp_path):
+    (tmp_path / "empty.pcap").write_bytes(b"")
+
+    job = server.start("office", tmp_path / "empty.pcap")
+    view = server.wait_state(job, "failed")
+
+    assert view["resumable"] is False
+    assert server.get("/api/projects").json() == []
+    assert not (server.root / "office").exists()
+    again = {
+        "project": "office", "recordings": [str(tmp_path / "empty.pcap")], "only_new": True,
+    }  # fmt: skip
+    assert server.post("/api/jobs", json=again).status_code == 201
+
+
 def test_a_killed_worker_is_replaced_and_no_finished_stage_runs_twice(server, recording):
     job = server.start("office", recording)
     server.wait_at_gate(job)

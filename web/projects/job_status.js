@@ -1,18 +1,9 @@
 // <job-status>: state, progress, reason and buttons of one job.
 
 import { cancelJob, readMe, retryJob } from "../shared/api.js";
+import { badge } from "../shared/badge.js";
 import { attempt, fill, make } from "../shared/dom.js";
-import { STATES, overallText, progressText } from "../shared/format.js";
-
-export function badge(state) {
-  const { mark, word } = STATES[state];
-  return make(
-    "span",
-    { className: `badge ${state}` },
-    make("span", { ariaHidden: "true" }, mark),
-    ` ${word}`,
-  );
-}
+import { overallText, progressText } from "../shared/format.js";
 
 export class JobStatus extends HTMLElement {
   #view;
@@ -61,12 +52,11 @@ export class JobStatus extends HTMLElement {
         text,
       );
     const open = job.state === "queued" || job.state === "running";
-    const again = job.state === "failed" || job.state === "cancelled";
     const { may } = await readMe();
     if (this.#view.job.state !== job.state || !may.includes("process")) return;
     this.#buttons.replaceChildren(
       ...(open ? [button("Cancel", cancelJob)] : []),
-      ...(again ? [button("Resume", retryJob)] : []),
+      ...(this.#view.resumable ? [button("Resume", retryJob)] : []),
     );
   }
 }

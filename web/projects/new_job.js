@@ -54,6 +54,8 @@ export class NewJob extends HTMLElement {
   #taken = new Set(); // names of the existing projects: a new one gets another
   #others = []; // recordings of the repeated job after the first
   #again = null;
+  #start = make("button", { className: "primary" }, "Start");
+  #checked = { path: "", found: Promise.resolve(null) }; // the last recording that was looked at
 
   async connectedCallback() {
     this.replaceChildren(
@@ -94,7 +96,7 @@ export class NewJob extends HTMLElement {
           field("GNSS, CSV", this.#gnss, "Empty: from the recording"),
         ),
         this.#settings,
-        make("button", { className: "primary" }, "Start"),
+        this.#start,
         this.#message,
       ),
     );
@@ -137,8 +139,17 @@ export class NewJob extends HTMLElement {
   async #look() {
     const path = this.#recording.value.trim();
     this.#suggest({ project: slug(path) });
-    const found = await this.#found.look(path);
+    this.#checked = { path, found: this.#found.look(path) };
+    const found = await this.#checked.found;
     if (found) this.#suggest(found);
+  }
+
+  /** Whether the recording can be read; looks at it unless that was done. */
+  async #isReadable() {
+    if (this.#checked.path !== this.#recording.value.trim()) this.#look();
+    const found = await this.#checked.found;
+    if (!found) this.#checked = { path: "", found: Promise.resolve(null) }; // look again next time
+    return found !== null;
   }
 
   /**
@@ -170,7 +181,21 @@ export class NewJob extends HTMLElement {
 
   async #submit(event) {
     event.preventDefault();
-    const job = {
+    this.#message.textContent = "";
+    [this.#start.disabled, this.#start.textContent] = [true, "Checking the recording…"];
+    const readable = await this.#isReadable();
+    [this.#start.disabled, this.#start.textContent] = [false, "Start"];
+    if (!readable) {
+      this.#message.textContent = "This recording cannot be read, see above: nothing was started";
+      this.#recording.focus();
+      return;
+    }
+    const added = await attempt(this.#message, () => this.#add(this.#job()));
+    if (added) location.assign(projectUrl(added.job.project));
+  }
+
+  #job() {
+    return {
       project: this.#project.value,
       recordings: [this.#recording.value.trim(), ...this.#others],
       preset: this.#preset.value,
@@ -182,8 +207,6 @@ export class NewJob extends HTMLElement {
       clone_of:
         this.#again && this.#again.project !== this.#project.value ? this.#again.project : "",
     };
-    const added = await attempt(this.#message, () => this.#add(job));
-    if (added) location.assign(projectUrl(added.job.project));
   }
 
   async #add(job) {
