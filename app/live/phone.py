@@ -138,6 +138,7 @@ def state_of(captures: Captures, capture: Capture) -> dict[str, Any]:
     newest = capture.stream.newest if records else Newest()
     battery = captures.power.battery
     found = findings(captures.rig, newest, capture.problem)
+    found += capture.stream.so_far.findings(records=records)
     found = sorted([*found, *battery_findings(battery)], key=lambda one: URGENCY.index(one.level))
     return {
         "project": capture.project,

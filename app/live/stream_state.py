@@ -14,6 +14,7 @@ import msgspec
 
 from recon4.live.newest import Newest
 from recon4.live.protocol import Done, Mark, Message, Path, Points, Pose, Status, kind_of
+from recon4.live.so_far import WalkSoFar
 
 POINTS_AT_ONCE = 20_000
 """Points per message: 140 kB, so that the map grows steadily on a slow phone."""
@@ -61,6 +62,7 @@ class StreamState:
         self._changed = asyncio.Event()
         self.version = 0
         self.newest = Newest()
+        self.so_far = WalkSoFar()
         self._versions: dict[str, int] = {}
         self._generation, self._voxel_m = 0, 0.0
         self._voxels, self._values = bytearray(), bytearray()
@@ -166,6 +168,7 @@ class StreamState:
             self._extend_path(place)
 
     def _take_pose(self, pose: Pose) -> None:
+        self.so_far.take(pose)
         self._track.append((pose.t_ns, pose.p))
         if not pose.lost:
             self._extend_path(pose.p)

@@ -20,7 +20,7 @@ _GOAL_M = 0.05
 """Required relative error, V §3 [m]."""
 _MAX_WARNINGS = 12
 _MIN_CONVERGED, _HALF = 0.9, 0.5
-_UNOBSERVED_S = 10.0
+UNOBSERVED_S = 10.0
 """A longer time without observation of a direction makes the map unusable [s]."""
 
 
@@ -94,7 +94,7 @@ def _observability(results: Results) -> list[Finding]:
         return []
     seconds = sum(stretch.seconds for stretch in stretches)
     positions = results.georeference.get("georeference", {}).get("georeferenced", False)
-    level = Level.BAD if seconds >= _UNOBSERVED_S and not positions else Level.WARNING
+    level = Level.BAD if seconds >= UNOBSERVED_S and not positions else Level.WARNING
     return [Finding(level, _describe_stretch(stretch)) for stretch in stretches[:_MAX_WARNINGS]]
 
 

@@ -325,6 +325,7 @@ export interface JobView {
   fraction: number | null;
   overall: number;
   overall_eta_s: number | null;
+  resumable: boolean;
 }
 
 export interface Log {
