@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from rich.progress import ProgressColumn, Task, TaskID
 
     from recon4.model.events import Event, StageChanged
-    from recon4.report.verdict import MapVerdict
+    from recon4.model.usability import MapVerdict
     from recon4.results import Summary
 
 _LINE_EVERY_S = 5.0
