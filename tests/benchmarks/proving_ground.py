@@ -29,11 +29,11 @@ from recon4.georeference.crs import GeodeticOrigin, to_enu, to_geodetic
 from recon4.georeference.stage import read_crs
 from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.model.trajectory import Trajectory
-from recon4.model.usability import Usability
+from recon4.model.usability import MapVerdict, Usability
 from recon4.pipeline import run_before_review, run_trajectory
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
-from recon4.report.verdict import MapVerdict, assess
+from recon4.report.verdict import assess
 from recon4.results import About, report_facts
 from recon4.settings import preset
 from recon4.simulation.degradation import parse_degradations
@@ -174,7 +174,7 @@ def _process(recording: Path, work: Path) -> tuple[Mapping[str, StageRun[Any]], 
         frames, odometry, graph = run_before_review(runner, _inputs(recording, rig))
         run_trajectory(runner, frames=frames, odometry=odometry, graph=graph)
         about = About({"name": recording.name, "preset": name, "inputs": []}, settings)
-        return runner.runs, assess(report_facts(runner.runs, about, created=""))
+        return runner.runs, assess(report_facts(runner.runs, about, created="")).verdict
 
 
 def _inputs(recording: Path, rig: Rig) -> dict[str, Input | None]:
