@@ -113,7 +113,7 @@ class FrameFitter:
 
 def _prior(prediction: Prediction, *, stationary: bool) -> tuple[Array, Array]:
     """Information (24, 24) of the prediction and gradient (24,) where nothing is corrected."""
-    information = np.linalg.inv(prediction.prior + 1e-12 * np.eye(24))
+    information = np.asarray(np.linalg.inv(prediction.prior + 1e-12 * np.eye(24)), np.float64)
     g = np.zeros(24)
     if stationary:
         information[END_VELOCITY, END_VELOCITY] += np.eye(3) / _STATIONARY_SD_M_S**2

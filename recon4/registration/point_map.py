@@ -13,6 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.imu import place_points
@@ -57,7 +58,7 @@ class FramePoints:
     def __len__(self) -> int:
         return len(self.s)
 
-    def __getitem__(self, rows: Array) -> FramePoints:
+    def __getitem__(self, rows: NDArray[np.intp] | slice) -> FramePoints:
         return FramePoints(self.body[rows], self.s[rows])
 
     def placed(self, t_s: Array, T_odom_body: SE3) -> Array:
@@ -121,7 +122,7 @@ class PointMap:
             weak: Unit vectors of the weak directions in odom, (M, 3).
         """
         if not self._keyframes:
-            return points[np.empty(0, np.intp)]
+            return points[:0]
         p_odom = points.placed(t_s, T_odom_body)
         n = self._planes.normals(p_odom, _GATE_M)
         sight = p_odom - T_odom_body.t[-1]

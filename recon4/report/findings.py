@@ -11,6 +11,7 @@ import numpy as np
 from recon4.evaluation.table import number, percentage
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Verdict
 from recon4.report.artifacts import Results
+from recon4.report.contradictions import rejected_runs
 from recon4.report.drift import DriftClosed
 from recon4.report.facts import ReportFacts
 from recon4.report.observability import WeakStretch, weak_stretches
@@ -59,7 +60,7 @@ def find(facts: ReportFacts, results: Results, drift: DriftClosed | None) -> lis
     """All findings, worst first."""
     found = [*_tracking(results), *_converged(results), *_observability(results)]
     found += [*_plausibility(results), *_loops(results.graph), *_closed(drift)]
-    found += [*_leveled(results), *_contradicted(results)]
+    found += [*_leveled(results), *_contradicted(results), *_rejected_fixes(results)]
     found += [*_imported(results), *_accuracy(facts)]
     found += [Finding(Level.WARNING, text) for text in facts.warnings]
     return sorted(found, key=lambda finding: -finding.level)
@@ -102,12 +103,18 @@ def _describe_stretch(stretch: WeakStretch) -> str:
     direction = "a horizontal" if stretch.horizontal else "the vertical"
     if not np.isfinite(stretch.direction_odom).all():
         direction = "one"
+    weak = f"degeneracy {stretch.degeneracy:.4f}, 0 = unobservable"
+    if np.isfinite(stretch.sd_m):
+        weak = f"standard deviation of one multiframe {_distance(stretch.sd_m)}"
     return (
         f"Between {stretch.start_s:.0f} s and {stretch.end_s:.0f} s the LiDAR hardly observes "
-        f"{direction} direction (degeneracy {stretch.degeneracy:.4f}, 0 = unobservable): the "
-        "position along it may be wrong by meters, and no other figure shows it. A control "
-        "point, a loop or GNSS there would help."
+        f"{direction} direction ({weak}): the position along it may be wrong by meters, and no "
+        "other figure shows it. A control point, a loop or GNSS there would help."
     )
+
+
+def _distance(sd_m: float) -> str:
+    return f"{sd_m:.2f} m" if sd_m < 10.0 else "above 10 m"
 
 
 def _plausibility(results: Results) -> list[Finding]:
@@ -173,6 +180,19 @@ def _contradicted(results: Results) -> list[Finding]:
         return []
     text = f"Rejected automatically: {count} verified loop closures contradict the GNSS priors."
     return [Finding(Level.NOTE, text)]
+
+
+def _rejected_fixes(results: Results) -> list[Finding]:
+    return [
+        Finding(
+            Level.BAD,
+            f"From {run.start_s:.0f} s to {run.end_s:.0f} s after the first fix {run.fixes} GNSS "
+            f"fixes agree with each other and lie up to {run.horizontal_m:.2f} m horizontally and "
+            f"{run.height_m:.2f} m in height from the trajectory. They were rejected: either the "
+            "trajectory or GNSS is wrong there. A control point would tell which.",
+        )
+        for run in rejected_runs(results.georeference.get("georeference", {}))[:_MAX_WARNINGS]
+    ]
 
 
 def _imported(results: Results) -> list[Finding]:

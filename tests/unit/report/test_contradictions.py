@@ -1,0 +1,61 @@
+"""Runs of rejected fixes that agree with each other are announced; scattered ones are noise."""
+
+import numpy as np
+import pytest
+
+from recon4.report.artifacts import Results
+from recon4.report.contradictions import rejected_runs
+from recon4.report.facts import ReportFacts
+from recon4.report.findings import Level, find
+from recon4.settings import preset
+
+
+def fixes(rejected, residual_m, *, count=300):
+    """A record of fixes at 10 Hz with these rows rejected."""
+    used = np.ones(count, bool)
+    used[rejected] = False
+    residual = np.zeros((count, 3))
+    residual[rejected] = residual_m
+    return {
+        "t_ns": (np.arange(count) * 100_000_000).tolist(),
+        "used": used.tolist(),
+        "residual_enu_m": residual.tolist(),
+        "georeferenced": True,
+    }
+
+
+def growing(count):
+    """Fixes from which the trajectory runs away, to 3 m at last."""
+    return np.column_stack([np.linspace(0.5, 3.0, count), np.zeros(count), np.full(count, 0.2)])
+
+
+def test_the_last_fixes_from_which_the_trajectory_runs_away_are_a_contradiction():
+    (found,) = rejected_runs(fixes(slice(239, 300), growing(61)))
+
+    assert (found.start_s, found.end_s, found.fixes) == pytest.approx((23.9, 29.9, 61))
+    assert found.horizontal_m == pytest.approx(3.0)
+    assert found.height_m == pytest.approx(0.2)
+
+
+def test_scattered_outliers_are_noise():
+    scattered = np.arange(0, 300, 15)
+    jumping = np.random.default_rng(1).normal(0.0, 2.0, (40, 3))
+
+    assert rejected_runs(fixes(scattered, [2.0, 0.0, 0.0])) == []
+    assert rejected_runs(fixes(slice(100, 140), jumping)) == []
+    assert rejected_runs(fixes(slice(100, 108), growing(8))) == []
+
+
+def test_without_gnss_nothing_is_contradicted():
+    assert rejected_runs({"georeferenced": False}) == []
+
+
+def test_a_contradiction_makes_the_map_unusable_until_it_is_checked():
+    record = {"georeference": fixes(slice(239, 300), growing(61))}
+
+    facts = ReportFacts(title="field", created="", preset="outdoor", settings=preset("outdoor"))
+    texts = {f.text: f.level for f in find(facts, Results(georeference=record), None)}
+
+    (text,) = [text for text in texts if "61 GNSS fixes agree" in text]
+    assert texts[text] is Level.BAD
+    assert "3.00 m horizontally" in text
