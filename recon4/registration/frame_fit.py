@@ -72,7 +72,7 @@ class FrameFitter:
         p_body = np.concatenate([segments.a_body, segments.b_body])
         p_s = np.concatenate([segments.a_s, segments.b_s])
         frame_fraction = p_s / prediction.t_s[-1]
-        delta = np.zeros(24)
+        delta: Array = np.zeros(24)
         T_dense = _correct(prediction, delta, center)
         converged, rounds = False, 0
         for rounds in range(1, self.settings.rounds + 1):
@@ -95,13 +95,21 @@ class FrameFitter:
                 H_aiding, g_aiding = self.aiding.pull(T_dense[-1], prediction.end.t_ns)
                 H[END_POSE, END_POSE] += H_aiding
                 g[END_POSE] += g_aiding
-            step = -np.linalg.solve(H, g)
+            step = np.asarray(-np.linalg.solve(H, g), np.float64)
             delta = delta + step
             T_dense = _correct(prediction, delta, center)
             if rounds > self.coarse and _largest_move_m(step) < self.converged_step_m:
                 converged = True
                 break
-        return FrameFit(T_dense, delta, np.linalg.inv(H), H_lidar, match, rounds, converged)
+        return FrameFit(
+            T_dense,
+            delta,
+            np.asarray(np.linalg.inv(H), np.float64),
+            H_lidar,
+            match,
+            rounds,
+            converged,
+        )
 
     def _gate_m(self, rounds: int) -> float:
         return _GATES_M[min(rounds - 1 + (0 if self.coarse else 1), len(_GATES_M) - 1)]
