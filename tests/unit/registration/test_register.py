@@ -324,3 +324,26 @@ def test_an_empty_frame_has_no_segments():
 
     assert len(segments) == 0
     assert placed.shape == (0, 2, 3)
+
+
+def test_a_direction_that_only_noise_observes_keeps_the_initial_pose():
+    rng = np.random.default_rng(5)
+
+    def tunnel(count):
+        """Floor and two walls along x, rough by 1 cm."""
+        p = rng.uniform([-8.0, -0.9, 0.0], [8.0, 0.9, 2.5], (3 * count, 3))
+        p[:count, 2], p[count : 2 * count, 1], p[2 * count :, 1] = 0.05, -0.85, 0.85
+        return p + 0.01 * rng.standard_normal(p.shape)
+
+    planes = PlaneMap(PLANES)
+    planes.add(tunnel(20_000))
+    initial = SE3(np.eye(3), np.array([0.4, 0.02, -0.02]))
+
+    found = register_to_planes(
+        planes, tunnel(2000), initial=initial, planes=PLANES, settings=settings_of("planes"),
+        normal_noise_rad=0.08,
+    )  # fmt: skip
+
+    # Across the tunnel the pose is found, along it nothing is claimed.
+    np.testing.assert_allclose(found.T_target_source.t, [0.4, 0.0, 0.0], atol=0.01)
+    assert found.information[3, 3] < 1e-3 * found.information[4, 4]
