@@ -76,7 +76,7 @@ lock: $(TOOLS)/installed
 	$(COMPILE) -o requirements/tools.lock requirements/tools.in
 
 audit: $(TOOLS)/installed
-	$(TOOLS)/bin/pip-audit --require-hashes --disable-pip -r requirements/run.lock
+	$(TOOLS)/bin/pip-audit --strict --require-hashes --disable-pip -r requirements/run.lock
 
 sbom: $(TOOLS)/installed $(VENV)/installed-run
 	@mkdir -p out

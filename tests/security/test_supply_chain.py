@@ -52,6 +52,13 @@ def locked(name):
     return found
 
 
+def test_an_audit_that_could_not_ask_is_not_taken_for_a_clean_one():
+    """Without ``--strict`` pip-audit reports no vulnerabilities when it has no database."""
+    (command,) = re.findall(r"\S*bin/pip-audit .*", (ROOT / "Makefile").read_text("utf-8"))
+
+    assert "--strict" in command.split()
+
+
 @pytest.mark.parametrize("name", LOCKS)
 def test_every_package_of_a_lock_has_hashes_and_no_address(name):
     text = (ROOT / "requirements" / f"{name}.lock").read_text("utf-8")
