@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from recon4 import stages
 from recon4.errors import ConfigError, RecordingError, StoreError
-from recon4.model.rig import Rig, format_rig
+from recon4.model.rig import format_rig
 from recon4.progress import Progress, Silent
+from recon4.recording.sources import Sources
 from recon4.results import About, Summary, publish
 from recon4.review.decisions import NOTHING_DECIDED, Decided
 from recon4.review.journal import read_decided
@@ -38,12 +38,9 @@ BEFORE_REVIEW: tuple[Stage[Any], ...] = (
 
 
 def process(
-    recordings: Sequence[Path],
+    sources: Sources,
     out: Path,
     *,
-    rig: Rig | None = None,
-    imu: Path | None = None,
-    gnss: Path | None = None,
     settings: Settings | None = None,
     preset: str = "indoor",
     progress: Progress | None = None,
@@ -51,11 +48,8 @@ def process(
     """Make a map of recordings, or continue where an earlier call stopped.
 
     Args:
-        recordings: Files or folders of one walk: pcap, bags, folders of clouds.
+        sources: The recordings of one walk, its rig, and CSV files in place of their samples.
         out: Project folder; made when missing. Results end up in it (see ``docs/stages.md``).
-        rig: What was on the backpack; None = worked out from the recording.
-        imu: CSV file, in place of the recording's IMU.
-        gnss: CSV file, in place of the recording's positions.
         settings: All settings; None = those of the preset.
         preset: Name of the preset they started from.
         progress: Who watches.
@@ -71,62 +65,41 @@ def process(
 
     A new project that the recording or the rig keeps from its first stage is removed again.
     """
-    if not recordings:
+    if not sources.recordings:
         raise RecordingError("no recording given")
     progress = progress or Silent()
     settings = settings or settings_of(preset)
-    for path in (*recordings, *(path for path in (imu, gnss) if path)):
+    for path in sources.paths:
         if not path.exists():  # before a project is made for nothing
             raise RecordingError(f"cannot read {path}: there is no such file or folder")
     is_new = not is_project(out)
     try:
-        return _process(
-            out,
-            _Given(recordings, rig=rig, imu=imu, gnss=gnss),
-            settings=settings,
-            preset=preset,
-            progress=progress,
-        )
+        return _process(sources, out, settings=settings, preset=preset, progress=progress)
     except (RecordingError, ConfigError):
         if is_new:
             discard_unbegun(out)
         raise
 
 
-@dataclass(frozen=True, slots=True)
-class _Given:
-    """Input of a run."""
-
-    recordings: Sequence[Path]
-    rig: Rig | None
-    imu: Path | None
-    gnss: Path | None
-
-    @property
-    def files(self) -> list[Path]:
-        return [*self.recordings, *(path for path in (self.imu, self.gnss) if path)]
-
-
 def _process(
-    out: Path, given: _Given, *, settings: Settings, preset: str, progress: Progress
+    sources: Sources, out: Path, *, settings: Settings, preset: str, progress: Progress
 ) -> Summary:
-    files, rig, imu, gnss = given.files, given.rig, given.imu, given.gnss
+    paths, rig, imu, gnss = sources.paths, sources.rig, sources.imu, sources.gnss
     with Project.open(out) as project:
-        keys = {path: input_file(path, project.ledger, progress).key for path in files}
+        keys = {path: input_file(path, project.ledger, progress).key for path in paths}
         project.describe(
             preset=preset,
             rig=rig.name if rig else "",
-            inputs=[{"name": p.name, "bytes": size_of(p), "sha256": keys[p]} for p in files],
+            inputs=[{"name": p.name, "bytes": size_of(p), "sha256": keys[p]} for p in paths],
         )
         runner = StageRunner(project, settings, progress)
-        run_stages(
-            runner,
-            recordings=input_files(given.recordings, project.ledger, progress),
-            rig=Input(hash_json(format_rig(rig)), rig) if rig else None,
-            imu=Input(keys[imu], imu) if imu else None,
-            gnss=Input(keys[gnss], gnss) if gnss else None,
-            decided=read_decided(out),
-        )
+        inputs = {
+            "recordings": input_files(sources.recordings, project.ledger, progress),
+            "rig": Input(hash_json(format_rig(rig)), rig) if rig else None,
+            "imu": Input(keys[imu], imu) if imu else None,
+            "gnss": Input(keys[gnss], gnss) if gnss else None,
+        }
+        run_stages(runner, inputs, decided=read_decided(out))
         about = About(read_description(out), settings)
         return publish(out, runner.runs, about, progress=progress)
 
@@ -166,15 +139,11 @@ def remake(out: Path, *, progress: Progress | None = None) -> Summary:
 
 def run_stages(
     runner: StageRunner,
+    inputs: Mapping[str, Input | None],
     *,
-    recordings: Input,
-    rig: Input | None,
-    imu: Input | None,
-    gnss: Input | None,
     decided: Decided = NOTHING_DECIDED,
 ) -> None:
     """Every stage in order; each is skipped when its artifact is there."""
-    inputs = {"recordings": recordings, "rig": rig, "imu": imu, "gnss": gnss}
     frames, odometry, graph = run_before_review(runner, inputs)
     run_from_review(runner, frames=frames, odometry=odometry, graph=graph, decided=decided)
 

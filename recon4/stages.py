@@ -38,10 +38,10 @@ def _frames(
     gnss: Path | None,
 ) -> FrameFigures:
     from recon4.recording.ingest import ingest
+    from recon4.recording.sources import Sources
 
-    ingest(
-        recordings, out, rig=rig, imu=imu, gnss=gnss, settings=settings.ingest, progress=progress
-    )
+    sources = Sources(recordings, rig, imu, gnss)
+    ingest(sources, out, settings=settings.ingest, progress=progress)
     return frames_figures(out)
 
 

@@ -71,6 +71,7 @@ def demo(
     """Simulate a walk through an office, map it and show it in the browser."""
     from recon4.model.rig import load_rig
     from recon4.pipeline import process as make_map
+    from recon4.recording.sources import Sources
     from recon4.simulation.simulate import simulate as walk
     from recon4.terminal import describe_summary, watcher
 
@@ -79,13 +80,9 @@ def demo(
     with watcher() as progress:
         if not recording.exists():
             walk("office", recording, seconds=seconds, seed=1, bag=False, progress=progress)
-        summary = make_map(
-            [recording / "recording.pcap"],
-            project,
-            rig=load_rig(recording / "rig.toml"),
-            imu=recording / "imu.csv",
-            progress=progress,
-        )
+        rig = load_rig(recording / "rig.toml")
+        sources = Sources((recording / "recording.pcap",), rig, imu=recording / "imu.csv")
+        summary = make_map(sources, project, progress=progress)
     write(describe_summary(summary))
     if not headless:
         from app.settings import ServerSettings, recordings_from_environment

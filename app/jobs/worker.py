@@ -75,6 +75,7 @@ def process(folder: JobFolder, progress: Progress) -> None:
     from recon4.model.rig import load_rig
     from recon4.pipeline import process as run_pipeline
     from recon4.pipeline import remake
+    from recon4.recording.sources import Sources
     from recon4.settings import override, preset
 
     project, inputs = folder.request()
@@ -82,18 +83,15 @@ def process(folder: JobFolder, progress: Progress) -> None:
         refuse_if_full(project, [], reserve_bytes=folder.limits().reserve_bytes)
         remake(project, progress=progress)
         return
-    given = [Path(path) for path in (*inputs.recordings, inputs.imu, inputs.gnss) if path]
-    refuse_if_full(project, given, reserve_bytes=folder.limits().reserve_bytes)
-    run_pipeline(
-        [Path(recording) for recording in inputs.recordings],
-        project,
-        settings=override(preset(inputs.preset), list(inputs.settings)),
-        preset=inputs.preset,
+    sources = Sources(
+        tuple(Path(recording) for recording in inputs.recordings),
         rig=load_rig(inputs.rig) if inputs.rig else None,
         imu=Path(inputs.imu) if inputs.imu else None,
         gnss=Path(inputs.gnss) if inputs.gnss else None,
-        progress=progress,
     )
+    settings = override(preset(inputs.preset), list(inputs.settings))
+    refuse_if_full(project, sources.paths, reserve_bytes=folder.limits().reserve_bytes)
+    run_pipeline(sources, project, settings=settings, preset=inputs.preset, progress=progress)
 
 
 def _full(error: Exception, path: Path) -> str | None:

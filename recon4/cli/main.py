@@ -102,19 +102,12 @@ def process(
 
     from recon4.model.rig import load_rig
     from recon4.pipeline import process as run
+    from recon4.recording.sources import Sources
     from recon4.terminal import describe_summary, watcher
 
     with watcher() as progress:
-        summary = run(
-            recordings,
-            out,
-            rig=load_rig(rig) if rig else None,
-            imu=imu,
-            gnss=gnss,
-            settings=chosen,
-            preset=preset,
-            progress=progress,
-        )
+        sources = Sources(tuple(recordings), load_rig(rig) if rig else None, imu, gnss)
+        summary = run(sources, out, settings=chosen, preset=preset, progress=progress)
     if not compiled:
         mark_compiled()
     if as_json:

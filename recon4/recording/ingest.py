@@ -26,6 +26,7 @@ from recon4.recording.open import Recording, RecordingKind, open_recording, reco
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.clean import clean_gnss, clean_imu, gather, join
 from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
+from recon4.recording.sources import Sources
 from recon4.settings import IngestSettings
 from recon4.store.frames import FrameWriter
 
@@ -43,6 +44,14 @@ class _Samples:
     imu: list[ImuSamples] = field(default_factory=list)
     gnss: list[GnssSamples] = field(default_factory=list)
     poses: list[Trajectory] = field(default_factory=list)
+
+    @classmethod
+    def of_files(cls, sources: Sources) -> _Samples:
+        """Those of the CSV files."""
+        imu, gnss = sources.imu, sources.gnss
+        return cls(
+            imu=[read_imu_csv(imu)] if imu else [], gnss=[read_gnss_csv(gnss)] if gnss else []
+        )
 
     def keep(self, item: ImuSamples | GnssSamples | Trajectory) -> None:
         """Add samples."""
@@ -64,6 +73,8 @@ class _IngestSpan:
     t_last_ns: int = 0
     points: NDArray[np.int64] = field(default_factory=lambda: np.zeros(256, np.int64))
     """Of each sensor."""
+    jumps_ns: list[int] = field(default_factory=list)
+    """How far the times went back, each time [ns]."""
 
     def add(self, frame: Multiframe) -> None:
         """Count a frame."""
@@ -91,12 +102,9 @@ class LiveSource:
 
 
 def ingest(
-    recordings: Sequence[Path],
+    sources: Sources,
     out: Path,
     *,
-    rig: Rig | None,
-    imu: Path | None,
-    gnss: Path | None,
     settings: IngestSettings,
     progress: Progress,
     live: LiveSource | None = None,
@@ -104,11 +112,9 @@ def ingest(
     """Read a recording into a frame store.
 
     Args:
-        recordings: The recording; CSV files of IMU and GNSS samples may be among the paths.
+        sources: The recording; CSV files of IMU and GNSS samples may be among its paths. A rig
+            that is chosen from the recording is reported.
         out: Folder of the store.
-        rig: Sensors and mountings; None = chosen from the recording, and reported.
-        imu: IMU samples that replace the recording's.
-        gnss: GNSS samples that replace the recording's.
         settings: Settings of the reader.
         progress: Receives multiframes written, gaps and warnings.
         live: A running capture; None = a finished recording.
@@ -120,63 +126,70 @@ def ingest(
     """
     live = live or LiveSource()
     report = live.report
-    paths, imu, gnss = _sort_out(recordings, imu, gnss)
-    given = _Samples(
-        imu=[read_imu_csv(imu)] if imu else [], gnss=[read_gnss_csv(gnss)] if gnss else []
-    )
+    sources = _sort_out(sources)
+    paths = sources.recordings
+    given = _Samples.of_files(sources)
     recording = open_recording(
-        paths, rig, settings=settings, report=report, open_file=live.open_file
+        paths, sources.rig, settings=settings, report=report, open_file=live.open_file
     )
     assembler = Assembler(
-        recording.rig,
-        settings=settings,
-        report=report,
-        wait_s=recording.wait_s,
-        on_cut=live.watch,
+        recording.rig, settings=settings, report=report, wait_s=recording.wait_s, on_cut=live.watch
     )
-    found = _Samples()
     with FrameWriter(out, recording.rig) as writer:
-        written = _IngestSpan()
-        for item in _items(recording, assembler):
-            if not isinstance(item, Multiframe):
-                found.keep(item)
-                if not isinstance(item, Trajectory):
-                    live.watch(item)
-            else:
-                if not written.duration_ns:
-                    count = round(recording.seconds * 1e9 / item.duration_ns)
-                    progress.start("frames", count, "multiframe")
-                writer.append(item)
-                written.add(item)
-                progress.advance()
+        found, written = _write_frames(
+            recording, assembler, writer, watch=live.watch, progress=progress
+        )
         if not written.duration_ns:
             counted = ", ".join(f"{name} {n}" for name, n in sorted(report.counts.items()))
             raise EmptyRecording(f"{paths[0].name}: no usable points ({counted or 'nothing read'})")
-        rig, span = recording.rig, written.span
-        jumps = [-round(gap.seconds * 1e9) for gap in assembler.gaps if gap.seconds < 0]
-        kept_imu = _imu(given, found, (rig, span, jumps), report=report)
-        kept_gnss = _gnss(given, found, (rig, span), report=report)
+        imu = _imu(given, found, recording.rig, written=written, report=report)
+        gnss = _gnss(given, found, recording.rig, written=written, report=report)
         _write_poses(out, found.poses, report)
         about = _summary(recording, assembler, written, report=report)
-        about |= {"recordings": [path.name for path in paths]}
-        about |= {"frames": len(writer), "points": writer.points}
-        about |= {"imu": _about(kept_imu), "gnss": _about(kept_gnss)}
-        writer.add(imu=kept_imu, gnss=kept_gnss, report=about)
+        about |= {"recordings": [path.name for path in paths], "frames": len(writer)}
+        about |= {"points": writer.points, "imu": _about(imu), "gnss": _about(gnss)}
+        writer.add(imu=imu, gnss=gnss, report=about)
     for text in report.warnings:
         progress.event(Warned(text=text))
 
 
-def _sort_out(
-    recordings: Sequence[Path], imu: Path | None, gnss: Path | None
-) -> tuple[list[Path], Path | None, Path | None]:
-    """Recordings, IMU file and GNSS file of the arguments."""
-    kinds = {path: recognize(path) for path in recordings}
+def _sort_out(sources: Sources) -> Sources:
+    """The sources with CSV files among the recordings moved to their place."""
+    imu, gnss = sources.imu, sources.gnss
+    kinds = {path: recognize(path) for path in sources.recordings}
     for path, kind in kinds.items():
         if kind is RecordingKind.IMU_CSV and imu is None and len(kinds) > 1:
             imu = path
         if kind is RecordingKind.GNSS_CSV and gnss is None and len(kinds) > 1:
             gnss = path
-    return [path for path in recordings if path not in (imu, gnss)], imu, gnss
+    recordings = tuple(path for path in sources.recordings if path not in (imu, gnss))
+    return Sources(recordings, sources.rig, imu, gnss)
+
+
+def _write_frames(
+    recording: Recording,
+    assembler: Assembler,
+    writer: FrameWriter,
+    *,
+    watch: Callable[[Multiframe | ImuSamples | GnssSamples], None],
+    progress: Progress,
+) -> tuple[_Samples, _IngestSpan]:
+    """Write the multiframes as they are cut; returns the other contents, and what was written."""
+    found, written = _Samples(), _IngestSpan()
+    for item in _items(recording, assembler):
+        if not isinstance(item, Multiframe):
+            found.keep(item)
+            if not isinstance(item, Trajectory):
+                watch(item)
+            continue
+        if not written.duration_ns:
+            count = round(recording.seconds * 1e9 / item.duration_ns)
+            progress.start("frames", count, "multiframe")
+        writer.append(item)
+        written.add(item)
+        progress.advance()
+    written.jumps_ns = [-round(gap.seconds * 1e9) for gap in assembler.gaps if gap.seconds < 0]
+    return found, written
 
 
 def _items(
@@ -195,9 +208,8 @@ def _items(
 
 
 def _imu(
-    given: _Samples, found: _Samples, about: tuple[Rig, Span, list[int]], *, report: ImportReport
+    given: _Samples, found: _Samples, rig: Rig, *, written: _IngestSpan, report: ImportReport
 ) -> ImuSamples | None:
-    rig, span, jumps = about
     samples = join(given.imu or found.imu)
     if samples is None:
         report.warn("no IMU: motion within a frame is estimated from the points alone")
@@ -205,21 +217,20 @@ def _imu(
     if given.imu and found.imu:
         report.derive("IMU samples are those of the CSV file, not the recording's")
     offset_s = rig.imu_time_offset_s
-    clean = clean_imu(samples, offset_s=offset_s, jumps_ns=jumps, report=report)
-    return _covering(clean, span, bool(given.imu), report=report)
+    clean = clean_imu(samples, offset_s=offset_s, jumps_ns=written.jumps_ns, report=report)
+    return _covering(clean, written.span, bool(given.imu), report=report)
 
 
 def _gnss(
-    given: _Samples, found: _Samples, about: tuple[Rig, Span], *, report: ImportReport
+    given: _Samples, found: _Samples, rig: Rig, *, written: _IngestSpan, report: ImportReport
 ) -> GnssSamples | None:
-    rig, span = about
     samples = join(given.gnss or found.gnss)
     if samples is None:
         return None
     if given.gnss and found.gnss:
         report.derive("GNSS samples are those of the CSV file, not the recording's")
     clean = clean_gnss(samples, offset_s=rig.gnss_time_offset_s, report=report)
-    return _covering(clean, span, bool(given.gnss), report=report)
+    return _covering(clean, written.span, bool(given.gnss), report=report)
 
 
 def _covering(

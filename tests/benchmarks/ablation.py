@@ -28,6 +28,7 @@ from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
 from recon4.recording.ingest import ingest
+from recon4.recording.sources import Sources
 from recon4.registration.stage import run_odometry
 from recon4.semi_rigid.refine import refine
 from recon4.settings import Settings, override, preset
@@ -39,10 +40,8 @@ MODES = ("10", "overlap", "verification", "beyond")
 
 def read_frames(recording: Path, folder: Path, rig: Rig) -> FrameStore:
     folder.mkdir()
-    ingest(
-        [recording / "recording.pcap"], folder, rig=rig, imu=recording / "imu.csv", gnss=None,
-        settings=preset("indoor").ingest, progress=Silent(),
-    )  # fmt: skip
+    sources = Sources((recording / "recording.pcap",), rig, recording / "imu.csv")
+    ingest(sources, folder, settings=preset("indoor").ingest, progress=Silent())
     return FrameStore.open(folder)
 
 

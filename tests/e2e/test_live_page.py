@@ -21,6 +21,7 @@ from recon4.live.replay import replay
 from recon4.model.rig import format_rig, load_rig
 from recon4.pipeline import process
 from recon4.progress import Silent
+from recon4.recording.sources import Sources
 from recon4.simulation.simulate import simulate
 from tests.e2e.conftest import EXPECTED_NOISE
 from tests.loopback import an_address
@@ -239,8 +240,9 @@ class FirstStage(Silent):
 def same_as_from_the_file(live, again):
     """Processing the capture file again gives the same artifacts, byte by byte."""
     rig = load_rig(live / "recordings" / "rig.toml")
+    sources = Sources((live / "recordings" / "walk.pcap",), rig)
     with contextlib.suppress(Cancelled):
-        process([live / "recordings" / "walk.pcap"], again, rig=rig, progress=FirstStage())
+        process(sources, again, progress=FirstStage())
     fresh = sorted(path.name for path in (again / "artifacts").iterdir())
     assert fresh and set(fresh) <= {path.name for path in (live / "artifacts").iterdir()}
     files = [path for path in sorted(again.glob("artifacts/*/**/*.npy")) if path.is_file()]

@@ -10,6 +10,7 @@ from recon4.geometry.se3 import SE3
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
 from recon4.recording.ingest import ingest
+from recon4.recording.sources import Sources
 from recon4.registration.odometry import Odometry
 from recon4.registration.result import StopReason
 from recon4.registration.scans import make_scan, register_scans, search_scans
@@ -109,10 +110,7 @@ def test_a_car_that_starts_to_drive_is_followed(data):
 
 def test_a_scanner_at_rest_does_not_drift(data, tmp_path):
     pcap = data(AT_REST)
-    ingest(
-        [pcap], tmp_path, rig=None, imu=None, gnss=None, settings=Settings().ingest,
-        progress=Silent(),
-    )  # fmt: skip
+    ingest(Sources((pcap,)), tmp_path, settings=Settings().ingest, progress=Silent())
     frames = FrameStore.open(tmp_path)
     resting = [frames[k] for k in range(1, 29)]
 

@@ -34,6 +34,7 @@ from recon4.progress import Silent
 from recon4.recording.formats.pcap import read_pcap
 from recon4.recording.ingest import ingest
 from recon4.recording.report import ImportReport
+from recon4.recording.sources import Sources
 from recon4.recording.velodyne.models import DATA_SIZE, HOUR_US
 from recon4.settings import preset
 from recon4.simulation.simulate import simulate
@@ -145,15 +146,9 @@ def test_mapper_server_and_recorder_die_and_nothing_recorded_is_lost(tmp_path, w
     assert any("the recorder died" in word["text"] for word in state["words"])
     assert json.loads((project / "live" / "outcome.json").read_text())["why"] == "the recorder died"
     live = FrameStore.open(read_artifacts(project)["frames"])
-    ingest(
-        [project / "recordings" / "walk.pcap"],
-        tmp_path / "later",
-        rig=load_rig(project / "recordings" / "rig.toml"),
-        imu=None,
-        gnss=None,
-        settings=preset("indoor").ingest,
-        progress=Silent(),
-    )
+    recordings = project / "recordings"
+    sources = Sources((recordings / "walk.pcap",), load_rig(recordings / "rig.toml"))
+    ingest(sources, tmp_path / "later", settings=preset("indoor").ingest, progress=Silent())
     later = FrameStore.open(tmp_path / "later")
     assert len(live) == len(later) > 30
     for a, b in zip(live, later, strict=True):

@@ -40,6 +40,7 @@ from recon4.model.rig import Rig, load_rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, GnssSamples, ImuSamples
 from recon4.progress import Silent
 from recon4.recording.ingest import LiveSource, ingest
+from recon4.recording.sources import Sources
 from recon4.settings import Settings, preset
 from recon4.store.atomic import write_json
 
@@ -123,11 +124,8 @@ class Mapper:
         shutil.rmtree(out, ignore_errors=True)
         out.mkdir(parents=True)
         ingest(
-            [self._session.capture],
+            Sources((self._session.capture,), self._rig),
             out,
-            rig=self._rig,
-            imu=None,
-            gnss=None,
             settings=self._settings.ingest,
             progress=Silent(),
             live=self._live,

@@ -14,6 +14,7 @@ from recon4.model.samples import ImuSamples
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
 from recon4.recording.ingest import ingest
+from recon4.recording.sources import Sources
 from recon4.settings import preset
 from recon4.simulation.simulate import simulate
 from recon4.store.frames import FrameStore
@@ -50,15 +51,9 @@ class Walk:
 def walk(tmp_path_factory):
     folder = tmp_path_factory.mktemp("office")
     simulate("office", folder / "sim", seconds=16.0, seed=1, bag=False, progress=Silent())
-    ingest(
-        [folder / "sim" / "recording.pcap"],
-        folder / "frames",
-        rig=load_rig(folder / "sim" / "rig.toml"),
-        imu=folder / "sim" / "imu.csv",
-        gnss=None,
-        settings=preset("indoor").ingest,
-        progress=Silent(),
-    )
+    rig, imu = load_rig(folder / "sim" / "rig.toml"), folder / "sim" / "imu.csv"
+    sources = Sources((folder / "sim" / "recording.pcap",), rig, imu)
+    ingest(sources, folder / "frames", settings=preset("indoor").ingest, progress=Silent())
     return Walk(FrameStore.open(folder / "frames"), read_tum(folder / "sim" / "truth.tum"))
 
 

@@ -12,6 +12,7 @@ from recon4.model.multiframe import COLUMNS
 from recon4.model.rig import load_rig
 from recon4.progress import Silent
 from recon4.recording.ingest import LiveSource, ingest
+from recon4.recording.sources import Sources
 from recon4.settings import preset
 from recon4.store.frames import FrameStore
 from tests.unit.recording.packet_builders import spin
@@ -37,16 +38,8 @@ def walk(path):
 
 
 def frames_of(path, out, live=None):
-    ingest(
-        [path],
-        out,
-        rig=load_rig("4recon"),
-        imu=None,
-        gnss=None,
-        settings=preset("indoor").ingest,
-        progress=Silent(),
-        live=live,
-    )
+    sources = Sources((path,), load_rig("4recon"))
+    ingest(sources, out, settings=preset("indoor").ingest, progress=Silent(), live=live)
     return FrameStore.open(out)
 
 

@@ -17,6 +17,7 @@ from recon4.recording.info import describe
 from recon4.recording.ingest import ingest
 from recon4.recording.open import RecordingKind, recognize
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
+from recon4.recording.sources import Sources
 from recon4.settings import IngestSettings
 from recon4.store.frames import FrameStore
 from tests.builders import (
@@ -31,15 +32,8 @@ from tests.builders import (
 
 
 def run(*paths, out, rig=None, imu=None, gnss=None, progress=None, **options):
-    ingest(
-        paths,
-        out,
-        rig=rig,
-        imu=imu,
-        gnss=gnss,
-        settings=IngestSettings(**options),
-        progress=progress or Silent(),
-    )
+    sources = Sources(paths, rig, imu, gnss)
+    ingest(sources, out, settings=IngestSettings(**options), progress=progress or Silent())
     return FrameStore.open(out)
 
 

@@ -8,6 +8,7 @@ import pytest
 from recon4.model.samples import ImuSamples
 from recon4.progress import Silent
 from recon4.recording.ingest import ingest
+from recon4.recording.sources import Sources
 from recon4.registration.imu_consistency import consistent_imu
 from recon4.settings import OdometrySettings, preset
 from recon4.simulation.simulate import simulate
@@ -35,10 +36,8 @@ def frames(tmp_path_factory):
     folder = tmp_path_factory.mktemp("walk")
     simulate("office", folder / "in", seconds=6.0, seed=2, bag=False, progress=Silent())
     (folder / "frames").mkdir()
-    ingest(
-        [folder / "in" / "recording.pcap"], folder / "frames", rig=None,
-        imu=folder / "in" / "imu.csv", gnss=None, settings=SETTINGS.ingest, progress=Silent(),
-    )  # fmt: skip
+    sources = Sources((folder / "in" / "recording.pcap",), imu=folder / "in" / "imu.csv")
+    ingest(sources, folder / "frames", settings=SETTINGS.ingest, progress=Silent())
     return FrameStore.open(folder / "frames")
 
 

@@ -12,6 +12,7 @@ from recon4.model.rig import load_rig
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
 from recon4.recording.ingest import ingest
+from recon4.recording.sources import Sources
 from recon4.settings import IngestSettings
 from recon4.simulation.frames import simulate_frames
 from recon4.simulation.setup import EPOCH_NS, Models
@@ -111,10 +112,8 @@ def test_an_independent_decoder_puts_the_points_onto_the_model(perfect):
 def test_our_readers_get_the_same_points_from_capture_bag_and_frames(perfect, tmp_path):
     settings = IngestSettings(min_range_m=0.0)
     for name in ("recording.pcap", "rosbag2"):
-        ingest(
-            [perfect / name], tmp_path / name, rig=load_rig(perfect / "rig.toml"), imu=None,
-            gnss=None, settings=settings, progress=Silent(),
-        )  # fmt: skip
+        sources = Sources((perfect / name,), load_rig(perfect / "rig.toml"))
+        ingest(sources, tmp_path / name, settings=settings, progress=Silent())
     simulate_frames(
         "staircase", tmp_path / "direct", seconds=SECONDS, seed=1, models=Models.perfect()
     )
