@@ -72,14 +72,16 @@ def demo(
     from recon4.model.rig import load_rig
     from recon4.pipeline import process as make_map
     from recon4.recording.sources import Sources
-    from recon4.simulation.simulate import simulate as walk
+    from recon4.simulation.setup import prepare
+    from recon4.simulation.simulate import simulate
     from recon4.terminal import describe_summary, watcher
 
     recording, project = out / "recording", out / "office"
     out.mkdir(parents=True, exist_ok=True)
     with watcher() as progress:
         if not recording.exists():
-            walk("office", recording, seconds=seconds, seed=1, bag=False, progress=progress)
+            walk = prepare("office", seconds=seconds, seed=1)
+            simulate(walk, recording, bag=False, progress=progress)
         rig = load_rig(recording / "rig.toml")
         sources = Sources((recording / "recording.pcap",), rig, imu=recording / "imu.csv")
         summary = make_map(sources, project, progress=progress)

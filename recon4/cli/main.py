@@ -137,21 +137,14 @@ def simulate(
     """Simulate a walk: packets, IMU, GNSS, and the truth they can be judged by."""
     from recon4.model.rig import load_rig
     from recon4.simulation.degradation import parse_degradations
+    from recon4.simulation.setup import prepare
     from recon4.simulation.simulate import simulate as run
     from recon4.terminal import watcher
 
     degradations = parse_degradations(degrade or [])
     with watcher() as progress:
-        run(
-            world,
-            out,
-            seconds=seconds,
-            seed=seed,
-            rig=load_rig(rig),
-            bag=bag,
-            degradations=degradations,
-            progress=progress,
-        )
+        setup = prepare(world, seconds=seconds, seed=seed, rig=load_rig(rig))
+        run(setup, out, bag=bag, degradations=degradations, progress=progress)
     write(f"{out}")
 
 

@@ -16,10 +16,8 @@ from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.progress import Progress, Silent
 from recon4.recording.formats.poses import write_tum
 from recon4.recording.velodyne.models import MODELS
-from recon4.simulation.gnss import simulate_gnss
-from recon4.simulation.imu import simulate_imu
 from recon4.simulation.lidar import Firings
-from recon4.simulation.setup import Models, SimulationSetup, prepare
+from recon4.simulation.setup import SimulationSetup, gnss_samples, imu_samples
 from recon4.simulation.truth import true_trajectory
 from recon4.store.frames import FrameWriter
 
@@ -29,38 +27,17 @@ Columns = dict[str, NDArray[Any]]
 
 
 def simulate_frames(
-    world: str,
-    folder: Path,
-    *,
-    seconds: float,
-    seed: int,
-    rig: Rig | None = None,
-    models: Models | None = None,
-    progress: Progress | None = None,
-) -> SimulationSetup:
+    setup: SimulationSetup, folder: Path, *, progress: Progress | None = None
+) -> None:
     """Write a frame store with ``imu.npz``, and ``truth.tum`` beside its columns.
 
     The points are what an ideal decoder makes of the packets: azimuths are not rounded.
 
     Raises:
-        ConfigError: If the world, the duration or the rig cannot be simulated.
         StoreError: If the folder cannot be written.
     """
     watch = progress or Silent()
-    setup = prepare(world, seconds=seconds, seed=seed, rig=rig, models=models)
-    imu = simulate_imu(
-        setup.walk, setup.rig, setup.models.imu, epoch_ns=setup.epoch_ns, rng=setup.rng(2)
-    )
-    gnss = None
-    if setup.world.outdoors:
-        gnss = simulate_gnss(
-            setup.walk,
-            setup.rig,
-            setup.models.gnss,
-            origin=setup.world.origin,
-            epoch_ns=setup.epoch_ns,
-            rng=setup.rng(5),
-        )
+    imu, gnss = imu_samples(setup), gnss_samples(setup)
     with FrameWriter(folder, setup.rig) as writer:
         watch.start("simulate", int(setup.walk.seconds), "s")
         for chunk in _chunks(setup):
@@ -70,7 +47,6 @@ def simulate_frames(
         imu, gnss = _on_rig_clock(imu, gnss, setup.rig)
         writer.add(imu=imu, gnss=gnss, report={"derived": [], "counts": {"points": writer.points}})
     write_tum(folder / "truth.tum", true_trajectory(setup.walk, epoch_ns=setup.epoch_ns))
-    return setup
 
 
 def _on_rig_clock(
@@ -93,7 +69,7 @@ def _chunks(setup: SimulationSetup) -> Iterator[list[Multiframe]]:
         for row, lidar in enumerate(setup.lidars):
             until = lidar.packets_before(last * FRAME_NS) + 1
             rng = setup.rng(3, row, first)
-            shots = lidar.fire(range(fired[row], until), setup.walk, setup.surroundings, rng)
+            shots = lidar.fire(range(fired[row], until), setup.walk, setup.surroundings, rng=rng)
             fired[row] = until
             waiting[row] = _joined(waiting[row], _points(shots, row))
         yield [_frame(k, waiting, setup.epoch_ns) for k in range(first, last)]

@@ -119,7 +119,7 @@ class Lidar:
         return max(0, (t_ns - self.first_packet_ns) // PACKET_NS)
 
     def fire(
-        self, packets: range, walk: Walk, surroundings: Surroundings, rng: np.random.Generator
+        self, packets: range, walk: Walk, surroundings: Surroundings, *, rng: np.random.Generator
     ) -> Firings:
         """Measure from a walking body, every shot from its own pose."""
         t_ns = self.first_packet_ns + (

@@ -18,12 +18,11 @@ from recon4.recording.velodyne.encode import PcapWriter
 from recon4.simulation.bag import BagWriter, open_bag
 from recon4.simulation.csv_tables import write_gnss, write_imu, write_markers
 from recon4.simulation.degradation import Degradation
-from recon4.simulation.gnss import simulate_gnss
 from recon4.simulation.imu import simulate_imu
 from recon4.simulation.lidar import Firings
 from recon4.simulation.packets import pack, write_packets, write_positions
 from recon4.simulation.reflectivity import ReflectivityWriter
-from recon4.simulation.setup import SimulationSetup
+from recon4.simulation.setup import SimulationSetup, gnss_samples
 from recon4.simulation.truth import true_trajectory
 
 _SECOND_NS = 1_000_000_000
@@ -104,17 +103,8 @@ def _sense(setup: SimulationSetup, degradation: Degradation) -> ImuSamples | Non
 
 
 def _receive(setup: SimulationSetup, degradation: Degradation) -> GnssSamples | None:
-    if not setup.world.outdoors or "no-gnss" in degradation.values:
-        return None
-    samples = simulate_gnss(
-        setup.walk,
-        setup.rig,
-        setup.models.gnss,
-        origin=setup.world.origin,
-        epoch_ns=setup.epoch_ns,
-        rng=setup.rng(5),
-    )
-    return degradation.gnss(samples)
+    samples = None if "no-gnss" in degradation.values else gnss_samples(setup)
+    return None if samples is None else degradation.gnss(samples)
 
 
 def _during(samples: Samples, start_ns: int) -> Samples:

@@ -9,9 +9,10 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.geometry.raycast import Scene
 from recon4.model.rig import Rig, load_rig
+from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.simulation.gait import plan_walk
-from recon4.simulation.gnss import GnssModel
-from recon4.simulation.imu import ImuModel
+from recon4.simulation.gnss import GnssModel, simulate_gnss
+from recon4.simulation.imu import ImuModel, simulate_imu
 from recon4.simulation.lidar import Lidar, LidarModel, Surroundings
 from recon4.simulation.walk import Walk
 from recon4.simulation.world import World
@@ -100,6 +101,27 @@ def prepare(
         Surroundings(place.mesh, Scene(place.mesh)),
         seed,
         epoch_ns,
+    )
+
+
+def imu_samples(setup: SimulationSetup) -> ImuSamples:
+    """What the IMU measures on the walk."""
+    return simulate_imu(
+        setup.walk, setup.rig, setup.models.imu, epoch_ns=setup.epoch_ns, rng=setup.rng(2)
+    )
+
+
+def gnss_samples(setup: SimulationSetup) -> GnssSamples | None:
+    """What the GNSS receiver measures on the walk; None = indoors."""
+    if not setup.world.outdoors:
+        return None
+    return simulate_gnss(
+        setup.walk,
+        setup.rig,
+        setup.models.gnss,
+        origin=setup.world.origin,
+        epoch_ns=setup.epoch_ns,
+        rng=setup.rng(5),
     )
 
 

@@ -9,50 +9,38 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import StoreError
-from recon4.model.rig import Rig
 from recon4.progress import Progress
 from recon4.simulation.degradation import Degradation
 from recon4.simulation.lidar import Firings
 from recon4.simulation.recorder import Recorder
-from recon4.simulation.setup import EPOCH_NS, Models, SimulationSetup, prepare
+from recon4.simulation.setup import SimulationSetup
 from recon4.store.atomic import atomic_folder
 
 _SECOND_NS = 1_000_000_000
 
 
-def simulate(  # noqa: PLR0913 - every part of a recording can be chosen
-    world: str,
+def simulate(
+    setup: SimulationSetup,
     out: Path,
     *,
-    seconds: float,
-    seed: int,
     progress: Progress,
-    rig: Rig | None = None,
-    models: Models | None = None,
     bag: bool = True,
-    epoch_ns: int = EPOCH_NS,
     degradations: Mapping[str, float] | None = None,
 ) -> None:
     """Write a recording and its truth to a new folder (see ``docs/simulation.md``).
 
     Args:
-        world: One of `recon4.simulation.worlds.WORLDS`.
+        setup: The walk and the sensors, see `prepare`; the same setup gives the same bytes.
         out: Folder to make: it must not exist, or be empty.
-        seconds: Length of the walk.
-        seed: Draws the walk and all noise; the same seed gives the same bytes.
         progress: Receives every simulated second.
-        rig: VLP-16s and their mounting; None = 4RECON.
-        models: Errors of the sensors; None = those of the real ones.
         bag: Also write the rosbag2, which doubles the size.
-        epoch_ns: UTC of the start [ns].
         degradations: Errors that the rig file does not know, see
             `recon4.simulation.degradation.KINDS`; None = none.
 
     Raises:
-        ConfigError: If the world, the duration, the rig or a degradation cannot be simulated.
+        ConfigError: If a degradation cannot be simulated.
         StoreError: If the folder exists with something in it or cannot be written.
     """
-    setup = prepare(world, seconds=seconds, seed=seed, rig=rig, models=models, epoch_ns=epoch_ns)
     record(setup, {out: degradations or {}}, bag=bag, progress=progress)
 
 
@@ -105,7 +93,7 @@ def _seconds(setup: SimulationSetup) -> Iterator[list[Firings]]:
             packets = range(fired[row], lidar.packets_before(end_ns))
             fired[row] = packets.stop
             rng = setup.rng(3, row, second)
-            parts.append(lidar.fire(packets, setup.walk, setup.surroundings, rng))
+            parts.append(lidar.fire(packets, setup.walk, setup.surroundings, rng=rng))
         yield parts
 
 

@@ -16,6 +16,7 @@ from collections import Counter
 from pathlib import Path
 
 from recon4.progress import Silent
+from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
 from tests.service import killing
 
@@ -30,7 +31,7 @@ def main() -> None:
     runs = len(killing.IN_A_STAGE) if given.matrix else -(-given.count // given.a_run)
     top = Path(tempfile.mkdtemp(prefix="recon4-kills-"))
     try:
-        simulate("office", top / "walk", seconds=5.0, seed=3, bag=False, progress=Silent())
+        simulate(prepare("office", seconds=5.0, seed=3), top / "walk", bag=False, progress=Silent())
         whole = prepared(top, "whole")
         killing.run(whole, killing.request_for(whole), kills=0, seed=0)
         expected = killing.results(whole / "office"), killing.artifacts(whole / "office")

@@ -35,6 +35,7 @@ from recon4.review.approval import approve
 from recon4.review.audit import audit_review
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append, read_rows
+from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
 from recon4.store.atomic import make_folders
 from recon4.store.project import is_project, read_stages
@@ -75,14 +76,14 @@ def main() -> None:
 
 def record(top: Path, seconds: float) -> None:
     """Do everything once on the recording disk."""
-    simulate("office", top / "walk", seconds=seconds, seed=3, bag=False, progress=Silent())
+    simulate(prepare("office", seconds=seconds, seed=3), top / "walk", bag=False, progress=Silent())
     with mounted(top) as root:
         subprocess.run(command(top / "walk", root / "office"), check=True, capture_output=True)
         mark(root, "processed")
         for name in RESULTS:  # approving stamps them
             shutil.copy(root / "office" / name, top / name)
         make_folders(root / ".recon4")
-        approve(root / "office", root / ".recon4" / "signing.key", SIGNER, True)
+        approve(root / "office", root / ".recon4" / "signing.key", SIGNER, confirmed=True)
         mark(root, "approved")
         for edge in json.loads((root / "office" / "edges.json").read_text())["edges"][-5:]:
             i, j = edge["frames"]

@@ -22,6 +22,7 @@ from recon4.model.rig import format_rig, load_rig
 from recon4.pipeline import process
 from recon4.progress import Silent
 from recon4.recording.sources import Sources
+from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
 from tests.e2e.conftest import EXPECTED_NOISE
 from tests.loopback import an_address
@@ -51,7 +52,7 @@ GAPS = """() => new Promise((resolve) => {
 @pytest.fixture(scope="module")
 def walk(tmp_path_factory):
     out = tmp_path_factory.mktemp("walk")
-    simulate("office", out, seconds=SECONDS, seed=3, progress=Silent())
+    simulate(prepare("office", seconds=SECONDS, seed=3), out, progress=Silent())
     return out
 
 

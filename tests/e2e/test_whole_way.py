@@ -14,6 +14,7 @@ from playwright.sync_api import expect
 
 from recon4.progress import Silent
 from recon4.review.journal import broken, read_rows
+from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
 from recon4.store.hashing import hash_file
 from tests.e2e.test_pages import drawn
@@ -32,7 +33,7 @@ PHONE = {"width": 390, "height": 844}
 def walk(tmp_path_factory):
     """Files of a backpack on the operator's computer: capture, IMU, rig."""
     made = tmp_path_factory.mktemp("simulated") / "made"
-    simulate("office", made, seconds=SECONDS, seed=3, progress=Silent(), bag=False)
+    simulate(prepare("office", seconds=SECONDS, seed=3), made, progress=Silent(), bag=False)
     folder = tmp_path_factory.mktemp("backpack") / "Office walk"
     folder.mkdir()
     for name in ("recording.pcap", "imu.csv", "rig.toml"):

@@ -11,6 +11,7 @@ from recon4.pose_graph.files import load_graph
 from recon4.progress import Silent
 from recon4.review.decisions import Decision, DecisionKind, Measurement
 from recon4.review.journal import append
+from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
 from recon4.slices.doubles import find_double_walls
 from recon4.store.project import read_artifacts
@@ -27,7 +28,7 @@ FEW = ["map.voxel_m=0.02", "graph.node_stride=10", "refine.rounds=0"]
 @pytest.fixture(scope="module")
 def process(tmp_path_factory):
     walk = tmp_path_factory.mktemp("recording") / "walk"
-    simulate("office", walk, seconds=SECONDS, seed=2, bag=False, progress=Silent())
+    simulate(prepare("office", seconds=SECONDS, seed=2), walk, bag=False, progress=Silent())
     root = tmp_path_factory.mktemp("project") / "office"
     more = [word for setting in FEW for word in ("--set", setting)]
     recording = [str(walk / "recording.pcap"), "--imu", str(walk / "imu.csv")]

@@ -15,6 +15,7 @@ from recon4.progress import Silent
 from recon4.recording.formats.pcap import address_text, read_pcap
 from recon4.recording.report import ImportReport
 from recon4.recording.velodyne.encode import PcapWriter
+from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
 
 SECONDS = 4.0
@@ -30,7 +31,7 @@ KILLED_AFTER = ("hash", "frames:", "odometry:", "graph:", "verification:", "refi
 def walk(tmp_path_factory):
     """Four seconds of a walk with two LiDARs and an IMU."""
     folder = tmp_path_factory.mktemp("walk")
-    simulate("office", folder / "whole", seconds=6.0, seed=3, bag=False, progress=Silent())
+    simulate(prepare("office", seconds=6.0, seed=3), folder / "whole", bag=False, progress=Silent())
     cut_pcap(folder / "whole" / "recording.pcap", folder / "walk.pcap")
     (folder / "imu.csv").write_bytes((folder / "whole" / "imu.csv").read_bytes())
     return folder

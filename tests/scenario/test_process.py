@@ -11,6 +11,7 @@ from recon4.evaluation.evaluate import evaluate
 from recon4.progress import Silent
 from recon4.results import RESULTS
 from recon4.settings import preset, to_json
+from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
 from recon4.store.hashing import hash_file
 
@@ -20,7 +21,7 @@ FEW = ["--set", "map.voxel_m=0.05", "--set", "graph.node_stride=10"]
 @pytest.fixture(scope="module")
 def walk(tmp_path_factory):
     folder = tmp_path_factory.mktemp("recording") / "walk"
-    simulate("office", folder, seconds=6.0, seed=2, bag=False, progress=Silent())
+    simulate(prepare("office", seconds=6.0, seed=2), folder, bag=False, progress=Silent())
     return folder
 
 

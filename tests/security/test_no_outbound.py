@@ -14,6 +14,7 @@ import sys
 import pytest
 
 from recon4.progress import Silent
+from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
 from tests.service.running import ROOT
 
@@ -61,7 +62,7 @@ def traced(isolated, trace, *command):
 @pytest.mark.slow
 def test_processing_slicing_and_serving_connect_to_nothing_outside(isolated, tmp_path):
     walk, root = tmp_path / "walk", tmp_path / "projects"
-    simulate("office", walk, seconds=6.0, seed=2, bag=False, progress=Silent())
+    simulate(prepare("office", seconds=6.0, seed=2), walk, bag=False, progress=Silent())
     root.mkdir()
     trace = tmp_path / "trace"
 

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from recon4.progress import Silent
+from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
 from tests.service.killing import QUICK
 from tests.service.running import ROOT
@@ -80,7 +81,9 @@ def test_a_signal_is_obeyed_where_python_throws_exceptions_away(where, name):
 @pytest.mark.slow
 def test_processing_stopped_at_random_moments_leaves_nothing_and_goes_on(tmp_path):
     """Each command goes on where the last one was stopped."""
-    simulate("office", tmp_path / "walk", seconds=5.0, seed=3, bag=False, progress=Silent())
+    simulate(
+        prepare("office", seconds=5.0, seed=3), tmp_path / "walk", bag=False, progress=Silent()
+    )
     rng = np.random.default_rng(4)
     stopped = 0
     for _ in range(STOPS):

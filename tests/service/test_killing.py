@@ -6,6 +6,7 @@ import pytest
 
 from app.jobs.run_progress import PIECES, STAGE_PERCENT
 from recon4.progress import Silent
+from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
 from tests.service import killing
 from tests.service.killing import (
@@ -26,7 +27,7 @@ pytestmark = pytest.mark.slow
 @pytest.fixture(scope="module")
 def walk(tmp_path_factory):
     folder = tmp_path_factory.mktemp("walks") / "walk"
-    simulate("office", folder, seconds=5.0, seed=3, bag=False, progress=Silent())
+    simulate(prepare("office", seconds=5.0, seed=3), folder, bag=False, progress=Silent())
     return folder
 
 

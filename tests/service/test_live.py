@@ -14,6 +14,7 @@ from websockets.exceptions import ConnectionClosed
 
 from recon4.live.replay import replay
 from recon4.progress import Silent
+from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
 from tests.loopback import an_address
 from tests.service.running import server_thread
@@ -24,7 +25,7 @@ SECONDS = 8.0
 @pytest.fixture(scope="module")
 def walk(tmp_path_factory):
     out = tmp_path_factory.mktemp("walk")
-    simulate("office", out, seconds=SECONDS, seed=3, progress=Silent())
+    simulate(prepare("office", seconds=SECONDS, seed=3), out, progress=Silent())
     return out
 
 

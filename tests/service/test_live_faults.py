@@ -37,6 +37,7 @@ from recon4.recording.report import ImportReport
 from recon4.recording.sources import Sources
 from recon4.recording.velodyne.models import DATA_SIZE, HOUR_US
 from recon4.settings import preset
+from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
 from recon4.store.frames import FrameStore
 from recon4.store.project import read_artifacts
@@ -47,7 +48,7 @@ from tests.service.running import wait_for
 @pytest.fixture(scope="module")
 def walk(tmp_path_factory):
     out = tmp_path_factory.mktemp("walk")
-    simulate("office", out, seconds=14.0, seed=3, bag=False, progress=Silent())
+    simulate(prepare("office", seconds=14.0, seed=3), out, bag=False, progress=Silent())
     return out
 
 

@@ -3,6 +3,7 @@
 import pytest
 
 from recon4.simulation.frames import simulate_frames
+from recon4.simulation.setup import prepare
 from recon4.store.frames import FrameStore
 
 
@@ -10,7 +11,7 @@ from recon4.store.frames import FrameStore
 def office_walk(tmp_path_factory):
     """Folder of six seconds of a person's walk through the simulated office, with an IMU."""
     folder = tmp_path_factory.mktemp("office")
-    simulate_frames("office", folder, seconds=6.0, seed=3)
+    simulate_frames(prepare("office", seconds=6.0, seed=3), folder)
     return folder
 
 

@@ -24,7 +24,7 @@ from recon4.geometry.mesh import MeshBuilder
 from recon4.geometry.se3 import Array
 from recon4.simulation.world import Waypoint, World
 from recon4.simulation.worlds.outdoors import CONCRETE, car
-from recon4.simulation.worlds.walls import PAPER, wall
+from recon4.simulation.worlds.walls import PAPER, WallShape, wall
 
 GRID_M = 5.0
 COLUMN_M = 0.4
@@ -46,10 +46,11 @@ def build(variant: int = 0) -> World:
     size = np.array([GRID_M * (_COLUMNS_X - 1), GRID_M * (_ROWS - 1)]) + 2 * _MARGIN_M
     for z, value in ((0.0, CONCRETE), (HEIGHT_M, CONCRETE)):
         builder.quad([0, 0, z], [size[0], 0, 0], [0, size[1], 0], reflectivity=value)
+    concrete = WallShape(height_m=HEIGHT_M, reflectivity=CONCRETE)
     for y in (0.0, float(size[1])):
-        wall(builder, (0, y), (float(size[0]), y), height_m=HEIGHT_M, reflectivity=CONCRETE)
+        wall(builder, (0, y), (float(size[0]), y), shape=concrete)
     for x in (0.0, float(size[0])):
-        wall(builder, (x, 0), (x, float(size[1])), height_m=HEIGHT_M, reflectivity=CONCRETE)
+        wall(builder, (x, 0), (x, float(size[1])), shape=concrete)
     for column in range(_COLUMNS_X):
         for row in range(_ROWS):
             x, y = _column(column, row)

@@ -22,6 +22,7 @@ from recon4.simulation.worlds.walls import (
     CEILING,
     LINOLEUM,
     PAPER,
+    WallShape,
     door,
     wall,
     window,
@@ -79,12 +80,12 @@ def _shell(builder: MeshBuilder) -> None:
     wall(builder, (0, -0.06), (LENGTH_M, -0.06), openings=south_doors)
     windows = [window(column * ROOM_M + at) for column in range(ROOMS) for at in (1.45, 3.75)]
     for y in (NORTH_M, SOUTH_M):
-        wall(builder, (0, y), (LENGTH_M, y), thickness_m=0.3, openings=windows)
+        wall(builder, (0, y), (LENGTH_M, y), shape=WallShape(thickness_m=0.3), openings=windows)
     for x in (0.0, LENGTH_M):
         wall(builder, (x, SOUTH_M), (x, 0.0))
         wall(builder, (x, CORRIDOR_M), (x, NORTH_M))
         end = window(CORRIDOR_M / 2, 1.0)
-        wall(builder, (x, 0.0), (x, CORRIDOR_M), thickness_m=0.3, openings=[end])
+        wall(builder, (x, 0.0), (x, CORRIDOR_M), shape=WallShape(thickness_m=0.3), openings=[end])
     for column in range(1, ROOMS):
         x = column * ROOM_M
         passage = door(_PASSAGE_AT_M)

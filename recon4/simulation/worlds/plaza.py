@@ -14,7 +14,7 @@ from recon4.geometry.mesh import MeshBuilder
 from recon4.geometry.se3 import Array
 from recon4.simulation.world import Waypoint, World
 from recon4.simulation.worlds.outdoors import CONCRETE, follow, pole
-from recon4.simulation.worlds.walls import PLASTER, STEEL, Opening, wall
+from recon4.simulation.worlds.walls import PLASTER, STEEL, Opening, WallShape, wall
 
 HALF_LENGTH_M, HALF_WIDTH_M = 80.0, 60.0
 _LAMPS_M = 24.0
@@ -48,6 +48,7 @@ def ground(x_m: ArrayLike, y_m: ArrayLike) -> Array:
 
 def _facades(builder: MeshBuilder) -> None:
     """Four facades, equal windows every 4 m."""
+    facade = WallShape(height_m=_FACADE_M, thickness_m=0.4)
     for length_m, along in ((2 * HALF_LENGTH_M, 0), (2 * HALF_WIDTH_M, 1)):
         other = HALF_WIDTH_M if along == 0 else HALF_LENGTH_M
         windows = [
@@ -56,7 +57,7 @@ def _facades(builder: MeshBuilder) -> None:
         for side in (-other, other):
             ends = [(-0.5 * length_m, side), (0.5 * length_m, side)]
             start, end = ends if along == 0 else [(b, a) for a, b in ends]
-            wall(builder, start, end, height_m=_FACADE_M, thickness_m=0.4, openings=windows)
+            wall(builder, start, end, shape=facade, openings=windows)
 
 
 def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:

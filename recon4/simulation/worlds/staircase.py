@@ -27,6 +27,7 @@ from recon4.simulation.worlds.walls import (
     STEEL,
     WOOD,
     Opening,
+    WallShape,
     door,
     wall,
     window,
@@ -91,7 +92,7 @@ def _well(builder: MeshBuilder, floors: int) -> None:
     """The walls around the stairs, windows at the half-landings, ground and roof."""
     top = (floors - 1) * STOREY_M + _HALL_HEIGHT_M
     for y in (-0.15, WIDTH_M + 0.15):
-        wall(builder, (0, y), (LENGTH_M, y), height_m=top, thickness_m=0.3)
+        wall(builder, (0, y), (LENGTH_M, y), shape=WallShape(height_m=top, thickness_m=0.3))
     for storey in range(floors):
         bottom = storey * STOREY_M + STOREY_M / 2 if storey else 0.0
         height = min(STOREY_M, top - bottom) if storey else STOREY_M * 1.5
@@ -105,9 +106,7 @@ def _well(builder: MeshBuilder, floors: int) -> None:
             builder,
             (x, 0),
             (x, WIDTH_M),
-            bottom_m=span[0],
-            height_m=span[1],
-            thickness_m=0.3,
+            shape=WallShape(bottom_m=span[0], height_m=span[1], thickness_m=0.3),
             openings=[view],
         )
     builder.quad(
@@ -164,21 +163,19 @@ def _hall(builder: MeshBuilder, floor: int, *, rise_m: float) -> None:
         builder,
         (-0.06, south),
         (-0.06, north),
-        bottom_m=z,
-        height_m=rise_m,
+        shape=WallShape(bottom_m=z, height_m=rise_m),
         openings=[door(_DOOR_Y_M - south)],
     )
     wall(
         builder,
         (west, south),
         (west, north),
-        bottom_m=z,
-        height_m=height,
-        thickness_m=0.3,
+        shape=WallShape(bottom_m=z, height_m=height, thickness_m=0.3),
         openings=[window(2.6)],
     )
-    wall(builder, (west, south), (0, south), bottom_m=z, height_m=height)
-    wall(builder, (west, north), (0, north), bottom_m=z, height_m=height)
+    side = WallShape(bottom_m=z, height_m=height)
+    wall(builder, (west, south), (0, south), shape=side)
+    wall(builder, (west, north), (0, north), shape=side)
 
 
 def _furnish(builder: MeshBuilder, z: float, look: int, *, rng: np.random.Generator) -> None:

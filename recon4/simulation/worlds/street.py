@@ -24,7 +24,7 @@ from recon4.simulation.worlds.outdoors import (
     sign,
     tree,
 )
-from recon4.simulation.worlds.walls import PLASTER, STEEL, WOOD, Opening, slab, wall
+from recon4.simulation.worlds.walls import PLASTER, STEEL, WOOD, Opening, WallShape, slab, wall
 
 LENGTH_M, WIDTH_M = 60.0, 36.0
 KERB_M, FAR_KERB_M, FAR_FACADE_M = 2.5, 9.5, 12.0
@@ -44,11 +44,12 @@ def build() -> World:
     far = FAR_FACADE_M
     for low, high, near in [(0.0, LENGTH_M, True), (-far, LENGTH_M + far, False)]:
         out = 0.0 if near else far
-        _row(builder, (low, -out), high - low, along=0, facing=-1 if near else 1, rng=rng)
-        _row(builder, (low, WIDTH_M + out), high - low, along=0, facing=1 if near else -1, rng=rng)
+        low_side, high_side = (-1, 1) if near else (1, -1)
+        _row(builder, (low, -out), high - low, front=_Front(0, low_side), rng=rng)
+        _row(builder, (low, WIDTH_M + out), high - low, front=_Front(0, high_side), rng=rng)
         span = WIDTH_M + 2 * out
-        _row(builder, (-out, -out), span, along=1, facing=-1 if near else 1, rng=rng)
-        _row(builder, (LENGTH_M + out, -out), span, along=1, facing=1 if near else -1, rng=rng)
+        _row(builder, (-out, -out), span, front=_Front(1, low_side), rng=rng)
+        _row(builder, (LENGTH_M + out, -out), span, front=_Front(1, high_side), rng=rng)
     for side in range(4):
         _furnish_side(builder, side, rng)
     markers = _markers(builder)
@@ -93,8 +94,7 @@ def _row(
     start: tuple[float, float],
     length_m: float,
     *,
-    along: int,
-    facing: int,
+    front: _Front,
     rng: np.random.Generator,
 ) -> None:
     """Houses in a row, each of its own width, height and rhythm of windows."""
@@ -103,9 +103,19 @@ def _row(
         width = rng.uniform(8.0, 14.0)
         width = length_m - at if length_m - at - width < 6.0 else width
         corner = np.array(start)
-        corner[along] += at
-        _house(builder, corner, width, along=along, facing=facing, rng=rng)
+        corner[front.along] += at
+        _house(builder, corner, width, front=front, rng=rng)
         at += width
+
+
+@dataclass(frozen=True, slots=True)
+class _Front:
+    """Where a row of houses stands and looks to."""
+
+    along: int
+    """Axis of the row: 0 = x, 1 = y."""
+    facing: int
+    """Direction of the street on the other axis, 1 or -1."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -113,12 +123,11 @@ class _Facade:
     """One house towards the street."""
 
     builder: MeshBuilder
-    along: int
+    front: _Front
     start_m: float
     end_m: float
     middle_m: float
     """Of the wall, across the facade."""
-    facing: int
     base_m: float
     """Ground in front of it."""
     reflectivity: float
@@ -126,38 +135,42 @@ class _Facade:
     @property
     def face_m(self) -> float:
         """Its outer surface."""
-        return self.middle_m + 0.15 * self.facing
+        return self.middle_m + 0.15 * self.front.facing
 
     def slab(
         self,
         span: tuple[float, float],
         depth: tuple[float, float],
+        *,
         level: tuple[float, float],
         value: float,
     ) -> None:
         """A box before the face; depths and levels from the face and the ground [m]."""
-        reach = (self.face_m + self.facing * depth[0], self.face_m + self.facing * depth[1])
+        facing = self.front.facing
+        reach = (self.face_m + facing * depth[0], self.face_m + facing * depth[1])
         levels = (self.base_m + level[0], self.base_m + level[1])
-        slab(self.builder, span, reach, levels, along=self.along, reflectivity=value)
+        slab(self.builder, span, reach, level=levels, along=self.front.along, reflectivity=value)
 
     def storey(self, number: int, openings: list[Opening]) -> None:
         """The wall of a storey; the lowest one reaches into the ground."""
         low = _BOTTOM_M - self.base_m if number == 0 else number * _STOREY_M
         shift = number * _STOREY_M - low
         corners = np.full((2, 2), self.middle_m)
-        corners[:, self.along] = self.start_m, self.end_m
+        corners[:, self.front.along] = self.start_m, self.end_m
         wall(
             self.builder,
             (float(corners[0, 0]), float(corners[0, 1])),
             (float(corners[1, 0]), float(corners[1, 1])),
-            bottom_m=self.base_m + low,
-            height_m=_STOREY_M + shift,
-            thickness_m=0.3,
+            shape=WallShape(
+                bottom_m=self.base_m + low,
+                height_m=_STOREY_M + shift,
+                thickness_m=0.3,
+                reflectivity=self.reflectivity,
+            ),
             openings=[
                 replace(hole, bottom_m=hole.bottom_m + shift, top_m=hole.top_m + shift)
                 for hole in openings
             ],
-            reflectivity=self.reflectivity,
         )
 
 
@@ -166,18 +179,18 @@ def _house(
     corner: Array,
     width_m: float,
     *,
-    along: int,
-    facing: int,
+    front: _Front,
     rng: np.random.Generator,
 ) -> None:
     """A door, windows with recesses, a cornice, a downpipe and perhaps a balcony."""
-    middle = float(corner[1 - along] - facing * (0.15 + rng.choice([0.0, 0.1, 0.3])))
+    along = front.along
+    middle = float(corner[1 - along] - front.facing * (0.15 + rng.choice([0.0, 0.1, 0.3])))
     start, end = float(corner[along]), float(corner[along] + width_m)
     center = np.full(2, middle)
     center[along] = 0.5 * (start + end)
     base = float(height(*center))
     value = PLASTER * rng.uniform(0.5, 1.3)
-    facade = _Facade(builder, along, start, end, middle, facing, base, value)
+    facade = _Facade(builder, front, start, end, middle, base, value)
     storeys = int(rng.integers(2, 5))
     step = rng.uniform(2.0, 2.9)
     places = np.arange(step / 2 + 0.3, width_m - step / 2, step)
@@ -187,14 +200,14 @@ def _house(
     for number in range(storeys):
         facade.storey(number, windows if number else windows[:door] + windows[door + 1 :])
     top = storeys * _STOREY_M
-    facade.slab((start, end), (-0.02, 0.3), (top - 0.25, top), value)
+    facade.slab((start, end), (-0.02, 0.3), level=(top - 0.25, top), value=value)
     at = start + float(places[door])
-    facade.slab((at - 0.5, at + 0.5), (-0.02, 0.02), (0.0, 2.2), WOOD)
-    facade.slab((start + 0.15, start + 0.25), (0.01, 0.11), (-0.3, top - 0.25), STEEL)
+    facade.slab((at - 0.5, at + 0.5), (-0.02, 0.02), level=(0.0, 2.2), value=WOOD)
+    facade.slab((start + 0.15, start + 0.25), (0.01, 0.11), level=(-0.3, top - 0.25), value=STEEL)
     if rng.random() < 0.4:
         balcony = (at - 1.0, at + 1.0)
-        facade.slab(balcony, (0.0, 1.0), (_STOREY_M, _STOREY_M + 0.15), CONCRETE)
-        facade.slab(balcony, (0.95, 1.0), (_STOREY_M + 0.15, _STOREY_M + 1.1), STEEL)
+        facade.slab(balcony, (0.0, 1.0), level=(_STOREY_M, _STOREY_M + 0.15), value=CONCRETE)
+        facade.slab(balcony, (0.95, 1.0), level=(_STOREY_M + 0.15, _STOREY_M + 1.1), value=STEEL)
 
 
 def _place(side: int, along_m: float, d_m: float) -> tuple[float, float]:

@@ -30,6 +30,19 @@ class Opening:
     """A pane in the middle of the wall's thickness."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WallShape:
+    """What walls differ in besides their place and openings."""
+
+    bottom_m: float = 0.0
+    height_m: float = 2.9
+    thickness_m: float = WALL_M
+    reflectivity: float = PLASTER
+
+
+USUAL_WALL = WallShape()
+
+
 def door(at_m: float) -> Opening:
     """An open doorway."""
     return Opening(at_m, DOOR_M, 0.0, DOOR_TOP_M)
@@ -45,16 +58,14 @@ def wall(
     start: tuple[float, float],
     end: tuple[float, float],
     *,
-    bottom_m: float = 0.0,
-    height_m: float = 2.9,
-    thickness_m: float = WALL_M,
+    shape: WallShape = USUAL_WALL,
     openings: Sequence[Opening] = (),
-    reflectivity: float = PLASTER,
 ) -> None:
     """An axis-parallel wall whose middle line runs from start to end [m]; recesses come out."""
+    height_m, thickness_m, reflectivity = shape.height_m, shape.thickness_m, shape.reflectivity
     along = 0 if abs(end[0] - start[0]) > abs(end[1] - start[1]) else 1
     assert start[1 - along] == end[1 - along] and start[along] < end[along]
-    bricks = _Bricks(builder, along, start[1 - along], bottom_m)
+    bricks = _Bricks(builder, along, start[1 - along], shape.bottom_m)
     full, at = (0.0, height_m), start[along]
     for hole in sorted(openings, key=lambda opening: opening.at_m):
         left = start[along] + hole.at_m - hole.width_m / 2
@@ -85,15 +96,15 @@ class _Bricks:
             return
         reach = (self.middle_m - depth / 2, self.middle_m + depth / 2)
         levels = (self.bottom_m + level[0], self.bottom_m + level[1])
-        slab(self.builder, span, reach, levels, along=self.along, reflectivity=value)
+        slab(self.builder, span, reach, level=levels, along=self.along, reflectivity=value)
 
 
 def slab(
     builder: MeshBuilder,
     span: tuple[float, float],
     reach: tuple[float, float],
-    level: tuple[float, float],
     *,
+    level: tuple[float, float],
     along: int,
     reflectivity: float,
 ) -> None:

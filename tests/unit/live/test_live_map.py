@@ -16,6 +16,7 @@ from recon4.recording.formats.poses import read_tum
 from recon4.recording.ingest import ingest
 from recon4.recording.sources import Sources
 from recon4.settings import preset
+from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
 from recon4.store.frames import FrameStore
 
@@ -50,7 +51,7 @@ class Walk:
 @pytest.fixture(scope="module")
 def walk(tmp_path_factory):
     folder = tmp_path_factory.mktemp("office")
-    simulate("office", folder / "sim", seconds=16.0, seed=1, bag=False, progress=Silent())
+    simulate(prepare("office", seconds=16.0, seed=1), folder / "sim", bag=False, progress=Silent())
     rig, imu = load_rig(folder / "sim" / "rig.toml"), folder / "sim" / "imu.csv"
     sources = Sources((folder / "sim" / "recording.pcap",), rig, imu)
     ingest(sources, folder / "frames", settings=preset("indoor").ingest, progress=Silent())

@@ -11,6 +11,7 @@ from recon4.recording.ingest import ingest
 from recon4.recording.sources import Sources
 from recon4.registration.imu_consistency import consistent_imu
 from recon4.settings import OdometrySettings, preset
+from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
 from recon4.store.frames import FrameStore
 
@@ -34,7 +35,7 @@ class Walk:
 @pytest.fixture(scope="module")
 def frames(tmp_path_factory):
     folder = tmp_path_factory.mktemp("walk")
-    simulate("office", folder / "in", seconds=6.0, seed=2, bag=False, progress=Silent())
+    simulate(prepare("office", seconds=6.0, seed=2), folder / "in", bag=False, progress=Silent())
     (folder / "frames").mkdir()
     sources = Sources((folder / "in" / "recording.pcap",), imu=folder / "in" / "imu.csv")
     ingest(sources, folder / "frames", settings=SETTINGS.ingest, progress=Silent())

@@ -49,7 +49,7 @@ def sensor_at_rest(model, sensor=SENSOR, azimuth_rad=0.0):
 
 def fire(model, surroundings, walk, packets=76, azimuth_rad=0.0, sensor=SENSOR):
     lidar = sensor_at_rest(model, sensor, azimuth_rad)
-    return lidar.fire(range(packets), walk, surroundings, np.random.default_rng(7))
+    return lidar.fire(range(packets), walk, surroundings, rng=np.random.default_rng(7))
 
 
 PERFECT = LidarModel.perfect()

@@ -162,7 +162,7 @@ def recordings(tmp_path_factory):
         root / "clock": {"lidar-clock": 0.02, "lever-arm": 0.15, "no-imu": 1.0},
     }
     record(setup, folders, bag=False, progress=Silent())
-    simulate("tunnel", root / "alone", seconds=5.0, seed=3, bag=False, progress=Silent())
+    simulate(prepare("tunnel", seconds=5.0, seed=3), root / "alone", bag=False, progress=Silent())
     return root
 
 

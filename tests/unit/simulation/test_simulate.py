@@ -15,7 +15,7 @@ from recon4.recording.ingest import ingest
 from recon4.recording.sources import Sources
 from recon4.settings import IngestSettings
 from recon4.simulation.frames import simulate_frames
-from recon4.simulation.setup import EPOCH_NS, Models
+from recon4.simulation.setup import EPOCH_NS, Models, prepare
 from recon4.simulation.simulate import simulate
 from recon4.simulation.worlds import build_world
 from recon4.store.frames import FrameStore
@@ -27,7 +27,8 @@ SECONDS = 5.0
 def perfect(tmp_path_factory):
     """Five seconds of staircase by sensors without errors."""
     out = tmp_path_factory.mktemp("perfect") / "out"
-    simulate("staircase", out, seconds=SECONDS, seed=1, progress=Silent(), models=Models.perfect())
+    setup = prepare("staircase", seconds=SECONDS, seed=1, models=Models.perfect())
+    simulate(setup, out, progress=Silent())
     return out
 
 
@@ -114,9 +115,8 @@ def test_our_readers_get_the_same_points_from_capture_bag_and_frames(perfect, tm
     for name in ("recording.pcap", "rosbag2"):
         sources = Sources((perfect / name,), load_rig(perfect / "rig.toml"))
         ingest(sources, tmp_path / name, settings=settings, progress=Silent())
-    simulate_frames(
-        "staircase", tmp_path / "direct", seconds=SECONDS, seed=1, models=Models.perfect()
-    )
+    staircase = prepare("staircase", seconds=SECONDS, seed=1, models=Models.perfect())
+    simulate_frames(staircase, tmp_path / "direct")
     pcap, bag, direct = (
         FrameStore.open(tmp_path / name) for name in ("recording.pcap", "rosbag2", "direct")
     )
@@ -144,7 +144,7 @@ def test_reflectivity_has_a_value_for_every_return_of_every_packet(perfect):
 
 def test_the_same_seed_gives_the_same_bytes_and_another_does_not(tmp_path):
     for name, seed in (("a", 3), ("b", 3), ("c", 4)):
-        simulate("field", tmp_path / name, seconds=SECONDS, seed=seed, progress=Silent())
+        simulate(prepare("field", seconds=SECONDS, seed=seed), tmp_path / name, progress=Silent())
 
     a, b, c = (hashes(tmp_path / name) for name in "abc")
 
@@ -172,10 +172,8 @@ def geocentric(lat, lon, height):
 
 
 def test_gnss_positions_are_those_of_the_antenna(tmp_path):
-    simulate(
-        "field", tmp_path / "out", seconds=6.0, seed=2, progress=Silent(), bag=False,
-        models=Models.perfect(), rig=load_rig("4recon"),
-    )  # fmt: skip
+    setup = prepare("field", seconds=6.0, seed=2, models=Models.perfect(), rig=load_rig("4recon"))
+    simulate(setup, tmp_path / "out", progress=Silent(), bag=False)
     rows = np.genfromtxt(tmp_path / "out" / "gnss.csv", delimiter=",", names=True)
     truth = read_tum(tmp_path / "out" / "truth.tum")
     origin = json.loads((tmp_path / "out" / "world.json").read_text())["origin"]
@@ -214,10 +212,8 @@ def test_a_rig_with_clock_offsets_stamps_its_packets_with_them(tmp_path):
     rig = load_rig("single-vlp16")
     late = replace(rig, sensors=(replace(rig.sensors[0], time_offset_s=0.25),))
     for name, used in (("on", rig), ("off", late)):
-        simulate(
-            "office", tmp_path / name, seconds=SECONDS, seed=1, progress=Silent(), rig=used,
-            bag=False,
-        )  # fmt: skip
+        setup = prepare("office", seconds=SECONDS, seed=1, rig=used)
+        simulate(setup, tmp_path / name, progress=Silent(), bag=False)
 
     stamps = [
         next(
@@ -241,18 +237,17 @@ def test_a_rig_with_clock_offsets_stamps_its_packets_with_them(tmp_path):
         ({"rig": load_rig("single-hdl32e")}, "only VLP-16 can be simulated, got HDL-32E"),
     ],
 )
-def test_what_cannot_be_simulated_is_refused(tmp_path, change, message):
+def test_what_cannot_be_simulated_is_refused(change, message):
     asked = {"world": "office", "seconds": SECONDS, "seed": 1} | change
     with pytest.raises(ConfigError, match=message):
-        simulate(asked.pop("world"), tmp_path / "out", progress=Silent(), **asked)
-    assert list(tmp_path.iterdir()) == []
+        prepare(asked.pop("world"), **asked)
 
 
 def test_a_folder_with_something_in_it_is_left_alone(tmp_path):
     (tmp_path / "mine.txt").write_text("keep")
 
     with pytest.raises(StoreError, match="exists already; give a new folder"):
-        simulate("office", tmp_path, seconds=SECONDS, seed=1, progress=Silent())
+        simulate(prepare("office", seconds=SECONDS, seed=1), tmp_path, progress=Silent())
 
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
 
@@ -263,6 +258,6 @@ def test_a_cancelled_simulation_leaves_nothing(tmp_path):
             raise Cancelled("stop")
 
     with pytest.raises(Cancelled):
-        simulate("office", tmp_path / "out", seconds=SECONDS, seed=1, progress=Impatient())
+        simulate(prepare("office", seconds=SECONDS, seed=1), tmp_path / "out", progress=Impatient())
 
     assert list(tmp_path.iterdir()) == []
