@@ -23,35 +23,44 @@ if TYPE_CHECKING:
 
 evaluation = typer.Typer()
 
+ResultArgument = Annotated[Path, typer.Argument(help="Project folder, .tum or .npz trajectory.")]
+TruthOption = Annotated[Path | None, typer.Option(help="True trajectory, .tum or .npz.")]
+ModelOption = Annotated[Path | None, typer.Option(help="True model, .ply; gives e_r.")]
+FloorOption = Annotated[
+    bool, typer.Option("--floor", help="Also e_r of the same points with the true poses.")
+]
+MarkersOption = Annotated[
+    tuple[Path, Path] | None,
+    typer.Option(
+        metavar="SURVEYED MEASURED",
+        help="Two CSV files (name, x_m, y_m, z_m, role): surveyed and measured in the map.",
+    ),
+]
+PatchOption = Annotated[
+    str,
+    typer.Option(
+        metavar="X,Y,Z,X,Y,Z,X,Y,Z",
+        help="A corner and its two neighbors in meters: density on this patch of the map.",
+    ),
+]
+ReportOption = Annotated[
+    Path | None,
+    typer.Option(help="Also write the report of the project, .html, with these figures."),
+]
+JsonOption = Annotated[bool, typer.Option("--json", help="Write JSON for programs.")]
+
 
 @evaluation.command()
 def evaluate(
-    result: Annotated[Path, typer.Argument(help="Project folder, .tum or .npz trajectory.")],
+    result: ResultArgument,
     *,
-    truth: Annotated[Path | None, typer.Option(help="True trajectory, .tum or .npz.")] = None,
-    model: Annotated[Path | None, typer.Option(help="True model, .ply; gives e_r.")] = None,
-    floor: Annotated[
-        bool, typer.Option("--floor", help="Also e_r of the same points with the true poses.")
-    ] = False,
-    markers: Annotated[
-        tuple[Path, Path] | None,
-        typer.Option(
-            metavar="SURVEYED MEASURED",
-            help="Two CSV files (name, x_m, y_m, z_m, role): surveyed and measured in the map.",
-        ),
-    ] = None,
-    patch: Annotated[
-        str,
-        typer.Option(
-            metavar="X,Y,Z,X,Y,Z,X,Y,Z",
-            help="A corner and its two neighbors in meters: density on this patch of the map.",
-        ),
-    ] = "",
-    report: Annotated[
-        Path | None,
-        typer.Option(help="Also write the report of the project, .html, with these figures."),
-    ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Write JSON for programs.")] = False,
+    truth: TruthOption = None,
+    model: ModelOption = None,
+    floor: FloorOption = False,
+    markers: MarkersOption = None,
+    patch: PatchOption = "",
+    report: ReportOption = None,
+    as_json: JsonOption = False,
 ) -> None:
     """Evaluate a result: ATE, KITTI drift, e_r in slices, density, survey markers."""
     confine_command(write=[report.parent] if report else [])
@@ -95,8 +104,7 @@ def _against_truth(result: Path, truth: Path, *, model: Path | None, floor: bool
             raise typer.BadParameter(f"--floor needs a project with its frames, got {result}")
         from recon4.store.frames import FrameStore
 
-        frames = FrameStore.open(artifacts["frames"])
-        given |= {"frames": frames, "rig": frames.rig}
+        given["frames"] = FrameStore.open(artifacts["frames"])
     return evaluate_result(result, truth=truth, model=model, **given)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -26,15 +26,15 @@ from recon4.evaluation.slices import RelativeError, relative_error, spread_slice
 from recon4.evaluation.text import evaluation_text
 from recon4.evaluation.trajectories import find_trajectory
 from recon4.geometry.se3 import SE3, Array
-from recon4.model.multiframe import Multiframe
-from recon4.model.rig import Rig
+from recon4.mapping.frames import Frames
 from recon4.model.trajectory import Trajectory
 
 FRAME_NS = 100_000_000
 """Dense trajectories are evaluated at one pose per multiframe of 10 Hz [ns]."""
-MapAlignment = Literal["icp", "trajectory", "none"]
 Chunks = Callable[[], Iterable[Array]]
 """Makes a fresh pass over the points of the map [m], arrays of (N, 3)."""
+_EVERY = 10
+"""Of the multiframes, every tenth is placed by the estimate and by the truth."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -87,10 +87,7 @@ def evaluate(
     truth: Path,
     model: Path | None = None,
     chunks: Chunks | None = None,
-    frames: Iterable[Multiframe] | None = None,
-    rig: Rig | None = None,
-    map_alignment: MapAlignment = "icp",
-    max_range_m: float = 60.0,
+    frames: Frames | None = None,
 ) -> Evaluation:
     """Evaluate a result against ground truth.
 
@@ -100,12 +97,8 @@ def evaluate(
         model: True model as a triangle mesh in the frame of ``truth``; needed for e_r.
         chunks: Function that returns an iterator over the map's points, for example
             ``lambda: TileSet.open(folder).points()``; needed for e_r and the map's quality.
-        frames: Multiframes (`FrameStore`); with ``rig`` and ``model`` they give e_r of the true
-            poses from the same points.
-        rig: Mountings for ``frames``.
-        map_alignment: How the map is aligned with the model: ``icp`` (V §3.2; starts from the
-            trajectory's fit), ``trajectory`` (SVD fit of the positions only) or ``none``.
-        max_range_m: Range limit of the map, for ``frames`` [m].
+        frames: Multiframes; with ``model``, every tenth gives e_r of the true poses from the same
+            points.
 
     Raises:
         OutOfRange: If the truth covers fewer than two poses.
@@ -115,14 +108,12 @@ def evaluate(
     pairs = pair_poses(at_frames(estimate), true)
     aligned = absolute_error(pairs)
     mesh = read_mesh(model) if model is not None else None
-    floor = None
-    if mesh is not None and frames is not None and rig is not None:
-        floor = relative_error_floor(
-            frames, rig, mesh, estimate=estimate, truth=true, max_range_m=max_range_m
-        )
-    relative = None
+    floor = relative = None
+    if mesh is not None and frames is not None:
+        tenth = [frames[row] for row in range(0, len(frames), _EVERY)]
+        floor = relative_error_floor(tenth, frames.rig, mesh, estimate=estimate, truth=true)
     if mesh is not None and chunks is not None:
-        relative = _relative(chunks, mesh, aligned.T_true_map, map_alignment=map_alignment)
+        relative = _relative(chunks, mesh, start=aligned.T_true_map)
     return Evaluation(
         estimate=project_or_trajectory.name,
         truth=truth.name,
@@ -178,20 +169,16 @@ def map_quality(chunks: Chunks, *, places: int = 2000, seed: int = 0) -> MapQual
     )
 
 
-def _relative(
-    chunks: Chunks, mesh: TriangleMesh, start: SE3, *, map_alignment: MapAlignment
-) -> RelativeError:
-    T_model_map = SE3.identity() if map_alignment == "none" else start
-    if map_alignment == "icp":
-        rng = np.random.default_rng(0)
-        T_model_map = map_onto_model(chunks(), mesh, start=start, rng=rng)
-    name = {"icp": "ICP", "trajectory": "fit of the trajectory", "none": "none"}[map_alignment]
+def _relative(chunks: Chunks, mesh: TriangleMesh, *, start: SE3) -> RelativeError:
+    """e_r of the map, aligned with the model by ICP (V §3.2) from the fit of the trajectory on."""
+    rng = np.random.default_rng(0)
+    T_model_map = map_onto_model(chunks(), mesh, start=start, rng=rng)
     return relative_error(
         chunks(),
         spread_slices(mesh),
         T_model_map=T_model_map,
         distance=distance_to(mesh),
-        alignment=name,
+        alignment="ICP",
     )
 
 

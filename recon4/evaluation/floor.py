@@ -18,6 +18,9 @@ from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.trajectory import Trajectory
 
+_MAX_RANGE_M = 60.0
+"""As for the map [m]."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ErrorFloor:
@@ -40,12 +43,11 @@ class _Points:
     frames: Iterable[Multiframe]
     trajectory: Trajectory
     rig: Rig
-    max_range_m: float
 
     def __iter__(self) -> Iterator[Array]:
         for frame in self.frames:
             used = np.array([sensor.enabled for sensor in self.rig.sensors])[frame.sensor]
-            near = np.linalg.norm(frame.xyz, axis=1) <= self.max_range_m
+            near = np.linalg.norm(frame.xyz, axis=1) <= _MAX_RANGE_M
             yield place(frame.take(used & near), self.trajectory, self.rig)
 
 
@@ -56,9 +58,6 @@ def relative_error_floor(
     *,
     estimate: Trajectory,
     truth: Trajectory,
-    max_range_m: float = 60.0,
-    every: int = 10,
-    slices: tuple[Slice, ...] | None = None,
 ) -> ErrorFloor:
     """Place the same points twice and compare their e_r.
 
@@ -66,26 +65,23 @@ def relative_error_floor(
     poses relative to the noise of the sensor.
 
     Args:
-        frames: Multiframes; iterated several times (a `FrameStore` or a list).
+        frames: Some multiframes; all points within `_MAX_RANGE_M` are used, several times.
         rig: Mountings; sensors switched off are left out.
         mesh: The true model, in the frame of ``truth``.
         estimate: ``T_map_body``.
         truth: ``T_model_body``.
-        max_range_m: As for the map [m].
-        every: Every n-th multiframe is used, with all its points.
-        slices: The slices; None = V's eight.
 
     Raises:
         OutOfRange: If no multiframe is covered by both trajectories.
     """
-    tenth = [frame for k, frame in enumerate(frames) if k % every == 0 and len(frame)]
-    used = [frame for frame in tenth if _covers(estimate, frame) and _covers(truth, frame)]
+    given = [frame for frame in frames if len(frame)]
+    used = [frame for frame in given if _covers(estimate, frame) and _covers(truth, frame)]
     if not used:
-        raise OutOfRange(f"none of {len(tenth)} multiframes is covered by estimate and truth")
-    where = slices if slices is not None else spread_slices(mesh)
+        raise OutOfRange(f"none of {len(given)} multiframes is covered by estimate and truth")
+    where = spread_slices(mesh)
     start = absolute_error(pair_poses(estimate, truth)).T_true_map
     errors = [
-        _error(_Points(used, trajectory, rig, max_range_m), mesh, where, start=T_model_map)
+        _error(_Points(used, trajectory, rig), mesh, where, start=T_model_map)
         for trajectory, T_model_map in ((estimate, start), (truth, SE3.identity()))
     ]
     return ErrorFloor(
@@ -93,7 +89,7 @@ def relative_error_floor(
         true=errors[1],
         ratio=errors[0].point_weighted.mean_m / errors[1].point_weighted.mean_m,
         frames=len(used),
-        skipped=len(tenth) - len(used),
+        skipped=len(given) - len(used),
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,18 +80,22 @@ def distance_to(mesh: TriangleMesh) -> Callable[[Array], Array]:
     return scene.distance
 
 
-def sample_mesh(
-    mesh: TriangleMesh, *, spacing_m: float, rng: np.random.Generator
-) -> tuple[Array, Array]:
+class SurfacePoints(NamedTuple):
+    """Points on a surface."""
+
+    p: Array
+    """Positions [m], (N, 3)."""
+    normals: Array
+    """Unit normals of either sign, (N, 3)."""
+
+
+def sample_mesh(mesh: TriangleMesh, *, spacing_m: float, rng: np.random.Generator) -> SurfacePoints:
     """Points spread evenly at random over the triangles, with their normals.
 
     Args:
         mesh: The model.
         spacing_m: One point in a square of this size on average [m]; coarser for big models.
         rng: Source of randomness.
-
-    Returns:
-        Points (N, 3) [m] and unit normals (N, 3) of either sign.
     """
     a, b, c = np.moveaxis(mesh.corners, 1, 0)
     cross = np.cross(b - a, c - a)
@@ -102,7 +107,7 @@ def sample_mesh(
     u[over], v[over] = 1.0 - u[over], 1.0 - v[over]
     u, v = u[:, None], v[:, None]
     points = a[which] + u * (b - a)[which] + v * (c - a)[which]
-    return points, cross[which] / double_area[which, None]
+    return SurfacePoints(points, cross[which] / double_area[which, None])
 
 
 def align_to_mesh(
@@ -111,8 +116,6 @@ def align_to_mesh(
     *,
     T_model_map: SE3,
     rng: np.random.Generator,
-    rounds: int = 30,
-    max_distance_m: float = 0.5,
 ) -> SE3:
     """Align map points with the model: point-to-plane ICP against points sampled from it.
 
@@ -121,16 +124,12 @@ def align_to_mesh(
         mesh: The model.
         T_model_map: Where to start, within some decimeters and degrees.
         rng: Source of randomness.
-        rounds: Upper bound on rounds of matching.
-        max_distance_m: Farther points are not matched [m].
 
     Returns:
         ``T_model_map``; the start itself where fewer than 100 points match.
     """
-    q, normals = sample_mesh(mesh, spacing_m=0.05, rng=rng)
-    return fit_planes(
-        p_map, q, normals, T_model_map=T_model_map, rounds=rounds, max_distance_m=max_distance_m
-    ).T_model_map
+    surface = sample_mesh(mesh, spacing_m=0.05, rng=rng)
+    return fit_planes(p_map, surface, T_model_map=T_model_map).T_model_map
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -146,24 +145,30 @@ class PlaneFit:
 
 def fit_planes(
     p_map: Array,
-    q: Array,
-    normals: Array,
+    surface: SurfacePoints,
     *,
     T_model_map: SE3,
     rounds: int = 30,
     max_distance_m: float = 0.5,
 ) -> PlaneFit:
-    """As `align_to_mesh`, onto points of the model ``q`` (M, 3) with normals of either sign.
+    """As `align_to_mesh`, onto points of the model.
 
-    Fewer than 100 points that match are not used: then nothing moves any more.
+    Args:
+        p_map: Points of the map [m], (N, 3).
+        surface: Points of the model.
+        T_model_map: Where to start.
+        rounds: Upper bound on rounds of matching.
+        max_distance_m: Farther points are not matched [m]. Fewer than 100 points that match are
+            not used: then nothing moves any more.
     """
-    tree = cKDTree(q)
+    tree = cKDTree(surface.p)
     residual, length = np.empty(0), np.inf
     for _ in range(rounds):
         p = T_model_map @ p_map
         distance, nearest = tree.query(p, distance_upper_bound=max_distance_m)
         near = np.isfinite(distance)
-        p, partner, normal = p[near], q[nearest[near]], normals[nearest[near]]
+        rows = nearest[near]
+        p, partner, normal = p[near], surface.p[rows], surface.normals[rows]
         residual = np.abs(np.einsum("ni,ni->n", normal, p - partner))
         if len(p) < 100:
             length = np.inf

@@ -16,6 +16,8 @@ Distance = Callable[[Array], Array]
 
 HISTOGRAM_STEP_M = 0.001
 """Width of a class of the error histogram [m]."""
+OUTLIER_M = 0.5
+"""Points farther from the model than this are outliers [m]."""
 _BATCH = 500_000
 
 
@@ -99,7 +101,6 @@ def relative_error(
     *,
     T_model_map: SE3,
     distance: Distance,
-    outlier_m: float = 0.5,
     alignment: str = "given",
 ) -> RelativeError:
     """Distances of the points in the slices to the model, in one pass with little memory.
@@ -108,11 +109,11 @@ def relative_error(
         chunks: Points of the map [m], arrays of (N, 3), of any length and number.
         slices: The slices, in the frame of the model.
         T_model_map: Moves the map onto the model.
-        distance: Distance of points to the model.
-        outlier_m: Points farther from the model than this are counted, not averaged [m].
+        distance: Distance of points to the model. Points beyond `OUTLIER_M` are counted, not
+            averaged.
         alignment: How ``T_model_map`` was found, as text.
     """
-    tallies = [_ErrorAccumulator(s, distance, outlier_m) for s in slices]
+    tallies = [_ErrorAccumulator(s, distance) for s in slices]
     for chunk in chunks:
         p_model = T_model_map @ np.asarray(chunk, dtype=np.float64)
         for tally in tallies:
@@ -124,7 +125,7 @@ def relative_error(
         slices=rows,
         point_weighted=merge_slices(rows),
         plain_mean_m=float(np.mean(measured)) if measured else float("nan"),
-        outlier_m=outlier_m,
+        outlier_m=OUTLIER_M,
         histogram=histogram,
         alignment=alignment,
     )
@@ -133,11 +134,10 @@ def relative_error(
 class _ErrorAccumulator:
     """Accumulates the errors of a slice; distances are computed in batches."""
 
-    def __init__(self, where: Slice, distance: Distance, outlier_m: float) -> None:
+    def __init__(self, where: Slice, distance: Distance) -> None:
         self.where = where
         self.distance = distance
-        self.outlier_m = outlier_m
-        self.histogram = np.zeros(int(np.ceil(outlier_m / HISTOGRAM_STEP_M)), dtype=np.int64)
+        self.histogram = np.zeros(int(np.ceil(OUTLIER_M / HISTOGRAM_STEP_M)), dtype=np.int64)
         self.sum_m = 0.0
         self.outliers = self.within_2cm = self.within_5cm = self.waiting_points = 0
         self.waiting: list[Array] = []
@@ -167,7 +167,7 @@ class _ErrorAccumulator:
         points = np.ascontiguousarray(np.concatenate(self.waiting))
         self.waiting, self.waiting_points = [], 0
         distance_m = np.asarray(self.distance(points), dtype=np.float64)
-        near = distance_m[distance_m < self.outlier_m]
+        near = distance_m[distance_m < OUTLIER_M]
         self.outliers += len(distance_m) - len(near)
         self.sum_m += float(near.sum())
         self.within_2cm += int((near < 0.02).sum())

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.errors import ConfigError
-from recon4.evaluation.reference_mesh import fit_planes, sample_mesh
+from recon4.evaluation.reference_mesh import SurfacePoints, fit_planes, sample_mesh
 from recon4.geometry.se3 import SE3, Array, align_points
 from recon4.mapping.tiles import TileSet
 from recon4.slices.reference import Reference
@@ -76,9 +76,9 @@ def align_by_icp(tiles: TileSet, reference: Reference, *, rng: np.random.Generat
             converge.
     """
     p_map = _sample_map(tiles, rng)
-    q, normals = _targets(reference, rng)
+    surface = _targets(reference, rng)
     start = reference.T_map_reference.inverse()
-    fit = fit_planes(p_map, q, normals, T_model_map=start, rounds=_ROUNDS, max_distance_m=_NEAR_M)
+    fit = fit_planes(p_map, surface, T_model_map=start, rounds=_ROUNDS, max_distance_m=_NEAR_M)
     near = len(fit.distance_m)
     on = fit.distance_m[fit.distance_m < _ON_M]
     near_ratio, inlier_ratio = near / max(1, len(p_map)), len(on) / max(1, near)
@@ -102,7 +102,7 @@ def _sample_map(tiles: TileSet, rng: np.random.Generator) -> Array:
     return points[rng.permutation(len(points))[:_SAMPLES]]
 
 
-def _targets(reference: Reference, rng: np.random.Generator) -> tuple[Array, Array]:
+def _targets(reference: Reference, rng: np.random.Generator) -> SurfacePoints:
     if reference.mesh is not None:
         return sample_mesh(reference.mesh, spacing_m=0.05, rng=rng)
     assert reference.tiles is not None
@@ -114,4 +114,4 @@ def _targets(reference: Reference, rng: np.random.Generator) -> tuple[Array, Arr
         known = np.any(columns["normal"] != 0.0, axis=1)
         points.append(tile.xyz_m(limit=limit)[known])
         normals.append(columns["normal"][known].astype(np.float64))
-    return np.concatenate(points), np.concatenate(normals)
+    return SurfacePoints(np.concatenate(points), np.concatenate(normals))

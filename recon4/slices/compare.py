@@ -10,13 +10,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.errors import ConfigError
-from recon4.evaluation.slices import RelativeError, Slice, SliceError, merge_slices, relative_error
+from recon4.evaluation.slices import (
+    OUTLIER_M,
+    RelativeError,
+    Slice,
+    SliceError,
+    merge_slices,
+    relative_error,
+)
 from recon4.geometry.se3 import SE3
 from recon4.mapping.tiles import TileSet
 from recon4.model.plain import finite_or_none
 from recon4.slices.cut import ERROR_THICKNESS_M, Cut, horizontal, vertical
 from recon4.slices.points import points_in
-from recon4.slices.reference import FAR_M, Method, Reference
+from recon4.slices.reference import Method, Reference
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +99,7 @@ def compare(tiles: TileSet, cuts: Sequence[Cut], reference: Reference) -> Relati
         slices=rows,
         point_weighted=merge_slices(rows),
         plain_mean_m=float(np.mean(measured)) if measured else float("nan"),
-        outlier_m=FAR_M,
+        outlier_m=OUTLIER_M,
         histogram=np.sum([one.histogram for one in found], axis=0),
         alignment="given",
     )
@@ -104,7 +111,6 @@ def _one(tiles: TileSet, cut: Cut, reference: Reference) -> RelativeError:
         [Slice(cut.name, cut.normal, cut.offset_m, cut.thickness_m)],
         T_model_map=SE3.identity(),
         distance=reference.distance,
-        outlier_m=FAR_M,
     )
 
 

@@ -58,7 +58,7 @@ def solve(
     if settings.graph.mode in ("verification", "beyond"):
         graph = verify(graph, settings=settings.verification, progress=Silent()).graph
     save_graph(verified, graph)
-    refine(frames, odometry, verified, refined, settings=settings, progress=Silent())
+    refine(frames, odometry, graph, settings=settings, progress=Silent()).save(refined)
     seconds = time.perf_counter() - start
     return load_trajectory(refined / "trajectory.npz"), seconds
 
@@ -67,9 +67,7 @@ def judge(
     frames: FrameStore, found: Trajectory, truth: Trajectory, model: Path
 ) -> tuple[ErrorFloor, float]:
     some = [frames[k] for k in range(0, len(frames), 10)]
-    floor = relative_error_floor(
-        some, frames.rig, read_mesh(model), estimate=found, truth=truth, every=1
-    )
+    floor = relative_error_floor(some, frames.rig, read_mesh(model), estimate=found, truth=truth)
     at = Trajectory(frames.t_mid_ns[1:-1], found.at(frames.t_mid_ns[1:-1]))
     return floor, absolute_error(pair_poses(at, truth)).position_m.rmse
 

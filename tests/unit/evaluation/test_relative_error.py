@@ -223,7 +223,7 @@ def test_true_poses_are_their_own_floor() -> None:
     rig, truth = load_rig("single-vlp16"), walk()
     frames = [seen_from(truth.T_a_b[k], k, rig) for k in range(len(truth))]
 
-    floor = relative_error_floor(frames, rig, room(), estimate=truth, truth=truth, every=10)
+    floor = relative_error_floor(frames[::10], rig, room(), estimate=truth, truth=truth)
 
     assert floor.ratio == pytest.approx(1.0, abs=1e-6)
     assert floor.frames == 3
@@ -238,10 +238,10 @@ def test_wrong_poses_raise_e_r_above_the_floor_but_another_frame_does_not() -> N
     elsewhere = SE3.from_rpy(0.1, 0.2, 2.0, t=[30, 40, 5]) @ truth.T_a_b
 
     bad = relative_error_floor(
-        frames, rig, room(), estimate=Trajectory(truth.t_ns, shaken), truth=truth, every=5
+        frames[::5], rig, room(), estimate=Trajectory(truth.t_ns, shaken), truth=truth
     )
     same = relative_error_floor(
-        frames, rig, room(), estimate=Trajectory(truth.t_ns, elsewhere), truth=truth, every=5
+        frames[::5], rig, room(), estimate=Trajectory(truth.t_ns, elsewhere), truth=truth
     )
 
     assert bad.ratio > 1.5
@@ -252,9 +252,9 @@ def test_frames_outside_the_trajectories_are_counted_or_refused() -> None:
     rig, truth = load_rig("single-vlp16"), walk()
     frames = [seen_from(truth.T_a_b[k], k, rig) for k in range(len(truth))]
 
-    floor = relative_error_floor(frames, rig, room(), estimate=truth[:15], truth=truth, every=10)
+    floor = relative_error_floor(frames[::10], rig, room(), estimate=truth[:15], truth=truth)
 
     assert (floor.frames, floor.skipped) == (2, 1)
     late = Trajectory(truth.t_ns + 10**12, truth.T_a_b)
     with pytest.raises(OutOfRange, match="none of 3 multiframes"):
-        relative_error_floor(frames, rig, room(), estimate=late, truth=late, every=10)
+        relative_error_floor(frames[::10], rig, room(), estimate=late, truth=late)
