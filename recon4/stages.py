@@ -119,21 +119,31 @@ def _review(
 def _refine(
     *, out: Path, settings: Settings, progress: Progress, frames: Path, odometry: Path, graph: Path
 ) -> RefineFigures:
+    from recon4.pose_graph.files import load_graph
     from recon4.semi_rigid.refine import refine
     from recon4.store.frames import FrameStore
 
     store = FrameStore.open(frames)
-    return refine(store, odometry, graph, out, settings=settings, progress=progress)
+    found = refine(store, odometry, load_graph(graph), settings=settings, progress=progress)
+    return found.save(out)
 
 
 def _level(
     *, out: Path, settings: Settings, progress: Progress, frames: Path, refined: Path, graph: Path
 ) -> LevelFigures:
-    from recon4.georeference.stage import run_level
+    from recon4.georeference.stage import level_and_georeference
+    from recon4.pose_graph.files import load_graph
+    from recon4.store.arrays import load_trajectory
     from recon4.store.frames import FrameStore
 
-    store = FrameStore.open(frames)
-    return run_level(store, refined, graph, out=out, settings=settings, progress=progress)
+    leveled = level_and_georeference(
+        FrameStore.open(frames),
+        load_trajectory(refined / "trajectory.npz"),
+        load_graph(graph),
+        settings=settings,
+        progress=progress,
+    )
+    return leveled.save(out)
 
 
 def _intensity(

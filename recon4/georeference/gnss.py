@@ -86,8 +86,8 @@ def georeference(
     graph: PoseGraph,
     trajectory: Trajectory,
     gnss: GnssSamples | None,
-    rig: Rig,
     *,
+    rig: Rig,
     settings: GnssSettings,
 ) -> GeoreferenceResult:
     """Georeference a leveled graph by its GNSS positions.
@@ -120,12 +120,24 @@ def georeference(
     gnss_priors, origin = usable_gnss_priors(graph, trajectory, gnss, rig=rig, settings=settings)
     if origin is None or len(gnss_priors) < _MIN_PRIORS:
         return _local(graph, f"{len(gnss_priors)} usable fixes of {len(gnss)}", samples=len(gnss))
+    return _place_by_priors(graph, gnss_priors, origin, samples=len(gnss), settings=settings)
+
+
+def _place_by_priors(
+    graph: PoseGraph,
+    gnss_priors: GnssPriors,
+    origin: GeodeticOrigin,
+    *,
+    samples: int,
+    settings: GnssSettings,
+) -> GeoreferenceResult:
+    """Align by consensus, exclude edges and fixes that contradict, solve."""
     p_map = graph.T_map_body[gnss_priors.node] @ gnss_priors.p_node_antenna
     T_enu_map, near = align_heading(p_map, gnss_priors, settings=settings)
     extent = float(np.linalg.norm(np.ptp(p_map[near, :2], axis=0))) if near.any() else 0.0
     if near.sum() < _MIN_PRIORS or extent < settings.min_extent_m:
         why = f"{near.sum()} agreeing fixes over {extent:.1f} m"
-        return _local(graph, why, samples=len(gnss))
+        return _local(graph, why, samples=samples)
     graph = graph.with_poses(T_enu_map @ graph.T_map_body)
     rejected = _contradicting(graph, gnss_priors, near, settings=settings)
     graph, used = _solve(_without(graph, rejected), gnss_priors, near, settings=settings)
@@ -137,7 +149,7 @@ def georeference(
         t_ns=gnss_priors.t_ns,
         residual_m=_residuals(graph, gnss_priors),
         used=used,
-        samples=len(gnss),
+        samples=samples,
         rejected=tuple(rejected),
     )
 

@@ -12,19 +12,20 @@ from recon4.errors import GeoreferenceError, StoreError
 from recon4.geometry.se3 import Array
 from recon4.georeference.crs import CrsTransform, GeodeticOrigin
 from recon4.georeference.floor import level_by_floor
-from recon4.georeference.gnss import georeference
+from recon4.georeference.gnss import GeoreferenceResult, georeference
 from recon4.georeference.level import NOT_LEVELED, Leveling, level
 from recon4.mapping.place import place_with_origins
 from recon4.model.corrections import apply_corrections
 from recon4.model.figures import LevelFigures
 from recon4.model.plain import to_plain
+from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
-from recon4.pose_graph.files import load_graph, save_graph
+from recon4.pose_graph.files import save_graph
 from recon4.pose_graph.relations import with_residuals
 from recon4.pose_graph.verification import confirmed_again
 from recon4.progress import Progress
 from recon4.settings import Settings
-from recon4.store.arrays import load_trajectory, save_trajectory
+from recon4.store.arrays import save_trajectory
 from recon4.store.atomic import write_json
 from recon4.store.frames import FrameStore
 
@@ -50,58 +51,73 @@ class CrsRecord:
     """Coordinates of the map's origin in the CRS [m], (3,)."""
 
 
-def run_level(
+@dataclass(frozen=True, slots=True, eq=False)
+class LeveledMap:
+    """Result of the stage ``level``."""
+
+    trajectory: Trajectory
+    """``T_map_body``, dense."""
+    graph: PoseGraph
+    """Its residuals are those of the final poses."""
+    leveling: Leveling
+    georeference: GeoreferenceResult
+    crs: CrsRecord | None
+    """None: the map is not georeferenced."""
+
+    def save(self, out: Path) -> LevelFigures:
+        """Write ``trajectory.npz``, the files of the graph and ``georeference.json``."""
+        save_trajectory(out / "trajectory.npz", self.trajectory)
+        save_graph(out, self.graph)
+        record = {
+            "levelling": self.leveling.to_json(),
+            "georeference": self.georeference.to_json(),
+            "crs": self.crs or {},
+        }
+        write_json(out / "georeference.json", to_plain(record))
+        return LevelFigures(
+            leveled_by=self.leveling.source,
+            tilt_deg=round(float(np.rad2deg(self.leveling.tilt_rad)), 4),
+            crs=self.crs.name if self.crs else "",
+            local=self.georeference.reason,
+            edges_rejected=len(self.georeference.rejected),
+        )
+
+
+def level_and_georeference(
     frames: FrameStore,
-    refined: Path,
-    graph: Path,
+    trajectory: Trajectory,
+    graph: PoseGraph,
     *,
-    out: Path,
     settings: Settings,
     progress: Progress,
-) -> LevelFigures:
+) -> LeveledMap:
     """Level a finished trajectory and, if there are GNSS positions, georeference it.
+
+    Edges that were confirmed only by edges rejected here become unverified.
 
     Args:
         frames: The multiframes with IMU and GNSS.
-        refined: Folder with ``trajectory.npz``, dense.
-        graph: Folder of the verified graph.
-        out: Receives ``trajectory.npz``, the graph's files and ``georeference.json``. The
-            residuals of the edges are those of the final poses. Edges that were confirmed only by
-            edges rejected here become unverified.
+        trajectory: The refined one, dense.
+        graph: The verified graph.
         settings: Uses level, gnss and verification.
         progress: Counts the steps.
     """
     progress.start("level", 2, "steps")
-    dense, nodes = load_trajectory(refined / "trajectory.npz"), load_graph(graph)
-    nodes = nodes.with_poses(dense.at(nodes.t_ns))
-    leveling = find_level(frames, dense, source=settings.level.source)
-    dense = Trajectory(dense.t_ns, leveling.T_level_odom @ dense.T_a_b)
+    nodes = graph.with_poses(trajectory.at(graph.t_ns))
+    leveling = find_level(frames, trajectory, source=settings.level.source)
+    dense = Trajectory(trajectory.t_ns, leveling.T_level_odom @ trajectory.T_a_b)
     nodes = nodes.with_poses(leveling.T_level_odom @ nodes.T_map_body)
     progress.advance()
-    placed = georeference(nodes, dense, frames.gnss, frames.rig, settings=settings.gnss)
+    placed = georeference(nodes, dense, frames.gnss, rig=frames.rig, settings=settings.gnss)
     dense = apply_corrections(
         dense, nodes.t_ns, T_before=nodes.T_map_body, T_after=placed.graph.T_map_body
     )
     crs = _describe_crs(placed.origin, settings.gnss.crs) if placed.origin else None
-    save_trajectory(out / "trajectory.npz", dense)
     judged = placed.graph
     if placed.rejected:
         judged = confirmed_again(judged, settings=settings.verification)
-    save_graph(out, with_residuals(judged))
-    record = {
-        "levelling": leveling.to_json(),
-        "georeference": placed.to_json(),
-        "crs": crs or {},
-    }
-    write_json(out / "georeference.json", to_plain(record))
     progress.advance()
-    return LevelFigures(
-        leveled_by=leveling.source,
-        tilt_deg=round(float(np.rad2deg(leveling.tilt_rad)), 4),
-        crs=crs.name if crs else "",
-        local=placed.reason,
-        edges_rejected=len(placed.rejected),
-    )
+    return LeveledMap(dense, with_residuals(judged), leveling, placed, crs)
 
 
 def find_level(frames: FrameStore, trajectory: Trajectory, *, source: str) -> Leveling:

@@ -106,7 +106,7 @@ class PairRegistrar:
 
     def _overlap(self, pair: Pair) -> float:
         source, target = (self._view(node) for node in (pair.i, pair.j))
-        return overlap(source, target, pair.T_i_j, self._settings.overlap)
+        return overlap(source, target, pair.T_i_j, settings=self._settings.overlap)
 
     def _view(self, node: int) -> RangeImage:
         return RangeImage(self._views.ends(node).reshape(-1, 3), self._views.nearest_m(node))

@@ -7,6 +7,7 @@ again. Every pair is kept with the verdict of its last registration.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
@@ -32,6 +33,29 @@ _LOST_SD_FACTOR = 200.0
 """Factor on the standard deviation of an odometry edge across a lost multiframe."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class OdometryTrack:
+    """Result of the stage ``odometry``."""
+
+    trajectory: Trajectory
+    """``T_odom_body``, dense."""
+    lost: NDArray[np.bool_]
+    """Multiframes where odometry was lost, (number of multiframes,)."""
+    motion_cov: Array
+    """`OdometryStep.motion_cov` of each, (number of multiframes, 6, 6)."""
+
+    @staticmethod
+    def load(folder: Path) -> OdometryTrack:
+        """Read the artifact of the stage.
+
+        Raises:
+            StoreError: If a file is missing or damaged.
+        """
+        steps = load_arrays(folder / "steps.npz", ["lost", "motion_cov"])
+        trajectory = load_trajectory(folder / "trajectory.npz")
+        return OdometryTrack(trajectory, steps["lost"], steps["motion_cov"])
+
+
 def build_graph(
     frames: FrameStore, odometry: Path, out: Path, *, settings: Settings, progress: Progress
 ) -> GraphFigures:
@@ -44,15 +68,8 @@ def build_graph(
         settings: Uses nearly all groups of registration.
         progress: Counts pairs and receives an event for each edge.
     """
-    steps = load_arrays(odometry / "steps.npz", ["lost", "motion_cov"])
     graph = search(
-        frames,
-        load_trajectory(odometry / "trajectory.npz"),
-        steps["lost"],
-        motion_cov=steps["motion_cov"],
-        settings=settings,
-        progress=progress,
-        scratch=out,
+        frames, OdometryTrack.load(odometry), settings=settings, progress=progress, scratch=out
     )
     save_graph(out, graph)
     return GraphFigures(
@@ -64,10 +81,8 @@ def build_graph(
 
 def search(
     frames: FrameStore,
-    trajectory: Trajectory,
-    lost: NDArray[np.bool_],
+    odometry: OdometryTrack,
     *,
-    motion_cov: Array,
     settings: Settings,
     progress: Progress,
     scratch: Path,
@@ -76,23 +91,22 @@ def search(
 
     Args:
         frames: The multiframes.
-        trajectory: ``T_odom_body``, dense.
-        lost: Multiframes where odometry was lost, (number of multiframes,).
-        motion_cov: `OdometryStep.motion_cov` of each, (number of multiframes, 6, 6).
+        odometry: Of the same multiframes.
         settings: Uses segments, overlap, registration, planes, graph.
         progress: Counts pairs and receives an event for each registration.
         scratch: Folder for unnamed temporary files of 0.2 MB per node.
     """
     g = settings.graph
+    trajectory, lost = odometry.trajectory, odometry.lost
     rows = node_rows(frames.t_mid_ns, g.node_stride, lost)
     t_ns = frames.t_mid_ns[rows]
     T_odom_body = trajectory.at(t_ns)
-    edges = odometry_edges(T_odom_body, rows, lost, motion_cov=motion_cov, settings=g)
+    edges = odometry_edges(T_odom_body, rows, lost, motion_cov=odometry.motion_cov, settings=g)
     graph = PoseGraph(rows.astype(np.int64), t_ns, T_odom_body, edges)
     progress.event(NodesPlaced(t_ns=tuple(t_ns.tolist()), t_m=positions_of(T_odom_body.t)))
     views = NodeRangeImages(len(rows), settings, scratch)
     registrar = PairRegistrar(
-        lambda: Submaps(frames, trajectory, rows, settings, skip=lost), views, settings
+        lambda: Submaps(frames, trajectory, rows, settings=settings, skip=lost), views, settings
     )
     registrar.prepare(len(rows), progress)
     expected: dict[Ends, SE3] = {}

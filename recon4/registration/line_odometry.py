@@ -117,7 +117,7 @@ class LineOdometry:
                 observed.view,
                 view,
                 observed.T_odom_body.inverse() @ T_odom_body,
-                self._settings.overlap,
+                settings=self._settings.overlap,
             )
             for observed in self._history
         ]

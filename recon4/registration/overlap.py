@@ -31,7 +31,7 @@ def make_range_image(points: Array, settings: OverlapSettings) -> RangeImage:
 
 
 def overlap(
-    source: RangeImage, target: RangeImage, T_source_target: SE3, settings: OverlapSettings
+    source: RangeImage, target: RangeImage, T_source_target: SE3, *, settings: OverlapSettings
 ) -> float:
     """Fraction of points in the other's view volume, 0..1 (V Eq. 2.6, read as A0 no. 2).
 

@@ -36,8 +36,8 @@ class Submaps:
         frames: RecordedFrames,
         odometry: Trajectory,
         rows: NDArray[np.intp],
-        settings: Settings,
         *,
+        settings: Settings,
         skip: NDArray[np.bool_],
     ) -> None:
         self._frames, self._odometry, self._settings = frames, odometry, settings

@@ -153,7 +153,7 @@ def align(source: Source, pair: Pair, predicted: tuple[float, ...]) -> Alignment
     views = NodeRangeImages(2, settings, Path(gettempdir()))
 
     def submaps() -> Submaps:
-        return Submaps(source.frames, source.odometry, rows, settings, skip=lost)
+        return Submaps(source.frames, source.odometry, rows, settings=settings, skip=lost)
 
     registrar = PairRegistrar(submaps, views, settings)
     registrar.prepare(2, Silent())
@@ -162,7 +162,7 @@ def align(source: Source, pair: Pair, predicted: tuple[float, ...]) -> Alignment
     found = Measurement(
         T_i_j=numbers_of(tried.T_i_j),
         information=tuple(tried.information.ravel().tolist()),
-        overlap=overlap(ends[0], ends[1], tried.T_i_j, settings.overlap),
+        overlap=overlap(ends[0], ends[1], tried.T_i_j, settings=settings.overlap),
         error_m=tried.error_m,
         limit_m=tried.limit_m,
         degeneracy=tried.degeneracy,

@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
@@ -23,7 +24,6 @@ from recon4.model.figures import RefineFigures, RefineRound
 from recon4.model.plain import to_plain
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Times, Trajectory
-from recon4.pose_graph.files import load_graph
 from recon4.progress import Progress
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.segments import sample_segments
@@ -42,35 +42,40 @@ _SHORT = 3
 """A recording shorter than this many time gaps is matched without a gap."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Refinement:
+    """Result of the stage ``refine``."""
+
+    trajectory: Trajectory
+    """``T_map_body``, dense."""
+    rounds: tuple[RefineRound, ...]
+
+    def save(self, out: Path) -> RefineFigures:
+        """Write ``trajectory.npz`` and ``refine.json``; the latter holds the figures."""
+        save_trajectory(out / "trajectory.npz", self.trajectory)
+        figures = RefineFigures(rounds=self.rounds)
+        (out / "refine.json").write_text(json.dumps(to_plain(figures), indent=1))
+        return figures
+
+
 def refine(
-    frames: FrameStore,
-    odometry: Path,
-    graph: Path,
-    out: Path,
-    *,
-    settings: Settings,
-    progress: Progress,
-) -> RefineFigures:
-    """Run the stage ``refine``.
+    frames: FrameStore, odometry: Path, graph: PoseGraph, *, settings: Settings, progress: Progress
+) -> Refinement:
+    """Correct the odometry by the graph and, in mode ``beyond``, refine every multiframe.
 
     Args:
         frames: The multiframes.
         odometry: Folder of the stage ``odometry``.
-        graph: Folder of the verified graph.
-        out: Receives ``trajectory.npz`` (``T_map_body``, dense) and ``refine.json``.
+        graph: The verified graph.
         settings: Uses segments, planes and refine; only mode ``beyond`` refines.
         progress: Counts multiframes.
     """
-    dense = load_trajectory(odometry / "trajectory.npz")
+    start = corrected_by_graph(load_trajectory(odometry / "trajectory.npz"), graph)
+    if settings.graph.mode != "beyond":
+        return Refinement(start, ())
     lost = load_arrays(odometry / "steps.npz", ["lost"])["lost"]
-    start = corrected_by_graph(dense, load_graph(graph))
-    done: list[RefineRound] = []
-    if settings.graph.mode == "beyond":
-        start, done = refine_trajectory(frames, start, lost, settings=settings, progress=progress)
-    save_trajectory(out / "trajectory.npz", start)
-    figures = RefineFigures(rounds=tuple(done))
-    (out / "refine.json").write_text(json.dumps(to_plain(figures), indent=1))
-    return figures
+    refined, rounds = refine_trajectory(frames, start, lost, settings=settings, progress=progress)
+    return Refinement(refined, tuple(rounds))
 
 
 def corrected_by_graph(odometry: Trajectory, graph: PoseGraph) -> Trajectory:

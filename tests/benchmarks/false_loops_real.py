@@ -77,8 +77,8 @@ class Walk:
         dense = replace(dense, T_a_b=leveling.T_level_odom @ dense.T_a_b)
         placed = georeference(
             verified.with_poses(leveling.T_level_odom @ verified.T_map_body),
-            Trajectory(dense.t_ns, dense.T_a_b), self.frames.gnss, self.frames.rig,
-            settings=GnssSettings(),
+            Trajectory(dense.t_ns, dense.T_a_b), self.frames.gnss,
+            rig=self.frames.rig, settings=GnssSettings(),
         )  # fmt: skip
         assert placed.origin is not None, placed.reason
         return [*out, np.array([e.in_graph for e in placed.graph.edges])]

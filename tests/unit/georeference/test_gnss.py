@@ -100,7 +100,7 @@ def worst_m(result: GeoreferenceResult, true: Trajectory) -> float:
 def run(true: Trajectory, gnss: GnssSamples | None, **changes: object) -> GeoreferenceResult:
     graph, dense = slam(true, np.random.default_rng(1))
     settings = GnssSettings(**changes)  # type: ignore[arg-type]
-    return georeference(graph, dense, gnss, RIG, settings=settings)
+    return georeference(graph, dense, gnss, rig=RIG, settings=settings)
 
 
 @pytest.fixture(scope="module")
@@ -136,7 +136,7 @@ def test_the_lever_arm_matters(true: Trajectory, gnss: GnssSamples) -> None:
     graph, dense = slam(true, np.random.default_rng(1))
     bare = replace(RIG, p_body_antenna=np.zeros(3))
 
-    result = georeference(graph, dense, gnss, bare, settings=GnssSettings())
+    result = georeference(graph, dense, gnss, rig=bare, settings=GnssSettings())
 
     assert worst_m(result, true) > 0.5
 
@@ -234,7 +234,7 @@ def test_the_positions_decide_which_loops_are_rejected(
     )
     graph = graph.with_edges((unregistered, *graph.edges))
 
-    result = georeference(graph, dense, gnss, RIG, settings=GnssSettings())
+    result = georeference(graph, dense, gnss, rig=RIG, settings=GnssSettings())
 
     assert result.graph.edges[0].reason is Reason.OVERLAP
     loops = result.graph.edges[-LOOPS:]
@@ -254,7 +254,7 @@ def test_positions_reject_no_decision_of_a_person_and_nothing_when_off(
     graph = with_loops(graph, true, shift_m=1.0, **person)
     settings = GnssSettings(judge_edges=judge_edges)
 
-    result = georeference(graph, dense, gnss, RIG, settings=settings)
+    result = georeference(graph, dense, gnss, rig=RIG, settings=settings)
 
     assert result.rejected == ()
     assert all(edge.in_graph for edge in result.graph.edges)
@@ -267,7 +267,7 @@ def test_with_too_few_fixes_the_map_is_not_georeferenced(
     graph, dense = slam(true, np.random.default_rng(1))
 
     result = georeference(
-        graph, dense, rows_of(gnss, np.arange(kept)), RIG, settings=GnssSettings()
+        graph, dense, rows_of(gnss, np.arange(kept)), rig=RIG, settings=GnssSettings()
     )
 
     assert result.origin is None

@@ -44,7 +44,9 @@ def test_points_at_the_origin_have_no_direction():
 def test_a_view_overlaps_itself():
     view = make_range_image(sphere(5.0), SETTINGS)
 
-    assert overlap(view, view, SE3.identity(), SETTINGS) > 0.95  # the bins at the poles are small
+    assert (
+        overlap(view, view, SE3.identity(), settings=SETTINGS) > 0.95
+    )  # the bins at the poles are small
 
 
 def test_what_is_behind_the_wall_does_not_overlap():
@@ -53,9 +55,9 @@ def test_what_is_behind_the_wall_does_not_overlap():
         make_range_image(sphere(12.0), SETTINGS),
     )
 
-    assert overlap(inside, outside, SE3.identity(), SETTINGS) == 0.0
+    assert overlap(inside, outside, SE3.identity(), settings=SETTINGS) == 0.0
     assert (
-        overlap(outside, inside, SE3.identity(), SETTINGS) > 0.95
+        overlap(outside, inside, SE3.identity(), settings=SETTINGS) > 0.95
     )  # the bins at the poles are small
 
 
@@ -65,14 +67,14 @@ def test_the_tolerance_is_a_tenth_and_thirty_centimeters(range_m, inside):
     source = make_range_image(ring_of(0, 4.0), SETTINGS)
     target = make_range_image(ring_of(0, range_m), SETTINGS)
 
-    assert overlap(source, target, SE3.identity(), SETTINGS) == inside
+    assert overlap(source, target, SE3.identity(), settings=SETTINGS) == inside
 
 
 def test_points_in_empty_bins_do_not_overlap():
     source = make_range_image(ring_of(0, 4.0), SETTINGS)
     target = make_range_image(np.concatenate([ring_of(0, 4.0), ring_of(90, 4.0)]), SETTINGS)
 
-    assert overlap(source, target, SE3.identity(), SETTINGS) == 0.5
+    assert overlap(source, target, SE3.identity(), settings=SETTINGS) == 0.5
 
 
 def test_the_four_modes():
@@ -81,7 +83,7 @@ def test_the_four_modes():
     target = make_range_image(ring_of(0, 4.0), SETTINGS)
 
     found = {
-        mode: overlap(source, target, SE3.identity(), OverlapSettings(mode=mode))
+        mode: overlap(source, target, SE3.identity(), settings=OverlapSettings(mode=mode))
         for mode in ("target", "source", "min", "harmonic")
     }
 
@@ -93,16 +95,16 @@ def test_the_target_is_moved_into_the_source():
     T_source_target = SE3.from_rpy(0, 0, np.pi / 2, t=[0.3, 0.0, 0.0])
     target = make_range_image(T_source_target.inverse() @ ring_of(0, 4.0), SETTINGS)
 
-    assert overlap(source, target, T_source_target, SETTINGS) == 1.0
-    assert overlap(source, target, T_source_target.inverse(), SETTINGS) == 0.0
+    assert overlap(source, target, T_source_target, settings=SETTINGS) == 1.0
+    assert overlap(source, target, T_source_target.inverse(), settings=SETTINGS) == 0.0
     backward = OverlapSettings(mode="source")
-    assert overlap(target, source, T_source_target.inverse(), backward) == 1.0
+    assert overlap(target, source, T_source_target.inverse(), settings=backward) == 1.0
 
 
 def test_without_points_nothing_overlaps():
     empty = make_range_image(np.empty((0, 3)), SETTINGS)
     view = RangeImage(ring_of(0, 4.0), make_range_image(ring_of(0, 4.0), SETTINGS).nearest_m)
 
-    assert overlap(view, empty, SE3.identity(), SETTINGS) == 0.0
-    assert overlap(empty, view, SE3.identity(), SETTINGS) == 0.0
-    assert overlap(empty, empty, SE3.identity(), OverlapSettings(mode="harmonic")) == 0.0
+    assert overlap(view, empty, SE3.identity(), settings=SETTINGS) == 0.0
+    assert overlap(empty, view, SE3.identity(), settings=SETTINGS) == 0.0
+    assert overlap(empty, empty, SE3.identity(), settings=OverlapSettings(mode="harmonic")) == 0.0

@@ -20,7 +20,7 @@ from recon4.pose_graph.candidates import (
 )
 from recon4.pose_graph.files import load_graph, save_graph
 from recon4.pose_graph.pairs import tried_event
-from recon4.pose_graph.search import build_graph, odometry_edges, search
+from recon4.pose_graph.search import OdometryTrack, build_graph, odometry_edges, search
 from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
 from recon4.registration.stage import run_odometry
@@ -449,11 +449,14 @@ def drifting_search(stroll, folder, watch, *assignments):
     t_s = (stroll.truth.t_ns - stroll.truth.t_ns[0]) * 1e-9
     drift = 0.4 * t_s[:, None] * [1.0, 0.0, 0.0]
     T = stroll.truth.T_a_b
-    return search(
-        stroll,
+    odometry = OdometryTrack(
         replace(stroll.truth, T_a_b=SE3(T.R, T.t + drift)),
         np.zeros(len(stroll), bool),
-        motion_cov=np.broadcast_to(0.01 * np.eye(6), (len(stroll), 6, 6)),
+        np.broadcast_to(0.01 * np.eye(6), (len(stroll), 6, 6)),
+    )
+    return search(
+        stroll,
+        odometry,
         settings=settings_of(
             *("graph.node_stride=3", "graph.target_reach=1", "graph.source_reach=1"),
             *("registration.max_move_m=0.3", *assignments),
@@ -530,11 +533,10 @@ def tiny(frames, folder):
     facts = refine(
         frames,
         folder / "odometry",
-        folder / "verified",
-        folder / "refined",
+        load_graph(folder / "verified"),
         settings=settings,
         progress=Silent(),
-    )
+    ).save(folder / "refined")
     json.loads((folder / "refined" / "refine.json").read_text(), parse_constant=pytest.fail)
     return found.graph, load_trajectory(folder / "refined" / "trajectory.npz"), facts
 
@@ -562,15 +564,9 @@ def test_a_recording_without_a_single_point_goes_through(stroll, tmp_path):
 
 
 def test_all_lost_leaves_one_node(stroll, tmp_path):
-    graph = search(
-        stroll,
-        stroll.truth,
-        np.ones(len(stroll), bool),
-        motion_cov=np.zeros((len(stroll), 6, 6)),
-        settings=settings_of(),
-        progress=Silent(),
-        scratch=tmp_path,
-    )
+    n = len(stroll)
+    odometry = OdometryTrack(stroll.truth, np.ones(n, bool), np.zeros((n, 6, 6)))
+    graph = search(stroll, odometry, settings=settings_of(), progress=Silent(), scratch=tmp_path)
 
     assert len(graph) == 1
     assert graph.edges == ()

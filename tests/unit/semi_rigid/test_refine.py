@@ -9,7 +9,6 @@ from recon4.model.figures import RefineFigures
 from recon4.model.plain import to_plain
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
-from recon4.pose_graph.files import save_graph
 from recon4.progress import Silent
 from recon4.registration.plane_map import Match
 from recon4.registration.segments import sample_segments
@@ -187,7 +186,7 @@ def test_points_far_in_time_straighten_a_bend_more_than_its_own(stroll):
 
 def prepared(stroll, folder):
     """Folders of odometry (off by a drift) and graph (true)."""
-    for name in ("odometry", "graph", "out"):
+    for name in ("odometry", "out"):
         (folder / name).mkdir()
     drift = SE3.exp(np.linspace(0, 1, len(stroll.truth))[:, None] * [0, 0, 0.02, 0.1, 0.05, 0.0])
     save_trajectory(
@@ -197,7 +196,6 @@ def prepared(stroll, folder):
     np.savez(folder / "odometry" / "steps.npz", lost=lost_none(stroll))
     t_ns = stroll.t_mid_ns[2::5]
     graph = PoseGraph(np.arange(2, 30, 5), t_ns, stroll.truth.at(t_ns), ())
-    save_graph(folder / "graph", graph)
     return graph
 
 
@@ -208,11 +206,10 @@ def test_other_modes_keep_the_trajectory_of_the_graph(stroll, tmp_path, mode):
     figures = refine(
         stroll,
         tmp_path / "odometry",
-        tmp_path / "graph",
-        tmp_path / "out",
+        graph,
         settings=override(SETTINGS, [f"graph.mode={mode}"]),
         progress=Silent(),
-    )
+    ).save(tmp_path / "out")
 
     assert figures == RefineFigures(rounds=())
     found = load_trajectory(tmp_path / "out" / "trajectory.npz")
@@ -227,11 +224,10 @@ def test_mode_beyond_writes_a_better_trajectory_and_its_rounds(stroll, tmp_path)
     figures = refine(
         stroll,
         tmp_path / "odometry",
-        tmp_path / "graph",
-        tmp_path / "out",
+        graph,
         settings=SETTINGS,
         progress=Silent(),
-    )
+    ).save(tmp_path / "out")
 
     found = load_trajectory(tmp_path / "out" / "trajectory.npz")
     assert json.loads((tmp_path / "out" / "refine.json").read_text()) == to_plain(figures)
