@@ -15,7 +15,7 @@ from app.slices.work import (
     window_of,
 )
 from recon4.review.stamp import stamp_file
-from recon4.slices.export import write_csv, write_dxf, write_geotiff, write_laz
+from recon4.slices.export import SliceSelection, write_csv, write_dxf, write_geotiff, write_laz
 from recon4.slices.points import SliceWindow
 from recon4.slices.sheet import SheetText, lay_out, source_text, write_sheet
 from recon4.slices.slice_image import RasterGrid, draw
@@ -42,12 +42,13 @@ def export(
     tiles, frame = map_of(artifacts, evidence), map_frame(artifacts)
     cuts = ask.cut.cut().repeated(ask.count, spacing_m=ask.spacing_m)
     window = SliceWindow(**ask.window.model_dump()) if ask.window else None
+    chosen = SliceSelection(tiles, cuts, window)
     if path.suffix == ".laz":
-        write_laz(tiles, cuts, path, frame=frame, window=window)
+        write_laz(chosen, path, frame=frame)
     elif path.suffix == ".csv":
-        write_csv(tiles, cuts, path, frame=frame, window=window)
+        write_csv(chosen, path, frame=frame)
     elif path.suffix == ".dxf":
-        write_dxf(tiles, cuts, path, frame=frame, window=window, flat=ask.flat)
+        write_dxf(chosen, path, frame=frame, flat=ask.flat)
     elif path.suffix == ".tif":
         _export_geotiff(artifacts, ask, path, reference=reference, context=context)
     else:
@@ -73,7 +74,8 @@ def _export_geotiff(
     made = draw(tiles, cut, paper, color=ask.color, reference=against)
     description = f"{context.project}: {stamp_text(context.evidence)}"
     frame = map_frame(artifacts)
-    write_geotiff(made, path, frame=frame, span=span_of(ask, made), description=description)
+    rgba = made.rgba(span_of(ask, made), "light")
+    write_geotiff(made, path, frame=frame, rgba=rgba, description=description)
 
 
 def _export_sheet(

@@ -111,14 +111,14 @@ def _write(
     tiles: TileSet, cuts: tuple[Cut, ...], file: Path, *, frame: MapFrame, about: dict[str, Any]
 ) -> int:
     from recon4.review.stamp import stamp_file
-    from recon4.slices.export import write_csv, write_dxf, write_laz
+    from recon4.slices.export import SliceSelection, write_csv, write_dxf, write_laz
     from recon4.store.atomic import atomic_file
 
     ending = file.suffix.lower()
     writers = {".laz": write_laz, ".csv": write_csv, ".dxf": write_dxf}
     if ending in writers:
         with atomic_file(file) as temporary:
-            points = writers[ending](tiles, cuts, temporary, frame=frame)
+            points = writers[ending](SliceSelection(tiles, cuts), temporary, frame=frame)
             if about["stamp"]:
                 stamp_file(temporary, temporary, about["stamp"])
         return points
@@ -146,7 +146,9 @@ def _write_image(
         side_m = max(window.right - window.left, window.top - window.bottom)
         made = draw(tiles, cut, RasterGrid(window, max(0.005, side_m / 6000)), color=about["color"])
         title = f"{about['name']}: {approval}"
-        write_geotiff(made, file, frame=frame, span=made.span, description=title)
+        write_geotiff(
+            made, file, frame=frame, rgba=made.rgba(made.span, "light"), description=title
+        )
         return made.points
     layout = lay_out(window)
     made = draw(tiles, cut, layout.paper, color=about["color"])

@@ -5,10 +5,12 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.errors import ConfigError, GeoreferenceError
 from recon4.export.laz import export_laz
@@ -17,7 +19,6 @@ from recon4.geometry.se3 import Array
 from recon4.mapping.tile import progressive
 from recon4.mapping.tiles import TileSet, TileWriter
 from recon4.recording.formats.scratch import scratch_folder
-from recon4.slices.colors import Ground, Span
 from recon4.slices.cut import Cut
 from recon4.slices.frames import MapFrame, jacobian
 from recon4.slices.points import SliceWindow, TilePart, points_in
@@ -28,14 +29,31 @@ MAX_DXF_POINTS = 2_000_000
 _DXF_CELL_M = 0.01
 
 
-def write_laz(
-    tiles: TileSet,
-    cuts: Sequence[Cut],
-    path: Path,
-    *,
-    frame: MapFrame,
-    window: SliceWindow | None = None,
-) -> int:
+@dataclass(frozen=True, slots=True)
+class SliceSelection:
+    """The points of a map that lie in slices."""
+
+    tiles: TileSet
+    cuts: Sequence[Cut]
+    window: SliceWindow | None = None
+    """Only this part of each slice."""
+
+    def parts(
+        self, fields: Sequence[str], *, cell_m: float = 0.0
+    ) -> Iterator[tuple[int, TilePart, Array]]:
+        """Number of the slice (from 1), points, and their map coordinates.
+
+        Args:
+            fields: Columns to read.
+            cell_m: Thinned to one point in a cell of this size; 0 = all.
+        """
+        for number, cut in enumerate(self.cuts, start=1):
+            for part in points_in(self.tiles, cut, fields, window=self.window):
+                kept = _thinned(part, cell_m) if cell_m else part
+                yield number, kept, cut.to_map(kept.uvd)
+
+
+def write_laz(chosen: SliceSelection, path: Path, *, frame: MapFrame) -> int:
     """Write the points of slices as LAZ 1.4 with all fields; a point of two slices is there twice.
 
     Returns:
@@ -45,41 +63,34 @@ def write_laz(
         ConfigError: If the slices are empty.
         StoreError: If the file cannot be written or does not read back.
     """
+    tiles = chosen.tiles
     with scratch_folder(0) as folder:
         out = folder / "tiles"
         out.mkdir()
         with TileWriter(out, tiles.fields, tile_m=float(tiles.facts["tile_m"])) as writer:
             writer.facts = {name: tiles.facts[name] for name in ("voxel_m", "crs")}
-            for cut in cuts:
-                for part in points_in(tiles, cut, tiles.fields, window=window):
-                    order = progressive(np.arange(len(part)))
-                    writer.append(part.tile.ijk, {k: v[order] for k, v in part.columns.items()})
+            for _, part, _ in chosen.parts(tiles.fields):
+                order = progressive(np.arange(len(part)))
+                writer.append(part.tile.ijk, {k: v[order] for k, v in part.columns.items()})
         if not len(TileSet.open(out)):
             raise ConfigError("the slice holds no points, there is nothing to export")
         return export_laz(out, path, crs=frame.wkt or None, to_crs=frame.to_crs)
 
 
-def write_csv(
-    tiles: TileSet,
-    cuts: Sequence[Cut],
-    path: Path,
-    *,
-    frame: MapFrame,
-    window: SliceWindow | None = None,
-) -> int:
+def write_csv(chosen: SliceSelection, path: Path, *, frame: MapFrame) -> int:
     """Write one line per point: slice, u, v and distance from the plane, coordinates, fields.
 
     Returns:
         How many points were written.
     """
     fields = [n for n in ("intensity", "intensity_normalized", "sensor", "frame_id", "t_ns")
-              if n in tiles.fields]  # fmt: skip
+              if n in chosen.tiles.fields]  # fmt: skip
     count = 0
     axes = ["easting_m", "northing_m", "height_m"] if frame.to_crs else ["x_m", "y_m", "z_m"]
     with atomic_file(path) as temporary, temporary.open("w", encoding="utf-8") as file:
         file.write(f"# recon4 slice, {frame.text}\n")
         file.write(",".join(["slice", "u_m", "v_m", "off_m", *axes, *fields]) + "\n")
-        for number, part, p_map in _every(tiles, cuts, fields, window=window):
+        for number, part, p_map in chosen.parts(fields):
             p = frame.to_crs(p_map) if frame.to_crs else p_map
             table = np.column_stack([np.full(len(part), number), part.uvd, p])
             extra = [part.columns[name] for name in fields]
@@ -92,26 +103,16 @@ def write_csv(
     return count
 
 
-def write_dxf(
-    tiles: TileSet,
-    cuts: Sequence[Cut],
-    path: Path,
-    *,
-    frame: MapFrame,
-    window: SliceWindow | None = None,
-    flat: bool = False,
-) -> int:
+def write_dxf(chosen: SliceSelection, path: Path, *, frame: MapFrame, flat: bool = False) -> int:
     """Write points as DXF R2010 in meters: one layer per slice, one point per cm² of the cut.
 
     ezdxf writes the skeleton of the file; the points are streamed into it, so memory does not
     depend on their number.
 
     Args:
-        tiles: The map.
-        cuts: Slices; layers are named by number and position.
+        chosen: The points; layers are named by number and position of the slices.
         path: File to write.
         frame: Coordinates are in its CRS, if it has one.
-        window: Only this part.
         flat: u, v and 0 instead of coordinates: a section to lay on a sheet.
 
     Returns:
@@ -121,12 +122,12 @@ def write_dxf(
         ConfigError: If there are too many.
         StoreError: If the file cannot be written.
     """
-    layers = [layer_name(k, cut) for k, cut in enumerate(cuts, start=1)]
+    layers = [layer_name(k, cut) for k, cut in enumerate(chosen.cuts, start=1)]
     before, after, owner = _dxf_frame(layers)
     count = 0
     with atomic_file(path) as temporary, temporary.open("w", encoding="utf-8") as file:
         file.write(before)
-        for number, part, p_map in _every(tiles, cuts, [], window=window, cell_m=_DXF_CELL_M):
+        for number, part, p_map in chosen.parts([], cell_m=_DXF_CELL_M):
             if flat:
                 p = part.uvd * [1.0, 1.0, 0.0]
             else:
@@ -138,12 +139,7 @@ def write_dxf(
                     "use a thinner slice or a smaller window, or export LAZ"
                 )
             first = _FIRST_HANDLE + count - len(p)
-            layer = layers[number - 1]
-            file.writelines(
-                f"  0\nPOINT\n  5\n{first + k:X}\n330\n{owner}\n100\nAcDbEntity\n  8\n{layer}\n"
-                f"100\nAcDbPoint\n 10\n{x:.4f}\n 20\n{y:.4f}\n 30\n{z:.4f}\n"
-                for k, (x, y, z) in enumerate(p.tolist())
-            )
+            file.writelines(_dxf_points(p, layers[number - 1], owner=owner, handle=first))
         file.write(after)
     return count
 
@@ -163,15 +159,20 @@ def write_geotiff(
     path: Path,
     *,
     frame: MapFrame,
-    span: Span,
-    ground: Ground = "light",
+    rgba: NDArray[np.uint8],
     description: str = "",
 ) -> None:
     """Write the image as GeoTIFF, colored, transparent where there are no points.
 
     A horizontal slice of a georeferenced map has its CRS, and a transformation that is exact at
     its center. All other slices have the coordinates of the cut (u, v in meters) and no CRS.
-    ``description`` is stored in the tag ImageDescription.
+
+    Args:
+        drawn: The slice.
+        path: File to write.
+        frame: Of the map.
+        rgba: Its colors, see `SliceImage.rgba`.
+        description: For the tag ImageDescription.
 
     Raises:
         GeoreferenceError: If an affine transformation would be off by half a pixel at a corner.
@@ -188,7 +189,7 @@ def write_geotiff(
         tags.tagtype[tag] = 2 if text else (3 if tag == _GEO_KEYS else 12)
         tags[tag] = values if text else tuple(values)
     tags[TiffImagePlugin.IMAGEDESCRIPTION] = description.encode("ascii", "replace").decode()
-    image = Image.fromarray(drawn.rgba(span, ground))
+    image = Image.fromarray(rgba)
     with atomic_file(path) as temporary:
         image.save(temporary, format="TIFF", compression="tiff_adobe_deflate", tiffinfo=tags)
 
@@ -248,19 +249,13 @@ def _epsg(frame: MapFrame) -> int:
     return int(first)
 
 
-def _every(
-    tiles: TileSet,
-    cuts: Sequence[Cut],
-    fields: Sequence[str],
-    *,
-    window: SliceWindow | None,
-    cell_m: float = 0.0,
-) -> Iterator[tuple[int, TilePart, Array]]:
-    """Number of the slice (from 1), points, and their map coordinates; thinned to one per cell."""
-    for number, cut in enumerate(cuts, start=1):
-        for part in points_in(tiles, cut, fields, window=window):
-            kept = _thinned(part, cell_m) if cell_m else part
-            yield number, kept, cut.to_map(kept.uvd)
+def _dxf_points(p: Array, layer: str, *, owner: str, handle: int) -> Iterator[str]:
+    """Entities of points (N, 3); ``handle`` is that of the first."""
+    for k, (x, y, z) in enumerate(p.tolist()):
+        yield (
+            f"  0\nPOINT\n  5\n{handle + k:X}\n330\n{owner}\n100\nAcDbEntity\n  8\n{layer}\n"
+            f"100\nAcDbPoint\n 10\n{x:.4f}\n 20\n{y:.4f}\n 30\n{z:.4f}\n"
+        )
 
 
 def _thinned(part: TilePart, cell_m: float) -> TilePart:

@@ -18,7 +18,7 @@ from recon4.recording.formats.scratch import sweep_scratch
 from recon4.slices.acceptance import AcceptanceText, render_acceptance
 from recon4.slices.control_points import ControlPoint, read_control
 from recon4.slices.cut import horizontal, vertical
-from recon4.slices.export import write_csv, write_dxf, write_geotiff, write_laz
+from recon4.slices.export import SliceSelection, write_csv, write_dxf, write_geotiff, write_laz
 from recon4.slices.frames import MapFrame, frame_of
 from recon4.slices.pick import nearest_surface, pick
 from recon4.slices.points import SliceWindow, points_in
@@ -56,7 +56,7 @@ def inside(tiles, *cuts):
 def test_a_dxf_has_a_layer_a_slice_in_metres_and_opens_without_complaint(tiles, tmp_path):
     cuts = CUT.repeated(3, spacing_m=0.3)
 
-    count = write_dxf(tiles, cuts, tmp_path / "s.dxf", frame=LOCAL)
+    count = write_dxf(SliceSelection(tiles, cuts), tmp_path / "s.dxf", frame=LOCAL)
 
     drawing = ezdxf.readfile(tmp_path / "s.dxf")
     points = list(drawing.modelspace())
@@ -72,7 +72,7 @@ def test_a_dxf_has_a_layer_a_slice_in_metres_and_opens_without_complaint(tiles, 
 def test_a_flat_dxf_has_the_section_on_the_sheet(tiles, tmp_path):
     cut = vertical((0.0, 1.0), (4.0, 1.0), thickness_m=0.2)
 
-    write_dxf(tiles, [cut], tmp_path / "s.dxf", frame=LOCAL, flat=True)
+    write_dxf(SliceSelection(tiles, [cut]), tmp_path / "s.dxf", frame=LOCAL, flat=True)
 
     xyz = np.array([p.dxf.location.xyz for p in ezdxf.readfile(tmp_path / "s.dxf").modelspace()])
     assert np.abs(xyz[:, 0] - 1.0).max() < 0.06
@@ -80,7 +80,7 @@ def test_a_flat_dxf_has_the_section_on_the_sheet(tiles, tmp_path):
 
 
 def test_a_laz_holds_the_points_of_the_slice_in_the_crs(tiles, tmp_path):
-    count = write_laz(tiles, [CUT], tmp_path / "s.laz", frame=PLACED)
+    count = write_laz(SliceSelection(tiles, [CUT]), tmp_path / "s.laz", frame=PLACED)
 
     with laspy.open(tmp_path / "s.laz") as file:
         found, crs = file.read(), file.header.parse_crs()
@@ -126,7 +126,7 @@ def test_a_laz_whose_writer_was_killed_leaves_nothing_beside_it(tiles, tmp_path,
 
 
 def test_a_csv_holds_every_point_with_place_and_coordinates(tiles, tmp_path):
-    count = write_csv(tiles, [CUT], tmp_path / "s.csv", frame=LOCAL)
+    count = write_csv(SliceSelection(tiles, [CUT]), tmp_path / "s.csv", frame=LOCAL)
 
     lines = (tmp_path / "s.csv").read_text().splitlines()
     rows = list(csv.DictReader(lines[1:]))
@@ -139,7 +139,7 @@ def test_a_csv_holds_every_point_with_place_and_coordinates(tiles, tmp_path):
 def test_a_geotiff_lies_where_the_crs_says(tiles, tmp_path):
     drawn = draw(tiles, CUT, RasterGrid(SliceWindow(0.0, -1.0, 3.0, 5.0), 0.02), color="intensity")
 
-    write_geotiff(drawn, tmp_path / "s.tif", frame=PLACED, span=drawn.span)
+    write_geotiff(drawn, tmp_path / "s.tif", frame=PLACED, rgba=drawn.rgba(drawn.span, "light"))
 
     with rasterio.open(tmp_path / "s.tif") as file:
         bands = file.read()
@@ -157,7 +157,7 @@ def test_a_geotiff_of_a_section_has_its_own_meters(tiles, tmp_path):
     cut = vertical((0.0, 1.0), (4.0, 1.0), thickness_m=0.5)
     drawn = draw(tiles, cut, RasterGrid(SliceWindow(0.0, -1.0, 4.0, 3.0), 0.01))
 
-    write_geotiff(drawn, tmp_path / "s.tif", frame=PLACED, span=drawn.span)
+    write_geotiff(drawn, tmp_path / "s.tif", frame=PLACED, rgba=drawn.rgba(drawn.span, "light"))
 
     with rasterio.open(tmp_path / "s.tif") as file:
         assert file.transform @ (0, 0) == pytest.approx((0.0, 3.0))
@@ -171,7 +171,7 @@ def test_an_image_too_large_for_one_transformation_is_rejected(tiles, tmp_path):
     object.__setattr__(small.paper, "pixel_m", 0.01)
 
     with pytest.raises(GeoreferenceError, match="smaller window"):
-        write_geotiff(small, tmp_path / "s.tif", frame=PLACED, span=drawn.span)
+        write_geotiff(small, tmp_path / "s.tif", frame=PLACED, rgba=drawn.rgba(drawn.span, "light"))
 
 
 @pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
