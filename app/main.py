@@ -167,15 +167,32 @@ def serve(
 
 @asynccontextmanager
 async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None]:
+    """Open the parts of the server, keep its background tasks running, and close all in order."""
     make_state(settings)
     for problem in open_state(settings.state):
         log.error("%s: %s; recon4 verify %s lists all", STATE, problem, settings.root)
-    access = open_access(settings.state, login=settings.lan)
+    parts = app.state.parts = _open_parts(settings)
+    app.state.metrics.follow(parts)
+    watching = [
+        asyncio.create_task(parts.supervisor.run()),
+        asyncio.create_task(maintain(parts.jobs, parts.uploads, parts.trash, slices=parts.slices)),
+        asyncio.create_task(rotate_logs(settings.state, parts.jobs, parts.captures)),
+        asyncio.create_task(parts.captures.adopt()),
+    ]
+    try:
+        yield
+    finally:
+        for task in watching:
+            task.cancel()
+        await asyncio.gather(*watching, return_exceptions=True)
+        await _close_parts(parts)
+        seal_state(settings.state)
+
+
+def _open_parts(settings: ServerSettings) -> Parts:
     jobs = JobStore(settings.state / "jobs.sqlite")
-    supervisor = Supervisor(jobs, settings)
     pool = ComputePool(settings.state / "compute", children=child_register(settings))
     checks = ApprovalChecks()
-    captures = Captures(settings.root)
     projects = ProjectStore(settings.root, _import_folders(settings))
     viewers = ViewerPool(
         idle_s=settings.viewer_idle_s,
@@ -184,47 +201,33 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
         sockets=Streams("viewers", _viewer_limits(settings)),
         children=child_register(settings),
     )
-    uploads = UploadStore(settings)
-    slices = Slices(pool, projects, checks, settings)
-    trash = Trash(settings.root, settings.state / "trash", kept_s=settings.trash_s)
-    app.state.parts = Parts(
+    return Parts(
         settings=settings,
-        access=access,
+        access=open_access(settings.state, login=settings.lan),
         projects=projects,
         thumbnails=Thumbnails(pool, settings.state / "thumbnails"),
-        trash=trash,
-        uploads=uploads,
+        trash=Trash(settings.root, settings.state / "trash", kept_s=settings.trash_s),
+        uploads=UploadStore(settings),
         jobs=jobs,
-        supervisor=supervisor,
+        supervisor=Supervisor(jobs, settings),
         viewers=viewers,
         compute_pool=pool,
         event_streams=Streams("event streams", EVENT_STREAMS),
-        captures=captures,
+        captures=Captures(settings.root),
         checks=checks,
         reviews=Reviews(pool),
-        slices=slices,
+        slices=Slices(pool, projects, checks, settings=settings),
     )
-    app.state.metrics.follow(app.state.parts)
-    watching = [
-        asyncio.create_task(supervisor.run()),
-        asyncio.create_task(maintain(jobs, uploads, trash, slices=slices)),
-        asyncio.create_task(rotate_logs(settings.state, jobs, captures)),
-        asyncio.create_task(captures.adopt()),
-    ]
-    try:
-        yield
-    finally:
-        for task in watching:
-            task.cancel()
-        await asyncio.gather(*watching, return_exceptions=True)
-        await captures.leave()
-        await pool.close()
-        checks.close()
-        supervisor.close()
-        await viewers.close()
-        jobs.close()
-        access.close()
-        seal_state(settings.state)
+
+
+async def _close_parts(parts: Parts) -> None:
+    await parts.captures.leave()
+    await parts.compute_pool.close()
+    parts.checks.close()
+    parts.supervisor.close()
+    await parts.viewers.close()
+    parts.jobs.close()
+    parts.access.close()
 
 
 def _viewer_limits(settings: ServerSettings) -> StreamLimits:

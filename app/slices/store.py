@@ -71,6 +71,7 @@ class Slices:
         pool: ComputePool,
         projects: ProjectStore,
         checks: ApprovalChecks,
+        *,
         settings: ServerSettings,
     ) -> None:
         self._pool, self._checks = pool, checks
