@@ -78,7 +78,7 @@ def approve_project(root: Path, key_file: Path, *, who: str = "Eva") -> Approval
             },
         }
         write_summary(root, summary)
-    return approve(root, key_file, {"who": who, "role": "reviewer", "why": ""}, False)
+    return approve(root, key_file, {"who": who, "role": "reviewer", "why": ""}, confirmed=False)
 
 
 def write_summary(root: Path, summary: dict[str, object]) -> None:

@@ -281,7 +281,7 @@ async def _sign(
     )
     seen = (asked.after_seq, asked.graph)
     return await server.compute_pool.run_background(
-        Lane.SIGN, terms, sign, root, key, signer, asked.confirmed, seen=seen
+        Lane.SIGN, terms, sign, root, key, signer, confirmed=asked.confirmed, seen=seen
     )
 
 

@@ -64,7 +64,7 @@ async def receive(
         ClientDisconnect: If the sender disconnected.
     """
     descriptor = os.open(path, os.O_WRONLY)
-    sink = _Sink(descriptor, offset, length, checksum)
+    sink = _Sink(descriptor, offset, length, checksum=checksum)
     try:
         try:
             async for piece in _in_time(pieces):
@@ -88,7 +88,7 @@ class _Sink:
     """Gathers, hashes, counts and writes bytes."""
 
     def __init__(
-        self, descriptor: int, offset: int, length: int, checksum: Checksum | None
+        self, descriptor: int, offset: int, length: int, *, checksum: Checksum | None
     ) -> None:
         self.end = offset
         self._descriptor = descriptor

@@ -223,7 +223,7 @@ async def create(request: Request, server: Server, who: Who) -> Response:
     tus.check_version(request.headers)
     length = tus.number(request.headers, "Upload-Length")
     upload, part = await asyncio.to_thread(
-        _announce, server, tus.metadata(request.headers), length, who.name
+        _announce, server, tus.metadata(request.headers), length, by=who.name
     )
     headers = {"Location": _url(upload, part)}
     if request.headers.get("content-type") == tus.CHUNK_TYPE and part.offset == 0:
@@ -265,7 +265,7 @@ def terminate(file_id: Annotated[str, Path(max_length=40)], server: Server) -> R
 
 
 def _announce(
-    server: Parts, metadata: dict[str, str], length: int, by: str
+    server: Parts, metadata: dict[str, str], length: int, *, by: str
 ) -> tuple[Upload, UploadPart]:
     name = metadata.get("relativePath") or metadata.get("filename") or metadata.get("name") or ""
     check_name(name, what="the name of a file", most=1000)

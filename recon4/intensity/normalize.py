@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.intensity.diagnostics import Diagnostics, diagnose
-from recon4.intensity.surfaces import Observations, cells_of, learn_surfaces, observations_of
+from recon4.intensity.surfaces import Observations, cells_of, learn_surfaces
 from recon4.intensity.table import IntensityTable
-from recon4.kernels.intensity import accumulate
+from recon4.kernels.intensity import accumulate, bins_of
 from recon4.kernels.voxels import face_sensor
 from recon4.mapping.normals import local_normals
 from recon4.mapping.place import place_with_origins
@@ -151,18 +151,22 @@ class _SampleAccumulator:
         add_sample(self.sums, sample, self._settings)
         self.largest = max(self.largest, float(sample.intensity.max(initial=0)))
         rows = np.flatnonzero(self._rng.random(len(sample.cell)) * len(sample.cell) < self._few)
+        self._seen.append(self._observations(sample, rows))
+
+    def _observations(self, sample: IntensitySample, rows: NDArray[np.intp]) -> Observations:
+        """Some points, sorted into bins."""
         sensors, rings, incidences, ranges, _ = self.sums.shape
-        self._seen.append(
-            observations_of(
-                sample.cell[rows],
-                sample.sensor[rows].astype(np.int64) * rings + sample.ring[rows],
-                sample.incidence_rad[rows],
-                range_m=sample.range_m[rows],
-                intensity=sample.intensity[rows],
-                shape=(sensors * rings, incidences, ranges),
-                settings=self._settings,
-            )
+        bins = np.empty((len(rows), 3), np.int32)
+        bins_of(
+            sample.sensor[rows].astype(np.int64) * rings + sample.ring[rows],
+            sample.incidence_rad[rows],
+            sample.range_m[rows],
+            float(np.deg2rad(self._settings.incidence_bin_deg)),
+            self._settings.range_bin_m,
+            (sensors * rings, incidences, ranges),
+            bins,
         )
+        return Observations(sample.cell[rows], bins, sample.intensity[rows].astype(np.float32))
 
     def observations(self) -> Observations:
         """Some points of all multiframes; the same ones in every run."""

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
-from recon4.kernels.intensity import bins_of, surface_equations
+from recon4.kernels.intensity import surface_equations
 from recon4.settings import IntensitySettings
 
 ROUNDS = 12
@@ -77,23 +77,6 @@ def cells_of(xyz_m: Array, cell_m: float) -> NDArray[np.int64]:
     """Key of the cube of each point; 21 bits per axis, (N, 3) -> (N,)."""
     at = np.floor(xyz_m / cell_m).astype(np.int64) & 0x1FFFFF
     return np.asarray(at[:, 0] << 42 | at[:, 1] << 21 | at[:, 2], dtype=np.int64)
-
-
-def observations_of(
-    cell: NDArray[np.int64],
-    channel: NDArray[np.int64],
-    incidence_rad: NDArray[np.float32],
-    *,
-    range_m: NDArray[np.float32],
-    intensity: NDArray[np.uint16],
-    shape: tuple[int, int, int],
-    settings: IntensitySettings,
-) -> Observations:
-    """Sort points into bins; ``shape`` counts channels, bins of incidence and of range."""
-    bins = np.empty((len(cell), 3), np.int32)
-    width_rad = float(np.deg2rad(settings.incidence_bin_deg))
-    bins_of(channel, incidence_rad, range_m, width_rad, settings.range_bin_m, shape, bins)
-    return Observations(cell, bins, intensity.astype(np.float32))
 
 
 def learn_surfaces(

@@ -121,9 +121,11 @@ class BagRecording:
                 decoder = PacketDecoder(row, sensor, settings=self._settings, report=self._report)
                 found[sensor.topic] = _Scans(decoder)
             elif topic is not None:
-                clouds = CloudDecoder(row, sensor.name, sensor.model, self._report)
+                clouds = CloudDecoder(row, sensor.name, sensor.model, report=self._report)
                 period = _period_ns(topic, bag.seconds)
-                found[sensor.topic] = _Clouds(clouds, sensor.time_offset_s, period, self._report)
+                found[sensor.topic] = _Clouds(
+                    clouds, sensor.time_offset_s, period, report=self._report
+                )
         return found
 
 
@@ -202,7 +204,7 @@ class _Clouds:
     """Decodes messages of points."""
 
     def __init__(
-        self, decoder: CloudDecoder, offset_s: float, period_ns: int, report: ImportReport
+        self, decoder: CloudDecoder, offset_s: float, period_ns: int, *, report: ImportReport
     ) -> None:
         self._decoder, self._period_ns, self._report = decoder, period_ns, report
         self._offset_ns = round(offset_s * 1e9)

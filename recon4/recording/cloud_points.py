@@ -44,8 +44,8 @@ class CloudDecoder:
         sensor_row: int,
         name: str,
         model: str,
-        report: ImportReport,
         *,
+        report: ImportReport,
         points_lead: bool = False,
     ) -> None:
         """Prepare.

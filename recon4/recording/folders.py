@@ -76,7 +76,7 @@ def read_frames(
     Raises:
         RecordingError: If not one of the files can be read.
     """
-    decoder = CloudDecoder(0, sensor.name, sensor.model, report, points_lead=True)
+    decoder = CloudDecoder(0, sensor.name, sensor.model, report=report, points_lead=True)
     if not frames.times_from:
         rate = 1e9 / frames.period_ns
         report.derive(f"no times in the file names, frames every 1/{rate:g} s from 0")

@@ -56,7 +56,7 @@ def register_to_planes(
             break
         H, g = observable_pose(match.H[START, START], match.g[START], normal_noise_rad)
         information = H
-        step = -np.linalg.solve(H + 1e-6 * np.trace(H) / 6 * np.eye(6), g)
+        step = _gauss_newton_step(H, g)
         T_target_source = SE3(
             so3_exp(step[ROTATION]) @ T_target_source.R, T_target_source.t + step[TRANSLATION]
         )
@@ -72,6 +72,11 @@ def register_to_planes(
         T_target_source, stop, rounds, error_m, match.match_ratio, information,
         match.degeneracy,
     )  # fmt: skip
+
+
+def _gauss_newton_step(H: Array, g: Array) -> Array:
+    """Step that reduces the distances, damped a little, (6,)."""
+    return -np.linalg.solve(H + 1e-6 * np.trace(H) / 6 * np.eye(6), g)
 
 
 def _error(target: PlaneMap, T_target_source: SE3, source: Array, *, fraction: Array) -> float:

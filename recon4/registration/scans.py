@@ -79,10 +79,8 @@ def register_scans(
         initial: First ``T_target_source``.
         settings: Gate, kernel, bounds.
     """
-    rows = _some(source, settings.source_points)
-    return _descend(
-        target, source, rows, initial=initial, rounds=settings.rounds, settings=settings
-    )
+    some = _some(source, settings.source_points)
+    return _descend(target, some, initial=initial, rounds=settings.rounds, settings=settings)
 
 
 def search_scans(
@@ -103,10 +101,10 @@ def search_scans(
     first = register_scans(target, source, initial=initial, settings=settings)
     if first.converged and first.match_ratio >= settings.confident_inlier_ratio:
         return first
-    rows = _some(source, _COARSE_POINTS)
+    some = _some(source, _COARSE_POINTS)
     starts = overlay_plans(target, source, count=settings.starts, height_m=float(initial.t[2]))
     tries = [
-        _descend(target, source, rows, initial=start, rounds=_COARSE_ROUNDS, settings=settings)
+        _descend(target, some, initial=start, rounds=_COARSE_ROUNDS, settings=settings)
         for start in [first.T_target_source, *starts]
     ]
     best = max(tries, key=lambda found: found.match_ratio)
@@ -148,17 +146,16 @@ def _start(score: NDArray[Any], yaw: Array, height_m: float) -> SE3:
 
 def _descend(
     target: Scan,
-    source: Scan,
-    rows: NDArray[np.intp],
+    source: tuple[Array, Array],
     *,
     initial: SE3,
     rounds: int,
     settings: ScanSettings,
 ) -> Registration:
-    """Match and solve until the steps are small, with some rows of the source."""
-    if len(target) < _MIN_MATCHES or len(rows) < _MIN_MATCHES:
+    """Match and solve until the steps are small; ``source`` are points and normals, (N, 3)."""
+    p, n = source
+    if len(target) < _MIN_MATCHES or len(p) < _MIN_MATCHES:
         return _refused(initial, 0)
-    p, n = source.points[rows], source.normals[rows]
     T, stop, done = initial, StopReason.LIMIT, 0
     for done in range(1, rounds + 1):
         reach = settings.gate_m * (_WIDE if done <= 2 else 1.0)
@@ -179,7 +176,7 @@ def _descend(
         ):
             stop = StopReason.SMALL_STEP
             break
-    match_ratio = inliers / len(rows)
+    match_ratio = inliers / len(p)
     if match_ratio < settings.min_inlier_ratio:
         stop = StopReason.TOO_FEW
     variance = max(squares / weight, 1e-4)
@@ -187,9 +184,10 @@ def _descend(
     return Registration(T, stop, done, total / weight, match_ratio, H / variance, degeneracy)
 
 
-def _some(scan: Scan, limit: int) -> NDArray[np.intp]:
-    """Rows of a scan, evenly spaced, at most ``limit``."""
-    return np.linspace(0, len(scan) - 1, min(len(scan), limit)).astype(np.intp)
+def _some(scan: Scan, limit: int) -> tuple[Array, Array]:
+    """Points and normals of a scan, evenly spaced, at most ``limit``."""
+    rows = np.linspace(0, len(scan) - 1, min(len(scan), limit)).astype(np.intp)
+    return scan.points[rows], scan.normals[rows]
 
 
 def _refused(T: SE3, rounds: int) -> Registration:

@@ -13,7 +13,7 @@ from recon4.report.edges import edge_paths
 from recon4.report.facts import ReportFacts
 from recon4.report.intensity import dependencies
 from recon4.report.maps import ABOVE, FRONT, Raster, height_png, ink_png, intensity_png
-from recon4.report.plan import PlanPath, frame_around, plan_svg
+from recon4.report.plan import PlanOverlay, PlanPath, frame_around, plan_svg
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,21 +58,19 @@ def trajectory_figures(
         curves.insert(0, PlanPath("line-odometry", (moved.t,)))
         legend.insert(1, ("line-odometry", "odometry before loop closure"))
     marks = (("mark-start", final.T_a_b.t[0]), ("mark-end", final.T_a_b.t[-1]))
+    overlay = PlanOverlay(tuple(curves), marks)
     shown = [raster for raster in rasters if raster.view in {ABOVE, FRONT}]
     for raster in shown:
         svg = plan_svg(
             ink_png(raster),
             raster.view,
             raster.frame,
-            paths=tuple(curves),
+            overlay=overlay,
             css="ink faint",
-            marks=marks,
         )
         out.append(ChartFigure(Markup(svg), f"Trajectory {raster.view.name}.", tuple(legend)))
     if not shown:
-        svg = plan_svg(
-            None, ABOVE, frame_around(final.T_a_b.t, ABOVE), paths=tuple(curves), marks=marks
-        )
+        svg = plan_svg(None, ABOVE, frame_around(final.T_a_b.t, ABOVE), overlay=overlay)
         out.append(ChartFigure(Markup(svg), "Trajectory from above.", tuple(legend)))
     return out + _framed(charts.walk_charts(final, results.steps, drift))
 
@@ -92,7 +90,7 @@ def edge_figures(results: Results, rasters: list[Raster]) -> list[ChartFigure]:
         ("edge-rejected", "rejected automatically: overlap, error or convergence"),
         ("edge-verification", "rejected automatically: verification or robust solve"),
     )
-    svg = plan_svg(png, ABOVE, frame, paths=paths, css="ink faint")
+    svg = plan_svg(png, ABOVE, frame, overlay=PlanOverlay(paths), css="ink faint")
     caption = "Every candidate pair, from above. Of very many pairs an even sample is drawn."
     out = [ChartFigure(Markup(svg), caption, legend)]
     return out + _framed(charts.edge_charts(graph))

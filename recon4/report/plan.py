@@ -26,14 +26,26 @@ class PlanPath:
     """Points in the frame of the map [m], (N, 3) each."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class PlanOverlay:
+    """Curves and points above a plan."""
+
+    paths: tuple[PlanPath, ...] = ()
+    """Later ones above earlier ones."""
+    marks: tuple[tuple[str, Array], ...] = ()
+    """CSS class and position (3,) of each point."""
+
+
+NO_OVERLAY = PlanOverlay()
+
+
 def plan_svg(
     png: bytes | None,
     view: MapProjection,
     frame: ImageFrame,
     *,
-    paths: tuple[PlanPath, ...] = (),
+    overlay: PlanOverlay = NO_OVERLAY,
     css: str = "",
-    marks: tuple[tuple[str, Array], ...] = (),
 ) -> str:
     """Draw a plan of the map.
 
@@ -41,9 +53,8 @@ def plan_svg(
         png: The map; None = lines only.
         view: Direction of view.
         frame: Part of the plane that the image shows.
-        paths: Curves, later ones above earlier ones.
+        overlay: What is drawn above the map.
         css: CSS class of the image (``ink`` is inverted on dark pages).
-        marks: Points to mark: CSS class and position (3,).
     """
     scale = _LONGEST / (max(frame.width, frame.height) * frame.pixel_m)
     width, height = (scale * n * frame.pixel_m for n in (frame.width, frame.height))
@@ -59,8 +70,8 @@ def plan_svg(
             f'<image class="{css}" width="{width:.1f}" height="{height:.1f}" '
             f'href="data:image/png;base64,{data}"/>'
         )
-    out += [f'<path class="{path.css}" d="{place.path(path.pieces)}"/>' for path in paths]
-    for name, point in marks:
+    out += [f'<path class="{path.css}" d="{place.path(path.pieces)}"/>' for path in overlay.paths]
+    for name, point in overlay.marks:
         x, y = place.of(point[None])[0]
         out.append(f'<circle class="{name}" cx="{x:.1f}" cy="{y:.1f}" r="8"/>')
     out += [_scale_bar(scale, width, height), "</svg>"]

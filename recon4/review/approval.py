@@ -73,8 +73,8 @@ def approve(
     root: Path,
     key_file: Path,
     signer: Mapping[str, str],
-    confirmed: bool,
     *,
+    confirmed: bool,
     seen: tuple[int | None, str | None] = (None, None),
 ) -> Approval:
     """Sign the results of a project and store them as a new version.

@@ -283,7 +283,7 @@ def _patches(
     separation = b.along_m - a.along_m
     step = b.mean_m - a.mean_m
     aside = np.linalg.norm(step - separation[:, None] * normal, axis=1)
-    limit = limit_m(sigma, a.n, b.n, rule)
+    limit = limit_m(sigma, a.n, b.n, rule=rule)
     share = np.minimum(a.n, b.n) / total
     flat = (sigma <= rule.max_sigma_m) & (spread >= rule.min_spread_m)
     flat &= (np.minimum(a.n, b.n) >= rule.min_points) & (share >= rule.min_ratio)
@@ -306,7 +306,7 @@ def _patches(
     )
 
 
-def limit_m(sigma_m: Array, n_a: Array, n_b: Array, rule: DoubleRule) -> Array:
+def limit_m(sigma_m: Array, n_a: Array, n_b: Array, *, rule: DoubleRule) -> Array:
     """Largest separation explained by noise and good poses [m], (P,).
 
     ``z * sqrt(sigma^2 c (1 / n_a + 1 / n_b) + 2 pose_sigma^2)``: the noise of two means, of which

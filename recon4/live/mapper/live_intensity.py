@@ -29,6 +29,7 @@ class LiveIntensity:
         intensity: NDArray[Any],
         sensor: NDArray[Any],
         ring: NDArray[Any],
+        *,
         range_m: Array,
     ) -> NDArray[np.uint8]:
         """Update the table with points and normalize them to mean 128 and deviation 48 per bin.

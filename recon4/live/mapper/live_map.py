@@ -217,7 +217,7 @@ class LiveMap:
         dt_s = part.dt_ns.astype(np.float64) * 1e-9
         p_map = place_points(t_s, T_map_dense.R, T_map_dense.t, dt_s, _in_body(part, self._rig))
         range_m = np.linalg.norm(part.xyz, axis=1).astype(np.float64)
-        values = self._intensity.normalize(part.intensity, part.sensor, part.ring, range_m)
+        values = self._intensity.normalize(part.intensity, part.sensor, part.ring, range_m=range_m)
         every = max(1, len(p_map) // COVERAGE_RAYS)
         self._coverage.add(T_map_dense.t[-1], p_map[::every])
         chunk = self._preview.add(p_map, values)

@@ -72,7 +72,7 @@ class Bag1:
             return _load(self._file, chunk, self.directory.topics)
 
         self._file.restart_budget()
-        stream = ChunkStream(self._file.name, self.directory, load, self.report)
+        stream = ChunkStream(self._file.name, self.directory, load, report=self.report)
         return stream.messages(topics)
 
 
@@ -242,7 +242,7 @@ def _add_message(messages: ChunkMessages, header: Fields, start: int, *, stop: i
         return
     seconds, nanoseconds = struct.unpack("<II", time)
     t_ns = seconds * 1_000_000_000 + nanoseconds
-    messages.add(t_ns, int.from_bytes(conn, "little"), start, stop)
+    messages.add(t_ns, int.from_bytes(conn, "little"), start=start, stop=stop)
 
 
 def _record_at(chunk: bytes, at: int) -> tuple[Fields, int, int] | None:

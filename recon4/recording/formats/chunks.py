@@ -80,7 +80,7 @@ class ChunkMessages:
     rejected: int = 0
     """Number of messages that are too large or have an invalid header."""
 
-    def add(self, t_ns: int, connection: int, start: int, stop: int) -> None:
+    def add(self, t_ns: int, connection: int, *, start: int, stop: int) -> None:
         """Remember a message."""
         self.t_ns.append(t_ns)
         self.connection.append(connection)
@@ -159,7 +159,9 @@ def survey(chunks: Sequence[ChunkRef], load: Load) -> list[ChunkRef]:
 class ChunkStream:
     """Streams the messages of some topics of a bag."""
 
-    def __init__(self, name: str, directory: Directory, load: Load, report: ImportReport) -> None:
+    def __init__(
+        self, name: str, directory: Directory, load: Load, *, report: ImportReport
+    ) -> None:
         self._name, self._directory, self._report = name, directory, report
         self._load = load
         self._first_damage: CorruptFile | None = None

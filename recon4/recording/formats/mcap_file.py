@@ -88,7 +88,7 @@ class Mcap:
             return _load(self._file, chunk, known)
 
         self._file.restart_budget()
-        stream = ChunkStream(self._file.name, self.directory, load, self.report)
+        stream = ChunkStream(self._file.name, self.directory, load, report=self.report)
         return stream.messages(topics)
 
 
@@ -350,4 +350,4 @@ def _add_message(messages: ChunkMessages, start: int, stop: int) -> None:
     if t_ns > _MAX_TIME_NS:
         messages.rejected += 1
         return
-    messages.add(t_ns, number, start + _MESSAGE_HEAD.size, stop)
+    messages.add(t_ns, number, start=start + _MESSAGE_HEAD.size, stop=stop)

@@ -61,11 +61,11 @@ def test_overlapping_chunks_are_merged_by_time():
     for chunk in chunks:
         messages = ChunkMessages(b"x")
         for t_ns in range(chunk.offset, 101 + chunk.offset, 5):
-            messages.add(t_ns, 1, 0, 1)
+            messages.add(t_ns, 1, start=0, stop=1)
         loads[chunk.offset] = messages
     directory = Directory.of_chunks({1: Topic("/a", "b")}, chunks[::-1])
 
-    stream = ChunkStream("x", directory, lambda chunk: loads[chunk.offset], ImportReport())
+    stream = ChunkStream("x", directory, lambda chunk: loads[chunk.offset], report=ImportReport())
     times = [row[2] for row in stream.messages({"/a"})]
 
     assert len(times) == 5 * 21

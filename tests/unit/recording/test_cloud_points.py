@@ -13,7 +13,7 @@ PERIOD_NS = 100_000_000
 
 def decode(table, *, model="generic", t_ns=T0_NS, **options):
     report = ImportReport()
-    decoder = CloudDecoder(0, "lidar", model, report, **options)
+    decoder = CloudDecoder(0, "lidar", model, report=report, **options)
     return decoder.decode(table, t_ns=t_ns, period_ns=PERIOD_NS), report
 
 

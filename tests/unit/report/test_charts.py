@@ -9,7 +9,7 @@ from matplotlib.image import imread
 
 from recon4.report.figures import histogram, lines, thinned
 from recon4.report.maps import ABOVE, SIDE, MapChunk, ink_png, intensity_png, rasterize
-from recon4.report.plan import PlanPath, nice_step, plan_svg
+from recon4.report.plan import PlanOverlay, PlanPath, nice_step, plan_svg
 
 
 def chunk(points: list[list[float]], intensity: float = 10.0) -> MapChunk:
@@ -84,7 +84,7 @@ def test_a_plan_draws_a_point_where_its_coordinates_say() -> None:
     line = np.array([[0.0, 0.0, 0.0], [10.0, 10.0, 0.0]])
 
     svg = ElementTree.fromstring(
-        plan_svg(None, ABOVE, raster.frame, paths=(PlanPath("line-final", (line,)),))
+        plan_svg(None, ABOVE, raster.frame, overlay=PlanOverlay((PlanPath("line-final", (line,)),)))
     )
 
     drawn = next(e for e in svg.iter("path") if e.get("class") == "line-final")

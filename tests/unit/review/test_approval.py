@@ -102,7 +102,7 @@ def damage(root):
 
 
 def test_what_was_approved_is_whole_read_only_and_says_so(root, key):
-    found = approve(root, key, SIGNER, False)
+    found = approve(root, key, SIGNER, confirmed=False)
     make_read_only(found)
 
     assert damage(root) == ()
@@ -148,7 +148,7 @@ def test_what_is_not_as_it_was_made_is_not_signed(root, key, spoil, words):
     spoil(root)
 
     with pytest.raises(NotApprovable, match=words):
-        approve(root, key, SIGNER, True)
+        approve(root, key, SIGNER, confirmed=True)
 
     assert not (root / "versions").exists()
     assert "approve" not in {row.kind for row in read_rows(root)}
@@ -206,12 +206,12 @@ def test_a_verdict_that_cannot_be_read_is_not_signed(root, key):
 
 
 def test_the_same_results_are_signed_once(root, key):
-    approve(root, key, SIGNER, False)
+    approve(root, key, SIGNER, confirmed=False)
     append(root, reject())
     append(root, undo())
 
     with pytest.raises(NotApprovable, match="version 1 by Eva approves these results already"):
-        approve(root, key, SIGNER | {"who": "Jan"}, False)
+        approve(root, key, SIGNER | {"who": "Jan"}, confirmed=False)
 
     assert [path.name for path in (root / "versions").iterdir()] == ["1"]
 
@@ -223,11 +223,11 @@ def test_a_decision_made_while_it_was_signed_is_not_signed_over(root, key, monke
 
     monkeypatch.setattr(approval, "sign", decide_meanwhile)
     with pytest.raises(JournalChanged):
-        approve(root, key, SIGNER, False)
+        approve(root, key, SIGNER, confirmed=False)
     monkeypatch.undo()
     append(root, undo())
 
-    found = approve(root, key, SIGNER, False)
+    found = approve(root, key, SIGNER, confirmed=False)
 
     assert found.version == 1 and damage(root) == ()
     assert sorted(path.name[:11] for path in (root / "versions").iterdir()) == ["1", "unfinished-"]
@@ -239,12 +239,12 @@ def test_an_approval_that_counted_before_a_crash_is_handed_out_later(root, key, 
 
     monkeypatch.setattr(approval, "put_back", die)
     with pytest.raises(KeyboardInterrupt):
-        approve(root, key, SIGNER, False)
+        approve(root, key, SIGNER, confirmed=False)
     monkeypatch.undo()
     before = latest_approval(root, read_rows(root))
 
     with pytest.raises(NotApprovable, match="already"):
-        approve(root, key, SIGNER, False)
+        approve(root, key, SIGNER, confirmed=False)
 
     record = latest_approval(root, read_rows(root))
     assert (before["current"], record["current"], record["version"]) == (False, True, 1)
@@ -252,11 +252,11 @@ def test_an_approval_that_counted_before_a_crash_is_handed_out_later(root, key, 
 
 
 def test_an_earlier_map_keeps_its_approval(root, key):
-    first = approve(root, key, SIGNER, False)
+    first = approve(root, key, SIGNER, confirmed=False)
     publish(root, key="cd")
     killed = root / "versions" / ".tmp-0123456789ab-2"
     killed.mkdir()
-    second = approve(root, key, SIGNER | {"who": "Jan"}, False)
+    second = approve(root, key, SIGNER | {"who": "Jan"}, confirmed=False)
 
     assert (first.version, second.version) == (1, 2)
     assert approval_of_map(root, "ab").stamp.who == "Eva"
@@ -295,7 +295,7 @@ def other_signature(record):
     ],
 )
 def test_a_changed_approval_is_found(root, key, change, words):
-    path = approve(root, key, SIGNER, False).folder / "approval.json"
+    path = approve(root, key, SIGNER, confirmed=False).folder / "approval.json"
     record = json.loads(path.read_text())
     change(record)
     path.chmod(0o644)
@@ -305,7 +305,7 @@ def test_a_changed_approval_is_found(root, key, change, words):
 
 
 def test_added_and_removed_files_of_a_version_are_found(root, key):
-    folder = approve(root, key, SIGNER, False).folder
+    folder = approve(root, key, SIGNER, confirmed=False).folder
     (folder / "more.txt").write_text("x")
     (folder / "edges.json").unlink()
 
@@ -318,7 +318,7 @@ def test_added_and_removed_files_of_a_version_are_found(root, key):
 def test_a_rewritten_journal_does_not_match_the_signature(root, key):
     append(root, reject())
     append(root, undo())
-    approve(root, key, SIGNER, False)
+    approve(root, key, SIGNER, confirmed=False)
     rows = read_rows(root)
     (root / NAME).unlink()
     (root / "seals.json").unlink()

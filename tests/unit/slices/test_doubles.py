@@ -107,7 +107,7 @@ def test_an_empty_map_has_no_double_walls(tmp_path):
 
 def test_the_limit_grows_with_noise_and_shrinks_with_points():
     rule = DoubleRule()
-    few, many = (limit_m(np.array([0.01]), *[np.array([n])] * 2, rule)[0] for n in (20, 2000))
+    few, many = (limit_m(np.array([0.01]), *[np.array([n])] * 2, rule=rule)[0] for n in (20, 2000))
 
     assert many == pytest.approx(rule.z * np.sqrt(2) * rule.pose_sigma_m, rel=0.02)
     assert few == pytest.approx(3 * np.sqrt(1e-4 * 10 * 2 / 20 + 2 * 0.007**2), rel=1e-9)
