@@ -47,9 +47,9 @@ def place(
         OutOfRange: If the trajectory does not cover the frame.
         ConfigError: If the frame has points of a sensor the rig does not have.
     """
-    out = np.empty((len(frame), 3))
-    _place(frame, trajectory, rig, out=out, origin=np.empty((0, 3)), slack_ns=slack_ns)
-    return out
+    placed = Placed(np.empty((len(frame), 3)), np.empty((0, 3)))
+    _place(frame, trajectory, rig, placed=placed, slack_ns=slack_ns)
+    return placed.xyz_m
 
 
 def place_with_origins(
@@ -57,7 +57,7 @@ def place_with_origins(
 ) -> Placed:
     """Undistort a multiframe as `place` does; also the position of the sensor for each point."""
     placed = Placed(np.empty((len(frame), 3)), np.empty((len(frame), 3)))
-    _place(frame, trajectory, rig, out=placed.xyz_m, origin=placed.origin_m, slack_ns=slack_ns)
+    _place(frame, trajectory, rig, placed=placed, slack_ns=slack_ns)
     return placed
 
 
@@ -66,10 +66,10 @@ def _place(
     trajectory: Trajectory,
     rig: Rig,
     *,
-    out: Array,
-    origin: Array,
+    placed: Placed,
     slack_ns: int | None,
 ) -> None:
+    """Fill ``placed``; its positions of the sensor may be left out."""
     if len(frame) == 0:
         return
     if frame.sensor.max() >= len(rig.sensors):
@@ -88,8 +88,8 @@ def _place(
         knot_ns - frame.t_ns,
         np.ascontiguousarray(T_map_sensor.R),
         np.ascontiguousarray(T_map_sensor.t),
-        out,
-        origin,
+        placed.xyz_m,
+        placed.origin_m,
     )
 
 
