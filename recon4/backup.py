@@ -27,7 +27,7 @@ from typing import Any
 
 from recon4.errors import ConfigError, StoreError
 from recon4.progress import Progress, track
-from recon4.store.atomic import atomic_file, raise_if_full, write_json
+from recon4.store.atomic import atomic_file, fsync, raise_if_full, write_json
 from recon4.store.hashing import hash_file, hash_json
 from recon4.store.json_files import read_object
 from recon4.store.project import is_project
@@ -255,9 +255,9 @@ def _keep(temporary: Path, objects: Path, mode: int) -> tuple[dict[str, Any], in
     if new:
         place.parent.mkdir(exist_ok=True)
         temporary.chmod(0o400)
-        _fsync(temporary)
+        fsync(temporary)
         os.replace(temporary, place)
-        _fsync(place.parent)
+        fsync(place.parent)
     return {"bytes": size, "sha256": sha256, "mode": mode}, size if new else 0
 
 
@@ -312,14 +312,6 @@ def _settle_seals(
         taken[list_name], _ = _keep(path, objects, 0o644)
         path.unlink(missing_ok=True)
     return damaged
-
-
-def _fsync(path: Path) -> None:
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
 
 
 def _identity(path: Path) -> tuple[int, int, int]:

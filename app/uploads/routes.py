@@ -157,41 +157,37 @@ def remove_upload(upload_id: str, server: Server, request: Request) -> None:
     audit(request, "give up upload", upload.folder)
 
 
-CREATE: dict[str, Any] = {
-    "parameters": [
+def _headers(*rows: tuple[str, bool, str]) -> list[dict[str, Any]]:
+    """Parameters of OpenAPI: name, whether it is required, description."""
+    return [
         {
             "name": name,
             "in": "header",
-            "required": needed,
+            "required": required,
             "schema": {"type": "string"},
             "description": text,
         }
-        for name, needed, text in (
-            ("Tus-Resumable", True, "1.0.0"),
-            ("Upload-Length", True, "Bytes of the file"),
-            (
-                "Upload-Metadata",
-                False,
-                "Pairs of name and base64, comma-separated: filename, relativePath, upload (an id)",
-            ),
-        )
+        for name, required, text in rows
     ]
+
+
+CREATE: dict[str, Any] = {
+    "parameters": _headers(
+        ("Tus-Resumable", True, "1.0.0"),
+        ("Upload-Length", True, "Bytes of the file"),
+        (
+            "Upload-Metadata",
+            False,
+            "Pairs of name and base64, comma-separated: filename, relativePath, upload (an id)",
+        ),
+    )
 }
 CHUNK: dict[str, Any] = {
-    "parameters": [
-        {
-            "name": name,
-            "in": "header",
-            "required": needed,
-            "schema": {"type": "string"},
-            "description": text,
-        }
-        for name, needed, text in (
-            ("Tus-Resumable", True, "1.0.0"),
-            ("Upload-Offset", True, "Position of the bytes: the offset that HEAD returns"),
-            ("Upload-Checksum", False, "sha256 or sha1, a space, the digest in base64"),
-        )
-    ],
+    "parameters": _headers(
+        ("Tus-Resumable", True, "1.0.0"),
+        ("Upload-Offset", True, "Position of the bytes: the offset that HEAD returns"),
+        ("Upload-Checksum", False, "sha256 or sha1, a space, the digest in base64"),
+    ),
     "requestBody": {
         "content": {tus.CHUNK_TYPE: {"schema": {"type": "string", "format": "binary"}}},
         "required": True,

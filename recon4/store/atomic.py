@@ -38,9 +38,9 @@ def atomic_file(path: Path) -> Iterator[Path]:
     temporary = _temporary_beside(path)
     try:
         yield temporary
-        _fsync(temporary)
+        fsync(temporary)
         os.replace(temporary, path)
-        _fsync(path.parent)
+        fsync(path.parent)
     except OSError as error:
         raise_if_full(error, path)
         raise StoreError(f"cannot write {path}: {error.strerror or error}") from error
@@ -72,7 +72,7 @@ def atomic_folder(path: Path) -> Iterator[Path]:
         yield temporary
         _fsync_tree(temporary)
         os.rename(temporary, path)
-        _fsync(path.parent)
+        fsync(path.parent)
     except Exception as error:
         raise_if_full(error, path)
         raise
@@ -97,7 +97,7 @@ def make_folders(path: Path, mode: int = 0o777) -> None:
         return
     make_folders(path.parent)
     path.mkdir(mode, exist_ok=True)
-    _fsync(path.parent)
+    fsync(path.parent)
 
 
 def write_text(path: Path, text: str) -> None:
@@ -163,11 +163,12 @@ def _temporary_beside(path: Path) -> Path:
 def _fsync_tree(folder: Path) -> None:
     for root, _, names in os.walk(folder):
         for name in names:
-            _fsync(Path(root, name))
-        _fsync(Path(root))
+            fsync(Path(root, name))
+        fsync(Path(root))
 
 
-def _fsync(path: Path) -> None:
+def fsync(path: Path) -> None:
+    """Have the system write a file or folder to the disk."""
     descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)

@@ -15,19 +15,16 @@ from recon4.recording.formats.chunks import (
     Directory,
     Row,
     Topic,
+    load_chunk,
     require_apart,
     survey,
 )
 from recon4.recording.formats.limits import (
-    MAX_CHUNK_BYTES,
     MAX_MESSAGE_BYTES,
     MAX_RECORD_HEADER_BYTES,
     MAX_TOPICS,
-    RATIO_FLOOR_BYTES,
     RecordFile,
     clean_name,
-    decompress,
-    decompress_partly,
 )
 from recon4.recording.report import ImportReport
 
@@ -208,31 +205,22 @@ def _found_chunks(file: RecordFile) -> list[ChunkRef]:
 
 def _load(file: RecordFile, chunk: ChunkRef, topics: dict[int, Topic]) -> ChunkMessages:
     """Read a chunk; connections found in it are added to ``topics``."""
-    where = f"{file.name}: chunk at byte {chunk.offset}"
-    file.charge(chunk.size, where)
-    file.seek(chunk.offset)
-    data = file.take(chunk.length, "chunk", most=MAX_CHUNK_BYTES)
-    if chunk.partial:
-        most = min(MAX_CHUNK_BYTES, max(RATIO_FLOOR_BYTES, chunk.size))
-        raw = decompress_partly(chunk.compression, data, most=most, where=where)
-    else:
-        raw = decompress(chunk.compression, data, expected=chunk.size, where=where)
-    messages = ChunkMessages(raw)
-    at = 0
-    while (record := _record_at(raw, at)) is not None:
-        header, start, stop = record
-        at = stop
-        op = _op(header)
-        if op == _MESSAGE:
-            _add_message(messages, header, start, stop=stop)
-        elif op == _CONNECTION and len(topics) < MAX_TOPICS:
-            number = int.from_bytes(header.get(b"conn", b""), "little")
-            about = _fields(raw[start:stop])
-            if number not in topics and about is not None:
-                topics[number] = _topic(header, about)
-    if at < len(raw) and not chunk.partial:
-        raise CorruptFile(f"{where}: expected records up to its end at {len(raw)}, got {at} bytes")
-    return messages
+
+    def read(messages: ChunkMessages, where: str) -> int:
+        at = 0
+        while (record := _record_at(messages.data, at)) is not None:
+            header, start, at = record
+            op = _op(header)
+            if op == _MESSAGE:
+                _add_message(messages, header, start, stop=at)
+            elif op == _CONNECTION and len(topics) < MAX_TOPICS:
+                number = int.from_bytes(header.get(b"conn", b""), "little")
+                about = _fields(messages.data[start:at])
+                if number not in topics and about is not None:
+                    topics[number] = _topic(header, about)
+        return at
+
+    return load_chunk(file, chunk, read)
 
 
 def _add_message(messages: ChunkMessages, header: Fields, start: int, *, stop: int) -> None:

@@ -11,10 +11,18 @@ from array import array
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from zlib import crc32
 
 import numpy as np
 
 from recon4.errors import CorruptFile
+from recon4.recording.formats.limits import (
+    MAX_CHUNK_BYTES,
+    RATIO_FLOOR_BYTES,
+    RecordFile,
+    decompress,
+    decompress_partly,
+)
 from recon4.recording.report import ImportReport
 
 MAX_OPEN_BYTES = 256 << 20
@@ -154,6 +162,40 @@ def survey(chunks: Sequence[ChunkRef], load: Load) -> list[ChunkRef]:
                 )
             )
     return found
+
+
+def load_chunk(
+    file: RecordFile, chunk: ChunkRef, read: Callable[[ChunkMessages, str], int]
+) -> ChunkMessages:
+    """Decompress a chunk and read its records.
+
+    Args:
+        file: The bag.
+        chunk: Of its directory.
+        read: Adds the messages, given also the place for reports of damage; returns the end of the
+            last complete record.
+
+    Raises:
+        CorruptFile: If bytes are missing or differ from the checksum.
+    """
+    where = f"{file.name}: chunk at byte {chunk.offset}"
+    file.charge(chunk.size, where)
+    file.seek(chunk.offset)
+    data = file.take(chunk.length, "chunk", most=MAX_CHUNK_BYTES)
+    if chunk.partial:
+        most = min(MAX_CHUNK_BYTES, max(RATIO_FLOOR_BYTES, chunk.size))
+        raw = decompress_partly(chunk.compression, data, most=most, where=where)
+    else:
+        raw = decompress(chunk.compression, data, expected=chunk.size, where=where)
+    if chunk.crc and not chunk.partial and crc32(raw) != chunk.crc:
+        raise CorruptFile(
+            f"{where}: expected checksum {chunk.crc:08x}, got {crc32(raw):08x}: its bytes changed"
+        )
+    messages = ChunkMessages(raw)
+    at = read(messages, where)
+    if at < len(raw) and not chunk.partial:
+        raise CorruptFile(f"{where}: expected records up to its end at {len(raw)}, got {at} bytes")
+    return messages
 
 
 class ChunkStream:

@@ -7,7 +7,6 @@ import struct
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any, TypeVar
-from zlib import crc32
 
 from recon4.errors import CorruptFile
 from recon4.recording.formats.chunks import (
@@ -17,18 +16,15 @@ from recon4.recording.formats.chunks import (
     Directory,
     Row,
     Topic,
+    load_chunk,
     require_apart,
     survey,
 )
 from recon4.recording.formats.limits import (
-    MAX_CHUNK_BYTES,
     MAX_MESSAGE_BYTES,
     MAX_TOPICS,
-    RATIO_FLOOR_BYTES,
     RecordFile,
     clean_name,
-    decompress,
-    decompress_partly,
 )
 from recon4.recording.report import ImportReport
 
@@ -306,27 +302,10 @@ _RUN = "none"
 
 
 def _load(file: RecordFile, chunk: ChunkRef, topics: _Topics) -> ChunkMessages:
-    where = f"{file.name}: chunk at byte {chunk.offset}"
-    file.charge(chunk.size, where)
-    file.seek(chunk.offset)
-    data = file.take(chunk.length, "chunk", most=MAX_CHUNK_BYTES)
-    if chunk.partial:
-        most = min(MAX_CHUNK_BYTES, max(RATIO_FLOOR_BYTES, chunk.size))
-        raw = decompress_partly(chunk.compression, data, most=most, where=where)
-    else:
-        raw = decompress(chunk.compression, data, expected=chunk.size, where=where)
-    if chunk.crc and not chunk.partial and crc32(raw) != chunk.crc:
-        raise CorruptFile(
-            f"{where}: expected checksum {chunk.crc:08x}, got {crc32(raw):08x}: its bytes changed"
-        )
-    messages = ChunkMessages(raw)
-    at = _read_records(messages, topics, where)
-    if at < len(raw) and not chunk.partial:
-        raise CorruptFile(f"{where}: expected records up to its end at {len(raw)}, got {at} bytes")
-    return messages
+    return load_chunk(file, chunk, partial(_read_records, topics))
 
 
-def _read_records(messages: ChunkMessages, topics: _Topics, where: str) -> int:
+def _read_records(topics: _Topics, messages: ChunkMessages, where: str) -> int:
     """Add the messages of a chunk; returns the end of the last complete record."""
     raw, at = messages.data, 0
     while at + _RECORD.size <= len(raw):
