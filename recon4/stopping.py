@@ -55,12 +55,7 @@ class StopSignals:
         sys.excepthook = self._at_the_end
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        at: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         if not self._before:
             return
         signal.setitimer(signal.ITIMER_REAL, 0.0)

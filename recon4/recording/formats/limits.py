@@ -6,7 +6,6 @@ import bz2
 import io
 import os
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Self
 
 from recon4.errors import CorruptFile, EmptyRecording
@@ -48,9 +47,7 @@ class RecordFile:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._file.close()
 
     @property
