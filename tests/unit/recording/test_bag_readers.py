@@ -21,7 +21,7 @@ from recon4.recording.info import describe
 from recon4.recording.report import MAX_TEXTS, ImportReport
 from tests.builders import bag_path, storage_file, write_room_bag
 from tests.security.fuzz.seeds_recordings import SEEDS
-from tests.security.recording_bombs import mcap, mcap_message
+from tests.security.mcap_bombs import mcap, mcap_message
 
 
 def ours(path, report=None):
