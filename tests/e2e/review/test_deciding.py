@@ -1,0 +1,230 @@
+"""Loop closures decided by keyboard, mouse and touch; a new map made, approved, exported."""
+
+import json
+
+import pytest
+from playwright.sync_api import expect
+
+from recon4.review.decisions import Decision, DecisionKind
+from recon4.review.journal import append, broken, read_rows
+from tests.e2e.conftest import looks
+from tests.e2e.review.review_page import (
+    PRESSES,
+    colored,
+    decidable,
+    fits,
+    only_one_decision,
+    settled,
+)
+
+pytestmark = pytest.mark.e2e
+
+
+@looks("desktop light")
+def test_forty_loops_are_reviewed_without_the_mouse(opened, root):
+    page = opened
+
+    page.get_by_label("Go on to the next pair after a decision").check()
+    page.keyboard.press("j")
+    for k in range(40):
+        decidable(page)
+        page.wait_for_timeout(300)  # a key that comes again at once counts as held down
+        page.keyboard.press("r" if k < 2 else "a")
+
+    expect(page.locator("review-queue")).to_contain_text("40 decided by people")
+    rows = read_rows(root)
+    assert [row.kind for row in rows] == ["reject"] * 2 + ["accept"] * 38
+    assert len({(row.frame_i, row.frame_j) for row in rows}) == 40
+    assert broken(rows) == []
+    expect(page.locator("#effect")).not_to_contain_text("solving")
+    expect(page.locator("#effect")).to_contain_text("Chi-square")
+    for _ in range(3):
+        page.keyboard.press("Control+z")
+    expect(page.locator("review-queue")).to_contain_text("37 decided by people")
+    page.keyboard.press("Control+y")
+    expect(page.locator("review-queue")).to_contain_text("38 decided by people")
+
+
+@looks("desktop light")
+@pytest.mark.parametrize("onwards", [False, True], ids=["stay", "go on"])
+@pytest.mark.parametrize("key", ["a", "r"])
+def test_a_key_held_down_decides_about_one_pair(opened, root, key, onwards):
+    page = opened
+    if onwards:
+        page.get_by_label("Go on to the next pair after a decision").check()
+    page.keyboard.press("j")
+    decidable(page)
+
+    for _ in range(40):  # the second and later ones are repeats, as of a key held down
+        page.keyboard.down(key)
+    page.keyboard.up(key)
+
+    only_one_decision(page, root, key)
+
+
+@looks("desktop light")
+@pytest.mark.parametrize("key", ["a", "r"])
+def test_a_key_that_a_remote_desktop_repeats_as_presses_decides_about_one_pair(opened, root, key):
+    page = opened
+    page.get_by_label("Go on to the next pair after a decision").check()
+    page.keyboard.press("j")
+    decidable(page)
+
+    page.evaluate(PRESSES, key)
+
+    only_one_decision(page, root, key)
+
+
+@looks("desktop light")
+def test_a_double_click_decides_about_one_pair(opened, root):
+    page = opened
+    page.get_by_label("Go on to the next pair after a decision").check()
+    page.keyboard.press("j")
+    decidable(page)
+    page.keyboard.press("k")
+    decidable(page)
+
+    page.locator("#decision").get_by_role("button", name="Accept").dblclick(delay=0)
+
+    only_one_decision(page, root, "a")
+
+
+@looks("desktop light")
+def test_a_focused_button_held_down_decides_about_one_pair(opened, root):
+    page = opened
+    page.get_by_label("Go on to the next pair after a decision").check()
+    page.keyboard.press("j")
+    decidable(page)
+    page.locator("#decision").get_by_role("button", name="Accept").focus()
+
+    for _ in range(40):
+        page.keyboard.down("Enter")
+    page.keyboard.up("Enter")
+
+    only_one_decision(page, root, "a")
+
+
+@looks("desktop light")
+def test_nothing_is_decided_before_the_points_are_drawn(opened, root):
+    page = opened
+    held = []
+    page.route("**/review/points?**", lambda route: held.append(route), times=1)
+
+    with page.expect_request("**/review/points?**"):
+        page.keyboard.press("j")
+    expect(page.locator(".view-empty")).to_have_text("Reading points…")
+    for key in ("a", "r", "Enter"):
+        page.keyboard.press(key)
+    expect(page.locator("#decision").get_by_role("button", name="Accept")).to_be_disabled()
+    (route,) = held
+    route.continue_()
+    decidable(page)
+
+    assert read_rows(root) == []
+    page.keyboard.press("a")
+    expect(page.locator("review-queue")).to_contain_text("1 decided by people")
+
+
+@looks("desktop light")
+def test_after_a_decision_keys_do_nothing_until_another_pair_is_drawn(opened, root):
+    page = opened
+    page.keyboard.press("j")
+    decidable(page)
+
+    for key in ("a", "a", "r", "a"):
+        page.keyboard.press(key)
+    expect(page.locator("#said")).to_contain_text("J shows the next pair")
+    page.keyboard.press("Control+z")
+    decidable(page)
+    page.keyboard.press("r")
+    page.keyboard.press("j")
+    decidable(page)
+    page.keyboard.press("a")
+
+    expect(page.locator("review-queue")).to_contain_text("2 decided by people")
+    rows = read_rows(root)
+    assert [row.kind for row in rows] == ["accept", "undo", "reject", "accept"]
+    assert rows[2].frame_i != rows[3].frame_i or rows[2].frame_j != rows[3].frame_j
+
+
+@looks("desktop light")
+def test_going_on_after_a_decision_is_off_at_first_and_remembered(opened):
+    page = opened
+    onwards = page.get_by_label("Go on to the next pair after a decision")
+    expect(onwards).not_to_be_checked()
+
+    onwards.check()
+    page.reload()
+
+    expect(onwards).to_be_checked()
+
+
+def test_the_page_shows_the_effect_of_a_decision(opened, look, screenshot):
+    page = opened
+    page.keyboard.press("j")
+    settled(page)
+    expect(page.locator("#pair")).to_contain_text(
+        "Rejected automatically: outlier in the robust solution"
+    )
+    red, green, _ = colored(page)
+    assert min(red, green) > 500
+    fits(page)
+    screenshot(page, "review")
+
+    page.keyboard.press("a")
+
+    expect(page.locator("#effect")).to_contain_text("Accepted, but does not fit")
+    expect(page.locator("#effect")).to_contain_text("Largest moves of the last decision")
+    expect(page.locator("#signing")).to_contain_text("decisions are not in the map")
+    expect(page.get_by_role("button", name="Approve verification…")).to_be_disabled()
+    fits(page)
+    screenshot(page, "review-effect")
+
+
+@looks("desktop light")
+def test_the_help_sheet_lists_the_keys(opened, screenshot):
+    opened.keyboard.press("?")
+
+    expect(opened.get_by_role("dialog")).to_contain_text("Undo")
+    screenshot(opened, "review-keys")
+    opened.keyboard.press("Escape")
+    expect(opened.get_by_role("dialog")).to_have_count(0)
+
+
+@looks("phone dark")
+def test_decisions_of_others_appear_without_a_click(opened, root):
+    page = opened
+
+    append(root, Decision(kind=DecisionKind.REJECT, who="Eva", why="glass", pair=(17, 77)))
+
+    expect(page.locator("#news")).to_have_text("Meanwhile Eva rejected multiframes 17 and 77")
+    expect(page.locator("review-queue")).to_contain_text("1 decided by people")
+    page.get_by_role("button", name="Undo").click()
+    expect(page.locator("review-queue")).to_contain_text("0 decided by people")
+    expect(page.locator("#news")).to_be_empty()
+
+
+@looks("desktop dark")
+def test_decide_make_a_new_map_approve_export(opened, root, screenshot):
+    page = opened
+    page.keyboard.press("j")
+    settled(page)
+    page.keyboard.press("r")
+    expect(page.locator("#signing")).to_contain_text("decisions are not in the map")
+
+    page.get_by_role("button", name="Make a new map").click()
+    signing = page.locator("#signing")
+    expect(signing).to_contain_text("was made with these decisions", timeout=120_000)
+    page.get_by_role("button", name="Approve verification…").click()
+    page.get_by_label("Remark").fill("compared with the plan")
+    page.get_by_role("button", name="Sign").click()
+
+    expect(page.locator("#signing")).to_contain_text("Approved: version 1 by local")
+    page.get_by_text("Journal", exact=True).click()
+    expect(page.locator("#journal")).to_contain_text("approved the map")
+    screenshot(page, "review-approved")
+    approval = json.loads((root / "versions" / "1" / "approval.json").read_text())
+    with page.expect_popup() as report:
+        page.evaluate(f"open('/api/projects/{root.name}/report')")
+    expect(report.value.get_by_text("Version 1, approved by local")).to_be_visible()
+    expect(report.value.get_by_text(approval["hash"])).to_be_visible()

@@ -1,0 +1,34 @@
+"""A project to review, and a server for it."""
+
+import shutil
+
+import pytest
+
+from tests.review_project import make
+from tests.service.review.reviewing import Reviewing
+from tests.service.running import server_thread
+
+
+@pytest.fixture(scope="session")
+def made(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("made") / "office"
+    make(folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def running(tmp_path_factory):
+    with server_thread(tmp_path_factory.mktemp("served"), worker="tests.review_project") as one:
+        yield one
+
+
+@pytest.fixture
+def root(made, running):
+    folder = running.root / f"office{len(list(running.root.iterdir()))}"
+    shutil.copytree(made, folder)
+    return folder
+
+
+@pytest.fixture
+def server(running, root):
+    return Reviewing(running, root)
