@@ -77,7 +77,7 @@ async def read_facts(
     approval = await run_in_threadpool(slices.approval_text, project_id, source)
     terms = slices.terms(project_id, caller.name, source)
     return await caller.wait(
-        slices.run_interactive(terms, work.facts, artifacts, references, sources, approval)
+        slices.run_interactive(terms, work.facts, artifacts, references, sources, approval=approval)
     )
 
 
@@ -129,7 +129,9 @@ async def pick(project_id: str, ask: PickRequest, server: Server, caller: Called
     terms = server.slices.terms(project_id, caller.name, ask.source)
     cut = ask.cut.cut()
     return await caller.wait(
-        server.slices.run_interactive(terms, work.pick_point, artifacts, cut, ask.uv, ask.radius_m)
+        server.slices.run_interactive(
+            terms, work.pick_point, artifacts, cut, ask.uv, radius_m=ask.radius_m
+        )
     )
 
 
@@ -314,7 +316,7 @@ async def control_file(
     context = ExportContext(project.name, Path(artifacts["map"]).name, evidence)
     terms = slices.terms(project_id, caller.name)
     text = await caller.wait(
-        slices.run_interactive(terms, work.control_file, artifacts, state, ending, context)
+        slices.run_interactive(terms, work.control_file, artifacts, state, ending, context=context)
     )
     if ending == "csv":
         head = {"Content-Disposition": f'attachment; filename="{project_id}-control.csv"'}

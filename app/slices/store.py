@@ -276,9 +276,11 @@ class Slices:
         references = self._folder(project_id) / "references"
         return Terms(person=person, access=FileAccess(read=(of_map / "artifacts", references)))
 
-    async def run_interactive(self, terms: Terms, function: Callable[..., T], *args: object) -> T:
+    async def run_interactive(
+        self, terms: Terms, function: Callable[..., T], *args: object, **kwargs: object
+    ) -> T:
         """Run interactive work in the compute pool."""
-        return await self._pool.run_interactive(Lane.SLICE, terms, function, *args)
+        return await self._pool.run_interactive(Lane.SLICE, terms, function, *args, **kwargs)
 
     async def run_latest(
         self, asking: Asking, terms: Terms, function: Callable[..., T], *args: object

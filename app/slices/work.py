@@ -103,6 +103,7 @@ def facts(
     artifacts: Artifacts,
     references: list[dict[str, Any]],
     sources: list[dict[str, str]],
+    *,
     approval: str,
 ) -> SliceFacts:
     """Facts about the map, its references, other maps and its approval."""
@@ -182,7 +183,7 @@ def overview(map_folder: str, image: str, about: str) -> None:
 
 
 def pick_point(
-    artifacts: Artifacts, cut: Cut, uv: tuple[float, float], radius_m: float
+    artifacts: Artifacts, cut: Cut, uv: tuple[float, float], *, radius_m: float
 ) -> PickView:
     """The point of the map nearest to a position on a slice."""
     found = pick(tiles_of(artifacts["map"]), cut, uv, radius_m=radius_m)
@@ -257,7 +258,7 @@ def control_report(artifacts: Artifacts, state: ControlState) -> ControlReport:
 
 
 def control_file(
-    artifacts: Artifacts, state: ControlState, ending: str, context: ExportContext
+    artifacts: Artifacts, state: ControlState, ending: str, *, context: ExportContext
 ) -> str:
     """The residuals as CSV or as an HTML sheet.
 
