@@ -44,7 +44,10 @@ looks = pytest.mark.looks
 """Only on these screens, where a test sees the same on the others; ``@looks("desktop light")``."""
 
 
-LONG = ("test_review", "test_slices", "test_whole_way", "test_pages", "test_live_page")
+LONG = (
+    *("review/test_deciding", "test_slices", "test_whole_way", "test_pages", "test_live_page"),
+    "review/test_aligning",
+)
 """These files take longest; they come first, longest first, so that two workers end together."""
 
 
@@ -58,8 +61,9 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def _rank(path: Path) -> int:
-    long = path.parent == Path(__file__).parent and path.stem in LONG
-    return LONG.index(path.stem) if long else len(LONG)
+    folder = Path(__file__).parent
+    name = path.relative_to(folder).with_suffix("").as_posix() if folder in path.parents else ""
+    return LONG.index(name) if name in LONG else len(LONG)
 
 
 def _asked_for(item: pytest.Item) -> bool:
