@@ -26,7 +26,7 @@ from recon4.evaluation.slices import RelativeError, relative_error, spread_slice
 from recon4.evaluation.text import evaluation_text
 from recon4.evaluation.trajectories import find_trajectory
 from recon4.geometry.se3 import SE3, Array
-from recon4.mapping.frames import Frames
+from recon4.model.frames import Frames
 from recon4.model.trajectory import Trajectory
 
 FRAME_NS = 100_000_000
