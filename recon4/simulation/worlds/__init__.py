@@ -11,7 +11,7 @@ from recon4.simulation.world import World
 
 FIXED = ("office", "staircase", "street", "field")
 """Worlds of one geometry."""
-PROCEDURAL = ("corridor", "tunnel", "garage", "plaza", "storeys")
+PROCEDURAL = ("corridor", "tunnel", "garage", "plaza", "storeys", "tower", "forest")
 """Worlds of which there are variants: ``corridor`` is variant 0, ``corridor:7`` another one."""
 WORLDS = FIXED + PROCEDURAL
 _MAX_VARIANT = 1_000_000

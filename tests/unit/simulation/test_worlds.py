@@ -10,7 +10,8 @@ from recon4.simulation.worlds import PROCEDURAL, WORLDS, build_world
 
 ROUND_S = {
     "office": 250, "staircase": 200, "street": 220, "field": 450, "corridor": 170, "tunnel": 110,
-    "garage": 110, "plaza": 150, "storeys": 150,
+    "garage": 110, "plaza": 150, "storeys": 150, "tower": 200,
+    "forest": 140,
 }  # fmt: skip
 """About a full round [s]."""
 VARIANTS = [f"{name}:{variant}" for name in PROCEDURAL for variant in (1, 2)]
