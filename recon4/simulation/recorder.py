@@ -29,7 +29,7 @@ _SECOND_NS = 1_000_000_000
 Samples = TypeVar("Samples", ImuSamples, GnssSamples)
 
 
-class Recorder:
+class WalkRecorder:
     """Writes one recording; the truth is written when it is closed without an error."""
 
     def __init__(
@@ -51,7 +51,7 @@ class Recorder:
         if bag:
             self._bag = self._open.enter_context(open_bag(folder / "rosbag2", setup.rig))
 
-    def __enter__(self) -> Recorder:
+    def __enter__(self) -> WalkRecorder:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:

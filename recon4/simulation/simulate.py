@@ -12,7 +12,7 @@ from recon4.errors import StoreError
 from recon4.progress import Progress
 from recon4.simulation.degradation import Degradation
 from recon4.simulation.lidar import Firings
-from recon4.simulation.recorder import Recorder
+from recon4.simulation.recorder import WalkRecorder
 from recon4.simulation.setup import SimulationSetup
 from recon4.store.atomic import atomic_folder
 
@@ -72,7 +72,9 @@ def record(
     with ExitStack() as opened:
         recorders = [
             opened.enter_context(
-                Recorder(opened.enter_context(atomic_folder(folder)), setup, degradation, bag=bag)
+                WalkRecorder(
+                    opened.enter_context(atomic_folder(folder)), setup, degradation, bag=bag
+                )
             )
             for folder, degradation in degraded.items()
         ]

@@ -48,6 +48,7 @@ from recon4.store.stage import Input, StageRun, StageRunner
 WALKS = (
     "corridor/1", "corridor:1/2", "corridor:2/3", "corridor:3/4", "tunnel/1", "tunnel:1/2",
     "garage/1", "garage:1/2", "plaza/1", "plaza:3/2", "storeys/1", "storeys:1/2",
+    "tower/1", "forest/1", "forest:1/2",
     "office/1", "office/2", "staircase/1", "street/1", "field/1", "field/2",
 )  # fmt: skip
 """World with its variant, and the seed of walk and noise."""
@@ -62,6 +63,8 @@ GROSS = 3.0
 """No pose of a right trajectory is farther off than this multiple of it."""
 PLACED_M = 0.10
 """A georeferenced trajectory has at most this error on the earth [m]."""
+GENERIC = "No loop closure was accepted"
+"""A reason that says nothing of the recording but that nobody came back to a place."""
 _REASON_LENGTH = 160
 
 
@@ -94,13 +97,15 @@ def judge(errors: Errors | None, verdict: MapVerdict) -> str:
     """The class of a run.
 
     ``right``: the trajectory is right. ``announced``: it is wrong or there is none, and the
-    verdict is *check* or *do not use* with at least one reason. ``SILENT``: it is wrong and the
-    verdict is *good*.
+    verdict is *check* or *do not use* with at least one reason. ``vague``: the same, but the only
+    reason is one that every walk without a loop gets. ``SILENT``: it is wrong and the verdict is
+    *good*.
     """
     if errors is not None and errors.right:
         return "right"
-    announced = verdict.usability is not Usability.GOOD and len(verdict.reasons) > 0
-    return "announced" if announced else "SILENT"
+    if verdict.usability is Usability.GOOD or not verdict.reasons:
+        return "SILENT"
+    return "vague" if all(GENERIC in reason for reason in verdict.reasons) else "announced"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -138,7 +143,7 @@ def prove(recording: Path, work: Path, *, walk: str, degradation: str) -> Run:
     """
     begun = time.process_time()
     truth = read_tum(recording / "truth.tum")
-    seconds = round((truth.t_ns[-1] - truth.t_ns[0]) / 1e9, 3)
+    seconds = round(int(truth.t_ns[-1] - truth.t_ns[0]) / 1e9, 3)
     errors, lost, multiframes, warnings = None, 0, 0, 0
     try:
         runs, verdict = _process(recording, work)
@@ -242,7 +247,7 @@ def values_of(degradation: str) -> dict[str, float]:
 
 def table(lines: Sequence[Mapping[str, Any]]) -> str:
     """All runs as a table in Markdown, silent ones first, then a count of each class."""
-    order = {"SILENT": 0, "announced": 1, "right": 2}
+    order = {"SILENT": 0, "vague": 1, "announced": 2, "right": 3}
     rows = [
         "| walk | degradation | length m | ATE cm | largest cm | closing cm | stated 2σ cm "
         "| on earth cm | lost | warnings | verdict | class | first reason |",

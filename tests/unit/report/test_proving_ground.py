@@ -1,0 +1,98 @@
+"""The instrument of docs/trust.md, and the fastest of its walks."""
+
+from dataclasses import replace
+
+import pytest
+
+from recon4.model.usability import Usability
+from recon4.report.verdict import MapVerdict
+from recon4.simulation.degradation import KINDS
+from recon4.simulation.worlds import build_world
+from tests.benchmarks.proving_ground import (
+    DEGRADATIONS,
+    GENERIC,
+    ONLY_OUTDOORS,
+    WALKS,
+    Errors,
+    judge,
+    read_lines,
+    run_walk,
+    table,
+    values_of,
+)
+
+GOOD = MapVerdict(Usability.GOOD, ())
+CHECK = MapVerdict(Usability.CHECK, (f"{GENERIC}: the drift is not corrected.", "Tilted."))
+FINE = Errors(length_m=50.0, ate_m=0.09, largest_m=0.2, closing_m=0.1, stated_m=0.2, placed_m=None)
+
+
+@pytest.mark.parametrize(
+    ("change", "right"),
+    [
+        ({}, True),
+        ({"ate_m": 0.101}, False),  # 5 cm + 0.1 % of 50 m = 10 cm
+        ({"ate_m": 0.101, "length_m": 60.0}, True),
+        ({"largest_m": 0.31}, False),
+        ({"placed_m": 0.09}, True),
+        ({"placed_m": 0.11}, False),
+        ({"ate_m": float("nan")}, False),
+    ],
+)
+def test_a_trajectory_is_right_within_its_limits(change, right):
+    assert replace(FINE, **change).right is right
+
+
+def test_a_wrong_trajectory_is_silent_unless_the_verdict_says_why():
+    wrong = replace(FINE, ate_m=1.0)
+    vague = MapVerdict(Usability.CHECK, CHECK.reasons[:1])
+
+    assert judge(FINE, CHECK) == "right"
+    assert judge(wrong, CHECK) == "announced"
+    assert judge(wrong, vague) == "vague"
+    assert judge(wrong, GOOD) == "SILENT"
+    assert judge(wrong, MapVerdict(Usability.CHECK, ())) == "SILENT"
+    assert judge(None, MapVerdict(Usability.DO_NOT_USE, ("refused: no packets",))) == "announced"
+
+
+def test_the_plan_has_240_runs_of_walks_and_degradations_that_exist():
+    outdoors = {walk: build_world(walk.split("/")[0]).outdoors for walk in WALKS}
+    runs = [(w, d) for w in WALKS for d in DEGRADATIONS if outdoors[w] or d not in ONLY_OUTDOORS]
+
+    assert len(runs) == len(set(runs)) >= 240
+    assert all(set(values_of(d)) <= set(KINDS) for d in DEGRADATIONS)
+
+
+def test_a_line_that_was_cut_off_is_run_again(tmp_path):
+    (tmp_path / "runs.jsonl").write_text('{"walk": "tunnel/1"}\n{"walk": "tun')
+
+    assert read_lines(tmp_path / "runs.jsonl") == [{"walk": "tunnel/1"}]
+
+
+@pytest.fixture(scope="module")
+def tunnel(tmp_path_factory):
+    out = tmp_path_factory.mktemp("proving")
+    return {
+        run.degradation: run
+        for run in run_walk("tunnel/1", ("none", "no-imu", "lever-arm"), out, seconds=5.0)
+    }
+
+
+def test_what_cannot_be_observed_is_not_silent(tunnel):
+    for run in tunnel.values():
+        assert run.outcome in {"right", "announced"}, run
+        assert run.verdict != "good"
+        assert any("hardly observes" in reason for reason in run.reasons)
+
+
+def test_a_run_is_measured_and_written_down(tunnel):
+    assert set(tunnel) == {"none", "no-imu"}  # no GNSS in a tunnel
+    # Measured 6 cm; without an IMU nothing carries the body along the axis, 4 m.
+    assert tunnel["none"].errors.ate_m < 0.3 < tunnel["no-imu"].errors.ate_m
+    for run in tunnel.values():
+        assert run.multiframes == 50
+        assert run.errors.length_m == pytest.approx(4.8, abs=0.3)
+        assert 0.0 < run.errors.ate_m <= run.errors.largest_m
+        assert run.errors.stated_m > 0.0
+    text = table([run.to_json() for run in tunnel.values()])
+    assert text.count("| tunnel/1, 5 s |") == 2
+    assert "2 runs: 0 SILENT" in text
