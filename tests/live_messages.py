@@ -37,7 +37,7 @@ def pose(**changed):
         "relocated": 0,
         "error_m": 0.02,
         "match_ratio": 0.9,
-        "degeneracy": 0.1,
+        "weak_sd_m": 0.005,
         "prediction_offset_m": 0.01,
         "turn_rad_s": 0.5,
         "points": [100, 100],

@@ -8,6 +8,7 @@ from typing import Literal
 from recon4.live.newest import Newest
 from recon4.live.protocol import Fix, Notes, Pose, Sender, Status
 from recon4.model.rig import Rig, Sensor
+from recon4.model.usability import WEAK_SD_M
 
 Level = Literal["error", "warning", "info"]
 
@@ -19,8 +20,6 @@ _GRACE_S = 3.0
 """No sensor is reported as silent this soon after the start."""
 _MAX_LOST = 0.01
 _DEGRADED_MATCH_RATIO, _DEGRADED_ERROR_M, _DEGRADED_OFFSET_M = 0.4, 0.08, 0.25
-_DEGRADED_DEGENERACY = 0.002
-"""1/3 = isotropic, 0 = one direction is unobservable (a long corridor)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,11 +219,11 @@ def _late(pose: Pose) -> list[CaptureFinding]:
 
 def _degraded(pose: Pose) -> bool:
     """Whether tracking is degraded: poor match, residual, prediction or observability."""
-    match_ratio, degeneracy = pose.match_ratio, pose.degeneracy
+    match_ratio, weak_sd_m = pose.match_ratio, pose.weak_sd_m
     registered = pose.frame_id > 0
     return bool(
         (registered and match_ratio is not None and match_ratio < _DEGRADED_MATCH_RATIO)
-        or (registered and degeneracy is not None and degeneracy < _DEGRADED_DEGENERACY)
+        or (registered and weak_sd_m is not None and weak_sd_m > WEAK_SD_M)
         or (pose.error_m or 0.0) > _DEGRADED_ERROR_M
         or (pose.prediction_offset_m or 0.0) > _DEGRADED_OFFSET_M
     )

@@ -150,7 +150,9 @@ class Pose(msgspec.Struct, tag_field="kind", tag="pose", kw_only=True):
     """Number of relocalizations."""
     error_m: float | None
     match_ratio: float | None
-    degeneracy: float | None
+    weak_sd_m: float | None
+    """Standard deviation along the weakest direction by this multiframe's LiDARs alone [m]; None
+    while the body stands."""
     prediction_offset_m: float | None
     turn_rad_s: float | None
     points: list[int]

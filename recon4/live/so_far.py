@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from recon4.live.findings import CaptureFinding, Level
 from recon4.live.protocol import Pose
-from recon4.model.usability import Usability
-from recon4.report.findings import UNOBSERVED_S
-from recon4.report.observability import MIN_SECONDS, WEAK_DEGENERACY
+from recon4.model.usability import UNOBSERVED_SECONDS, WEAK_SD_M, WEAK_SECONDS, Usability
 
 _LONGEST_STEP_S = 1.0
 """A longer time between two poses is an interruption, not an observation [s]."""
@@ -33,9 +31,9 @@ class WalkSoFar:
         self._t_ns = pose.t_ns
         self.multiframes += 1
         self.lost += pose.lost
-        degeneracy = None if pose.lost else pose.degeneracy
+        weak = not pose.lost and pose.weak_sd_m is not None and pose.weak_sd_m > WEAK_SD_M
         follows = 0.0 < step_s <= _LONGEST_STEP_S
-        if not follows or degeneracy is None or degeneracy >= WEAK_DEGENERACY:
+        if not follows or not weak:
             self._stretch_s = 0.0
             return
         before_s = self._counted_s
@@ -45,7 +43,7 @@ class WalkSoFar:
     @property
     def _counted_s(self) -> float:
         """Of the present stretch: short ones are bridged by the motion before them."""
-        return self._stretch_s if self._stretch_s >= MIN_SECONDS else 0.0
+        return self._stretch_s if self._stretch_s >= WEAK_SECONDS else 0.0
 
     def findings(self, *, records: bool) -> list[CaptureFinding]:
         """One line with the verdict so far; none if nothing is known to be wrong.
@@ -61,7 +59,7 @@ class WalkSoFar:
             reasons.append(text)
         if not reasons:
             return []
-        bad = bool(self.lost) or self.unobserved_s >= UNOBSERVED_S
+        bad = bool(self.lost) or self.unobserved_s >= UNOBSERVED_SECONDS
         usability = Usability.DO_NOT_USE if bad else Usability.CHECK
         level: Level = "error" if bad and not records else "warning"
         return [CaptureFinding(level, f"Map so far: {usability}; {', '.join(reasons)}")]

@@ -10,6 +10,7 @@ import numpy as np
 
 from recon4.evaluation.table import number, percentage
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Verdict
+from recon4.model.usability import UNOBSERVED_SECONDS
 from recon4.report.artifacts import Results
 from recon4.report.contradictions import rejected_runs
 from recon4.report.drift import DriftClosed
@@ -21,8 +22,6 @@ _GOAL_M = 0.05
 """Required relative error, V §3 [m]."""
 _MAX_WARNINGS = 12
 _MIN_CONVERGED, _HALF = 0.9, 0.5
-UNOBSERVED_S = 10.0
-"""A longer time without observation of a direction makes the map unusable [s]."""
 
 
 class Level(IntEnum):
@@ -95,7 +94,7 @@ def _observability(results: Results) -> list[Finding]:
         return []
     seconds = sum(stretch.seconds for stretch in stretches)
     positions = results.georeference.get("georeference", {}).get("georeferenced", False)
-    level = Level.BAD if seconds >= UNOBSERVED_S and not positions else Level.WARNING
+    level = Level.BAD if seconds >= UNOBSERVED_SECONDS and not positions else Level.WARNING
     return [Finding(level, _describe_stretch(stretch)) for stretch in stretches[:_MAX_WARNINGS]]
 
 

@@ -14,14 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
+from recon4.model.usability import WEAK_SD_M, WEAK_SECONDS
 
-WEAK_DEGENERACY = 0.005
-"""Below this a direction counts as unobservable, as for pairs (`GraphSettings.min_degeneracy`)."""
-WEAK_SD_M = 0.05
-"""With a larger standard deviation of its LiDAR measurement a multiframe observes a direction
-weakly [m]. Files of earlier versions do not state it: there the degeneracy decides."""
-MIN_SECONDS = 2.0
-"""Shorter stretches are bridged by the motion before them [s]."""
+_WEAK_DEGENERACY = 0.005
+"""Files of earlier versions do not state the standard deviation: there a direction counts as
+unobservable below this, as for pairs (`GraphSettings.min_degeneracy`)."""
 _BRIDGED_S = 1.0
 """Two weak stretches with less than this between them are one [s]."""
 
@@ -52,7 +49,7 @@ class WeakStretch:
 
 
 def weak_stretches(steps: Mapping[str, NDArray[np.generic]]) -> list[WeakStretch]:
-    """Find the stretches of `MIN_SECONDS` or more, in order of time.
+    """Find the stretches of `WEAK_SECONDS` or more, in order of time.
 
     Args:
         steps: Columns of ``steps.npz``. Files of earlier versions have no ``weak_direction``.
@@ -63,7 +60,7 @@ def weak_stretches(steps: Mapping[str, NDArray[np.generic]]) -> list[WeakStretch
     degeneracy = np.asarray(steps["degeneracy"], np.float64)
     directions = np.asarray(steps.get("weak_direction", np.full((len(t_s), 3), np.nan)), np.float64)
     sd_m = np.asarray(steps.get("weak_sd_m", np.full(len(t_s), np.nan)), np.float64)
-    weak = np.where(np.isnan(sd_m), degeneracy < WEAK_DEGENERACY, sd_m > WEAK_SD_M)
+    weak = np.where(np.isnan(sd_m), degeneracy < _WEAK_DEGENERACY, sd_m > WEAK_SD_M)
     weak[0] = False  # there is no map yet to observe anything against
     weak &= ~np.asarray(steps["lost"], bool)  # lost tracking is reported by itself
     weak &= ~np.asarray(steps.get("stationary", np.zeros(len(t_s))), bool)  # it cannot drift
@@ -81,7 +78,7 @@ def weak_stretches(steps: Mapping[str, NDArray[np.generic]]) -> list[WeakStretch
         )
         for run in runs
     ]
-    return [stretch for stretch in found if stretch.seconds >= MIN_SECONDS]
+    return [stretch for stretch in found if stretch.seconds >= WEAK_SECONDS]
 
 
 def _mean_direction(directions: Array) -> Array:

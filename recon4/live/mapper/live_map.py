@@ -186,7 +186,7 @@ class LiveMap:
             relocated=self._relocated,
             error_m=finite_or_none(step.error_m, 4),
             match_ratio=finite_or_none(step.match_ratio, 4),
-            degeneracy=finite_or_none(step.degeneracy, 4),
+            weak_sd_m=None if step.stationary else finite_or_none(step.weak_sd_m, 4),
             prediction_offset_m=finite_or_none(offset_m, 4),
             turn_rad_s=finite_or_none(_turn_rate(step), 4),
             points=np.bincount(frame.sensor, minlength=len(self._rig.sensors)).tolist(),

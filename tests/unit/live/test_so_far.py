@@ -17,7 +17,7 @@ def walked(*parts):
     return so_far
 
 
-GOOD, LOST, WEAK = {"degeneracy": 0.1}, {"lost": True}, {"degeneracy": 0.001}
+GOOD, LOST, WEAK = {"weak_sd_m": 0.01}, {"lost": True}, {"weak_sd_m": 0.5}
 
 
 @pytest.mark.parametrize(
