@@ -40,8 +40,9 @@ MAY_IMPORT = {
     "recon4/recording": STAGE | {"recon4.recording"},
     "recon4/live": STAGE
     | {"recon4.live", "recon4.registration", "recon4.sandbox", "recon4.runtime_folder"}
-    | {f"recon4.recording.{name}" for name in ("ingest", "open", "report", "formats.pcap")}
-    | {"recon4.recording.samples.clean", "recon4.recording.velodyne.models"},
+    | {f"recon4.recording.{name}" for name in ("ingest", "open", "report", "sources")}
+    | {"recon4.recording.formats.pcap", "recon4.recording.samples.clean"}
+    | {"recon4.recording.velodyne.models"},
     "recon4/live/project_files.py": STAGE | {"recon4.live", "recon4.stages"},
     "recon4/registration": MODEL | {"recon4.kernels", "recon4.registration"},
     "recon4/registration/stage.py": MODEL | {"recon4.registration", "recon4.store.arrays"},
