@@ -220,13 +220,23 @@ def _put_back(root: Path, keys: Mapping[str, str]) -> tuple[Approval | None, tup
     return approval, ()
 
 
-def export_map(project: Path, path: Path, *, crs: str, progress: Progress) -> int:
+def export_map(
+    project: Path,
+    path: Path,
+    *,
+    crs: str,
+    raw: bool = False,
+    strays: bool = False,
+    progress: Progress,
+) -> int:
     """Write the map of a finished run as LAZ or PLY; the file notes an approval.
 
     Args:
         project: The project folder.
         path: File to write; ``.laz`` or ``.ply``.
         crs: Code of a CRS; empty = that of the map, or its local frame.
+        raw: Points where they were measured, not on their surfaces.
+        strays: Also the stray returns, marked as noise; only as LAZ.
         progress: Counts points.
 
     Returns:
@@ -244,6 +254,8 @@ def export_map(project: Path, path: Path, *, crs: str, progress: Progress) -> in
     ending = path.suffix.lower()
     if ending not in (".laz", ".ply"):
         raise ConfigError(f"a map is written as .laz or .ply, got {path.name}")
+    if strays and ending != ".laz":
+        raise ConfigError(f"stray returns are written to .laz only, got {path.name}")
     check_name(path, ending)
     approval = approval_of(project, {name: folder.name for name, folder in artifacts.items()})
     checked = None
@@ -253,11 +265,14 @@ def export_map(project: Path, path: Path, *, crs: str, progress: Progress) -> in
     place = read_crs(artifacts["level"], crs)
     to_crs = place.to_crs if place else None
     tiles = TileSet.open(artifacts["map"], checked)
+    tiles = tiles.as_measured() if raw else tiles
     # The stamp goes onto a file beside it, so that a file without one is never there.
     with atomic_file(path) as temporary:
         if ending == ".laz":
             wkt = place.wkt if place else None
-            count = export_laz(tiles, temporary, crs=wkt, to_crs=to_crs, progress=progress)
+            count = export_laz(
+                tiles, temporary, crs=wkt, to_crs=to_crs, strays=strays, progress=progress
+            )
         else:
             count = export_ply(tiles, temporary, to_crs=to_crs, progress=progress)
         if approval:

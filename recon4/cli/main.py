@@ -157,7 +157,14 @@ def export(
             help="File to write; the suffix selects the format: .laz, .ply; .txt = KITTI poses."
         ),
     ],
+    *,
     crs: Annotated[str, typer.Option(help="As EPSG:5514+8357; default: the map's.")] = "",
+    raw: Annotated[
+        bool, typer.Option("--raw", help="Points where they were measured, not on surfaces.")
+    ] = False,
+    strays: Annotated[
+        bool, typer.Option("--strays", help="Also stray returns, as class 7 (low noise); .laz.")
+    ] = False,
 ) -> None:
     """Write the map of a project, in any CRS when it is georeferenced, or its poses."""
     confine_command(write=[file.parent])
@@ -170,7 +177,7 @@ def export(
         write(f"{export_poses(project, file)} poses in {file}")
         return
     with watcher() as progress:
-        points = export_map(project, file, crs=crs, progress=progress)
+        points = export_map(project, file, crs=crs, raw=raw, strays=strays, progress=progress)
     write(f"{points} points in {file}")
 
 

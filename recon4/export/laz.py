@@ -9,7 +9,8 @@ from __future__ import annotations
 import io
 import uuid
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -33,7 +34,17 @@ SCALE_M = 0.001
 NORMALIZED_STEP = 1.0 / 16.0
 """Normalized intensities are rounded to this: finer than the raw step, and it compresses."""
 FIELDS = ["intensity", "ring", "sensor", "echo", "frame_id", "t_ns"]
-"""What is read beside the coordinates, and ``intensity_normalized`` when there is any."""
+"""What is read beside the coordinates."""
+OPTIONAL = {
+    "intensity_normalized": ("f4", "V Eq. 2.17"),
+    "returns": ("u2", "returns the surface is fitted to"),
+    "sigma_m": ("f4", "deviation across the surface"),
+    "planarity": ("f4", "0..1"),
+}
+"""Fields a map may have: type and description of the extra dimension."""
+SURFACE = ("returns", "sigma_m", "planarity")
+LOW_NOISE = 7
+"""Class of stray returns."""
 
 
 @dataclass(slots=True)
@@ -66,11 +77,12 @@ def export_laz(
     *,
     crs: str | None = None,
     to_crs: ToCrs | None = None,
+    strays: bool = False,
     progress: Progress | None = None,
 ) -> int:
     """Write a map as LAZ, streaming, and check the file before it gets its name.
 
-    Intensity is the raw one; ``intensity_normalized``, ``ring`` and ``frame_id`` are extra bytes,
+    Intensity is the raw one; ``ring``, ``frame_id`` and those of `OPTIONAL` are extra bytes,
     the point source is the sensor's row + 1, the return number is 2 for a further echo. Times
     are adjusted standard GPS time, or seconds of the recording's clock if that is not UTC.
 
@@ -79,6 +91,7 @@ def export_laz(
         path: File to write, ``.laz``.
         crs: WKT or code of the CRS; None = that of the map, if it has one.
         to_crs: Map coordinates to those of ``crs``; None = the shift by the map's origin in it.
+        strays: Also write the stray returns, as class 7 (low noise).
         progress: Who watches.
 
     Returns:
@@ -93,8 +106,11 @@ def export_laz(
     tiles = TileSet.open(map_) if isinstance(map_, Path) else map_
     transform = into_crs(tiles, to_crs)
     header = _header(tiles, center(tiles, transform), crs or (tiles.crs and tiles.crs.wkt) or None)
-    fields = [name for name in [*FIELDS, "intensity_normalized"] if name in tiles.fields]
+    fields = [name for name in [*FIELDS, *OPTIONAL] if name in tiles.fields]
     stream = blocks(tiles, fields, to_crs=transform, progress=progress or Silent())
+    if strays:
+        noise = blocks(tiles.only_strays(), fields, to_crs=transform, progress=progress or Silent())
+        stream = chain(stream, (replace(block, noise=True) for block in noise))
     with atomic_file(path) as temporary, _Watched(io.FileIO(temporary, "wb")) as file:
         try:
             written = _write(file, header, stream)
@@ -122,8 +138,7 @@ def _header(tiles: TileSet, offset: NDArray[np.float64], crs: str | None) -> Any
         else laspy.header.GpsTimeType.WEEK_TIME
     )
     extra = [("ring", "u1", "beam, 0 = lowest"), ("frame_id", "u4", "multiframe")]
-    if "intensity_normalized" in tiles.fields:
-        extra.append(("intensity_normalized", "f4", "V Eq. 2.17"))
+    extra += [(name, *OPTIONAL[name]) for name in OPTIONAL if name in tiles.fields]
     header.add_extra_dims([laspy.ExtraBytesParams(*row) for row in extra])
     header.global_encoding.wkt = True
     if crs is not None:
@@ -179,6 +194,11 @@ def _points(block: Block, header: Any, *, absolute: bool) -> Any:
     points.gps_time[:] = point_time_s(columns["t_ns"], absolute=absolute)
     points["ring"][:] = columns["ring"]
     points["frame_id"][:] = columns["frame_id"]
+    if block.noise:
+        points.classification[:] = LOW_NOISE
+    for name in SURFACE:
+        if name in columns:
+            points[name][:] = columns[name]
     if "intensity_normalized" in columns:
         fine = columns["intensity_normalized"]
         points["intensity_normalized"][:] = np.rint(fine / NORMALIZED_STEP) * NORMALIZED_STEP

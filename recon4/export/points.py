@@ -29,6 +29,8 @@ class Block:
     """Coordinates of the export, float64 (N, 3)."""
     columns: Columns
     """Further fields requested."""
+    noise: bool = False
+    """These are stray returns."""
 
 
 def into_crs(tiles: TileSet, to_crs: ToCrs | None) -> ToCrs:

@@ -14,6 +14,10 @@ from numpy.typing import NDArray
 
 PER_METER = 250.0
 """Vectors to the sensor are stored as int16 in steps of 4 mm, so 131 m at most."""
+HALO = np.uint8(0x80)
+"""Bit beside the echo: the record belongs to a neighboring tile, here for the surfaces only."""
+MAX_RETURNS = 255
+"""Largest count of returns of a voxel."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -148,7 +152,9 @@ def fill_tiles(
                     i2[row, 13] = intensity[n]
                     for b in range(3):
                         u1[row, 28 + b] = bytes_in[b][n]
-                    u1[row, 31] = not (i == ti and j == tj and k == tk)
+                    if not (i == ti and j == tj and k == tk):
+                        u1[row, 30] |= HALO
+                    u1[row, 31] = 1
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -184,7 +190,12 @@ def voxel_keys(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def nearest_in_voxels(
-    order: NDArray[np.int64], shift: int, i2: NDArray[np.int16], rows: NDArray[np.int64]
+    order: NDArray[np.int64],
+    shift: int,
+    i2: NDArray[np.int16],
+    u1: NDArray[np.uint8],
+    rows: NDArray[np.int64],
+    returns: NDArray[np.uint8],
 ) -> int:
     """Row of the record with the shortest range in each voxel; of equal ones the first.
 
@@ -192,7 +203,10 @@ def nearest_in_voxels(
         order: Sorted result of `voxel_keys`, (N,).
         shift: As given to it.
         i2: The records as int16, (N, 16).
+        u1: The records as uint8, (N, 32).
         rows: Receives the rows, voxel by voxel, int64 (N,).
+        returns: Receives the returns of the voxel, at most `MAX_RETURNS`, uint8 (N,). The limited
+            sum is the same however the records are grouped.
 
     Returns:
         Number of voxels.
@@ -210,7 +224,10 @@ def nearest_in_voxels(
             count += 1
             best = squared
             rows[count] = row
-        elif squared < best:
+            returns[count] = u1[row, 31]
+            continue
+        returns[count] = min(np.int64(returns[count]) + u1[row, 31], MAX_RETURNS)
+        if squared < best:
             best = squared
             rows[count] = row
     return count + 1
@@ -323,6 +340,7 @@ def unpack(
             xyz[m, d] = f4[n, d]
             to_sensor[m, d] = i2[n, 10 + d] * np.float32(1.0 / PER_METER)
             small[d][m] = u1[n, 28 + d]
+        small[2][m] &= ~HALO
         intensity[m] = i2[n, 13]
         frame[m] = i4[n, 3]
         t_ns[m] = frame_ns[i4[n, 3]] + i4[n, 4]

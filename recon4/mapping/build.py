@@ -16,7 +16,7 @@ from recon4.mapping.buckets import BURST, TileBuckets
 from recon4.mapping.grid import Grid
 from recon4.mapping.place import place_with_origins
 from recon4.mapping.records import Records, Tile, split_into_tiles
-from recon4.mapping.tile import FIELDS, MadeTile, Recipe, make_tile
+from recon4.mapping.tile import FIELDS, SURFACE_FIELDS, MadeTile, Recipe, make_tile
 from recon4.mapping.tiles import MapCrs, TileSet, TileWriter
 from recon4.model.events import MapBuilt
 from recon4.model.frames import Frames
@@ -66,7 +66,9 @@ def build_map(
     grid = Grid.of(settings)
     t_ns = np.array([frames[k].t_ns for k in range(len(frames))], dtype=np.int64)
     recipe = Recipe(grid, settings, intensity, t_ns)
-    fields = [name for name in FIELDS if intensity or name != "intensity_normalized"]
+    left_out = set() if intensity else {"intensity_normalized"}
+    left_out |= set(SURFACE_FIELDS) if settings.surface == "raw" else set()
+    fields = [name for name in FIELDS if name not in left_out]
     with (
         TemporaryDirectory(dir=out, prefix="buckets-") as folder,
         ThreadPoolExecutor(WORKERS) as pool,
@@ -129,7 +131,7 @@ def _finish_tiles(
     tiles = buckets.tiles()
     made_tiles = zip(tiles, _in_order(pool, make, tiles), strict=True)
     for tile, made in track(made_tiles, progress, what="map", unit="tiles", total=len(tiles)):
-        writer.append(tile, made.columns)
+        writer.append(tile, made.columns, strays=made.strays)
         removed += made.removed
     return removed
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from recon4.kernels.sorting import radix_sort
 from recon4.kernels.voxels import (
+    HALO,
     PER_METER,
     choose,
     count_tiles,
@@ -29,8 +30,8 @@ RECORD = np.dtype(
         ("intensity", "<u2"),
         ("ring", "|u1"),
         ("sensor", "|u1"),
-        ("echo", "|u1"),
-        ("halo", "|u1"),  # 1 = belongs to a neighboring tile, here for the normals only
+        ("echo", "|u1"),  # with the bit HALO
+        ("returns", "|u1"),  # in the voxel, up to MAX_RETURNS
     ]
 )
 Records = NDArray[np.void]
@@ -114,8 +115,16 @@ def in_voxel_order(records: Records, grid: Grid) -> Records:
     if not grid.thin:
         return np.take(records, order & ((1 << shift) - 1))
     rows = np.empty(n, np.int64)
-    count = nearest_in_voxels(order, shift, views.i2, rows)
-    return np.take(records, rows[:count])
+    returns = np.empty(n, np.uint8)
+    count = nearest_in_voxels(order, shift, views.i2, views.u1, rows, returns)
+    kept = np.take(records, rows[:count])
+    kept["returns"] = returns[:count]
+    return kept
+
+
+def is_own(records: Records) -> NDArray[np.bool_]:
+    """Which records belong to the tile and not to its halo, (N,)."""
+    return np.asarray(records["echo"] & HALO == 0)
 
 
 def to_sensor_m(records: Records) -> NDArray[np.float32]:

@@ -13,7 +13,8 @@ from recon4.intensity.table import IntensityTable
 from recon4.kernels.voxels import face_sensor, seen_from_far, unpack
 from recon4.mapping.grid import Grid
 from recon4.mapping.normals import local_normals
-from recon4.mapping.records import Records, Views, to_sensor_m
+from recon4.mapping.records import Records, Views, is_own, to_sensor_m
+from recon4.mapping.surfaces import FittedSurfaces, fit_surfaces
 from recon4.model.trajectory import Times
 from recon4.settings import MapSettings
 
@@ -29,8 +30,14 @@ FIELDS: dict[str, tuple[str, int]] = {
     "normal": ("<f2", 3),
     "range_m": ("<f4", 1),
     "incidence_rad": ("<f4", 1),
+    "raw_offset_m": ("<f2", 3),
+    "returns": ("<u2", 1),
+    "sigma_m": ("<f2", 1),
+    "planarity": ("<f2", 1),
 }
 """Name -> (dtype, width). ``intensity_normalized`` exists only with an intensity table."""
+SURFACE_FIELDS = ("raw_offset_m", "returns", "sigma_m", "planarity")
+"""Exist only in maps of fitted surfaces."""
 
 STRATA = 64
 """Number of uniform samples of itself in which a tile is stored, one after the other."""
@@ -57,6 +64,8 @@ class MadeTile:
 
     columns: Columns
     removed: Counter[str]
+    strays: int = 0
+    """How many of the last rows are stray returns."""
 
 
 def make_tile(records: Records, recipe: Recipe) -> MadeTile:
@@ -71,15 +80,34 @@ def make_tile(records: Records, recipe: Recipe) -> MadeTile:
     if settings.far_ratio > 0.0:
         records, removed["far"] = _without_far(records, settings.far_ratio)
     normals = local_normals(np.ascontiguousarray(records["xyz"]), recipe.grid.cell_m)
-    own = records["halo"] == 0
+    own = is_own(records)
     lonely = own & (normals.support < settings.min_neighborhood)
-    removed["lonely"] = int(lonely.sum())
-    rows = progressive(np.flatnonzero(own & ~lonely))
-    return MadeTile(_columns(records, rows, normals.normal, recipe=recipe), removed)
+    if settings.surface == "raw":
+        removed["lonely"] = int(lonely.sum())
+        rows = progressive(np.flatnonzero(own & ~lonely))
+        return MadeTile(_columns(records, rows, normals.normal, recipe=recipe), removed)
+    surfaces = fit_surfaces(records, normals.normal, recipe.grid, noise_m=settings.range_noise_m)
+    stray = own & (lonely | surfaces.stray)
+    strays = progressive(np.flatnonzero(stray))
+    rows = np.concatenate([progressive(np.flatnonzero(own & ~stray)), strays])
+    columns = _columns(records, rows, surfaces.normal, recipe=recipe)
+    _add_surfaces(columns, surfaces, rows)
+    return MadeTile(columns, removed, len(strays))
+
+
+def _add_surfaces(columns: Columns, surfaces: FittedSurfaces, rows: NDArray[np.intp]) -> None:
+    """Move the points onto their surfaces; from there ``raw_offset_m`` leads back."""
+    raw = columns["xyz"].copy()
+    columns["xyz"] += np.take(surfaces.shift_m, rows, axis=0)
+    columns["raw_offset_m"] = (raw - columns["xyz"]).astype(np.float16)
+    sigma_m, returns, planarity = (np.take(fact, rows) for fact in surfaces.facts)
+    columns["sigma_m"] = sigma_m.astype(np.float16)
+    columns["planarity"] = planarity.astype(np.float16)
+    columns["returns"] = np.minimum(np.maximum(returns, 1.0), 65535.0).astype(np.uint16)
 
 
 def _without_far(records: Records, ratio: float) -> tuple[Records, int]:
-    own = records["halo"] == 0
+    own = is_own(records)
     keep = own.copy()
     range_m = np.linalg.norm(to_sensor_m(records), axis=1)
     seen_from_far(np.ascontiguousarray(records["xyz"]), range_m, FAR_CELL_M, ratio, keep)
@@ -115,7 +143,7 @@ def _columns(
     columns: Columns = {
         name: np.empty((n, width) if width > 1 else n, dtype)
         for name, (dtype, width) in FIELDS.items()
-        if name not in {"normal", "intensity_normalized"}
+        if name not in {"normal", "intensity_normalized", *SURFACE_FIELDS}
     }
     to_sensor = np.empty((n, 3), np.float32)
     views = Views.of(records)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO, Self, TypeVar
@@ -26,6 +26,10 @@ from recon4.store.atomic import raise_if_full, write_json
 from recon4.store.checked import Altered, CheckedArtifact
 
 FORMAT = 1
+RAW_OFFSET = "raw_offset_m"
+"""From the surface to where the point was measured; only in maps of fitted surfaces."""
+MARGIN_M = 0.2
+"""No point was measured farther than this from its surface [m]."""
 Number = TypeVar("Number", int, float)
 _HEADER_BYTES = 128
 _MAX_FACTS_BYTES = 256 << 20
@@ -55,18 +59,22 @@ class Tile:
     """Corner in the map [m]; ``xyz`` is relative to it."""
     start: int
     stop: int
+    strays: int
+    """Stray returns in the rows after ``stop``; all other figures are without them."""
     low_m: tuple[float, float, float]
     """Smallest coordinates of its points in the map [m]."""
     high_m: tuple[float, float, float]
     """Largest coordinates of its points in the map [m]."""
     checked: CheckedArtifact | None = None
     """Hashes that bytes must match before they are used; None = not checked."""
+    raw: bool = False
+    """``xyz`` is read where the points were measured, not on their surfaces."""
 
     def __len__(self) -> int:
         return self.stop - self.start
 
     def read(self, fields: Sequence[str], *, limit: int | None = None) -> Columns:
-        """Read some fields, memory-mapped and read-only.
+        """Read some fields, memory-mapped and read-only (raw coordinates are computed).
 
         Args:
             fields: Names of `FIELDS`.
@@ -80,9 +88,14 @@ class Tile:
         if unknown:
             raise StoreError(f"the map has no field {unknown}; it has {list(self.fields)}")
         count = len(self) if limit is None else min(limit, len(self))
-        for name in fields:
+        moved = self.raw and "xyz" in fields and RAW_OFFSET in self.fields
+        needed = {*fields, RAW_OFFSET} if moved else set(fields)
+        for name in sorted(needed):
             self._check(name, count)
-        return {name: _map_rows(self.folder, name, self.start, count=count) for name in fields}
+        columns = {name: _map_rows(self.folder, name, self.start, count=count) for name in needed}
+        if moved:
+            columns["xyz"] = columns["xyz"] + columns[RAW_OFFSET].astype(np.float32)
+        return {name: columns[name] for name in fields}
 
     def _check(self, name: str, count: int) -> None:
         if self.checked is None or count == 0:
@@ -96,6 +109,15 @@ class Tile:
     def xyz_m(self, *, limit: int | None = None) -> Array:
         """Points in the map [m], float64 (N, 3)."""
         return self.read(["xyz"], limit=limit)["xyz"].astype(np.float64) + self.origin_m
+
+    def as_measured(self) -> Tile:
+        """The same points where they were measured."""
+        low_m, high_m = np.array(self.low_m) - MARGIN_M, np.array(self.high_m) + MARGIN_M
+        return replace(self, raw=True, low_m=_triple(low_m, float), high_m=_triple(high_m, float))
+
+    def stray_part(self) -> Tile:
+        """The stray returns as a tile of their own."""
+        return replace(self, start=self.stop, stop=self.stop + self.strays, strays=0)
 
     def spatial_order(self) -> NDArray[np.intp]:
         """Rows of the tile in spatial order, (N,)."""
@@ -138,7 +160,7 @@ class TileSet:
             points = int(facts["points"])
         except (ValueError, KeyError, TypeError, IndexError, OverflowError) as error:
             raise StoreError(f"{path} is not the list of a map's tiles: {error!r}") from error
-        _check_columns(folder / "tiles", fields, points)
+        _check_columns(folder / "tiles", fields, points + sum(tile.strays for tile in tiles))
         _check_rows(tiles, points, path.name)
         return TileSet(tiles, fields, crs or None, facts)
 
@@ -147,6 +169,25 @@ class TileSet:
 
     def __iter__(self) -> Iterator[Tile]:
         return iter(self.tiles)
+
+    @property
+    def strays(self) -> int:
+        """Stray returns in all tiles; ``len`` is without them."""
+        return sum(tile.strays for tile in self.tiles)
+
+    def as_measured(self) -> TileSet:
+        """The same map with every point where it was measured; itself if it has no surfaces."""
+        if RAW_OFFSET not in self.fields:
+            return self
+        return replace(self, tiles=tuple(tile.as_measured() for tile in self.tiles))
+
+    def only_strays(self) -> TileSet:
+        """The stray returns as a map of their own; its bounds are those of the map."""
+        return replace(
+            self,
+            tiles=tuple(tile.stray_part() for tile in self.tiles if tile.strays),
+            facts=self.facts | {"points": self.strays},
+        )
 
     @property
     def bounds_m(self) -> tuple[Array, Array]:
@@ -165,6 +206,7 @@ class _TileRow:
     origin_m: list[float]
     start: int
     stop: int
+    strays: int = 0
     low_m: list[float]
     high_m: list[float]
     time_ns: list[int]
@@ -205,8 +247,14 @@ class TileWriter:
         if kind is None:
             self._write_list()
 
-    def append(self, ijk: tuple[int, int, int], columns: Columns) -> None:
-        """Write the points of one tile in the given order; an empty tile is omitted."""
+    def append(self, ijk: tuple[int, int, int], columns: Columns, *, strays: int = 0) -> None:
+        """Write the points of one tile in the given order; an empty tile is omitted.
+
+        Args:
+            ijk: Index in the grid of tiles.
+            columns: Its fields.
+            strays: How many of the last rows are stray returns.
+        """
         count = len(columns["xyz"])
         if count == 0:
             return
@@ -215,15 +263,18 @@ class TileWriter:
             assert column.shape == _shape(name, count), f"{name}: {column.shape}"
             self._files[name].write(column.data)
         origin = np.array(ijk) * self._tile_m
+        # A tile of strays only has their bounds: every tile has some.
+        xyz, t_ns = (columns[name][: (count - strays) or count] for name in ("xyz", "t_ns"))
         self._rows.append(
             _TileRow(
                 ijk=list(ijk),
                 origin_m=origin.tolist(),
                 start=self._points,
-                stop=self._points + count,
-                low_m=(origin + columns["xyz"].min(axis=0)).tolist(),
-                high_m=(origin + columns["xyz"].max(axis=0)).tolist(),
-                time_ns=[int(columns["t_ns"].min()), int(columns["t_ns"].max())],
+                stop=self._points + count - strays,
+                strays=strays,
+                low_m=(origin + xyz.min(axis=0)).tolist(),
+                high_m=(origin + xyz.max(axis=0)).tolist(),
+                time_ns=[int(t_ns.min()), int(t_ns.max())],
             )
         )
         self._points += count
@@ -235,9 +286,13 @@ class TileWriter:
             np.max([row.high_m for row in rows], axis=0).tolist() if rows else None,
         ]
         times = [t for row in rows for t in row.time_ns]
-        facts = {"format": FORMAT, "points": self._points, "bounds_m": bounds} | self.facts
+        points = self._points - sum(row.strays for row in rows)
+        facts = {"format": FORMAT, "points": points, "bounds_m": bounds} | self.facts
         facts["time_ns"] = [min(times), max(times)] if times else None
         listed = [asdict(row) for row in rows]
+        for row in listed:
+            if not row["strays"]:
+                del row["strays"]
         facts |= {"tile_m": self._tile_m, "fields": self._fields, "tiles": listed}
         write_json(self._folder / "tiles.json", facts)
 
@@ -259,6 +314,7 @@ def _tile(
         _triple(row["origin_m"], float),
         int(row["start"]),
         int(row["stop"]),
+        int(row.get("strays", 0)),
         _triple(row["low_m"], float),
         _triple(row["high_m"], float),
         checked,
@@ -279,13 +335,15 @@ def _triple(values: Any, kind: type[Number]) -> tuple[Number, Number, Number]:
 
 def _check_rows(tiles: Sequence[Tile], points: int, name: str) -> None:
     """Check that tiles follow each other without a gap and contain all points."""
-    at = 0
+    at = strays = 0
     for tile in tiles:
-        if tile.start != at or tile.stop < at:
+        if tile.start != at or tile.stop < at or tile.strays < 0:
             raise StoreError(
                 f"{name}: expected a tile from point {at} on, got {tile.start} to {tile.stop}"
             )
-        at = tile.stop
+        at = tile.stop + tile.strays
+        strays += tile.strays
+    at -= strays
     if at != points:
         raise StoreError(
             f"{name}: {points} points, but the tiles do not add up to them: they have {at}"

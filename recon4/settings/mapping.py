@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 from recon4.settings.require import require
 
@@ -13,6 +14,11 @@ class MapSettings:
 
     voxel_m: float = 0.01
     """Edge of a voxel [m]; the point with the shortest range in each is kept; 0 = keep all."""
+    surface: Literal["raw", "fitted"] = "raw"
+    """Where points lie: where they were measured, or on the surface fitted to all returns around
+    them, as far as there is one. Then tiles have both positions, and stray returns are marked."""
+    range_noise_m: float = 0.015
+    """Standard deviation of a range, to tell one surface from two [m]."""
     max_range_m: float = 60.0
     """Points farther from the sensor are not in the map [m]."""
     tile_m: float = 5.0
@@ -27,6 +33,12 @@ class MapSettings:
 
     def __post_init__(self) -> None:
         require(0.0 <= self.voxel_m <= 1.0, "voxel_m must be 0 to 1", self.voxel_m)
+        require(self.surface in {"raw", "fitted"}, "surface must be raw or fitted", self.surface)
+        require(
+            0.001 <= self.range_noise_m <= 0.05,
+            "range_noise_m must be 0.001 to 0.05",
+            self.range_noise_m,
+        )
         require(0.0 < self.max_range_m <= 130.0, "max_range_m must be 0 to 130", self.max_range_m)
         require(self.normal_cell_m >= 0.01, "normal_cell_m must be over 0.01", self.normal_cell_m)
         require(

@@ -70,6 +70,8 @@ def find_double_walls(
     if missing:
         raise ConfigError(f"double walls: the map lacks the fields {sorted(missing)}")
     progress.start("double walls", len(tiles), "points")
+    # Points moved onto a common surface would hide that it was measured at two places.
+    tiles = tiles.as_measured()
     first_ns = (tiles.facts["time_ns"] or [0])[0]
     found, split = [], []
     for tile in tiles:

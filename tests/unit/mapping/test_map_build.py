@@ -11,7 +11,7 @@ from recon4.errors import OutOfRange, StoreError
 from recon4.mapping.build import build_map
 from recon4.mapping.grid import Grid
 from recon4.mapping.place import place
-from recon4.mapping.tile import FIELDS
+from recon4.mapping.tile import FIELDS, SURFACE_FIELDS
 from recon4.mapping.tiles import MapCrs, TileSet
 from recon4.model.events import MapBuilt
 from recon4.progress import Silent
@@ -190,7 +190,8 @@ def test_the_list_of_tiles_has_rows_and_bounds(tmp_path):
 
     listed = json.loads((tmp_path / "map" / "tiles.json").read_text())
     assert tiles.crs == crs
-    assert listed["fields"] == [name for name in FIELDS if name != "intensity_normalized"]
+    left_out = {"intensity_normalized", *SURFACE_FIELDS}
+    assert listed["fields"] == [name for name in FIELDS if name not in left_out]
     assert listed["points"] == len(tiles) == sum(map(len, tiles))
     low, high = tiles.bounds_m
     np.testing.assert_allclose(low, everything(tiles).min(axis=0), atol=1e-6)
@@ -271,3 +272,43 @@ def test_cells_and_tiles_are_whole_numbers_of_voxels():
 
     assert grid.cell_m == pytest.approx(0.09)
     assert grid.tile_m == pytest.approx(0.09 * round(20 / 0.09))
+
+
+def fitted_and_raw(tmp_path, **options):
+    walk = room_walk(frames=30, points=20_000, noise_m=0.01)
+    walk.frames[3].xyz[7] = [1.0, 0.5, 0.3]
+    return [
+        build(walk, tmp_path / surface, MapSettings(surface=surface), **options)
+        for surface in ("fitted", "raw")
+    ]
+
+
+def test_fitted_tiles_hold_both_positions_of_every_point_and_the_strays_last(tmp_path):
+    fitted, raw = fitted_and_raw(tmp_path)
+
+    assert fitted.strays >= 1
+    assert len(fitted) + fitted.strays == len(raw) + raw.facts["removed"]["lonely"]
+    assert fitted.facts["removed"].get("lonely", 0) == 0
+    measured = everything(fitted.as_measured())
+    every = np.concatenate([measured, everything(fitted.as_measured().only_strays())])
+    lookup = {tuple(v) for v in np.floor(everything(raw) * 100 + 1e-3).astype(int)}
+    found = [tuple(v) in lookup for v in np.floor(every * 100 + 1e-3).astype(int)]
+    assert np.mean(found) > 0.97
+    floor = (np.abs(measured[:, 2] + 1.4) < 0.03) & (np.abs(measured[:, :2]) < 2.0).all(axis=1)
+    assert floor.sum() > 5000
+    before = np.abs(measured[floor, 2] + 1.4)
+    after = np.abs(everything(fitted)[floor, 2] + 1.4)
+    assert after.mean() < 0.5 * before.mean()
+    assert points(fitted, "returns")[floor].mean() > 10
+    assert fitted.as_measured().only_strays().strays == 0
+    assert raw.as_measured() is raw
+
+
+def test_fitted_maps_do_not_depend_on_the_number_of_bursts(tmp_path):
+    walk = room_walk(frames=15)
+    settings = MapSettings(voxel_m=0.05, surface="fitted")
+
+    for name, burst in {"once": 10**9, "streamed": 5000}.items():
+        build(walk, tmp_path / name, settings, burst=burst)
+
+    assert digest(tmp_path / "once") == digest(tmp_path / "streamed")
