@@ -83,10 +83,8 @@ class FrameFitter:
             )  # fmt: skip
             H_lidar, g_lidar = self._weighted(match)
             if weak is not None:
-                H_points, g_points = weak.pull(
-                    match, rounds=rounds, t_s=prediction.t_s, T_odom_body=T_dense, center=center,
-                    gate_m=self._gate_m(rounds),
-                )  # fmt: skip
+                gate_m = self._gate_m(rounds)
+                H_points, g_points = weak.pull(match, rounds, gate_m, T_odom_body=T_dense)
                 H_lidar, g_lidar = H_lidar + H_points, g_lidar + g_points
             H, g = information.copy(), information @ delta + g_prior
             H[POSES, POSES] += H_lidar

@@ -111,7 +111,12 @@ class Odometry:
         found = self._place(frame)
         prediction = self._predict(frame)
         points = cache(lambda: frame_points(frame, self._rig))
-        weak = WeakDirections(self._points, points, self._settings.odometry.weak_eigenvalue)
+        weak = WeakDirections(
+            self._points,
+            points,
+            prediction,
+            max_eigenvalue=self._settings.odometry.weak_eigenvalue,
+        )
         stationary = self._motion.is_stationary(prediction.end)
         fit = self._fitter.fit(self._map, segments, prediction, weak=weak, stationary=stationary)
         lost = not first and (not found or self._is_lost(fit))

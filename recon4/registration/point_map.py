@@ -19,6 +19,7 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.imu import place_points
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
+from recon4.registration.motion import Prediction
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.settings import PlaneSettings
 
@@ -152,37 +153,38 @@ class WeakDirections:
     """Rounds in which points are chosen: by the prediction, and once more when it is corrected."""
 
     def __init__(
-        self, point_map: PointMap, points: Callable[[], FramePoints], max_eigenvalue: float
+        self,
+        point_map: PointMap,
+        points: Callable[[], FramePoints],
+        prediction: Prediction,
+        *,
+        max_eigenvalue: float,
     ) -> None:
         self._map, self._points, self._max_eigenvalue = point_map, points, max_eigenvalue
+        self._t_s, self._center = prediction.t_s, prediction.T_odom_body.t[-1]
         self._chosen: FramePoints | None = None
 
     def pull(
-        self,
-        segments: Match,
-        *,
-        rounds: int,
-        t_s: Array,
-        T_odom_body: SE3,
-        center: Array,
-        gate_m: float,
+        self, segments: Match, rounds: int, gate_m: float, *, T_odom_body: SE3
     ) -> tuple[Array, Array]:
         """Information (12, 12) and gradient (12,) of the points of a round, as in `Match`.
 
         Args:
             segments: Match of the segments in this round.
             rounds: Number of the round, from 1.
-            t_s: Times of the poses after the start of the frame [s], (K,).
-            T_odom_body: Poses of the body, (K,).
-            center: Point about which a correction rotates [m], (3,).
             gate_m: Points farther from their plane do not match [m].
+            T_odom_body: Poses of the body at the times of the prediction, (K,).
         """
         if rounds in self._CHOSEN_IN:
             weak = segments.weak_directions(self._max_eigenvalue)
             self._chosen = (
-                self._map.choose(self._points(), t_s, T_odom_body, weak=weak) if len(weak) else None
+                self._map.choose(self._points(), self._t_s, T_odom_body, weak=weak)
+                if len(weak)
+                else None
             )
         if self._chosen is None or not len(self._chosen):
             return np.zeros((12, 12)), np.zeros(12)
-        match = self._map.match(self._chosen, t_s, T_odom_body, center=center, gate_m=gate_m)
+        match = self._map.match(
+            self._chosen, self._t_s, T_odom_body, center=self._center, gate_m=gate_m
+        )
         return match.H, match.g
