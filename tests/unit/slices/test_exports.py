@@ -103,9 +103,8 @@ def killed(*_, **__):
 
 export.export_laz = killed
 cut = horizontal(0.5, thickness_m=0.2)
-export.write_laz(
-    TileSet.open(Path(sys.argv[1])), [cut], Path(sys.argv[2]), frame=MapFrame("", "", None)
-)
+chosen = export.SliceSelection(TileSet.open(Path(sys.argv[1])), [cut])
+export.write_laz(chosen, Path(sys.argv[2]), frame=MapFrame("", "", None))
 """
 
 
