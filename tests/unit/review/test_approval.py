@@ -167,7 +167,7 @@ def test_a_map_that_may_be_wrong_is_not_signed_without_a_reason(root, key, verdi
     publish(root, "cd", verdict)
 
     with pytest.raises(NotApprovable, match=f"{words}.* give a reason of at least 10 characters"):
-        approve(root, key, SIGNER | {"why": why}, True)
+        approve(root, key, SIGNER | {"why": why}, confirmed=True)
 
     assert not (root / "versions").exists()
 
@@ -175,7 +175,7 @@ def test_a_map_that_may_be_wrong_is_not_signed_without_a_reason(root, key, verdi
 def test_the_reason_stands_wherever_the_signer_stands(unusable, key, capsys):
     why = "only the hall <is> used, checked with the total station"
 
-    found = approve(unusable, key, SIGNER | {"why": why}, False)
+    found = approve(unusable, key, SIGNER | {"why": why}, confirmed=False)
 
     statement = json.loads((found.folder / "approval.json").read_text())["statement"]
     assert (statement["why"], statement["verdict"]) == (why, BAD)
@@ -195,14 +195,14 @@ def test_a_verdict_that_was_changed_after_the_run_is_not_signed(unusable, key):
     path.write_text(path.read_text().replace("do not use", "good"))
 
     with pytest.raises(NotApprovable, match=r"summary.json"):
-        approve(unusable, key, SIGNER, False)
+        approve(unusable, key, SIGNER, confirmed=False)
 
 
 def test_a_verdict_that_cannot_be_read_is_not_signed(root, key):
     publish(root, "cd", {"usability": "splendid", "reasons": []})
 
     with pytest.raises(NotApprovable, match="its verdict cannot be read"):
-        approve(root, key, SIGNER, False)
+        approve(root, key, SIGNER, confirmed=False)
 
 
 def test_the_same_results_are_signed_once(root, key):
