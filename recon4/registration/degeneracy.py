@@ -31,10 +31,12 @@ def observable_directions(match: Match, normal_noise_rad: float) -> tuple[Array,
     return both.T @ match.H @ both, np.kron(np.eye(2), full).T @ match.g
 
 
-def observable_pose(H: Array, g: Array, normal_noise_rad: float) -> tuple[Array, Array]:
-    """The same for one rigid pose: ``H`` (6, 6) and ``g`` (6,), rotation first."""
+def observable_pose(H: Array, normal_noise_rad: float) -> tuple[Array, Array]:
+    """The same for one rigid pose: reduced ``H`` (6, 6), rotation first, and what of a correction
+    is kept, (6, 6): identity where everything is observed, zero where nothing is.
+    """
     root, full = _reductions(H, normal_noise_rad)
-    return root.T @ H @ root, full.T @ g
+    return root.T @ H @ root, full
 
 
 def _reductions(H: Array, normal_noise_rad: float) -> tuple[Array, Array]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from recon4.geometry.se3 import ARM_M, ROTATION, SE3, TRANSLATION, Array, so3_exp
+from recon4.geometry.se3 import ARM_M, ROTATION, SE3, TRANSLATION, Array, so3_exp, so3_log
 from recon4.registration.degeneracy import observable_pose
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.result import Registration, StopReason
@@ -38,7 +38,6 @@ def register_to_planes(
             such errors create keep the initial pose, and the result has no information there.
     """
     T_target_source = initial
-    information = np.zeros((6, 6))
     zero = np.zeros(len(source))
     stop, rounds = StopReason.LIMIT, 0
     match = _empty(len(source))
@@ -54,9 +53,7 @@ def register_to_planes(
         if match.matches < _MIN_MATCHES:
             stop = StopReason.TOO_FEW
             break
-        H, g = observable_pose(match.H[START, START], match.g[START], normal_noise_rad)
-        information = H
-        step = _gauss_newton_step(H, g)
+        step = _gauss_newton_step(match.H[START, START], match.g[START])
         T_target_source = SE3(
             so3_exp(step[ROTATION]) @ T_target_source.R, T_target_source.t + step[TRANSLATION]
         )
@@ -67,11 +64,24 @@ def register_to_planes(
         if last_gate and small < settings.converged_step_m:
             stop = StopReason.SMALL_STEP
             break
+    H = match.H[START, START]
+    if normal_noise_rad and stop is StopReason.SMALL_STEP:
+        H, T_target_source = _observable(H, initial, T_target_source, normal_noise_rad)
     error_m = _error(target, T_target_source, source, fraction=zero)
     return Registration(
-        T_target_source, stop, rounds, error_m, match.match_ratio, information,
-        match.degeneracy,
+        T_target_source, stop, rounds, error_m, match.match_ratio, H, match.degeneracy,
     )  # fmt: skip
+
+
+def _observable(H: Array, initial: SE3, found: SE3, normal_noise_rad: float) -> tuple[Array, SE3]:
+    """Information and pose without what only errors of the normals seem to observe.
+
+    It is removed at the end: during the rounds a pose far off would be held where it is wrong.
+    """
+    reduced, keep = observable_pose(H, normal_noise_rad)
+    moved = np.concatenate([so3_log(found.R @ initial.R.T), found.t - initial.t])
+    kept = keep @ moved
+    return reduced, SE3(so3_exp(kept[ROTATION]) @ initial.R, initial.t + kept[TRANSLATION])
 
 
 def _gauss_newton_step(H: Array, g: Array) -> Array:
