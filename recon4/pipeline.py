@@ -65,13 +65,9 @@ def process(
 
     A new project that the recording or the rig keeps from its first stage is removed again.
     """
-    if not sources.recordings:
-        raise RecordingError("no recording given")
+    sources.require()
     progress = progress or Silent()
     settings = settings or settings_of(preset)
-    for path in sources.paths:
-        if not path.exists():  # before a project is made for nothing
-            raise RecordingError(f"cannot read {path}: there is no such file or folder")
     is_new = not is_project(out)
     try:
         return _process(sources, out, settings=settings, preset=preset, progress=progress)

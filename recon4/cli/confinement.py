@@ -15,6 +15,7 @@ from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
+from recon4.errors import StoreError
 from recon4.sandbox import Policy, confine
 from recon4.sandbox.private_cache import use_private_cache
 
@@ -26,6 +27,20 @@ def begin_own_process() -> None:
     """Let `confine_command` confine this process; it runs one command and ends."""
     global _own_process
     _own_process = True
+
+
+def result_folder(path: Path) -> Path:
+    """The folder, made if it does not exist, before this process may no longer make it.
+
+    Raises:
+        StoreError: If it cannot be made.
+    """
+    try:
+        if _own_process:
+            path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise StoreError(f"cannot write {path}: {error.strerror}") from error
+    return path
 
 
 def confine_command(*, write: Iterable[Path] = ()) -> None:

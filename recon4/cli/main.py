@@ -20,7 +20,7 @@ import recon4
 from app.cli.serve import server
 from app.cli.users import users
 from recon4.cli.backup import backups
-from recon4.cli.confinement import confine_command
+from recon4.cli.confinement import confine_command, result_folder
 from recon4.cli.evaluation import evaluation
 from recon4.cli.live import live
 from recon4.cli.slices import slices
@@ -92,17 +92,17 @@ def process(
     as_json: JsonOption = False,
 ) -> None:
     """Make a map of a recording; started again, it continues where it stopped."""
+    from recon4.recording.sources import Sources, require_files
     from recon4.sandbox.private_cache import is_compiled, mark_compiled
 
     chosen = _settings(preset, assignments)
+    require_files([*recordings, *(path for path in (imu, gnss) if path)])
     compiled = is_compiled()
     if compiled:  # else this run compiles them, for every later process
-        out.mkdir(parents=True, exist_ok=True)
-        confine_command(write=[out])
+        confine_command(write=[result_folder(out)])
 
     from recon4.model.rig import load_rig
     from recon4.pipeline import process as run
-    from recon4.recording.sources import Sources
     from recon4.terminal import describe_summary, watcher
 
     with watcher() as progress:

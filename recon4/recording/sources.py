@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
+from recon4.errors import RecordingError
 from recon4.model.rig import Rig
 
 
@@ -21,7 +23,28 @@ class Sources:
     gnss: Path | None = None
     """CSV file, in place of the recording's GNSS samples."""
 
+    def require(self) -> None:
+        """Check that there is something to read, before anything is made for nothing.
+
+        Raises:
+            RecordingError: If no recording is given, or a file or folder does not exist.
+        """
+        if not self.recordings:
+            raise RecordingError("no recording given")
+        require_files(self.paths)
+
     @property
     def paths(self) -> tuple[Path, ...]:
         """All files and folders that are read."""
         return (*self.recordings, *(path for path in (self.imu, self.gnss) if path))
+
+
+def require_files(paths: Iterable[Path]) -> None:
+    """Check that files and folders exist.
+
+    Raises:
+        RecordingError: If one does not.
+    """
+    for path in paths:
+        if not path.exists():
+            raise RecordingError(f"cannot read {path}: there is no such file or folder")
