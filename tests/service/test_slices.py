@@ -5,7 +5,6 @@ import io
 import json
 import threading
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict
 
 import ezdxf
 import httpx
@@ -227,7 +226,7 @@ def test_exports_open_in_other_programs(server):
 
 
 def test_an_export_of_an_approved_map_says_so(server):
-    stamp = asdict(approve_project(server.root / "office", server.root / "signing.key").stamp)
+    stamp = approve_project(server.root / "office", server.root / "signing.key").stamp.to_json()
 
     files = {ending: exported(server, ending).content for ending in ("laz", "csv", "dxf", "tif")}
     shown = server.get(BASE).json()["approval"]
