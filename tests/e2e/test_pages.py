@@ -198,7 +198,7 @@ def test_a_rejected_request_shows_its_message(server, page, look):
 @looks("desktop light")
 def test_a_job_is_started_by_keyboard_alone(server, page, tmp_path):
     (tmp_path / "empty.pcap").write_bytes(b"")
-    recording_with_gate(tmp_path / "walk")
+    recording_with_gate(tmp_path / "data" / "walk")
     build_project(server.root / "empty", with_map=False)
     page.goto(server.url)
 
@@ -217,7 +217,7 @@ def test_a_job_is_started_by_keyboard_alone(server, page, tmp_path):
     recording = page.get_by_label("Or a recording on the server")
     expect(recording).to_be_focused()
     page.keyboard.press("Control+A")
-    page.keyboard.type(str(tmp_path / "walk"))
+    page.keyboard.type(str(tmp_path / "data" / "walk"))
     page.keyboard.press("Enter")  # at once: the form looks at the recording before it starts
 
     expect(page.get_by_role("heading", name="walk")).to_be_visible()

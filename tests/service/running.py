@@ -158,7 +158,7 @@ def _ended(folder: JobFolder) -> bool:
 
 def recording_with_gate(folder: Path) -> Path:
     """A folder the slow worker takes for a recording; it has one cloud, which the form reads."""
-    folder.mkdir()
+    folder.mkdir(parents=True)
     points = np.random.default_rng(3).uniform(-5.0, 5.0, (200, 4)).astype("<f4")
     (folder / "000000.bin").write_bytes(points.tobytes())
     os.mkfifo(folder / "gate")

@@ -14,9 +14,14 @@ def settled(page):
 
 def fits(page):
     """Nothing overflows to the side or covers the view, and every control is large enough."""
-    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
     view = page.locator(".view-stage").bounding_box()
     assert view["y"] + view["height"] <= page.locator("#decision").bounding_box()["y"]
+    page_fits(page)
+
+
+def page_fits(page):
+    """Nothing overflows to the side, and every control is large enough."""
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
     small = page.evaluate(
         """[...document.querySelectorAll('button:not(.link), select, summary, .check, .bar a')]
         .filter((one) => one.checkVisibility() && one.getBoundingClientRect().height < 44)

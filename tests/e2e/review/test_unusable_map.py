@@ -4,7 +4,7 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.e2e.conftest import looks
-from tests.e2e.review.review_page import fits
+from tests.e2e.review.review_page import fits, page_fits
 from tests.review_project import LOST, judge
 
 pytestmark = pytest.mark.e2e
@@ -56,7 +56,7 @@ def test_slices_and_project_say_that_a_map_is_unusable(running, unusable, page, 
     expect(bar).to_contain_text("Do not use this map")
     bar.locator("summary").click()
     expect(bar).to_contain_text("Hardly observable")
-    fits(page)
+    page_fits(page)
     screenshot(page, "slices-unusable")
 
     page.goto(f"{running.url}/projects/{unusable.name}/")
