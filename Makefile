@@ -19,8 +19,6 @@ LOCKED := -m pip install -q --require-hashes -r
 OURSELVES := -m pip install -q --no-deps --no-build-isolation -e .
 COMPILE := $(TOOLS)/bin/uv pip compile -q --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-annotate --no-header -c constraints.txt
-# Each of two workers takes the next file; those with long tests are collected first.
-PARALLEL := -n 2 --dist loadfile --no-loadscope-reorder
 PYTHON ?= $(shell for python in python3 python3.13 python3.12 python3.11; do \
 	$$python -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))' 2>/dev/null \
 	&& echo $$python && break; done)
@@ -34,10 +32,7 @@ unexport PYTHONDONTWRITEBYTECODE
 demo: $(VENV)/installed-run
 	$(BIN)/recon4 demo --out demo $(if $(HEADLESS),--headless)
 
-test:
-	$(MAKE) -j2 format lint types web
-	$(MAKE) unit
-	$(MAKE) e2e
+test: format lint types web unit e2e
 
 format: $(VENV)/installed-dev
 	$(BIN)/ruff format --check .
@@ -49,10 +44,10 @@ types: $(VENV)/installed-dev
 	$(BIN)/mypy
 
 unit: $(VENV)/installed-dev
-	$(BIN)/python -m pytest $(PARALLEL) -m 'not e2e' --durations=10
+	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder -m 'not e2e' --durations=10
 
 e2e: $(VENV)/installed-dev
-	$(BIN)/python -m pytest $(PARALLEL) -m e2e --durations=10
+	$(BIN)/python -m pytest -m e2e --durations=10
 
 web:
 	.ci/web

@@ -48,7 +48,7 @@ LONG = (
     *("review/test_deciding", "test_slices", "test_whole_way", "test_pages", "test_live_page"),
     "review/test_aligning",
 )
-"""These files take longest; they come first, longest first, so that two workers end together."""
+"""These files take longest; they come first, so that two workers (``-n 2``) end together."""
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
