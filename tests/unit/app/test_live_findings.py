@@ -162,7 +162,7 @@ def test_status_of_the_recorder_gives_findings(message, level, text):
             "warning",
             "Tracking is degraded: walk slower, look at more walls",
         ),
-        ({"degeneracy": 1e-4}, "warning", "Tracking is degraded: walk slower, look at more walls"),
+        ({"weak_sd_m": 0.5}, "warning", "Tracking is degraded: walk slower, look at more walls"),
         ({"error_m": 0.2}, "warning", "Tracking is degraded: walk slower, look at more walls"),
         ({"remark": "the IMU lies"}, "warning", "The IMU lies"),
         ({"age_s": 3.0}, "warning", "The preview is 3 s behind; the recording is complete"),

@@ -95,7 +95,7 @@ def test_a_walk_is_human_and_ends_where_it_began(world):
     assert walk.seconds == 60.0
     np.testing.assert_allclose(state[0, :5], state[1, :5], atol=1e-5)
     assert np.sin(0.5 * (state[1, 5] - state[0, 5])) == pytest.approx(0.0, abs=1e-5)
-    assert np.abs(velocity[t_s < 0.8]).max() < 0.01
+    assert np.abs(velocity[t_s < 0.8]).max() < 0.015  # on stairs the slowest start rises a little
     speed = np.hypot(velocity[:, 0], velocity[:, 1])
     assert 0.5 < np.median(speed[speed > 0.4]) < 1.45
     assert 150.0 < np.rad2deg(np.abs(turning)).max() < 265.0

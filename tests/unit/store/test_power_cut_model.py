@@ -55,7 +55,7 @@ def test_a_move_between_folders_happens_as_a_whole_or_not_at_all(tmp_path):
 @pytest.mark.parametrize("depth", [1, 3])
 def test_every_folder_above_a_new_one_is_fsynced(tmp_path, monkeypatch, depth):
     synced = []
-    monkeypatch.setattr(atomic, "_fsync", synced.append)
+    monkeypatch.setattr(atomic, "fsync", synced.append)
     new = tmp_path.joinpath(*"abc"[:depth])
 
     make_folders(new)
