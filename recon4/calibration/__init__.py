@@ -1,0 +1,1 @@
+"""Calibration of a rig from a walk: mounts, clocks and beams of its sensors."""

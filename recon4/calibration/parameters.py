@@ -1,0 +1,129 @@
+"""The parameters of a calibration: their columns, units and priors, and how they change a rig."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, proper, so3_exp
+from recon4.model.rig import Rig
+
+Unit = Literal["rad", "m", "s"]
+
+_PRIOR_SD: dict[Unit, float] = {"rad": 0.2, "m": 0.3, "s": 0.1}
+"""Standard deviation of each parameter before the walk is looked at: hardly any knowledge."""
+_AXES = ("x", "y", "z")
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One number that is estimated."""
+
+    sensor: str
+    """Name of the LiDAR in the rig, or ``imu``."""
+    quantity: Literal["rotation", "position", "clock"]
+    axis: str
+    """``x``, ``y`` or ``z`` of the body; empty for a clock."""
+    unit: Unit
+
+    @property
+    def name(self) -> str:
+        """For tables and messages, as ``vertical rotation y``."""
+        return " ".join(part for part in (self.sensor, self.quantity, self.axis) if part)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Parameters:
+    """Seven parameters for each LiDAR but the reference and for the IMU: rotation, position, clock.
+
+    The mount of the reference LiDAR defines the body, and its clock defines the time.
+    """
+
+    reference: int
+    """Row of the reference LiDAR in ``Rig.sensors``."""
+    lidars: tuple[int, ...]
+    """Rows of the other LiDARs that are calibrated."""
+    imu: bool
+    """Whether the IMU is calibrated."""
+    listed: tuple[Parameter, ...]
+
+    @staticmethod
+    def of(rig: Rig, *, reference: int, lidars: tuple[int, ...], imu: bool) -> Parameters:
+        """All parameters of some LiDARs and the IMU of a rig."""
+        names = [rig.sensors[row].name for row in lidars] + (["imu"] if imu else [])
+        listed = tuple(parameter for name in names for parameter in _seven(name))
+        return Parameters(reference, lidars, imu, listed)
+
+    def __len__(self) -> int:
+        return len(self.listed)
+
+    def of_lidar(self, row: int) -> slice:
+        """Columns of a LiDAR: rotation, position, clock."""
+        first = 7 * self.lidars.index(row)
+        return slice(first, first + 7)
+
+    @property
+    def of_imu(self) -> slice:
+        """Columns of the IMU: rotation, position, clock."""
+        first = 7 * len(self.lidars)
+        return slice(first, first + 7)
+
+    @property
+    def prior_sd(self) -> Array:
+        """Standard deviations before the walk is looked at, (P,)."""
+        return np.array([_PRIOR_SD[parameter.unit] for parameter in self.listed])
+
+    def changed(self, rig: Rig, delta: Array) -> Rig:
+        """A rig after a small change of the parameters, (P,).
+
+        Rotations are about axes of the body through the sensor's own origin.
+        """
+        sensors = list(rig.sensors)
+        for row in self.lidars:
+            step = delta[self.of_lidar(row)]
+            sensors[row] = replace(
+                sensors[row],
+                T_body_sensor=_moved(sensors[row].T_body_sensor, step),
+                time_offset_s=sensors[row].time_offset_s + float(step[6]),
+            )
+        rig = replace(rig, sensors=tuple(sensors))
+        if not self.imu:
+            return rig
+        step = delta[self.of_imu]
+        return replace(
+            rig,
+            T_body_imu=_moved(rig.T_body_imu, step),
+            imu_time_offset_s=rig.imu_time_offset_s + float(step[6]),
+        )
+
+    def between(self, before: Rig, after: Rig) -> Array:
+        """The change of the parameters that leads from one rig to another, (P,)."""
+        rows = [
+            (before.sensors[row].T_body_sensor, after.sensors[row].T_body_sensor,
+             after.sensors[row].time_offset_s - before.sensors[row].time_offset_s)
+            for row in self.lidars
+        ]  # fmt: skip
+        if self.imu:
+            clock_s = after.imu_time_offset_s - before.imu_time_offset_s
+            rows.append((before.T_body_imu, after.T_body_imu, clock_s))
+        return np.concatenate([np.empty(0), *(_change(*row) for row in rows)])
+
+
+def _seven(name: str) -> list[Parameter]:
+    return [
+        *(Parameter(name, "rotation", axis, "rad") for axis in _AXES),
+        *(Parameter(name, "position", axis, "m") for axis in _AXES),
+        Parameter(name, "clock", "", "s"),
+    ]
+
+
+def _moved(T_body_sensor: SE3, step: Array) -> SE3:
+    R = proper(so3_exp(step[ROTATION]) @ T_body_sensor.R)
+    return SE3(R, T_body_sensor.t + step[TRANSLATION])
+
+
+def _change(before: SE3, after: SE3, clock_s: float) -> Array:
+    turn = SE3(after.R @ before.R.T, np.zeros(3)).log()[ROTATION]
+    return np.concatenate([turn, after.t - before.t, [clock_s]])

@@ -1,0 +1,179 @@
+"""A window of the walk for calibration: points, poses and IMU samples of a few seconds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import Array
+from recon4.kernels.imu import place_points
+from recon4.model.frames import RecordedFrames
+from recon4.model.rig import Rig
+from recon4.model.samples import ImuSamples
+from recon4.model.trajectory import Times, Trajectory
+
+KNOT_S = 0.05
+"""Distance in time of the knots of the trajectory's correction [s]."""
+_POINTS_OF_FRAME = 900
+"""Largest number of points of one sensor in one multiframe."""
+_MARGIN_NS = 100_000_000
+"""Samples of the IMU are kept this much longer than the window on both sides [ns]."""
+_VELOCITY_S = 1e-3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Window:
+    """Measurements of some consecutive multiframes and the trajectory meanwhile.
+
+    Times are seconds after `start_ns` by the clocks of the recorded rig.
+    """
+
+    start_ns: int
+    knot_ns: Times
+    """Knots of the correction [ns], `KNOT_S` apart, (K,)."""
+    p_sensor: Array
+    """Points in the frames of their sensors [m], (N, 3)."""
+    sensor: NDArray[np.uint8]
+    """Row of the sensor, (N,)."""
+    ring: NDArray[np.uint8]
+    """Beam, (N,)."""
+    t_s: Array
+    """Times, (N,)."""
+    recorded: Rig
+    """The rig whose clock offsets are in the times."""
+    imu: ImuSamples | None
+    trajectory: Trajectory
+    """``T_odom_body`` over the window, current estimate."""
+
+    @property
+    def knots(self) -> int:
+        """Number of knots."""
+        return len(self.knot_ns)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlacedPoints:
+    """Points of a window, placed with a rig."""
+
+    odom: Array
+    """In the odometry frame [m], (N, 3)."""
+    arm_odom: Array
+    """From the body to the point, in odometry axes [m], (N, 3)."""
+    R_odom_body: Array
+    """Rotation at the time of the point, (N, 3, 3)."""
+    sensor_arm_body: Array
+    """From the sensor to the point, in body axes [m], (N, 3)."""
+    velocity_odom: Array
+    """Of a point fixed to the body [m/s], (N, 3): how a late clock moves it."""
+    knot: NDArray[np.int64]
+    """The knot before, (N,)."""
+    fraction: Array
+    """Time since that knot as a part of the interval, 0..1, (N,)."""
+
+
+def cut_window(
+    frames: RecordedFrames, trajectory: Trajectory, rows: range
+) -> Window:
+    """Collect the measurements of the multiframes ``rows``, thinned evenly.
+
+    Args:
+        frames: The multiframes with their rig and IMU.
+        trajectory: ``T_odom_body``, dense.
+        rows: Consecutive multiframes.
+    """
+    parts = [_thinned(frames, row) for row in rows]
+    start_ns, end_ns = _span(frames, rows, trajectory)
+    p, sensor, ring, t_ns = (np.concatenate(column) for column in zip(*parts, strict=True))
+    knots = max(2, round((end_ns - start_ns) * 1e-9 / KNOT_S) + 1)
+    first, last = np.searchsorted(trajectory.t_ns, [start_ns, end_ns])
+    return Window(
+        start_ns,
+        np.linspace(start_ns, end_ns, knots).astype(np.int64),
+        p.astype(np.float64),
+        sensor,
+        ring,
+        (t_ns - start_ns) * 1e-9,
+        frames.rig,
+        _samples(frames.imu, start_ns, end_ns),
+        trajectory[slice(max(int(first) - 1, 0), int(last) + 2)],
+    )
+
+
+def place(window: Window, rig: Rig) -> PlacedPoints:
+    """Place the points of a window with a rig that may differ from the recorded one."""
+    t_s = window.t_s + _clock_change_s(window.recorded, rig)[window.sensor]
+    T = rig.T_body_sensor
+    arm_body = np.einsum("nij,nj->ni", T.R[window.sensor], window.p_sensor)
+    p_body = arm_body + T.t[window.sensor]
+    part = window.trajectory
+    dense_s = (part.t_ns - window.start_ns) * 1e-9
+    R, t = part.T_a_b.R, part.T_a_b.t
+    odom = place_points(dense_s, R, t, t_s, p_body)
+    later = place_points(dense_s, R, t, t_s + _VELOCITY_S, p_body)
+    earlier = place_points(dense_s, R, t, t_s - _VELOCITY_S, p_body)
+    axes = [
+        place_points(dense_s, R, np.zeros_like(t), t_s, np.tile(axis, (len(t_s), 1)))
+        for axis in np.eye(3)
+    ]
+    at = t_s / KNOT_S * ((window.knots - 1) * KNOT_S / _seconds(window))
+    knot = np.clip(np.floor(at).astype(np.int64), 0, window.knots - 2)
+    R_odom_body = np.stack(axes, axis=2)
+    return PlacedPoints(
+        odom=odom,
+        arm_odom=np.einsum("nij,nj->ni", R_odom_body, p_body),
+        R_odom_body=R_odom_body,
+        sensor_arm_body=arm_body,
+        velocity_odom=(later - earlier) / (2.0 * _VELOCITY_S),
+        knot=knot,
+        fraction=np.clip(at - knot, 0.0, 1.0),
+    )
+
+
+def _seconds(window: Window) -> float:
+    return float(window.knot_ns[-1] - window.knot_ns[0]) * 1e-9
+
+
+def _clock_change_s(before: Rig, after: Rig) -> Array:
+    """How the clock offset of each LiDAR differs between two rigs [s], (S,)."""
+    pairs = zip(before.sensors, after.sensors, strict=True)
+    return np.array([new.time_offset_s - old.time_offset_s for old, new in pairs])
+
+
+def _thinned(
+    frames: RecordedFrames, row: int
+) -> tuple[NDArray[np.float32], NDArray[np.uint8], NDArray[np.uint8], NDArray[np.int64]]:
+    frame = frames[row]
+    kept = [
+        _evenly(np.flatnonzero((frame.sensor == k) & (frame.echo == 0)), row)
+        for k, sensor in enumerate(frames.rig.sensors)
+        if sensor.enabled
+    ]
+    rows = np.concatenate(kept)
+    t_ns = frame.t_ns + frame.dt_ns[rows].astype(np.int64)
+    return frame.xyz[rows], frame.sensor[rows], frame.ring[rows], t_ns
+
+
+def _evenly(rows: NDArray[np.intp], shift: int) -> NDArray[np.intp]:
+    """Some rows, evenly spaced; an odd step so that all beams are met."""
+    step = max(1, len(rows) // _POINTS_OF_FRAME) | 1
+    return rows[shift % step :: step]
+
+
+def _span(frames: RecordedFrames, rows: range, trajectory: Trajectory) -> tuple[int, int]:
+    first, last = frames[rows[0]], frames[rows[-1]]
+    start_ns = max(first.t_ns, int(trajectory.t_ns[0]))
+    return start_ns, min(last.t_ns + last.duration_ns, int(trajectory.t_ns[-1]))
+
+
+def _samples(imu: ImuSamples | None, start_ns: int, end_ns: int) -> ImuSamples | None:
+    if imu is None:
+        return None
+    kept = (imu.t_ns >= start_ns - _MARGIN_NS) & (imu.t_ns <= end_ns + _MARGIN_NS)
+    return ImuSamples(imu.t_ns[kept], imu.gyro_rad_s[kept], imu.accel_m_s2[kept])
+
+
+def with_trajectory(window: Window, trajectory: Trajectory) -> Window:
+    """The same measurements with another estimate of the trajectory."""
+    return replace(window, trajectory=trajectory)
