@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +27,7 @@ from recon4.store.project import (
     read_description,
 )
 from recon4.store.recipes import check_recipes, settings_in
-from recon4.store.stage import Artifact, Input, Stage, StageRunner
+from recon4.store.stage import Artifact, Input, Stage, StageRunner, figures_of
 
 BEFORE_REVIEW: tuple[Stage[Any], ...] = (
     stages.FRAMES,
@@ -35,6 +36,21 @@ BEFORE_REVIEW: tuple[Stage[Any], ...] = (
     stages.VERIFICATION,
 )
 """What decisions of people do not change."""
+
+
+@dataclass(frozen=True, slots=True)
+class Measurements:
+    """The multiframes, and the rig they are placed with."""
+
+    frames: Artifact
+    calibration: Artifact | None
+    """None = the rig of the recording is used."""
+
+    @property
+    def inputs(self) -> dict[str, Artifact]:
+        """Inputs of a stage that places points; a calibration only where one is used."""
+        found = {"frames": self.frames}
+        return found | ({"calibration": self.calibration} if self.calibration else {})
 
 
 def process(
@@ -126,8 +142,10 @@ def remake(out: Path, *, progress: Progress | None = None) -> Summary:
     with Project.open(out) as project:
         runner = StageRunner(project, settings, progress)
         frames, odometry, _, graph = (runner.keep(stage) for stage in BEFORE_REVIEW)
+        calibration = runner.keep(stages.CALIBRATION) if stages.CALIBRATION.name in made else None
+        measurements = Measurements(frames, _if_applied(runner, calibration))
         run_from_review(
-            runner, frames=frames, odometry=odometry, graph=graph, decided=read_decided(out)
+            runner, measurements, odometry=odometry, graph=graph, decided=read_decided(out)
         )
         about = About(read_description(out), settings)
         return publish(out, runner.runs, about, progress=progress)
@@ -140,14 +158,16 @@ def run_stages(
     decided: Decided = NOTHING_DECIDED,
 ) -> None:
     """Every stage in order; each is skipped when its artifact is there."""
-    frames, odometry, graph = run_before_review(runner, inputs)
-    run_from_review(runner, frames=frames, odometry=odometry, graph=graph, decided=decided)
+    measurements, odometry, graph = run_before_review(runner, inputs)
+    run_from_review(runner, measurements, odometry=odometry, graph=graph, decided=decided)
 
 
 def run_before_review(
     runner: StageRunner, inputs: Mapping[str, Input | None]
-) -> tuple[Artifact, Artifact, Artifact]:
-    """The stages that decisions of people do not change: multiframes, odometry, verified graph.
+) -> tuple[Measurements, Artifact, Artifact]:
+    """The stages that decisions of people do not change: odometry and verified graph.
+
+    If the rig is calibrated, the odometry runs again with the calibrated rig.
 
     Args:
         runner: Runs them.
@@ -156,12 +176,28 @@ def run_before_review(
     run = runner.run
     frames = run(stages.FRAMES, **inputs)
     odometry = run(stages.ODOMETRY, frames=frames)
-    searched = run(stages.GRAPH, frames=frames, odometry=odometry)
-    return frames, odometry, run(stages.VERIFICATION, graph=searched)
+    calibration = run(stages.CALIBRATION, frames=frames, odometry=odometry)
+    measurements = Measurements(frames, _if_applied(runner, calibration))
+    if measurements.calibration:
+        odometry = run(stages.ODOMETRY, **measurements.inputs)
+    searched = run(stages.GRAPH, **measurements.inputs, odometry=odometry)
+    return measurements, odometry, run(stages.VERIFICATION, graph=searched)
+
+
+def _if_applied(runner: StageRunner, calibration: Artifact | None) -> Artifact | None:
+    """The calibration if its rig is used from here on."""
+    if calibration is None:
+        return None
+    return calibration if figures_of(runner.runs, stages.CALIBRATION).applied else None
 
 
 def run_from_review(
-    runner: StageRunner, *, frames: Artifact, odometry: Artifact, graph: Artifact, decided: Decided
+    runner: StageRunner,
+    measurements: Measurements,
+    *,
+    odometry: Artifact,
+    graph: Artifact,
+    decided: Decided,
 ) -> None:
     """The stages that depend on decisions of people.
 
@@ -174,14 +210,14 @@ def run_from_review(
         graph = run(stages.REVIEW, graph=graph, decisions=decisions)
     else:
         runner.skip(stages.REVIEW)
-    level = run_trajectory(runner, frames=frames, odometry=odometry, graph=graph)
-    intensity = run(stages.INTENSITY, frames=frames, level=level)
-    run(stages.MAP, frames=frames, level=level, intensity=intensity)
+    level = run_trajectory(runner, measurements, odometry=odometry, graph=graph)
+    intensity = run(stages.INTENSITY, **measurements.inputs, level=level)
+    run(stages.MAP, **measurements.inputs, level=level, intensity=intensity)
 
 
 def run_trajectory(
-    runner: StageRunner, *, frames: Artifact, odometry: Artifact, graph: Artifact
+    runner: StageRunner, measurements: Measurements, *, odometry: Artifact, graph: Artifact
 ) -> Artifact:
     """From the graph to the final trajectory: refined, leveled, georeferenced."""
-    refined = runner.run(stages.REFINE, frames=frames, odometry=odometry, graph=graph)
-    return runner.run(stages.LEVEL, frames=frames, refined=refined, graph=graph)
+    refined = runner.run(stages.REFINE, **measurements.inputs, odometry=odometry, graph=graph)
+    return runner.run(stages.LEVEL, **measurements.inputs, refined=refined, graph=graph)

@@ -192,7 +192,7 @@ def _publish(
         points=figures_of(runs, stages.MAP).points,
         edges=load_graph(runs["level"].artifact.folder).verdict_counts(),
         verdict=assessed.verdict,
-        warnings=(*frames.warnings, *_later_warnings(runs), *warning),
+        warnings=(*frames.warnings, *_rig_warnings(runs), *_later_warnings(runs), *warning),
         seconds=round(sum(run.done.seconds for run in runs.values()), 3),
         peak_bytes=max(run.done.peak_bytes for run in runs.values()),
         stages=tuple(StageSummary.of(run) for run in runs.values()),
@@ -360,6 +360,13 @@ def report_facts(runs: Mapping[str, StageRun[Any]], about: About, *, created: st
         crs=figures_of(runs, stages.LEVEL).crs,
         warnings=_later_warnings(runs),
     )
+
+
+def _rig_warnings(runs: Mapping[str, StageRun[Any]]) -> tuple[str, ...]:
+    """What the audit of the rig has to say; a project of an earlier version has none."""
+    if stages.CALIBRATION.name not in runs:
+        return ()
+    return figures_of(runs, stages.CALIBRATION).warnings
 
 
 def _later_warnings(runs: Mapping[str, StageRun[Any]]) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from recon4.model.figures import (
+    CalibrationFigures,
     Figures,
     FrameFigures,
     GraphFigures,
@@ -62,24 +63,46 @@ def frames_figures(folder: Path) -> FrameFigures:
 
 
 def _odometry(
-    *, out: Path, settings: Settings, progress: Progress, frames: Path
+    *,
+    out: Path,
+    settings: Settings,
+    progress: Progress,
+    frames: Path,
+    calibration: Path | None = None,
 ) -> OdometryFigures:
+    from recon4.calibration.rig_file import open_frames
     from recon4.georeference.gnss_aiding import make_gnss_aiding
     from recon4.registration.stage import run_odometry
-    from recon4.store.frames import FrameStore
 
-    store = FrameStore.open(frames)
+    store = open_frames(frames, calibration)
     aiding = make_gnss_aiding(store.gnss, store.rig, settings.odometry)
     return run_odometry(store, out, settings=settings, progress=progress, aiding=aiding)
 
 
-def _graph(
+def _calibration(
     *, out: Path, settings: Settings, progress: Progress, frames: Path, odometry: Path
-) -> GraphFigures:
-    from recon4.pose_graph.search import build_graph
+) -> CalibrationFigures:
+    from recon4.calibration.stage import run_calibration
     from recon4.store.frames import FrameStore
 
-    return build_graph(FrameStore.open(frames), odometry, out, settings=settings, progress=progress)
+    store = FrameStore.open(frames)
+    return run_calibration(store, odometry, settings=settings, progress=progress).save(out)
+
+
+def _graph(
+    *,
+    out: Path,
+    settings: Settings,
+    progress: Progress,
+    frames: Path,
+    odometry: Path,
+    calibration: Path | None = None,
+) -> GraphFigures:
+    from recon4.calibration.rig_file import open_frames
+    from recon4.pose_graph.search import build_graph
+
+    store = open_frames(frames, calibration)
+    return build_graph(store, odometry, out, settings=settings, progress=progress)
 
 
 def _verification(
@@ -117,27 +140,41 @@ def _review(
 
 
 def _refine(
-    *, out: Path, settings: Settings, progress: Progress, frames: Path, odometry: Path, graph: Path
+    *,
+    out: Path,
+    settings: Settings,
+    progress: Progress,
+    frames: Path,
+    odometry: Path,
+    graph: Path,
+    calibration: Path | None = None,
 ) -> RefineFigures:
+    from recon4.calibration.rig_file import open_frames
     from recon4.pose_graph.files import load_graph
     from recon4.semi_rigid.refine import refine
-    from recon4.store.frames import FrameStore
 
-    store = FrameStore.open(frames)
+    store = open_frames(frames, calibration)
     found = refine(store, odometry, load_graph(graph), settings=settings, progress=progress)
     return found.save(out)
 
 
 def _level(
-    *, out: Path, settings: Settings, progress: Progress, frames: Path, refined: Path, graph: Path
+    *,
+    out: Path,
+    settings: Settings,
+    progress: Progress,
+    frames: Path,
+    refined: Path,
+    graph: Path,
+    calibration: Path | None = None,
 ) -> LevelFigures:
+    from recon4.calibration.rig_file import open_frames
     from recon4.georeference.stage import level_and_georeference
     from recon4.pose_graph.files import load_graph
     from recon4.store.arrays import load_trajectory
-    from recon4.store.frames import FrameStore
 
     leveled = level_and_georeference(
-        FrameStore.open(frames),
+        open_frames(frames, calibration),
         load_trajectory(refined / "trajectory.npz"),
         load_graph(graph),
         settings=settings,
@@ -147,14 +184,20 @@ def _level(
 
 
 def _intensity(
-    *, out: Path, settings: Settings, progress: Progress, frames: Path, level: Path
+    *,
+    out: Path,
+    settings: Settings,
+    progress: Progress,
+    frames: Path,
+    level: Path,
+    calibration: Path | None = None,
 ) -> None:
+    from recon4.calibration.rig_file import open_frames
     from recon4.intensity.normalize import write_intensity
     from recon4.store.arrays import load_trajectory
-    from recon4.store.frames import FrameStore
 
     write_intensity(
-        FrameStore.open(frames),
+        open_frames(frames, calibration),
         load_trajectory(level / "trajectory.npz"),
         out,
         settings=settings.intensity,
@@ -170,16 +213,17 @@ def _map(
     frames: Path,
     level: Path,
     intensity: Path,
+    calibration: Path | None = None,
 ) -> MapFigures:
+    from recon4.calibration.rig_file import open_frames
     from recon4.export.laz import export_laz
     from recon4.georeference.stage import read_crs
     from recon4.intensity.table import IntensityTable
     from recon4.mapping.build import build_map
     from recon4.store.arrays import load_trajectory
-    from recon4.store.frames import FrameStore
 
     tiles = build_map(
-        FrameStore.open(frames),
+        open_frames(frames, calibration),
         load_trajectory(level / "trajectory.npz"),
         IntensityTable.load(intensity / "table.npz"),
         out,
@@ -205,6 +249,9 @@ ODOMETRY = Stage(
     ("segments", "registration", "planes", "scans", "odometry"),
     _odometry,
     OdometryFigures,
+)
+CALIBRATION = Stage(
+    "calibration", 1, ("calibration", "odometry", "graph"), _calibration, CalibrationFigures
 )
 GRAPH = Stage("graph", 6, _MATCHING, _graph, GraphFigures)
 VERIFICATION = Stage(

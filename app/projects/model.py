@@ -19,16 +19,14 @@ RESULTS: dict[str, str] = {
 STAGE_ORDER = (
     "frames",
     "odometry",
+    "calibration",
     "graph",
     "verification",
     "review",
-    "carried",
     "refine",
     "level",
     "intensity",
     "map",
-    "export",
-    "report",
 )
 """As in docs/architecture.md; a stage not named here is shown last."""
 

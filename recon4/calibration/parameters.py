@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, proper, so3_exp
 from recon4.model.rig import Rig
@@ -14,6 +15,8 @@ Unit = Literal["rad", "m", "s"]
 
 _PRIOR_SD: dict[Unit, float] = {"rad": 0.2, "m": 0.3, "s": 0.1}
 """Standard deviation of each parameter before the walk is looked at: hardly any knowledge."""
+_KNOWN_SD = 1e-9
+"""Of a parameter that keeps its value, in its unit."""
 _AXES = ("x", "y", "z")
 
 
@@ -48,13 +51,21 @@ class Parameters:
     imu: bool
     """Whether the IMU is calibrated."""
     listed: tuple[Parameter, ...]
+    prior_sd: Array
+    """Standard deviation of each before the walk is looked at, (P,)."""
+
+    @staticmethod
+    def none() -> Parameters:
+        """Nothing is estimated."""
+        return Parameters(0, (), False, (), np.empty(0))
 
     @staticmethod
     def of(rig: Rig, *, reference: int, lidars: tuple[int, ...], imu: bool) -> Parameters:
         """All parameters of some LiDARs and the IMU of a rig."""
         names = [rig.sensors[row].name for row in lidars] + (["imu"] if imu else [])
         listed = tuple(parameter for name in names for parameter in _seven(name))
-        return Parameters(reference, lidars, imu, listed)
+        prior_sd = np.array([_PRIOR_SD[parameter.unit] for parameter in listed])
+        return Parameters(reference, lidars, imu, listed, prior_sd)
 
     def __len__(self) -> int:
         return len(self.listed)
@@ -70,10 +81,9 @@ class Parameters:
         first = 7 * len(self.lidars)
         return slice(first, first + 7)
 
-    @property
-    def prior_sd(self) -> Array:
-        """Standard deviations before the walk is looked at, (P,)."""
-        return np.array([_PRIOR_SD[parameter.unit] for parameter in self.listed])
+    def fixing(self, known: NDArray[np.bool_]) -> Parameters:
+        """The same parameters, of which some, (P,) bool, keep their values."""
+        return replace(self, prior_sd=np.where(known, _KNOWN_SD, self.prior_sd))
 
     def changed(self, rig: Rig, delta: Array) -> Rig:
         """A rig after a small change of the parameters, (P,).

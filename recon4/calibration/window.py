@@ -73,9 +73,7 @@ class PlacedPoints:
     """Time since that knot as a part of the interval, 0..1, (N,)."""
 
 
-def cut_window(
-    frames: RecordedFrames, trajectory: Trajectory, rows: range
-) -> Window:
+def cut_window(frames: RecordedFrames, trajectory: Trajectory, rows: range) -> Window:
     """Collect the measurements of the multiframes ``rows``, thinned evenly.
 
     Args:
@@ -108,7 +106,7 @@ def place(window: Window, rig: Rig) -> PlacedPoints:
     arm_body = np.einsum("nij,nj->ni", T.R[window.sensor], window.p_sensor)
     p_body = arm_body + T.t[window.sensor]
     part = window.trajectory
-    dense_s = (part.t_ns - window.start_ns) * 1e-9
+    dense_s = np.asarray((part.t_ns - window.start_ns) * 1e-9, np.float64)
     R, t = part.T_a_b.R, part.T_a_b.t
     odom = place_points(dense_s, R, t, t_s, p_body)
     later = place_points(dense_s, R, t, t_s + _VELOCITY_S, p_body)

@@ -88,6 +88,14 @@ def process(
     imu: Annotated[Path | None, typer.Option(help="IMU samples as CSV.")] = None,
     gnss: Annotated[Path | None, typer.Option(help="GNSS/INS samples as CSV.")] = None,
     preset: PresetOption = "indoor",
+    calibrate: Annotated[
+        str,
+        typer.Option(
+            metavar="auto|off|SENSORS",
+            help="auto: calibrate a rig file that contradicts the recording; off: do not compare "
+            "them; SENSORS: calibrate these only, as vertical,imu. Default: compare and warn.",
+        ),
+    ] = "",
     assignments: SetOption = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -95,7 +103,7 @@ def process(
     from recon4.recording.sources import Sources, require_files
     from recon4.sandbox.private_cache import is_compiled, mark_compiled
 
-    chosen = _settings(preset, assignments)
+    chosen = _settings(preset, [*_calibrate(calibrate), *(assignments or [])])
     require_files([*recordings, *(path for path in (imu, gnss) if path)])
     compiled = is_compiled()
     if compiled:  # else this run compiles them, for every later process
@@ -114,6 +122,15 @@ def process(
         _write_json(summary.to_json())
     else:
         write(describe_summary(summary))
+
+
+def _calibrate(word: str) -> list[str]:
+    """Assignments of the option ``--calibrate``."""
+    if not word:
+        return []
+    if word in ("auto", "off"):
+        return [f"calibration.mode={word}"]
+    return ["calibration.mode=auto", f"calibration.sensors={word}"]
 
 
 @app.command()

@@ -6,6 +6,8 @@ manifest of an earlier version may lack those that have a default.
 
 from __future__ import annotations
 
+from typing import Literal
+
 import msgspec
 
 Point = tuple[float, float, float]
@@ -42,6 +44,43 @@ class OdometryFigures(Figures, frozen=True, kw_only=True):
     warnings: tuple[str, ...] = ()
     gnss: bool = False
     """Whether fixes were used."""
+
+
+ParameterStatus = Literal["consistent", "off", "not observable"]
+"""Of a parameter of the rig against the recording."""
+
+
+class ParameterFigures(msgspec.Struct, frozen=True, kw_only=True):
+    """What a recording says of one parameter of its rig."""
+
+    sensor: str
+    """Name of the LiDAR, or ``imu``."""
+    quantity: str
+    """``rotation``, ``position`` or ``clock``."""
+    axis: str
+    """Of the body: ``x``, ``y``, ``z``; empty for a clock."""
+    unit: Literal["rad", "m", "s"]
+    change: float
+    """To be added to the rig file's value, in the unit."""
+    sd: float | None
+    """Standard deviation of the change, in the unit; None = not known."""
+    status: ParameterStatus
+
+
+class CalibrationFigures(Figures, frozen=True, kw_only=True):
+    """Audit of the rig against the recording and, if requested, its calibration."""
+
+    parameters: tuple[ParameterFigures, ...] = ()
+    """Change from the rig file; empty = nothing could be compared."""
+    windows: int = 0
+    """Number of windows of the walk they come from."""
+    rms_m: float | None = None
+    """Distance of the points from common planes after the estimate [m]."""
+    applied: bool = False
+    """Whether the calibrated rig is used from here on."""
+    outcome: str = ""
+    """Why it was applied, or why not."""
+    warnings: tuple[str, ...] = ()
 
 
 class GraphFigures(Figures, frozen=True, kw_only=True):

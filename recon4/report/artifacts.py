@@ -7,12 +7,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from recon4.bounded import read_json_object
 from recon4.errors import StoreError
 from recon4.geometry.se3 import Array
+from recon4.model.figures import CalibrationFigures
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
@@ -31,6 +33,8 @@ class Results:
     odometry: Trajectory | None = None
     steps: dict[str, NDArray[Any]] = field(default_factory=dict)
     """Columns of ``steps.npz``."""
+    calibration: CalibrationFigures | None = None
+    """Audit of the rig."""
     graph: PoseGraph | None = None
     """The latest graph: leveled, else reviewed, else verified, else as searched."""
     verification: dict[str, Any] = field(default_factory=dict)
@@ -52,6 +56,7 @@ def read_results(artifacts: Mapping[str, Path]) -> Results:
         imported=_json(artifacts, "frames", "report.json"),
         odometry=_latest_trajectory(artifacts, ("odometry",)),
         steps=current_names(_arrays(artifacts, "odometry", "steps.npz"), STEPS),
+        calibration=_calibration(artifacts),
         graph=_latest_graph(artifacts, ("level", "review", "verification", "graph")),
         verification=_json(artifacts, "verification", "verification.json"),
         final=_latest_trajectory(artifacts, ("level", "refine")),
@@ -96,6 +101,17 @@ def _arrays(artifacts: Mapping[str, Path], stage: str, name: str) -> dict[str, N
         return load_arrays(path)
     except StoreError as error:
         raise StoreError(f"{stage}/{name} cannot be read: {error}") from error
+
+
+def _calibration(artifacts: Mapping[str, Path]) -> CalibrationFigures | None:
+    """Figures in ``calibration.json``; its standard deviations may be null: not observable."""
+    record = _json(artifacts, "calibration", "calibration.json").get("figures")
+    if record is None:
+        return None
+    try:
+        return msgspec.convert(record, CalibrationFigures)
+    except msgspec.ValidationError as error:
+        raise StoreError(f"calibration/calibration.json cannot be read: {error}") from error
 
 
 def _latest_trajectory(artifacts: Mapping[str, Path], stages: tuple[str, ...]) -> Trajectory | None:

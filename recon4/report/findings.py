@@ -8,6 +8,7 @@ from enum import IntEnum
 
 import numpy as np
 
+from recon4.calibration.judgment import is_severe
 from recon4.evaluation.table import number, percentage
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Verdict
 from recon4.model.usability import UNOBSERVED_SECONDS
@@ -58,6 +59,7 @@ def headline(findings: Sequence[Finding]) -> tuple[Level, str]:
 def find(facts: ReportFacts, results: Results, drift: DriftClosed | None) -> list[Finding]:
     """All findings, worst first."""
     found = [*_tracking(results), *_converged(results), *_observability(results)]
+    found += _calibration(results)
     found += [*_plausibility(results), *_loops(results.graph), *_closed(drift)]
     found += [*_leveled(results), *_contradicted(results), *_rejected_fixes(results)]
     found += [*_imported(results), *_accuracy(facts)]
@@ -86,6 +88,18 @@ def _converged(results: Results) -> list[Finding]:
     level = Level.WARNING if converged.mean() >= _HALF else Level.BAD
     how_many = f"{converged.sum()} of {len(converged)} multiframes ({percentage(converged.mean())})"
     return [Finding(level, f"The registration converged in only {how_many}.")]
+
+
+def _calibration(results: Results) -> list[Finding]:
+    """Whether the rig file agrees with the recording."""
+    found = results.calibration
+    if found is None:
+        return []
+    if found.warnings:
+        level = Level.BAD if is_severe(found.parameters) else Level.WARNING
+        return [Finding(Level.NOTE if found.applied else level, text) for text in found.warnings]
+    text = f"Rig: {found.outcome}."
+    return [Finding(Level.GOOD if found.parameters else Level.NOTE, text)]
 
 
 def _observability(results: Results) -> list[Finding]:

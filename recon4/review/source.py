@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+from recon4.calibration.rig_file import open_frames
 from recon4.errors import StoreError
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
@@ -63,7 +64,7 @@ class Source:
     @cached_property
     def frames(self) -> FrameStore:
         """The multiframes."""
-        return FrameStore.open(self._folder("frames"))
+        return open_frames(self._folder("frames"), self.artifacts.get("calibration"))
 
     def _folder(self, stage: str) -> Path:
         if stage not in self.artifacts:

@@ -5,6 +5,7 @@ own groups, so that a changed setting reruns only the stages that depend on it.
 """
 
 from recon4.settings.assign import canonical, override, to_json
+from recon4.settings.calibration import CalibrationSettings
 from recon4.settings.georeference import GnssSettings, LevelSettings
 from recon4.settings.graph import GraphSettings, VerificationSettings
 from recon4.settings.ingest import IngestSettings
@@ -23,6 +24,7 @@ from recon4.settings.renamed import current_name
 
 __all__ = [
     "PRESETS",
+    "CalibrationSettings",
     "GnssSettings",
     "GraphSettings",
     "IngestSettings",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from recon4.errors import ConfigError
+from recon4.settings.calibration import CalibrationSettings
 from recon4.settings.georeference import GnssSettings, LevelSettings
 from recon4.settings.graph import GraphSettings, VerificationSettings
 from recon4.settings.ingest import IngestSettings
@@ -31,6 +32,7 @@ class Settings:
     planes: PlaneSettings = field(default_factory=PlaneSettings)
     scans: ScanSettings = field(default_factory=ScanSettings)
     odometry: OdometrySettings = field(default_factory=OdometrySettings)
+    calibration: CalibrationSettings = field(default_factory=CalibrationSettings)
     graph: GraphSettings = field(default_factory=GraphSettings)
     verification: VerificationSettings = field(default_factory=VerificationSettings)
     refine: RefineSettings = field(default_factory=RefineSettings)
@@ -47,6 +49,7 @@ PRESETS: dict[str, Settings] = {
         map=MapSettings(voxel_m=0.03, max_range_m=100.0, tile_m=20.0, normal_cell_m=0.15)
     ),
     "thesis": Settings(
+        calibration=CalibrationSettings(mode="off"),
         registration=RegistrationSettings(solver="svd", max_iterations=500),
         odometry=OdometrySettings(
             use_imu=False, use_gnss=False, history=1, history_mode="averaged", line_sd_rad=0.02

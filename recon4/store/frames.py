@@ -15,7 +15,7 @@ import json
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO, Self
@@ -149,32 +149,44 @@ class FrameStore:
     index: NDArray[np.void]
     """`INDEX` records, (N,)."""
     rig: Rig
+    """Of the recording, or calibrated."""
     imu: ImuSamples | None
     gnss: GnssSamples | None
     report: dict[str, Any]
+    recorded: Rig
+    """The rig whose clock offsets are in the files."""
 
     @staticmethod
-    def open(folder: Path) -> FrameStore:
+    def open(folder: Path, rig: Rig | None = None) -> FrameStore:
         """Open what a `FrameWriter` left.
+
+        Args:
+            folder: Where it is.
+            rig: The same sensors with calibrated mounts and clocks; None = the rig of the
+                recording. All times are given by its clocks.
 
         Raises:
             StoreError: If something is missing or the files do not fit each other.
         """
         try:
             index = load_array(folder / "index.npy", INDEX)
-            rig = load_rig(folder / "rig.toml")
+            recorded = load_rig(folder / "rig.toml")
         except (StoreError, ConfigError) as error:
             raise StoreError(f"{folder.name} is not a finished frame store: {error}") from error
         _check_index(folder, index)
         _check_columns(folder, int(index["stop"][-1]) if len(index) else 0)
+        rig = rig or recorded
+        if [sensor.name for sensor in rig.sensors] != [s.name for s in recorded.sensors]:
+            raise StoreError(f"{folder.name}: the calibrated rig has other sensors")
         imu, gnss = folder / "imu.npz", folder / "gnss.npz"
         return FrameStore(
             folder,
             index,
             rig,
-            load_record(imu, ImuSamples) if imu.exists() else None,
-            load_record(gnss, GnssSamples) if gnss.exists() else None,
+            _imu(imu, rig.imu_time_offset_s - recorded.imu_time_offset_s),
+            _gnss(gnss, rig.gnss_time_offset_s - recorded.gnss_time_offset_s),
             _read_report(folder / "report.json"),
+            recorded,
         )
 
     def __len__(self) -> int:
@@ -186,6 +198,8 @@ class FrameStore:
         row = self.index[k]
         start, stop = int(row["start"]), int(row["stop"])
         columns = {name: _map_rows(self.folder, name, start, stop=stop) for name in COLUMNS}
+        if self.rig is not self.recorded:
+            columns["dt_ns"] = columns["dt_ns"] + self._clock_change_ns()[columns["sensor"]]
         return Multiframe(
             int(row["frame_id"]), int(row["t_ns"]), int(row["duration_ns"]), **columns
         )
@@ -194,7 +208,13 @@ class FrameStore:
         return (self[k] for k in range(len(self)))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return FrameStore.open, (self.folder,)
+        return FrameStore.open, (self.folder, self.rig)
+
+    def _clock_change_ns(self) -> NDArray[np.int32]:
+        """How the clock offset of each LiDAR differs from that in the files [ns], (S,)."""
+        pairs = zip(self.rig.sensors, self.recorded.sensors, strict=True)
+        change_s = [new.time_offset_s - old.time_offset_s for new, old in pairs]
+        return np.rint(1e9 * np.array(change_s)).astype(np.int32)
 
     @property
     def t_mid_ns(self) -> Times:
@@ -205,6 +225,20 @@ class FrameStore:
     def points(self) -> int:
         """Points of all multiframes together."""
         return int(self.index["stop"][-1]) if len(self) else 0
+
+
+def _imu(path: Path, change_s: float) -> ImuSamples | None:
+    if not path.exists():
+        return None
+    samples = load_record(path, ImuSamples)
+    return replace(samples, t_ns=samples.t_ns + round(1e9 * change_s)) if change_s else samples
+
+
+def _gnss(path: Path, change_s: float) -> GnssSamples | None:
+    if not path.exists():
+        return None
+    samples = load_record(path, GnssSamples)
+    return replace(samples, t_ns=samples.t_ns + round(1e9 * change_s)) if change_s else samples
 
 
 def _shape(name: str, rows: int) -> tuple[int, ...]:

@@ -176,8 +176,8 @@ def _process(recording: Path, work: Path) -> tuple[Mapping[str, StageRun[Any]], 
     with Project.open(work) as project:
         project.describe(preset=name, rig=rig.name, inputs=[])
         runner = StageRunner(project, settings, Silent())
-        frames, odometry, graph = run_before_review(runner, _inputs(recording, rig))
-        run_trajectory(runner, frames=frames, odometry=odometry, graph=graph)
+        measurements, odometry, graph = run_before_review(runner, _inputs(recording, rig))
+        run_trajectory(runner, measurements, odometry=odometry, graph=graph)
         about = About({"name": recording.name, "preset": name, "inputs": []}, settings)
         return runner.runs, assess(report_facts(runner.runs, about, created="")).verdict
 

@@ -17,18 +17,18 @@ from app.viewer.cloud.preview import JobPreview
 from app.viewer.scene.build import Content, GnssMarks
 from app.viewer.scene.layers import EdgeTable
 from app.viewer.scene.live import JobWatch
+from recon4.calibration.rig_file import open_frames
 from recon4.errors import Recon4Error
 from recon4.geometry.se3 import Array
 from recon4.model.rig import load_rig
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
 from recon4.store.arrays import load_trajectory
-from recon4.store.frames import FrameStore
 from recon4.store.project import read_artifacts
 
 log = logging.getLogger(__name__)
 
-TRAJECTORY_STAGES = ("level", "refine", "carried")
+TRAJECTORY_STAGES = ("level", "refine")
 GRAPH_STAGES = ("level", "review", "verification", "graph")
 """Stages with these artifacts, the last one first."""
 SHOWN_WHILE_RUNNING = {"frames": (), "odometry": ("frames",), "graph": ("frames", "odometry")}
@@ -107,7 +107,12 @@ class ProjectSource:
         trajectory = self._trajectory(TRAJECTORY_STAGES) or odometry
         georeference = self._georeference()
         cloud = self._cloud(trajectory)
-        frames = self._of_stage("frames", lambda path: Multiframes(FrameStore.open(path)))
+        calibration = self._artifacts.get("calibration")
+        frames = self._of_stage(
+            "frames",
+            lambda path: Multiframes(open_frames(path, calibration)),
+            name=f"frames {calibration}",
+        )
         return Content(
             cloud=cloud,
             trajectory=trajectory,

@@ -1,0 +1,132 @@
+"""What an estimate says of each parameter: consistent with the rig file, off, or not observable."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.calibration.joint import JointEstimate
+from recon4.calibration.parameters import Parameter, Unit
+from recon4.model.figures import ParameterFigures, ParameterStatus
+
+_SIGMAS = 3.0
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Limits of one kind of parameter, in its unit."""
+
+    tolerance: float
+    """A smaller change is no reason to calibrate."""
+    observable_sd: float
+    """With a larger standard deviation the parameter counts as not observable."""
+
+
+_LIMITS: dict[Unit, Limits] = {
+    "rad": Limits(float(np.deg2rad(0.1)), float(np.deg2rad(0.1))),
+    "m": Limits(0.01, 0.01),
+    "s": Limits(1e-3, 1e-3),
+}
+_SEVERE: dict[str, float] = {"rad": float(np.deg2rad(0.5)), "m": 0.03, "s": 0.01}
+"""Larger changes make walls double: the map must not be used."""
+_SHOWN: dict[Unit, tuple[float, str]] = {
+    "rad": (float(np.rad2deg(1.0)), "°"),
+    "m": (100.0, " cm"),
+    "s": (1e3, " ms"),
+}
+
+
+def judge(
+    estimate: JointEstimate, *, not_observable: NDArray[np.bool_] | None = None
+) -> tuple[ParameterFigures, ...]:
+    """One row for each parameter.
+
+    Args:
+        estimate: The estimate.
+        not_observable: Parameters that kept their values because the walk does not show them, (P,).
+    """
+    kept = np.zeros(len(estimate.sd), bool) if not_observable is None else not_observable
+    sd = np.where(kept, np.inf, estimate.sd)
+    rows = zip(estimate.parameters.listed, estimate.change, sd, strict=True)
+    return tuple(
+        ParameterFigures(
+            sensor=parameter.sensor,
+            quantity=parameter.quantity,
+            axis=parameter.axis,
+            unit=parameter.unit,
+            change=float(change),
+            sd=float(sd_of_row) if np.isfinite(sd_of_row) else None,
+            status=_status(float(change), float(sd_of_row), parameter),
+        )
+        for parameter, change, sd_of_row in rows
+    )
+
+
+def _status(change: float, sd: float, parameter: Parameter) -> ParameterStatus:
+    limits = _LIMITS[parameter.unit]
+    if abs(change) > max(_SIGMAS * sd, limits.tolerance):
+        return "off"
+    return "consistent" if sd <= limits.observable_sd else "not observable"
+
+
+def is_severe(rows: Sequence[ParameterFigures]) -> bool:
+    """Whether the map that was made with such a rig must not be used."""
+    return any(row.status == "off" and abs(row.change) > _SEVERE[row.unit] for row in rows)
+
+
+def contradictions(rows: Sequence[ParameterFigures], *, applied: bool = False) -> tuple[str, ...]:
+    """A sentence for each sensor that is not where, or when, the rig file says.
+
+    Args:
+        rows: What the recording says of the parameters.
+        applied: Whether the calibrated rig is used.
+    """
+    sensors = dict.fromkeys(row.sensor for row in rows if row.status == "off")
+    advice = (
+        "The calibrated rig is used for this map."
+        if applied
+        else "Calibrate the rig (recon4 calibrate)."
+    )
+    return tuple(
+        f"{_sentence(name, [row for row in rows if row.sensor == name])} {advice}"
+        for name in sensors
+    )
+
+
+def _sentence(sensor: str, rows: Sequence[ParameterFigures]) -> str:
+    parts = [part for quantity in ("rotation", "position") for part in _vector(rows, quantity)]
+    parts += [
+        f"its clock by {_amount(row)}" for row in rows
+        if row.quantity == "clock" and row.status == "off"
+    ]  # fmt: skip
+    name = "IMU" if sensor == "imu" else f"LiDAR {sensor!r}"
+    return (
+        f"The rig file contradicts the recording: the {name} differs from it by "
+        f"{' and '.join(parts)}."
+    )
+
+
+def _vector(rows: Sequence[ParameterFigures], quantity: str) -> list[str]:
+    """``1.36° ± 0.02° (rotation, mostly about y)``, if any axis is off."""
+    of_kind = [row for row in rows if row.quantity == quantity]
+    if not any(row.status == "off" for row in of_kind):
+        return []
+    change = np.array([row.change for row in of_kind])
+    length = float(np.linalg.norm(change))
+    sd_of_axes = np.array([row.sd or 0.0 for row in of_kind])
+    sd = float(np.linalg.norm(change / length * sd_of_axes))
+    main = of_kind[int(np.argmax(np.abs(change)))]
+    factor, unit = _SHOWN[main.unit]
+    relation = "about" if quantity == "rotation" else "along"
+    return [
+        f"{length * factor:.2f}{unit} ± {sd * factor:.2f}{unit} "
+        f"({quantity}, mostly {relation} {main.axis})"
+    ]
+
+
+def _amount(row: ParameterFigures) -> str:
+    factor, unit = _SHOWN[row.unit]
+    return f"{row.change * factor:.1f}{unit} ± {(row.sd or 0.0) * factor:.1f}{unit}"

@@ -1,0 +1,37 @@
+"""Settings of the stage `calibration`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from recon4.settings.require import require
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CalibrationSettings:
+    """Audit of the rig file against the recording, and its calibration (requirements A2)."""
+
+    mode: Literal["audit", "auto", "off"] = "audit"
+    """``audit`` compares the rig file with the recording and warns; ``auto`` also calibrates it and
+    uses the calibrated rig, if windows that were not used confirm it."""
+    sensors: str = ""
+    """Names of the LiDARs to calibrate and ``imu``, separated by commas; empty = all of them."""
+    reference: str = ""
+    """Name of the LiDAR whose mount and clock stay; empty = the first one that is enabled."""
+    audit_windows: int = 4
+    """Largest number of windows of the walk that are compared in an audit."""
+    audit_window_s: float = 4.0
+    """Length of each [s]."""
+    windows: int = 8
+    """Largest number of windows for a calibration; as many others confirm it."""
+    window_s: float = 6.0
+    """Length of each [s]."""
+
+    def __post_init__(self) -> None:
+        for name in ("audit_windows", "windows"):
+            value = getattr(self, name)
+            require(1 <= value <= 100, f"{name} must be 1 to 100", value)
+        for name in ("audit_window_s", "window_s"):
+            seconds = getattr(self, name)
+            require(1.0 <= seconds <= 20.0, f"{name} must be 1 to 20", seconds)
