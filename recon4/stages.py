@@ -245,7 +245,7 @@ def _map(
 FRAMES = Stage("frames", 5, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    9,
+    10,
     ("segments", "registration", "planes", "scans", "odometry"),
     _odometry,
     OdometryFigures,

@@ -15,12 +15,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.geometry.se3 import SE3, Array
+from recon4.geometry.se3 import SE3, TRANSLATION, Array
 from recon4.kernels.imu import place_points
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.registration.motion import Prediction
 from recon4.registration.plane_map import Match, PlaneMap
+from recon4.registration.state import END_POSE, START
 from recon4.settings import PlaneSettings
 
 _NEAR_M, _NEAR_STRIDE = 2.5, 4
@@ -37,6 +38,9 @@ _MIN_INCIDENCE = 0.25
 edge, its points span the plane of the ring itself, which moves with the sensor: a false plane, but
 one that contains the line of sight."""
 _MAX_POINTS = 1500
+_SCALE = 0.2
+"""Fraction of the points that counts as independent; more of them hold the odometry to errors of
+their map."""
 _GATE_M = 0.3
 """Largest distance from its plane of a point that is chosen [m]."""
 _RADIUS_M = 120.0
@@ -162,6 +166,7 @@ class WeakDirections:
     ) -> None:
         self._map, self._points, self._max_eigenvalue = point_map, points, max_eigenvalue
         self._t_s, self._center = prediction.t_s, prediction.T_odom_body.t[-1]
+        self._weak: Array = np.empty((0, 3))
         self._chosen: FramePoints | None = None
 
     def pull(
@@ -176,10 +181,10 @@ class WeakDirections:
             T_odom_body: Poses of the body at the times of the prediction, (K,).
         """
         if rounds in self._CHOSEN_IN:
-            weak = segments.weak_directions(self._max_eigenvalue)
+            self._weak = segments.weak_directions(self._max_eigenvalue)
             self._chosen = (
-                self._map.choose(self._points(), self._t_s, T_odom_body, weak=weak)
-                if len(weak)
+                self._map.choose(self._points(), self._t_s, T_odom_body, weak=self._weak)
+                if len(self._weak)
                 else None
             )
         if self._chosen is None or not len(self._chosen):
@@ -187,4 +192,18 @@ class WeakDirections:
         match = self._map.match(
             self._chosen, self._t_s, T_odom_body, center=self._center, gate_m=gate_m
         )
-        return match.H, match.g
+        only = _along(self._weak)
+        return _SCALE * (only @ match.H @ only), _SCALE * (only @ match.g)
+
+
+def _along(directions: Array) -> Array:
+    """Projection of the poses at start and end on shifts along unit directions (M, 3), (12, 12).
+
+    Points must not turn the body: the segments observe its rotation better, and a map that is
+    remembered for long would hold on to an old error of the heading.
+    """
+    out = np.zeros((12, 12))
+    for pose in (START, END_POSE):
+        first = pose.start + TRANSLATION.start
+        out[first : first + 3, first : first + 3] = directions.T @ directions
+    return out

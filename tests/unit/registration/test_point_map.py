@@ -7,7 +7,7 @@ import pytest
 
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.registration.odometry import Odometry
-from recon4.registration.point_map import FramePoints, PointMap, frame_points
+from recon4.registration.point_map import FramePoints, PointMap, WeakDirections, frame_points
 from recon4.settings import PlaneSettings, Settings, override
 from tests import scanned_room
 from tests.scanned_room import RIG, scan, standing, walk
@@ -100,6 +100,29 @@ def test_only_points_on_surfaces_that_face_the_weak_direction_are_chosen():
 
     assert len(found) >= 45
     assert (found[:, 0] > 29.0).all()
+
+
+def test_points_shift_the_body_along_weak_directions_but_never_turn_it(corridor):
+    odometry = Odometry(corridor.rig, Settings(), corridor.imu)
+    pulls = []
+    original = WeakDirections.pull
+
+    def recorded(self, segments, *args, **kwargs):
+        H, g = original(self, segments, *args, **kwargs)
+        pulls.append((H, g, segments.weak_directions(Settings().odometry.weak_eigenvalue)))
+        return H, g
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(WeakDirections, "pull", recorded)
+        for k in range(40):
+            odometry.push(corridor[k])
+    pulled = [(H, g, weak) for H, g, weak in pulls if np.any(g)]
+    assert pulled
+    for H, g, weak in pulled[-20:]:
+        shift = np.kron(np.eye(2), np.diag([0, 0, 0, 1, 1, 1]))
+        np.testing.assert_array_equal(shift @ H @ shift, H)
+        across = np.eye(3) - weak.T @ weak
+        np.testing.assert_allclose(across @ g[3:6], 0.0, atol=1e-6 * np.abs(g).max())
 
 
 def test_the_plane_that_one_ring_spans_is_no_surface():
