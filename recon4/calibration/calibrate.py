@@ -190,7 +190,7 @@ def _known_errors(parameters: Parameters) -> Array:
 
 
 def _not_observable(first: JointEstimate, second: JointEstimate | None) -> NDArray[np.bool_]:
-    """Parameters to leave as they are: not different, and a known error might not be found, (P,)."""
+    """Parameters that keep their values: not different, and known errors may be missed, (P,)."""
     if second is None:
         return np.zeros(len(first.parameters), dtype=bool)
     limit = np.abs(_known_errors(first.parameters))

@@ -80,7 +80,7 @@ def info(
 
 
 @app.command()
-def process(
+def process(  # noqa: PLR0913 - an argument for each option
     recordings: Annotated[list[Path], typer.Argument(help="pcap, bag or folder of clouds.")],
     *,
     out: Annotated[Path, typer.Option(help="Project folder; the results end up in it.")],

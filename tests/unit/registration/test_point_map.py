@@ -109,7 +109,7 @@ def test_points_shift_the_body_along_weak_directions_but_never_turn_it(corridor)
 
     def recorded(self, segments, *args, **kwargs):
         H, g = original(self, segments, *args, **kwargs)
-        pulls.append((H, g, segments.weak_directions(Settings().odometry.weak_eigenvalue)))
+        pulls.append((H, g, self._weak))
         return H, g
 
     with pytest.MonkeyPatch.context() as patch:
