@@ -11,6 +11,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from recon4.kernels.moments import add_point
+
 EMPTY = np.int64(-1)
 DIRTY, PLANE, NO_PLANE = np.uint8(0), np.uint8(1), np.uint8(2)
 MIN_POINTS, MAX_SD, MIN_EXTENT, MAX_RATIO, MIN_BATCHES = range(5)
@@ -77,16 +79,7 @@ def add_points(
             y -= (np.floor(y / size) + 0.5) * size
             z -= (np.floor(z / size) + 0.5) * size
             s = sums[row]
-            s[0] += sign
-            s[1] += sign * x
-            s[2] += sign * y
-            s[3] += sign * z
-            s[4] += sign * x * x
-            s[5] += sign * x * y
-            s[6] += sign * x * z
-            s[7] += sign * y * y
-            s[8] += sign * y * z
-            s[9] += sign * z * z
+            add_point(s, sign, x, y, z)
             if s[_NEWEST] != batch:
                 s[_NEWEST] = batch
                 s[BATCHES] += 1.0
