@@ -20,14 +20,23 @@ from recon4.settings.registration import (
     SegmentSettings,
 )
 from recon4.settings.renamed import current_name
+from recon4.settings.slam2d import (
+    Grid2dSettings,
+    HectorSettings,
+    Loop2dSettings,
+    Slam2dSettings,
+)
 
 __all__ = [
     "PRESETS",
     "GnssSettings",
     "GraphSettings",
+    "Grid2dSettings",
+    "HectorSettings",
     "IngestSettings",
     "IntensitySettings",
     "LevelSettings",
+    "Loop2dSettings",
     "MapSettings",
     "OdometrySettings",
     "OverlapSettings",
@@ -37,6 +46,7 @@ __all__ = [
     "ScanSettings",
     "SegmentSettings",
     "Settings",
+    "Slam2dSettings",
     "VerificationSettings",
     "canonical",
     "current_name",
