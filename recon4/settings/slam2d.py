@@ -101,8 +101,11 @@ class Loop2dSettings:
     """… plus this ratio of the path between them, to allow for drift."""
     drift_rad_m: float = 0.002
     """Drift of the rotation [rad] per meter of that path."""
-    search_m: tuple[float, ...] = (1.0, 2.0, 4.0, 8.0, 15.0)
-    """Largest uncertainty of the candidates of each round [m]; the most certain are tried first."""
+    first_search_m: float = 1.0
+    """Largest uncertainty of the candidates of the first round [m]: the most certain are tried
+    first, and the limit is doubled from round to round …"""
+    last_search_m: float = 16.0
+    """… up to this [m]."""
     source_stride: int = 3
     """Every n-th node searches for revisits."""
     source_reach: int = 4
@@ -132,6 +135,8 @@ class Loop2dSettings:
         for name in ("source_stride", "target_stride", "target_reach", "revisits"):
             value = getattr(self, name)
             require(value >= 1, f"{name} must be 1 or more", value)
+        require(self.first_search_m > 0.0, "first_search_m must be above 0", self.first_search_m)
+        require(self.drift_ratio > 0.0, "drift_ratio must be above 0", self.drift_ratio)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -54,17 +54,19 @@ def close_loops(
         return graph
     registrar = SubmapRegistrar(keyframes, settings=settings, loops=loops)
     tried: dict[Pair, Array] = {}
-    for most_m in loops.search_m:
-        while True:
-            found = list(candidates(graph, keyframes, settings=loops, most_m=most_m))
-            new = [pair for pair in found if _is_new(pair, graph, tried)]
-            edges = list(registrar.register(new, graph, progress=progress))
-            for pair in new:
-                tried[pair.target, pair.source] = _predicted(graph, pair)
-            graph = _with_latest(graph, edges)
-            if not any(edge.in_graph for edge in edges):
-                break
+    most_m = loops.first_search_m
+    while most_m <= loops.last_search_m:
+        found = candidates(graph, keyframes, settings=loops, most_m=most_m)
+        new = [pair for pair in found if _is_new(pair, graph, tried)]
+        edges = list(registrar.register(new, graph, progress=progress))
+        for pair in new:
+            tried[pair.target, pair.source] = _predicted(graph, pair)
+        graph = _with_latest(graph, edges)
+        if any(edge.in_graph for edge in edges):
+            # The same limit again: loop closures make further pairs certain enough.
             graph = graph.with_poses(optimize(graph, kernel="cauchy").T_map_body)
+        else:
+            most_m *= 2.0
     return graph
 
 

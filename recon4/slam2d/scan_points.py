@@ -12,7 +12,7 @@ from recon4.model.laser_scans import LaserScans
 from recon4.settings.slam2d import Slam2dSettings
 
 _SPACING_M = 0.05
-"""Neighboring returns closer than this share the weight of one [m]."""
+"""Neighboring returns closer than this have less weight each [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
