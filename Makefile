@@ -23,7 +23,7 @@ PYTHON ?= $(shell for python in python3 python3.13 python3.12 python3.11; do \
 	$$python -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))' 2>/dev/null \
 	&& echo $$python && break; done)
 export PYTHON
-# Else the interpreters that tests start, hundreds, compile recon4 anew each.
+# Else each of the hundreds of interpreters that tests start compiles recon4 again.
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: demo test format lint types unit web e2e bench docs constraints lock audit sbom clean

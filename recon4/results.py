@@ -251,12 +251,7 @@ def export_map(
     artifacts = read_artifacts(project)
     if "map" not in artifacts:
         raise StoreError(f"{project} has no map yet: run recon4 process")
-    ending = path.suffix.lower()
-    if ending not in (".laz", ".ply"):
-        raise ConfigError(f"a map is written as .laz or .ply, got {path.name}")
-    if strays and ending != ".laz":
-        raise ConfigError(f"stray returns are written to .laz only, got {path.name}")
-    check_name(path, ending)
+    ending = _ending_of_map(path, strays=strays)
     approval = approval_of(project, {name: folder.name for name, folder in artifacts.items()})
     checked = None
     if approval:
@@ -278,6 +273,21 @@ def export_map(
         if approval:
             stamp_file(temporary, temporary, approval.stamp)
     return count
+
+
+def _ending_of_map(path: Path, *, strays: bool) -> str:
+    """Ending of a file that can hold a map.
+
+    Raises:
+        ConfigError: If no map is written to such a file.
+    """
+    ending = path.suffix.lower()
+    if ending not in (".laz", ".ply"):
+        raise ConfigError(f"a map is written as .laz or .ply, got {path.name}")
+    if strays and ending != ".laz":
+        raise ConfigError(f"stray returns are written to .laz only, got {path.name}")
+    check_name(path, ending)
+    return ending
 
 
 def export_poses(project: Path, path: Path) -> int:

@@ -6,8 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-_LINE = 1e-3
-"""Middle over largest eigenvalue below which points lie on a line and have no normal."""
+from recon4.kernels.moments import MOMENTS, add_moved, add_point, smallest_eigenvector
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -88,17 +87,7 @@ def cell_moments(
             cz = (low[2] + k + 0.5) * cell_m
         p = order[n] & mask
         x, y, z = xyz[p, 0] - cx, xyz[p, 1] - cy, xyz[p, 2] - cz
-        m = moments[count]
-        m[0] += 1.0
-        m[1] += x
-        m[2] += y
-        m[3] += z
-        m[4] += x * x
-        m[5] += x * y
-        m[6] += x * z
-        m[7] += y * y
-        m[8] += y * z
-        m[9] += z * z
+        add_point(moments[count], 1.0, x, y, z)
     return count + 1
 
 
@@ -124,8 +113,9 @@ def window_normals(
         counts: Receives the points of the window, int32 (C,).
     """
     rows = np.zeros(9, np.int64)
+    total = np.zeros(MOMENTS)
     for c in range(len(cells)):
-        n = sx = sy = sz = xx = xy = xz = yy = yz = zz = 0.0
+        total[:] = 0.0
         for dk in range(-1, 2):
             for dj in range(-1, 2):
                 first = cells[c] + (dk * shape[1] + dj) * shape[0] - 1
@@ -135,68 +125,21 @@ def window_normals(
                     row += 1
                 rows[3 * dk + dj + 4] = row
                 while row < len(cells) and cells[row] <= first + 2:
-                    m = moments[row]
                     dx = (cells[row] - first - 1) * cell_m
-                    dy, dz = dj * cell_m, dk * cell_m
+                    add_moved(total, moments[row], dx, dj * cell_m, dk * cell_m)
                     row += 1
-                    n += m[0]
-                    sx += m[1] + m[0] * dx
-                    sy += m[2] + m[0] * dy
-                    sz += m[3] + m[0] * dz
-                    xx += m[4] + 2.0 * dx * m[1] + m[0] * dx * dx
-                    xy += m[5] + dx * m[2] + dy * m[1] + m[0] * dx * dy
-                    xz += m[6] + dx * m[3] + dz * m[1] + m[0] * dx * dz
-                    yy += m[7] + 2.0 * dy * m[2] + m[0] * dy * dy
-                    yz += m[8] + dy * m[3] + dz * m[2] + m[0] * dy * dz
-                    zz += m[9] + 2.0 * dz * m[3] + m[0] * dz * dz
+        n, sx, sy, sz = total[0], total[1], total[2], total[3]
         counts[c] = np.int32(n)
         normals[c, :] = 0.0
         if n < min_points:
             continue
-        a, b, d = xx / n - (sx / n) ** 2, yy / n - (sy / n) ** 2, zz / n - (sz / n) ** 2
-        e = xy / n - sx * sy / (n * n)
-        f = xz / n - sx * sz / (n * n)
-        g = yz / n - sy * sz / (n * n)
-        smallest_eigenvector(a, b, d, e, f, g, normals[c])
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def smallest_eigenvector(
-    a: float, b: float, d: float, e: float, f: float, g: float, out: NDArray[np.floating]
-) -> None:
-    """Unit eigenvector of the smallest eigenvalue of ``[[a e f] [e b g] [f g d]]``.
-
-    Eigenvalues by the trigonometric solution of the cubic (Smith 1961), the vector as the largest
-    cross product of two rows of ``A - lambda I``. For points on a line or at one position ``out``
-    is unchanged.
-    """
-    mean = (a + b + d) / 3.0
-    off = e * e + f * f + g * g
-    p = np.sqrt(((a - mean) ** 2 + (b - mean) ** 2 + (d - mean) ** 2 + 2.0 * off) / 6.0)
-    if not p > 1e-12:
-        return
-    a0, b0, d0 = (a - mean) / p, (b - mean) / p, (d - mean) / p
-    e0, f0, g0 = e / p, f / p, g / p
-    half = 0.5 * (a0 * (b0 * d0 - g0 * g0) - e0 * (e0 * d0 - g0 * f0) + f0 * (e0 * g0 - b0 * f0))
-    angle = np.arccos(min(1.0, max(-1.0, half))) / 3.0
-    largest = mean + 2.0 * p * np.cos(angle)
-    smallest = mean + 2.0 * p * np.cos(angle + 2.0 * np.pi / 3.0)
-    if 3.0 * mean - largest - smallest < _LINE * largest:
-        return
-    a, b, d = a - smallest, b - smallest, d - smallest
-    best = 0.0
-    for rows in range(3):
-        if rows == 0:
-            x, y, z = e * g - f * b, f * e - a * g, a * b - e * e
-        elif rows == 1:
-            x, y, z = e * d - f * g, f * f - a * d, a * g - e * f
-        else:
-            x, y, z = b * d - g * g, g * f - e * d, e * g - b * f
-        norm = x * x + y * y + z * z
-        if norm > best:
-            best = norm
-            scale = 1.0 / np.sqrt(norm)
-            out[0], out[1], out[2] = x * scale, y * scale, z * scale
+        a, b, d = total[4] / n, total[7] / n, total[9] / n
+        a, b, d = a - (sx / n) ** 2, b - (sy / n) ** 2, d - (sz / n) ** 2
+        e = total[5] / n - sx * sy / (n * n)
+        f = total[6] / n - sx * sz / (n * n)
+        g = total[8] / n - sy * sz / (n * n)
+        x, y, z, _, _, _ = smallest_eigenvector(a, b, d, e, f, g, 1e-12)
+        normals[c, 0], normals[c, 1], normals[c, 2] = x, y, z
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

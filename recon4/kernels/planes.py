@@ -11,6 +11,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from recon4.kernels.moments import add_point
+
 EMPTY = np.int64(-1)
 DIRTY, PLANE, NO_PLANE = np.uint8(0), np.uint8(1), np.uint8(2)
 MIN_POINTS, MAX_SD, MIN_EXTENT, MAX_RATIO, MIN_BATCHES = range(5)
@@ -77,16 +79,7 @@ def add_points(
             y -= (np.floor(y / size) + 0.5) * size
             z -= (np.floor(z / size) + 0.5) * size
             s = sums[row]
-            s[0] += sign
-            s[1] += sign * x
-            s[2] += sign * y
-            s[3] += sign * z
-            s[4] += sign * x * x
-            s[5] += sign * x * y
-            s[6] += sign * x * z
-            s[7] += sign * y * y
-            s[8] += sign * y * z
-            s[9] += sign * z * z
+            add_point(s, sign, x, y, z)
             if s[_NEWEST] != batch:
                 s[_NEWEST] = batch
                 s[BATCHES] += 1.0
@@ -234,6 +227,38 @@ def fit_all(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _finest_planes(
+    keys: NDArray[np.int64],
+    sums: NDArray[np.float64],
+    fits: NDArray[np.float64],
+    state: NDArray[np.uint8],
+    sizes: NDArray[np.float64],
+    criteria: NDArray[np.float64],
+    q: NDArray[np.float64],
+    finest: int,
+) -> NDArray[np.int64]:
+    """Row of the finest cube with a plane around each point (N, 3), `EMPTY` = none, (N,).
+
+    Cubes that changed since they were fitted are fitted first. All points at once: a call for each
+    would count references to six arrays, which takes as long as the search.
+    """
+    work = np.empty((7, 3))
+    rows = np.full(len(q), EMPTY, np.int64)
+    for k in range(len(q)):
+        for level in range(finest, len(sizes)):
+            key = _key(level, q[k, 0], q[k, 1], q[k, 2], sizes[level])
+            row = _slot(keys, key)
+            if keys[row] == EMPTY:
+                continue
+            if state[row] == DIRTY:
+                state[row] = _fit(key, sums[row], sizes[level], criteria, fits[row], work)
+            if state[row] == PLANE:
+                rows[k] = row
+                break
+    return rows
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def normals(
     keys: NDArray[np.int64],
     sums: NDArray[np.float64],
@@ -246,22 +271,14 @@ def normals(
     out: NDArray[np.float64],
 ) -> None:
     """Normals of the finest planes at points (N, 3), written to ``out`` (N, 3)."""
-    work = np.empty((7, 3))
+    rows = _finest_planes(keys, sums, fits, state, sizes, criteria, q, 0)
     for k in range(len(q)):
-        for level in range(len(sizes)):
-            key = _key(level, q[k, 0], q[k, 1], q[k, 2], sizes[level])
-            row = _slot(keys, key)
-            if keys[row] == EMPTY:
-                continue
-            if state[row] == DIRTY:
-                state[row] = _fit(key, sums[row], sizes[level], criteria, fits[row], work)
-            if state[row] != PLANE:
-                continue
-            f = fits[row]
-            r = f[3] * (q[k, 0] - f[0]) + f[4] * (q[k, 1] - f[1]) + f[5] * (q[k, 2] - f[2])
-            if abs(r) <= gate:
-                out[k, 0], out[k, 1], out[k, 2] = f[3], f[4], f[5]
-            break
+        if rows[k] == EMPTY:
+            continue
+        f = fits[rows[k]]
+        r = f[3] * (q[k, 0] - f[0]) + f[4] * (q[k, 1] - f[1]) + f[5] * (q[k, 2] - f[2])
+        if abs(r) <= gate:
+            out[k, 0], out[k, 1], out[k, 2] = f[3], f[4], f[5]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -299,7 +316,7 @@ def accumulate(
     Returns:
         Number of matches, sum of absolute distances, sum of w r², and the sum of n n^T (3, 3).
     """
-    work = np.empty((7, 3))
+    rows = _finest_planes(keys, sums, fits, state, sizes, criteria, q, finest)
     J = np.empty(6)
     H6b = np.zeros((6, 6))
     H6m = np.zeros((6, 6))
@@ -310,47 +327,39 @@ def accumulate(
     chi2 = 0.0
     for k in range(len(q)):
         residual[k] = np.nan
-        for level in range(finest, len(sizes)):
-            key = _key(level, q[k, 0], q[k, 1], q[k, 2], sizes[level])
-            row = _slot(keys, key)
-            if keys[row] == EMPTY:
-                continue
-            if state[row] == DIRTY:
-                state[row] = _fit(key, sums[row], sizes[level], criteria, fits[row], work)
-            if state[row] != PLANE:
-                continue
-            f = fits[row]
-            dx, dy, dz = q[k, 0] - f[0], q[k, 1] - f[1], q[k, 2] - f[2]
-            r = f[3] * dx + f[4] * dy + f[5] * dz
-            if abs(r) > gate:
-                break
-            inplane_sq = dx * dx + dy * dy + dz * dz - r * r
-            var = point_var + f[6] / f[8] * (1.0 + inplane_sq / f[7])
-            w = 1.0 / (var * (1.0 + (r / kernel) ** 2))
-            bx, by, bz = q[k, 0] - center[0], q[k, 1] - center[1], q[k, 2] - center[2]
-            J[0] = by * f[5] - bz * f[4]
-            J[1] = bz * f[3] - bx * f[5]
-            J[2] = bx * f[4] - by * f[3]
-            J[3], J[4], J[5] = f[3], f[4], f[5]
-            s = fraction[k]
-            wb, wm, we = w * (1.0 - s) * (1.0 - s), w * s * (1.0 - s), w * s * s
-            for i in range(6):
-                ji = J[i]
-                for j in range(i, 6):
-                    jj = ji * J[j]
-                    H6b[i, j] += wb * jj
-                    H6m[i, j] += wm * jj
-                    H6e[i, j] += we * jj
-                g[i] += w * (1.0 - s) * ji * r
-                g[6 + i] += w * s * ji * r
-            for i in range(3):
-                for j in range(3):
-                    normals[i, j] += f[3 + i] * f[3 + j]
-            residual[k] = r
-            matches += 1
-            total += abs(r)
-            chi2 += w * r * r
-            break
+        if rows[k] == EMPTY:
+            continue
+        f = fits[rows[k]]
+        dx, dy, dz = q[k, 0] - f[0], q[k, 1] - f[1], q[k, 2] - f[2]
+        r = f[3] * dx + f[4] * dy + f[5] * dz
+        if abs(r) > gate:
+            continue
+        inplane_sq = dx * dx + dy * dy + dz * dz - r * r
+        var = point_var + f[6] / f[8] * (1.0 + inplane_sq / f[7])
+        w = 1.0 / (var * (1.0 + (r / kernel) ** 2))
+        bx, by, bz = q[k, 0] - center[0], q[k, 1] - center[1], q[k, 2] - center[2]
+        J[0] = by * f[5] - bz * f[4]
+        J[1] = bz * f[3] - bx * f[5]
+        J[2] = bx * f[4] - by * f[3]
+        J[3], J[4], J[5] = f[3], f[4], f[5]
+        s = fraction[k]
+        wb, wm, we = w * (1.0 - s) * (1.0 - s), w * s * (1.0 - s), w * s * s
+        for i in range(6):
+            ji = J[i]
+            for j in range(i, 6):
+                jj = ji * J[j]
+                H6b[i, j] += wb * jj
+                H6m[i, j] += wm * jj
+                H6e[i, j] += we * jj
+            g[i] += w * (1.0 - s) * ji * r
+            g[6 + i] += w * s * ji * r
+        for i in range(3):
+            for j in range(3):
+                normals[i, j] += f[3 + i] * f[3 + j]
+        residual[k] = r
+        matches += 1
+        total += abs(r)
+        chi2 += w * r * r
     for i in range(6):
         for j in range(6):
             lo, hi = min(i, j), max(i, j)

@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from recon4.kernels.normals import smallest_eigenvector
+from recon4.kernels.moments import smallest_eigenvector
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -30,16 +30,16 @@ def neighbor_normals(
             xx, yy, zz = xx + x * x, yy + y * y, zz + z * z
             xy, xz, yz = xy + x * y, xz + x * z, yz + y * z
         n = 1.0 / count
-        normals[k, :] = 0.0
-        smallest_eigenvector(
+        x, y, z, _, _, _ = smallest_eigenvector(
             xx * n - sx * sx * n * n,
             yy * n - sy * sy * n * n,
             zz * n - sz * sz * n * n,
             xy * n - sx * sy * n * n,
             xz * n - sx * sz * n * n,
             yz * n - sy * sz * n * n,
-            normals[k],
+            1e-12,
         )
+        normals[k, 0], normals[k, 1], normals[k, 2] = x, y, z
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

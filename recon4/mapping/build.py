@@ -66,13 +66,10 @@ def build_map(
     grid = Grid.of(settings)
     t_ns = np.array([frames[k].t_ns for k in range(len(frames))], dtype=np.int64)
     recipe = Recipe(grid, settings, intensity, t_ns)
-    left_out = set() if intensity else {"intensity_normalized"}
-    left_out |= set(SURFACE_FIELDS) if settings.surface == "raw" else set()
-    fields = [name for name in FIELDS if name not in left_out]
     with (
         TemporaryDirectory(dir=out, prefix="buckets-") as folder,
         ThreadPoolExecutor(WORKERS) as pool,
-        TileWriter(out, fields, tile_m=grid.tile_m) as writer,
+        TileWriter(out, _fields(recipe), tile_m=grid.tile_m) as writer,
     ):
         buckets = TileBuckets(Path(folder), grid, burst=burst)
         _distribute(frames, trajectory, buckets, settings=settings, pool=pool, progress=progress)
@@ -86,6 +83,13 @@ def build_map(
     made = TileSet.open(out)
     progress.event(MapBuilt(points=len(made), removed=dict(removed)))
     return made
+
+
+def _fields(recipe: Recipe) -> list[str]:
+    """Fields of the map, in their order: some need an intensity table or fitted surfaces."""
+    left_out = set() if recipe.intensity else {"intensity_normalized"}
+    left_out |= set(SURFACE_FIELDS) if recipe.settings.surface == "raw" else set()
+    return [name for name in FIELDS if name not in left_out]
 
 
 def _distribute(

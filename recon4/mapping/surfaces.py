@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.kernels import surfaces as kernels
+from recon4.kernels import surface_cells, surface_points, surface_slots, surface_windows
+from recon4.kernels.moments import MOMENTS
+from recon4.kernels.surface_cells import PLANE, SLOTS
 from recon4.mapping.grid import Grid
 from recon4.mapping.records import Records, to_sensor_m
 
@@ -65,27 +67,27 @@ def fit_surfaces(
     weight = records["returns"].astype(np.float32)
     found = _cells(xyz, grid)
     means = np.empty_like(xyz)
-    kernels.means_of_voxels(xyz, records["returns"].copy(), grid.voxel_m, means)
+    surface_cells.means_of_voxels(xyz, records["returns"].copy(), grid.voxel_m, means)
     step = (found.cells, found.where, grid.side_cells)
     planes = _window_planes((means, to_sensor, weight), found, normals, grid=grid, noise_m=noise_m)
-    slots = np.empty((len(found.cells), kernels.SLOTS, kernels.PLANE))
+    slots = np.empty((len(found.cells), SLOTS, PLANE))
     slot_of = np.empty(len(xyz), np.uint8)
-    kernels.choose_planes(
+    surface_slots.choose_planes(
         means, to_sensor, weight, found.starts, *step, grid.cell_m, planes, ROUND_GATE, MIN_SUPPORT,
         slots, slot_of,
     )  # fmt: skip
-    moments = np.empty((len(found.cells), kernels.SLOTS, kernels.MOMENTS))
-    kernels.slot_moments(
+    moments = np.empty((len(found.cells), SLOTS, MOMENTS))
+    surface_slots.slot_moments(
         means, weight, found.starts, found.cells, grid.side_cells, grid.cell_m, slot_of, moments
     )
     limits = np.array([MIN_RETURNS, SPREAD * noise_m, 0.3 * grid.cell_m, BEND_M])
     fitted = np.empty_like(slots)
-    kernels.refit_planes(*step, grid.cell_m, slots, moments, limits, fitted)
+    surface_slots.refit_planes(*step, grid.cell_m, slots, moments, limits, fitted)
     shift, facts = np.zeros((len(xyz), 3), np.float32), np.empty((3, len(xyz)), np.float32)
-    kernels.onto_planes(xyz, to_sensor, found.starts, fitted, GATE, slot_of, shift)
+    surface_points.onto_planes(xyz, to_sensor, found.starts, fitted, GATE, slot_of, shift)
     normal, stray = normals.copy(), np.empty(len(xyz), np.bool_)
-    kernels.facts_of_points(found.starts, fitted, slot_of, normal, facts)
-    kernels.find_strays(weight, found.starts, *step, slot_of, STRAY_RATIO, stray)
+    surface_points.facts_of_points(found.starts, fitted, slot_of, normal, facts)
+    surface_points.find_strays(weight, found.starts, *step, slot_of, STRAY_RATIO, stray)
     return FittedSurfaces(shift, normal, facts, stray)
 
 
@@ -93,7 +95,7 @@ def _cells(xyz: NDArray[np.float32], grid: Grid) -> _Cells:
     n = len(xyz)
     starts, cells = np.empty(n + 1, np.int32), np.empty(n, np.int32)
     where = np.full(grid.side_cells**3, -1, np.int32)
-    count = kernels.find_cells(xyz, grid.cell_m, grid.side_cells, starts, cells, where)
+    count = surface_cells.find_cells(xyz, grid.cell_m, grid.side_cells, starts, cells, where)
     return _Cells(starts[: count + 1].copy(), cells[:count].copy(), where)
 
 
@@ -103,24 +105,24 @@ def _window_planes(
     xyz, to_sensor, weight = points
     count = len(found.cells)
     of_cell = normals[found.starts[:-1]].astype(np.float64)
-    planes, moments = np.zeros((count, 2, kernels.PLANE)), np.empty((count, 2, kernels.MOMENTS))
+    planes, moments = np.zeros((count, 2, PLANE)), np.empty((count, 2, MOMENTS))
     first = True
     for spread, gate in ((1.5, 0.0), (1.5, 0.0), (SPREAD, ROUND_GATE)):
         limits = np.array([MIN_RETURNS, spread * noise_m, 0.3 * grid.cell_m])
-        kernels.side_moments(
+        surface_windows.side_moments(
             xyz, to_sensor, weight, found.starts, found.cells, grid.side_cells, grid.cell_m,
             of_cell, planes, gate, moments,
         )  # fmt: skip
-        kernels.window_planes(
+        surface_windows.window_planes(
             found.cells, found.where, grid.side_cells, grid.cell_m, of_cell, moments, 0.5, limits,
             planes,
         )  # fmt: skip
         if first:
-            kernels.view_axes(to_sensor, weight, found.starts, planes, of_cell)
+            surface_windows.view_axes(to_sensor, weight, found.starts, planes, of_cell)
             first = False
     sums, kept = np.empty((count, 2, 5)), np.empty_like(planes)
-    kernels.shape_sums(xyz, to_sensor, weight, found.starts, planes, 4.0 * noise_m, sums)
-    kernels.drop_mixed(
+    surface_windows.shape_sums(xyz, to_sensor, weight, found.starts, planes, 4.0 * noise_m, sums)
+    surface_windows.drop_mixed(
         found.cells, found.where, grid.side_cells, sums, ONE_SHEET * noise_m, 0.35, planes, kept
     )
     return kept

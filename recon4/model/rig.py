@@ -8,7 +8,7 @@ import tomllib
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -27,18 +27,31 @@ _BETWEEN_KEYS = re.compile(r"[=\[\]{},\n]")
 _LARGEST = 4e9
 """Clocks differ by seconds since 1970 at most; nanoseconds must fit into 64 bits."""
 SENSOR_MODELS = ("VLP-16", "VLP-16 Hi-Res", "VLP-32C", "HDL-32E", "HDL-64E", "generic")
+SensorKind = Literal["lidar", "profiler", "laser2d"]
+"""``lidar``: many beams that spin. ``profiler``: one beam that measures line scans, on a head that
+turns slowly. ``laser2d``: one beam that spins in a plane."""
+_KINDS: tuple[str, ...] = get_args(SensorKind)
+_MAX_HEAD_DEG_S = 3600.0
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Sensor:
-    """One LiDAR."""
+    """One LiDAR, profiler or 2-D laser."""
 
     name: str
     """Unique within the rig, for example ``horizontal``."""
     model: str
     """One of `SENSOR_MODELS`; it selects the packet decoder."""
     T_body_sensor: SE3
-    """Mounting: maps points of the sensor into the body."""
+    """Mounting: maps points of the sensor into the body. The frame of a profiler does not turn with
+    its head: z is the axis of the head, and at angle 0 the lines lie in the x-z plane."""
+    kind: SensorKind = "lidar"
+    """What it measures."""
+    head_topic: str = ""
+    """Profiler: topic of the head's angle in a bag; empty = detected."""
+    head_rate_rad_s: float = 0.0
+    """Profiler: constant turn rate of the head, from the angle 0 of the first line on [rad/s];
+    0 = the recording has the angles."""
     time_offset_s: float = 0.0
     """Added to the sensor's time stamps to get rig time [s]."""
     address: str = ""
@@ -76,6 +89,11 @@ class Rig:
     def T_body_sensor(self) -> SE3:
         """Mountings of all sensors, a batch."""
         return SE3.stack(sensor.T_body_sensor for sensor in self.sensors)
+
+    def row_of(self, kind: SensorKind) -> int | None:
+        """Row of the first enabled sensor of a kind in ``sensors``; None = there is none."""
+        rows = (k for k, s in enumerate(self.sensors) if s.kind == kind and s.enabled)
+        return next(rows, None)
 
 
 def rig_presets() -> list[str]:
@@ -178,6 +196,7 @@ def format_rig(rig: Rig) -> str:
             f"name = {_quoted(sensor.name)}",
             f"model = {_quoted(sensor.model)}",
         ]
+        lines += _kind_lines(sensor)
         lines += _mounting_lines(sensor.T_body_sensor)
         lines += [f"time_offset_s = {sensor.time_offset_s!r}", f"port = {sensor.port}"]
         lines += [f"address = {_quoted(sensor.address)}", f"topic = {_quoted(sensor.topic)}"]
@@ -200,24 +219,61 @@ def _mounting_lines(T_body_x: SE3) -> list[str]:
     return [f"xyz_m = {_floats(T_body_x.t)}", f"quat_xyzw = {_floats(T_body_x.quat_xyzw())}"]
 
 
+def _kind_lines(sensor: Sensor) -> list[str]:
+    """What only profilers and 2-D lasers have; the text of other rigs is as before."""
+    if sensor.kind == "lidar":
+        return []
+    lines = [f"kind = {_quoted(sensor.kind)}"]
+    lines += [f"head_topic = {_quoted(sensor.head_topic)}"] if sensor.head_topic else []
+    rate_deg_s = float(np.rad2deg(sensor.head_rate_rad_s))
+    return lines + ([f"head_rate_deg_s = {rate_deg_s!r}"] if rate_deg_s else [])
+
+
 def _sensor(row: dict[str, Any], where: str) -> Sensor:
     known = {"name", "model", "xyz_m", "rpy_deg", "quat_xyzw", "time_offset_s"}
-    _refuse_unknown(row, known | {"address", "port", "topic", "enabled"}, where)
-    model = _text(row, "model", "VLP-16", where=where)
-    if model not in SENSOR_MODELS:
-        raise ConfigError(f"{where}: model must be one of {SENSOR_MODELS}, got {model[:80]!r}")
+    known |= {"address", "port", "topic", "enabled", "kind", "head_topic", "head_rate_deg_s"}
+    _refuse_unknown(row, known, where)
+    kind = _kind(row, where)
+    model = _text(row, "model", "VLP-16" if kind == "lidar" else "generic", where=where)
+    models = SENSOR_MODELS if kind == "lidar" else ("generic",)
+    if model not in models:
+        raise ConfigError(
+            f"{where}: model must be one of {models} for a {kind}, got {model[:80]!r}"
+        )
+    if kind != "profiler" and {"head_topic", "head_rate_deg_s"} & set(row):
+        raise ConfigError(f"{where}: only a profiler has a head, this is a {kind}")
     if not _text(row, "name", "", where=where):
         raise ConfigError(f"{where}: name must be a text, got {row.get('name')!r:.80}")
     return Sensor(
         name=row["name"],
         model=model,
         T_body_sensor=_mounting(row, where),
+        kind=kind,
+        head_topic=_text(row, "head_topic", "", where=where),
+        head_rate_rad_s=_head_rate(row, where),
         time_offset_s=_number(row, "time_offset_s", 0.0, where=where),
         address=_text(row, "address", "", where=where),
         port=_port(row, 2368, where),
         topic=_text(row, "topic", "", where=where),
         enabled=_flag(row, "enabled", where),
     )
+
+
+def _kind(row: dict[str, Any], where: str) -> SensorKind:
+    found = row.get("kind", "lidar")
+    if found not in _KINDS:
+        raise ConfigError(f"{where}: kind must be one of {_KINDS}, got {found!r:.80}")
+    kind: SensorKind = found
+    return kind
+
+
+def _head_rate(row: dict[str, Any], where: str) -> float:
+    rate_deg_s = _number(row, "head_rate_deg_s", 0.0, where=where)
+    if abs(rate_deg_s) > _MAX_HEAD_DEG_S:
+        raise ConfigError(
+            f"{where}: head_rate_deg_s must be within ±{_MAX_HEAD_DEG_S:g}, got {rate_deg_s:g}"
+        )
+    return float(np.deg2rad(rate_deg_s))
 
 
 def _mounting(row: dict[str, Any], where: str) -> SE3:

@@ -76,9 +76,9 @@ class BagRecording:
             raise EmptyRecording(f"{paths[0].name}: no LiDAR data; topics: {names}")
         chosen = rig or choose_rig(self.streams, report)
         self.rig = assign_topics(chosen, self.streams, report)
-        self.imu_topic = _most(self.topics, IMU, report)
-        self.fix_topic = _most(self.topics, NAVSATFIX, report)
-        self.odometry_topic = _most(self.topics, ODOMETRY, report)
+        self.imu_topic = most_messages(self.topics, IMU, report)
+        self.fix_topic = most_messages(self.topics, NAVSATFIX, report)
+        self.odometry_topic = most_messages(self.topics, ODOMETRY, report)
 
     def read(self) -> Iterator[Item]:
         """Stream the bag once; messages of one topic are in order of time."""
@@ -90,9 +90,9 @@ class BagRecording:
     def _read(self, bag: Bag) -> Iterator[Item]:
         lidars = self._lidars(bag)
         samples = {
-            self.imu_topic: _Batch(imu_row, join_imu, self._report),
-            self.fix_topic: _Batch(fix_row, join_fixes, self._report),
-            self.odometry_topic: _Batch(pose_row, join_poses, self._report),
+            self.imu_topic: SampleBatch(imu_row, join_imu, self._report),
+            self.fix_topic: SampleBatch(fix_row, join_fixes, self._report),
+            self.odometry_topic: SampleBatch(pose_row, join_poses, self._report),
         }
         wanted = {*lidars, *samples} - {""}
         for message in bag.messages(wanted):
@@ -161,7 +161,7 @@ def _model_of_packets(payloads: NDArray[np.uint8]) -> str:
     return likely_model(int(payloads[0, 1205]), interval_s, int(payloads[0, 1204])) or "generic"
 
 
-def _most(topics: Sequence[BagTopic], kind: str, report: ImportReport) -> str:
+def most_messages(topics: Sequence[BagTopic], kind: str, report: ImportReport) -> str:
     """The topic of a kind with the most messages; empty = none."""
     found = sorted((t for t in topics if t.type == kind and t.messages), key=_messages)
     if len(found) > 1:
@@ -193,7 +193,7 @@ class _Scans:
         if not scan.packets:
             return None
         payloads = np.stack([packet.data for packet in scan.packets])
-        t_ns = np.array([_stamp(packet.stamp) for packet in scan.packets], np.int64)
+        t_ns = np.array([stamp_ns(packet.stamp) for packet in scan.packets], np.int64)
         return self._decoder.push(np.where(t_ns > 0, t_ns, message.t_ns), payloads)
 
     def flush(self) -> Shots:
@@ -210,7 +210,7 @@ class _Clouds:
         self._offset_ns = round(offset_s * 1e9)
 
     def push(self, message: BagMessage, cloud: Any) -> Shots | None:
-        t_ns = _stamp(cloud.header.stamp)
+        t_ns = stamp_ns(cloud.header.stamp)
         if t_ns <= 0:
             t_ns = message.t_ns
             self._report.count("stamps_missing")
@@ -275,7 +275,7 @@ def _point_dtype(fields: Sequence[Any], step: int, order: str) -> np.dtype[np.vo
 # -- samples
 
 
-class _Batch:
+class SampleBatch:
     """Collects rows of one topic and delivers them in batches."""
 
     def __init__(self, row: Any, join: Any, report: ImportReport) -> None:
@@ -284,7 +284,7 @@ class _Batch:
         self._t_ns: list[int] = []
 
     def push(self, message: BagMessage, content: Any) -> Iterator[Any]:
-        t_ns = _stamp(content.header.stamp)
+        t_ns = stamp_ns(content.header.stamp)
         self._t_ns.append(t_ns if t_ns > 0 else message.t_ns)
         self._rows.append(self._row(content))
         if len(self._rows) >= _BATCH:
@@ -297,7 +297,8 @@ class _Batch:
             yield self._join(np.array(t_ns, np.int64), np.array(rows, np.float64))
 
 
-def _stamp(stamp: Any) -> int:
+def stamp_ns(stamp: Any) -> int:
+    """Nanoseconds of a stamp of ROS 1 or 2."""
     return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
 
 

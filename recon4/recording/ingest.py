@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from recon4.errors import ConfigError, EmptyRecording
 from recon4.geometry.se3 import SE3
 from recon4.model.events import Warned
+from recon4.model.laser_scans import LaserScans
+from recon4.model.line_scans import LineScans
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
@@ -29,6 +31,7 @@ from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
 from recon4.recording.sources import Sources
 from recon4.settings import IngestSettings
 from recon4.store.frames import FrameWriter
+from recon4.store.line_store import LineStoreWriter
 
 Span = tuple[int, int]
 """Start of the first and end of the last multiframe [ns]."""
@@ -41,20 +44,30 @@ _GAPS_LISTED = 1000
 class _Samples:
     """IMU samples, fixes and poses of a recording."""
 
+    lines: LineStoreWriter
+    """Receives line scans and scans of a 2-D laser."""
     imu: list[ImuSamples] = field(default_factory=list)
     gnss: list[GnssSamples] = field(default_factory=list)
     poses: list[Trajectory] = field(default_factory=list)
 
     @classmethod
-    def of_files(cls, sources: Sources) -> _Samples:
+    def of_files(cls, sources: Sources, out: Path) -> _Samples:
         """Those of the CSV files."""
         imu, gnss = sources.imu, sources.gnss
         return cls(
-            imu=[read_imu_csv(imu)] if imu else [], gnss=[read_gnss_csv(gnss)] if gnss else []
+            LineStoreWriter(out),
+            imu=[read_imu_csv(imu)] if imu else [],
+            gnss=[read_gnss_csv(gnss)] if gnss else [],
         )
 
-    def keep(self, item: ImuSamples | GnssSamples | Trajectory) -> None:
+    def keep(self, item: ImuSamples | GnssSamples | Trajectory | LineScans | LaserScans) -> None:
         """Add samples."""
+        if isinstance(item, LineScans):
+            self.lines.append_lines(item)
+            return
+        if isinstance(item, LaserScans):
+            self.lines.append_scans(item)
+            return
         if isinstance(item, ImuSamples):
             gather(self.imu, item)
         elif isinstance(item, GnssSamples):
@@ -128,7 +141,7 @@ def ingest(
     report = live.report
     sources = _sort_out(sources)
     paths = sources.recordings
-    given = _Samples.of_files(sources)
+    given = _Samples.of_files(sources, out)
     recording = open_recording(
         paths, sources.rig, settings=settings, report=report, open_file=live.open_file
     )
@@ -136,8 +149,9 @@ def ingest(
         recording.rig, settings=settings, report=report, wait_s=recording.wait_s, on_cut=live.watch
     )
     with FrameWriter(out, recording.rig) as writer:
-        found, written = _write_frames(
-            recording, assembler, writer, watch=live.watch, progress=progress
+        found = _Samples(given.lines)
+        written = _write_frames(
+            recording, assembler, writer, found=found, watch=live.watch, progress=progress
         )
         if not written.duration_ns:
             counted = ", ".join(f"{name} {n}" for name, n in sorted(report.counts.items()))
@@ -145,8 +159,10 @@ def ingest(
         imu = _imu(given, found, recording.rig, written=written, report=report)
         gnss = _gnss(given, found, recording.rig, written=written, report=report)
         _write_poses(out, found.poses, report)
+        line_count, scan_count = found.lines.close()
         about = _summary(recording, assembler, written, report=report)
         about |= {"recordings": [path.name for path in paths], "frames": len(writer)}
+        about |= {"line_scans": line_count, "laser2d_scans": scan_count}
         about |= {"points": writer.points, "imu": _about(imu), "gnss": _about(gnss)}
         writer.add(imu=imu, gnss=gnss, report=about)
     for text in report.warnings:
@@ -171,15 +187,16 @@ def _write_frames(
     assembler: Assembler,
     writer: FrameWriter,
     *,
+    found: _Samples,
     watch: Callable[[Multiframe | ImuSamples | GnssSamples], None],
     progress: Progress,
-) -> tuple[_Samples, _IngestSpan]:
-    """Write the multiframes as they are cut; returns the other contents, and what was written."""
-    found, written = _Samples(), _IngestSpan()
+) -> _IngestSpan:
+    """Write the multiframes as they are cut; ``found`` receives the other contents."""
+    written = _IngestSpan()
     for item in _items(recording, assembler):
         if not isinstance(item, Multiframe):
             found.keep(item)
-            if not isinstance(item, Trajectory):
+            if isinstance(item, ImuSamples | GnssSamples):
                 watch(item)
             continue
         if not written.duration_ns:
@@ -189,12 +206,12 @@ def _write_frames(
         written.add(item)
         progress.advance()
     written.jumps_ns = [-round(gap.seconds * 1e9) for gap in assembler.gaps if gap.seconds < 0]
-    return found, written
+    return written
 
 
 def _items(
     recording: Recording, assembler: Assembler
-) -> Iterator[Multiframe | ImuSamples | GnssSamples | Trajectory]:
+) -> Iterator[Multiframe | ImuSamples | GnssSamples | Trajectory | LineScans | LaserScans]:
     """The contents of a recording, with shots assembled to multiframes."""
     for item in recording.read():
         if isinstance(item, Shots):

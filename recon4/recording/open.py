@@ -9,6 +9,8 @@ from functools import partial
 from pathlib import Path
 
 from recon4.errors import ConfigError, EmptyRecording, RecordingError, UnknownFormat
+from recon4.model.laser_scans import LaserScans
+from recon4.model.line_scans import LineScans
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
@@ -18,10 +20,11 @@ from recon4.recording.assembly.shots import Shots
 from recon4.recording.bag_recording import BagRecording
 from recon4.recording.cloud_points import model_of_points
 from recon4.recording.folders import CLOUD_SUFFIXES, folder_gaps, list_frames, natural, read_frames
-from recon4.recording.formats.bags import STORAGE_SUFFIXES
+from recon4.recording.formats.bags import STORAGE_SUFFIXES, Bag
 from recon4.recording.formats.cloud_files import is_cloud_file, read_cloud
 from recon4.recording.formats.pcap import OpenFile, is_pcap, open_plain
 from recon4.recording.formats.poses import pose_format
+from recon4.recording.line_recording import LineRecording, profiler_rig
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream, choose_rig
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER, csv_header
@@ -30,7 +33,7 @@ from recon4.recording.velodyne.position_packets import PositionSamples
 from recon4.recording.velodyne.streams import PacketStream
 from recon4.settings import IngestSettings
 
-Item = Shots | Multiframe | ImuSamples | GnssSamples | Trajectory
+Item = Shots | Multiframe | ImuSamples | GnssSamples | Trajectory | LineScans | LaserScans
 
 
 class RecordingKind(StrEnum):
@@ -47,6 +50,7 @@ class RecordingKind(StrEnum):
 
 RECORDINGS = (RecordingKind.PCAP, RecordingKind.BAG1, RecordingKind.BAG2, RecordingKind.FRAMES)
 """Kinds with points."""
+_BAGS = (RecordingKind.BAG1, RecordingKind.BAG2)
 
 _OTHERS = {
     b"\xff\xd8\xff": "a JPEG image",
@@ -123,6 +127,8 @@ def open_recording(
     kind = kinds[0]
     if kind not in RECORDINGS:
         raise UnknownFormat(f"{paths[0].name}: {kind} alone is no recording: it has no points")
+    if rig is not None and rig.row_of("profiler") is not None and kind not in _BAGS:
+        raise UnknownFormat(f"{paths[0].name}: line scans are read from bags, got {kind}")
     if any(other is not kind for other in kinds):
         names = ", ".join(f"{path.name} ({k})" for path, k in zip(paths, kinds, strict=True))
         raise UnknownFormat(f"recordings of one kind expected, got {names}")
@@ -135,10 +141,21 @@ def open_recording(
         return Recording(kind, pcap.rig, read, stream_seconds(pcap.streams), wait_s=WAIT_S)
     if kind is RecordingKind.FRAMES:
         return _open_frames(paths, rig, settings, report=report)
-    bag = BagRecording(
-        [f for path in paths for f in bag_paths(path)], rig, settings=settings, report=report
-    )
+    files = [f for path in paths for f in bag_paths(path)]
+    with_profiler = _profiler_rig(files, rig, report)
+    if with_profiler is not None:
+        lines = LineRecording(files, with_profiler, report=report)
+        return Recording(kind, lines.rig, lines.read, lines.seconds)
+    bag = BagRecording(files, rig, settings=settings, report=report)
     return Recording(kind, bag.rig, bag.read, bag.seconds)
+
+
+def _profiler_rig(files: Sequence[Path], rig: Rig | None, report: ImportReport) -> Rig | None:
+    """The rig of a bag with line scans; None = it has none."""
+    if rig is not None:
+        return profiler_rig((), rig, report)
+    with Bag(files, ImportReport()) as bag:
+        return profiler_rig(bag.topics, None, report)
 
 
 def bag_paths(path: Path) -> list[Path]:

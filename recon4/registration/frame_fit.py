@@ -89,25 +89,22 @@ class FrameFitter:
             H, g = information.copy(), information @ delta + g_prior
             H[POSES, POSES] += H_lidar
             g[POSES] += g_lidar
-            if self.aiding is not None:
-                H_aiding, g_aiding = self.aiding.pull(T_dense[-1], prediction.end.t_ns)
-                H[END_POSE, END_POSE] += H_aiding
-                g[END_POSE] += g_aiding
+            self._add_aiding(H, g, T_dense[-1], prediction.end.t_ns)
             step = np.asarray(-np.linalg.solve(H, g), np.float64)
             delta = delta + step
             T_dense = _correct(prediction, delta, center)
             if rounds > self.coarse and _largest_move_m(step) < self.converged_step_m:
                 converged = True
                 break
-        return FrameFit(
-            T_dense,
-            delta,
-            np.asarray(np.linalg.inv(H), np.float64),
-            H_lidar,
-            match,
-            rounds,
-            converged,
-        )
+        P = np.asarray(np.linalg.inv(H), np.float64)
+        return FrameFit(T_dense, delta, P, H_lidar, match, rounds, converged)
+
+    def _add_aiding(self, H: Array, g: Array, T_odom_body: SE3, t_ns: int) -> None:
+        """Add what GNSS knows of the pose at the end to the normal equations, in place."""
+        if self.aiding is not None:
+            H_aiding, g_aiding = self.aiding.pull(T_odom_body, t_ns)
+            H[END_POSE, END_POSE] += H_aiding
+            g[END_POSE] += g_aiding
 
     def _gate_m(self, rounds: int) -> float:
         return _GATES_M[min(rounds - 1 + (0 if self.coarse else 1), len(_GATES_M) - 1)]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cache
 
 import numpy as np
@@ -125,8 +125,7 @@ class Odometry:
         self._count_lost(lost=lost)
         self._state = _updated(prediction, fit, lost=lost, first=first)
         T_dense = prediction.T_odom_body if lost or first else fit.T_dense
-        step = _step(frame, prediction, fit, T_dense=T_dense, lost=lost)
-        step = replace(step, stationary=stationary)
+        step = _step(frame, prediction, fit, T_dense=T_dense, lost=lost, stationary=stationary)
         if not lost:
             if self._is_keyframe(T_dense[-1]):
                 self._extend_map(segments, prediction.t_s, T_dense)
@@ -235,7 +234,13 @@ def _updated(prediction: Prediction, fit: FrameFit, *, lost: bool, first: bool) 
 
 
 def _step(
-    frame: Multiframe, prediction: Prediction, fit: FrameFit, *, T_dense: SE3, lost: bool
+    frame: Multiframe,
+    prediction: Prediction,
+    fit: FrameFit,
+    *,
+    T_dense: SE3,
+    lost: bool,
+    stationary: bool,
 ) -> OdometryStep:
     end = prediction.T_odom_body[-1]
     middle = prediction.t_s[-1] / 2
@@ -258,6 +263,7 @@ def _step(
         _motion_cov(prediction.prior if lost else fit.P),
         fit.match.weak_direction,
         _weak_sd_m(fit),
+        stationary,
     )
 
 

@@ -2,6 +2,7 @@
 
 A single rejected fix is noise. Many in a row that lie beside the trajectory by the same amount are
 a contradiction of two sensors: either the trajectory left the true path there, or GNSS did.
+Multipath beside a building does that in every walk, so a run is a warning, no verdict.
 """
 
 from __future__ import annotations
@@ -11,6 +12,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+
+from recon4.geometry.se3 import Array
 
 MIN_FIXES, MIN_SECONDS = 10, 1.0
 """Shorter runs count as noise."""
@@ -63,7 +66,7 @@ def rejected_runs(georeference: Mapping[str, Any]) -> list[RejectedRun]:
     ]
 
 
-def _agree(residual_m: np.ndarray[Any, np.dtype[np.float64]]) -> bool:
+def _agree(residual_m: Array) -> bool:
     """Whether residuals (N, 3) change little from one fix to the next."""
     change_m = np.linalg.norm(np.diff(residual_m, axis=0), axis=1)
     size_m = np.linalg.norm(residual_m, axis=1)

@@ -198,7 +198,7 @@ def _contradicted(results: Results) -> list[Finding]:
 def _rejected_fixes(results: Results) -> list[Finding]:
     return [
         Finding(
-            Level.BAD,
+            Level.WARNING,
             f"From {run.start_s:.0f} s to {run.end_s:.0f} s after the first fix {run.fixes} GNSS "
             f"fixes agree with each other and lie up to {run.horizontal_m:.2f} m horizontally and "
             f"{run.height_m:.2f} m in height from the trajectory. They were rejected: either the "

@@ -21,15 +21,24 @@ from recon4.settings.registration import (
     SegmentSettings,
 )
 from recon4.settings.renamed import current_name
+from recon4.settings.slam2d import (
+    Grid2dSettings,
+    HectorSettings,
+    Loop2dSettings,
+    Slam2dSettings,
+)
 
 __all__ = [
     "PRESETS",
     "CalibrationSettings",
     "GnssSettings",
     "GraphSettings",
+    "Grid2dSettings",
+    "HectorSettings",
     "IngestSettings",
     "IntensitySettings",
     "LevelSettings",
+    "Loop2dSettings",
     "MapSettings",
     "OdometrySettings",
     "OverlapSettings",
@@ -39,6 +48,7 @@ __all__ = [
     "ScanSettings",
     "SegmentSettings",
     "Settings",
+    "Slam2dSettings",
     "VerificationSettings",
     "canonical",
     "current_name",

@@ -19,6 +19,12 @@ from recon4.settings.registration import (
     RegistrationSettings,
     SegmentSettings,
 )
+from recon4.settings.slam2d import (
+    Grid2dSettings,
+    HectorSettings,
+    Loop2dSettings,
+    Slam2dSettings,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,6 +46,10 @@ class Settings:
     gnss: GnssSettings = field(default_factory=GnssSettings)
     intensity: IntensitySettings = field(default_factory=IntensitySettings)
     map: MapSettings = field(default_factory=MapSettings)
+    slam2d: Slam2dSettings = field(default_factory=Slam2dSettings)
+    hector: HectorSettings = field(default_factory=HectorSettings)
+    loops2d: Loop2dSettings = field(default_factory=Loop2dSettings)
+    grid2d: Grid2dSettings = field(default_factory=Grid2dSettings)
 
 
 PRESETS: dict[str, Settings] = {
@@ -47,6 +57,11 @@ PRESETS: dict[str, Settings] = {
     "staircase": Settings(),
     "outdoor": Settings(
         map=MapSettings(voxel_m=0.03, max_range_m=100.0, tile_m=20.0, normal_cell_m=0.15)
+    ),
+    "hector": Settings(
+        slam2d=Slam2dSettings(method="hector", use_odometry=False, min_range_m=0.4),
+        loops2d=Loop2dSettings(enabled=False),
+        verification=VerificationSettings(robust="none"),
     ),
     "thesis": Settings(
         calibration=CalibrationSettings(mode="off"),

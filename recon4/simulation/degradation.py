@@ -57,8 +57,19 @@ KINDS: Mapping[str, DegradationKind] = {
     "lever-arm": DegradationKind(0.15, 10, "m", "the antenna is not where the rig file says"),
     "dead-beams": DegradationKind(6, LASERS, "", "number of lasers that return nothing"),
     "beam-bias": DegradationKind(0.03, 1, "m", "standard deviation of a range bias of each laser"),
-    "packet-loss": DegradationKind(0.25, 0.95, "", "ratio of packets lost, in runs"),
+    "packet-loss": DegradationKind(0.25, 0.95, "", "ratio of packets or line scans lost, in runs"),
+    "no-head": DegradationKind(_SWITCH, 1, "", "the angles of the profiler's head are missing"),
+    "head-stuck": DegradationKind(_SWITCH, 1, "", "the profiler reports one angle of its head"),
+    "laser2d-silent": DegradationKind(5.0, 1e4, "s", "the 2-D laser is silent from 20 s on"),
+    "laser2d-mirrored": DegradationKind(_SWITCH, 1, "", "the 2-D laser is mounted upside down"),
+    "no-laser2d": DegradationKind(_SWITCH, 1, "", "no 2-D laser was recorded"),
 }
+ONLY_PROFILER = frozenset(
+    {"no-head", "head-stuck", "laser2d-silent", "laser2d-mirrored", "no-laser2d"}
+)
+"""Degradations of rigs with a profiler."""
+NOT_PROFILER = frozenset({"wrong-model", "dead-beams", "beam-bias", "swap-lidars"})
+"""Degradations that a rig with a profiler cannot have."""
 
 
 def parse_degradations(words: Sequence[str]) -> dict[str, float]:
@@ -184,6 +195,10 @@ class Degradation:
             shots.intensity[kept],
             truth[kept],
         )
+
+    def kept(self, count: int, row: int, second: int) -> NDArray[np.bool_]:
+        """Packets or line scans of a second that are recorded, (N,) bool."""
+        return self._kept(count, row, second)
 
     def to_json(self) -> dict[str, object]:
         """What was degraded, with all that was drawn, for ``world.json``."""

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.errors import StoreError
+from recon4.errors import ConfigError, StoreError
 from recon4.progress import Progress
-from recon4.simulation.degradation import Degradation
+from recon4.simulation.degradation import ONLY_PROFILER, Degradation
 from recon4.simulation.lidar import Firings
 from recon4.simulation.recorder import WalkRecorder
 from recon4.simulation.setup import SimulationSetup
@@ -63,6 +63,8 @@ def record(
         ConfigError: If a degradation cannot be simulated.
         StoreError: If a folder exists with something in it or cannot be written.
     """
+    for values in folders.values():
+        _check_possible(values)
     degraded = {
         folder: Degradation.drawn(values, sensors=len(setup.lidars), seed=setup.seed)
         for folder, values in folders.items()
@@ -97,6 +99,12 @@ def _seconds(setup: SimulationSetup) -> Iterator[list[Firings]]:
             rng = setup.rng(3, row, second)
             parts.append(lidar.fire(packets, setup.walk, setup.surroundings, rng=rng))
         yield parts
+
+
+def _check_possible(values: Mapping[str, float]) -> None:
+    wrong = sorted(ONLY_PROFILER & set(values))
+    if wrong:
+        raise ConfigError(f"{wrong[0]}: only possible on a rig with a profiler")
 
 
 def _check_empty(out: Path) -> None:

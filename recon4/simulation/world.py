@@ -61,6 +61,8 @@ class World:
     stops: int
     """Most places a round can visit."""
     markers: tuple[WorldMarker, ...] = ()
+    floor: tuple[float, float, float, float] | None = None
+    """Middle x, y and half extents of a free floor for figures [m]; None = there is none."""
     outdoors: bool = False
     """GNSS can be received."""
     origin: WorldOrigin = BRNO

@@ -64,7 +64,7 @@ class FrameWriter:
         self._points = 0
         self._rows: list[tuple[int, int, int, int, int]] = []
         self._files: dict[str, BinaryIO] = {}
-        with _storing(folder):
+        with storing(folder):
             folder.mkdir(parents=True, exist_ok=True)
             (folder / "rig.toml").write_text(format_rig(rig), "utf-8")
             for name in COLUMNS:
@@ -99,7 +99,7 @@ class FrameWriter:
             StoreError: If it cannot be written (`NoSpace` when the disk is full).
         """
         assert frame.frame_id == len(self._rows), "frame ids count from 0 without holes"
-        with _storing(self._folder):
+        with storing(self._folder):
             for name, (dtype, width) in COLUMNS.items():
                 column = np.ascontiguousarray(getattr(frame, name), dtype=dtype)
                 assert column.shape == ((len(frame), width) if width > 1 else (len(frame),))
@@ -115,7 +115,7 @@ class FrameWriter:
         report: dict[str, Any] | None = None,
     ) -> None:
         """Write IMU samples, GNSS samples and the report of the recording."""
-        with _storing(self._folder):
+        with storing(self._folder):
             if imu is not None:
                 save_record(self._folder / "imu.npz", imu)
             if gnss is not None:
@@ -125,7 +125,7 @@ class FrameWriter:
                 (self._folder / "report.json").write_text(text + "\n", "utf-8")
 
     def _finish(self) -> None:
-        with _storing(self._folder):
+        with storing(self._folder):
             for name, file in self._files.items():
                 file.seek(0)
                 file.write(_header(name, self._points))
@@ -305,7 +305,8 @@ def _read_report(path: Path) -> dict[str, Any]:
 
 
 @contextmanager
-def _storing(folder: Path) -> Iterator[None]:
+def storing(folder: Path) -> Iterator[None]:
+    """Errors of writing into a folder as `StoreError`, a full disk as `NoSpace`."""
     try:
         yield
     except OSError as error:

@@ -47,6 +47,9 @@ MAY_IMPORT = {
     "recon4/registration": MODEL | {"recon4.kernels", "recon4.registration"},
     "recon4/registration/stage.py": MODEL | {"recon4.registration", "recon4.store.arrays"},
     "recon4/pose_graph": STAGE | {"recon4.registration", "recon4.pose_graph"},
+    "recon4/slam2d": STAGE
+    | {"recon4.slam2d"}
+    | {f"recon4.pose_graph.{name}" for name in ("files", "solve", "verification")},
     "recon4/semi_rigid": STAGE | {"recon4.registration", "recon4.pose_graph", "recon4.semi_rigid"},
     "recon4/georeference": STAGE
     | {"recon4.mapping", "recon4.pose_graph", "recon4.georeference", "recon4.registration.aiding"},

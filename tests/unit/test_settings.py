@@ -104,7 +104,7 @@ def test_two_settings_that_only_fit_together_may_be_changed_together():
 
 
 def test_an_unknown_preset_is_rejected_with_the_known_ones():
-    with pytest.raises(ConfigError, match="there are: indoor, outdoor, staircase, thesis"):
+    with pytest.raises(ConfigError, match="there are: hector, indoor, outdoor, staircase, thesis"):
         preset("forest")
 
 

@@ -50,6 +50,10 @@ class _Stream:
     first_ns: int | None = None
     shift_ns: int = 0
     """Added to its times since its clock last went back."""
+    delivers: bool = True
+    """Whether it has points for multiframes; a 2-D laser has none."""
+    spins: bool = True
+    """Whether its rotation may set the length of a multiframe."""
     points: int = 0
     late: int = 0
 
@@ -84,7 +88,11 @@ class Assembler:
         self._on_cut, self._begun = on_cut, False
         self._settings, self._report = settings, report
         self._wait_ns = int(wait_s * 1e9)
-        self._streams = [_Stream(sensor.name) for sensor in rig.sensors]
+        self._streams = [
+            _Stream(s.name, delivers=s.kind != "laser2d", spins=s.kind == "lidar")
+            for s in rig.sensors
+        ]
+        self._expected = sum(stream.delivers for stream in self._streams)
         self._start_ns: int | None = None
         self._next = 0
         """Frames since the start, empty ones counted."""
@@ -172,7 +180,7 @@ class Assembler:
 
     def _head_complete(self) -> bool:
         ends = [s.last_ns - s.first_ns for s in self._streams if s.last_ns and s.first_ns]
-        everyone = len(ends) == len(self._streams) and min(ends, default=0) >= _HEAD_NS
+        everyone = len(ends) == self._expected and min(ends, default=0) >= _HEAD_NS
         return everyone or max(ends, default=0) >= _HEAD_NS + self._wait_ns
 
     def _begin(self) -> None:
@@ -184,6 +192,8 @@ class Assembler:
                 f"{(max(starts) - min(starts)) / 1e9:.3f} s; give time_offset_s in the rig file"
             )
         for stream in seen:
+            if not stream.spins:
+                continue
             t_ns = np.concatenate([shots.t_ns for shots in stream.waiting])
             xyz = np.concatenate([shots.xyz for shots in stream.waiting])
             head = t_ns <= t_ns[0] + _HEAD_NS
@@ -231,7 +241,7 @@ class Assembler:
     def _passed(self, end_ns: int) -> bool:
         """Whether no sensor can still deliver points before ``end_ns``, or one is overdue."""
         reached = [s.last_ns for s in self._streams if s.last_ns is not None]
-        everyone = len(reached) == len(self._streams) and min(reached) >= end_ns + _SLACK_NS
+        everyone = len(reached) == self._expected and min(reached) >= end_ns + _SLACK_NS
         return everyone or max(reached) >= end_ns + self._wait_ns
 
     def _skip_empty(self) -> None:
@@ -251,7 +261,7 @@ class Assembler:
         frame_id = self._held.frame_id + 1 if self._held else 0
         frame = _multiframe(parts, frame_id, start_ns, duration_ns=self.duration_ns)
         for row, stream in enumerate(self._streams):
-            if not np.any(frame.sensor == row):
+            if stream.delivers and not np.any(frame.sensor == row):
                 self._report.count(f"frames_without_{stream.name}")
         before, self._held = self._held, frame
         if self._begun:

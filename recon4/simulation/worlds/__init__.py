@@ -9,7 +9,7 @@ from importlib import import_module
 from recon4.errors import ConfigError
 from recon4.simulation.world import World
 
-FIXED = ("office", "staircase", "street", "field")
+FIXED = ("office", "staircase", "street", "field", "hall")
 """Worlds of one geometry."""
 PROCEDURAL = ("corridor", "tunnel", "garage", "plaza", "storeys", "tower", "forest")
 """Worlds of which there are variants: ``corridor`` is variant 0, ``corridor:7`` another one."""

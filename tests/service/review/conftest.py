@@ -1,32 +1,11 @@
 """A project to review, and a server for it."""
 
-import shutil
-
 import pytest
 
-from tests.review_project import make
+from tests.review_fixtures import made, root, running
 from tests.service.review.reviewing import Reviewing
-from tests.service.running import server_thread
 
-
-@pytest.fixture(scope="session")
-def made(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("made") / "office"
-    make(folder)
-    return folder
-
-
-@pytest.fixture(scope="module")
-def running(tmp_path_factory):
-    with server_thread(tmp_path_factory.mktemp("served"), worker="tests.review_project") as one:
-        yield one
-
-
-@pytest.fixture
-def root(made, running):
-    folder = running.root / f"office{len(list(running.root.iterdir()))}"
-    shutil.copytree(made, folder)
-    return folder
+__all__ = ["made", "root", "running", "server"]
 
 
 @pytest.fixture

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from recon4.kernels.normals import smallest_eigenvector
+from recon4.kernels.moments import smallest_eigenvector
 from recon4.kernels.sorting import radix_sort
 from recon4.mapping.normals import local_normals
 
@@ -13,11 +13,14 @@ def test_the_closed_form_finds_the_eigenvector_of_lapack(seed):
     points = np.random.default_rng(seed).normal(size=(50, 3)) @ np.diag([1.0, 0.6, 0.05])
     points = points @ np.linalg.qr(np.random.default_rng(seed + 100).normal(size=(3, 3)))[0]
     c = np.cov(points.T)
-    out = np.zeros(3, np.float32)
+    values, vectors = np.linalg.eigh(c)
 
-    smallest_eigenvector(c[0, 0], c[1, 1], c[2, 2], c[0, 1], c[0, 2], c[1, 2], out)
+    *found, small, middle, large = smallest_eigenvector(
+        c[0, 0], c[1, 1], c[2, 2], c[0, 1], c[0, 2], c[1, 2], 1e-12
+    )
 
-    assert abs(out @ np.linalg.eigh(c)[1][:, 0]) == pytest.approx(1.0, abs=1e-5)
+    assert abs(np.array(found) @ vectors[:, 0]) == pytest.approx(1.0, abs=1e-9)
+    assert (small, middle, large) == pytest.approx(values, rel=1e-6)
 
 
 def test_a_tilted_plane_has_its_normal_everywhere():

@@ -41,7 +41,7 @@ def test_angles_are_degrees_and_may_be_given_as_a_quaternion():
     assert np.allclose(by_angles.T_body_sensor @ np.array([1.0, 0, 0]), [0.0, 1.0, 0.0])
 
 
-@pytest.mark.parametrize("name", ["4recon", "single-vlp16", "single-hdl32e"])
+@pytest.mark.parametrize("name", ["4recon", "single-vlp16", "single-hdl32e", "wuerzburg"])
 def test_a_rig_written_and_read_again_is_the_same(name):
     rig = load_rig(name)
 
@@ -121,3 +121,42 @@ def test_a_name_cannot_add_to_the_file_it_is_written_into():
     again = parse_rig(format_rig(rig), where="x")
     assert again.name == name
     assert [sensor.name for sensor in again.sensors] == ["x"]
+
+
+def test_the_wuerzburg_rig_has_a_profiler_and_a_2d_laser():
+    rig = load_rig("wuerzburg")
+
+    again = parse_rig(format_rig(rig), where="again")
+
+    assert [s.kind for s in again.sensors] == ["laser2d", "profiler"]
+    assert again.row_of("profiler") == 1
+    assert again.row_of("lidar") is None
+    assert again.sensors[1].head_topic == "/profiler/head"
+    assert np.allclose(again.sensors[1].T_body_sensor.R @ [1.0, 0, 0], [-1.0, 0, 0])
+
+
+def test_a_head_of_constant_rate_is_kept():
+    rig = parse_rig(ONE + 'kind = "profiler"\nhead_rate_deg_s = -60', where="x")
+
+    again = parse_rig(format_rig(rig), where="again").sensors[0]
+
+    assert np.isclose(again.head_rate_rad_s, -np.pi / 3)
+    assert again.model == "generic"
+
+
+def test_a_rig_of_lidars_is_written_without_kinds():
+    assert "kind" not in format_rig(load_rig("4recon"))
+
+
+@pytest.mark.parametrize(
+    ("line", "text"),
+    [
+        ('kind = "sonar"', "kind must be one of"),
+        ('kind = "profiler"\nmodel = "VLP-16"', "for a profiler"),
+        ("head_rate_deg_s = 60", "only a profiler has a head"),
+        ('kind = "profiler"\nhead_rate_deg_s = 9999', "within ±3600"),
+    ],
+)
+def test_a_wrong_kind_or_head_is_refused(line, text):
+    with pytest.raises(ConfigError, match=text):
+        parse_rig(ONE + line, where="x")

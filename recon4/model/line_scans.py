@@ -1,0 +1,82 @@
+"""Line scans of a profiler: when each was measured, and where its head pointed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import Array
+from recon4.model.trajectory import Times
+
+_SPIN_RAD = 2.0 * np.pi
+_WIDE_LINES = 5
+"""Lines over which the direction of the head is judged: its angles have noise."""
+_MIN_TURN = 0.25
+"""Shorter turns than this part of the median one are joined to their neighbor."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LineScans:
+    """One row per line scan; the points of a line are those measured from its time on.
+
+    The points themselves are in the multiframes, in the frame of the profiler, which does not turn
+    with the head. Points, not shots, are counted: their number and their step are found in the
+    data (requirements A1, L-HW).
+    """
+
+    t_ns: Times
+    """Time of the first shot [ns], strictly increasing, (L,)."""
+    head_rad: Array
+    """Angle of the head at that time, continuous over a full turn [rad], (L,)."""
+    points: NDArray[np.int64]
+    """Number of returns, (L,)."""
+
+    def __len__(self) -> int:
+        return len(self.t_ns)
+
+    def line_of(self, t_ns: Times) -> NDArray[np.intp]:
+        """Row of the line that was measured at each time, (N,) -> (N,)."""
+        return np.maximum(np.searchsorted(self.t_ns, t_ns, side="right") - 1, 0)
+
+    def turns(self) -> NDArray[np.intp]:
+        """First line of each turn, and the number of lines at the end, (T + 1,).
+
+        A turn ends where the head reverses, or after a full revolution in one direction.
+        """
+        count = len(self)
+        if count <= 2 * _WIDE_LINES:
+            return np.array([0, count], np.intp)
+        ends = [0]
+        way = np.sign(self.head_rad[_WIDE_LINES:] - self.head_rad[:-_WIDE_LINES])
+        start_rad, heading = self.head_rad[0], way[0]
+        for line in range(1, len(way)):
+            turned = abs(self.head_rad[line] - start_rad) >= _SPIN_RAD - 1e-6
+            reversed_ = way[line] != 0 and way[line] != heading
+            if turned or reversed_:
+                # The reversal lies in the middle of the lines that were compared.
+                at = line + (_WIDE_LINES // 2 if reversed_ else 0)
+                ends.append(at)
+                start_rad, heading = self.head_rad[at], way[line] or heading
+        return _without_short(np.array([*ends, count], np.intp))
+
+    def usual_turn_s(self) -> float:
+        """Median duration of the complete turns [s]; of all if there are too few."""
+        ends = self.turns()
+        starts = self.t_ns[ends[:-1]]
+        if len(starts) < 3:
+            return float(self.t_ns[-1] - self.t_ns[0]) * 1e-9
+        return float(np.median(np.diff(starts)[1:] if len(starts) > 3 else np.diff(starts))) * 1e-9
+
+
+def _without_short(ends: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Turns joined to the one before where they are far shorter than usual."""
+    least = _MIN_TURN * np.median(np.diff(ends))
+    kept = [int(ends[0])]
+    for end in ends[1:-1]:
+        if end - kept[-1] >= least:
+            kept.append(int(end))
+    if len(kept) > 1 and ends[-1] - kept[-1] < least:
+        kept.pop()
+    return np.array([*kept, int(ends[-1])], np.intp)

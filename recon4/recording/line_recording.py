@@ -1,0 +1,263 @@
+"""A bag of a backpack with a profiler: line scans, angles of its head, a 2-D laser, an IMU."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from recon4.errors import ConfigError, CorruptFile, EmptyRecording
+from recon4.model.laser_scans import LaserScans
+from recon4.model.line_scans import LineScans
+from recon4.model.rig import Rig, load_rig
+from recon4.model.samples import ImuSamples
+from recon4.recording.assembly.shots import Shots
+from recon4.recording.bag_recording import (
+    SampleBatch,
+    cloud_table,
+    imu_row,
+    join_imu,
+    most_messages,
+    stamp_ns,
+)
+from recon4.recording.cloud_points import CloudDecoder
+from recon4.recording.formats.bags import CLOUD, IMU, Bag, BagMessage, BagTopic
+from recon4.recording.head_angles import HeadAngles
+from recon4.recording.report import ImportReport
+from recon4.recording.scan_messages import ScanCollector, line_of_scan
+
+LASER_SCAN = "sensor_msgs/msg/LaserScan"
+JOINTS = "sensor_msgs/msg/JointState"
+LineItem = Shots | LineScans | LaserScans | ImuSamples
+WUERZBURG = "wuerzburg"
+_LINES_AT_ONCE = 64
+_NAMES_LISTED = 20
+
+
+def profiler_rig(topics: Sequence[BagTopic], rig: Rig | None, report: ImportReport) -> Rig | None:
+    """The rig, if it has a profiler; without a given one the shipped rig if its topics are there.
+
+    Args:
+        topics: Of the bag.
+        rig: The rig that was given.
+        report: Receives that a rig was chosen.
+    """
+    if rig is not None:
+        return rig if rig.row_of("profiler") is not None else None
+    shipped = load_rig(WUERZBURG)
+    row = shipped.row_of("profiler")
+    if row is None or shipped.sensors[row].topic not in {topic.name for topic in topics}:
+        return None
+    report.derive(f"no rig given: the topics match the preset {WUERZBURG}, its mounting is used")
+    return shipped
+
+
+class LineRecording:
+    """Streams the points of line scans with the lines themselves, 2-D scans and IMU samples.
+
+    The points are in the frame of the profiler, which does not turn with the head.
+    """
+
+    def __init__(self, paths: Sequence[Path], rig: Rig, *, report: ImportReport) -> None:
+        """Find the topics.
+
+        Raises:
+            RecordingError: If the bag cannot be read.
+            EmptyRecording: If there are no line scans.
+            ConfigError: If the angles of the head are missing.
+        """
+        self._paths, self._report = paths, report
+        with Bag(paths, report) as bag:
+            self.seconds, self.topics = bag.seconds, bag.topics
+        row = rig.row_of("profiler")
+        assert row is not None
+        self._row, self._laser_row = row, rig.row_of("laser2d")
+        self._lines = _topic_of(rig.sensors[row].topic, rig.sensors[row].name, self.topics)
+        if not self._lines:
+            names = ", ".join(f"{t.name} ({t.type})" for t in self.topics[:_NAMES_LISTED])
+            raise EmptyRecording(
+                f"{paths[0].name}: no line scans of {rig.sensors[row].name}; topics: {names}"
+            )
+        self._head = self._find_head(rig, row)
+        self._scans = self._find_scans(rig)
+        self.imu_topic = most_messages(self.topics, IMU, report)
+        found = {row: self._lines} | ({self._laser_row: self._scans} if self._scans else {})
+        sensors = [replace(s, topic=found.get(k, s.topic)) for k, s in enumerate(rig.sensors)]
+        self.rig = replace(rig, sensors=tuple(sensors))
+
+    def read(self) -> Iterator[LineItem]:
+        """Stream the bag once; points and lines are in order of time."""
+        with Bag(self._paths, ImportReport()) as bag:
+            bag.report = self._report
+            yield from self._read(bag)
+
+    def _read(self, bag: Bag) -> Iterator[LineItem]:
+        sensor = self.rig.sensors[self._row]
+        head = HeadAngles(sensor.name, sensor.head_rate_rad_s, self._report)
+        lines = LineAssembly(self._row, self.rig, head, report=self._report)
+        imu = SampleBatch(imu_row, join_imu, self._report)
+        scans = ScanCollector(self._offset_ns(self._laser_row), self._report)
+        wanted = {self._lines, self._head, self._scans, self.imu_topic} - {""}
+        for message in bag.messages(wanted):
+            self._report.count("messages")
+            content = bag.decode(message)
+            if content is None:
+                continue
+            if message.topic == self._head:
+                self._push_angle(head, message, content)
+            elif message.topic == self._lines:
+                yield from lines.push(message, content)
+            elif message.topic == self._scans:
+                yield from scans.push(message, content)
+            else:
+                yield from imu.push(message, content)
+        yield from lines.flush()
+        yield from scans.flush()
+        yield from imu.flush()
+        head.finish(self.seconds)
+
+    def _push_angle(self, head: HeadAngles, message: BagMessage, content: Any) -> None:
+        if len(content.position) == 0:
+            self._report.count("head_angles_invalid")
+            return
+        t_ns = stamp_ns(content.header.stamp)
+        t_ns = (t_ns if t_ns > 0 else message.t_ns) + self._offset_ns(self._row)
+        head.push(t_ns, float(content.position[0]))
+
+    def _offset_ns(self, row: int | None) -> int:
+        return 0 if row is None else round(1e9 * self.rig.sensors[row].time_offset_s)
+
+    def _find_head(self, rig: Rig, row: int) -> str:
+        """Topic of the head's angles; empty = it turns at a constant rate.
+
+        Raises:
+            ConfigError: If the angles are missing.
+        """
+        sensor = rig.sensors[row]
+        if sensor.head_rate_rad_s:
+            self._report.derive(
+                f"{sensor.name}: the head turns at {np.rad2deg(sensor.head_rate_rad_s):g}°/s, as "
+                "the rig file says"
+            )
+            return ""
+        joints = [t for t in self.topics if t.type == JOINTS and t.messages]
+        named = [t.name for t in joints if t.name == sensor.head_topic]
+        if named:
+            return named[0]
+        if len(joints) == 1 and not sensor.head_topic:
+            self._report.derive(f"{sensor.name}: the angles of its head are {joints[0].name}")
+            return joints[0].name
+        there = ", ".join(t.name for t in joints) or "none"
+        raise ConfigError(
+            f"{sensor.name}: the angles of its head are missing: expected topic "
+            f"{sensor.head_topic or '(one)'} of type {JOINTS}, got {there}; with a head of "
+            "constant rate, head_rate_deg_s in the rig file"
+        )
+
+    def _find_scans(self, rig: Rig) -> str:
+        if self._laser_row is None:
+            self._report.warn("the rig has no 2-D laser: the first motion is from the IMU alone")
+            return ""
+        sensor = rig.sensors[self._laser_row]
+        topics = [t for t in self.topics if t.type == LASER_SCAN]
+        found = _topic_of(sensor.topic, sensor.name, topics)
+        if not found:
+            self._report.warn(f"sensor {sensor.name} of the rig is not in the recording")
+        return found
+
+
+class LineAssembly:
+    """Turns the lines of a profiler into its frame as soon as the angle of its head is known."""
+
+    def __init__(self, row: int, rig: Rig, head: HeadAngles, *, report: ImportReport) -> None:
+        self._row, self._head, self._report = row, head, report
+        self._sensor = rig.sensors[row]
+        self._offset_ns = round(1e9 * self._sensor.time_offset_s)
+        self._clouds = CloudDecoder(row, self._sensor.name, self._sensor.model, report=report)
+        self._waiting: list[Shots] = []
+        self._done: list[tuple[Shots, float]] = []
+        self._last_ns = 0
+
+    def push(self, message: BagMessage, content: Any) -> Iterator[LineItem]:
+        """Add a line; returns those that are complete, in batches."""
+        shots = self._shots(message, content)
+        if shots is None or not len(shots):
+            self._report.count("lines_empty")
+            return
+        if int(shots.t_ns[0]) <= self._last_ns:
+            self._report.count("lines_out_of_order")
+            return
+        self._last_ns = int(shots.t_ns[0])
+        self._report.count("lines")
+        self._waiting.append(shots)
+        self._turn(int(shots.t_ns[-1]))
+        if len(self._done) >= _LINES_AT_ONCE:
+            yield from self._deliver()
+
+    def flush(self) -> Iterator[LineItem]:
+        """The remaining lines."""
+        self._turn(self._last_ns, final=True)
+        yield from self._deliver()
+        lost = self._report.counts["lines_without_angle"]
+        if lost:
+            self._report.warn(f"{self._sensor.name}: {lost} lines without an angle of the head")
+
+    def _shots(self, message: BagMessage, content: Any) -> Shots | None:
+        t_ns = stamp_ns(content.header.stamp)
+        t_ns = (t_ns if t_ns > 0 else message.t_ns) + self._offset_ns
+        try:
+            if message.type == CLOUD:
+                table = cloud_table(content)
+                return self._clouds.decode(table, t_ns=t_ns, period_ns=10_000_000)
+            return line_of_scan(content, self._row, t_ns, report=self._report)
+        except CorruptFile as error:
+            self._report.count("messages_corrupt")
+            self._report.warn(f"{message.topic}: left out: {error}")
+            return None
+
+    def _turn(self, now_ns: int, *, final: bool = False) -> None:
+        while self._waiting:
+            shots = self._waiting[0]
+            end_ns = int(shots.t_ns[-1])
+            if not (final or self._head.ready(end_ns) or self._head.overdue(end_ns, now_ns)):
+                return
+            self._waiting.pop(0)
+            angle = self._head.at(shots.t_ns)
+            if angle is None:
+                self._report.count("lines_without_angle")
+                continue
+            c, s = np.cos(angle), np.sin(angle)
+            x, y, z = shots.xyz.astype(np.float64).T
+            xyz = np.stack([c * x - s * y, s * x + c * y, z], axis=1).astype(np.float32)
+            self._done.append((replace(shots, xyz=xyz), float(angle[0])))
+
+    def _deliver(self) -> Iterator[LineItem]:
+        if not self._done:
+            return
+        parts = [shots for shots, _ in self._done]
+        yield LineScans(
+            np.array([part.t_ns[0] for part in parts], np.int64),
+            np.array([angle for _, angle in self._done]),
+            np.array([len(part) for part in parts], np.int64),
+        )
+        self._done = []
+        yield Shots(
+            self._row,
+            np.concatenate([part.t_ns for part in parts]),
+            np.concatenate([part.xyz for part in parts]),
+            np.concatenate([part.intensity for part in parts]),
+            np.concatenate([part.ring for part in parts]),
+            np.concatenate([part.echo for part in parts]),
+        )
+
+
+def _topic_of(wanted: str, name: str, topics: Sequence[BagTopic]) -> str:
+    """The topic a rig names, or the only one with the sensor's name in it; empty = none."""
+    usable = [t.name for t in topics if t.type in (LASER_SCAN, CLOUD) and t.messages]
+    if wanted in usable:
+        return wanted
+    alike = [topic for topic in usable if name.lower() in topic.lower()]
+    return alike[0] if len(alike) == 1 and not wanted else ""

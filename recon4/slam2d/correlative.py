@@ -1,0 +1,102 @@
+"""Correlative search: the best pose in a window, also from a wrong start (Olson 2009)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se2 import transform
+from recon4.geometry.se3 import Array
+from recon4.kernels.correlation2d import branch_and_bound, largest_around, likelihood_field
+
+_CELL_M = 0.1
+_BLUR_M = 0.1
+"""Standard deviation of a return around the points of the map [m]."""
+_LEVELS = 5
+_FARTHEST_M = 25.0
+"""Points farther from the laser do not limit the step of the rotation [m]."""
+_MAX_POINTS = 400
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Found2d:
+    """The best pose of a search."""
+
+    pose: Array
+    """x [m], y [m], yaw [rad], (3,)."""
+    score: float
+    """Mean likelihood of the points, 0 to 1."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LikelihoodField:
+    """Likelihood of returns around the points of a map, for `search`."""
+
+    squares: NDArray[np.uint8]
+    """Of `recon4.kernels.correlation2d.largest_around`."""
+    origin: Array
+    """Corner of the first cell [m], (2,)."""
+
+    @staticmethod
+    def of(points: Array) -> LikelihoodField:
+        """The field around points of a map [m], (P, 2)."""
+        reach = int(np.ceil(2.5 * _BLUR_M / _CELL_M))
+        low, high = points.min(axis=0), points.max(axis=0)
+        origin = np.floor(low / _CELL_M - reach) * _CELL_M
+        rows, columns = np.ceil((high - origin) / _CELL_M).astype(int) + reach + 1
+        offsets = np.arange(-reach, reach + 1) * _CELL_M
+        squared = offsets[:, None] ** 2 + offsets[None, :] ** 2
+        stamp = np.round(255.0 * np.exp(-0.5 * squared / _BLUR_M**2)).astype(np.uint8)
+        field = likelihood_field(points, origin, (int(rows), int(columns)), _CELL_M, stamp)
+        return LikelihoodField(largest_around(field, _LEVELS), origin)
+
+    def search(
+        self,
+        points: Array,
+        *,
+        center: Array,
+        window_m: float,
+        window_rad: float,
+        least: float,
+    ) -> Found2d | None:
+        """The pose with the largest mean likelihood of the points.
+
+        Args:
+            points: In the frame of the laser [m], (P, 2).
+            center: Middle of the window: x [m], y [m], yaw [rad], (3,).
+            window_m: Largest shift along x and y [m].
+            window_rad: Largest rotation [rad].
+            least: Smallest score that counts.
+
+        Returns:
+            The best pose, to about a cell; None = none with that score.
+        """
+        points = thinned(points, _CELL_M, most=_MAX_POINTS)
+        if not len(points):
+            return None
+        farthest = min(float(np.hypot(points[:, 0], points[:, 1]).max()), _FARTHEST_M)
+        # One step of the rotation moves the farthest point by a cell (Hess 2016, eq. 7).
+        count = int(np.ceil(window_rad / (_CELL_M / max(farthest, 1.0))))
+        angles = np.linspace(-window_rad, window_rad, 2 * count + 1)
+        poses = np.repeat(center[None], len(angles), axis=0)
+        poses[:, 2] += angles
+        moved = transform(poses[:, None], points[None])
+        cells = np.floor((moved - self.origin) / _CELL_M).astype(np.int32)
+        window = int(np.ceil(window_m / _CELL_M))
+        score, row, dx, dy = branch_and_bound(self.squares, cells, window, least)
+        if score <= least:
+            return None
+        pose = poses[row] + np.array([dx * _CELL_M, dy * _CELL_M, 0.0])
+        return Found2d(pose, score)
+
+
+def thinned(points: Array, cell_m: float, *, most: int) -> Array:
+    """One point per cell, and an even sample of at most ``most`` of them, (Q, 2)."""
+    cells = np.floor(points / cell_m).astype(np.int64)
+    _, rows = np.unique(cells[:, 0] * (1 << 32) + cells[:, 1], return_index=True)
+    rows.sort()
+    if len(rows) > most:
+        rows = rows[np.linspace(0, len(rows) - 1, most).astype(np.intp)]
+    return points[rows]

@@ -1,0 +1,89 @@
+"""Occupancy grid: how likely each cell of the plane is occupied."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import Array
+from recon4.kernels.occupancy2d import cast_scan
+
+MAX_CELLS = 150_000_000
+"""Cells of the largest grid; 600 MB with what is needed to fill it."""
+_MARGIN_M = 5.0
+"""A grid that grows gets this much more on each side [m]."""
+_LARGEST_LOG_ODDS = 6.0
+
+
+@dataclass(slots=True, eq=False)
+class OccupancyGrid:
+    """Log-odds of square cells; grows where beams leave it."""
+
+    cell_m: float
+    """Edge of a cell [m]."""
+    p_free: float
+    """Probability by which a beam that passes updates a cell."""
+    p_occupied: float
+    """The same for a return."""
+    origin: Array = field(default_factory=lambda: np.zeros(2))
+    """Corner of cell (0, 0) in the map [m], (2,)."""
+    log_odds: NDArray[np.float32] = field(default_factory=lambda: np.zeros((0, 0), np.float32))
+    """0 = unknown, (X, Y): the first index counts along x."""
+    _seen: NDArray[np.int32] = field(default_factory=lambda: np.zeros((0, 0), np.int32))
+    _scans: int = 0
+
+    @property
+    def probability(self) -> NDArray[np.float32]:
+        """Probability of each cell to be occupied, 0.5 = unknown, (X, Y)."""
+        return np.asarray(1.0 - 1.0 / (1.0 + np.exp(self.log_odds)), np.float32)
+
+    def cover(self, low: Array, high: Array) -> None:
+        """Grow to include a rectangle [m]; ``low`` and ``high`` are its corners, (2,)."""
+        if self.log_odds.size:
+            end = self.origin + np.array(self.log_odds.shape) * self.cell_m
+            if np.all(low >= self.origin) and np.all(high < end):
+                return
+            low, high = np.minimum(low, self.origin), np.maximum(high, end)
+        first = np.floor((low - _MARGIN_M) / self.cell_m).astype(np.int64)
+        last = np.ceil((high + _MARGIN_M) / self.cell_m).astype(np.int64)
+        shape = tuple(int(n) for n in last - first)
+        log_odds, seen = np.zeros(shape, np.float32), np.zeros(shape, np.int32)
+        if self.log_odds.size:
+            at = np.round(self.origin / self.cell_m).astype(np.int64) - first
+            rows = slice(int(at[0]), int(at[0]) + self.log_odds.shape[0])
+            columns = slice(int(at[1]), int(at[1]) + self.log_odds.shape[1])
+            log_odds[rows, columns], seen[rows, columns] = self.log_odds, self._seen
+        self.origin = np.asarray(first * self.cell_m, np.float64)
+        self.log_odds, self._seen = log_odds, seen
+
+    def add_scan(self, p_map: Array, laser: Array) -> None:
+        """Enter the beams of a scan.
+
+        Args:
+            p_map: Returns in the map [m], (P, 2).
+            laser: Position of the laser [m], (2,).
+        """
+        if not len(p_map):
+            return
+        both = np.concatenate([laser[None], p_map])
+        self.cover(both.min(axis=0), both.max(axis=0))
+        cells = np.floor((both - self.origin) / self.cell_m).astype(np.int32)
+        update = np.array(
+            [_log_odds(self.p_occupied), _log_odds(self.p_free), _LARGEST_LOG_ODDS], np.float32
+        )
+        self._scans += 1
+        cast_scan(self.log_odds, self._seen, cells, self._scans, update)
+
+
+def fitting_cell_m(low: Array, high: Array, cell_m: float) -> float:
+    """The edge of the cells, doubled until a grid over a rectangle has at most `MAX_CELLS` [m]."""
+    size_m = np.maximum(high - low, 0.0) + 2.0 * _MARGIN_M
+    while float(np.prod(size_m / cell_m)) > MAX_CELLS:
+        cell_m *= 2.0
+    return cell_m
+
+
+def _log_odds(probability: float) -> float:
+    return float(np.log(probability / (1.0 - probability)))

@@ -1,0 +1,209 @@
+"""2-D odometry: each scan is registered to a sliding local map of lines."""
+
+from __future__ import annotations
+
+from collections import deque
+
+import numpy as np
+
+from recon4.geometry.se2 import between, compose, transform, wrap
+from recon4.geometry.se3 import Array
+from recon4.model.laser_scans import LaserScans
+from recon4.model.trajectory import Trajectory
+from recon4.progress import Progress, track
+from recon4.settings.slam2d import Slam2dSettings
+from recon4.slam2d.correlative import LikelihoodField
+from recon4.slam2d.line_map import LineMap, Match2d, Prior2d, stack_points
+from recon4.slam2d.observability import Observed, observed
+from recon4.slam2d.prediction import MotionPredictor, Predicted
+from recon4.slam2d.scan_points import ScanPoints, leveling, scan_points
+from recon4.slam2d.steps import Steps2d, empty_steps
+
+_FEWEST_POINTS = 15
+"""With fewer returns a scan cannot be registered."""
+_WINDOW_PATH_M = 25.0
+"""Extent of the local map beside the ranges [m]."""
+_SEARCH_SCORE = 0.35
+_WIDEST_SEARCH_M = 10.0
+_FIRST_KEYFRAMES = 5
+"""A local map of fewer keyframes has gaps between the returns: every scan is added to it."""
+_RESET_AFTER = 20
+"""Number of scans that are lost one after the other before the local map starts again."""
+
+
+class Odometry2d:
+    """Registers scans one after the other; `push` them in order of time."""
+
+    def __init__(
+        self,
+        scans: LaserScans,
+        *,
+        attitude: Trajectory | None = None,
+        settings: Slam2dSettings | None = None,
+    ) -> None:
+        """Prepare; no scan is registered yet.
+
+        Args:
+            scans: All scans.
+            attitude: Attitude of the laser at all scans, as of an IMU; None = the laser is level.
+            settings: None = the defaults.
+        """
+        self._scans = scans
+        self._settings = settings or Slam2dSettings()
+        self._predictor = MotionPredictor(scans, attitude, settings=self._settings)
+        self._leveling: Array | None = None
+        if attitude is not None:
+            self._leveling = leveling(attitude.at(scans.t_ns, slack_ns=1_000_000_000))
+        extent_m = 2.0 * self._settings.max_range_m + _WINDOW_PATH_M
+        self._map = LineMap(cell_m=self._settings.cell_m, extent_m=extent_m)
+        self._window: deque[tuple[Array, Array]] = deque()
+        self._field: LikelihoodField | None = None
+        self._key = 0
+        self._since_key = np.zeros(3)
+        self._lost_in_a_row = 0
+        self.steps = empty_steps(scans.t_ns)
+
+    def push(self, k: int) -> None:
+        """Register scan ``k``; the scans before it were pushed already."""
+        steps = self.steps
+        predicted = self._predict(k)
+        scan = self._points(k)
+        start = compose(steps.pose[k - 1], predicted.motion) if k else np.zeros(3)
+        if not self._window:
+            steps.pose[k] = start
+            steps.lost[k] = len(scan.points) < _FEWEST_POINTS
+            if not steps.lost[k]:
+                self._insert(k, scan)
+            return
+        self._since_key += [predicted.sd_rad**2, predicted.sd_m**2, predicted.sd_m**2]
+        match = self._register(k, scan, start, predicted)
+        found = observed(match.H, self._settings.normal_noise_rad) if match else None
+        if match is None or found is None or match.match_ratio < self._settings.min_match_ratio:
+            self._lose(k, start, scan)
+        else:
+            self._accept(k, match, found)
+            if self._is_keyframe(k):
+                self._insert(k, scan)
+
+    def _predict(self, k: int) -> Predicted:
+        if k == 0:
+            return Predicted(np.zeros(3), 0.0, 0.0)
+        return self._predictor.predict(k, self.steps.pose)
+
+    def _points(self, k: int) -> ScanPoints:
+        motion = self._predictor.velocity(k, self.steps.pose) if k > 1 else None
+        level = None if self._leveling is None else self._leveling[k]
+        return scan_points(
+            self._scans, k, settings=self._settings, R_level_laser=level, motion=motion
+        )
+
+    def _register(
+        self, k: int, scan: ScanPoints, start: Array, predicted: Predicted
+    ) -> Match2d | None:
+        if len(scan.points) < _FEWEST_POINTS:
+            return None
+        prior = Prior2d(
+            start, np.diag([predicted.sd_rad**-2, predicted.sd_m**-2, predicted.sd_m**-2])
+        )
+        sd_m = self._settings.noise_sd_m
+        match = self._map.register(scan.points, scan.weights, start=start, prior=prior, sd_m=sd_m)
+        if match.match_ratio >= self._settings.search_match_ratio:
+            return match
+        return self._search(k, scan, start=start, match=match, predicted=predicted)
+
+    def _search(
+        self, k: int, scan: ScanPoints, *, start: Array, match: Match2d, predicted: Predicted
+    ) -> Match2d:
+        """Look for a pose with a higher match ratio around the predicted one."""
+        if self._field is None:
+            self._field = LikelihoodField.of(stack_points([points for _, points in self._window]))
+        reach = 4.0 * (1 + self._lost_in_a_row)
+        found = self._field.search(
+            scan.points,
+            center=start,
+            window_m=min(0.1 + reach * predicted.sd_m, _WIDEST_SEARCH_M),
+            window_rad=min(0.05 + reach * predicted.sd_rad, np.pi),
+            least=_SEARCH_SCORE,
+        )
+        if found is None:
+            return match
+        better = self._map.register(
+            scan.points, scan.weights, start=found.pose, sd_m=self._settings.noise_sd_m
+        )
+        if better.match_ratio < match.match_ratio + 0.1:
+            return match
+        self.steps.searched[k] = True
+        return better
+
+    def _accept(self, k: int, match: Match2d, found: Observed) -> None:
+        steps = self.steps
+        steps.pose[k] = match.pose
+        steps.match_ratio[k] = match.match_ratio
+        steps.degeneracy[k] = found.degeneracy
+        steps.weak_sd_m[k] = found.weak_sd_m
+        steps.weak_direction[k] = found.weak_direction
+        steps.motion_information[k] = self._in_scan_axes(match.pose, found.information)
+        self._lost_in_a_row = 0
+
+    def _in_scan_axes(self, pose: Array, information: Array) -> Array:
+        """Information of lines and prediction together, in the axes of the scan."""
+        c, s = np.cos(pose[2]), np.sin(pose[2])
+        turn = np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
+        return np.asarray(turn.T @ (information + np.diag(1.0 / self._since_key)) @ turn)
+
+    def _lose(self, k: int, start: Array, scan: ScanPoints) -> None:
+        """Keep the prediction; after many lost scans start another local map."""
+        steps = self.steps
+        steps.pose[k], steps.lost[k] = start, True
+        steps.motion_information[k] = self._in_scan_axes(start, np.zeros((3, 3)))
+        self._lost_in_a_row += 1
+        if self._lost_in_a_row >= _RESET_AFTER and len(scan.points) >= _FEWEST_POINTS:
+            steps.resets[k] = True
+            while self._window:
+                self._map.remove(self._window.popleft()[1])
+            self._insert(k, scan)
+            self._lost_in_a_row = 0
+
+    def _is_keyframe(self, k: int) -> bool:
+        if len(self._window) < _FIRST_KEYFRAMES:
+            return True
+        moved = between(self.steps.pose[self._key], self.steps.pose[k])
+        far = float(np.hypot(moved[0], moved[1])) > self._settings.keyframe_m
+        return far or abs(float(wrap(moved[2]))) > self._settings.keyframe_rad
+
+    def _insert(self, k: int, scan: ScanPoints) -> None:
+        pose = self.steps.pose[k].copy()
+        points = transform(pose, scan.points)
+        self._map.add(points)
+        self._window.append((pose, points))
+        while self._is_too_large():
+            self._map.remove(self._window.popleft()[1])
+        self.steps.keyframe[k] = True
+        self._key, self._field = k, None
+        self._since_key = np.zeros(3)
+
+    def _is_too_large(self) -> bool:
+        (first, _), (last, _) = self._window[0], self._window[-1]
+        distance = float(np.hypot(first[0] - last[0], first[1] - last[1]))
+        return len(self._window) > self._settings.window or distance > _WINDOW_PATH_M
+
+
+def run_odometry_2d(
+    scans: LaserScans,
+    *,
+    attitude: Trajectory | None,
+    settings: Slam2dSettings,
+    progress: Progress,
+) -> Steps2d:
+    """Register all scans.
+
+    Args:
+        scans: At least one.
+        attitude: As for `Odometry2d`.
+        settings: As for `Odometry2d`.
+        progress: Counts scans.
+    """
+    odometry = Odometry2d(scans, attitude=attitude, settings=settings)
+    for k in track(range(len(scans)), progress, what="2-D odometry", unit="scans"):
+        odometry.push(k)
+    return odometry.steps

@@ -1,0 +1,103 @@
+"""Predicted motion from one scan to the next, and how certain it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from recon4.geometry.se2 import between, wrap
+from recon4.geometry.se3 import Array
+from recon4.model.laser_scans import LaserScans
+from recon4.model.trajectory import Trajectory
+from recon4.settings.slam2d import Slam2dSettings
+
+_VELOCITY_S = 0.25
+"""The velocity is measured over at least this time, because times of scans jitter [s]."""
+_ACCELERATION_M_S2 = 3.0
+_ACCELERATION_RAD_S2 = 4.0
+_LONG_GAP_S = 0.7
+"""Over longer times without odometry the velocity is not extrapolated [s]."""
+_SLIP = 0.1
+"""Error of wheel odometry as a ratio of the distance and of the rotation …"""
+_TURN_PER_M = 0.05
+"""… and error of its rotation per distance [rad/m]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Predicted:
+    """A motion from one scan to the next."""
+
+    motion: Array
+    """Pose of the later scan in the earlier: x [m], y [m], yaw [rad], (3,)."""
+    sd_m: float
+    sd_rad: float
+
+
+class MotionPredictor:
+    """Predicts with the odometry of the recording, else with the velocity before; yaw by an IMU."""
+
+    def __init__(
+        self, scans: LaserScans, attitude: Trajectory | None, *, settings: Slam2dSettings
+    ) -> None:
+        """Choose the sources.
+
+        Args:
+            scans: All scans.
+            attitude: Attitude of the laser at all scans; its positions are not used.
+            settings: Whether odometry may be used, and the largest speed.
+        """
+        self._t_ns = scans.t_ns
+        self._odometry = scans.odometry if settings.use_odometry else None
+        self._settings = settings
+        self._yaw: Array | None = None
+        if attitude is not None:
+            R = attitude.at(scans.t_ns, slack_ns=1_000_000_000).R
+            self._yaw = np.unwrap(np.arctan2(R[:, 1, 0], R[:, 0, 0]))
+
+    @property
+    def has_odometry(self) -> bool:
+        """Whether the distance is measured, not extrapolated."""
+        return self._odometry is not None
+
+    def seconds(self, k: int) -> float:
+        """Time from the scan before to scan ``k`` [s]."""
+        return float(self._t_ns[k] - self._t_ns[k - 1]) / 1e9
+
+    def velocity(self, k: int, poses: Array) -> Array:
+        """Motion in one second before scan ``k``, in the axes of the last scan, (3,)."""
+        before = k - 1
+        while before > 0 and self._t_ns[k - 1] - self._t_ns[before] < _VELOCITY_S * 1e9:
+            before -= 1
+        span_s = float(self._t_ns[k - 1] - self._t_ns[before]) / 1e9
+        if span_s <= 0.0 or span_s > 4.0 * _VELOCITY_S + _LONG_GAP_S:
+            return np.zeros(3)
+        moved = between(poses[k - 1], poses[before])
+        return np.array([-moved[0], -moved[1], -moved[2]]) / span_s
+
+    def predict(self, k: int, poses: Array) -> Predicted:
+        """The motion from scan ``k - 1`` to scan ``k``.
+
+        Args:
+            k: Row of the scan.
+            poses: Poses of the scans before, (k, 3) or more rows.
+        """
+        seconds = self.seconds(k)
+        if self._odometry is not None:
+            motion = between(self._odometry[k - 1], self._odometry[k])
+            distance = float(np.hypot(motion[0], motion[1]))
+            turn = abs(float(motion[2]))
+            sd_m = 0.005 + _SLIP * distance
+            sd_rad = 0.003 + 0.15 * turn + _TURN_PER_M * distance
+        elif seconds > _LONG_GAP_S:
+            motion = np.zeros(3)
+            sd_m = 0.5 * self._settings.max_speed_m_s * seconds
+            sd_rad = min(0.5 * self._settings.max_turn_rad_s * seconds, np.pi)
+        else:
+            motion = self.velocity(k, poses) * seconds
+            sd_m = 0.02 + 0.5 * _ACCELERATION_M_S2 * seconds**2
+            sd_rad = 0.02 + 0.5 * _ACCELERATION_RAD_S2 * seconds**2
+        if self._yaw is not None:
+            motion = np.array([motion[0], motion[1], wrap(self._yaw[k] - self._yaw[k - 1])])
+            sd_rad = 0.003 + 0.02 * seconds
+        return Predicted(motion, sd_m, sd_rad)

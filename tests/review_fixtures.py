@@ -1,0 +1,32 @@
+"""Fixtures of tests that review a project: the project, made once, and a server of copies of it.
+
+A `conftest.py` imports what it offers to its tests: `made`, `running` and `root`.
+"""
+
+import shutil
+
+import pytest
+
+from tests.review_project import make
+from tests.service.running import server_thread
+
+
+@pytest.fixture(scope="session")
+def made(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("made") / "office"
+    make(folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def running(tmp_path_factory):
+    with server_thread(tmp_path_factory.mktemp("served"), worker="tests.review_project") as one:
+        yield one
+
+
+@pytest.fixture
+def root(made, running):
+    """A copy of the project, known to the server."""
+    folder = running.root / f"office{len(list(running.root.iterdir()))}"
+    shutil.copytree(made, folder)
+    return folder

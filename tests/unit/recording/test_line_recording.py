@@ -1,0 +1,151 @@
+"""Bags of a backpack with a profiler: lines turned by their head, what is missing or damaged."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.errors import ConfigError, EmptyRecording, RecordingError, UnknownFormat
+from recon4.model.laser_scans import LaserScans
+from recon4.model.rig import load_rig
+from recon4.progress import Silent
+from recon4.recording.ingest import ingest
+from recon4.recording.sources import Sources
+from recon4.settings import IngestSettings
+from recon4.simulation.line_bag import open_line_bag
+from recon4.store.frames import FrameStore
+from recon4.store.line_store import load_laser_scans, load_lines
+
+START_NS = 1_700_000_000_000_000_000
+LINE_NS = 10_000_000
+SHOTS = 21
+
+
+def line_scans(count, *, range_m=4.0, first=0):
+    t_ns = START_NS + LINE_NS * np.arange(first, first + count, dtype=np.int64)
+    return LaserScans(
+        t_ns=t_ns,
+        range_m=np.full((count, SHOTS), range_m, np.float32),
+        angle_min_rad=-0.5,
+        angle_step_rad=0.05,
+        range_max_m=100.0,
+        time_step_s=4e-4,
+    )
+
+
+def write(folder, *, lines=None, head_deg_s=50.0, scans=None, head=True):
+    lines = line_scans(300) if lines is None else lines
+    with open_line_bag(folder) as bag:
+        if head:
+            t_ns = START_NS + LINE_NS * np.arange(310, dtype=np.int64)
+            bag.head("/profiler/head", t_ns, np.deg2rad(head_deg_s) * 1e-9 * (t_ns - START_NS))
+        bag.scans("/profiler/line", lines, np.full(lines.range_m.shape, 7, np.uint8))
+        if scans is not None:
+            bag.scans("/laser2d/scan", scans)
+
+
+def read(folder, out, rig=None):
+    ingest(Sources((folder,), rig), out, settings=IngestSettings(), progress=Silent())
+    return FrameStore.open(out)
+
+
+def test_a_shot_lies_where_the_head_pointed_at_its_time(tmp_path):
+    write(tmp_path / "bag")
+
+    store = read(tmp_path / "bag", tmp_path / "out")
+
+    frame, lines = store[5], load_lines(tmp_path / "out")
+    t_s = (frame.t_ns - START_NS + frame.dt_ns.astype(np.int64)) * 1e-9
+    head = np.deg2rad(50.0) * t_s
+    shot = np.round(t_s % 0.01 / 4e-4)
+    elevation = -0.5 + 0.05 * shot
+    expected = 4.0 * np.stack(
+        [np.cos(elevation) * np.cos(head), np.cos(elevation) * np.sin(head), np.sin(elevation)], 1
+    )
+    assert np.allclose(frame.xyz, expected, atol=2e-3)
+    assert set(frame.sensor) == {1}
+    assert set(frame.intensity) == {7}
+    assert len(lines) == 300
+    assert np.allclose(lines.head_rad, np.deg2rad(50.0) * 0.01 * np.arange(300), atol=1e-6)
+    assert np.all(lines.points == SHOTS)
+    assert any("preset wuerzburg" in text for text in store.report["derived"])
+
+
+def test_a_head_of_constant_rate_needs_no_angles(tmp_path):
+    write(tmp_path / "bag", head=False)
+    rig = load_rig("wuerzburg")
+    sensors = (rig.sensors[0], replace(rig.sensors[1], head_rate_rad_s=2.0))
+
+    read(tmp_path / "bag", tmp_path / "out", replace(rig, sensors=sensors))
+
+    lines = load_lines(tmp_path / "out")
+    assert np.allclose(np.diff(lines.head_rad), 0.02, atol=1e-9)
+
+
+def test_missing_angles_of_the_head_are_named(tmp_path):
+    write(tmp_path / "bag", head=False)
+
+    with pytest.raises(ConfigError, match=r"angles of its head are missing.*/profiler/head"):
+        read(tmp_path / "bag", tmp_path / "out")
+
+
+def test_a_head_that_is_stuck_is_named(tmp_path):
+    write(tmp_path / "bag", lines=line_scans(310), head_deg_s=0.0)
+
+    with pytest.raises(RecordingError, match="expected a head that turns"):
+        read(tmp_path / "bag", tmp_path / "out")
+
+
+def test_scans_of_the_2d_laser_are_stored(tmp_path):
+    scans = replace(line_scans(250, range_m=3.0), time_step_s=1e-5)
+    scans.range_m[7, 3] = np.nan
+    write(tmp_path / "bag", scans=scans)
+
+    read(tmp_path / "bag", tmp_path / "out")
+
+    found = load_laser_scans(tmp_path / "out")
+    assert found is not None
+    assert np.array_equal(found.t_ns, scans.t_ns)
+    assert np.array_equal(found.range_m, scans.range_m, equal_nan=True)
+    assert found.time_step_s == pytest.approx(1e-5)
+    assert (found.angle_min_rad, found.angle_step_rad) == pytest.approx((-0.5, 0.05))
+
+
+def test_a_missing_2d_laser_is_a_warning(tmp_path):
+    write(tmp_path / "bag")
+
+    store = read(tmp_path / "bag", tmp_path / "out")
+
+    assert load_laser_scans(tmp_path / "out") is None
+    assert any("laser2d" in text for text in store.report["warnings"])
+
+
+def test_lines_out_of_order_are_counted(tmp_path):
+    lines = line_scans(300)
+    t_ns = lines.t_ns.copy()
+    write(tmp_path / "bag", lines=lines[:200])
+    with open_line_bag(tmp_path / "twice") as bag:
+        head_ns = START_NS + LINE_NS * np.arange(310, dtype=np.int64)
+        bag.head("/profiler/head", head_ns, 1e-9 * (head_ns - START_NS))
+        bag.scans("/profiler/line", lines, None)
+        bag.scans("/profiler/line", lines[50:60], None)
+
+    store = read(tmp_path / "twice", tmp_path / "out")
+
+    assert store.report["counts"]["lines_out_of_order"] == 10
+    assert np.array_equal(load_lines(tmp_path / "out").t_ns, t_ns)
+
+
+def test_a_bag_without_line_scans_is_refused(tmp_path):
+    with open_line_bag(tmp_path / "bag") as bag:
+        bag.scans("/other", line_scans(5), None)
+
+    with pytest.raises(EmptyRecording, match=r"no line scans of profiler; topics: /other"):
+        read(tmp_path / "bag", tmp_path / "out", load_rig("wuerzburg"))
+
+
+def test_a_rig_with_a_profiler_needs_a_bag(tmp_path):
+    np.zeros(400, np.float32).tofile(tmp_path / "000000.bin")
+
+    with pytest.raises(UnknownFormat, match="line scans are read from bags"):
+        read(tmp_path, tmp_path / "out", load_rig("wuerzburg"))
