@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,15 +11,14 @@ from numpy.typing import NDArray
 from recon4.calibration.equations import Fit
 from recon4.calibration.joint import ROUNDS, JointEstimate, calibrate_jointly, explain
 from recon4.calibration.judgment import judge
+from recon4.calibration.mount_search import search_mounts, without_others
 from recon4.calibration.parameters import Parameters, Unit
-from recon4.calibration.selection import choose_windows
-from recon4.calibration.window import Window, cut_window
+from recon4.calibration.walk import Walk
+from recon4.calibration.window import Window
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
 from recon4.model.figures import ParameterFigures
-from recon4.model.frames import RecordedFrames
 from recon4.model.rig import Rig
-from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress
 from recon4.settings import CalibrationSettings, Settings
 
@@ -29,29 +28,13 @@ _KNOWN_ERROR: dict[Unit, float] = {"rad": float(np.deg2rad(0.2)), "m": 0.01, "s"
 """Wrong values that are put in on purpose; an estimate that does not find them proves nothing."""
 _SIGMAS = 3.0
 _MIN_WINDOWS = 2
+_FAR_RAD, _FAR_M, _FAR_S = float(np.deg2rad(2.5)), 0.1, 0.05
+"""With a larger change from the rig file other mounts are tried too."""
+_SEARCH_WINDOWS, _SEARCH_WINDOW_S = 3, 3.0
+_CLEARLY = 1.2
+"""Another mount must put so many times the points on planes that two LiDARs see."""
 _NOT_WORSE, _BETTER = 1.01, 0.99
 """Ratio of figures of fit, after against before."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Walk:
-    """A recording with its odometry."""
-
-    frames: RecordedFrames
-    trajectory: Trajectory
-    """``T_odom_body``, dense."""
-    lost: NDArray[np.bool_]
-    """Multiframes where tracking was lost, (N,)."""
-
-    def windows(self, count: int, seconds: float) -> list[Window]:
-        """Windows spread over the walk where the body turns most."""
-        t_ns = self.frames.t_mid_ns
-        if len(t_ns) < 2:
-            return []
-        period_s = float(np.median(np.diff(t_ns))) * 1e-9
-        length = max(2, round(seconds / period_s))
-        rows = choose_windows(self.trajectory, t_ns, self.lost, count=count, length=length)
-        return [cut_window(self.frames, self.trajectory, part) for part in rows]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,70 +73,147 @@ class Calibration:
     """Why it must not be used; empty = it may."""
 
 
+def reference_of(rig: Rig, settings: CalibrationSettings) -> int | None:
+    """Row of the LiDAR whose mount and clock stay; None if no LiDAR is enabled.
+
+    Raises:
+        ConfigError: If the settings name a sensor that is not an enabled LiDAR of the rig.
+    """
+    names = _enabled(rig)
+    if not settings.reference:
+        return next(iter(names.values()), None)
+    if settings.reference not in names:
+        raise ConfigError(
+            f"calibration.reference: expected a LiDAR of the rig ({', '.join(names)}), "
+            f"got {settings.reference!r:.80}"
+        )
+    return names[settings.reference]
+
+
 def calibrated_parameters(
-    rig: Rig, *, with_imu: bool, settings: CalibrationSettings
-) -> Parameters | None:
-    """The parameters to estimate; None if nothing can be compared.
+    rig: Rig, *, reference: int, with_imu: bool, settings: CalibrationSettings
+) -> Parameters:
+    """The parameters to estimate; empty if nothing can be compared.
 
     Raises:
         ConfigError: If the settings name a sensor that is not in the rig.
     """
-    enabled = [row for row, sensor in enumerate(rig.sensors) if sensor.enabled]
-    names = {rig.sensors[row].name: row for row in enabled}
+    names = _enabled(rig)
     wanted = [name.strip() for name in settings.sensors.split(",") if name.strip()]
-    for name in [*wanted, *([settings.reference] if settings.reference else [])]:
-        if name not in names and (name != IMU or name == settings.reference):
-            raise ConfigError(
-                f"calibration: expected names of sensors of the rig "
-                f"({', '.join([*names, IMU])}), got {name!r:.80}"
-            )
-    if not enabled:
-        return None
-    reference = names[settings.reference] if settings.reference else enabled[0]
+    unknown = [name for name in wanted if name not in names and name != IMU]
+    if unknown:
+        raise ConfigError(
+            f"calibration.sensors: expected some of {', '.join([*names, IMU])}, "
+            f"got {unknown[0]!r:.80}"
+        )
     lidars = tuple(
         row for name, row in names.items() if row != reference and (not wanted or name in wanted)
     )
     imu = with_imu and (not wanted or IMU in wanted)
-    if not lidars and not imu:
-        return None
     return Parameters.of(rig, reference=reference, lidars=lidars, imu=imu)
 
 
+def _enabled(rig: Rig) -> dict[str, int]:
+    """Row of each enabled LiDAR by its name."""
+    return {sensor.name: row for row, sensor in enumerate(rig.sensors) if sensor.enabled}
+
+
 def audit(
-    walk: Walk, parameters: Parameters, *, settings: Settings, progress: Progress
+    walk: Walk, start: Rig, parameters: Parameters, *, settings: Settings, progress: Progress
 ) -> JointEstimate | None:
-    """Estimate the rig from a few short windows; None if no window has planes."""
+    """Estimate the rig from a few short windows; None if no window has planes.
+
+    If the estimate is far from the rig file, mounts with exchanged axes are tried as well.
+
+    Args:
+        walk: The recording.
+        start: Where to begin; the change is counted from the rig of the recording.
+        parameters: What is estimated.
+        settings: Number and length of the windows, noise of the IMU.
+        progress: Counts rounds.
+    """
     s = settings.calibration
     windows = walk.windows(s.audit_windows, s.audit_window_s)
-    return _estimate(windows, walk.frames.rig, parameters, settings=settings, progress=progress)
+    found = _estimate(windows, start, parameters, settings=settings, progress=progress)
+    if found is not None and _is_near(found, walk.frames.rig):
+        return _counted_from(found, walk.frames.rig)
+    others = _from_other_mounts(walk, start, parameters, settings=settings, progress=progress)
+    best = max([found, *others], key=_shared_points)
+    if best is None or _shared_points(best) < _CLEARLY * _shared_points(found):
+        best = found
+    return best and _counted_from(best, walk.frames.rig)
 
 
 def calibrate(
-    walk: Walk, parameters: Parameters, *, settings: Settings, progress: Progress
+    walk: Walk, start: Rig, parameters: Parameters, *, settings: Settings, progress: Progress
 ) -> Calibration | None:
     """Calibrate the rig on every second window and check it on the others.
+
+    The windows are tracked again with the rig to begin with: the odometry may have been lost.
+
+    Args:
+        walk: The recording.
+        start: Where to begin, as `audit` found it.
+        parameters: What is estimated.
+        settings: Number and length of the windows, noise of the IMU.
+        progress: Counts rounds.
 
     Returns:
         None if there are no windows with planes.
     """
-    s, rig = settings.calibration, walk.frames.rig
-    windows = walk.windows(2 * s.windows, s.window_s)
+    s, recorded = settings.calibration, walk.frames.rig
+    rows = walk.rows(2 * s.windows, s.window_s, with_lost=True)
+    moved = walk.with_rig(start)
+    windows = moved.tracked_windows(rows, start, settings, imu=moved.frames.imu)
     used, others = windows[::2], windows[1::2]
-    first = _estimate(used, rig, parameters, settings=settings, progress=progress)
+    first = _estimate(used, start, parameters, settings=settings, progress=progress)
     if first is None:
         return None
+    first = _counted_from(first, recorded)
     second = _second_opinion(others, first, settings=settings, progress=progress)
     unknown = _not_observable(first, second)
     final = first
     if unknown.any():
+        begin = parameters.keeping(unknown, recorded, first.rig)
         fixed = parameters.fixing(unknown)
-        found = _estimate(used, rig, fixed, settings=settings, progress=progress)
-        final = found or first
-    before = Agreement.of(explain(others, rig, settings=settings))
+        found = _estimate(used, begin, fixed, settings=settings, progress=progress)
+        final = _counted_from(found, recorded) if found else first
+    before = Agreement.of(explain(others, recorded, settings=settings))
     after = Agreement.of(explain(others, final.rig, settings=settings))
-    rows = judge(final, not_observable=unknown)
-    refusal = _refusal(rows, before, after, second=second, first=first)
-    return Calibration(final, rows, before, after, refusal)
+    rows_of_table = judge(final, not_observable=unknown)
+    refusal = _refusal(rows_of_table, before, after, second=second, first=first)
+    return Calibration(final, rows_of_table, before, after, refusal)
+
+
+def _is_near(found: JointEstimate, recorded: Rig) -> bool:
+    """Whether the estimate is so near to the rig file that it cannot be a false one."""
+    change = np.abs(found.parameters.between(recorded, found.rig))
+    far = {"rad": _FAR_RAD, "m": _FAR_M, "s": _FAR_S}
+    limit = np.array([far[parameter.unit] for parameter in found.parameters.listed])
+    return bool(np.all(change < limit))
+
+
+def _counted_from(found: JointEstimate, recorded: Rig) -> JointEstimate:
+    return replace(found, change=found.parameters.between(recorded, found.rig))
+
+
+def _from_other_mounts(
+    walk: Walk, start: Rig, parameters: Parameters, *, settings: Settings, progress: Progress
+) -> list[JointEstimate]:
+    """Estimates that begin with exchanged axes or mounts, from windows of one LiDAR alone."""
+    reference = parameters.reference
+    rows = walk.rows(_SEARCH_WINDOWS, _SEARCH_WINDOW_S, with_lost=True)
+    alone = without_others(start, reference)
+    windows = walk.tracked_windows(rows, alone, settings, imu=None)
+    found = [
+        _estimate(windows, rig, parameters, settings=settings, progress=progress)
+        for rig in search_mounts(windows, start, reference=reference)
+    ]
+    return [estimate for estimate in found if estimate is not None]
+
+
+def _shared_points(found: JointEstimate | None) -> int:
+    return sum(fit.shared_points for fit in found.fits) if found else 0
 
 
 def _estimate(

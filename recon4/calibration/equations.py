@@ -63,6 +63,8 @@ class Fit:
 
     points: int
     """Points on planes."""
+    shared_points: int
+    """Points on planes that several LiDARs see."""
     rms_m: float
     """Of their distances, robustly weighted [m]."""
     offset_m: float
@@ -126,6 +128,7 @@ def reduce_window(
     coupling, step = -solved[:, :-1], -solved[:, -1]
     fit = Fit(
         points=len(r),
+        shared_points=int(np.count_nonzero(surfaces.shared[surfaces.plane])),
         rms_m=float(np.sqrt(np.sum(weight * r**2) / np.sum(weight))),
         offset_m=_offset_m(surfaces, window.sensor[surfaces.point], r),
         imu_rms=imu_rms,

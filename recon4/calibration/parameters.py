@@ -85,6 +85,10 @@ class Parameters:
         """The same parameters, of which some, (P,) bool, keep their values."""
         return replace(self, prior_sd=np.where(known, _KNOWN_SD, self.prior_sd))
 
+    def keeping(self, known: NDArray[np.bool_], recorded: Rig, found: Rig) -> Rig:
+        """The rig that was found, but with the recorded values of some parameters, (P,) bool."""
+        return self.changed(recorded, np.where(known, 0.0, self.between(recorded, found)))
+
     def changed(self, rig: Rig, delta: Array) -> Rig:
         """A rig after a small change of the parameters, (P,).
 

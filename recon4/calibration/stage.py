@@ -5,21 +5,29 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from recon4.calibration.calibrate import Agreement, Calibration, Walk, audit, calibrate
+import numpy as np
+
+from recon4.calibration.calibrate import Agreement, Calibration, audit, calibrate, reference_of
 from recon4.calibration.calibrate import calibrated_parameters as parameters_of
+from recon4.calibration.joint import JointEstimate
 from recon4.calibration.judgment import contradictions, judge
+from recon4.calibration.mount_search import exchanged_mount
 from recon4.calibration.parameters import Parameters
 from recon4.calibration.rig_file import RIG_FILE
+from recon4.calibration.start import Start, find_start
+from recon4.calibration.walk import Walk
 from recon4.model.events import Warned
 from recon4.model.figures import CalibrationFigures, ParameterFigures
-from recon4.model.frames import RecordedFrames
 from recon4.model.plain import to_plain
 from recon4.model.rig import Rig, format_rig
-from recon4.model.samples import ImuSamples
 from recon4.progress import Progress
 from recon4.settings import Settings
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.atomic import write_json
+from recon4.store.frames import FrameStore
+
+_SAME_RAD, _SAME_M = 0.1, 0.1
+"""Two mounts are the same within this."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -29,6 +37,8 @@ class CalibrationResult:
     figures: CalibrationFigures
     rig: Rig | None = None
     """The calibrated rig, if it is used."""
+    begin: Rig | None = None
+    """Where a calibration begins."""
     before: Agreement | None = None
     after: Agreement | None = None
 
@@ -42,7 +52,7 @@ class CalibrationResult:
 
 
 def run_calibration(
-    frames: RecordedFrames, odometry: Path, *, settings: Settings, progress: Progress
+    frames: FrameStore, odometry: Path, *, settings: Settings, progress: Progress
 ) -> CalibrationResult:
     """Compare the rig of a recording with what its sensors measured.
 
@@ -54,42 +64,61 @@ def run_calibration(
     """
     if settings.calibration.mode == "off":
         return CalibrationResult(figures=CalibrationFigures(outcome="switched off"))
-    with_imu = _usable(frames.imu) and settings.odometry.use_imu
-    parameters = parameters_of(frames.rig, with_imu=with_imu, settings=settings.calibration)
-    if parameters is None:
-        text = "one LiDAR without an IMU: nothing to compare"
-        return CalibrationResult(figures=CalibrationFigures(outcome=text))
     lost = load_arrays(odometry / "steps.npz", ["lost"])["lost"].astype(bool)
     walk = Walk(frames, load_trajectory(odometry / "trajectory.npz"), lost)
-    found = _audit(walk, parameters, settings=settings, progress=progress)
-    if settings.calibration.mode == "auto" and found.figures.warnings:
-        calibrated = calibrate(walk, parameters, settings=settings, progress=progress)
+    reference = reference_of(frames.rig, settings.calibration)
+    if reference is None:
+        return CalibrationResult(figures=CalibrationFigures(outcome="no LiDAR is enabled"))
+    start = find_start(walk, reference=reference, settings=settings)
+    parameters = parameters_of(
+        frames.rig, reference=reference, with_imu=start.imu_usable, settings=settings.calibration
+    )
+    found = _audit(walk, start, parameters, settings=settings, progress=progress)
+    if settings.calibration.mode == "auto" and found.begin and found.figures.warnings:
+        calibrated = calibrate(walk, found.begin, parameters, settings=settings, progress=progress)
         if calibrated is not None:
-            found = _applied(calibrated)
+            found = _applied(calibrated, start.remarks)
     for text in found.figures.warnings:
         progress.event(Warned(text=text))
     return found
 
 
 def _audit(
-    walk: Walk, parameters: Parameters, *, settings: Settings, progress: Progress
+    walk: Walk, start: Start, parameters: Parameters, *, settings: Settings, progress: Progress
 ) -> CalibrationResult:
-    estimate = audit(walk, parameters, settings=settings, progress=progress)
+    remarks = tuple(f"The IMU contradicts the recording. {text}" for text in start.remarks)
+    if not len(parameters):
+        text = "nothing to compare: one LiDAR without a usable IMU"
+        return CalibrationResult(figures=CalibrationFigures(outcome=text, warnings=remarks))
+    estimate = audit(walk, start.rig, parameters, settings=settings, progress=progress)
     if estimate is None:
         text = "no window of the walk has planes to compare"
-        return CalibrationResult(figures=CalibrationFigures(outcome=text))
+        return CalibrationResult(figures=CalibrationFigures(outcome=text, warnings=remarks))
     rows = judge(estimate)
-    warnings = contradictions(rows)
-    outcome = "the rig file contradicts the recording" if warnings else _consistent(rows)
-    return CalibrationResult(
-        figures=CalibrationFigures(
-            parameters=rows,
-            windows=len(estimate.fits),
-            rms_m=estimate.rms_m,
-            outcome=outcome,
-            warnings=warnings,
-        )
+    exchanged = _exchanged(walk.frames.rig, estimate)
+    warnings = (*remarks, *exchanged, *contradictions(rows))
+    figures = CalibrationFigures(
+        parameters=rows,
+        windows=len(estimate.fits),
+        rms_m=estimate.rms_m,
+        outcome="the rig file contradicts the recording" if warnings else _consistent(rows),
+        warnings=warnings,
     )
+    return CalibrationResult(figures=figures, begin=estimate.rig)
+
+
+def _exchanged(rig: Rig, found: JointEstimate) -> tuple[str, ...]:
+    """Whether two LiDARs have each other's mount in the rig file."""
+    reference = found.parameters.reference
+    texts = []
+    for row in found.parameters.lidars:
+        there = found.rig.sensors[row].T_body_sensor
+        apart = exchanged_mount(rig, row, reference).inverse() @ there
+        moved = rig.sensors[row].T_body_sensor.inverse() @ there
+        if apart.angle() < _SAME_RAD < moved.angle() and np.linalg.norm(apart.t) < _SAME_M:
+            names = f"{rig.sensors[reference].name!r} and {rig.sensors[row].name!r}"
+            texts.append(f"The mounts of {names} seem to be exchanged in the rig file.")
+    return tuple(texts)
 
 
 def _consistent(rows: tuple[ParameterFigures, ...]) -> str:
@@ -98,7 +127,7 @@ def _consistent(rows: tuple[ParameterFigures, ...]) -> str:
     return f"{text}; {unknown} of {len(rows)} parameters are not observable" if unknown else text
 
 
-def _applied(found: Calibration) -> CalibrationResult:
+def _applied(found: Calibration, remarks: tuple[str, ...]) -> CalibrationResult:
     applied = not found.refusal
     figures = CalibrationFigures(
         parameters=found.rows,
@@ -106,11 +135,7 @@ def _applied(found: Calibration) -> CalibrationResult:
         rms_m=found.estimate.rms_m,
         applied=applied,
         outcome=found.refusal or "calibrated: windows that were not used confirm it",
-        warnings=contradictions(found.rows, applied=applied),
+        warnings=(*remarks, *contradictions(found.rows, applied=applied)),
     )
     rig = found.estimate.rig if applied else None
     return CalibrationResult(figures=figures, rig=rig, before=found.before, after=found.after)
-
-
-def _usable(imu: ImuSamples | None) -> bool:
-    return imu is not None and len(imu) > 1

@@ -210,6 +210,10 @@ class FrameStore:
     def __reduce__(self) -> tuple[Any, ...]:
         return FrameStore.open, (self.folder, self.rig)
 
+    def with_rig(self, rig: Rig) -> FrameStore:
+        """The same multiframes with calibrated mounts and clocks."""
+        return FrameStore.open(self.folder, rig)
+
     def _clock_change_ns(self) -> NDArray[np.int32]:
         """How the clock offset of each LiDAR differs from that in the files [ns], (S,)."""
         pairs = zip(self.rig.sensors, self.recorded.sensors, strict=True)

@@ -1,0 +1,110 @@
+"""Rotation, clock and scale of an IMU from its turn rates against those of the LiDARs.
+
+A first estimate from any start: axes that are swapped, an IMU upside down, a wrong unit, a clock
+that is off by tenths of a second (requirements A2; closed form of Arun 1987 for each clock offset).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from recon4.geometry.se3 import Array, so3_log
+from recon4.model.samples import ImuSamples
+from recon4.model.trajectory import Times, Trajectory
+
+_LARGEST_CLOCK_S, _CLOCK_STEP_S = 0.5, 0.005
+_MIN_INTERVALS = 20
+_SURE = 0.97
+"""Left-handed axes must explain this part: any noise makes a sign likely."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GyroAlignment:
+    """How turn rates of an IMU fit those of a trajectory."""
+
+    R_body_imu: Array
+    """(3, 3)."""
+    clock_s: float
+    """To be added to the IMU's time stamps [s]."""
+    scale: float
+    """Of the gyroscope: its readings are this many times too large."""
+    explained: float
+    """Part of the turning of the trajectory that the IMU explains, 0..1."""
+    mirrored: bool
+    """Whether left-handed axes explain it clearly better."""
+
+
+def align_gyro(trajectory: Trajectory, t_ns: Times, imu: ImuSamples) -> GyroAlignment | None:
+    """Rotation and clock that make the turn rates of an IMU fit a trajectory.
+
+    Args:
+        trajectory: ``T_odom_body``.
+        t_ns: Times between which turns are compared, as the middles of multiframes [ns], (N,).
+        imu: Samples in the frame of the IMU.
+
+    Returns:
+        None with too few samples.
+    """
+    # Without the ends every clock offset compares the same intervals.
+    margin_ns = int(_LARGEST_CLOCK_S * 1e9)
+    inside = (t_ns > imu.t_ns[0] + margin_ns) & (t_ns < imu.t_ns[-1] - margin_ns)
+    t_ns = t_ns[inside]
+    if len(t_ns) <= _MIN_INTERVALS:
+        return None
+    R = trajectory.at(t_ns, slack_ns=margin_ns).R
+    of_body = _centered(so3_log(np.swapaxes(R[:-1], -1, -2) @ R[1:]))
+    t_s, known_s = (t_ns - t_ns[0]) * 1e-9, (imu.t_ns - t_ns[0]) * 1e-9
+    turned = _integral(known_s, imu.gyro_rad_s)
+    clocks = np.arange(-_LARGEST_CLOCK_S, _LARGEST_CLOCK_S, _CLOCK_STEP_S)
+    fits = [
+        _fit(of_body, _centered(np.diff(_interpolated(t_s - clock, known_s, turned), axis=0)))
+        for clock in clocks
+    ]
+    explained = np.array([fit[1] for fit in fits])
+    best = int(np.argmax(explained))
+    R_body_imu, _, scale, mirrored = fits[best]
+    return GyroAlignment(
+        R_body_imu=R_body_imu,
+        clock_s=float(clocks[best]) + _vertex(explained, best) * _CLOCK_STEP_S,
+        scale=scale,
+        explained=float(explained[best]),
+        mirrored=mirrored,
+    )
+
+
+def _fit(of_body: Array, of_imu: Array) -> tuple[Array, float, float, bool]:
+    """Rotation, explained part, scale and handedness for one clock offset."""
+    U, singular, Vt = np.linalg.svd(of_body.T @ of_imu)
+    sign = float(np.sign(np.linalg.det(U @ Vt)))
+    proper = singular * np.array([1.0, 1.0, sign])
+    energy, energy_imu = float(np.sum(of_body**2)), float(np.sum(of_imu**2))
+    explained = float(proper.sum()) ** 2 / max(energy * energy_imu, 1e-12)
+    any_handed = float(singular.sum()) ** 2 / max(energy * energy_imu, 1e-12)
+    mirrored = sign < 0 and any_handed > _SURE and 1.0 - any_handed < 0.5 * (1.0 - explained)
+    scale = energy_imu / max(float(proper.sum()), 1e-12)
+    return U @ np.diag([1.0, 1.0, sign]) @ Vt, explained, scale, mirrored
+
+
+def _centered(values: Array) -> Array:
+    """Without the mean: the bias of the gyroscope."""
+    return values - values.mean(axis=0)
+
+
+def _integral(t_s: Array, rate: Array) -> Array:
+    steps = 0.5 * (rate[1:] + rate[:-1]) * np.diff(t_s)[:, None]
+    return np.concatenate([np.zeros((1, 3)), np.cumsum(steps, axis=0)])
+
+
+def _interpolated(t_s: Array, known_s: Array, values: Array) -> Array:
+    return np.stack([np.interp(t_s, known_s, values[:, axis]) for axis in range(3)], axis=1)
+
+
+def _vertex(values: Array, best: int) -> float:
+    """Where a parabola through the largest value and its neighbors is highest, -0.5..0.5."""
+    if not 0 < best < len(values) - 1:
+        return 0.0
+    left, middle, right = values[best - 1 : best + 2]
+    curvature = left - 2.0 * middle + right
+    return float(0.5 * (left - right) / curvature) if curvature < 0.0 else 0.0

@@ -1,0 +1,72 @@
+"""A recording with its odometry, cut into windows for calibration."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.calibration.selection import choose_windows
+from recon4.calibration.window import Window, cut_window
+from recon4.model.rig import Rig
+from recon4.model.samples import ImuSamples
+from recon4.model.trajectory import Trajectory
+from recon4.registration.odometry import Odometry
+from recon4.registration.stage import dense_trajectory
+from recon4.settings import Settings
+from recon4.store.frames import FrameStore
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Walk:
+    """A recording with its odometry."""
+
+    frames: FrameStore
+    trajectory: Trajectory
+    """``T_odom_body``, dense."""
+    lost: NDArray[np.bool_]
+    """Multiframes where tracking was lost, (N,)."""
+
+    def with_rig(self, rig: Rig) -> Walk:
+        """The same recording with the mounts and clocks of another rig."""
+        return replace(self, frames=self.frames.with_rig(rig))
+
+    def rows(self, count: int, seconds: float, *, with_lost: bool = False) -> list[range]:
+        """Multiframes of windows spread over the walk where the body turns most.
+
+        Args:
+            count: Largest number of windows.
+            seconds: Length of each.
+            with_lost: Also where tracking was lost, because the windows will be tracked again.
+        """
+        t_ns = self.frames.t_mid_ns
+        if len(t_ns) < 2:
+            return []
+        length = max(2, round(seconds / (float(np.median(np.diff(t_ns))) * 1e-9)))
+        lost = np.zeros_like(self.lost) if with_lost else self.lost
+        return choose_windows(self.trajectory, t_ns, lost, count=count, length=length)
+
+    def windows(self, count: int, seconds: float) -> list[Window]:
+        """Windows with the trajectory of the odometry."""
+        rows = self.rows(count, seconds)
+        return [cut_window(self.frames, self.trajectory, part) for part in rows]
+
+    def tracked_windows(
+        self, rows: list[range], rig: Rig, settings: Settings, *, imu: ImuSamples | None
+    ) -> list[Window]:
+        """Windows tracked by themselves with another rig, except where tracking is lost.
+
+        Args:
+            rows: Multiframes of each window.
+            rig: Rig of the odometry; LiDARs that are not enabled do not take part.
+            settings: Of the odometry.
+            imu: Samples for the odometry; None = without an IMU.
+        """
+        found = []
+        for part in rows:
+            odometry = Odometry(rig, settings, imu)
+            steps = [odometry.push(self.frames[row]) for row in part]
+            if not any(step.lost for step in steps):
+                found.append(cut_window(self.frames, dense_trajectory(steps), part))
+        return found
