@@ -186,11 +186,12 @@ def calibrate(
 
 
 def _is_near(found: JointEstimate, recorded: Rig) -> bool:
-    """Whether the estimate is so near to the rig file that it cannot be a false one."""
+    """Whether no parameter is certainly so far from the rig file that the estimate may be false."""
     change = np.abs(found.parameters.between(recorded, found.rig))
     far = {"rad": _FAR_RAD, "m": _FAR_M, "s": _FAR_S}
     limit = np.array([far[parameter.unit] for parameter in found.parameters.listed])
-    return bool(np.all(change < limit))
+    noise = _SIGMAS * np.where(np.isfinite(found.sd), found.sd, 0.0)
+    return bool(np.all(change < np.maximum(limit, noise)))
 
 
 def _counted_from(found: JointEstimate, recorded: Rig) -> JointEstimate:

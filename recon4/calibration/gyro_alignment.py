@@ -16,6 +16,8 @@ from recon4.model.trajectory import Times, Trajectory
 
 _LARGEST_CLOCK_S, _CLOCK_STEP_S = 0.5, 0.005
 _MIN_INTERVALS = 20
+_MIN_RATE_RAD_S = 0.03
+"""A body that turns less shows nothing."""
 _SURE = 0.97
 """Left-handed axes must explain this part: any noise makes a sign likely."""
 
@@ -45,7 +47,7 @@ def align_gyro(trajectory: Trajectory, t_ns: Times, imu: ImuSamples) -> GyroAlig
         imu: Samples in the frame of the IMU.
 
     Returns:
-        None with too few samples.
+        None with too few samples, or where the body hardly turns.
     """
     # Without the ends every clock offset compares the same intervals.
     margin_ns = int(_LARGEST_CLOCK_S * 1e9)
@@ -56,6 +58,8 @@ def align_gyro(trajectory: Trajectory, t_ns: Times, imu: ImuSamples) -> GyroAlig
     R = trajectory.at(t_ns, slack_ns=margin_ns).R
     of_body = _centered(so3_log(np.swapaxes(R[:-1], -1, -2) @ R[1:]))
     t_s, known_s = (t_ns - t_ns[0]) * 1e-9, (imu.t_ns - t_ns[0]) * 1e-9
+    if np.sqrt(np.mean(of_body**2)) < _MIN_RATE_RAD_S * np.median(np.diff(t_s)):
+        return None
     turned = _integral(known_s, imu.gyro_rad_s)
     clocks = np.arange(-_LARGEST_CLOCK_S, _LARGEST_CLOCK_S, _CLOCK_STEP_S)
     fits = [

@@ -9,7 +9,7 @@ import numpy as np
 from recon4.calibration.gyro_alignment import GyroAlignment, align_gyro
 from recon4.calibration.mount_search import without_others
 from recon4.calibration.walk import Walk
-from recon4.geometry.se3 import SE3, Array, so3_log
+from recon4.geometry.se3 import SE3, so3_log
 from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
 from recon4.settings import Settings
@@ -20,6 +20,8 @@ _FAR_RAD, _FAR_S = float(np.deg2rad(5.0)), 0.05
 """Smaller errors are found by the joint calibration from the rig file."""
 _SCALE_TOLERANCE, _FORCE_TOLERANCE = 0.02, 0.02
 _UNIT_TOLERANCE = 0.1
+_MIN_SECONDS = 6.0
+"""In a shorter walk the accelerations do not cancel out."""
 _ALONE_S = 10.0
 """Length of the window that is tracked with the reference LiDAR alone [s]."""
 _DEG_PER_RAD = float(np.rad2deg(1.0))
@@ -47,21 +49,21 @@ def find_start(walk: Walk, *, reference: int, settings: Settings) -> Start:
     rig, imu = walk.frames.rig, walk.frames.imu
     if imu is None or len(imu) < 2:
         return Start(rig, False, ())
-    remarks = _force_remarks(imu)
     found = align_gyro(walk.trajectory, walk.frames.t_mid_ns, imu)
     if found is not None and (found.mirrored or found.explained < _MIN_EXPLAINED):
         found = _align_alone(walk, imu, reference, settings) or found
-    if found is None:
-        return Start(rig, not remarks, remarks)
-    if found.mirrored:
+    if found is not None and found.mirrored:
         text = "The turn rates of the IMU fit the LiDARs only with left-handed axes: an axis has "
-        return Start(rig, False, (*remarks, text + "the wrong sign."))
-    if found.explained < _MIN_EXPLAINED:
+        return Start(rig, False, (text + "the wrong sign.",))
+    if found is not None and found.explained < _MIN_EXPLAINED:
         text = f"The IMU explains only {100 * found.explained:.0f} % of the turning that the "
         text += "LiDARs see: it is another recording, another clock, or not fixed to them."
-        return Start(rig, False, (*remarks, text))
-    remarks += _scale_remarks(found)
-    return Start(_turned(rig, found), not remarks, remarks)
+        return Start(rig, False, (text,))
+    if found is not None:
+        rig = _turned(rig, found)
+    remarks = _force_remarks(imu, walk, rig)
+    remarks += _scale_remarks(found) if found is not None else ()
+    return Start(rig, not remarks, remarks)
 
 
 def _align_alone(
@@ -89,12 +91,16 @@ def _turned(rig: Rig, found: GyroAlignment) -> Rig:
     )
 
 
-def _force_remarks(imu: ImuSamples) -> tuple[str, ...]:
-    """A walk is on average unaccelerated: the mean force has the length of gravity."""
-    force = imu.accel_m_s2[np.isfinite(imu.accel_m_s2).all(axis=1)]
-    if len(force) < 2:
+def _force_remarks(imu: ImuSamples, walk: Walk, rig: Rig) -> tuple[str, ...]:
+    """Over a walk the accelerations cancel out: the mean force has the length of gravity."""
+    line = walk.trajectory
+    inside = (imu.t_ns >= line.t_ns[0]) & (imu.t_ns <= line.t_ns[-1])
+    force = imu.accel_m_s2[inside] @ rig.T_body_imu.R.T
+    seconds = float(line.t_ns[-1] - line.t_ns[0]) * 1e-9
+    if seconds < _MIN_SECONDS or not inside.any() or not np.isfinite(force).all():
         return ()
-    mean = float(np.median(_smoothed_norm(force)))
+    of_odom = np.einsum("nij,nj->ni", line.at(imu.t_ns[inside]).R, force)
+    mean = float(np.linalg.norm(of_odom.mean(axis=0)))
     ratio = mean / STANDARD_GRAVITY_M_S2
     if abs(ratio - 1.0) <= _FORCE_TOLERANCE:
         return ()
@@ -107,12 +113,6 @@ def _force_remarks(imu: ImuSamples) -> tuple[str, ...]:
         f"The accelerometer measures {mean:.2f} m/s² on average, expected "
         f"{STANDARD_GRAVITY_M_S2:.2f} m/s²: its scale is {100 * (ratio - 1):+.1f} % off.",
     )
-
-
-def _smoothed_norm(force: Array) -> Array:
-    """Length of the force averaged over a hundred samples at a time, so that steps cancel out."""
-    count = max(1, len(force) // 100)
-    return np.array([np.linalg.norm(part.mean(axis=0)) for part in np.array_split(force, count)])
 
 
 def _scale_remarks(found: GyroAlignment) -> tuple[str, ...]:

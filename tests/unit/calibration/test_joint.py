@@ -1,0 +1,210 @@
+"""A rig file that is wrong is found, measured and, on request, calibrated."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.calibration.parameters import Parameters
+from recon4.calibration.rig_file import open_frames
+from recon4.calibration.stage import run_calibration
+from recon4.errors import ConfigError, StoreError
+from recon4.model.rig import load_rig
+from recon4.progress import Silent
+from recon4.settings import Settings
+from recon4.store.frames import FrameStore
+from tests import scanned_room
+from tests.unit.calibration.conftest import (
+    AUTO,
+    CALIBRATION,
+    SETTINGS,
+    imu_mounted,
+    mounted,
+    planar,
+    store,
+    tracked,
+)
+
+WRONG = {"turn_deg": (0.9, -0.8, 0.9), "shift_m": (0.012, -0.010, 0.012), "late_s": 0.005}
+
+
+def run(recorded, settings=SETTINGS):
+    return run_calibration(recorded.frames, recorded.odometry, settings=settings, progress=Silent())
+
+
+def rows_of(result, sensor):
+    return [row for row in result.figures.parameters if row.sensor == sensor]
+
+
+@pytest.fixture(scope="module")
+def wrong(dance, tmp_path_factory):
+    """1.5° and 2 cm off, both clocks 5 ms off, the IMU 1.5° off."""
+    rig = imu_mounted(mounted(dance.rig, 1, **WRONG), turn_deg=(-0.9, 0.8, 0.9), late_s=-0.005)
+    return store(tmp_path_factory.mktemp("wrong"), dance, rig, dance.imu)
+
+
+@pytest.fixture(scope="module")
+def right(dance, tmp_path_factory):
+    return store(tmp_path_factory.mktemp("right"), dance, dance.rig, dance.imu)
+
+
+def test_a_rig_file_that_is_right_is_confirmed(right):
+    found = run(right)
+
+    assert found.figures.warnings == ()
+    assert found.figures.outcome.startswith("the rig file agrees with the recording")
+    assert not any(row.status == "off" for row in found.figures.parameters)
+    assert sum(row.status == "consistent" for row in found.figures.parameters) >= 11
+
+
+def test_errors_of_mounts_and_clocks_are_measured_with_a_true_deviation(wrong):
+    found = run(wrong)
+
+    parameters = Parameters.of(wrong.true, reference=0, lidars=(1,), imu=True)
+    error = np.array([row.change for row in found.figures.parameters]) - parameters.between(
+        wrong.frames.rig, wrong.true
+    )
+    unit = np.array([row.unit for row in found.figures.parameters])
+    position = np.array([row.quantity == "position" for row in found.figures.parameters])
+    imu = np.array([row.sensor == "imu" for row in found.figures.parameters])
+    assert np.rad2deg(np.abs(error[unit == "rad"])).max() < 0.1
+    assert np.abs(error[position & ~imu]).max() < 0.004
+    assert np.abs(error[unit == "s"]).max() < 5e-4
+    sd = np.array([row.sd for row in found.figures.parameters])
+    assert np.mean(np.abs(error) < 3.0 * sd) >= 0.9
+    assert len(found.figures.warnings) == 2
+    assert "the LiDAR 's1' differs from it by 1." in found.figures.warnings[0]
+
+
+def test_an_audit_changes_nothing(wrong):
+    found = run(wrong)
+
+    assert not found.figures.applied
+    assert found.rig is None
+
+
+def test_a_confirmed_calibration_is_written_and_used(wrong, tmp_path):
+    found = run(wrong, AUTO)
+    figures = found.save(tmp_path)
+
+    assert figures.applied, figures.outcome
+    assert found.after.rms_m < found.before.rms_m
+    assert found.after.offset_m < 0.5 * found.before.offset_m
+    assert found.after.imu_rms < found.before.imu_rms
+    frames = open_frames(wrong.frames.folder, tmp_path)
+    there = frames.rig.sensors[1].T_body_sensor
+    true = wrong.true.sensors[1].T_body_sensor
+    assert np.rad2deg((true.inverse() @ there).angle()) < 0.1
+    assert np.linalg.norm(there.t - true.t) < 0.006
+    late_ns = wrong.frames[3].dt_ns - frames[3].dt_ns
+    of_second = wrong.frames[3].sensor == 1
+    assert np.all(late_ns[~of_second] == 0)
+    np.testing.assert_allclose(late_ns[of_second], 5e6, atol=5e5)
+    assert abs(int(frames.imu.t_ns[0] - wrong.frames.imu.t_ns[0]) - 5_000_000) < 500_000
+    assert load_rig(tmp_path / "rig.toml").name == wrong.true.name
+
+
+def test_a_right_rig_file_is_not_changed_on_request(right, tmp_path):
+    figures = run(right, AUTO).save(tmp_path)
+
+    assert not figures.applied
+    assert not (tmp_path / "rig.toml").exists()
+    assert open_frames(right.frames.folder, tmp_path).rig.sensors[1].T_body_sensor.t.tolist() == (
+        right.true.sensors[1].T_body_sensor.t.tolist()
+    )
+
+
+def test_exchanged_mounts_are_called_so(dance, tmp_path):
+    first, second = dance.rig.sensors
+    rig = replace(
+        dance.rig,
+        sensors=(
+            replace(first, T_body_sensor=second.T_body_sensor),
+            replace(second, T_body_sensor=first.T_body_sensor),
+        ),
+    )
+    found = run(store(tmp_path, dance, rig, dance.imu))
+
+    assert "The mounts of 's0' and 's1' seem to be exchanged in the rig file." in (
+        found.figures.warnings
+    )
+
+
+def test_without_an_imu_the_lidars_are_compared(dance, tmp_path):
+    found = run(store(tmp_path, dance, mounted(dance.rig, 1, **WRONG), None))
+
+    assert {row.sensor for row in found.figures.parameters} == {"s1"}
+    turned = np.rad2deg(np.linalg.norm([row.change for row in rows_of(found, "s1")[:3]]))
+    assert turned == pytest.approx(1.5, abs=0.1)
+
+
+def test_one_lidar_without_an_imu_leaves_nothing_to_compare(dance, tmp_path):
+    first, second = dance.rig.sensors
+    rig = replace(dance.rig, sensors=(first, replace(second, enabled=False)))
+    found = run(store(tmp_path, dance, rig, None))
+
+    assert found.figures.outcome == "nothing to compare: one LiDAR without a usable IMU"
+    assert found.figures.parameters == ()
+
+
+def test_who_stands_still_learns_nothing_wrong(tmp_path):
+    still = scanned_room.walk(scanned_room.standing, 60, noise_m=0.01)
+    found = run(store(tmp_path, still, imu_mounted(still.rig, turn_deg=(0, 0, 1.5)), still.imu))
+
+    status = {(row.quantity, row.axis): row.status for row in rows_of(found, "imu")}
+    assert status["rotation", "z"] == "not observable"
+    assert status["clock", ""] == "not observable"
+
+
+def test_turns_about_the_vertical_leave_axes_unobservable(tmp_path):
+    flat = scanned_room.walk(planar, 100, noise_m=0.01)
+    found = run(store(tmp_path, flat, flat.rig, flat.imu), AUTO)
+
+    unknown = {(row.sensor, row.quantity, row.axis) for row in found.figures.parameters
+               if row.status == "not observable"}  # fmt: skip
+    assert ("imu", "position", "z") in unknown
+    assert not found.figures.applied
+
+
+def test_only_the_sensors_that_are_named_are_calibrated(wrong):
+    only = replace(CALIBRATION, sensors="s1")
+    found = run(wrong, Settings(calibration=only))
+
+    assert {row.sensor for row in found.figures.parameters} == {"s1"}
+
+
+@pytest.mark.parametrize(
+    "change", [{"sensors": "s1, camera"}, {"reference": "camera"}, {"reference": "imu"}]
+)
+def test_a_sensor_that_is_not_in_the_rig_is_refused(right, change):
+    with pytest.raises(ConfigError, match=r"expected .* got '(camera|imu)'"):
+        run(right, Settings(calibration=replace(CALIBRATION, **change)))
+
+
+def test_a_few_multiframes_are_too_few(dance, tmp_path):
+    few = replace(dance, frames=dance.frames[:5])
+    found = run(store(tmp_path, few, mounted(dance.rig, 1, **WRONG), dance.imu), AUTO)
+
+    assert not found.figures.applied
+
+
+def test_off_is_off(right):
+    found = run(right, Settings(calibration=replace(CALIBRATION, mode="off")))
+
+    assert found.figures.outcome == "switched off"
+
+
+def test_a_calibrated_rig_of_other_sensors_is_refused(right, dance):
+    renamed = tuple(replace(sensor, name=sensor.name + "x") for sensor in dance.rig.sensors)
+
+    with pytest.raises(StoreError, match="other sensors"):
+        FrameStore.open(right.frames.folder, replace(dance.rig, sensors=renamed))
+
+
+def test_tracking_with_the_calibrated_rig_is_better(wrong, tmp_path):
+    figures = run(wrong, AUTO)
+    calibrated = tracked(tmp_path, wrong.frames.with_rig(figures.rig), wrong.true)
+
+    before = np.load(wrong.odometry / "steps.npz")["error_m"]
+    after = np.load(calibrated.odometry / "steps.npz")["error_m"]
+    assert np.nanmedian(after) < 0.7 * np.nanmedian(before)

@@ -1,0 +1,98 @@
+"""What the IMU's readings say of its axes, units and clock by themselves."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.calibration.gyro_alignment import align_gyro
+from recon4.calibration.start import find_start
+from recon4.calibration.walk import Walk
+from recon4.geometry.se3 import so3_log
+from tests.unit.calibration.conftest import SETTINGS, dancing
+
+EXCHANGED = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
+
+
+def start_of(dance, **change):
+    imu = replace(dance.imu, **change)
+    walk = Walk(replace(dance, imu=imu), dance.truth, np.zeros(len(dance), bool))
+    return find_start(walk, reference=0, settings=SETTINGS)
+
+
+def test_a_right_imu_is_left_where_it_is(dance):
+    start = start_of(dance)
+
+    assert start.remarks == ()
+    assert start.imu_usable
+    assert start.rig.imu_time_offset_s == 0.0
+    np.testing.assert_array_equal(start.rig.T_body_imu.R, np.eye(3))
+
+
+def test_exchanged_axes_and_a_late_clock_are_found(dance):
+    start = start_of(
+        dance,
+        gyro_rad_s=dance.imu.gyro_rad_s @ EXCHANGED.T,
+        accel_m_s2=dance.imu.accel_m_s2 @ EXCHANGED.T,
+        t_ns=dance.imu.t_ns + 150_000_000,
+    )
+
+    off = np.rad2deg(np.linalg.norm(so3_log(start.rig.T_body_imu.R @ EXCHANGED)))
+    assert off < 1.0
+    assert start.rig.imu_time_offset_s == pytest.approx(-0.15, abs=2e-3)
+
+
+def test_an_axis_with_the_wrong_sign_makes_it_left_handed(dance):
+    start = start_of(dance, gyro_rad_s=dance.imu.gyro_rad_s * [1.0, -1.0, 1.0])
+
+    assert not start.imu_usable
+    assert "left-handed" in start.remarks[0]
+
+
+@pytest.mark.parametrize(
+    ("factor", "words"),
+    [(1.03, r"\+3\.0 % off"), (np.rad2deg(1.0), "°/s"), (np.deg2rad(1.0), "too little")],
+)
+def test_a_wrong_scale_of_the_gyroscope_is_named(dance, factor, words):
+    start = start_of(dance, gyro_rad_s=factor * dance.imu.gyro_rad_s)
+
+    assert any(re.search(words, text) for text in start.remarks), start.remarks
+    assert not start.imu_usable
+
+
+@pytest.mark.parametrize(
+    ("factor", "words"), [(1 / 9.80665, "seems to be g"), (1.03, "its scale is +2.")]
+)
+def test_a_wrong_unit_of_the_accelerometer_is_named(dance, factor, words):
+    start = start_of(dance, accel_m_s2=factor * dance.imu.accel_m_s2)
+
+    assert any(words in text for text in start.remarks), start.remarks
+
+
+def test_an_imu_of_another_recording_explains_nothing(dance):
+    rng = np.random.default_rng(1)
+    noise = rng.standard_normal(dance.imu.gyro_rad_s.shape)
+    start = start_of(dance, gyro_rad_s=np.cumsum(noise, axis=0) * 0.02)
+
+    assert not start.imu_usable
+    assert "explains only" in start.remarks[0]
+
+
+def test_the_clock_is_found_between_the_steps_of_the_search(dance):
+    imu = replace(dance.imu, t_ns=dance.imu.t_ns + 33_300_000)
+    found = align_gyro(dance.truth, dance.t_mid_ns, imu)
+
+    assert found.clock_s == pytest.approx(-0.0333, abs=5e-4)
+    assert found.explained > 0.999
+
+
+def test_too_few_samples_align_nothing(dance):
+    assert align_gyro(dance.truth, dance.t_mid_ns[:5], dance.imu) is None
+
+
+def test_the_walk_of_these_tests_turns_about_all_axes():
+    t = np.linspace(0, 12, 1000)
+    turned = so3_log(dancing(t).R)
+
+    assert np.all(np.ptp(turned, axis=0) > 0.3)
