@@ -175,6 +175,8 @@ def run_before_review(
     """
     run = runner.run
     frames = run(stages.FRAMES, **inputs)
+    if stages.has_profiler(frames.folder):
+        return _lines_before_review(runner, frames)
     odometry = run(stages.ODOMETRY, frames=frames)
     calibration = run(stages.CALIBRATION, frames=frames, odometry=odometry)
     measurements = Measurements(frames, _if_applied(runner, calibration))
@@ -182,6 +184,17 @@ def run_before_review(
         odometry = run(stages.ODOMETRY, **measurements.inputs)
     searched = run(stages.GRAPH, **measurements.inputs, odometry=odometry)
     return measurements, odometry, run(stages.VERIFICATION, graph=searched)
+
+
+def _lines_before_review(
+    runner: StageRunner, frames: Artifact
+) -> tuple[Measurements, Artifact, Artifact]:
+    """The same of a rig with a profiler: 2-D SLAM with the IMU, then the turns of the head."""
+    runner.skip(stages.CALIBRATION)
+    odometry = runner.run(stages.LINE_ODOMETRY, frames=frames)
+    searched = runner.run(stages.TURN_GRAPH, frames=frames, odometry=odometry)
+    verified = runner.run(stages.VERIFICATION, graph=searched)
+    return Measurements(frames, None), odometry, verified
 
 
 def _if_applied(runner: StageRunner, calibration: Artifact | None) -> Artifact | None:
@@ -219,5 +232,7 @@ def run_trajectory(
     runner: StageRunner, measurements: Measurements, *, odometry: Artifact, graph: Artifact
 ) -> Artifact:
     """From the graph to the final trajectory: refined, leveled, georeferenced."""
-    refined = runner.run(stages.REFINE, **measurements.inputs, odometry=odometry, graph=graph)
+    lines = stages.has_profiler(measurements.frames.folder)
+    refine = stages.LINE_REFINE if lines else stages.REFINE
+    refined = runner.run(refine, **measurements.inputs, odometry=odometry, graph=graph)
     return runner.run(stages.LEVEL, **measurements.inputs, refined=refined, graph=graph)

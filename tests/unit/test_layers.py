@@ -51,6 +51,9 @@ MAY_IMPORT = {
     | {"recon4.slam2d"}
     | {f"recon4.pose_graph.{name}" for name in ("files", "solve", "verification")},
     "recon4/semi_rigid": STAGE | {"recon4.registration", "recon4.pose_graph", "recon4.semi_rigid"},
+    "recon4/profiler": STAGE
+    | {f"recon4.{room}" for room in ("registration", "pose_graph", "slam2d", "semi_rigid")}
+    | {"recon4.profiler"},
     "recon4/georeference": STAGE
     | {"recon4.mapping", "recon4.pose_graph", "recon4.georeference", "recon4.registration.aiding"},
     "recon4/review": STAGE
