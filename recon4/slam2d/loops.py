@@ -58,7 +58,7 @@ def close_loops(
     while most_m <= loops.last_search_m:
         found = candidates(graph, keyframes, settings=loops, most_m=most_m)
         new = [pair for pair in found if _is_new(pair, graph, tried)]
-        edges = list(registrar.register(new, graph, progress=progress))
+        edges = list(registrar.register(new, graph, progress=progress)) if new else []
         for pair in new:
             tried[pair.target, pair.source] = _predicted(graph, pair)
         graph = _with_latest(graph, edges)
