@@ -24,6 +24,8 @@ _BRIDGED_S = 1.0
 _LOST_S = 0.5
 """Tracking that is lost for a shorter time is bridged by the prediction [s]."""
 _LOST_RATIO = 0.02
+_SILENT_S = 1.0
+"""Over a longer time without a scan and without odometry the motion is unknown [s]."""
 _CROSSING_CHECK, _CROSSING_BAD = 0.1, 0.2
 _SEARCHED_RATIO = 0.005
 _UNCERTAIN_M = 0.5
@@ -105,6 +107,14 @@ def _tracking(facts: Facts2d) -> Iterator[Finding2d]:
             Usability.DO_NOT_USE if bad else Usability.CHECK,
             f"Tracking was lost in {odometry.lost} of {odometry.scans} scans, for up to "
             f"{longest_s:.1f} s.",
+        )
+    silent_s = np.diff(facts.steps.t_ns) / 1e9
+    gaps = silent_s[silent_s > _SILENT_S]
+    if len(gaps) and not has_odometry:
+        yield (
+            Usability.CHECK,
+            f"The laser is silent {len(gaps)} times, for up to {gaps.max():.1f} s, and there is no "
+            "odometry: how it moved meanwhile is unknown.",
         )
     if odometry.resets:
         yield (
