@@ -33,7 +33,7 @@ _FAR_M = 60.0
 """Median range of no 2-D laser [m]: longer ones are not in meters."""
 _TO_METERS = ((1e-2, "centimeters"), (1e-3, "millimeters"))
 _REPEATED = 20
-"""The largest range stands for "no return" if at least so many beams have it."""
+"""The largest range stands for "no return" if at least this many beams have it."""
 _MOUNTING_SD = 1e-3
 """Spread of the pose of the laser on the robot [m, rad] that is only rounding."""
 

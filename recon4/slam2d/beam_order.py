@@ -14,7 +14,7 @@ from recon4.slam2d.odometry import Odometry2d
 _TURN_RAD = 0.6
 """Rotation by the odometry that is enough to decide [rad] …"""
 _SCANS = 60
-"""… within so many scans."""
+"""… within this number of scans."""
 _STRETCHES = 5
 _CLEAR = 0.7
 """The rotation by the scans must agree with plus or minus the odometry to this ratio."""
