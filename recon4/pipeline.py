@@ -10,9 +10,11 @@ from typing import Any
 from recon4 import stages
 from recon4.errors import ConfigError, RecordingError, StoreError
 from recon4.model.rig import format_rig
+from recon4.pipeline_2d import is_2d, process_2d
 from recon4.progress import Progress, Silent
 from recon4.recording.sources import Sources
 from recon4.results import About, Summary, publish
+from recon4.results_2d import Summary2d
 from recon4.review.decisions import NOTHING_DECIDED, Decided
 from recon4.review.journal import read_decided
 from recon4.settings import Settings
@@ -60,8 +62,10 @@ def process(
     settings: Settings | None = None,
     preset: str = "indoor",
     progress: Progress | None = None,
-) -> Summary:
+) -> Summary | Summary2d:
     """Make a map of recordings, or continue where an earlier call stopped.
+
+    Recordings of a 2-D laser alone become a 2-D map (`recon4.pipeline_2d`).
 
     Args:
         sources: The recordings of one walk, its rig, and CSV files in place of their samples.
@@ -85,8 +89,9 @@ def process(
     progress = progress or Silent()
     settings = settings or settings_of(preset)
     is_new = not is_project(out)
+    run = process_2d if is_2d(sources.recordings) else _process
     try:
-        return _process(sources, out, settings=settings, preset=preset, progress=progress)
+        return run(sources, out, settings=settings, preset=preset, progress=progress)
     except (RecordingError, ConfigError):
         if is_new:
             discard_unbegun(out)
@@ -175,6 +180,8 @@ def run_before_review(
     """
     run = runner.run
     frames = run(stages.FRAMES, **inputs)
+    if stages.has_profiler(frames.folder):
+        return _lines_before_review(runner, frames)
     odometry = run(stages.ODOMETRY, frames=frames)
     calibration = run(stages.CALIBRATION, frames=frames, odometry=odometry)
     measurements = Measurements(frames, _if_applied(runner, calibration))
@@ -182,6 +189,17 @@ def run_before_review(
         odometry = run(stages.ODOMETRY, **measurements.inputs)
     searched = run(stages.GRAPH, **measurements.inputs, odometry=odometry)
     return measurements, odometry, run(stages.VERIFICATION, graph=searched)
+
+
+def _lines_before_review(
+    runner: StageRunner, frames: Artifact
+) -> tuple[Measurements, Artifact, Artifact]:
+    """The same of a rig with a profiler: 2-D SLAM with the IMU, then the turns of the head."""
+    runner.skip(stages.CALIBRATION)
+    odometry = runner.run(stages.LINE_ODOMETRY, frames=frames)
+    searched = runner.run(stages.TURN_GRAPH, frames=frames, odometry=odometry)
+    verified = runner.run(stages.VERIFICATION, graph=searched)
+    return Measurements(frames, None), odometry, verified
 
 
 def _if_applied(runner: StageRunner, calibration: Artifact | None) -> Artifact | None:
@@ -219,5 +237,7 @@ def run_trajectory(
     runner: StageRunner, measurements: Measurements, *, odometry: Artifact, graph: Artifact
 ) -> Artifact:
     """From the graph to the final trajectory: refined, leveled, georeferenced."""
-    refined = runner.run(stages.REFINE, **measurements.inputs, odometry=odometry, graph=graph)
+    lines = stages.has_profiler(measurements.frames.folder)
+    refine = stages.LINE_REFINE if lines else stages.REFINE
+    refined = runner.run(refine, **measurements.inputs, odometry=odometry, graph=graph)
     return runner.run(stages.LEVEL, **measurements.inputs, refined=refined, graph=graph)

@@ -242,6 +242,37 @@ def _map(
     return MapFigures(points=len(tiles), bounds_m=(low, high))
 
 
+def _line_odometry(
+    *, out: Path, settings: Settings, progress: Progress, frames: Path
+) -> OdometryFigures:
+    from recon4.profiler.stage_odometry import run_line_odometry
+    from recon4.store.frames import FrameStore
+
+    return run_line_odometry(FrameStore.open(frames), out, settings=settings, progress=progress)
+
+
+def _turn_graph(
+    *, out: Path, settings: Settings, progress: Progress, frames: Path, odometry: Path
+) -> GraphFigures:
+    from recon4.profiler.turn_graph import build_turn_graph
+    from recon4.store.frames import FrameStore
+
+    store = FrameStore.open(frames)
+    return build_turn_graph(store, odometry, out, settings=settings, progress=progress)
+
+
+def _refine_lines(
+    *, out: Path, settings: Settings, progress: Progress, frames: Path, odometry: Path, graph: Path
+) -> RefineFigures:
+    from recon4.pose_graph.files import load_graph
+    from recon4.profiler.line_refine import refine_lines
+    from recon4.store.frames import FrameStore
+
+    store = FrameStore.open(frames)
+    found = refine_lines(store, odometry, load_graph(graph), settings=settings, progress=progress)
+    return found.save(out)
+
+
 FRAMES = Stage("frames", 5, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
@@ -264,3 +295,24 @@ REFINE = Stage(
 LEVEL = Stage("level", 4, ("level", "gnss", "verification"), _level, LevelFigures)
 INTENSITY: Stage[Figures] = Stage("intensity", 2, ("intensity",), _intensity)
 MAP = Stage("map", 1, ("map",), _map, MapFigures)
+
+_PLANAR = ("slam2d", "hector", "loops2d", "grid2d", "verification")
+LINE_ODOMETRY = Stage(
+    "odometry", 101, ("odometry", "lines", *_PLANAR), _line_odometry, OdometryFigures
+)
+"""The stages of rigs with a profiler have the names of those of LiDARs, and other versions."""
+TURN_GRAPH = Stage(
+    "graph",
+    101,
+    ("odometry", "lines", "graph", "planes", "registration"),
+    _turn_graph,
+    GraphFigures,
+)
+LINE_REFINE = Stage("refine", 101, ("odometry", "lines", "planes"), _refine_lines, RefineFigures)
+
+
+def has_profiler(frames: Path) -> bool:
+    """Whether the rig of a recording measures line scans; its stages are other ones."""
+    from recon4.model.rig import load_rig
+
+    return load_rig(frames / "rig.toml").row_of("profiler") is not None

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from recon4.model.events import Event, StageChanged
     from recon4.model.usability import MapVerdict
     from recon4.results import Summary
+    from recon4.results_2d import Summary2d
 
 _LINE_EVERY_S = 5.0
 
@@ -168,8 +169,32 @@ def describe_event(event: Event) -> str:
     return ""
 
 
-def describe_summary(summary: Summary) -> str:
+def describe_summary(summary: Summary | Summary2d) -> str:
     """What a finished run came to, and where its results are."""
+    from recon4.results import Summary
+
+    return _describe_3d(summary) if isinstance(summary, Summary) else _describe_2d(summary)
+
+
+def _describe_2d(summary: Summary2d) -> str:
+    edges = ", ".join(f"{count} {verdict}" for verdict, count in summary.edges.items())
+    width_m, height_m = (size * summary.grid.cell_m for size in summary.grid.size)
+    lines = [
+        f"{summary.duration_s:.1f} s, {summary.path_length_m:.1f} m, "
+        f"{summary.scans} scans ({summary.lost} lost)",
+        f"{sum(summary.edges.values())} edges: {edges}; {summary.loops} loop closures",
+        f"{width_m:.0f} x {height_m:.0f} m in cells of {summary.grid.cell_m:g} m, "
+        f"{summary.grid.free_m2:.0f} m² free",
+        f"{summary.seconds:.1f} s of work, {summary.peak_bytes / 1e9:.2f} GB at most",
+        *(f"warning: {text}" for text in summary.warnings),
+        *_describe_verdict(summary.verdict),
+        f"map     {summary.folder / 'map.png'}",
+        f"nav2    {summary.folder / 'map.yaml'}",
+    ]
+    return "\n".join(lines)
+
+
+def _describe_3d(summary: Summary) -> str:
     edges = ", ".join(f"{count} {verdict}" for verdict, count in summary.edges.items())
     lines = [
         f"{summary.duration_s:.1f} s, {summary.path_length_m:.1f} m, "

@@ -19,12 +19,17 @@ if TYPE_CHECKING:
     from recon4.evaluation.density import Density
     from recon4.evaluation.evaluate import Evaluation
     from recon4.evaluation.markers import MarkerTable
+    from recon4.evaluation.relations import RelationErrors
     from recon4.geometry.se3 import Array
 
 evaluation = typer.Typer()
+RELATIONS_SUFFIX = ".relations"
 
 ResultArgument = Annotated[Path, typer.Argument(help="Project folder, .tum or .npz trajectory.")]
-TruthOption = Annotated[Path | None, typer.Option(help="True trajectory, .tum or .npz.")]
+TruthOption = Annotated[
+    Path | None,
+    typer.Option(help="True trajectory, .tum or .npz, or reference relations, .relations."),
+]
 ModelOption = Annotated[Path | None, typer.Option(help="True model, .ply; gives e_r.")]
 FloorOption = Annotated[
     bool, typer.Option("--floor", help="Also e_r of the same points with the true poses.")
@@ -62,9 +67,9 @@ def evaluate(
     report: ReportOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Evaluate a result: ATE, KITTI drift, e_r in slices, density, survey markers."""
+    """Evaluate a result: ATE, KITTI drift, relations, e_r in slices, density, survey markers."""
     confine_command(write=[report.parent] if report else [])
-    from recon4.evaluation.text import density_text, marker_text
+    from recon4.evaluation.text import density_text, marker_text, relations_text
 
     if truth is None and markers is None and not patch:
         raise typer.BadParameter("expected --truth, --markers or --patch")
@@ -72,7 +77,11 @@ def evaluate(
         raise typer.BadParameter("--report needs --truth")
     record: dict[str, Any] = {}
     texts: list[str] = []
-    if truth is not None:
+    if truth is not None and truth.suffix == RELATIONS_SUFFIX:
+        compared = _relation_errors(result, truth)
+        record["relations"] = asdict(compared)
+        texts.append(relations_text(compared))
+    elif truth is not None:
         found = _against_truth(result, truth, model=model, floor=floor)
         record, texts = found.to_json(), [found.table()]
         if report is not None:
@@ -106,6 +115,13 @@ def _against_truth(result: Path, truth: Path, *, model: Path | None, floor: bool
 
         given["frames"] = open_frames(artifacts["frames"], artifacts.get("calibration"))
     return evaluate_result(result, truth=truth, model=model, **given)
+
+
+def _relation_errors(result: Path, relations: Path) -> RelationErrors:
+    from recon4.evaluation.relations import read_relations, relation_errors
+    from recon4.evaluation.trajectories import find_trajectory
+
+    return relation_errors(find_trajectory(result), read_relations(relations))
 
 
 def _write_report(project: Path, found: Evaluation, path: Path) -> None:

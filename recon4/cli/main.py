@@ -52,7 +52,7 @@ _RESUMABLE = {"process", "demo"}
 """Commands that keep finished stages."""
 
 PresetOption = Annotated[
-    str, typer.Option("--preset", help="Start from: indoor, staircase, outdoor, thesis.")
+    str, typer.Option("--preset", help="Start from: indoor, staircase, outdoor, hector, thesis.")
 ]
 SetOption = Annotated[
     list[str] | None,
@@ -63,7 +63,9 @@ JsonOption = Annotated[bool, typer.Option("--json", help="Write JSON for program
 
 @app.command()
 def info(
-    recording: Annotated[Path, typer.Argument(help="pcap, bag, folder of clouds or CSV.")],
+    recording: Annotated[
+        Path, typer.Argument(help="pcap, bag, folder of clouds, CARMEN log or CSV.")
+    ],
     as_json: JsonOption = False,
 ) -> None:
     """Say what a recording holds, what will be derived and what is missing."""
@@ -81,7 +83,9 @@ def info(
 
 @app.command()
 def process(  # noqa: PLR0913 - an argument for each option
-    recordings: Annotated[list[Path], typer.Argument(help="pcap, bag or folder of clouds.")],
+    recordings: Annotated[
+        list[Path], typer.Argument(help="pcap, bag, folder of clouds, CARMEN log.")
+    ],
     *,
     out: Annotated[Path, typer.Option(help="Project folder; the results end up in it.")],
     rig: Annotated[str, typer.Option(help="Rig preset or .toml; default: worked out.")] = "",

@@ -10,6 +10,7 @@ from recon4.evaluation.density import Density
 from recon4.evaluation.floor import ErrorFloor
 from recon4.evaluation.kitti import Drift
 from recon4.evaluation.markers import MarkerTable
+from recon4.evaluation.relations import RelationErrors
 from recon4.evaluation.slices import RelativeError, SliceError
 from recon4.evaluation.table import number, percentage, text_table
 
@@ -43,6 +44,36 @@ def evaluation_text(found: Evaluation) -> str:
             f"(radius {sharp.radius_m:g} m, voxel {sharp.voxel_m:g} m, {sharp.places} places)"
         )
     return "\n\n".join(parts)
+
+
+def relations_text(found: RelationErrors) -> str:
+    """Errors against reference relations."""
+    rows = [
+        (
+            "translation [cm]",
+            *(
+                number(value, 2, _CM)
+                for value in (
+                    found.translation_mean_m,
+                    found.translation_sd_m,
+                    found.translation_largest_m,
+                )
+            ),
+        ),
+        (
+            "rotation [°]",
+            *(
+                number(value, 3, _DEG)
+                for value in (
+                    found.rotation_mean_rad,
+                    found.rotation_sd_rad,
+                    found.rotation_largest_rad,
+                )
+            ),
+        ),
+    ]
+    head = f"{found.relations} relations compared, {found.outside} outside of the trajectory"
+    return head + "\n" + text_table(("Relative error", "mean", "deviation", "largest"), rows)
 
 
 def ate_text(found: Evaluation) -> str:

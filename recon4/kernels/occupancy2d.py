@@ -111,3 +111,28 @@ def gradient_equations(
             out[9 + i] += jacobian[i] * residual
         out[12] += residual * residual
         out[13] += 1.0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def crossing_beams(
+    log_odds: NDArray[np.float32], cells: NDArray[np.int32], threshold: float, margin: int
+) -> int:
+    """Number of beams of a scan that cross occupied cells before their return.
+
+    Args:
+        log_odds: Grid, (X, Y).
+        cells: Cell of the laser, then those of the returns, (1 + P, 2), all inside the grid.
+        threshold: Cells with larger log-odds are occupied.
+        margin: Cells this near to either end of a beam do not count.
+    """
+    count = 0
+    for k in range(1, len(cells)):
+        da, db = cells[k, 0] - cells[0, 0], cells[k, 1] - cells[0, 1]
+        steps = max(abs(da), abs(db))
+        for n in range(margin, steps - margin):
+            a = cells[0, 0] + int(np.round(da * n / steps))
+            b = cells[0, 1] + int(np.round(db * n / steps))
+            if log_odds[a, b] > threshold:
+                count += 1
+                break
+    return count

@@ -156,3 +156,44 @@ class MapFigures(Figures, frozen=True, kw_only=True):
     points: int
     bounds_m: tuple[Point, Point]
     """Lowest and highest corner [m]."""
+
+
+class Scan2dFigures(Figures, frozen=True, kw_only=True):
+    """The imported scans of a 2-D laser."""
+
+    scans: int
+    beams: int
+    """Of each scan."""
+    odometry: bool
+    """Whether the recording has poses of its own."""
+    outcome: str = "complete"
+    """``complete``, or how far it could be read."""
+    warnings: tuple[str, ...] = ()
+
+
+class Odometry2dFigures(Figures, frozen=True, kw_only=True):
+    """Odometry of a 2-D laser."""
+
+    scans: int
+    lost: int
+    """Scans where tracking was lost."""
+    keyframes: int
+    searched: int
+    """Scans whose pose a correlative search found."""
+    resets: int
+    """How many times the local map started again."""
+
+
+class Map2dFigures(Figures, frozen=True, kw_only=True):
+    """The occupancy grid."""
+
+    cell_m: float
+    """Edge of a cell [m]."""
+    size: tuple[int, int]
+    """Cells along x and y."""
+    free_m2: float
+    """Free area [m²]."""
+    crossing_ratio: float
+    """Fraction of the beams that cross walls of the map before their return."""
+    largest_sd_m: float
+    """Largest standard deviation of a position relative to the start [m]."""

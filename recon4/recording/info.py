@@ -24,6 +24,7 @@ from recon4.recording.folders import folder_gaps, frames_label, list_frames
 from recon4.recording.formats.bags import CLOUD, IMU, NAVSATFIX, ODOMETRY, Bag, BagTopic
 from recon4.recording.formats.cloud_files import cloud_fields
 from recon4.recording.formats.poses import pose_format, read_tum
+from recon4.recording.laser2d import is_laser2d, read_laser2d
 from recon4.recording.open import (
     RECORDINGS,
     Recording,
@@ -51,6 +52,9 @@ _EARLIEST_NS = 300_000_000 * 1_000_000_000
 _LATEST_NS = 253_402_300_800 * 1_000_000_000
 """Start of the year 10000."""
 _HEAD_ITEMS = 40
+_LASER_GAP_S = 1.0
+"""Scans of a 2-D laser come irregularly; shorter times between them are no gap [s]."""
+_BAGS = (RecordingKind.BAG1, RecordingKind.BAG2)
 _HEAD_NS = 1_000_000_000
 
 
@@ -130,6 +134,8 @@ def describe(path: Path, *, settings: IngestSettings | None = None) -> Recording
     settings = settings or IngestSettings()
     kind = recognize(path)
     info = RecordingInfo(path=path.name, kind=str(kind), bytes=_size(path))
+    if kind is RecordingKind.CARMEN or (kind in _BAGS and is_laser2d(path)):
+        return _describe_laser2d(info, path)
     if kind not in RECORDINGS:
         return _describe_samples(info, path, kind)
     report = ImportReport()
@@ -272,6 +278,36 @@ def _topic_line(topic: BagTopic, seconds: float) -> str:
     rate = f", {topic.messages / seconds:.1f} a second" if seconds > 0 else ""
     return (
         f"{topic.name}: {names.get(topic.type, f'{topic.type}, not read')}, {topic.messages}{rate}"
+    )
+
+
+# -- 2-D lasers
+
+
+def _describe_laser2d(info: RecordingInfo, path: Path) -> RecordingInfo:
+    report = ImportReport()
+    scans = read_laser2d([path], report)
+    first, last = int(scans.t_ns[0]), int(scans.t_ns[-1])
+    field_deg = abs(np.rad2deg(scans.angle_step_rad)) * (scans.range_m.shape[1] - 1)
+    returns = float(np.isfinite(scans.range_m).mean())
+    sensor = SensorInfo(
+        label=path.name,
+        model="2-D laser",
+        content=f"scans of {scans.range_m.shape[1]} beams over {field_deg:.0f}°",
+        count=len(scans),
+        rate_hz=(len(scans) - 1) * 1e9 / (last - first) if last > first else float("nan"),
+        remarks=(f"ranges up to {scans.range_max_m:.2f} m, {returns:.0%} of the beams return",),
+    )
+    return replace(
+        info,
+        t_first_ns=first,
+        t_last_ns=last,
+        sensors=(sensor,),
+        samples=("poses by the robot's odometry",) if scans.odometry is not None else (),
+        gaps=tuple(g for g in _gaps(path.name, scans.t_ns) if g.seconds > _LASER_GAP_S),
+        derived=tuple(report.derived),
+        missing=() if scans.odometry is not None else ("odometry",),
+        warnings=tuple(report.warnings),
     )
 
 

@@ -21,6 +21,7 @@ from recon4.recording.bag_recording import BagRecording
 from recon4.recording.cloud_points import model_of_points
 from recon4.recording.folders import CLOUD_SUFFIXES, folder_gaps, list_frames, natural, read_frames
 from recon4.recording.formats.bags import STORAGE_SUFFIXES, Bag
+from recon4.recording.formats.carmen import is_carmen
 from recon4.recording.formats.cloud_files import is_cloud_file, read_cloud
 from recon4.recording.formats.pcap import OpenFile, is_pcap, open_plain
 from recon4.recording.formats.poses import pose_format
@@ -46,6 +47,7 @@ class RecordingKind(StrEnum):
     IMU_CSV = "IMU samples (CSV)"
     GNSS_CSV = "GNSS samples (CSV)"
     POSES = "poses (TUM or KITTI)"
+    CARMEN = "CARMEN log of a 2-D laser"
 
 
 RECORDINGS = (RecordingKind.PCAP, RecordingKind.BAG1, RecordingKind.BAG2, RecordingKind.FRAMES)
@@ -125,6 +127,10 @@ def open_recording(
         raise ConfigError("no recording given")
     kinds = [recognize(path) for path in paths]
     kind = kinds[0]
+    if kind is RecordingKind.CARMEN:
+        raise UnknownFormat(
+            f"{paths[0].name}: {kind}: it has no points of a LiDAR; process it alone"
+        )
     if kind not in RECORDINGS:
         raise UnknownFormat(f"{paths[0].name}: {kind} alone is no recording: it has no points")
     if rig is not None and rig.row_of("profiler") is not None and kind not in _BAGS:
@@ -203,6 +209,8 @@ def _file_kind(path: Path) -> RecordingKind:
         return RecordingKind.BAG2
     if is_cloud_file(path):
         return RecordingKind.FRAMES
+    if is_carmen(path):
+        return RecordingKind.CARMEN
     columns = csv_header(path)
     if set(IMU_HEADER[:4]) <= set(columns):
         return RecordingKind.IMU_CSV

@@ -89,7 +89,7 @@ class ImuMotion:
     def __init__(self, imu: ImuSamples, rig: Rig, settings: OdometrySettings) -> None:
         self._rig = rig
         self._t_ns = imu.t_ns
-        self._gyro, self._accel = _in_body(imu, rig)
+        self._gyro, self._accel = imu_in_body(imu, rig)
         self._has_accel = bool(np.isfinite(self._accel).all())
         s = settings
         self._noise = np.array([s.gyro_noise, s.accel_noise, s.gyro_bias_walk, s.accel_bias_walk])
@@ -98,7 +98,7 @@ class ImuMotion:
 
     def extend(self, imu: ImuSamples) -> None:
         """Append newer samples of a live capture; drop samples older than a minute."""
-        gyro, accel = _in_body(imu, self._rig)
+        gyro, accel = imu_in_body(imu, self._rig)
         kept = self._t_ns > imu.t_ns[-1] - _KEPT_NS
         self._t_ns = np.concatenate([self._t_ns[kept], imu.t_ns])
         self._gyro = np.concatenate([self._gyro[kept], gyro])
@@ -141,7 +141,7 @@ class ImuMotion:
         vector = np.zeros(15)
         if self._has_accel:
             vector[VECTOR.gravity] = [0.0, 0.0, -STANDARD_GRAVITY_M_S2]
-        return MotionState(t_ns, _level(up_body), vector, np.diag(sd**2))
+        return MotionState(t_ns, level_rotation(up_body), vector, np.diag(sd**2))
 
     def turn(self, start_ns: int, end_ns: int) -> Array:
         """Rotation from the body at one time to the body at another by the gyroscope, (3, 3)."""
@@ -152,7 +152,7 @@ class ImuMotion:
         """Integrate the IMU samples from the state's time to ``end_ns``."""
         first, last = np.searchsorted(self._t_ns, [state.t_ns + 1, end_ns])
         times = np.concatenate([[state.t_ns], self._t_ns[first:last], [end_ns]])
-        gyro, accel = (_at(times, self._t_ns, v) for v in (self._gyro, self._accel))
+        gyro, accel = (imu_at(times, self._t_ns, v) for v in (self._gyro, self._accel))
         if not self._has_accel:
             accel = np.zeros_like(gyro)
         return _predict(state, times, gyro, accel=accel, noise=self._noise)
@@ -228,7 +228,7 @@ def _predict(
     return Prediction(t_s, SE3(R, p), MotionState(int(t_ns[-1]), R[-1], vector, P), prior)
 
 
-def _in_body(imu: ImuSamples, rig: Rig) -> tuple[Array, Array]:
+def imu_in_body(imu: ImuSamples, rig: Rig) -> tuple[Array, Array]:
     """Turn rate and specific force at the body's origin, in body axes."""
     R_body_imu, r = rig.T_body_imu.R, rig.T_body_imu.t
     gyro, accel = imu.gyro_rad_s @ R_body_imu.T, imu.accel_m_s2 @ R_body_imu.T
@@ -238,7 +238,7 @@ def _in_body(imu: ImuSamples, rig: Rig) -> tuple[Array, Array]:
     return np.ascontiguousarray(gyro), np.ascontiguousarray(accel)
 
 
-def _at(t_ns: Times, sample_t_ns: Times, values: Array) -> Array:
+def imu_at(t_ns: Times, sample_t_ns: Times, values: Array) -> Array:
     """Linear interpolation of samples (N, 3) at other times, constant beyond the ends."""
     # float64 represents nanoseconds exactly only after the start is subtracted.
     t = (t_ns - t_ns[0]).astype(np.float64)
@@ -248,7 +248,7 @@ def _at(t_ns: Times, sample_t_ns: Times, values: Array) -> Array:
     return np.stack([np.interp(t, known, values[rows, axis]) for axis in range(3)], axis=1)
 
 
-def _level(up_body: Array) -> Array:
+def level_rotation(up_body: Array) -> Array:
     """Rotation without heading that maps a direction of the body to the vertical."""
     up = up_body / np.linalg.norm(up_body)
     axis = np.cross(up, [0.0, 0.0, 1.0])

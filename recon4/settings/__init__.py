@@ -10,6 +10,7 @@ from recon4.settings.georeference import GnssSettings, LevelSettings
 from recon4.settings.graph import GraphSettings, VerificationSettings
 from recon4.settings.ingest import IngestSettings
 from recon4.settings.intensity import IntensitySettings
+from recon4.settings.lines import LineSettings
 from recon4.settings.mapping import MapSettings
 from recon4.settings.odometry import OdometrySettings, ScanSettings
 from recon4.settings.presets import PRESETS, Settings, preset
@@ -38,6 +39,7 @@ __all__ = [
     "IngestSettings",
     "IntensitySettings",
     "LevelSettings",
+    "LineSettings",
     "Loop2dSettings",
     "MapSettings",
     "OdometrySettings",

@@ -10,6 +10,7 @@ from recon4.settings.georeference import GnssSettings, LevelSettings
 from recon4.settings.graph import GraphSettings, VerificationSettings
 from recon4.settings.ingest import IngestSettings
 from recon4.settings.intensity import IntensitySettings
+from recon4.settings.lines import LineSettings
 from recon4.settings.mapping import MapSettings
 from recon4.settings.odometry import OdometrySettings, ScanSettings
 from recon4.settings.refine import RefineSettings
@@ -42,6 +43,7 @@ class Settings:
     graph: GraphSettings = field(default_factory=GraphSettings)
     verification: VerificationSettings = field(default_factory=VerificationSettings)
     refine: RefineSettings = field(default_factory=RefineSettings)
+    lines: LineSettings = field(default_factory=LineSettings)
     level: LevelSettings = field(default_factory=LevelSettings)
     gnss: GnssSettings = field(default_factory=GnssSettings)
     intensity: IntensitySettings = field(default_factory=IntensitySettings)

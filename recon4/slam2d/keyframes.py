@@ -37,7 +37,7 @@ class Keyframes:
     """Of the motion since the keyframe before, for yaw, x, y in the axes of the keyframe,
     (K, 3, 3); the first has none."""
     scans: tuple[ScanPoints, ...]
-    """Returns, level and undistorted."""
+    """Returns, level and undistorted; none where tracking was lost."""
     run: Rows
     """Number of the stretch without a loose motion that each belongs to, (K,)."""
     path_m: Array
@@ -76,8 +76,11 @@ def make_keyframes(
     level = None
     if attitude is not None:
         level = leveling(attitude.at(scans.t_ns[rows], slack_ns=1_000_000_000))
+    nothing = ScanPoints(np.zeros((0, 2)), np.zeros(0))
     points = tuple(
-        scan_points(
+        nothing
+        if steps.lost[row] and not steps.resets[row]
+        else scan_points(
             scans,
             int(row),
             settings=settings,

@@ -58,7 +58,7 @@ def close_loops(
     while most_m <= loops.last_search_m:
         found = candidates(graph, keyframes, settings=loops, most_m=most_m)
         new = [pair for pair in found if _is_new(pair, graph, tried)]
-        edges = list(registrar.register(new, graph, progress=progress))
+        edges = list(registrar.register(new, graph, progress=progress)) if new else []
         for pair in new:
             tried[pair.target, pair.source] = _predicted(graph, pair)
         graph = _with_latest(graph, edges)
@@ -123,15 +123,17 @@ class SubmapRegistrar:
         watched = track(ordered, progress, what="Loop closures", unit="pairs")
         for target, group in groupby(watched, key=lambda pair: pair.target):
             points, _ = self._keyframes.around(target, self._loops.target_reach)
+            field = LikelihoodField.of(points) if len(points) else None
             self._map.add(points)
-            field = LikelihoodField.of(points)
             for pair in group:
                 yield self._edge(pair, field, _predicted(graph, pair))
             self._map.remove(points)
 
-    def _edge(self, pair: Candidate2d, field: LikelihoodField, predicted: Array) -> Edge:
+    def _edge(self, pair: Candidate2d, field: LikelihoodField | None, predicted: Array) -> Edge:
         points, weights = self._keyframes.around(pair.source, self._loops.source_reach)
         points, weights = _sampled(points, weights)
+        if field is None:
+            return _rejected(pair, predicted, Reason.OVERLAP)
         found = field.search(
             points,
             center=predicted,

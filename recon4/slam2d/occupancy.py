@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
-from recon4.kernels.occupancy2d import cast_scan
+from recon4.kernels.occupancy2d import cast_scan, crossing_beams
 
 MAX_CELLS = 150_000_000
 """Cells of the largest grid; 600 MB with what is needed to fill it."""
 _MARGIN_M = 5.0
 """A grid that grows gets this much more on each side [m]."""
 _LARGEST_LOG_ODDS = 6.0
+_CROSSING_MARGIN_M = 0.3
+_WALL = 0.9
+"""Cells with a larger probability are walls that a beam should not cross."""
 
 
 @dataclass(slots=True, eq=False)
@@ -75,6 +79,26 @@ class OccupancyGrid:
         )
         self._scans += 1
         cast_scan(self.log_odds, self._seen, cells, self._scans, update)
+
+
+def crossing_ratio(grid: OccupancyGrid, scans: Iterable[tuple[Array, Array]]) -> float:
+    """Fraction of the beams that cross walls of the map before their return.
+
+    In a map that fits together it is small: what moved, and glass. Places that were mapped twice
+    side by side, or over each other, have walls in free space.
+
+    Args:
+        grid: The finished grid.
+        scans: Returns in the map [m], (P, 2), and position of the laser [m], (2,), of some scans.
+    """
+    crossing, beams = 0, 0
+    margin = int(np.ceil(_CROSSING_MARGIN_M / grid.cell_m))
+    for p_map, laser in scans:
+        both = np.concatenate([laser[None], p_map])
+        cells = np.floor((both - grid.origin) / grid.cell_m).astype(np.int32)
+        crossing += crossing_beams(grid.log_odds, cells, _log_odds(_WALL), margin)
+        beams += len(p_map)
+    return crossing / max(beams, 1)
 
 
 def fitting_cell_m(low: Array, high: Array, cell_m: float) -> float:

@@ -10,12 +10,13 @@ from recon4.geometry.se2 import between, compose, transform, wrap
 from recon4.geometry.se3 import Array
 from recon4.model.laser_scans import LaserScans
 from recon4.model.trajectory import Trajectory
+from recon4.model.usability import WEAK_SD_M
 from recon4.progress import Progress, track
 from recon4.settings.slam2d import Slam2dSettings
 from recon4.slam2d.correlative import LikelihoodField
 from recon4.slam2d.line_map import LineMap, Match2d, Prior2d, stack_points
 from recon4.slam2d.observability import Observed, observed
-from recon4.slam2d.prediction import MotionPredictor, Predicted
+from recon4.slam2d.prediction import MotionPredictor, Predicted, VarianceGrowth
 from recon4.slam2d.scan_points import ScanPoints, leveling, scan_points
 from recon4.slam2d.steps import Steps2d, empty_steps
 
@@ -25,6 +26,11 @@ _WINDOW_PATH_M = 25.0
 """Extent of the local map beside the ranges [m]."""
 _SEARCH_SCORE = 0.35
 _WIDEST_SEARCH_M = 10.0
+_LOOSE_SD_M = 0.5
+"""A motion less certain than this ends at a keyframe [m]."""
+_LOOSE_PRIOR = 2.0
+"""The prediction has less weight in the registration than its accuracy allows: its errors are the
+same from scan to scan, and would bend the map a little everywhere."""
 _FIRST_KEYFRAMES = 5
 """A local map of fewer keyframes has gaps between the returns: every scan is added to it."""
 _RESET_AFTER = 20
@@ -59,7 +65,7 @@ class Odometry2d:
         self._window: deque[tuple[Array, Array]] = deque()
         self._field: LikelihoodField | None = None
         self._key = 0
-        self._since_key = np.zeros(3)
+        self._growth = VarianceGrowth()
         self._lost_in_a_row = 0
         self.steps = empty_steps(scans.t_ns)
 
@@ -75,7 +81,7 @@ class Odometry2d:
             if not steps.lost[k]:
                 self._insert(k, scan)
             return
-        self._since_key += [predicted.sd_rad**2, predicted.sd_m**2, predicted.sd_m**2]
+        self._growth.add(predicted)
         match = self._register(k, scan, start, predicted)
         found = observed(match.H, self._settings.normal_noise_rad) if match else None
         if match is None or found is None or match.match_ratio < self._settings.min_match_ratio:
@@ -87,7 +93,7 @@ class Odometry2d:
 
     def _predict(self, k: int) -> Predicted:
         if k == 0:
-            return Predicted(np.zeros(3), 0.0, 0.0)
+            return Predicted(np.zeros(3), 0.0, 0.0, drift_m=0.0, drift_rad=0.0)
         return self._predictor.predict(k, self.steps.pose)
 
     def _points(self, k: int) -> ScanPoints:
@@ -102,9 +108,8 @@ class Odometry2d:
     ) -> Match2d | None:
         if len(scan.points) < _FEWEST_POINTS:
             return None
-        prior = Prior2d(
-            start, np.diag([predicted.sd_rad**-2, predicted.sd_m**-2, predicted.sd_m**-2])
-        )
+        loose = _LOOSE_PRIOR * np.array([predicted.sd_rad, predicted.sd_m, predicted.sd_m])
+        prior = Prior2d(start, np.diag(loose**-2.0))
         sd_m = self._settings.noise_sd_m
         match = self._map.register(scan.points, scan.weights, start=start, prior=prior, sd_m=sd_m)
         if match.match_ratio >= self._settings.search_match_ratio:
@@ -117,7 +122,7 @@ class Odometry2d:
         """Look for a pose with a higher match ratio around the predicted one."""
         if self._field is None:
             self._field = LikelihoodField.of(stack_points([points for _, points in self._window]))
-        reach = 4.0 * (1 + self._lost_in_a_row)
+        reach = 3.0 * (1 + self._lost_in_a_row)
         found = self._field.search(
             scan.points,
             center=start,
@@ -144,12 +149,13 @@ class Odometry2d:
         steps.weak_direction[k] = found.weak_direction
         steps.motion_information[k] = self._in_scan_axes(match.pose, found.information)
         self._lost_in_a_row = 0
+        self._growth.observed(position=found.weak_sd_m <= WEAK_SD_M)
 
     def _in_scan_axes(self, pose: Array, information: Array) -> Array:
         """Information of lines and prediction together, in the axes of the scan."""
         c, s = np.cos(pose[2]), np.sin(pose[2])
         turn = np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
-        return np.asarray(turn.T @ (information + np.diag(1.0 / self._since_key)) @ turn)
+        return np.asarray(turn.T @ (information + np.diag(1.0 / self._growth.variance)) @ turn)
 
     def _lose(self, k: int, start: Array, scan: ScanPoints) -> None:
         """Keep the prediction; after many lost scans start another local map."""
@@ -163,9 +169,11 @@ class Odometry2d:
                 self._map.remove(self._window.popleft()[1])
             self._insert(k, scan)
             self._lost_in_a_row = 0
+        elif self._growth.sd_m > _LOOSE_SD_M or self._is_keyframe(k):
+            self._mark_keyframe(k)  # a node for the path, without returns
 
     def _is_keyframe(self, k: int) -> bool:
-        if len(self._window) < _FIRST_KEYFRAMES:
+        if len(self._window) < _FIRST_KEYFRAMES or self._growth.sd_m > _LOOSE_SD_M:
             return True
         moved = between(self.steps.pose[self._key], self.steps.pose[k])
         far = float(np.hypot(moved[0], moved[1])) > self._settings.keyframe_m
@@ -178,9 +186,13 @@ class Odometry2d:
         self._window.append((pose, points))
         while self._is_too_large():
             self._map.remove(self._window.popleft()[1])
+        self._field = None
+        self._mark_keyframe(k)
+
+    def _mark_keyframe(self, k: int) -> None:
         self.steps.keyframe[k] = True
-        self._key, self._field = k, None
-        self._since_key = np.zeros(3)
+        self._key = k
+        self._growth.restart()
 
     def _is_too_large(self) -> bool:
         (first, _), (last, _) = self._window[0], self._window[-1]

@@ -18,10 +18,14 @@ _ACCELERATION_M_S2 = 3.0
 _ACCELERATION_RAD_S2 = 4.0
 _LONG_GAP_S = 0.7
 """Over longer times without odometry the velocity is not extrapolated [s]."""
-_SLIP = 0.1
-"""Error of wheel odometry as a ratio of the distance and of the rotation …"""
-_TURN_PER_M = 0.05
-"""… and error of its rotation per distance [rad/m]."""
+_SLIP = 0.05
+"""Error of the distance of wheel odometry as a ratio …"""
+_TURN_SLIP = 0.1
+"""… error of its rotation as a ratio …"""
+_TURN_PER_M = 0.02
+"""… and per distance [rad/m]."""
+_IMU_RAD_S = 0.002
+"""Drift of the yaw of an IMU [rad/s]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,7 +35,14 @@ class Predicted:
     motion: Array
     """Pose of the later scan in the earlier: x [m], y [m], yaw [rad], (3,)."""
     sd_m: float
+    """Standard deviation of x and y [m]."""
     sd_rad: float
+    """Standard deviation of the yaw [rad]."""
+    drift_m: float
+    """Growth of the error of the position if nothing else observes it [m]: errors of velocity and
+    scale are the same from step to step, so they add up in full."""
+    drift_rad: float
+    """The same for the yaw [rad]."""
 
 
 class MotionPredictor:
@@ -83,21 +94,63 @@ class MotionPredictor:
             poses: Poses of the scans before, (k, 3) or more rows.
         """
         seconds = self.seconds(k)
+        drift_m = 0.5 * self._settings.max_speed_m_s * seconds
+        drift_rad = min(0.5 * self._settings.max_turn_rad_s * seconds, np.pi)
         if self._odometry is not None:
             motion = between(self._odometry[k - 1], self._odometry[k])
             distance = float(np.hypot(motion[0], motion[1]))
             turn = abs(float(motion[2]))
-            sd_m = 0.005 + _SLIP * distance
-            sd_rad = 0.003 + 0.15 * turn + _TURN_PER_M * distance
+            drift_m = _SLIP * distance
+            drift_rad = 0.5 * (_TURN_SLIP * turn + _TURN_PER_M * distance)
+            sd_m = 0.005 + drift_m
+            sd_rad = 0.003 + 2.0 * drift_rad
         elif seconds > _LONG_GAP_S:
             motion = np.zeros(3)
-            sd_m = 0.5 * self._settings.max_speed_m_s * seconds
-            sd_rad = min(0.5 * self._settings.max_turn_rad_s * seconds, np.pi)
+            sd_m, sd_rad = drift_m, drift_rad
         else:
             motion = self.velocity(k, poses) * seconds
             sd_m = 0.02 + 0.5 * _ACCELERATION_M_S2 * seconds**2
             sd_rad = 0.02 + 0.5 * _ACCELERATION_RAD_S2 * seconds**2
         if self._yaw is not None:
             motion = np.array([motion[0], motion[1], wrap(self._yaw[k] - self._yaw[k - 1])])
-            sd_rad = 0.003 + 0.02 * seconds
-        return Predicted(motion, sd_m, sd_rad)
+            drift_rad = _IMU_RAD_S * seconds
+            sd_rad = 0.003 + 10.0 * drift_rad
+        return Predicted(motion, sd_m, sd_rad, drift_m=drift_m, drift_rad=drift_rad)
+
+
+class VarianceGrowth:
+    """Variance of the motion since the last keyframe, by the predictions alone.
+
+    While nothing observes the position, its error is that of a constant velocity or scale: it grows
+    with time or distance, not with the root of it. The steps of its square are added, so that
+    several keyframes in a row have the right sum.
+    """
+
+    def __init__(self) -> None:
+        self.variance: Array = np.zeros(3)
+        """For yaw [rad²], x and y [m²], (3,)."""
+        self._blind_m = self._blind_rad = 0.0
+
+    @property
+    def sd_m(self) -> float:
+        """Standard deviation of x and y [m]."""
+        return float(np.sqrt(self.variance[1]))
+
+    def add(self, predicted: Predicted) -> None:
+        """Add a predicted motion."""
+        after_m = self._blind_m + predicted.drift_m
+        after_rad = self._blind_rad + predicted.drift_rad
+        of_place = predicted.sd_m**2 + after_m**2 - self._blind_m**2
+        of_turn = predicted.sd_rad**2 + after_rad**2 - self._blind_rad**2
+        self.variance = self.variance + np.array([of_turn, of_place, of_place])
+        self._blind_m, self._blind_rad = after_m, after_rad
+
+    def observed(self, *, position: bool) -> None:
+        """The laser observed the yaw, and the position if ``position``."""
+        self._blind_rad = 0.0
+        if position:
+            self._blind_m = 0.0
+
+    def restart(self) -> None:
+        """A keyframe: the next motion begins."""
+        self.variance = np.zeros(3)

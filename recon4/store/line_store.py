@@ -13,6 +13,7 @@ from typing import BinaryIO
 import numpy as np
 
 from recon4.errors import StoreError
+from recon4.geometry.se3 import Array
 from recon4.model.laser_scans import LaserScans
 from recon4.model.line_scans import LineScans
 from recon4.store.arrays import load_arrays, load_record, save_record
@@ -31,6 +32,7 @@ class LineStoreWriter:
         self._folder = folder
         self._lines: list[LineScans] = []
         self._t_ns: list[np.ndarray[tuple[int], np.dtype[np.int64]]] = []
+        self._odometry: list[Array] = []
         self._first: LaserScans | None = None
         self._file: BinaryIO | None = None
 
@@ -51,6 +53,8 @@ class LineStoreWriter:
                 self._file.write(_header(0, scans.range_m.shape[1]))
             self._file.write(np.ascontiguousarray(scans.range_m, "<f4").data)
         self._t_ns.append(scans.t_ns)
+        if scans.odometry is not None:
+            self._odometry.append(scans.odometry)
 
     def close(self) -> tuple[int, int]:
         """Write the rest; returns the numbers of line scans and 2-D scans."""
@@ -62,8 +66,10 @@ class LineStoreWriter:
                 self._file.seek(0)
                 self._file.write(_header(len(t_ns), self._first.range_m.shape[1]))
                 self._file.close()
-                scalars = {name: getattr(self._first, name) for name in _SCALARS}
-                np.savez(self._folder / SCANS, t_ns=t_ns, **scalars)
+                values = {name: getattr(self._first, name) for name in _SCALARS}
+                if self._odometry:
+                    values["odometry"] = np.concatenate(self._odometry)
+                np.savez(self._folder / SCANS, t_ns=t_ns, **values)
         return sum(len(part) for part in self._lines), sum(len(part) for part in self._t_ns)
 
 
@@ -96,7 +102,10 @@ def load_laser_scans(folder: Path) -> LaserScans | None:
     """
     if not (folder / SCANS).exists():
         return None
-    arrays = load_arrays(folder / SCANS, ["t_ns", *_SCALARS])
+    arrays = load_arrays(folder / SCANS)
+    missing = {"t_ns", *_SCALARS} - arrays.keys()
+    if missing:
+        raise StoreError(f"{folder.name}/{SCANS}: expected arrays {sorted(missing)}, got none")
     t_ns = arrays["t_ns"].astype(np.int64)
     try:
         ranges = np.load(folder / RANGES, mmap_mode="c").view(np.ndarray)
@@ -109,6 +118,9 @@ def load_laser_scans(folder: Path) -> LaserScans | None:
         )
     if np.any(np.diff(t_ns) <= 0):
         raise StoreError(f"{folder.name}/{SCANS}: expected increasing times")
+    odometry = arrays.get("odometry")
+    if odometry is not None and odometry.shape != (len(t_ns), 3):
+        raise StoreError(f"{folder.name}/{SCANS}: expected {len(t_ns)} poses, got {odometry.shape}")
     return LaserScans(
         t_ns=t_ns,
         range_m=ranges,
@@ -116,6 +128,7 @@ def load_laser_scans(folder: Path) -> LaserScans | None:
         angle_step_rad=float(arrays["angle_step_rad"]),
         range_max_m=float(arrays["range_max_m"]),
         time_step_s=float(arrays["time_step_s"]),
+        odometry=odometry,
     )
 
 

@@ -55,9 +55,9 @@ def test_a_shot_lies_where_the_head_pointed_at_its_time(tmp_path):
     store = read(tmp_path / "bag", tmp_path / "out")
 
     frame, lines = store[5], load_lines(tmp_path / "out")
-    t_s = (frame.t_ns - START_NS + frame.dt_ns.astype(np.int64)) * 1e-9
-    head = np.deg2rad(50.0) * t_s
-    shot = np.round(t_s % 0.01 / 4e-4)
+    since_ns = frame.t_ns - START_NS + frame.dt_ns.astype(np.int64)
+    head = np.deg2rad(50.0) * 1e-9 * since_ns
+    shot = since_ns % LINE_NS // 400_000
     elevation = -0.5 + 0.05 * shot
     expected = 4.0 * np.stack(
         [np.cos(elevation) * np.cos(head), np.cos(elevation) * np.sin(head), np.sin(elevation)], 1

@@ -1,0 +1,255 @@
+"""Semi-rigid refinement of line scans (L §4.3): every line moves, all of them at once.
+
+The points of all lines make one map of planes. Each point is matched to what was measured at
+least a turn of the head earlier or later, and the states of the chain are corrected until the
+points lie on the planes and the motion is that of the IMU.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from recon4.geometry.se3 import Array
+from recon4.model.events import RoundRefined
+from recon4.model.figures import RefineRound
+from recon4.model.laser_scans import LaserScans
+from recon4.model.pose_graph import PoseGraph
+from recon4.model.trajectory import Trajectory
+from recon4.profiler.imu_chain import (
+    POSITION,
+    ImuChain,
+    Information,
+    initial_chain,
+    linearize,
+    make_drive,
+)
+from recon4.profiler.samples import joined, laser_points, line_points
+from recon4.profiler.stage_odometry import span_of
+from recon4.progress import Progress
+from recon4.registration.plane_map import Match, PlaneMap
+from recon4.semi_rigid.refine import Refinement, corrected_by_graph
+from recon4.settings import LineSettings, PlaneSettings, Settings
+from recon4.store.arrays import load_trajectory
+from recon4.store.frames import FrameStore
+from recon4.store.line_store import load_laser_scans
+
+_BLOCK = 5
+"""Multiframes that are matched before the map is brought up to date."""
+
+
+@dataclass(frozen=True, slots=True)
+class LineRound:
+    """What one round of matching uses; the first are wide, the last are narrow."""
+
+    gate_m: float
+    """Points farther from their plane do not match [m]."""
+    max_sd_m: float
+    """Largest standard deviation of the points of a plane across it [m]."""
+    finest: int
+    """First size of cubes, 0 = the smallest."""
+
+
+ROUNDS = (
+    LineRound(0.5, 0.1, 2),
+    LineRound(0.3, 0.06, 1),
+    LineRound(0.2, 0.04, 0),
+    LineRound(0.15, 0.03, 0),
+    LineRound(0.1, 0.03, 0),
+    LineRound(0.1, 0.03, 0),
+    LineRound(0.1, 0.03, 0),
+    LineRound(0.1, 0.03, 0),
+)
+"""The last one repeats until the steps are small."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LineRefiner:
+    """Refines the chain of one recording."""
+
+    frames: FrameStore
+    scans: LaserScans | None
+    settings: LineSettings
+    planes: PlaneSettings
+    progress: Progress
+
+    def refine(self, chain: ImuChain) -> tuple[ImuChain, list[RefineRound]]:
+        """Correct all states in rounds, each with a map of the newest poses."""
+        found: list[RefineRound] = []
+        for number in range(self.settings.rounds):
+            chain, done = self._round(chain, ROUNDS[min(number, len(ROUNDS) - 1)])
+            if done is None:
+                break
+            found.append(done)
+            self.progress.event(
+                RoundRefined(
+                    mean_m=done.mean_m,
+                    match_ratio=done.match_ratio,
+                    largest_step_m=done.largest_step_m,
+                )
+            )
+            if number >= 3 and done.largest_step_m < self.settings.converged_step_m:
+                break
+        return chain, found
+
+    def _round(self, chain: ImuChain, wide: LineRound) -> tuple[ImuChain, RefineRound | None]:
+        linear = linearize(chain)
+        dense = linear.trajectory()
+        count = len(self.frames)
+        self.progress.start("refine lines", count // self.settings.map_stride + count, "multiframe")
+        sweep = _LineSweep(self, dense, wide)
+        matched = sweep.match(chain)
+        if matched.matches == 0:
+            return chain, None
+        step = linear.solve(matched.information, anchor=self._anchor())
+        largest_m = float(np.linalg.norm(step[:, POSITION], axis=1).max())
+        done = RefineRound(
+            mean_m=matched.total_m / matched.matches,
+            match_ratio=matched.matches / max(matched.points, 1),
+            largest_step_m=largest_m,
+        )
+        return chain.moved(step), done
+
+    def _anchor(self) -> Array:
+        """Weak prior that keeps the map where it is: nothing else says where that is."""
+        s = self.settings
+        return np.repeat([s.total_sd_rad**-2.0, s.total_sd_m**-2.0], 3) / 100.0
+
+
+@dataclass(slots=True, eq=False)
+class Matched:
+    """Normal equations of one round with their counts."""
+
+    information: Information
+    points: int = 0
+    matches: int = 0
+    total_m: float = 0.0
+
+    def add(self, interval: int, match: Match, scale: float) -> None:
+        """Add the matches of some points of an interval."""
+        self.information.H[interval] += scale * match.H
+        self.information.g[interval] += scale * match.g
+        self.points += len(match.residual_m)
+        self.matches += match.matches
+        if match.matches:
+            self.total_m += match.matches * match.mean_m
+
+
+class _LineSweep:
+    """One pass over the points to build the map, one to match them."""
+
+    def __init__(self, refiner: LineRefiner, dense: Trajectory, wide: LineRound) -> None:
+        self._r, self._dense, self._wide = refiner, dense, wide
+        settings = replace(refiner.planes, max_sd_m=wide.max_sd_m)
+        self._planes = PlaneMap(settings)
+        index = refiner.frames.index
+        gap_ns = refiner.settings.min_gap_s * 1e9
+        duration_ns = max(1, int(index["duration_ns"].min()))
+        rows = int(np.ceil(gap_ns / duration_ns))
+        # A short walk has no earlier or later visits: everything matches everything.
+        self._gap = rows if len(index) >= 3 * rows else 0
+        self._present: deque[tuple[int, Array]] = deque()
+        self._absent: deque[tuple[int, Array]] = deque()
+
+    def match(self, chain: ImuChain) -> Matched:
+        """Match all points; those near in time are not in the map meanwhile."""
+        count = len(self._r.frames)
+        found = Matched(Information.none(len(chain) - 1))
+        stride = self._r.settings.map_stride
+        for row in range(0, count, stride):
+            placed = self._map_points(row)
+            self._planes.add(placed)
+            self._r.progress.advance()
+        self._planes.fit()
+        next_row = 0
+        for first in range(0, count, _BLOCK):
+            block = range(first, min(first + _BLOCK, count))
+            next_row = self._remove_near(block, next_row, count)
+            for row in block:
+                self._match_frame(row, chain, found)
+                self._r.progress.advance()
+        return found
+
+    def _map_points(self, row: int) -> Array:
+        s = self._r.settings
+        points = line_points(self._r.frames, row, every=s.map_every, min_range_m=s.min_range_m)
+        return np.ascontiguousarray(points.placed(self._dense))
+
+    def _remove_near(self, block: range, next_row: int, count: int) -> int:
+        """Remove what is nearer in time than the gap; add again what no longer is."""
+        if not self._gap:
+            return next_row
+        changed = False
+        while self._absent and self._absent[0][0] < block[0] - self._gap:
+            self._planes.add(self._absent.popleft()[1])
+            changed = True
+        stride = self._r.settings.map_stride
+        while next_row < min(block[-1] + self._gap + 1, count):
+            placed = self._map_points(next_row)
+            self._planes.remove(placed)
+            self._absent.append((next_row, placed))
+            next_row += stride
+            changed = True
+        if changed:
+            self._planes.fit()
+        return next_row
+
+    def _match_frame(self, row: int, chain: ImuChain, found: Matched) -> None:
+        """Match the points of one multiframe, interval by interval of the chain."""
+        r, s = self._r, self._r.settings
+        index = r.frames.index[row]
+        start_ns = int(index["t_ns"])
+        end_ns = start_ns + int(index["duration_ns"])
+        parts = [line_points(r.frames, row, every=s.match_every, min_range_m=s.min_range_m)]
+        if r.scans is not None and s.laser_every:
+            span = (start_ns, end_ns)
+            parts.append(laser_points(r.scans, r.frames.rig, span, every=s.laser_every))
+        points = joined(parts)
+        p_map = points.placed(self._dense)
+        knot_ns = chain.drive.knot_ns
+        interval = np.clip(
+            np.searchsorted(knot_ns, points.t_ns, side="right") - 1, 0, len(knot_ns) - 2
+        )
+        ends = np.flatnonzero(np.diff(interval)) + 1
+        for rows in np.split(np.arange(len(points)), ends):
+            if len(rows):
+                k = int(interval[rows[0]])
+                fraction = (points.t_ns[rows] - knot_ns[k]) / (knot_ns[k + 1] - knot_ns[k])
+                match = self._planes.match(
+                    np.ascontiguousarray(p_map[rows]),
+                    fraction,
+                    center=np.ascontiguousarray(chain.vector[k, 0:3]),
+                    finest=self._wide.finest,
+                    gate_m=self._wide.gate_m,
+                )
+                found.add(k, match, s.information_scale)
+
+
+def refine_lines(
+    frames: FrameStore, odometry: Path, graph: PoseGraph, *, settings: Settings, progress: Progress
+) -> Refinement:
+    """Correct the first trajectory by the graph of turns and refine every line scan.
+
+    Args:
+        frames: The points, with scans of the 2-D laser beside them.
+        odometry: Folder of the stage ``odometry``.
+        graph: The verified graph of turns.
+        settings: Uses lines, planes and odometry.
+        progress: Counts multiframes.
+    """
+    start = corrected_by_graph(load_trajectory(odometry / "trajectory.npz"), graph)
+    drive = make_drive(
+        frames.imu,
+        frames.rig,
+        span_of(frames),
+        knot_s=settings.lines.knot_s,
+        settings=settings.odometry,
+    )
+    chain = initial_chain(drive).following(start)
+    scans = load_laser_scans(frames.folder)
+    refiner = LineRefiner(frames, scans, settings.lines, settings.planes, progress)
+    chain, rounds = refiner.refine(chain)
+    return Refinement(linearize(chain).trajectory(), tuple(rounds))

@@ -1,0 +1,80 @@
+"""2-D SLAM of the backpack's laser, leveled by the IMU."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from recon4.geometry.se3 import SE3
+from recon4.model.laser_scans import LaserScans
+from recon4.model.rig import Rig
+from recon4.model.trajectory import Trajectory
+from recon4.profiler.fusion import PlanarPoses
+from recon4.progress import Progress
+from recon4.settings import Settings
+from recon4.slam2d.slam import Slam2dResult, slam2d
+
+_FLOOR_SD = np.array([0.02, 0.02, 0.004])
+"""Smallest standard deviation of x, y [m] and heading [rad]: errors of consecutive scans are
+correlated."""
+_MIN_SCANS = 10
+_NEAR_NS = 300_000_000
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlanarMap:
+    """Planar poses with what 2-D SLAM found."""
+
+    poses: PlanarPoses
+    found: Slam2dResult
+
+
+def map_in_plane(
+    scans: LaserScans | None,
+    rig: Rig,
+    attitude: Trajectory,
+    *,
+    settings: Settings,
+    progress: Progress,
+) -> PlanarMap | None:
+    """Run 2-D SLAM.
+
+    Args:
+        scans: Of the 2-D laser.
+        rig: Its mounting.
+        attitude: ``R_map_body`` by the IMU.
+        settings: Those of 2-D SLAM.
+        progress: Counts scans.
+
+    Returns:
+        None if there is no 2-D laser, or it measured next to nothing.
+    """
+    row = rig.row_of("laser2d")
+    if scans is None or row is None:
+        return None
+    first, last = np.searchsorted(
+        scans.t_ns, [attitude.t_ns[0] - _NEAR_NS, attitude.t_ns[-1] + _NEAR_NS]
+    )
+    if last - first < _MIN_SCANS:
+        return None
+    T_body_laser = rig.sensors[row].T_body_sensor
+    T_map_laser = SE3(attitude.T_a_b.R @ T_body_laser.R, np.zeros_like(attitude.T_a_b.t))
+    used = scans[slice(int(first), int(last))]
+    found = slam2d(
+        used,
+        attitude=Trajectory(attitude.t_ns, T_map_laser),
+        settings=settings,
+        progress=progress,
+    )
+    tracked = ~found.steps.lost
+    # By 2-D SLAM: heading, x, y in the axes of the laser.
+    order = [1, 2, 0]
+    cov = found.covariance[tracked][:, order][:, :, order]
+    R = np.zeros((len(cov), 3, 3))
+    R[:, :2, :2], R[:, 2, 2] = found.trajectory.T_a_b.R[tracked, :2, :2], 1.0
+    cov = R @ cov @ np.swapaxes(R, 1, 2) + np.diag(_FLOOR_SD**2)
+    poses = PlanarPoses(
+        found.trajectory.t_ns[tracked], found.trajectory.T_a_b[tracked], cov, T_body_laser
+    )
+    return PlanarMap(poses, found)

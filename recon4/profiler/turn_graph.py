@@ -1,0 +1,207 @@
+"""6D SLAM of turns: links by counts of closest pairs, registration, pose graph (A12 L-3)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from recon4.geometry.se3 import SE3, Array
+from recon4.model.events import NodesPlaced, positions_of
+from recon4.model.figures import GraphFigures
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.model.trajectory import Trajectory
+from recon4.pose_graph.files import save_graph
+from recon4.pose_graph.pairs import tried_event
+from recon4.pose_graph.solve import optimize
+from recon4.profiler.turns import Turns, relative, unwind_turns
+from recon4.progress import Progress
+from recon4.registration.plane_map import PlaneMap
+from recon4.registration.planes import register_to_planes
+from recon4.registration.result import Registration
+from recon4.settings import PlaneSettings, Settings
+from recon4.store.arrays import load_arrays, load_trajectory
+from recon4.store.frames import FrameStore
+from recon4.store.line_store import load_lines
+
+_COUNTED = 4000
+"""Points of a turn whose closest pairs are counted."""
+_LOST_FACTOR = 200.0
+_WIDE_SD_M = 0.05
+"""Planes of a turn that is bent by the errors of its poses [m]."""
+
+
+def build_turn_graph(
+    frames: FrameStore, odometry: Path, out: Path, *, settings: Settings, progress: Progress
+) -> GraphFigures:
+    """Run the stage ``graph`` of a rig with a profiler.
+
+    Args:
+        frames: The points, with ``lines.npz`` beside them.
+        odometry: Folder of the stage ``odometry``.
+        out: Receives ``graph.npz`` and ``edges.json``.
+        settings: Uses lines, graph, planes, registration and odometry.
+        progress: Counts multiframes and pairs.
+    """
+    trajectory = load_trajectory(odometry / "trajectory.npz")
+    lost = load_arrays(odometry / "steps.npz", ["lost"])["lost"]
+    lines = load_lines(frames.folder)
+    turns = unwind_turns(frames, lines, trajectory, settings=settings.lines, progress=progress)
+    graph = turn_graph(turns, trajectory, lost, settings=settings, progress=progress)
+    save_graph(out, graph)
+    return GraphFigures(
+        nodes=len(graph),
+        edges=len(graph.edges),
+        accepted=sum(edge.in_graph for edge in graph.edges),
+    )
+
+
+def turn_graph(
+    turns: Turns,
+    trajectory: Trajectory,
+    lost: NDArray[np.bool_],
+    *,
+    settings: Settings,
+    progress: Progress,
+) -> PoseGraph:
+    """Nodes at the turns, edges between those that see the same."""
+    T = trajectory.at(turns.t_ns)
+    edges = _chain(turns, T, lost, settings)
+    graph = PoseGraph(turns.frame_rows, turns.t_ns, T, edges)
+    progress.event(NodesPlaced(t_ns=tuple(turns.t_ns.tolist()), t_m=positions_of(T.t)))
+    links = linked(turns, T, settings)
+    progress.start("pairs", len(links), "pair")
+    found = list(edges)
+    target, target_of = PlaneMap(_planes_of(settings)), -1
+    for i, j, overlap in links:
+        if i != target_of:
+            target.clear()
+            target.add(turns.turns[i].points.astype(np.float64))
+            target_of = i
+        edge = _register(target, turns, T, ends=(i, j), overlap=overlap, settings=settings)
+        progress.event(tried_event(edge))
+        progress.advance()
+        found.append(edge)
+    graph = graph.with_edges(tuple(found))
+    if len(graph) < 2:
+        return graph
+    solution = optimize(graph, kernel="cauchy")
+    progress.event(NodesPlaced(t_m=positions_of(solution.T_map_body.t)))
+    return graph.with_poses(solution.T_map_body)
+
+
+def linked(turns: Turns, T: SE3, settings: Settings) -> list[tuple[int, int, float]]:
+    """Pairs of turns with enough closest pairs, and which part of the points has one.
+
+    Neighbors first; of earlier visits those with the most pairs (requirements A12 L-3).
+    """
+    g, s = settings.graph, settings.lines
+    some = [_spread(turn.points, _COUNTED) for turn in turns.turns]
+    trees = [cKDTree(points, balanced_tree=False, compact_nodes=False) for points in some]
+    out = []
+    for j in range(1, len(turns)):
+        near = [i for i in range(j) if np.linalg.norm(T.t[i] - T.t[j]) < s.link_reach_m]
+        ratios = []
+        for i in near:
+            p = relative(T, i, j) @ some[j].astype(np.float64)
+            distance = trees[i].query(p, distance_upper_bound=s.link_distance_m)[0]
+            ratios.append((float(np.mean(np.isfinite(distance))), i))
+        linked_to = [(ratio, i) for ratio, i in ratios if ratio * len(some[j]) >= s.link_pairs]
+        close = [pair for pair in linked_to if j - pair[1] <= g.neighbors]
+        far = sorted((p for p in linked_to if j - p[1] > g.neighbors), reverse=True)
+        out += [(i, j, ratio) for ratio, i in [*close, *far[: g.revisits]]]
+    return sorted(out)
+
+
+def _register(
+    target: PlaneMap,
+    turns: Turns,
+    T: SE3,
+    *,
+    ends: tuple[int, int],
+    overlap: float,
+    settings: Settings,
+) -> Edge:
+    """Register turn ``j`` to the planes of turn ``i`` and judge the result."""
+    i, j = ends
+    g = settings.graph
+    found = register_to_planes(
+        target,
+        _spread(turns.turns[j].points, g.source_segments).astype(np.float64),
+        initial=relative(T, i, j),
+        planes=_planes_of(settings),
+        settings=settings.registration,
+        normal_noise_rad=g.normal_noise_rad,
+    )
+    range_m = float(np.median(np.linalg.norm(turns.turns[i].points, axis=1)))
+    limit_m = range_m * g.error_relative + g.error_absolute_m
+    reason = Reason.NONE
+    if not found.converged:
+        reason = Reason.NOT_CONVERGED
+    elif not found.error_m <= limit_m:
+        reason = Reason.ERROR
+    elif found.match_ratio < g.min_match_ratio * min(overlap, 1.0):
+        reason = Reason.FEW_MATCHES
+    elif found.degeneracy < g.min_degeneracy:
+        reason = Reason.DEGENERATE
+    return Edge(
+        i=i,
+        j=j,
+        T_i_j=found.T_target_source,
+        kind=EdgeKind.NEIGHBOR if j - i <= g.neighbors else EdgeKind.LOOP,
+        verdict=Verdict.REJECTED if reason else Verdict.ACCEPTED,
+        reason=reason,
+        overlap=overlap,
+        error_m=found.error_m,
+        limit_m=limit_m,
+        degeneracy=found.degeneracy,
+        converged=found.converged,
+        iterations=found.iterations,
+        information=_information(found, settings),
+    )
+
+
+def _information(found: Registration, settings: Settings) -> Array:
+    """Inverse covariance of the tangent of ``T_i_j``; a turn is bent by the error of its poses."""
+    s = settings.lines
+    floor = np.diag(np.repeat([s.turn_sd_rad, s.turn_sd_m], 3) ** 2)
+    if not found.converged:
+        return np.linalg.inv(floor)
+    A = np.kron(np.eye(2), found.T_target_source.R)
+    H = A.T @ found.information @ A * settings.odometry.information_scale
+    information = np.linalg.inv(np.linalg.inv(H + 1e-3 * np.eye(6)) + floor)
+    return 0.5 * (information + information.T)
+
+
+def _chain(turns: Turns, T: SE3, lost: NDArray[np.bool_], settings: Settings) -> tuple[Edge, ...]:
+    """Edges between consecutive turns by the first trajectory."""
+    s = settings.lines
+    edges = []
+    for k in range(len(turns) - 1):
+        sd = np.repeat([s.chain_sd_rad, s.chain_sd_m], 3)
+        if lost[turns.frame_rows[k] : turns.frame_rows[k + 1] + 1].any():
+            sd = sd * _LOST_FACTOR
+        edges.append(
+            Edge(
+                i=k,
+                j=k + 1,
+                T_i_j=relative(T, k, k + 1),
+                kind=EdgeKind.ODOMETRY,
+                verdict=Verdict.ACCEPTED,
+                information=np.diag(sd**-2.0),
+            )
+        )
+    return tuple(edges)
+
+
+def _planes_of(settings: Settings) -> PlaneSettings:
+    return replace(settings.planes, max_sd_m=_WIDE_SD_M)
+
+
+def _spread(points: NDArray[np.float32], limit: int) -> NDArray[np.float32]:
+    if len(points) <= limit:
+        return points
+    return points[np.linspace(0, len(points) - 1, limit).astype(np.intp)]

@@ -1,0 +1,218 @@
+"""CARMEN logs: scans of a 2-D laser with the odometry of a robot, one message a line.
+
+    FLASER n r1 … rn x y theta odom_x odom_y odom_theta ipc_time host logger_time
+    ROBOTLASER1 type start fov step max accuracy mode n r1 … rn m i1 … im
+        laser_x laser_y laser_theta robot_x robot_y robot_theta tv rv … time host logger_time
+    RAWLASER1 type start fov step max accuracy mode n r1 … rn m i1 … im time host logger_time
+
+Angles count counter-clockwise, ranges and positions are in meters.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import CorruptFile, EmptyRecording
+from recon4.geometry.se3 import Array
+from recon4.recording.formats.text_logs import first_lines, log_lines
+from recon4.recording.report import ImportReport
+
+MESSAGES = (b"FLASER", b"ROBOTLASER1", b"RAWLASER1")
+"""Messages that are read; of several kinds in one log the one with the most scans is used."""
+_OTHERS = frozenset(
+    b"PARAM SYNC ODOM RLASER TRUEPOS NMEA-GGA ROBOTLASER2 RAWLASER2 IMU MESSAGE BUMPER".split()
+)
+_PROBED_LINES = 200
+_MAX_BEAMS = 20_000
+_MAX_SCANS = 5_000_000
+_MAX_VALUES = 400_000_000
+"""Ranges of all scans together, 1.6 GB."""
+_FIELDS_OF_VIEW_DEG = {541: 270.0, 1081: 270.0, 682: 239.766, 683: 240.117, 726: 255.234}
+"""Beams of common lasers with other fields of view than 180°, which `FLASER` does not state."""
+_LATEST_S = 9e9
+_TAIL = 9
+"""Values behind the ranges of a `FLASER` message."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CarmenScans:
+    """Scans of one layout as they are in the log, in the order of its lines."""
+
+    message: str
+    t_ns: NDArray[np.int64]
+    """Times of measurement [ns], (N,); not sorted."""
+    range_m: NDArray[np.float32]
+    """Ranges as written, (N, M)."""
+    laser: Array | None
+    """Poses of the laser: x [m], y [m], yaw [rad], (N, 3); None = the message has none."""
+    robot: Array | None
+    """Poses of the robot, (N, 3)."""
+    angle_min_rad: float
+    angle_step_rad: float
+    range_max_m: float
+    """Stated largest range [m]; 0 = not stated."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Layout:
+    """What scans must have in common."""
+
+    message: bytes
+    beams: int
+    start_rad: float
+    step_rad: float
+    max_m: float
+
+
+@dataclass(slots=True)
+class _Line:
+    """One scan."""
+
+    layout: _Layout
+    t_ns: int
+    ranges: NDArray[np.float32]
+    laser: tuple[float, ...]
+    robot: tuple[float, ...]
+
+
+def is_carmen(path: Path) -> bool:
+    """Whether a file begins as a CARMEN log, plain or compressed."""
+    words = [line.split(maxsplit=1) for line in first_lines(path, _PROBED_LINES)]
+    names = [line[0] for line in words if line and not line[0].startswith(b"#")]
+    known = sum(name in MESSAGES or name in _OTHERS for name in names)
+    return known > 0 and known >= 0.8 * len(names)
+
+
+def read_carmen(path: Path, report: ImportReport) -> CarmenScans:
+    """Read the scans of a log.
+
+    Args:
+        path: The log, plain, ``.bz2`` or ``.gz``.
+        report: Receives what is damaged and left out.
+
+    Raises:
+        EmptyRecording: If it has no scan.
+        CorruptFile: If it cannot be read.
+    """
+    counts: Counter[_Layout] = Counter()
+    lines: list[_Line] = []
+    values = 0
+    for line in _scan_lines(path, report):
+        counts[line.layout] += 1
+        lines.append(line)
+        values += len(line.ranges)
+        if len(lines) > _MAX_SCANS or values > _MAX_VALUES:
+            raise CorruptFile(
+                f"{path.name}: expected at most {_MAX_SCANS} scans and {_MAX_VALUES} ranges"
+            )
+    if not lines:
+        raise EmptyRecording(
+            f"{path.name}: no scan of a laser; expected lines that begin with "
+            f"{', '.join(name.decode() for name in MESSAGES)}"
+        )
+    layout, most = max(counts.items(), key=lambda item: item[1])
+    if most < len(lines):
+        report.count("scans_of_another_layout", len(lines) - most)
+        report.warn(
+            f"{path.name}: {len(lines) - most} scans of another message or layout are left out; "
+            f"read: {most} scans {layout.message.decode()} of {layout.beams} beams"
+        )
+    return _collected([line for line in lines if line.layout == layout], layout)
+
+
+def _collected(lines: list[_Line], layout: _Layout) -> CarmenScans:
+    has_poses = bool(lines[0].laser)
+    return CarmenScans(
+        message=layout.message.decode(),
+        t_ns=np.array([line.t_ns for line in lines], np.int64),
+        range_m=np.stack([line.ranges for line in lines]),
+        laser=np.array([line.laser for line in lines]) if has_poses else None,
+        robot=np.array([line.robot for line in lines]) if has_poses else None,
+        angle_min_rad=layout.start_rad,
+        angle_step_rad=layout.step_rad,
+        range_max_m=layout.max_m,
+    )
+
+
+def _scan_lines(path: Path, report: ImportReport) -> Iterator[_Line]:
+    for number, text in enumerate(log_lines(path, report), start=1):
+        name, _, rest = text.partition(b" ")
+        if name not in MESSAGES:
+            continue
+        try:
+            yield _flaser(rest) if name == b"FLASER" else _laser1(name, rest)
+        except (ValueError, IndexError, OverflowError) as error:
+            report.count("scans_damaged")
+            report.outcome = "lossy"
+            if report.counts["scans_damaged"] == 1:
+                report.warn(f"{path.name}: line {number}: a damaged scan is left out: {error}")
+
+
+def _flaser(text: bytes) -> _Line:
+    words = text.split()
+    beams = _count(words[0])
+    if len(words) < 1 + beams + _TAIL:
+        raise ValueError(f"expected {1 + beams + _TAIL} values, got {len(words)}")
+    ranges = _numbers(words[1 : 1 + beams], np.float32)
+    poses = _poses(words[1 + beams : 7 + beams])
+    fov_deg = _FIELDS_OF_VIEW_DEG.get(beams, 180.0)
+    # 180 beams of 1 degree begin at -90 and end at 89; 181 end at 90.
+    steps = beams if beams % 2 == 0 and fov_deg == 180.0 else beams - 1
+    step = float(np.deg2rad(fov_deg / max(steps, 1)))
+    layout = _Layout(b"FLASER", beams, float(-np.deg2rad(fov_deg) / 2.0), step, 0.0)
+    return _Line(layout, _time_ns(words[7 + beams]), ranges, poses[:3], poses[3:])
+
+
+def _laser1(name: bytes, text: bytes) -> _Line:
+    words = text.split()
+    start, _, step, max_m = (_number(word) for word in words[1:5])
+    beams = _count(words[7])
+    ranges = _numbers(words[8 : 8 + beams], np.float32)
+    if len(ranges) != beams:
+        raise ValueError(f"expected {beams} ranges, got {len(ranges)}")
+    behind = words[9 + beams + int(words[8 + beams]) :]
+    if step <= 0.0:
+        raise ValueError(f"expected an angle between beams above 0, got {step}")
+    poses = _poses(behind[:6]) if name == b"ROBOTLASER1" else ()
+    layout = _Layout(name, beams, start, step, max_m)
+    return _Line(layout, _time_ns(behind[-3]), ranges, poses[:3], poses[3:])
+
+
+def _count(word: bytes) -> int:
+    count = int(word)
+    if not 1 <= count <= _MAX_BEAMS:
+        raise ValueError(f"expected 1 to {_MAX_BEAMS} beams, got {count}")
+    return count
+
+
+def _numbers(words: list[bytes], dtype: type[np.float32]) -> NDArray[np.float32]:
+    return np.array(words, dtype=dtype)
+
+
+def _number(word: bytes) -> float:
+    value = float(word)
+    if not np.isfinite(value):
+        raise ValueError(f"expected a number, got {word[:20]!r}")
+    return value
+
+
+def _poses(words: list[bytes]) -> tuple[float, ...]:
+    if len(words) != 6:
+        raise ValueError(f"expected two poses, got {len(words)} values")
+    return tuple(_number(word) for word in words)
+
+
+def _time_ns(word: bytes) -> int:
+    seconds, _, fraction = word.partition(b".")
+    if not 0.0 <= float(word) < _LATEST_S:
+        raise ValueError(f"expected a time in seconds, got {word[:20]!r}")
+    if fraction and not fraction.isdigit():
+        return round(float(word) * 1e9)
+    # Nine digits behind the point do not fit into a float.
+    return int(seconds) * 1_000_000_000 + int((fraction + b"000000000")[:9])

@@ -1,0 +1,123 @@
+"""Lines of text logs, plain or compressed with bzip2 or gzip, within limits."""
+
+from __future__ import annotations
+
+import bz2
+import zlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from recon4.bounded import MAX_LINE_BYTES, open_regular
+from recon4.errors import CorruptFile
+from recon4.recording.formats.limits import MAX_RATIO, RATIO_FLOOR_BYTES
+from recon4.recording.report import ImportReport
+
+MAX_LOG_BYTES = 4 << 30
+"""A log of eight hours at 40 Hz with 1081 beams has 8 GB; decompressed logs are smaller."""
+_PIECE = 1 << 20
+
+
+def log_lines(path: Path, report: ImportReport) -> Iterator[bytes]:
+    """Lines without their ends; what is left of a file that is cut off is read and reported.
+
+    Raises:
+        CorruptFile: If the file cannot be read, has a line that is too long or becomes larger than
+            `MAX_LOG_BYTES`, or `MAX_RATIO` times its compressed size.
+    """
+    with open_regular(path) as file:
+        rest, number, total = b"", 0, 0
+        most = _largest(path, file)
+        for piece in _pieces(file, path.name, report):
+            total += len(piece)
+            if total > most:
+                raise CorruptFile(f"{path.name}: expected at most {most} bytes of text, got more")
+            *lines, rest = (rest + piece).split(b"\n")
+            for line in lines:
+                number += 1
+                yield line
+            if len(rest) > MAX_LINE_BYTES:
+                raise CorruptFile(
+                    f"{path.name}: line {number + 1}: expected at most {MAX_LINE_BYTES} bytes, "
+                    "got a longer line"
+                )
+        if rest.strip():
+            yield rest
+
+
+def first_lines(path: Path, count: int) -> list[bytes]:
+    """At most ``count`` lines from the beginning; none where the file is no text log.
+
+    Raises:
+        CorruptFile: If the file cannot be read.
+    """
+    found: list[bytes] = []
+    try:
+        for line in log_lines(path, ImportReport()):
+            found.append(line)
+            if len(found) >= count:
+                break
+    except CorruptFile:
+        return found
+    return found
+
+
+def _largest(path: Path, file: BinaryIO) -> int:
+    size = path.stat().st_size
+    head = file.read(3)
+    file.seek(0)
+    if head.startswith((b"BZh", b"\x1f\x8b")):
+        return min(MAX_LOG_BYTES, max(RATIO_FLOOR_BYTES, MAX_RATIO * size))
+    return MAX_LOG_BYTES
+
+
+def _pieces(file: BinaryIO, name: str, report: ImportReport) -> Iterator[bytes]:
+    """The content, decompressed."""
+    head = file.read(3)
+    file.seek(0)
+    if head.startswith(b"BZh"):
+        yield from _decompressed(file, bz2.BZ2Decompressor(), name=name, report=report)
+    elif head.startswith(b"\x1f\x8b"):
+        yield from _decompressed(file, _Gzip(), name=name, report=report)
+    else:
+        while piece := file.read(_PIECE):
+            yield piece
+
+
+class _Gzip:
+    """Decompressor of one gzip stream with the interface of bz2's."""
+
+    def __init__(self) -> None:
+        self._stream = zlib.decompressobj(wbits=31)
+
+    @property
+    def eof(self) -> bool:
+        return self._stream.eof
+
+    @property
+    def needs_input(self) -> bool:
+        return not self._stream.unconsumed_tail
+
+    def decompress(self, data: bytes, max_length: int) -> bytes:
+        return self._stream.decompress(self._stream.unconsumed_tail + data, max_length)
+
+
+def _decompressed(
+    file: BinaryIO, decoder: Any, *, name: str, report: ImportReport
+) -> Iterator[bytes]:
+    while not decoder.eof:
+        data = file.read(_PIECE) if decoder.needs_input else b""
+        if decoder.needs_input and not data:
+            report.outcome = "lossy"
+            report.count("files_cut")
+            report.warn(f"{name}: the compressed file is cut off; what it still has is read")
+            return
+        try:
+            piece = decoder.decompress(data, max_length=_PIECE)
+        except (OSError, ValueError, EOFError, zlib.error) as error:
+            report.outcome = "lossy"
+            report.count("files_damaged")
+            report.warn(f"{name}: the compressed file is damaged, the rest is not read: {error}")
+            return
+        if piece:
+            yield piece

@@ -1,0 +1,227 @@
+"""Recordings of a 2-D laser alone: CARMEN logs and bags with LaserScan messages."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import CorruptFile, EmptyRecording, UnknownFormat
+from recon4.geometry.se2 import between, from_se3
+from recon4.geometry.se3 import Array
+from recon4.model.laser_scans import LaserScans, Ranges
+from recon4.model.trajectory import Times, Trajectory
+from recon4.recording.bag_recording import (
+    SampleBatch,
+    join_poses,
+    most_messages,
+    pose_row,
+)
+from recon4.recording.formats.bags import CLOUD, ODOMETRY, SCAN, Bag
+from recon4.recording.formats.carmen import CarmenScans, is_carmen, read_carmen
+from recon4.recording.line_recording import LASER_SCAN, profiler_rig
+from recon4.recording.open import RecordingKind, bag_paths, recognize
+from recon4.recording.report import ImportReport
+from recon4.recording.scan_messages import ScanCollector
+
+Rows = NDArray[np.intp]
+
+_FAR_M = 60.0
+"""Median range of no 2-D laser [m]: longer ones are not in meters."""
+_TO_METERS = ((1e-2, "centimeters"), (1e-3, "millimeters"))
+_REPEATED = 20
+"""The largest range stands for "no return" if at least this many beams have it."""
+_MOUNTING_SD = 1e-3
+"""Spread of the pose of the laser on the robot [m, rad] that is only rounding."""
+
+
+def is_laser2d(path: Path) -> bool:
+    """Whether a path is a recording of a 2-D laser without any LiDAR or profiler.
+
+    Raises:
+        RecordingError: If it cannot be read.
+    """
+    if path.is_file() and is_carmen(path):
+        return True
+    if recognize(path) not in (RecordingKind.BAG1, RecordingKind.BAG2):
+        return False
+    report = ImportReport()
+    with Bag(bag_paths(path), report) as bag:
+        kinds = {topic.type for topic in bag.topics if topic.messages}
+        has_lines = profiler_rig(bag.topics, None, report) is not None
+        return LASER_SCAN in kinds and not kinds & {CLOUD, SCAN} and not has_lines
+
+
+def read_laser2d(paths: Sequence[Path], report: ImportReport) -> LaserScans:
+    """Read the scans of a recording; repairs are counted.
+
+    Args:
+        paths: A CARMEN log, or bags that belong together.
+        report: Receives counts, repairs and warnings.
+
+    Raises:
+        RecordingError: If it cannot be read or has no scan.
+    """
+    if paths[0].is_file() and is_carmen(paths[0]):
+        if len(paths) > 1:
+            raise UnknownFormat(f"one CARMEN log expected, got {len(paths)} files")
+        return _in_meters(_of_carmen(read_carmen(paths[0], report), paths[0].name, report), report)
+    return _in_meters(_of_bags(paths, report), report)
+
+
+# -- CARMEN
+
+
+def _of_carmen(log: CarmenScans, name: str, report: ImportReport) -> LaserScans:
+    rows = _usable_rows(log.t_ns, name, report)
+    range_max_m, ranges = _without_largest(log, report)
+    odometry = _odometry(log, report)
+    report.count("scans", len(rows))
+    return LaserScans(
+        t_ns=log.t_ns[rows],
+        range_m=ranges[rows],
+        angle_min_rad=log.angle_min_rad,
+        angle_step_rad=log.angle_step_rad,
+        range_max_m=range_max_m,
+        odometry=None if odometry is None else odometry[rows],
+    )
+
+
+def _usable_rows(t_ns: Times, name: str, report: ImportReport) -> Rows:
+    """Rows in order of time, each time once."""
+    order = np.argsort(t_ns, kind="stable")
+    shuffled = int((np.diff(t_ns) < 0).sum())
+    if shuffled:
+        report.count("scans_out_of_order", shuffled)
+        report.warn(f"{name}: {shuffled} scans are earlier than the one before: sorted by time")
+    later = np.diff(t_ns[order], prepend=t_ns[order[0]] - 1) > 0
+    if not later.all():
+        report.count("scans_duplicate", int((~later).sum()))
+        report.warn(f"{name}: {int((~later).sum())} scans with the time of another are left out")
+    return order[later]
+
+
+def _without_largest(log: CarmenScans, report: ImportReport) -> tuple[float, Ranges]:
+    """The largest range the sensor reports [m], and ranges with NaN where there was no return."""
+    ranges = log.range_m.copy()
+    bad = ~np.isfinite(ranges) | (ranges < 0.0)
+    report.count("ranges_not_numbers", int(bad.sum()))
+    if bad.any():
+        report.warn(f"{int(bad.sum())} ranges are negative or no numbers: they are left out")
+    ranges[bad | (ranges == 0.0)] = np.nan
+    if not np.isfinite(ranges).any():
+        raise EmptyRecording("the scans have not one range above 0")
+    largest = float(np.nanmax(ranges))
+    # SICK lasers report several error codes within a percent of the largest range.
+    at_largest = ranges >= 0.99 * largest
+    if log.range_max_m > 0.0:
+        at_largest = ranges >= log.range_max_m
+        largest = log.range_max_m
+    elif int(at_largest.sum()) >= _REPEATED:
+        report.derive(f"ranges of {0.99 * largest:.2f} m and more, the largest: no return")
+    else:
+        return largest, ranges
+    ranges[at_largest] = np.nan
+    return largest, ranges
+
+
+def _odometry(log: CarmenScans, report: ImportReport) -> Array | None:
+    """Raw odometry of the laser; corrected logs have it only for the robot."""
+    if log.laser is None or log.robot is None:
+        report.derive("the log has no odometry: motion is predicted from the scans before")
+        return None
+    if not np.ptp(log.laser, axis=0).any() and not np.ptp(log.robot, axis=0).any():
+        report.derive("the odometry of the log never changes: it is not used")
+        return None
+    mounted = between(log.robot, log.laser)
+    mounted[:, 2] = np.unwrap(mounted[:, 2])
+    if float(np.std(mounted, axis=0).max()) < _MOUNTING_SD:
+        return log.laser
+    report.derive("the poses of the laser are corrected ones: the raw odometry is used instead")
+    return log.robot
+
+
+# -- bags
+
+
+def _of_bags(paths: Sequence[Path], report: ImportReport) -> LaserScans:
+    files = [file for path in paths for file in bag_paths(path)]
+    collector = ScanCollector(0, report)
+    poses = SampleBatch(pose_row, join_poses, report)
+    parts: list[LaserScans] = []
+    walks: list[Trajectory] = []
+    with Bag(files, report) as bag:
+        topic = most_messages(bag.topics, LASER_SCAN, report)
+        odometry = most_messages(bag.topics, ODOMETRY, report)
+        for message in bag.messages({topic, odometry} - {""}):
+            report.count("messages")
+            content = bag.decode(message)
+            if content is None:
+                continue
+            if message.topic == topic:
+                parts += collector.push(message, content)
+            else:
+                walks += poses.push(message, content)
+    parts += collector.flush()
+    walks += poses.flush()
+    if not parts:
+        raise EmptyRecording(f"{paths[0].name}: no scan of {topic or 'a 2-D laser'} can be read")
+    out_of_order = report.counts["scans_out_of_order"]
+    if out_of_order:
+        report.warn(f"{topic}: {out_of_order} scans earlier than the one before are left out")
+    scans = replace(
+        parts[0],
+        t_ns=np.concatenate([part.t_ns for part in parts]),
+        range_m=np.concatenate([part.range_m for part in parts]),
+    )
+    return replace(scans, odometry=_at_scans(scans, walks, report))
+
+
+def _at_scans(scans: LaserScans, walks: Sequence[Trajectory], report: ImportReport) -> Array | None:
+    """Odometry of a bag at the times of the scans; None = there is none for all of them."""
+    if not walks:
+        report.derive("no odometry: motion is predicted from the scans before")
+        return None
+    t_ns = np.concatenate([walk.t_ns for walk in walks])
+    pose = np.concatenate([from_se3(walk.T_a_b) for walk in walks])
+    first = np.concatenate([[True], np.diff(np.maximum.accumulate(t_ns)) > 0])
+    t_ns, pose = t_ns[first], pose[first]
+    slack_ns = 500_000_000
+    if scans.t_ns[0] < t_ns[0] - slack_ns or scans.t_ns[-1] > t_ns[-1] + slack_ns:
+        report.warn("the odometry does not cover all scans: it is not used")
+        return None
+    report.derive("the mounting of the laser is unknown: the odometry is taken as the laser's")
+    since = (scans.t_ns - t_ns[0]) / 1e9
+    known = (t_ns - t_ns[0]) / 1e9
+    yaw = np.interp(since, known, np.unwrap(pose[:, 2]))
+    columns = [np.interp(since, known, pose[:, 0]), np.interp(since, known, pose[:, 1]), yaw]
+    return np.stack(columns, axis=1)
+
+
+def _in_meters(scans: LaserScans, report: ImportReport) -> LaserScans:
+    """Ranges in centimeters or millimeters are converted, and that is said.
+
+    Raises:
+        CorruptFile: If no unit makes sense.
+    """
+    seen = scans.range_m[np.isfinite(scans.range_m)]
+    if not len(seen):
+        raise EmptyRecording("the scans have not one return")
+    median = float(np.median(seen))
+    if median <= _FAR_M:
+        return scans
+    for factor, unit in _TO_METERS:
+        if median * factor <= _FAR_M:
+            report.count("scans_converted", len(scans))
+            report.warn(
+                f"half of the ranges are above {median:.0f}: they are taken as {unit}, not meters"
+            )
+            return replace(
+                scans,
+                range_m=(scans.range_m * np.float32(factor)).astype(np.float32),
+                range_max_m=scans.range_max_m * factor,
+            )
+    raise CorruptFile(f"expected ranges in meters, got a median range of {median:.3g}")

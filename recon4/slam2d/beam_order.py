@@ -1,0 +1,67 @@
+"""Detects scans whose beams are stored in the wrong order: the map would be mirrored."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from recon4.geometry.se2 import wrap
+from recon4.model.laser_scans import LaserScans
+from recon4.settings.slam2d import Slam2dSettings
+from recon4.slam2d.odometry import Odometry2d
+
+_TURN_RAD = 0.6
+"""Rotation by the odometry that is enough to decide [rad] …"""
+_SCANS = 60
+"""… within this number of scans."""
+_STRETCHES = 5
+_CLEAR = 0.7
+"""The rotation by the scans must agree with plus or minus the odometry to this ratio."""
+
+
+def with_true_order(scans: LaserScans) -> tuple[LaserScans, str]:
+    """The scans, mirrored if they turn against the odometry of the recording.
+
+    Returns:
+        The scans, and what was done; empty = nothing. Without odometry, or without a turn, it
+        cannot be known.
+    """
+    votes = [_vote(scans[rows]) for rows in _turns(scans)]
+    if not votes or sum(votes) >= 0:
+        return scans, ""
+    mirrored = replace(
+        scans, angle_min_rad=-scans.angle_min_rad, angle_step_rad=-scans.angle_step_rad
+    )
+    return mirrored, (
+        "the scans turn against the odometry: their beams are stored in the wrong order, "
+        "they are mirrored"
+    )
+
+
+def _turns(scans: LaserScans) -> list[slice]:
+    """Stretches in which the odometry turns."""
+    if scans.odometry is None:
+        return []
+    found: list[slice] = []
+    steps = np.abs(wrap(np.diff(scans.odometry[:, 2])))
+    first = 0
+    while first + 2 < len(scans) and len(found) < _STRETCHES:
+        turned = np.cumsum(steps[first : first + _SCANS])
+        enough = int(np.searchsorted(turned, _TURN_RAD))
+        if enough < len(turned):
+            found.append(slice(first, first + enough + 2))
+        first += _SCANS
+    return found
+
+
+def _vote(scans: LaserScans) -> int:
+    """1 = the scans turn as the odometry does, -1 = against it, 0 = neither."""
+    assert scans.odometry is not None
+    odometry = Odometry2d(scans, settings=Slam2dSettings(use_odometry=False))
+    for k in range(len(scans)):
+        odometry.push(k)
+    by_scans = wrap(np.diff(odometry.steps.pose[:, 2]))
+    by_robot = wrap(np.diff(scans.odometry[:, 2]))
+    agreement = float(by_scans @ by_robot) / max(float(by_robot @ by_robot), 1e-12)
+    return int(agreement > _CLEAR) - int(agreement < -_CLEAR)

@@ -1,0 +1,187 @@
+"""The stages of 2-D mapping: each reads the artifacts of those before and writes its own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from recon4.errors import EmptyRecording
+from recon4.geometry.se2 import to_se3, transform
+from recon4.geometry.se3 import Array
+from recon4.model.events import Warned
+from recon4.model.figures import GraphFigures, Map2dFigures, Odometry2dFigures, Scan2dFigures
+from recon4.model.laser_scans import LaserScans
+from recon4.model.trajectory import Trajectory
+from recon4.pose_graph.files import load_graph, save_graph
+from recon4.progress import Progress
+from recon4.recording.laser2d import read_laser2d
+from recon4.recording.report import ImportReport
+from recon4.settings import Settings
+from recon4.slam2d.beam_order import with_true_order
+from recon4.slam2d.keyframes import make_keyframes
+from recon4.slam2d.loops import close_loops
+from recon4.slam2d.map_files import write_map
+from recon4.slam2d.occupancy import OccupancyGrid, crossing_ratio
+from recon4.slam2d.scan_points import scan_points
+from recon4.slam2d.slam import make_grid, map_poses, run_steps, scan_covariances
+from recon4.slam2d.steps import Steps2d
+from recon4.store.arrays import load_record, save_record, save_trajectory
+from recon4.store.atomic import write_json
+from recon4.store.line_store import LineStoreWriter, load_laser_scans
+
+_GAP_S = 2.0
+"""A longer time without a scan is reported [s]."""
+_GAPS_LISTED = 5
+_CHECKED_SCANS = 1000
+"""Scans that are compared with the finished map."""
+
+
+def import_scans(recordings: Sequence[Path], out: Path, *, progress: Progress) -> Scan2dFigures:
+    """Read a recording of a 2-D laser into a folder.
+
+    Args:
+        recordings: A CARMEN log, or bags.
+        out: Receives the scans and ``report.json``.
+        progress: Receives the warnings.
+
+    Raises:
+        RecordingError: If it cannot be read or has no scan.
+    """
+    report = ImportReport()
+    progress.start("Reading", len(recordings), "files")
+    scans, mirrored = with_true_order(read_laser2d(recordings, report))
+    if mirrored:
+        report.count("scans_mirrored", len(scans))
+        report.warn(mirrored)
+    _report_gaps(scans, report)
+    progress.advance(len(recordings))
+    writer = LineStoreWriter(out)
+    writer.append_scans(scans)
+    writer.close()
+    for text in report.warnings:
+        progress.event(Warned(text=text))
+    write_json(
+        out / "report.json",
+        {
+            "recordings": [path.name for path in recordings],
+            "outcome": report.outcome,
+            "counts": dict(sorted(report.counts.items())),
+            "derived": report.derived,
+            "warnings": report.warnings,
+        },
+    )
+    return Scan2dFigures(
+        scans=len(scans),
+        beams=scans.range_m.shape[1],
+        odometry=scans.odometry is not None,
+        outcome=report.outcome,
+        warnings=tuple(report.warnings),
+    )
+
+
+def _report_gaps(scans: LaserScans, report: ImportReport) -> None:
+    seconds = np.diff(scans.t_ns) / 1e9
+    wide = np.flatnonzero(seconds > _GAP_S)
+    report.count("gaps", len(wide))
+    for k in wide[:_GAPS_LISTED]:
+        since = (scans.t_ns[k] - scans.t_ns[0]) / 1e9
+        report.warn(f"the laser is silent for {seconds[k]:.1f} s at {since:.1f} s")
+    if len(wide) > _GAPS_LISTED:
+        report.warn(f"the laser is silent for more than {_GAP_S:.0f} s {len(wide)} times")
+
+
+def read_scans(folder: Path) -> LaserScans:
+    """The scans that `import_scans` wrote.
+
+    Raises:
+        StoreError: If they are damaged.
+        EmptyRecording: If there are none.
+    """
+    scans = load_laser_scans(folder)
+    if scans is None:
+        raise EmptyRecording(f"{folder.name} has no scans of a 2-D laser")
+    return scans
+
+
+def run_odometry(
+    scans: Path, out: Path, *, settings: Settings, progress: Progress
+) -> Odometry2dFigures:
+    """Register all scans; writes ``steps.npz`` and ``trajectory.npz``."""
+    found = read_scans(scans)
+    steps = run_steps(found, attitude=None, settings=settings, progress=progress)
+    save_record(out / "steps.npz", steps)
+    save_trajectory(out / "trajectory.npz", Trajectory(steps.t_ns, to_se3(steps.pose)))
+    return Odometry2dFigures(
+        scans=len(found),
+        lost=int(steps.lost.sum()),
+        keyframes=int(steps.keyframe.sum()),
+        searched=int(steps.searched.sum()),
+        resets=int(steps.resets.sum()),
+    )
+
+
+def build_graph(
+    scans: Path, odometry: Path, out: Path, *, settings: Settings, progress: Progress
+) -> GraphFigures:
+    """Close loops; writes the pose graph.
+
+    Raises:
+        EmptyRecording: If no scan had enough returns.
+        GraphError: If the graph cannot be solved.
+    """
+    found = read_scans(scans)
+    steps = load_record(odometry / "steps.npz", Steps2d)
+    if not steps.keyframe.any():
+        raise EmptyRecording(
+            f"none of the {len(found)} scans has enough returns between "
+            f"{settings.slam2d.min_range_m:g} and {settings.slam2d.max_range_m:g} m"
+        )
+    keyframes = make_keyframes(found, steps, attitude=None, settings=settings.slam2d)
+    graph = close_loops(
+        keyframes, settings=settings.slam2d, loops=settings.loops2d, progress=progress
+    )
+    save_graph(out, graph)
+    accepted = sum(edge.in_graph for edge in graph.edges)
+    return GraphFigures(nodes=len(graph), edges=len(graph.edges), accepted=accepted)
+
+
+def build_map(
+    artifacts: dict[str, Path], out: Path, *, settings: Settings, progress: Progress
+) -> Map2dFigures:
+    """Place all scans by the verified graph; writes trajectory, covariances and the grid.
+
+    Args:
+        artifacts: ``scans``, ``odometry`` and ``graph``.
+        out: Receives the files.
+        settings: Groups ``slam2d`` and ``grid2d``.
+        progress: Counts scans.
+    """
+    scans = read_scans(artifacts["scans"])
+    steps = load_record(artifacts["odometry"] / "steps.npz", Steps2d)
+    graph = load_graph(artifacts["graph"])
+    keyframes = make_keyframes(scans, steps, attitude=None, settings=settings.slam2d)
+    poses = map_poses(steps, keyframes, graph)
+    covariance = scan_covariances(keyframes, graph, len(scans))
+    grid = make_grid(scans, poses, attitude=None, settings=settings, progress=progress)
+    save_trajectory(out / "trajectory.npz", Trajectory(scans.t_ns, to_se3(poses)))
+    np.savez(out / "poses.npz", t_ns=scans.t_ns, pose=poses, covariance=covariance)
+    write_map(out, grid, settings.grid2d)
+    free = int((grid.probability < settings.grid2d.free_threshold).sum())
+    return Map2dFigures(
+        cell_m=grid.cell_m,
+        size=(grid.log_odds.shape[0], grid.log_odds.shape[1]),
+        free_m2=round(free * grid.cell_m**2, 2),
+        crossing_ratio=round(_crossing(grid, scans, poses, settings=settings), 4),
+        largest_sd_m=round(float(np.sqrt(np.linalg.eigvalsh(covariance[:, 1:, 1:]).max())), 4),
+    )
+
+
+def _crossing(grid: OccupancyGrid, scans: LaserScans, poses: Array, *, settings: Settings) -> float:
+    def placed() -> Iterator[tuple[Array, Array]]:
+        for k in range(0, len(scans), max(1, len(scans) // _CHECKED_SCANS)):
+            points = scan_points(scans, k, settings=settings.slam2d).points
+            yield transform(poses[k], points), poses[k, :2]
+
+    return crossing_ratio(grid, placed())
