@@ -8,6 +8,7 @@
     │   ├── EmptyRecording     the file is readable but has no points
     │   └── CorruptFile        bytes do not match the format
     ├── OutOfRange             a time is outside the trajectory
+    ├── CalibrationError       measurements do not determine a calibration
     ├── GraphError             a pose graph cannot be solved (not finite, not connected, …)
     ├── GeoreferenceError      no usable CRS, transformation or position
     ├── StoreError             a project folder is damaged, locked or cannot be written
@@ -59,6 +60,10 @@ class CorruptFile(RecordingError):
 
 class OutOfRange(Recon4Error):
     """A time is outside the trajectory."""
+
+
+class CalibrationError(Recon4Error):
+    """Measurements do not determine a calibration."""
 
 
 class GraphError(Recon4Error):

@@ -35,3 +35,21 @@ class CalibrationSettings:
         for name in ("audit_window_s", "window_s"):
             seconds = getattr(self, name)
             require(1.0 <= seconds <= 20.0, f"{name} must be 1 to 20", seconds)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EntropySettings:
+    """Calibration by the entropy of the map (requirements L-CAL-1)."""
+
+    kernel_m: float = 0.03
+    """Standard deviation of the kernel [m]; 3DTK uses 0.1."""
+    min_gap_s: float = 0.5
+    """Points of one LiDAR nearer in time do not count as neighbors [s]."""
+    neighbors: int = 8
+    """Number of nearest points among which a neighbor is looked for."""
+    points: int = 12_000
+    """Points of a window."""
+    evaluations: int = 600
+    """Largest number of evaluations of the cost."""
+    tolerance: float = 1e-4
+    """Powell's method stops when the cost changes less, relatively."""

@@ -62,6 +62,7 @@ def one(
 ) -> tuple[np.ndarray, np.ndarray, float, bool]:
     """Errors and standard deviations of all parameters of one walk."""
     recording, frames, odometry = (folder / name for name in ("walk", "frames", "odometry"))
+    folder.mkdir(parents=True, exist_ok=True)
     if not recording.exists():
         setup = prepare(world, seconds=seconds, seed=seed)
         simulate(setup, recording, bag=False, degradations=DEGRADED, progress=Silent())

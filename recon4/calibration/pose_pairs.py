@@ -1,0 +1,137 @@
+"""The mount of a sensor from pairs of poses (requirements L-CAL-2; L §4.4.1, eqs. 5 to 9).
+
+A tracking system measures poses of a frame on the backpack while the sensor's poses are known from
+control points. All poses are ``T_world_…`` (requirements A0 no. 9), so ``X = T_m^-1 T_r``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from recon4.bounded import read_text_limited
+from recon4.errors import CalibrationError, CorruptFile
+from recon4.geometry.se3 import SE3, Array, so3_log
+
+_MAX_BYTES = 16 << 20
+_COLUMNS = 14
+_UNIT_TOLERANCE = 0.01
+_OUTLIER_RAD, _OUTLIER_M = 0.1, 0.2
+_MIN_AXES = 2e-3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PosePairs:
+    """Poses of two frames that are fixed to each other, at the same times."""
+
+    T_world_marker: SE3
+    """Of the frame that was tracked, (N,)."""
+    T_world_sensor: SE3
+    """Of the sensor, (N,)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PairAlignment:
+    """The constant transformation between the two frames."""
+
+    T_marker_sensor: SE3
+    residual_rad: Array
+    """Angle of each pair from it, (N,)."""
+    residual_m: Array
+    """Distance of each pair from it [m], (N,)."""
+
+    @property
+    def contradictory(self) -> bool:
+        """Whether the pairs contradict each other."""
+        return bool(
+            np.median(self.residual_rad) > _OUTLIER_RAD or np.median(self.residual_m) > _OUTLIER_M
+        )
+
+
+def read_pose_pairs(path: Path) -> PosePairs:
+    """Read a CSV with a pair a line: ``x y z qx qy qz qw`` of the marker, then of the sensor.
+
+    Commas or blanks separate the numbers; ``#`` begins a comment.
+
+    Raises:
+        CorruptFile: If a line has another number of values, or a quaternion has not length 1.
+    """
+    text = read_text_limited(path, _MAX_BYTES, failure=CorruptFile)
+    rows = []
+    for number, line in enumerate(text.splitlines(), 1):
+        words = line.partition("#")[0].replace(",", " ").split()
+        if not words:
+            continue
+        try:
+            values = [float(word) for word in words]
+        except ValueError:
+            raise CorruptFile(f"{path.name}: line {number}: expected numbers, got {line[:60]!r}")\
+                from None  # fmt: skip
+        if len(values) != _COLUMNS or not np.isfinite(values).all():
+            raise CorruptFile(
+                f"{path.name}: line {number}: expected {_COLUMNS} finite numbers, got {len(values)}"
+            )
+        rows.append(values)
+    if not rows:
+        raise CorruptFile(f"{path.name}: expected a pair of poses a line, got none")
+    table = np.array(rows)
+    for first in (3, 10):
+        length = np.linalg.norm(table[:, first : first + 4], axis=1)
+        wrong = np.flatnonzero(np.abs(length - 1.0) > _UNIT_TOLERANCE)
+        if len(wrong):
+            raise CorruptFile(
+                f"{path.name}: pair {wrong[0] + 1}: expected a quaternion of length 1, "
+                f"got {length[wrong[0]]:.3f}"
+            )
+    marker = SE3.from_quat(table[:, 3:7], table[:, :3])
+    return PosePairs(marker, SE3.from_quat(table[:, 10:14], table[:, 7:10]))
+
+
+def average_pairs(pairs: PosePairs) -> PairAlignment:
+    """Average ``T_m^-1 T_r`` of all pairs; the rotation is projected to SO(3) (L Eq. 5 to 7).
+
+    Raises:
+        CalibrationError: If there is no pair, or the mean of the rotations has no rotation near it.
+    """
+    each = pairs.T_world_marker.inverse() @ pairs.T_world_sensor
+    if not len(each.t):
+        raise CalibrationError("expected at least one pair of poses, got none")
+    U, singular, Vt = np.linalg.svd(each.R.mean(axis=0))
+    if singular[1] < _MIN_AXES:
+        raise CalibrationError("the pairs contradict each other: their rotations have no mean")
+    R = U @ np.diag([1.0, 1.0, np.linalg.det(U @ Vt)]) @ Vt
+    return _with_residuals(SE3(R, each.t.mean(axis=0)), each)
+
+
+def hand_eye(pairs: PosePairs) -> PairAlignment:
+    """The transformation where the two worlds differ: ``A X = X B`` (Park & Martin 1994).
+
+    ``A`` and ``B`` are the motions of marker and sensor from the first pose on, so the worlds in
+    which they were measured do not matter.
+
+    Raises:
+        CalibrationError: If the motions do not turn about two different axes.
+    """
+    of_marker = pairs.T_world_marker[0].inverse() @ pairs.T_world_marker[1:]
+    of_sensor = pairs.T_world_sensor[0].inverse() @ pairs.T_world_sensor[1:]
+    a, b = so3_log(of_marker.R), so3_log(of_sensor.R)
+    U, singular, Vt = np.linalg.svd(a.T @ b)
+    if len(a) < 2 or singular[1] < _MIN_AXES * len(a):
+        raise CalibrationError(
+            "hand-eye: expected motions that turn about two different axes, got fewer"
+        )
+    R = U @ np.diag([1.0, 1.0, np.linalg.det(U @ Vt)]) @ Vt
+    left = (of_marker.R - np.eye(3)).reshape(-1, 3)
+    right = (np.einsum("ij,nj->ni", R, of_sensor.t) - of_marker.t).ravel()
+    T_marker_sensor = SE3(R, np.linalg.lstsq(left, right, rcond=None)[0])
+    apart = (of_marker @ T_marker_sensor).inverse() @ (T_marker_sensor @ of_sensor)
+    return PairAlignment(
+        T_marker_sensor, np.asarray(apart.angle()), np.linalg.norm(apart.t, axis=1)
+    )
+
+
+def _with_residuals(mean: SE3, each: SE3) -> PairAlignment:
+    apart = mean.inverse() @ each
+    return PairAlignment(mean, np.asarray(apart.angle()), np.linalg.norm(apart.t, axis=1))
