@@ -9,7 +9,8 @@ from typing import Any
 
 from recon4 import stages
 from recon4.errors import ConfigError, RecordingError, StoreError
-from recon4.model.rig import format_rig
+from recon4.model.figures import CalibrationFigures
+from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.pipeline_2d import is_2d, process_2d
 from recon4.progress import Progress, Silent
 from recon4.recording.sources import Sources
@@ -19,6 +20,7 @@ from recon4.review.decisions import NOTHING_DECIDED, Decided
 from recon4.review.journal import read_decided
 from recon4.settings import Settings
 from recon4.settings import preset as settings_of
+from recon4.store.frames import CALIBRATED_RIG
 from recon4.store.hashing import hash_json, size_of
 from recon4.store.inputs import input_file, input_files
 from recon4.store.project import (
@@ -101,7 +103,7 @@ def process(
 def _process(
     sources: Sources, out: Path, *, settings: Settings, preset: str, progress: Progress
 ) -> Summary:
-    paths, rig, imu, gnss = sources.paths, sources.rig, sources.imu, sources.gnss
+    paths, rig = sources.paths, sources.rig
     with Project.open(out) as project:
         keys = {path: input_file(path, project.ledger, progress).key for path in paths}
         project.describe(
@@ -110,15 +112,50 @@ def _process(
             inputs=[{"name": p.name, "bytes": size_of(p), "sha256": keys[p]} for p in paths],
         )
         runner = StageRunner(project, settings, progress)
-        inputs = {
-            "recordings": input_files(sources.recordings, project.ledger, progress),
-            "rig": Input(hash_json(format_rig(rig)), rig) if rig else None,
-            "imu": Input(keys[imu], imu) if imu else None,
-            "gnss": Input(keys[gnss], gnss) if gnss else None,
-        }
+        inputs = _inputs(project, sources, progress)
         run_stages(runner, inputs, decided=read_decided(out))
         about = About(read_description(out), settings)
         return publish(out, runner.runs, about, progress=progress)
+
+
+def calibrate_recording(
+    sources: Sources, out: Path, *, settings: Settings, progress: Progress
+) -> tuple[CalibrationFigures, Rig | None]:
+    """Run the stages up to the calibration, without a map.
+
+    Args:
+        sources: The recording and its rig.
+        out: Project folder; made when missing.
+        settings: All settings; `calibration` says what is done.
+        progress: Who watches.
+
+    Returns:
+        What was found, and the calibrated rig if it may be used.
+
+    Raises:
+        Recon4Error: Whatever stops a stage.
+    """
+    sources.require()
+    with Project.open(out) as project:
+        runner = StageRunner(project, settings, progress)
+        inputs = _inputs(project, sources, progress)
+        frames = runner.run(stages.FRAMES, **inputs)
+        odometry = runner.run(stages.ODOMETRY, frames=frames)
+        calibration = runner.run(stages.CALIBRATION, frames=frames, odometry=odometry)
+        figures = figures_of(runner.runs, stages.CALIBRATION)
+        return figures, load_rig(calibration.folder / CALIBRATED_RIG) if figures.applied else None
+
+
+def _inputs(project: Project, sources: Sources, progress: Progress) -> dict[str, Input | None]:
+    """Inputs of the stage `frames`."""
+    rig, imu, gnss = sources.rig, sources.imu, sources.gnss
+    ledger = project.ledger
+    return {
+        "recordings": input_files(sources.recordings, ledger, progress),
+        "rig": Input(hash_json(format_rig(rig)), rig) if rig else None,
+        "imu": Input(input_file(imu, ledger, progress).key, imu) if imu else None,
+        "gnss": Input(input_file(gnss, ledger, progress).key, gnss) if gnss else None,
+    }
 
 
 def remake(out: Path, *, progress: Progress | None = None) -> Summary:

@@ -70,9 +70,9 @@ def _odometry(
     frames: Path,
     calibration: Path | None = None,
 ) -> OdometryFigures:
-    from recon4.calibration.rig_file import open_frames
     from recon4.georeference.gnss_aiding import make_gnss_aiding
     from recon4.registration.stage import run_odometry
+    from recon4.store.frames import open_frames
 
     store = open_frames(frames, calibration)
     aiding = make_gnss_aiding(store.gnss, store.rig, settings.odometry)
@@ -98,8 +98,8 @@ def _graph(
     odometry: Path,
     calibration: Path | None = None,
 ) -> GraphFigures:
-    from recon4.calibration.rig_file import open_frames
     from recon4.pose_graph.search import build_graph
+    from recon4.store.frames import open_frames
 
     store = open_frames(frames, calibration)
     return build_graph(store, odometry, out, settings=settings, progress=progress)
@@ -149,9 +149,9 @@ def _refine(
     graph: Path,
     calibration: Path | None = None,
 ) -> RefineFigures:
-    from recon4.calibration.rig_file import open_frames
     from recon4.pose_graph.files import load_graph
     from recon4.semi_rigid.refine import refine
+    from recon4.store.frames import open_frames
 
     store = open_frames(frames, calibration)
     found = refine(store, odometry, load_graph(graph), settings=settings, progress=progress)
@@ -168,10 +168,10 @@ def _level(
     graph: Path,
     calibration: Path | None = None,
 ) -> LevelFigures:
-    from recon4.calibration.rig_file import open_frames
     from recon4.georeference.stage import level_and_georeference
     from recon4.pose_graph.files import load_graph
     from recon4.store.arrays import load_trajectory
+    from recon4.store.frames import open_frames
 
     leveled = level_and_georeference(
         open_frames(frames, calibration),
@@ -192,9 +192,9 @@ def _intensity(
     level: Path,
     calibration: Path | None = None,
 ) -> None:
-    from recon4.calibration.rig_file import open_frames
     from recon4.intensity.normalize import write_intensity
     from recon4.store.arrays import load_trajectory
+    from recon4.store.frames import open_frames
 
     write_intensity(
         open_frames(frames, calibration),
@@ -215,12 +215,12 @@ def _map(
     intensity: Path,
     calibration: Path | None = None,
 ) -> MapFigures:
-    from recon4.calibration.rig_file import open_frames
     from recon4.export.laz import export_laz
     from recon4.georeference.stage import read_crs
     from recon4.intensity.table import IntensityTable
     from recon4.mapping.build import build_map
     from recon4.store.arrays import load_trajectory
+    from recon4.store.frames import open_frames
 
     tiles = build_map(
         open_frames(frames, calibration),
@@ -282,7 +282,11 @@ ODOMETRY = Stage(
     OdometryFigures,
 )
 CALIBRATION = Stage(
-    "calibration", 1, ("calibration", "odometry", "graph"), _calibration, CalibrationFigures
+    "calibration",
+    1,
+    ("calibration", "segments", "registration", "planes", "scans", "odometry", "graph"),
+    _calibration,
+    CalibrationFigures,
 )
 GRAPH = Stage("graph", 6, _MATCHING, _graph, GraphFigures)
 VERIFICATION = Stage(

@@ -13,7 +13,7 @@ from recon4.calibration.joint import ROUNDS, JointEstimate, calibrate_jointly, e
 from recon4.calibration.judgment import judge
 from recon4.calibration.mount_search import search_mounts, without_others
 from recon4.calibration.parameters import Parameters, Unit
-from recon4.calibration.walk import Walk
+from recon4.calibration.walk import RecordedWalk
 from recon4.calibration.window import Window
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
@@ -27,12 +27,12 @@ IMU = "imu"
 _KNOWN_ERROR: dict[Unit, float] = {"rad": float(np.deg2rad(0.2)), "m": 0.01, "s": 0.005}
 """Wrong values that are put in on purpose; an estimate that does not find them proves nothing."""
 _SIGMAS = 3.0
-_MIN_WINDOWS = 2
+_MIN_WINDOWS = 3
 _FAR_RAD, _FAR_M, _FAR_S = float(np.deg2rad(2.5)), 0.1, 0.05
 """With a larger change from the rig file other mounts are tried too."""
 _SEARCH_WINDOWS, _SEARCH_WINDOW_S = 3, 3.0
 _CLEARLY = 1.2
-"""Another mount must put so many times the points on planes that two LiDARs see."""
+"""How many times the points another mount must put on planes that two LiDARs see."""
 _NOT_WORSE, _BETTER = 1.01, 0.99
 """Ratio of figures of fit, after against before."""
 
@@ -119,7 +119,12 @@ def _enabled(rig: Rig) -> dict[str, int]:
 
 
 def audit(
-    walk: Walk, start: Rig, parameters: Parameters, *, settings: Settings, progress: Progress
+    walk: RecordedWalk,
+    start: Rig,
+    parameters: Parameters,
+    *,
+    settings: Settings,
+    progress: Progress,
 ) -> JointEstimate | None:
     """Estimate the rig from a few short windows; None if no window has planes.
 
@@ -145,7 +150,12 @@ def audit(
 
 
 def calibrate(
-    walk: Walk, start: Rig, parameters: Parameters, *, settings: Settings, progress: Progress
+    walk: RecordedWalk,
+    start: Rig,
+    parameters: Parameters,
+    *,
+    settings: Settings,
+    progress: Progress,
 ) -> Calibration | None:
     """Calibrate the rig on every second window and check it on the others.
 
@@ -199,7 +209,12 @@ def _counted_from(found: JointEstimate, recorded: Rig) -> JointEstimate:
 
 
 def _from_other_mounts(
-    walk: Walk, start: Rig, parameters: Parameters, *, settings: Settings, progress: Progress
+    walk: RecordedWalk,
+    start: Rig,
+    parameters: Parameters,
+    *,
+    settings: Settings,
+    progress: Progress,
 ) -> list[JointEstimate]:
     """Estimates that begin with exchanged axes or mounts, from windows of one LiDAR alone."""
     reference = parameters.reference

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from recon4.calibration.imu_rows import BIASES, WindowBiases, imu_rows
 from recon4.calibration.parameters import Parameters
-from recon4.calibration.surfaces import Surfaces, find_surfaces
+from recon4.calibration.surfaces import SharedSurfaces, find_surfaces
 from recon4.calibration.window import PlacedPoints, Window, place
 from recon4.geometry.se3 import Array
 from recon4.kernels.calibration import accumulate_point_rows
@@ -31,8 +31,8 @@ _PLANE_PRIOR = 1e-3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Bounds:
-    """Bounds of one round; they become tighter as the rig becomes better."""
+class RoundBounds:
+    """RoundBounds of one round; they become tighter as the rig becomes better."""
 
     cube_m: float
     """Edge of the cubes in which planes are looked for."""
@@ -98,7 +98,7 @@ def reduce_window(
     parameters: Parameters,
     *,
     settings: OdometrySettings,
-    bounds: Bounds,
+    bounds: RoundBounds,
 ) -> Reduced | None:
     """Normal equations of the rig from one window; None if nothing lies on planes.
 
@@ -145,7 +145,7 @@ def _add_points(
     window: Window,
     placed: PlacedPoints,
     *,
-    surfaces: Surfaces,
+    surfaces: SharedSurfaces,
     parameters: Parameters,
     kernel_m: float,
 ) -> tuple[Array, Array]:
@@ -208,7 +208,7 @@ def _tangents(normal: Array) -> Array:
     return np.stack([first, np.cross(normal, first)], axis=2)
 
 
-def _offset_m(surfaces: Surfaces, sensor: NDArray[np.uint8], r: Array) -> float:
+def _offset_m(surfaces: SharedSurfaces, sensor: NDArray[np.uint8], r: Array) -> float:
     """Root mean square distance between one surface as seen by two LiDARs [m]."""
     sensors = int(sensor.max()) + 1
     listed, group = np.unique(surfaces.plane * sensors + sensor, return_inverse=True)

@@ -7,6 +7,7 @@ velocity has to be estimated.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,11 +15,19 @@ import numpy as np
 from recon4.calibration.window import KNOT_S, Window
 from recon4.geometry.se3 import Array, skew, so3_exp, so3_log
 from recon4.model.rig import Rig
+from recon4.model.samples import ImuSamples
+from recon4.model.trajectory import Times
 from recon4.settings import OdometrySettings
 
 _FINE = 10
 """Samples are integrated this many times between two knots."""
 _EPS_RAD, _EPS_S = 1e-4, 1e-4
+_FOURTH = 70.0
+"""Variance of a difference of the fourth order of white noise of variance 1."""
+_SAFETY = 1.5
+_LEAST_GYRO, _LEAST_ACCEL = 3e-5, 3e-4
+"""No IMU on a backpack is better [rad/s/sqrt(Hz), m/s²/sqrt(Hz)]."""
+_MIN_SAMPLES = 50
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +50,36 @@ class WindowBiases:
 
 BIASES = 9
 """Number of parameters in `WindowBiases`."""
+
+
+def measured_noise(samples: Sequence[ImuSamples], settings: OdometrySettings) -> OdometrySettings:
+    """The settings with the noise densities that the samples themselves show.
+
+    Differences of the fourth order remove the motion and leave the noise. Odometry assumes much
+    more, because it also has to bridge what it does not model.
+
+    Args:
+        samples: Of some windows.
+        settings: Upper bounds.
+    """
+    usable = [part for part in samples if len(part) > _MIN_SAMPLES]
+    if not usable:
+        return settings
+    gyro = _SAFETY * max(_density(part.t_ns, part.gyro_rad_s) for part in usable)
+    accel = _SAFETY * max(_density(part.t_ns, part.accel_m_s2) for part in usable)
+    return replace(
+        settings,
+        gyro_noise=float(np.clip(gyro, _LEAST_GYRO, settings.gyro_noise)),
+        accel_noise=float(np.clip(accel, _LEAST_ACCEL, settings.accel_noise)),
+    )
+
+
+def _density(t_ns: Times, values: Array) -> float:
+    """Noise density per root of hertz by differences of the fourth order."""
+    fourth = np.diff(values, n=4, axis=0)
+    sd = 1.4826 * np.median(np.abs(fourth)) / np.sqrt(_FOURTH)
+    density = float(sd) * np.sqrt(float(np.median(np.diff(t_ns))) * 1e-9)
+    return density if np.isfinite(density) else np.inf
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -14,28 +14,28 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from recon4.calibration.equations import Bounds, Fit, Reduced, WindowState, reduce_window
-from recon4.calibration.imu_rows import WindowBiases
+from recon4.calibration.equations import Fit, Reduced, RoundBounds, WindowState, reduce_window
+from recon4.calibration.imu_rows import WindowBiases, measured_noise
 from recon4.calibration.parameters import Parameters
 from recon4.calibration.window import Window, with_trajectory
 from recon4.geometry.se3 import Array
 from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2
 from recon4.semi_rigid.knots import apply_knots
-from recon4.settings import Settings
+from recon4.settings import OdometrySettings, Settings
 
-_TIGHT = Bounds(cube_m=0.6, max_sd_m=0.03, gate_m=0.08, kernel_m=0.04)
+_TIGHT = RoundBounds(cube_m=0.6, max_sd_m=0.03, gate_m=0.08, kernel_m=0.04)
 ROUNDS = (
-    Bounds(cube_m=0.8, max_sd_m=0.06, gate_m=0.40, kernel_m=0.15),
-    Bounds(cube_m=0.6, max_sd_m=0.04, gate_m=0.20, kernel_m=0.08),
-    Bounds(cube_m=0.6, max_sd_m=0.03, gate_m=0.10, kernel_m=0.05),
+    RoundBounds(cube_m=0.8, max_sd_m=0.06, gate_m=0.40, kernel_m=0.15),
+    RoundBounds(cube_m=0.6, max_sd_m=0.04, gate_m=0.20, kernel_m=0.08),
+    RoundBounds(cube_m=0.6, max_sd_m=0.03, gate_m=0.10, kernel_m=0.05),
     _TIGHT,
     _TIGHT,
 )
-"""Bounds of each round of an estimate."""
+"""RoundBounds of each round of an estimate."""
 EXPLAIN = (
-    Bounds(cube_m=0.6, max_sd_m=0.04, gate_m=0.40, kernel_m=0.15),
-    Bounds(cube_m=0.6, max_sd_m=0.04, gate_m=0.40, kernel_m=0.15),
+    RoundBounds(cube_m=0.6, max_sd_m=0.04, gate_m=0.40, kernel_m=0.15),
+    RoundBounds(cube_m=0.6, max_sd_m=0.04, gate_m=0.40, kernel_m=0.15),
 )
 """Wide bounds that are the same for a good and a bad rig, to compare how well they explain."""
 _MIN_WINDOWS = 3
@@ -68,7 +68,7 @@ def calibrate_jointly(
     parameters: Parameters,
     *,
     settings: Settings,
-    rounds: Sequence[Bounds] = ROUNDS,
+    rounds: Sequence[RoundBounds] = ROUNDS,
     progress: Callable[[], None] = lambda: None,
 ) -> JointEstimate:
     """Estimate mounts and clocks from windows of a walk.
@@ -78,15 +78,17 @@ def calibrate_jointly(
         rig: Where to begin: some degrees and centimeters from the truth.
         parameters: What is estimated; what is known already has a small ``prior_sd``.
         settings: Noise of the IMU, number of threads.
-        rounds: Bounds of each round.
+        rounds: RoundBounds of each round.
         progress: Called after each round.
     """
     first, states = rig, [_first_state(window) for window in windows]
+    samples = [window.imu for window in windows if window.imu is not None]
+    noise = measured_noise(samples, settings.odometry)
     prior = np.diag(parameters.prior_sd**-2.0)
     found: list[Reduced | None] = []
     with ThreadPoolExecutor(settings.graph.workers) as pool:
         for bounds in rounds:
-            found = list(pool.map(_reducer(rig, parameters, settings, bounds=bounds), states))
+            found = list(pool.map(_reducer(rig, parameters, noise, bounds=bounds), states))
             H, g = _total(found, len(parameters))
             pull = g + prior @ parameters.between(first, rig)
             delta = np.asarray(-np.linalg.solve(H + prior, pull), np.float64)
@@ -112,7 +114,7 @@ def explain(windows: Sequence[Window], rig: Rig, *, settings: Settings) -> list[
     found: list[Reduced | None] = []
     with ThreadPoolExecutor(settings.graph.workers) as pool:
         for bounds in EXPLAIN:
-            found = list(pool.map(_reducer(rig, nothing, settings, bounds=bounds), states))
+            found = list(pool.map(_reducer(rig, nothing, settings.odometry, bounds=bounds), states))
             states = [
                 _moved(state, part, np.empty(0)) for state, part in zip(states, found, strict=True)
             ]
@@ -120,11 +122,9 @@ def explain(windows: Sequence[Window], rig: Rig, *, settings: Settings) -> list[
 
 
 def _reducer(
-    rig: Rig, parameters: Parameters, settings: Settings, *, bounds: Bounds
+    rig: Rig, parameters: Parameters, noise: OdometrySettings, *, bounds: RoundBounds
 ) -> Callable[[WindowState], Reduced | None]:
-    return lambda state: reduce_window(
-        state, rig, parameters, settings=settings.odometry, bounds=bounds
-    )
+    return lambda state: reduce_window(state, rig, parameters, settings=noise, bounds=bounds)
 
 
 def _first_state(window: Window) -> WindowState:

@@ -16,8 +16,8 @@ _SIGMAS = 3.0
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
-    """Limits of one kind of parameter, in its unit."""
+class ParameterLimits:
+    """ParameterLimits of one kind of parameter, in its unit."""
 
     tolerance: float
     """A smaller change is no reason to calibrate."""
@@ -25,13 +25,11 @@ class Limits:
     """With a larger standard deviation the parameter counts as not observable."""
 
 
-_LIMITS: dict[Unit, Limits] = {
-    "rad": Limits(float(np.deg2rad(0.1)), float(np.deg2rad(0.1))),
-    "m": Limits(0.01, 0.01),
-    "s": Limits(1e-3, 1e-3),
+_LIMITS: dict[Unit, ParameterLimits] = {
+    "rad": ParameterLimits(float(np.deg2rad(0.1)), float(np.deg2rad(0.1))),
+    "m": ParameterLimits(0.01, 0.01),
+    "s": ParameterLimits(1e-3, 1e-3),
 }
-_SEVERE: dict[str, float] = {"rad": float(np.deg2rad(0.5)), "m": 0.03, "s": 0.01}
-"""Larger changes make walls double: the map must not be used."""
 _SHOWN: dict[Unit, tuple[float, str]] = {
     "rad": (float(np.rad2deg(1.0)), "°"),
     "m": (100.0, " cm"),
@@ -70,11 +68,6 @@ def _status(change: float, sd: float, parameter: Parameter) -> ParameterStatus:
     if abs(change) > max(_SIGMAS * sd, limits.tolerance):
         return "off"
     return "consistent" if sd <= limits.observable_sd else "not observable"
-
-
-def is_severe(rows: Sequence[ParameterFigures]) -> bool:
-    """Whether the map that was made with such a rig must not be used."""
-    return any(row.status == "off" and abs(row.change) > _SEVERE[row.unit] for row in rows)
 
 
 def contradictions(rows: Sequence[ParameterFigures], *, applied: bool = False) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from recon4.calibration.mount_search import without_others
-from recon4.calibration.walk import Walk
+from recon4.calibration.walk import RecordedWalk
 from recon4.calibration.window import Window, place
 from recon4.geometry.se3 import SE3, Array, mean_rotation
 from recon4.model.rig import Rig
@@ -19,6 +19,8 @@ from recon4.registration.scans import make_scan, register_scans
 from recon4.settings import Settings
 
 _WINDOWS, _WINDOW_S = 6, 8.0
+_SCATTER_RAD, _SCATTER_M = float(np.deg2rad(1.5)), 0.1
+"""Windows that differ more do not agree."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,9 +35,14 @@ class MapAlignment:
     """The same for the position [m]."""
     windows: int
 
+    @property
+    def agrees(self) -> bool:
+        """Whether several windows give nearly the same mount."""
+        return self.scatter_rad < _SCATTER_RAD and self.scatter_m < _SCATTER_M
+
 
 def align_maps(
-    walk: Walk, rig: Rig, row: int, *, reference: int, settings: Settings
+    walk: RecordedWalk, rig: Rig, row: int, *, reference: int, settings: Settings
 ) -> MapAlignment | None:
     """Mount of a LiDAR such that its maps lie on those of the reference; None if none registers.
 
@@ -49,7 +56,7 @@ def align_maps(
     found = []
     for part in walk.rows(_WINDOWS, _WINDOW_S):
         maps = [
-            walk.tracked_windows([part], without_others(rig, alone), settings, imu=walk.frames.imu)
+            walk.tracked_windows([part], without_others(rig, alone), settings, imu=None)
             for alone in (reference, row)
         ]
         if all(maps):

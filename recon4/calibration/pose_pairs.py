@@ -23,7 +23,7 @@ _MIN_AXES = 2e-3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class PosePairs:
+class MarkerPosePairs:
     """Poses of two frames that are fixed to each other, at the same times."""
 
     T_world_marker: SE3
@@ -50,7 +50,7 @@ class PairAlignment:
         )
 
 
-def read_pose_pairs(path: Path) -> PosePairs:
+def read_pose_pairs(path: Path) -> MarkerPosePairs:
     """Read a CSV with a pair a line: ``x y z qx qy qz qw`` of the marker, then of the sensor.
 
     Commas or blanks separate the numbers; ``#`` begins a comment.
@@ -86,10 +86,10 @@ def read_pose_pairs(path: Path) -> PosePairs:
                 f"got {length[wrong[0]]:.3f}"
             )
     marker = SE3.from_quat(table[:, 3:7], table[:, :3])
-    return PosePairs(marker, SE3.from_quat(table[:, 10:14], table[:, 7:10]))
+    return MarkerPosePairs(marker, SE3.from_quat(table[:, 10:14], table[:, 7:10]))
 
 
-def average_pairs(pairs: PosePairs) -> PairAlignment:
+def average_pairs(pairs: MarkerPosePairs) -> PairAlignment:
     """Average ``T_m^-1 T_r`` of all pairs; the rotation is projected to SO(3) (L Eq. 5 to 7).
 
     Raises:
@@ -105,7 +105,7 @@ def average_pairs(pairs: PosePairs) -> PairAlignment:
     return _with_residuals(SE3(R, each.t.mean(axis=0)), each)
 
 
-def hand_eye(pairs: PosePairs) -> PairAlignment:
+def hand_eye(pairs: MarkerPosePairs) -> PairAlignment:
     """The transformation where the two worlds differ: ``A X = X B`` (Park & Martin 1994).
 
     ``A`` and ``B`` are the motions of marker and sensor from the first pose on, so the worlds in

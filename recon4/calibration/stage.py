@@ -13,9 +13,8 @@ from recon4.calibration.joint import JointEstimate
 from recon4.calibration.judgment import contradictions, judge
 from recon4.calibration.mount_search import exchanged_mount
 from recon4.calibration.parameters import Parameters
-from recon4.calibration.rig_file import RIG_FILE
 from recon4.calibration.start import Start, find_start
-from recon4.calibration.walk import Walk
+from recon4.calibration.walk import RecordedWalk
 from recon4.model.events import Warned
 from recon4.model.figures import CalibrationFigures, ParameterFigures
 from recon4.model.plain import to_plain
@@ -24,7 +23,7 @@ from recon4.progress import Progress
 from recon4.settings import Settings
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.atomic import write_json
-from recon4.store.frames import FrameStore
+from recon4.store.frames import CALIBRATED_RIG, FrameStore
 
 _SAME_RAD, _SAME_M = 0.1, 0.1
 """Two mounts are the same within this."""
@@ -47,7 +46,7 @@ class CalibrationResult:
         record = {"figures": self.figures, "before": self.before, "after": self.after}
         write_json(out / "calibration.json", to_plain(record))
         if self.rig is not None:
-            (out / RIG_FILE).write_text(format_rig(self.rig), "utf-8")
+            (out / CALIBRATED_RIG).write_text(format_rig(self.rig), "utf-8")
         return self.figures
 
 
@@ -65,7 +64,7 @@ def run_calibration(
     if settings.calibration.mode == "off":
         return CalibrationResult(figures=CalibrationFigures(outcome="switched off"))
     lost = load_arrays(odometry / "steps.npz", ["lost"])["lost"].astype(bool)
-    walk = Walk(frames, load_trajectory(odometry / "trajectory.npz"), lost)
+    walk = RecordedWalk(frames, load_trajectory(odometry / "trajectory.npz"), lost)
     reference = reference_of(frames.rig, settings.calibration)
     if reference is None:
         return CalibrationResult(figures=CalibrationFigures(outcome="no LiDAR is enabled"))
@@ -84,7 +83,12 @@ def run_calibration(
 
 
 def _audit(
-    walk: Walk, start: Start, parameters: Parameters, *, settings: Settings, progress: Progress
+    walk: RecordedWalk,
+    start: Start,
+    parameters: Parameters,
+    *,
+    settings: Settings,
+    progress: Progress,
 ) -> CalibrationResult:
     remarks = tuple(f"The IMU contradicts the recording. {text}" for text in start.remarks)
     if not len(parameters):

@@ -8,7 +8,7 @@ import numpy as np
 
 from recon4.calibration.gyro_alignment import GyroAlignment, align_gyro
 from recon4.calibration.mount_search import without_others
-from recon4.calibration.walk import Walk
+from recon4.calibration.walk import RecordedWalk
 from recon4.geometry.se3 import SE3, so3_log
 from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
@@ -38,7 +38,7 @@ class Start:
     """What the IMU's axes, units or clock contradict, a sentence each."""
 
 
-def find_start(walk: Walk, *, reference: int, settings: Settings) -> Start:
+def find_start(walk: RecordedWalk, *, reference: int, settings: Settings) -> Start:
     """The rig to begin with: the rig file's, with the IMU turned where its axes are exchanged.
 
     Args:
@@ -67,7 +67,7 @@ def find_start(walk: Walk, *, reference: int, settings: Settings) -> Start:
 
 
 def _align_alone(
-    walk: Walk, imu: ImuSamples, reference: int, settings: Settings
+    walk: RecordedWalk, imu: ImuSamples, reference: int, settings: Settings
 ) -> GyroAlignment | None:
     """Alignment to a trajectory of the reference LiDAR alone, where all together contradict."""
     rows = walk.rows(1, _ALONE_S, with_lost=True)
@@ -91,7 +91,7 @@ def _turned(rig: Rig, found: GyroAlignment) -> Rig:
     )
 
 
-def _force_remarks(imu: ImuSamples, walk: Walk, rig: Rig) -> tuple[str, ...]:
+def _force_remarks(imu: ImuSamples, walk: RecordedWalk, rig: Rig) -> tuple[str, ...]:
     """Over a walk the accelerations cancel out: the mean force has the length of gravity."""
     line = walk.trajectory
     inside = (imu.t_ns >= line.t_ns[0]) & (imu.t_ns <= line.t_ns[-1])

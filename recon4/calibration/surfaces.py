@@ -18,7 +18,7 @@ _MIN_FACING = 0.97
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Surfaces:
+class SharedSurfaces:
     """Points on planes; the points of a cube lie on one plane, whichever LiDAR saw them."""
 
     point: NDArray[np.intp]
@@ -48,7 +48,7 @@ class _Groups:
 
 def find_surfaces(
     p: Array, sensor: NDArray[np.uint8], *, cube_m: float, max_sd_m: float, gate_m: float
-) -> Surfaces:
+) -> SharedSurfaces:
     """Divide points into cubes and keep those whose points lie on a plane.
 
     The points of each LiDAR must lie on a plane by themselves; the planes of two LiDARs in a cube
@@ -77,7 +77,7 @@ def find_surfaces(
     row_of_group[kept] = plane_of_group
     plane = row_of_group[group]
     point = np.flatnonzero(plane >= 0)
-    return Surfaces(point, plane[point], center, normal, np.bincount(plane_of_group) > 1)
+    return SharedSurfaces(point, plane[point], center, normal, np.bincount(plane_of_group) > 1)
 
 
 def _cube_rows(p: Array, cube_m: float) -> NDArray[np.int64]:

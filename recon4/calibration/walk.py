@@ -19,7 +19,7 @@ from recon4.store.frames import FrameStore
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Walk:
+class RecordedWalk:
     """A recording with its odometry."""
 
     frames: FrameStore
@@ -28,7 +28,7 @@ class Walk:
     lost: NDArray[np.bool_]
     """Multiframes where tracking was lost, (N,)."""
 
-    def with_rig(self, rig: Rig) -> Walk:
+    def with_rig(self, rig: Rig) -> RecordedWalk:
         """The same recording with the mounts and clocks of another rig."""
         return replace(self, frames=self.frames.with_rig(rig))
 

@@ -111,7 +111,7 @@ def _against_truth(result: Path, truth: Path, *, model: Path | None, floor: bool
     if floor:
         if "frames" not in artifacts:
             raise typer.BadParameter(f"--floor needs a project with its frames, got {result}")
-        from recon4.calibration.rig_file import open_frames
+        from recon4.store.frames import open_frames
 
         given["frames"] = open_frames(artifacts["frames"], artifacts.get("calibration"))
     return evaluate_result(result, truth=truth, model=model, **given)

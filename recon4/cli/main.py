@@ -20,6 +20,7 @@ import recon4
 from app.cli.serve import server
 from app.cli.users import users
 from recon4.cli.backup import backups
+from recon4.cli.calibration import calibration
 from recon4.cli.confinement import confine_command, result_folder
 from recon4.cli.evaluation import evaluation
 from recon4.cli.live import live
@@ -44,6 +45,7 @@ app.add_typer(server)
 app.add_typer(live)
 app.add_typer(slices)
 app.add_typer(backups)
+app.add_typer(calibration)
 app.add_typer(evaluation)
 
 _INTERRUPTED = 130

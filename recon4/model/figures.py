@@ -67,6 +67,10 @@ class ParameterFigures(msgspec.Struct, frozen=True, kw_only=True):
     status: ParameterStatus
 
 
+_SEVERE = {"rad": 0.0087, "m": 0.03, "s": 0.01}
+"""Larger differences (0.5°, 3 cm, 10 ms) make walls double."""
+
+
 class CalibrationFigures(Figures, frozen=True, kw_only=True):
     """Audit of the rig against the recording and, if requested, its calibration."""
 
@@ -81,6 +85,12 @@ class CalibrationFigures(Figures, frozen=True, kw_only=True):
     outcome: str = ""
     """Why it was applied, or why not."""
     warnings: tuple[str, ...] = ()
+
+    @property
+    def is_severe(self) -> bool:
+        """Whether a map that was made with the rig file must not be used."""
+        return any(row.status == "off" and abs(row.change) > _SEVERE[row.unit]
+                   for row in self.parameters)  # fmt: skip
 
 
 class GraphFigures(Figures, frozen=True, kw_only=True):

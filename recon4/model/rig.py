@@ -6,6 +6,7 @@ import json
 import re
 import tomllib
 from dataclasses import dataclass
+from datetime import date
 from importlib import resources
 from pathlib import Path
 from typing import Any, Literal, get_args
@@ -62,6 +63,24 @@ class Sensor:
     """Topic in a bag; empty = detected."""
     enabled: bool = True
     """Off = its points are read and stored but neither registered nor mapped (V §3.4)."""
+    serial: str = ""
+    """Serial number; empty = not known."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RigCalibration:
+    """Where the mounts and clocks of a rig file come from."""
+
+    date: str
+    """ISO 8601, as ``2026-11-22``."""
+    method: str
+    """As ``joint``, or ``drawing``."""
+    sd_deg: float
+    """Largest standard deviation of a rotation that was estimated [°]."""
+    sd_mm: float
+    """Of a position [mm]."""
+    sd_ms: float
+    """Of a clock [ms]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -84,6 +103,8 @@ class Rig:
     """UDP port of the GNSS receiver's datagrams; 0 = none."""
     gnss_serial: str = ""
     """Serial device of the receiver, for example ``/dev/ttyUSB0:115200``; empty = none."""
+    calibration: RigCalibration | None = None
+    """None = not known."""
 
     @property
     def T_body_sensor(self) -> SE3:
@@ -133,7 +154,7 @@ def parse_rig(text: str, *, where: str) -> Rig:
         ConfigError: Names the key, the expected and the found value.
     """
     table = _toml(text, where)
-    _refuse_unknown(table, {"name", "sensor", "imu", "gnss"}, where)
+    _refuse_unknown(table, {"name", "sensor", "imu", "gnss", "calibration"}, where)
     rows = table.get("sensor", [])
     if not isinstance(rows, list) or not 1 <= len(rows) <= MAX_SENSORS:
         raise ConfigError(
@@ -161,6 +182,25 @@ def parse_rig(text: str, *, where: str) -> Rig:
         imu_port=_port(imu, IMU_PORT, f"{where}: imu"),
         gnss_port=_port(gnss, GNSS_PORT, f"{where}: gnss"),
         gnss_serial=_text(gnss, "serial", "", where=f"{where}: gnss"),
+        calibration=_calibration(table.get("calibration"), f"{where}: calibration"),
+    )
+
+
+def _calibration(row: Any, where: str) -> RigCalibration | None:
+    if row is None:
+        return None
+    _refuse_unknown(row, {"date", "method", "sd_deg", "sd_mm", "sd_ms"}, where)
+    text = _text(row, "date", "", where=where)
+    try:
+        date.fromisoformat(text)
+    except ValueError:
+        raise ConfigError(f"{where}: date must be as 2026-11-22, got {text!r:.80}") from None
+    return RigCalibration(
+        date=text,
+        method=_text(row, "method", "", where=where),
+        sd_deg=_number(row, "sd_deg", 0.0, where=where),
+        sd_mm=_number(row, "sd_mm", 0.0, where=where),
+        sd_ms=_number(row, "sd_ms", 0.0, where=where),
     )
 
 
@@ -200,6 +240,7 @@ def format_rig(rig: Rig) -> str:
         lines += _mounting_lines(sensor.T_body_sensor)
         lines += [f"time_offset_s = {sensor.time_offset_s!r}", f"port = {sensor.port}"]
         lines += [f"address = {_quoted(sensor.address)}", f"topic = {_quoted(sensor.topic)}"]
+        lines += [f"serial = {_quoted(sensor.serial)}"] if sensor.serial else []
         lines += [f"enabled = {str(sensor.enabled).lower()}", ""]
     lines += ["[imu]", *_mounting_lines(rig.T_body_imu)]
     lines += [f"time_offset_s = {rig.imu_time_offset_s!r}", f"port = {rig.imu_port}"]
@@ -208,6 +249,10 @@ def format_rig(rig: Rig) -> str:
     lines += [f"time_offset_s = {rig.gnss_time_offset_s!r}", f"port = {rig.gnss_port}"]
     lines += [f"serial = {_quoted(rig.gnss_serial)}"] if rig.gnss_serial else []
     lines += [""]
+    if rig.calibration:
+        c = rig.calibration
+        lines += ["[calibration]", f"date = {_quoted(c.date)}", f"method = {_quoted(c.method)}"]
+        lines += [f"sd_deg = {c.sd_deg!r}", f"sd_mm = {c.sd_mm!r}", f"sd_ms = {c.sd_ms!r}", ""]
     return "\n".join(lines)
 
 
@@ -231,7 +276,16 @@ def _kind_lines(sensor: Sensor) -> list[str]:
 
 def _sensor(row: dict[str, Any], where: str) -> Sensor:
     known = {"name", "model", "xyz_m", "rpy_deg", "quat_xyzw", "time_offset_s"}
-    known |= {"address", "port", "topic", "enabled", "kind", "head_topic", "head_rate_deg_s"}
+    known |= {
+        "address",
+        "port",
+        "topic",
+        "enabled",
+        "serial",
+        "kind",
+        "head_topic",
+        "head_rate_deg_s",
+    }
     _refuse_unknown(row, known, where)
     kind = _kind(row, where)
     model = _text(row, "model", "VLP-16" if kind == "lidar" else "generic", where=where)
@@ -256,6 +310,7 @@ def _sensor(row: dict[str, Any], where: str) -> Sensor:
         port=_port(row, 2368, where),
         topic=_text(row, "topic", "", where=where),
         enabled=_flag(row, "enabled", where),
+        serial=_text(row, "serial", "", where=where),
     )
 
 

@@ -8,7 +8,6 @@ from enum import IntEnum
 
 import numpy as np
 
-from recon4.calibration.judgment import is_severe
 from recon4.evaluation.table import number, percentage
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Verdict
 from recon4.model.usability import UNOBSERVED_SECONDS
@@ -96,7 +95,7 @@ def _calibration(results: Results) -> list[Finding]:
     if found is None:
         return []
     if found.warnings:
-        level = Level.BAD if is_severe(found.parameters) else Level.WARNING
+        level = Level.BAD if found.is_severe else Level.WARNING
         return [Finding(Level.NOTE if found.applied else level, text) for text in found.warnings]
     text = f"Rig: {found.outcome}."
     return [Finding(Level.GOOD if found.parameters else Level.NOTE, text)]

@@ -6,14 +6,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from recon4.calibration.rig_file import open_frames
 from recon4.errors import StoreError
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
 from recon4.settings import Settings
 from recon4.store.arrays import load_trajectory
-from recon4.store.frames import FrameStore
+from recon4.store.frames import FrameStore, open_frames
 from recon4.store.project import read_artifacts
 from recon4.store.recipes import check_recipes, settings_in
 

@@ -5,7 +5,7 @@ own groups, so that a changed setting reruns only the stages that depend on it.
 """
 
 from recon4.settings.assign import canonical, override, to_json
-from recon4.settings.calibration import CalibrationSettings
+from recon4.settings.calibration import CalibrationSettings, EntropySettings
 from recon4.settings.georeference import GnssSettings, LevelSettings
 from recon4.settings.graph import GraphSettings, VerificationSettings
 from recon4.settings.ingest import IngestSettings
@@ -32,6 +32,7 @@ from recon4.settings.slam2d import (
 __all__ = [
     "PRESETS",
     "CalibrationSettings",
+    "EntropySettings",
     "GnssSettings",
     "GraphSettings",
     "Grid2dSettings",

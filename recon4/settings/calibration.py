@@ -23,7 +23,7 @@ class CalibrationSettings:
     """Largest number of windows of the walk that are compared in an audit."""
     audit_window_s: float = 4.0
     """Length of each [s]."""
-    windows: int = 8
+    windows: int = 12
     """Largest number of windows for a calibration; as many others confirm it."""
     window_s: float = 6.0
     """Length of each [s]."""

@@ -42,6 +42,8 @@ INDEX = np.dtype(
 )
 """One row of ``index.npy``."""
 
+CALIBRATED_RIG = "rig.toml"
+"""In the folder of the stage ``calibration``: the calibrated rig, if it is used."""
 _HEADER_BYTES = 128
 _MAX_REPORT_BYTES = 64 << 20
 _NO_SPACE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
@@ -208,7 +210,7 @@ class FrameStore:
         return (self[k] for k in range(len(self)))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return FrameStore.open, (self.folder, self.rig)
+        return FrameStore.open, (self.folder, None if self.rig is self.recorded else self.rig)
 
     def with_rig(self, rig: Rig) -> FrameStore:
         """The same multiframes with calibrated mounts and clocks."""
@@ -229,6 +231,21 @@ class FrameStore:
     def points(self) -> int:
         """Points of all multiframes together."""
         return int(self.index["stop"][-1]) if len(self) else 0
+
+
+def open_frames(frames: Path, calibration: Path | None) -> FrameStore:
+    """Open the multiframes of a project with its calibrated rig, if that is used.
+
+    Args:
+        frames: Folder of the stage ``frames``.
+        calibration: Folder of the stage ``calibration``; None = the rig of the recording.
+
+    Raises:
+        StoreError: If a folder is incomplete or damaged.
+        ConfigError: If the rig file is damaged.
+    """
+    path = calibration / CALIBRATED_RIG if calibration else None
+    return FrameStore.open(frames, load_rig(path) if path and path.is_file() else None)
 
 
 def _imu(path: Path, change_s: float) -> ImuSamples | None:

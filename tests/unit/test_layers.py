@@ -53,6 +53,8 @@ MAY_IMPORT = {
     "recon4/slam2d/stage.py": STAGE
     | {"recon4.slam2d", "recon4.pose_graph.files"}
     | {"recon4.recording.laser2d", "recon4.recording.report"},
+    "recon4/calibration": STAGE
+    | {"recon4.calibration", "recon4.registration", "recon4.semi_rigid.knots"},
     "recon4/semi_rigid": STAGE | {"recon4.registration", "recon4.pose_graph", "recon4.semi_rigid"},
     "recon4/profiler": STAGE
     | {f"recon4.{room}" for room in ("registration", "pose_graph", "slam2d", "semi_rigid")}
@@ -83,7 +85,12 @@ MAY_IMPORT = {
 
 NOBODY_IMPORTS = {
     "recon4.cli.main": {"recon4/__main__.py"},
-    "recon4.pipeline": {"recon4/cli/main.py", "app/cli/serve.py", "app"},
+    "recon4.pipeline": {
+        "recon4/cli/main.py",
+        "recon4/calibration_methods.py",
+        "app/cli/serve.py",
+        "app",
+    },
 }
 """The two ends of the program, and who may call them."""
 

@@ -17,13 +17,13 @@ from app.viewer.cloud.preview import JobPreview
 from app.viewer.scene.build import Content, GnssMarks
 from app.viewer.scene.layers import EdgeTable
 from app.viewer.scene.live import JobWatch
-from recon4.calibration.rig_file import open_frames
 from recon4.errors import Recon4Error
 from recon4.geometry.se3 import Array
 from recon4.model.rig import load_rig
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
 from recon4.store.arrays import load_trajectory
+from recon4.store.frames import open_frames
 from recon4.store.project import read_artifacts
 
 log = logging.getLogger(__name__)

@@ -8,7 +8,7 @@ import pytest
 
 from recon4.calibration.gyro_alignment import align_gyro
 from recon4.calibration.start import find_start
-from recon4.calibration.walk import Walk
+from recon4.calibration.walk import RecordedWalk
 from recon4.geometry.se3 import so3_log
 from tests.unit.calibration.conftest import SETTINGS, dancing
 
@@ -17,7 +17,7 @@ EXCHANGED = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
 
 def start_of(dance, **change):
     imu = replace(dance.imu, **change)
-    walk = Walk(replace(dance, imu=imu), dance.truth, np.zeros(len(dance), bool))
+    walk = RecordedWalk(replace(dance, imu=imu), dance.truth, np.zeros(len(dance), bool))
     return find_start(walk, reference=0, settings=SETTINGS)
 
 

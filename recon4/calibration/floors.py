@@ -1,0 +1,123 @@
+"""Floor normals and gravity while the backpack rests, for the calibration by gravity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.bounded import read_text_limited
+from recon4.errors import CorruptFile
+from recon4.geometry.se3 import Array
+from recon4.model.frames import RecordedFrames
+from recon4.model.multiframe import Multiframe
+from recon4.model.rig import Rig
+
+_MAX_BYTES = 4 << 20
+_REST_RAD_S, _REST_M_S2 = 0.05, 0.1
+"""Largest standard deviations of turn rate and force while the backpack rests."""
+_BELOW_M, _FLAT = 0.3, 0.8
+"""A floor is farther below the body than this, and its normal is that near to the body's z."""
+_THICKNESS_M = 0.03
+_ROUNDS = 6
+_MIN_POINTS = 200
+_MIN_FRAMES = 5
+"""Multiframes of a rest."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Inclinations:
+    """Verticals at several inclinations of the backpack."""
+
+    normal_body: Array
+    """Normals of the floor, up, (N, 3)."""
+    force_imu: Array
+    """What the accelerometer reads, up, (N, 3)."""
+
+    def __len__(self) -> int:
+        return len(self.normal_body)
+
+
+def find_inclinations(frames: RecordedFrames, rig: Rig) -> Inclinations:
+    """Floor and gravity of each time the backpack rests for half a second or more."""
+    imu = frames.imu
+    normals, forces = [], []
+    if imu is not None and len(imu) > 1:
+        for first, last in _rests(frames):
+            rows = (imu.t_ns >= frames[first].t_ns) & (imu.t_ns <= frames[last].t_ns)
+            normal = _floor_normal(frames[(first + last) // 2], rig)
+            if normal is not None and rows.any():
+                normals.append(normal)
+                forces.append(imu.accel_m_s2[rows].mean(axis=0))
+    return Inclinations(np.array(normals).reshape(-1, 3), np.array(forces).reshape(-1, 3))
+
+
+def read_inclinations(path: Path) -> Inclinations:
+    """Read picked pairs: ``gx gy gz nx ny nz`` a line, force at rest and normal of the floor.
+
+    Raises:
+        CorruptFile: If a line has another number of values.
+    """
+    rows = []
+    text = read_text_limited(path, _MAX_BYTES, failure=CorruptFile)
+    for number, line in enumerate(text.splitlines(), 1):
+        words = line.partition("#")[0].replace(",", " ").split()
+        if not words:
+            continue
+        try:
+            values = [float(word) for word in words]
+        except ValueError:
+            values = []
+        if len(values) != 6 or not np.isfinite(values).all():
+            raise CorruptFile(
+                f"{path.name}: line {number}: expected 6 finite numbers (gx gy gz nx ny nz), "
+                f"got {line[:60]!r}"
+            )
+        rows.append(values)
+    table = np.array(rows).reshape(-1, 6)
+    return Inclinations(table[:, 3:], table[:, :3])
+
+
+def _rests(frames: RecordedFrames) -> list[tuple[int, int]]:
+    """First and last multiframe of each rest."""
+    still = np.array([_is_at_rest(frames, k) for k in range(len(frames))])
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], still, [False]]).astype(int)))
+    pairs = zip(edges[::2], edges[1::2] - 1, strict=True)
+    return [(int(a), int(b)) for a, b in pairs if b - a + 1 >= _MIN_FRAMES]
+
+
+def _is_at_rest(frames: RecordedFrames, k: int) -> bool:
+    imu, frame = frames.imu, frames[k]
+    assert imu is not None
+    first, last = np.searchsorted(imu.t_ns, [frame.t_ns, frame.t_ns + frame.duration_ns])
+    if last - first < _MIN_FRAMES:
+        return False
+    turn, force = imu.gyro_rad_s[first:last], imu.accel_m_s2[first:last]
+    return bool(turn.std(axis=0).max() < _REST_RAD_S and force.std(axis=0).max() < _REST_M_S2)
+
+
+def _floor_normal(frame: Multiframe, rig: Rig) -> Array | None:
+    """Normal of the largest plane below the body, up, (3,); None if there is none."""
+    p = np.concatenate(
+        [
+            sensor.T_body_sensor @ frame.xyz[frame.sensor == row].astype(np.float64)
+            for row, sensor in enumerate(rig.sensors)
+            if sensor.enabled
+        ]
+    )
+    p = p[p[:, 2] < -_BELOW_M]
+    if len(p) < _MIN_POINTS:
+        return None
+    counts, edges = np.histogram(p[:, 2], bins=np.arange(p[:, 2].min(), 0.1, 0.1))
+    lowest = edges[int(np.argmax(counts))]
+    kept: NDArray[np.bool_] = np.abs(p[:, 2] - lowest) < 0.3
+    for _ in range(_ROUNDS):
+        if np.count_nonzero(kept) < _MIN_POINTS:
+            return None
+        center = p[kept].mean(axis=0)
+        normal: Array = np.linalg.svd(p[kept] - center, full_matrices=False)[2][-1]
+        kept = np.abs((p - center) @ normal) < _THICKNESS_M
+    normal = normal * np.sign(normal[2])
+    return normal if normal[2] > _FLAT else None

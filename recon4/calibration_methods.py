@@ -1,0 +1,240 @@
+"""The ways to calibrate a rig, as ``recon4 calibrate --method`` selects them (requirements A2)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+
+from recon4.calibration.calibrate import calibrated_parameters, reference_of
+from recon4.calibration.entropy import calibrate_by_entropy
+from recon4.calibration.floors import find_inclinations, read_inclinations
+from recon4.calibration.gravity_alignment import align_gravity
+from recon4.calibration.map_alignment import align_maps, with_mount
+from recon4.calibration.parameters import Parameter
+from recon4.calibration.pose_pairs import average_pairs, hand_eye, read_pose_pairs
+from recon4.calibration.walk import RecordedWalk
+from recon4.errors import CalibrationError, ConfigError
+from recon4.geometry.se3 import SE3, Array
+from recon4.model.figures import CalibrationFigures, ParameterFigures
+from recon4.model.rig import Rig, RigCalibration
+from recon4.pipeline import calibrate_recording
+from recon4.progress import Progress
+from recon4.recording.sources import Sources
+from recon4.settings import EntropySettings, Settings, override, preset
+from recon4.store.arrays import load_arrays, load_trajectory
+from recon4.store.frames import FrameStore
+from recon4.store.project import read_artifacts
+
+_SHOWN = {"rad": (float(np.rad2deg(1.0)), "°"), "m": (1e3, "mm"), "s": (1e3, "ms")}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CalibratedRig:
+    """Result of a method."""
+
+    rig: Rig | None
+    """None = nothing to write."""
+    outcome: str
+    lines: tuple[str, ...] = ()
+    """Table for the terminal."""
+
+
+def check_method(method: str) -> None:
+    """Check the name of a method.
+
+    Raises:
+        ConfigError: If there is no such method.
+    """
+    if method not in _METHODS:
+        raise ConfigError(f"no method named {method!r:.80}; there are: {', '.join(_METHODS)}")
+
+
+def calibrate_by(
+    method: str, sources: Sources, folder: Path, *, sensors: str, progress: Progress
+) -> CalibratedRig:
+    """Calibrate a rig by one of the methods.
+
+    Args:
+        method: ``joint``, ``maps``, ``gravity``, ``entropy`` or ``pairs``.
+        sources: The recording, or a CSV file for ``pairs`` and ``gravity``, and the rig.
+        folder: Project folder for multiframes and odometry.
+        sensors: Names of the sensors to calibrate; empty = all.
+        progress: Who watches.
+
+    Raises:
+        ConfigError: If a sensor is not in the rig.
+        CalibrationError: If the recording does not determine what the method estimates.
+        Recon4Error: Whatever stops a stage.
+    """
+    check_method(method)
+    return _METHODS[method](sources, folder, sensors, progress)
+
+
+def _joint(sources: Sources, folder: Path, sensors: str, progress: Progress) -> CalibratedRig:
+    chosen = _settings(f"calibration.sensors={sensors}", "calibration.mode=auto")
+    figures, rig = calibrate_recording(sources, folder, settings=chosen, progress=progress)
+    lines = (*_table(figures.parameters), *figures.warnings)
+    if rig is not None:
+        rig = replace(rig, calibration=_note("joint", figures))
+    return CalibratedRig(rig, figures.outcome, lines)
+
+
+def _maps(sources: Sources, folder: Path, sensors: str, progress: Progress) -> CalibratedRig:
+    walk, chosen = _walk(sources, folder, sensors, progress)
+    rig = walk.frames.rig
+    reference = _reference(rig, chosen)
+    parameters = calibrated_parameters(
+        rig, reference=reference, with_imu=False, settings=chosen.calibration
+    )
+    lines = []
+    for row in parameters.lidars:
+        found = align_maps(walk, walk.frames.rig, row, reference=reference, settings=chosen)
+        if found is None:
+            raise CalibrationError(
+                f"the maps of {rig.sensors[reference].name!r} and {rig.sensors[row].name!r} "
+                "do not register: walk through a larger room"
+            )
+        if not found.agrees:
+            raise CalibrationError(
+                f"maps: expected several windows of the walk to agree on the mount of "
+                f"{rig.sensors[row].name!r}, got {found.windows} that differ by "
+                f"{np.rad2deg(found.scatter_rad):.1f}° and {100 * found.scatter_m:.0f} cm"
+            )
+        rig = with_mount(rig, row, found.T_body_sensor)
+        lines.append(
+            f"{rig.sensors[row].name}: {found.windows} windows, scatter "
+            f"{np.rad2deg(found.scatter_rad):.2f}° {1e3 * found.scatter_m:.0f} mm"
+        )
+    changed = parameters.between(walk.frames.rig, rig)
+    return CalibratedRig(rig, "calibrated by maps", (*_changes(parameters.listed, changed), *lines))
+
+
+def _entropy(sources: Sources, folder: Path, sensors: str, progress: Progress) -> CalibratedRig:
+    walk, chosen = _walk(sources, folder, sensors, progress)
+    rig, settings = walk.frames.rig, EntropySettings()
+    parameters = calibrated_parameters(
+        rig, reference=_reference(rig, chosen), with_imu=False, settings=chosen.calibration
+    )
+    windows = walk.windows(chosen.calibration.audit_windows, chosen.calibration.audit_window_s)
+    if not windows or not len(parameters):
+        raise CalibrationError("entropy: expected two LiDARs and some seconds of walk")
+    progress.start("calibration", settings.evaluations, "evaluations")
+    found = calibrate_by_entropy(
+        windows, rig, parameters, settings=settings, progress=progress.advance
+    )
+    lines = _changes(parameters.listed, found.change)
+    cost = f"cost {found.costs[0]:.4f} -> {found.costs[-1]:.4f} in {len(found.costs)} evaluations"
+    return CalibratedRig(found.rig, "calibrated by entropy", (*lines, cost))
+
+
+def _gravity(sources: Sources, folder: Path, sensors: str, progress: Progress) -> CalibratedRig:
+    assert sources.rig is not None
+    if sources.recordings[0].suffix == ".csv":
+        rig, pairs = sources.rig, read_inclinations(sources.recordings[0])
+    else:
+        walk, _ = _walk(sources, folder, sensors, progress)
+        rig, pairs = walk.frames.rig, find_inclinations(walk.frames, walk.frames.rig)
+    if len(pairs) < 2:
+        raise CalibrationError(
+            f"gravity: expected the backpack at rest at two inclinations or more, got {len(pairs)}"
+        )
+    found = align_gravity(pairs.normal_body, pairs.force_imu)
+    lines = [
+        f"inclination {k + 1}: residual {np.rad2deg(residual):.2f}°"
+        for k, residual in enumerate(found.residual_rad)
+    ]
+    if not found.heading_observable:
+        text = "the inclinations are all alike: the rotation about gravity is not observable"
+        return CalibratedRig(None, text, tuple(lines))
+    turned = replace(rig, T_body_imu=SE3(found.R_body_imu, rig.T_body_imu.t))
+    return CalibratedRig(turned, "calibrated by gravity", tuple(lines))
+
+
+def _pairs(sources: Sources, folder: Path, sensors: str, progress: Progress) -> CalibratedRig:
+    assert sources.rig is not None
+    rig, pairs = sources.rig, read_pose_pairs(sources.recordings[0])
+    names = {sensor.name: row for row, sensor in enumerate(rig.sensors)}
+    name = sensors or next(iter(names))
+    if name not in names:
+        raise ConfigError(f"expected a sensor of the rig ({', '.join(names)}), got {name!r:.80}")
+    found = average_pairs(pairs)
+    if found.contradictory:
+        found = hand_eye(pairs)  # poses of two worlds: only their motions compare
+    lines = tuple(
+        f"pair {k + 1}: residual {np.rad2deg(turn):.3f}° {1e3 * shift:.1f} mm"
+        for k, (turn, shift) in enumerate(zip(found.residual_rad, found.residual_m, strict=True))
+    )
+    if found.contradictory:
+        return CalibratedRig(None, "the pairs of poses contradict each other", lines)
+    mounted = with_mount(rig, names[name], found.T_marker_sensor)
+    return CalibratedRig(mounted, f"mount of {name!r} from {len(lines)} pairs of poses", lines)
+
+
+_METHODS: dict[str, Callable[[Sources, Path, str, Progress], CalibratedRig]] = {
+    "joint": _joint,
+    "maps": _maps,
+    "gravity": _gravity,
+    "entropy": _entropy,
+    "pairs": _pairs,
+}
+
+
+def _settings(*assignments: str) -> Settings:
+    return override(preset("indoor"), [text for text in assignments if not text.endswith("=")])
+
+
+def _walk(
+    sources: Sources, folder: Path, sensors: str, progress: Progress
+) -> tuple[RecordedWalk, Settings]:
+    """The recording with its odometry; the stages run if they have not."""
+    chosen = _settings(f"calibration.sensors={sensors}", "calibration.mode=off")
+    calibrate_recording(sources, folder, settings=chosen, progress=progress)
+    made = read_artifacts(folder)
+    lost = load_arrays(made["odometry"] / "steps.npz", ["lost"])["lost"].astype(bool)
+    trajectory = load_trajectory(made["odometry"] / "trajectory.npz")
+    return RecordedWalk(FrameStore.open(made["frames"]), trajectory, lost), chosen
+
+
+def _reference(rig: Rig, settings: Settings) -> int:
+    reference = reference_of(rig, settings.calibration)
+    if reference is None:
+        raise CalibrationError("expected a rig with a LiDAR that is enabled, got none")
+    return reference
+
+
+def _note(method: str, figures: CalibrationFigures) -> RigCalibration:
+    """Date, method and largest standard deviations for the rig file."""
+    known = [row for row in figures.parameters if row.sd is not None]
+    largest = {
+        unit: max((row.sd or 0.0 for row in known if row.unit == unit), default=0.0)
+        for unit in _SHOWN
+    }
+    return RigCalibration(
+        date=datetime.now(UTC).date().isoformat(),
+        method=method,
+        sd_deg=round(largest["rad"] * _SHOWN["rad"][0], 4),
+        sd_mm=round(largest["m"] * 1e3, 2),
+        sd_ms=round(largest["s"] * 1e3, 3),
+    )
+
+
+def _table(rows: tuple[ParameterFigures, ...]) -> list[str]:
+    lines = []
+    for row in rows:
+        factor, unit = _SHOWN[row.unit]
+        sd = "" if row.sd is None else f" ± {factor * row.sd:.3f}"
+        name = " ".join(part for part in (row.sensor, row.quantity, row.axis) if part)
+        lines.append(f"{name:<28} {factor * row.change:+9.3f}{sd:<10} {unit:<3} {row.status}")
+    return lines
+
+
+def _changes(listed: tuple[Parameter, ...], change: Array) -> list[str]:
+    lines = []
+    for parameter, value in zip(listed, change, strict=True):
+        factor, unit = _SHOWN[parameter.unit]
+        lines.append(f"{parameter.name:<28} {factor * value:+9.3f} {unit}")
+    return lines

@@ -1,0 +1,67 @@
+"""The command ``recon4 calibrate``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from recon4.cli.confinement import confine_command, result_folder
+from recon4.errors import CalibrationError, ConfigError
+from recon4.terminal import write
+
+if TYPE_CHECKING:
+    from recon4.calibration_methods import CalibratedRig
+
+calibration = typer.Typer()
+
+
+@calibration.command()
+def calibrate(
+    recordings: Annotated[
+        list[Path], typer.Argument(help="pcap, bag or folder of clouds; for pairs: a CSV.")
+    ],
+    *,
+    rig: Annotated[str, typer.Option(help="Rig preset or .toml to begin with.")],
+    out: Annotated[Path, typer.Option(help="Calibrated rig to write, .toml.")],
+    imu: Annotated[Path | None, typer.Option(help="IMU samples as CSV.")] = None,
+    method: Annotated[
+        str, typer.Option(help="joint, maps, gravity, entropy or pairs; see docs/calibration.md.")
+    ] = "joint",
+    sensors: Annotated[
+        str, typer.Option(help="Only these, as vertical,imu; for pairs: the sensor.")
+    ] = "",
+    project: Annotated[
+        Path | None, typer.Option(help="Folder for multiframes and odometry; default: OUT.project.")
+    ] = None,
+) -> None:
+    """Calibrate the mounts and clocks of a rig from a walk; the rig file stays as it is."""
+    if out.suffix != ".toml":
+        raise ConfigError(f"--out: expected a file that ends with .toml, got {out.name!r}")
+    folder = project or out.with_suffix(".project")
+    confine_command(write=[result_folder(folder), out.parent])
+
+    from recon4.calibration_methods import calibrate_by, check_method
+    from recon4.model.rig import load_rig
+    from recon4.recording.sources import Sources, require_files
+    from recon4.terminal import watcher
+
+    check_method(method)
+    require_files([*recordings, *([imu] if imu else [])])
+    sources = Sources(tuple(recordings), load_rig(rig), imu, None)
+    with watcher() as progress:
+        found = calibrate_by(method, sources, folder, sensors=sensors, progress=progress)
+    write("\n".join(found.lines))
+    _write(found, out)
+
+
+def _write(found: CalibratedRig, out: Path) -> None:
+    from recon4.model.rig import format_rig
+    from recon4.store.atomic import atomic_file
+
+    if found.rig is None:
+        raise CalibrationError(f"{out.name} was not written: {found.outcome}")
+    with atomic_file(out) as temporary:
+        temporary.write_text(format_rig(found.rig), "utf-8")
+    write(f"{found.outcome}\n{out}")
