@@ -32,7 +32,9 @@ unexport PYTHONDONTWRITEBYTECODE
 demo: $(VENV)/installed-run
 	$(BIN)/recon4 demo --out demo $(if $(HEADLESS),--headless)
 
-test: format lint types web unit e2e
+# Browser tests wait most of the time: they run beside the others, which leave them the processor.
+test: format lint types web
+	@$(MAKE) --no-print-directory -j2 --output-sync=target unit e2e
 
 format: $(VENV)/installed-dev
 	$(BIN)/ruff format --check .
@@ -44,7 +46,7 @@ types: $(VENV)/installed-dev
 	$(BIN)/mypy
 
 unit: $(VENV)/installed-dev
-	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder -m 'not e2e' --durations=10
+	nice -n 5 $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder -m 'not e2e' --durations=10
 
 e2e: $(VENV)/installed-dev
 	$(BIN)/python -m pytest -m e2e --durations=10
