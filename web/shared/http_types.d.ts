@@ -328,6 +328,19 @@ export interface JobView {
   resumable: boolean;
 }
 
+export interface ListedReference {
+  id: string;
+  name: string;
+  file: string;
+  frame: "map" | "crs";
+  T_map_reference: Array<Array<number>> | null;
+  alignment: string;
+  kind: "mesh" | "cloud" | "damaged";
+  points: number;
+  triangles: number;
+  problem: string;
+}
+
 export interface Log {
   entries: Array<Entry>;
   chain: Chain;
@@ -425,6 +438,11 @@ export interface NewUpload {
   files: number;
   bytes: number;
   fingerprint?: string;
+}
+
+export interface OtherMap {
+  id: string;
+  words: string;
 }
 
 export interface PairFacts {
@@ -547,6 +565,17 @@ export interface RecordingSummary {
   rig: string;
   imu: string;
   gnss: string;
+}
+
+export interface ReferenceFacts {
+  name: string;
+  file: string;
+  frame: "map" | "crs";
+  T_map_reference: Array<Array<number>>;
+  alignment: string;
+  kind: "mesh" | "cloud";
+  points: number;
+  triangles: number;
 }
 
 export interface Rename {
@@ -687,8 +716,8 @@ export interface SliceFacts {
   crs: string;
   frame: string;
   approval: string;
-  references: Array<Record<string, any>>;
-  sources: Array<Record<string, string>>;
+  references: Array<ListedReference>;
+  sources: Array<OtherMap>;
 }
 
 export interface SliceImageRequest {
@@ -1166,12 +1195,12 @@ export interface Operations {
   "POST /api/projects/{project_id}/slices/references": {
     path: { project_id: string };
     body: AddReference;
-    response: Record<string, any>;
+    response: ListedReference;
   };
   "POST /api/projects/{project_id}/slices/references/{reference_id}/align": {
     path: { project_id: string; reference_id: string };
     body: AlignRequest;
-    response: Record<string, any>;
+    response: ReferenceFacts;
   };
   "POST /api/settings/check": {
     body: Assignments;
