@@ -59,10 +59,15 @@ export interface CaptureChoices {
   rigs: Array<RigChoice>;
 }
 
+export interface CaptureFinding {
+  level: "error" | "warning" | "info";
+  text: string;
+}
+
 export interface CaptureView {
   project: string;
   state: string;
-  words: Array<Record<string, string>>;
+  words: Array<CaptureFinding>;
   rates: Record<string, number>;
   phones: number;
   may_capture: boolean;
