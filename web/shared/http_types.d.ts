@@ -37,6 +37,18 @@ export interface AlternativePath {
   residual_rad: number;
 }
 
+export interface ApprovalView {
+  version: number;
+  hash: string;
+  who: string;
+  time: string;
+  why: string;
+  verdict: string;
+  current: boolean;
+  check: "" | "checked" | "checking" | "altered";
+  altered: string;
+}
+
 export interface Approve {
   why?: string;
   confirmed?: boolean;
@@ -640,7 +652,7 @@ export interface ReviewView {
   busy: boolean;
   may_review: boolean;
   may_process: boolean;
-  approval: Record<string, any> | null;
+  approval: ApprovalView | null;
 }
 
 export interface RigChoice {
