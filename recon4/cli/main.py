@@ -52,7 +52,10 @@ _RESUMABLE = {"process", "demo"}
 """Commands that keep finished stages."""
 
 PresetOption = Annotated[
-    str, typer.Option("--preset", help="Start from: indoor, staircase, outdoor, hector, thesis.")
+    str,
+    typer.Option(
+        "--preset", help="Start from: indoor, staircase, outdoor, hector, thesis, wuerzburg."
+    ),
 ]
 SetOption = Annotated[
     list[str] | None,
