@@ -171,7 +171,6 @@ def _register(
         target,
         _spread(turns.turns[j].points, g.source_segments).astype(np.float64),
         initial=relative(T, i, j),
-        planes=_planes_of(settings),
         settings=settings.registration,
         normal_noise_rad=g.normal_noise_rad,
     )
