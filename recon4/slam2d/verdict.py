@@ -120,7 +120,7 @@ def _tracking(facts: Facts2d) -> Iterator[Finding2d]:
         yield (
             Usability.CHECK if has_odometry else Usability.DO_NOT_USE,
             f"The local map started again {odometry.resets} times: the parts of the map are "
-            f"joined by {'the odometry of the recording' if has_odometry else 'a guess'} and by "
+            f"joined by {'the odometry of the recording' if has_odometry else 'the motion before'} and by "
             "loop closures only.",
         )
     if odometry.searched > _SEARCHED_RATIO * odometry.scans:
