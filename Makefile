@@ -23,6 +23,8 @@ PYTHON ?= $(shell for python in python3 python3.13 python3.12 python3.11; do \
 	$$python -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))' 2>/dev/null \
 	&& echo $$python && break; done)
 export PYTHON
+# Make 3 cannot keep the outputs of two targets apart.
+SYNC := $(if $(filter output-sync,$(.FEATURES)),--output-sync=target)
 # Else each of the hundreds of interpreters that tests start compiles recon4 again.
 unexport PYTHONDONTWRITEBYTECODE
 
@@ -32,7 +34,9 @@ unexport PYTHONDONTWRITEBYTECODE
 demo: $(VENV)/installed-run
 	$(BIN)/recon4 demo --out demo $(if $(HEADLESS),--headless)
 
-test: format lint types web unit e2e
+# Browser tests wait most of the time: they run beside the others, which leave them the processor.
+test: format lint types web
+	@$(MAKE) --no-print-directory -j2 $(SYNC) unit e2e
 
 format: $(VENV)/installed-dev
 	$(BIN)/ruff format --check .
@@ -44,7 +48,7 @@ types: $(VENV)/installed-dev
 	$(BIN)/mypy
 
 unit: $(VENV)/installed-dev
-	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder -m 'not e2e' --durations=10
+	nice -n 5 $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder -m 'not e2e' --durations=10
 
 e2e: $(VENV)/installed-dev
 	$(BIN)/python -m pytest -m e2e --durations=10

@@ -23,7 +23,8 @@ from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import asdict, dataclass
 from pathlib import Path, PurePosixPath
-from typing import Any
+
+import msgspec
 
 from recon4.errors import ConfigError, StoreError
 from recon4.progress import Progress, track
@@ -43,8 +44,33 @@ _TEMPORARY = re.compile(r"\.(tmp|slice|going)-.*|buckets-.*|\.lock|server\.lock|
 _BESIDE_SQLITE = ("-wal", "-shm", "-journal")
 _LIST = re.compile(r"\d{4}-\d{2}-\d{2}T\d{2}-\d{2}-\d{2}Z(-\d+)?\.json")
 _MAX_TRIES = 5
-Entries = dict[str, dict[str, Any]]
-"""Relative name -> ``bytes``, ``sha256`` and ``mode``."""
+
+
+@dataclass(frozen=True, slots=True)
+class BackedUpFile:
+    """A file in the listing of a backup."""
+
+    bytes: int
+    sha256: str
+    mode: int
+    """Permissions."""
+
+
+Entries = dict[str, BackedUpFile]
+"""By relative name."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BackupListing:
+    """The listing of a backup; its file also has the SHA-256 of these fields."""
+
+    format: int
+    made: str
+    """UTC, as in its name."""
+    with_keys: bool
+    left_out: list[str]
+    """Files that changed while they were copied."""
+    files: Entries
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +116,7 @@ def back_up(root: Path, out: Path, *, with_keys: bool, progress: Progress) -> Ba
         raise_if_full(error, out)
         raise StoreError(f"cannot write {out}: {error.strerror or error}") from error
     check_backup(path, progress)
-    total = sum(int(entry["bytes"]) for entry in taken.values())
+    total = sum(entry.bytes for entry in taken.values())
     return BackedUp(path, len(taken), total, new_bytes, tuple(left_out), tuple(damaged))
 
 
@@ -114,9 +140,9 @@ def restore(backup: Path, root: Path, *, with_keys: bool, progress: Progress) ->
     listing = read_list(path)
     if root.exists() and any(root.iterdir()):
         raise ConfigError(f"{root} is not empty: a backup is restored into an empty folder")
-    if with_keys and not listing["with_keys"]:
+    if with_keys and not listing.with_keys:
         raise ConfigError(f"{path.name} was made without keys: leave out --with-keys")
-    files = {n: e for n, e in listing["files"].items() if with_keys or not _is_secret(n)}
+    files = {n: e for n, e in listing.files.items() if with_keys or not _is_secret(n)}
     check_backup(path, progress)
     building = root.with_name(f".tmp-restore-{root.name}-{os.getpid()}")
     try:
@@ -147,17 +173,21 @@ def newest(backup: Path) -> Path:
     return lists[-1]
 
 
-def read_list(path: Path) -> dict[str, Any]:
+def read_list(path: Path) -> BackupListing:
     """Read the listing of a backup.
 
     Raises:
         StoreError: If it is damaged, has another format, or a name leads outside the backup.
     """
-    listing = read_object(path, max_bytes=1 << 30)
-    body = {name: value for name, value in listing.items() if name != "sha256"}
-    if listing.get("format") != FORMAT or listing.get("sha256") != hash_json(body):
+    record = read_object(path, max_bytes=1 << 30)
+    body = {name: value for name, value in record.items() if name != "sha256"}
+    if record.get("format") != FORMAT or record.get("sha256") != hash_json(body):
         raise StoreError(f"{path} is not the listing of a backup, or was changed")
-    for name in listing["files"]:
+    try:
+        listing = msgspec.convert(body, BackupListing)
+    except msgspec.ValidationError as error:
+        raise StoreError(f"{path} is not the listing of a backup: {error}") from error
+    for name in listing.files:
         parts = PurePosixPath(name).parts
         if name.startswith("/") or ".." in parts or not parts:
             raise StoreError(f"{path}: the name {name[:100]!r} leads outside the backup")
@@ -171,7 +201,7 @@ def check_backup(path: Path, progress: Progress) -> None:
         StoreError: If a file is missing or has other bytes.
     """
     objects = path.parent / "objects"
-    hashes = {str(entry["sha256"]) for entry in read_list(path)["files"].values()}
+    hashes = {entry.sha256 for entry in read_list(path).files.values()}
     for sha256 in track(sorted(hashes), progress, what="compare", unit="files", total=len(hashes)):
         place = _place(objects, sha256)
         got = hash_file(place) if place.is_file() else "no file"
@@ -231,7 +261,7 @@ def _copy_all(
     return taken, left_out, new_bytes
 
 
-def _copy(path: Path, objects: Path) -> tuple[dict[str, Any], int] | None:
+def _copy(path: Path, objects: Path) -> tuple[BackedUpFile, int] | None:
     """Copy a file under its hash: its entry and new bytes; None = it changed meanwhile."""
     for _ in range(_MAX_TRIES):
         temporary = objects / f".tmp-{secrets.token_hex(6)}"
@@ -247,7 +277,7 @@ def _copy(path: Path, objects: Path) -> tuple[dict[str, Any], int] | None:
     return None
 
 
-def _keep(temporary: Path, objects: Path, mode: int) -> tuple[dict[str, Any], int]:
+def _keep(temporary: Path, objects: Path, mode: int) -> tuple[BackedUpFile, int]:
     """Move a copy to its place and sync it to the disk."""
     sha256, size = hash_file(temporary), temporary.stat().st_size
     place = _place(objects, sha256)
@@ -258,7 +288,7 @@ def _keep(temporary: Path, objects: Path, mode: int) -> tuple[dict[str, Any], in
         fsync(temporary)
         os.replace(temporary, place)
         fsync(place.parent)
-    return {"bytes": size, "sha256": sha256, "mode": mode}, size if new else 0
+    return BackedUpFile(size, sha256, mode), size if new else 0
 
 
 def _copy_bytes(source: Path, target: Path) -> bool:
@@ -300,7 +330,7 @@ def _settle_seals(
             if full not in taken:
                 continue
             seals = (last.get(name, OPEN), first.get(name, OPEN))
-            got = taken[full]["sha256"]
+            got = taken[full].sha256
             fits = [seal for seal in seals if seal.get("sha256") == got]
             settled[name] = fits[0] if fits else OPEN
             if not fits and OPEN not in seals and seals[0] == seals[1]:
@@ -330,27 +360,25 @@ def _write_list(out: Path, files: Entries, left_out: list[str], *, with_keys: bo
     path, number = out / f"{timestamp}.json", 1
     while path.exists():
         path, number = out / f"{timestamp}-{number}.json", number + 1
-    body = {
-        "format": FORMAT,
-        "made": timestamp,
-        "with_keys": with_keys,
-        "left_out": left_out,
-        "files": files,
-    }
+    body = asdict(
+        BackupListing(
+            format=FORMAT, made=timestamp, with_keys=with_keys, left_out=left_out, files=files
+        )
+    )
     write_json(path, body | {"sha256": hash_json(body)})
     return path
 
 
-def _put(objects: Path, building: Path, name: str, *, entry: dict[str, Any]) -> None:
-    target, sha256 = building / name, str(entry["sha256"])
+def _put(objects: Path, building: Path, name: str, *, entry: BackedUpFile) -> None:
+    target, sha256 = building / name, entry.sha256
     target.parent.mkdir(parents=True, exist_ok=True)
     with atomic_file(target) as temporary:
         shutil.copyfile(_place(objects, sha256), temporary)
         if (got := hash_file(temporary)) != sha256:
             raise StoreError(f"{name}: expected SHA-256 {sha256}, got {got}")
-        temporary.chmod(int(entry["mode"]) & 0o777)
+        temporary.chmod(entry.mode & 0o777)
 
 
-def to_json(found: BackedUp) -> dict[str, Any]:
+def to_json(found: BackedUp) -> dict[str, object]:
     """Plain JSON values."""
     return asdict(found) | {"path": str(found.path)}

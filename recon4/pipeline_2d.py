@@ -76,6 +76,6 @@ def _check_sources(sources: Sources) -> None:
     unused = [name for name, value in given.items() if value is not None]
     if unused:
         raise ConfigError(
-            f"{sources.recordings[0].name} is a recording of a 2-D laser: expected no "
-            f"{' and no '.join(unused)}"
+            f"{sources.recordings[0].name} is a recording of a 2-D laser: it is processed without "
+            f"{' and '.join(unused)}"
         )

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import time
-from dataclasses import asdict
 from typing import Any
 
 import msgspec
@@ -13,6 +11,7 @@ from fastapi import WebSocket
 
 from app.live.capture import Capture, State
 from app.live.health import lidars
+from app.live.phone_message import CaptureState, NoCapture, PhoneMessage
 from app.live.power import battery_findings
 from app.live.store import Captures
 from app.live.stream_state import BYTES_A_POINT, Cursor
@@ -33,13 +32,20 @@ BYTES_AT_FIRST = 420_000
 URGENCY = ("error", "warning", "info")
 
 
+class Greeting(msgspec.Struct, frozen=True):
+    """The first message of a page."""
+
+    have: Any = None
+    """What it has of an earlier connection, see `cursor_of`."""
+
+
 class Phone:
     """A WebSocket of a page, and the state the page has received."""
 
     def __init__(self, socket: WebSocket, captures: Captures) -> None:
         self._socket, self._captures = socket, captures
         self._disconnected: asyncio.Task[None] | None = None
-        self._state: dict[str, Any] = {}
+        self._state: CaptureState | None = None
         self._allowance = float(BYTES_AT_FIRST)
 
     async def serve(self) -> None:
@@ -56,14 +62,13 @@ class Phone:
         greeting = await self._greeting()
         if greeting is None:
             return
-        have = greeting.get("have")
+        have = greeting.have
         self._disconnected = asyncio.create_task(self._wait_for_disconnect())
         try:
             capture = self._captures.newest
             while not self._disconnected.done():
                 if capture is None:
-                    none = {"state": "none", "t": time.time(), "server": __version__}
-                    await self._send(none)
+                    await self._send(NoCapture(t=time.time(), server=__version__))
                     await self._rest(STILL_HERE_S)
                 else:
                     await self._stream(capture, cursor_of(have, capture))
@@ -72,13 +77,18 @@ class Phone:
         finally:
             self._disconnected.cancel()
 
-    async def _greeting(self) -> dict[str, Any] | None:
+    async def _greeting(self) -> Greeting | None:
         """The first message of the page; None if it is not a JSON object."""
         try:
-            greeting = json.loads(await asyncio.wait_for(self._socket.receive_text(), STALLED_S))
-        except (KeyError, ValueError, RecursionError):  # binary, not JSON, or nested too deeply
+            said = await asyncio.wait_for(self._socket.receive_text(), STALLED_S)
+            return msgspec.json.decode(said, type=Greeting)
+        except (
+            KeyError,
+            ValueError,
+            msgspec.MsgspecError,
+            RecursionError,
+        ):  # binary, not JSON, or nested too deeply
             return None
-        return greeting if isinstance(greeting, dict) else None
 
     async def _stream(self, capture: Capture, cursor: Cursor) -> None:
         """Stream one capture until another one begins or the phone disconnects."""
@@ -92,25 +102,22 @@ class Phone:
             most = max(0, int(self._allowance) // BYTES_A_POINT)
             message, points = stream.lacking(cursor, most=most)
             self._allowance -= len(points)
-            await self._send(message | self._changed(state_of(self._captures, capture)))
+            state = state_of(self._captures, capture)
+            message.add_changes(self._state, state)
+            self._state = state
+            await self._send(message)
             if points:
                 await asyncio.wait_for(self._socket.send_bytes(points), STALLED_S)
             await self._rest(SHOWN_EVERY_S)
             if stream.complete(cursor):
                 await stream.news(version, timeout_s=STILL_HERE_S)
 
-    def _changed(self, state: dict[str, Any]) -> dict[str, Any]:
-        """The fields that differ from those this phone received last."""
-        fresh = {key: value for key, value in state.items() if self._state.get(key) != value}
-        self._state = state
-        return fresh
-
     async def _rest(self, seconds: float) -> None:
         """Wait, at most until the phone disconnects."""
         assert self._disconnected is not None
         await asyncio.wait([self._disconnected], timeout=seconds)
 
-    async def _send(self, message: dict[str, Any]) -> None:
+    async def _send(self, message: PhoneMessage | NoCapture) -> None:
         data = msgspec.json.encode(message)
         self._allowance -= len(data)
         await asyncio.wait_for(self._socket.send_text(data.decode()), STALLED_S)
@@ -132,7 +139,7 @@ def cursor_of(have: Any, capture: Capture) -> Cursor:
     return cursor
 
 
-def state_of(captures: Captures, capture: Capture) -> dict[str, Any]:
+def state_of(captures: Captures, capture: Capture) -> CaptureState:
     """State of the capture; rates and warnings of the sensors only while it records."""
     records = capture.state in (State.RECORDING, State.PAUSED)
     newest = capture.stream.newest if records else Newest()
@@ -140,12 +147,12 @@ def state_of(captures: Captures, capture: Capture) -> dict[str, Any]:
     found = findings(captures.rig, newest, capture.problem)
     found += capture.stream.so_far.findings(records=records)
     found = sorted([*found, *battery_findings(battery)], key=lambda one: URGENCY.index(one.level))
-    return {
-        "project": capture.project,
-        "state": capture.state,
-        "words": [asdict(one) for one in found],
-        "rates": {} if newest.status is None else rates(captures.rig, newest.status),
-        "lidars": [asdict(one) for one in lidars(captures.rig, newest)],
-        "battery": None if battery is None else asdict(battery),
-        "server": __version__,
-    }
+    return CaptureState(
+        project=capture.project,
+        state=capture.state,
+        words=found,
+        rates={} if newest.status is None else rates(captures.rig, newest.status),
+        lidars=lidars(captures.rig, newest),
+        battery=battery,
+        server=__version__,
+    )

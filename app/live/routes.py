@@ -25,6 +25,7 @@ from app.network.request_caller import CalledBy
 from app.network.streams import TOO_MANY
 from app.pages import page_response
 from app.rig_files import check_rig_file
+from recon4.live.findings import CaptureFinding
 from recon4.live.protocol import AddMark, Pause, Resume
 from recon4.settings import PRESETS
 
@@ -77,7 +78,7 @@ class CaptureView(BaseModel):
     project: str
     state: str
     """``recording``, ``paused``, ``finishing`` or ``ready`` (to be processed)."""
-    words: list[dict[str, str]]
+    words: list[CaptureFinding]
     """Warnings, the most urgent first: level (``error``, ``warning``, ``info``) and text."""
     rates: dict[str, float]
     """Datagrams per second of each LiDAR, the IMU and the GNSS receiver."""
@@ -200,8 +201,8 @@ def _view(captures: Captures, may_capture: bool) -> CaptureView:
     return CaptureView(
         project=capture.project,
         state=capture.state,
-        words=state["words"],
-        rates=state["rates"],
+        words=state.words,
+        rates=state.rates,
         phones=captures.streams.open,
         may_capture=may_capture,
     )

@@ -8,10 +8,8 @@ import time
 from bisect import bisect_left
 from collections import deque
 from dataclasses import dataclass, field
-from typing import Any
 
-import msgspec
-
+from app.live.phone_message import LocatedMark, MarksPart, PathPart, PhoneMessage, PointsPart
 from recon4.live.newest import Newest
 from recon4.live.protocol import Done, Mark, Message, Path, Points, Pose, Status, kind_of
 from recon4.live.so_far import WalkSoFar
@@ -27,17 +25,6 @@ _PATH_STEP_M = 0.25
 """Distance between stored points of the path; an hour's walk has a few thousand."""
 _TRACK = 6000
 """Poses kept to locate marks: ten minutes, longer than typing a note takes."""
-
-
-class LocatedMark(msgspec.Struct, tag_field="kind", tag="mark", frozen=True):
-    """A mark with its position in the map."""
-
-    t_ns: int
-    what: str
-    text: str | None
-    who: str | None
-    p: list[float] | None
-    """None = unknown."""
 
 
 @dataclass(slots=True)
@@ -115,29 +102,27 @@ class StreamState:
         except TimeoutError:
             return
 
-    def lacking(
-        self, cursor: Cursor, *, most: int = POINTS_AT_ONCE
-    ) -> tuple[dict[str, Any], bytes]:
+    def lacking(self, cursor: Cursor, *, most: int = POINTS_AT_ONCE) -> tuple[PhoneMessage, bytes]:
         """The state a phone with this cursor lacks, with at most ``most`` points; moves the cursor.
 
         Returns:
-            The fields of a message, and the points it announces under ``points``: int16 x, y, z
+            A message, and the points it announces under ``points``: int16 x, y, z
             of each, then a uint8 value of each.
         """
-        message: dict[str, Any] = {"t": time.time()}
+        message = PhoneMessage(t=time.time())
         for kind, version in self._versions.items():
             if cursor.versions.get(kind) != version:
-                message[kind] = getattr(self.newest, kind)
+                setattr(message, kind, getattr(self.newest, kind))
                 cursor.versions[kind] = version
         if cursor.path > len(self._path):
             cursor.path = 0
         if cursor.path < len(self._path):
-            message["path"] = {"start": cursor.path, "points": self._path[cursor.path :]}
+            message.path = PathPart(cursor.path, self._path[cursor.path :])
             cursor.path = len(self._path)
         if cursor.marks > len(self._marks):
             cursor.marks = 0
         if cursor.marks < len(self._marks):
-            message["marks"] = {"start": cursor.marks, "marks": self._marks[cursor.marks :]}
+            message.marks = MarksPart(cursor.marks, self._marks[cursor.marks :])
             cursor.marks = len(self._marks)
         return message, self._lacking_points(cursor, message, min(most, POINTS_AT_ONCE))
 
@@ -145,16 +130,15 @@ class StreamState:
         """Whether a phone with this cursor has all points."""
         return cursor.generation == self._generation and cursor.points >= self.points
 
-    def _lacking_points(self, cursor: Cursor, message: dict[str, Any], most: int) -> bytes:
+    def _lacking_points(self, cursor: Cursor, message: PhoneMessage, most: int) -> bytes:
         if cursor.generation != self._generation or cursor.points > self.points:
             cursor.generation, cursor.points = self._generation, 0
         start, end = cursor.points, min(cursor.points + most, self.points)
         if start == end:
             return b""
-        message["points"] = {
-            "generation": self._generation, "start": start, "count": end - start,
-            "voxel_m": self._voxel_m, "total": self.points,
-        }  # fmt: skip
+        message.points = PointsPart(
+            self._generation, start, end - start, self._voxel_m, self.points
+        )
         cursor.points = end
         return bytes(self._voxels[6 * start : 6 * end] + self._values[start:end])
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, TypeVar
 
 import numpy as np
 from fastapi import APIRouter, Depends, Query, Response
@@ -22,6 +23,7 @@ from app.network.request_caller import CalledBy, Caller
 from app.pages import page_response
 from app.review.model import (
     AlignmentView,
+    ApprovalView,
     Approve,
     Frame,
     MapFacts,
@@ -343,19 +345,22 @@ def _map_facts(root: Path) -> MapFacts | None:
     )
 
 
-def _approval(root: Path, rows: Sequence[Row], server: Parts) -> dict[str, Any] | None:
-    """Fields of the newest approval, and whether the files still match the signature."""
-    found = latest_approval(root, rows)
-    if found is None or not found["current"]:
+def _approval(root: Path, rows: Sequence[Row], server: Parts) -> ApprovalView | None:
+    """The newest approval, and whether the files still match the signature."""
+    latest = latest_approval(root, rows)
+    if latest is None:
+        return None
+    found = ApprovalView(**asdict(latest))
+    if not found.current:
         return found
     try:
         approval = approval_of(root, artifact_keys(read_summary(root) or {}))
     except Altered as error:
-        return found | {"check": "altered", "altered": str(error)}
+        return replace(found, check="altered", altered=str(error))
     if approval is None:
-        return found | {"check": "altered", "altered": "the results are of other artifacts"}
+        return replace(found, check="altered", altered="the results are of other artifacts")
     check = server.checks.state(root, approval)
-    return found | {"check": check.state, "altered": check.message}
+    return replace(found, check=check.state, altered=check.message)
 
 
 def _busy(project_id: str, server: Parts) -> bool:

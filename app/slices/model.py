@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from dataclasses import asdict, dataclass
+from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -11,6 +11,7 @@ from app.names import Name
 from recon4.review.evidence import Evidence
 from recon4.slices.colors import ColorBy, Ground
 from recon4.slices.cut import MAX_SLICES, MAX_THICKNESS_M, Cut, free, horizontal, vertical
+from recon4.slices.reference import ReferenceFacts
 
 Coordinate = Annotated[float, Field(ge=-1e8, le=1e8, allow_inf_nan=False)]
 Xy = tuple[Coordinate, Coordinate]
@@ -209,6 +210,37 @@ class ControlState(Strict):
         return {name: at for name, at in self.picks.items() if self.found_in.get(name) == key}
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ListedReference:
+    """A reference of a project; `ReferenceFacts` with its id, or the problem with its files."""
+
+    id: str
+    name: str
+    file: str = ""
+    frame: Literal["map", "crs"] = "map"
+    T_map_reference: list[list[float]] | None = None
+    alignment: str = "none"
+    kind: Literal["mesh", "cloud", "damaged"]
+    points: int = 0
+    triangles: int = 0
+    problem: str = ""
+    """Why it cannot be used; empty if it can."""
+
+    @staticmethod
+    def of(reference_id: str, facts: ReferenceFacts) -> ListedReference:
+        """A reference whose files are all right."""
+        return ListedReference(id=reference_id, **asdict(facts))
+
+
+@dataclass(frozen=True, slots=True)
+class OtherMap:
+    """A map that the same cut can show."""
+
+    id: str
+    words: str
+    """Label of it."""
+
+
 class SliceFacts(BaseModel):
     """Facts about the map that can be cut."""
 
@@ -225,9 +257,9 @@ class SliceFacts(BaseModel):
     """Frame, axes and unit, as text."""
     approval: str
     """Who approved the map, or `Not approved`."""
-    references: list[dict[str, Any]]
-    sources: list[dict[str, str]]
-    """Other maps to compare with: ``id`` and the label ``words``."""
+    references: list[ListedReference]
+    sources: list[OtherMap]
+    """Other maps to compare with."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ import base64
 import binascii
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 from fastapi import APIRouter, Depends, Response
 from fastapi.responses import FileResponse, HTMLResponse, PlainTextResponse
@@ -28,6 +28,7 @@ from app.slices.model import (
     ControlFile,
     ControlState,
     ExportContext,
+    ListedReference,
     PickRequest,
     PickView,
     SliceExportRequest,
@@ -43,6 +44,7 @@ from recon4.errors import ConfigError
 from recon4.slices.compare import Comparison
 from recon4.slices.control_points import ControlPreview
 from recon4.slices.double_places import DoubleReport
+from recon4.slices.reference import ReferenceFacts
 from recon4.slices.residuals import ControlReport
 
 LOOK = [Depends(needs(Permission.LOOK))]
@@ -118,8 +120,7 @@ async def overview_window(
 ) -> WindowSpec:
     """Left, bottom, right and top in the map [m]."""
     image = await _overview(project_id, server, caller, source=source)
-    kept = await run_in_threadpool(work.read_kept, image.with_suffix(".json"))
-    return WindowSpec.model_validate(kept)
+    return await run_in_threadpool(work.read_window, image.with_suffix(".json"))
 
 
 @router.post("/pick", summary="The point of the map at a position on a slice")
@@ -170,7 +171,7 @@ async def compare(
 @router.post("/references", status_code=201, dependencies=PROCESS, summary="Add a reference")
 async def add_reference(
     project_id: str, add: AddReference, server: Server, caller: CalledBy
-) -> dict[str, Any]:
+) -> ListedReference:
     """A cloud or mesh on this computer (PLY, PCD, LAS, LAZ, E57, XYZ, CSV, OBJ, STL)."""
     path = await run_in_threadpool(server.projects.importable, add.path)
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
@@ -188,7 +189,7 @@ async def add_reference(
             project_id, out, terms, work.add_reference, str(path), REFERENCE, add.name, in_crs
         )
     )
-    return {"id": out.name} | facts
+    return ListedReference.of(out.name, facts)
 
 
 @router.delete(
@@ -203,7 +204,7 @@ def remove_reference(project_id: str, reference_id: str, server: Server) -> Resp
 @router.post("/references/{reference_id}/align", dependencies=PROCESS, summary="Align it")
 async def align(
     project_id: str, reference_id: str, ask: AlignRequest, *, server: Server, caller: CalledBy
-) -> dict[str, Any]:
+) -> ReferenceFacts:
     """Align a reference with the map: by ICP, by pairs of points, or not at all."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     folder = server.slices.reference(project_id, reference_id)

@@ -22,7 +22,7 @@ from app.review.checks import ApprovalChecks
 from app.settings import ServerSettings
 from app.slices import work
 from app.slices.exports import Exports
-from app.slices.model import ControlState
+from app.slices.model import ControlState, ListedReference, OtherMap
 from recon4.bounded import read_text_limited
 from recon4.errors import StoreError
 from recon4.review.approved import Approval, approval_of, approval_of_map
@@ -103,18 +103,18 @@ class Slices:
             raise NotFound(f"no map {source[:80]!r}")
         return self._latest(project_id)
 
-    def sources(self, project_id: str) -> list[dict[str, str]]:
+    def sources(self, project_id: str) -> list[OtherMap]:
         """Other maps to compare with the latest: earlier ones, and those of other projects."""
         root = self._projects.folder(project_id)
         current = Path(self._latest(project_id)["map"]).name
         rows = [row for row in read_stages(root) if row.stage == "map" and row.key != current]
         earlier = [
-            {"id": f"map:{row.key}", "words": f"Map of {row.finished[:16].replace('T', ' ')}"}
+            OtherMap(f"map:{row.key}", f"Map of {row.finished[:16].replace('T', ' ')}")
             for row in sorted(rows, key=lambda row: row.finished, reverse=True)
             if (root / "artifacts" / row.key / "tiles.json").is_file()
         ]
         others = [
-            {"id": f"project:{card.id}", "words": f"Project {card.name}"}
+            OtherMap(f"project:{card.id}", f"Project {card.name}")
             for card in self._projects.all()
             if card.has_map and card.id != project_id
         ]
@@ -168,7 +168,7 @@ class Slices:
         without = {stage: folder for stage, folder in found.items() if stage != "level"}
         return without | ({"level": str(level)} if "level" in evidence.artifacts else {})
 
-    def references(self, project_id: str) -> list[dict[str, Any]]:
+    def references(self, project_id: str) -> list[ListedReference]:
         """References of a project."""
         return work.references_in(self._folder(project_id) / "references")
 

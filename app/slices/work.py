@@ -11,11 +11,14 @@ from typing import Any
 
 import msgspec
 import numpy as np
+from pydantic import ValidationError
 
 from app.slices.model import (
     CompareRequest,
     ControlState,
     ExportContext,
+    ListedReference,
+    OtherMap,
     PickView,
     SliceFacts,
     SliceImageRequest,
@@ -44,7 +47,13 @@ from recon4.slices.frames import MapFrame, frame_of
 from recon4.slices.imports import import_reference, set_alignment
 from recon4.slices.pick import nearest_surface, pick
 from recon4.slices.points import SliceWindow, extent
-from recon4.slices.reference import Method, Reference, load_reference, read_facts
+from recon4.slices.reference import (
+    Method,
+    Reference,
+    ReferenceFacts,
+    load_reference,
+    read_facts,
+)
 from recon4.slices.residuals import ControlReport, residual_csv, residuals
 from recon4.slices.sheet import (
     approval_text,
@@ -101,8 +110,8 @@ def reference_of(folder: str, method: Method) -> Reference | None:
 
 def facts(
     artifacts: Artifacts,
-    references: list[dict[str, Any]],
-    sources: list[dict[str, str]],
+    references: list[ListedReference],
+    sources: list[OtherMap],
     *,
     approval: str,
 ) -> SliceFacts:
@@ -221,7 +230,7 @@ def comparison_csv(map_folder: str, reference: str, ask: CompareRequest) -> str:
     return to_csv(compare(tiles, [spec.cut() for spec in ask.cuts] or usual_cuts(tiles), against))
 
 
-def add_reference(path: str, out: str, name: str, artifacts: Artifacts | None) -> dict[str, Any]:
+def add_reference(path: str, out: str, name: str, artifacts: Artifacts | None) -> ReferenceFacts:
     """Import a file of unknown origin; ``artifacts`` if it is in the map's CRS."""
     frame = map_frame(artifacts) if artifacts else None
     if frame is not None and frame.to_crs is None:
@@ -231,7 +240,7 @@ def add_reference(path: str, out: str, name: str, artifacts: Artifacts | None) -
 
 def align_reference(
     map_folder: str, reference: str, how: str, pairs: tuple[list[Xyz], list[Xyz]]
-) -> dict[str, Any]:
+) -> ReferenceFacts:
     """Align a reference with the map; its earlier alignment is replaced."""
     folder = Path(reference)
     if how == "none":
@@ -303,23 +312,24 @@ def surface_at(artifacts: Artifacts, xyz_m: Xyz, frame: str) -> SurfacePoint:
     return SurfacePoint(_xyz(p), None if found is None else _xyz(found))
 
 
-def references_in(folder: Path) -> list[dict[str, Any]]:
+def references_in(folder: Path) -> list[ListedReference]:
     """The references of a project, by name."""
     entries = sorted(folder.iterdir()) if folder.is_dir() else []
     return [
-        {"id": entry.name} | _facts_or_problem(entry)
+        _facts_or_problem(entry)
         for entry in entries
         if not entry.name.startswith(".") and (entry / "reference.json").is_file()
     ]
 
 
-def _facts_or_problem(folder: Path) -> dict[str, Any]:
+def _facts_or_problem(folder: Path) -> ListedReference:
     """Facts of a reference, or the problem if it cannot be read."""
     try:
-        return read_facts(folder)
+        return ListedReference.of(folder.name, read_facts(folder))
     except StoreError as error:
         problem = visible(str(error).replace(f"{folder.parent}/", ""))
-        return {"name": f"{folder.name}: {problem}", "kind": "damaged", "problem": problem}
+        name = f"{folder.name}: {problem}"
+        return ListedReference(id=folder.name, name=name, kind="damaged", problem=problem)
 
 
 def span_of(ask: SliceView, made: SliceImage) -> Span:
@@ -386,13 +396,16 @@ def _xyz(values: Any) -> Xyz:
     return x, y, z
 
 
-def read_kept(path: Path) -> dict[str, Any]:
-    """Read JSON that a child process wrote.
+def read_window(path: Path) -> WindowSpec:
+    """Read the window of an image that a child process wrote.
 
     Raises:
         StoreError: If it is damaged or too large.
     """
-    return read_json_object(path, MAX_KEPT_BYTES, failure=StoreError)
+    try:
+        return WindowSpec.model_validate(read_json_object(path, MAX_KEPT_BYTES, failure=StoreError))
+    except ValidationError as error:
+        raise StoreError(f"{path.name}: {error}") from error
 
 
 def read_double_walls(path: Path) -> DoubleReport:
@@ -402,6 +415,7 @@ def read_double_walls(path: Path) -> DoubleReport:
         StoreError: If it is damaged or too large.
     """
     try:
-        return msgspec.convert(read_kept(path), DoubleReport)
+        record = read_json_object(path, MAX_KEPT_BYTES, failure=StoreError)
+        return msgspec.convert(record, DoubleReport)
     except msgspec.ValidationError as error:
         raise StoreError(f"{path.name} cannot be read: {error}") from error

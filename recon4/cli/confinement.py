@@ -11,6 +11,8 @@ from __future__ import annotations
 import atexit
 import logging
 import shutil
+import subprocess
+import sys
 from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
@@ -20,6 +22,18 @@ from recon4.sandbox import Policy, confine
 from recon4.sandbox.private_cache import use_private_cache
 
 _OPEN_FILES = 4096
+_REMOVER = """
+import os, sys
+sys.stdin.buffer.read()
+for path in sys.argv[1:]:
+    try:
+        os.rmdir(path)
+    except FileNotFoundError:
+        continue
+    except OSError:
+        break
+"""
+"""Waits until the other end of its input closes, whatever ended the process that holds it."""
 _own_process = False
 
 
@@ -32,15 +46,42 @@ def begin_own_process() -> None:
 def result_folder(path: Path) -> Path:
     """The folder, made if it does not exist, before this process may no longer make it.
 
+    What it made and left empty is removed when it ends: after a failed command nothing is left.
+
     Raises:
         StoreError: If it cannot be made.
     """
+    if not _own_process:
+        return path
+    missing = [folder for folder in (path.absolute(), *path.absolute().parents) if not _is(folder)]
     try:
-        if _own_process:
-            path.mkdir(parents=True, exist_ok=True)
+        path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise StoreError(f"cannot write {path}: {error.strerror}") from error
+    if missing:
+        _remove_if_empty(missing)
     return path
+
+
+def _is(folder: Path) -> bool:
+    with suppress(OSError):
+        return folder.exists()
+    return True  # what cannot be looked at was not made here
+
+
+def _remove_if_empty(folders: list[Path]) -> None:
+    """Have another process remove folders that are empty when this one ends.
+
+    Confined, this one may not remove what lies in a folder it may not write.
+    """
+    remover = subprocess.Popen(
+        [sys.executable, "-I", "-S", "-c", _REMOVER, *map(str, folders)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,  # Ctrl-C is for the command
+    )
+    atexit.register(remover.communicate)
 
 
 def confine_command(*, write: Iterable[Path] = ()) -> None:

@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable, Iterator
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -75,7 +75,7 @@ def evaluate(
         raise typer.BadParameter("expected --truth, --markers or --patch")
     if report is not None and truth is None:
         raise typer.BadParameter("--report needs --truth")
-    record: dict[str, Any] = {}
+    record: dict[str, object] = {}
     texts: list[str] = []
     if truth is not None and truth.suffix == RELATIONS_SUFFIX:
         compared = _relation_errors(result, truth)
@@ -104,17 +104,17 @@ def _against_truth(result: Path, truth: Path, *, model: Path | None, floor: bool
     from recon4.evaluation.evaluate import evaluate as evaluate_result
     from recon4.store.project import is_project, read_artifacts
 
-    given: dict[str, Any] = {}
+    chunks, frames = None, None
     artifacts = read_artifacts(result) if is_project(result) else {}
     if "map" in artifacts:
-        given["chunks"] = _map_chunks(artifacts["map"])
+        chunks = _map_chunks(artifacts["map"])
     if floor:
         if "frames" not in artifacts:
             raise typer.BadParameter(f"--floor needs a project with its frames, got {result}")
         from recon4.store.frames import open_frames
 
-        given["frames"] = open_frames(artifacts["frames"], artifacts.get("calibration"))
-    return evaluate_result(result, truth=truth, model=model, **given)
+        frames = open_frames(artifacts["frames"], artifacts.get("calibration"))
+    return evaluate_result(result, truth=truth, model=model, chunks=chunks, frames=frames)
 
 
 def _relation_errors(result: Path, relations: Path) -> RelationErrors:

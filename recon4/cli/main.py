@@ -54,7 +54,10 @@ _RESUMABLE = {"process", "demo"}
 """Commands that keep finished stages."""
 
 PresetOption = Annotated[
-    str, typer.Option("--preset", help="Start from: indoor, staircase, outdoor, hector, thesis.")
+    str,
+    typer.Option(
+        "--preset", help="Start from: indoor, staircase, outdoor, hector, thesis, wuerzburg."
+    ),
 ]
 SetOption = Annotated[
     list[str] | None,
@@ -111,9 +114,9 @@ def process(  # noqa: PLR0913 - an argument for each option
 
     chosen = _settings(preset, [*_calibrate(calibrate), *(assignments or [])])
     require_files([*recordings, *(path for path in (imu, gnss) if path)])
-    compiled = is_compiled()
+    folder, compiled = result_folder(out), is_compiled()
     if compiled:  # else this run compiles them, for every later process
-        confine_command(write=[result_folder(out)])
+        confine_command(write=[folder])
 
     from recon4.model.rig import load_rig
     from recon4.pipeline import process as run

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -13,10 +14,24 @@ from recon4.errors import ConfigError
 
 if TYPE_CHECKING:
     from recon4.mapping.tiles import TileSet
+    from recon4.review.stamp import Stamp
     from recon4.slices.cut import Cut
     from recon4.slices.frames import MapFrame
 
 slices = typer.Typer()
+
+
+@dataclass(frozen=True, slots=True)
+class SliceLook:
+    """What a slice shows beside its points."""
+
+    color: str
+    """Key of `recon4.slices.colors.LABELS`."""
+    name: str
+    """Name of the project."""
+    stamp: Stamp | None
+    """Approval of the map."""
+
 
 ProjectArgument = Annotated[Path, typer.Argument(help="Folder that `recon4 process --out` made.")]
 
@@ -52,8 +67,8 @@ def cut_map(  # noqa: PLR0913 - options of a command
     tiles = (
         approval.evidence.open_map(artifacts["map"]) if approval else TileSet.open(artifacts["map"])
     )
-    about = {"color": color, "name": project.name, "stamp": approval.stamp if approval else None}
-    points = _write(tiles, cuts, file, frame=frame, about=about)
+    look = SliceLook(color, project.name, approval.stamp if approval else None)
+    points = _write(tiles, cuts, file, frame=frame, look=look)
     sys.stdout.write(f"{points} points in {file}\n")
 
 
@@ -108,7 +123,7 @@ def _numbers(text: str, count: int) -> list[float]:
 
 
 def _write(
-    tiles: TileSet, cuts: tuple[Cut, ...], file: Path, *, frame: MapFrame, about: dict[str, Any]
+    tiles: TileSet, cuts: tuple[Cut, ...], file: Path, *, frame: MapFrame, look: SliceLook
 ) -> int:
     from recon4.review.stamp import stamp_file
     from recon4.slices.export import SliceSelection, write_csv, write_dxf, write_laz
@@ -119,40 +134,39 @@ def _write(
     if ending in writers:
         with atomic_file(file) as temporary:
             points = writers[ending](SliceSelection(tiles, cuts), temporary, frame=frame)
-            if about["stamp"]:
-                stamp_file(temporary, temporary, about["stamp"])
+            if look.stamp:
+                stamp_file(temporary, temporary, look.stamp)
         return points
     if ending not in {".png", ".svg", ".pdf", ".tif"}:
         raise ConfigError(f"a slice is written as png svg pdf tif dxf laz csv, got {file.name}")
     if len(cuts) > 1:
         raise ConfigError("an image has one slice; use .dxf, .laz or .csv for several")
-    return _write_image(tiles, cuts[0], file, frame=frame, about=about)
+    return _write_image(tiles, cuts[0], file, frame=frame, look=look)
 
 
-def _write_image(
-    tiles: TileSet, cut: Cut, file: Path, *, frame: MapFrame, about: dict[str, Any]
-) -> int:
+def _write_image(tiles: TileSet, cut: Cut, file: Path, *, frame: MapFrame, look: SliceLook) -> int:
     from recon4.slices.colors import LABELS
     from recon4.slices.export import write_geotiff
     from recon4.slices.points import extent
     from recon4.slices.sheet import SheetText, approval_text, lay_out, source_text, write_sheet
     from recon4.slices.slice_image import RasterGrid, draw
 
-    if about["color"] not in LABELS:
-        raise ConfigError(f"colors are {', '.join(LABELS)}; got {about['color']!r}")
-    approval = approval_text(about["stamp"].to_json() if about["stamp"] else None)
+    if look.color not in LABELS:
+        raise ConfigError(f"colors are {', '.join(LABELS)}; got {look.color!r}")
+    color = look.color
+    approval = approval_text(look.stamp.to_json() if look.stamp else None)
     window = extent(tiles, cut)
     if file.suffix.lower() == ".tif":
         side_m = max(window.right - window.left, window.top - window.bottom)
-        made = draw(tiles, cut, RasterGrid(window, max(0.005, side_m / 6000)), color=about["color"])
-        title = f"{about['name']}: {approval}"
+        made = draw(tiles, cut, RasterGrid(window, max(0.005, side_m / 6000)), color=color)
+        title = f"{look.name}: {approval}"
         write_geotiff(
             made, file, frame=frame, rgba=made.rgba(made.span, "light"), description=title
         )
         return made.points
     layout = lay_out(window)
-    made = draw(tiles, cut, layout.paper, color=about["color"])
+    made = draw(tiles, cut, layout.paper, color=color)
     key = tiles.tiles[0].folder.parent.name if tiles.tiles else ""
-    text = SheetText(about["name"], frame.text, source_text(key), approval)
+    text = SheetText(look.name, frame.text, source_text(key), approval)
     write_sheet(made, layout, file, span=made.span, text=text)
     return made.points

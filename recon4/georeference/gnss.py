@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +26,46 @@ from recon4.settings import GnssSettings
 _DRAWS = 400
 _MIN_PRIORS = 5
 _OUTLIER_SD = 5.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LocalRecord:
+    """A map without a place on earth in ``georeference.json``; the fields are its keys."""
+
+    georeferenced: bool = False
+    reason: str
+    fixes: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OriginRecord:
+    """The origin of a map on WGS 84."""
+
+    lat_deg: float
+    lon_deg: float
+    height_m: float
+    """Ellipsoidal [m]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GeoreferenceRecord:
+    """A georeferenced map in ``georeference.json``; the fields are its keys."""
+
+    georeferenced: bool = True
+    frame: str = "x east, y north, z up; WGS 84, ellipsoidal height"
+    origin: OriginRecord
+    fixes: int
+    """Number of fixes in the recording."""
+    fixes_usable: int
+    fixes_used: int
+    rmse_enu_m: list[float]
+    t_ns: list[int]
+    """Times of the usable fixes [ns], (M,)."""
+    residual_enu_m: list[list[float]]
+    """(M, 3), see `GeoreferenceResult.residual_m`."""
+    used: list[bool]
+    """(M,)."""
+    edges_rejected: list[int]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,27 +98,25 @@ class GeoreferenceResult:
             return np.full(3, np.nan)
         return np.sqrt(np.mean(self.residual_m[self.used] ** 2, axis=0))
 
-    def to_json(self) -> dict[str, Any]:
-        """Plain JSON values for ``georeference.json``."""
+    def record(self) -> GeoreferenceRecord | LocalRecord:
+        """What ``georeference.json`` has of it."""
         if self.origin is None:
-            return {"georeferenced": False, "reason": self.reason, "fixes": self.samples}
-        return {
-            "georeferenced": True,
-            "frame": "x east, y north, z up; WGS 84, ellipsoidal height",
-            "origin": {
-                "lat_deg": float(np.rad2deg(self.origin.lat_rad)),
-                "lon_deg": float(np.rad2deg(self.origin.lon_rad)),
-                "height_m": self.origin.height_m,
-            },
-            "fixes": self.samples,
-            "fixes_usable": len(self.used),
-            "fixes_used": int(self.used.sum()),
-            "rmse_enu_m": self.rmse_m.tolist(),
-            "t_ns": self.t_ns.tolist(),
-            "residual_enu_m": np.round(self.residual_m, 4).tolist(),
-            "used": self.used.tolist(),
-            "edges_rejected": list(self.rejected),
-        }
+            return LocalRecord(reason=self.reason, fixes=self.samples)
+        return GeoreferenceRecord(
+            origin=OriginRecord(
+                lat_deg=float(np.rad2deg(self.origin.lat_rad)),
+                lon_deg=float(np.rad2deg(self.origin.lon_rad)),
+                height_m=self.origin.height_m,
+            ),
+            fixes=self.samples,
+            fixes_usable=len(self.used),
+            fixes_used=int(self.used.sum()),
+            rmse_enu_m=self.rmse_m.tolist(),
+            t_ns=self.t_ns.tolist(),
+            residual_enu_m=np.round(self.residual_m, 4).tolist(),
+            used=self.used.tolist(),
+            edges_rejected=list(self.rejected),
+        )
 
 
 def georeference(

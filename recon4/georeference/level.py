@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array, mean_rotation, so3_exp
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
-from recon4.model.trajectory import Trajectory
+from recon4.model.trajectory import Times, Trajectory
 
 _WINDOW_NS = 1_000_000_000
 """Window over which accelerations are averaged [ns]: half a dozen steps of a walk."""
@@ -22,6 +22,19 @@ _BIAS_SD_M_S2 = 0.1
 _TRIM = 4.0
 """Residual in robust standard deviations above which a pair is an outlier."""
 _MIN_PAIRS = 3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LevelingRecord:
+    """The leveling in ``georeference.json``; the fields are its keys, see `Leveling`."""
+
+    source: str
+    roll_deg: float
+    pitch_deg: float
+    tilt_deg: float
+    spread_deg: float | None
+    pairs: int
+    trimmed: int
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,18 +57,18 @@ class Leveling:
         """Tilt of the map before leveling [rad]."""
         return float(np.arccos(np.clip(self.T_level_odom.R[2, 2], -1.0, 1.0)))
 
-    def to_json(self) -> dict[str, Any]:
-        """Plain JSON values, angles in degrees."""
+    def record(self) -> LevelingRecord:
+        """What ``georeference.json`` has of it."""
         roll, pitch, _ = np.rad2deg(self.T_level_odom.rpy()).tolist()
-        return {
-            "source": self.source,
-            "roll_deg": roll,
-            "pitch_deg": pitch,
-            "tilt_deg": float(np.rad2deg(self.tilt_rad)),
-            "spread_deg": float(np.rad2deg(self.spread_rad)) if self.pairs else None,
-            "pairs": self.pairs,
-            "trimmed": self.trimmed,
-        }
+        return LevelingRecord(
+            source=self.source,
+            roll_deg=roll,
+            pitch_deg=pitch,
+            tilt_deg=float(np.rad2deg(self.tilt_rad)),
+            spread_deg=float(np.rad2deg(self.spread_rad)) if self.pairs else None,
+            pairs=self.pairs,
+            trimmed=self.trimmed,
+        )
 
 
 NOT_LEVELED = Leveling(SE3.identity(), "none", 0, 0, float("nan"))
@@ -168,7 +181,7 @@ def _windows(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> tuple[Array, 
     return mean_force - (np.diff(speed, axis=0) / (_WINDOW_NS / 1e9))[full], R_mean
 
 
-def _speed(trajectory: Trajectory, rig: Rig, t_ns: Any) -> Array:
+def _speed(trajectory: Trajectory, rig: Rig, t_ns: Times) -> Array:
     """Velocity of the IMU in the odometry's frame [m/s], (M, 3)."""
     first, last = trajectory.t_ns[0], trajectory.t_ns[-1]
     before = np.clip(t_ns - _SPEED_NS, first, last)
@@ -186,7 +199,7 @@ def _fit_gravity(force: Array, R_mean: Array) -> tuple[Array, Array]:
     return x[:3], x[3:]
 
 
-def _covered(trajectory: Trajectory, t_ns: Any) -> Any:
+def _covered(trajectory: Trajectory, t_ns: Times) -> NDArray[np.bool_]:
     return (t_ns >= trajectory.t_ns[0]) & (t_ns <= trajectory.t_ns[-1])
 
 
@@ -202,11 +215,11 @@ def _angles(directions: Array, axis: Array) -> Array:
     return np.arctan2(cross, directions @ axis)
 
 
-def _trimmed(angles: Array) -> Any:
+def _trimmed(angles: Array) -> NDArray[np.bool_]:
     # The angle of a two-dimensional normal error has its median at 1.18 standard deviations.
     return angles <= np.maximum(_TRIM * np.median(angles) / 1.1774, 1e-9)
 
 
-def _result(T_level_odom: SE3, source: str, angles: Array, *, kept: Any) -> Leveling:
+def _result(T_level_odom: SE3, source: str, angles: Array, *, kept: NDArray[np.bool_]) -> Leveling:
     spread = float(np.sqrt(np.mean(angles[kept] ** 2)))
     return Leveling(T_level_odom, source, int(kept.sum()), int((~kept).sum()), spread)

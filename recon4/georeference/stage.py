@@ -68,9 +68,9 @@ class LeveledMap:
         """Write ``trajectory.npz``, the files of the graph and ``georeference.json``."""
         save_trajectory(out / "trajectory.npz", self.trajectory)
         save_graph(out, self.graph)
-        record = {
-            "levelling": self.leveling.to_json(),
-            "georeference": self.georeference.to_json(),
+        record: dict[str, object] = {
+            "levelling": self.leveling.record(),
+            "georeference": self.georeference.record(),
             "crs": self.crs or {},
         }
         write_json(out / "georeference.json", to_plain(record))

@@ -68,12 +68,11 @@ def build_map(
     recipe = Recipe(grid, settings, intensity, t_ns)
     with (
         TemporaryDirectory(dir=out, prefix="buckets-") as folder,
-        ThreadPoolExecutor(WORKERS) as pool,
         TileWriter(out, _fields(recipe), tile_m=grid.tile_m) as writer,
     ):
         buckets = TileBuckets(Path(folder), grid, burst=burst)
-        _distribute(frames, trajectory, buckets, settings=settings, pool=pool, progress=progress)
-        removed = _finish_tiles(buckets, recipe, writer, pool=pool, progress=progress)
+        _distribute(frames, trajectory, buckets, settings=settings, progress=progress)
+        removed = _finish_tiles(buckets, recipe, writer, progress=progress)
         writer.facts = {
             "voxel_m": settings.voxel_m,
             "crs": crs and {"wkt": crs.wkt, "origin_m": list(crs.origin_m)},
@@ -98,7 +97,6 @@ def _distribute(
     buckets: TileBuckets,
     *,
     settings: MapSettings,
-    pool: ThreadPoolExecutor,
     progress: Progress,
 ) -> None:
     grid, rig = Grid.of(settings), frames.rig
@@ -111,19 +109,15 @@ def _distribute(
             frame, placed, grid, enabled=enabled, max_range_m=settings.max_range_m
         )
 
-    parts = _in_order(pool, split, range(len(frames)))
-    for part in track(parts, progress, what="place points", unit="frames", total=len(frames)):
-        buckets.add(part, pool)
-    buckets.flush(pool)
+    with ThreadPoolExecutor(WORKERS) as pool:
+        parts = _in_order(pool, split, range(len(frames)))
+        for part in track(parts, progress, what="place points", unit="frames", total=len(frames)):
+            buckets.add(part, pool)
+        buckets.flush(pool)
 
 
 def _finish_tiles(
-    buckets: TileBuckets,
-    recipe: Recipe,
-    writer: TileWriter,
-    *,
-    pool: ThreadPoolExecutor,
-    progress: Progress,
+    buckets: TileBuckets, recipe: Recipe, writer: TileWriter, *, progress: Progress
 ) -> Counter[str]:
     removed: Counter[str] = Counter()
 
@@ -133,10 +127,11 @@ def _finish_tiles(
         return made
 
     tiles = buckets.tiles()
-    made_tiles = zip(tiles, _in_order(pool, make, tiles), strict=True)
-    for tile, made in track(made_tiles, progress, what="map", unit="tiles", total=len(tiles)):
-        writer.append(tile, made.columns, strays=made.strays)
-        removed += made.removed
+    with ThreadPoolExecutor(WORKERS) as pool:
+        made_tiles = zip(tiles, _in_order(pool, make, tiles), strict=True)
+        for tile, made in track(made_tiles, progress, what="map", unit="tiles", total=len(tiles)):
+            writer.append(tile, made.columns, strays=made.strays)
+            removed += made.removed
     return removed
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -86,7 +87,7 @@ def _edge(columns: Mapping[str, NDArray[Any]], row: int) -> Edge:
 
 def write_edges_json(path: Path, graph: PoseGraph) -> None:
     """Write every registered pair as JSON, one line per pair; an unknown number is ``null``."""
-    lines = ",\n".join(json.dumps(edge_record(graph, edge)) for edge in graph.edges)
+    lines = ",\n".join(json.dumps(asdict(edge_record(graph, edge))) for edge in graph.edges)
     head = json.dumps(
         {
             "convention": "T_a_b maps points of node b into node a; metres; quaternion x y z w",
@@ -96,27 +97,58 @@ def write_edges_json(path: Path, graph: PoseGraph) -> None:
     path.write_text(f'{head[:-1]}, "edges": [\n{lines}\n]}}\n', "utf-8")
 
 
-def edge_record(graph: PoseGraph, edge: Edge) -> dict[str, Any]:
-    """Plain JSON values of one edge, for files and for the API."""
-    return {
-        "nodes": [edge.i, edge.j],
-        "frames": [int(graph.frame_ids[edge.i]), int(graph.frame_ids[edge.j])],
-        "t_ns": [int(graph.t_ns[edge.i]), int(graph.t_ns[edge.j])],
-        "T_a_b": {
-            "translation": edge.T_i_j.t.tolist(),
-            "quaternion_xyzw": edge.T_i_j.quat_xyzw().tolist(),
-        },
-        "kind": str(edge.kind),
-        "verdict": str(edge.verdict),
-        "reason": str(edge.reason),
-        "overlap": finite_or_none(edge.overlap),
-        "error_m": finite_or_none(edge.error_m),
-        "limit_m": finite_or_none(edge.limit_m),
-        "degeneracy": finite_or_none(edge.degeneracy),
-        "converged": edge.converged,
-        "iterations": edge.iterations,
-        "verification_m": finite_or_none(edge.verification_m),
-        "paths": edge.paths,
-        "chi2": finite_or_none(edge.chi2),
-        "decided_by": edge.decided_by,
-    }
+@dataclass(frozen=True, slots=True)
+class PoseRecord:
+    """A pose in ``edges.json``."""
+
+    translation: list[float]
+    """[m], (3,)."""
+    quaternion_xyzw: list[float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EdgeRecord:
+    """An edge in ``edges.json``; the fields are its keys, an unknown number is None."""
+
+    nodes: tuple[int, int]
+    frames: tuple[int, int]
+    """Ids of the multiframes."""
+    t_ns: tuple[int, int]
+    T_a_b: PoseRecord
+    kind: str
+    verdict: str
+    reason: str
+    overlap: float | None
+    error_m: float | None
+    limit_m: float | None
+    degeneracy: float | None
+    converged: bool
+    iterations: int
+    verification_m: float | None
+    paths: int
+    chi2: float | None
+    decided_by: str
+
+
+def edge_record(graph: PoseGraph, edge: Edge) -> EdgeRecord:
+    """One edge as in ``edges.json``."""
+    i, j = edge.i, edge.j
+    return EdgeRecord(
+        nodes=(i, j),
+        frames=(int(graph.frame_ids[i]), int(graph.frame_ids[j])),
+        t_ns=(int(graph.t_ns[i]), int(graph.t_ns[j])),
+        T_a_b=PoseRecord(edge.T_i_j.t.tolist(), edge.T_i_j.quat_xyzw().tolist()),
+        kind=str(edge.kind),
+        verdict=str(edge.verdict),
+        reason=str(edge.reason),
+        overlap=finite_or_none(edge.overlap),
+        error_m=finite_or_none(edge.error_m),
+        limit_m=finite_or_none(edge.limit_m),
+        degeneracy=finite_or_none(edge.degeneracy),
+        converged=edge.converged,
+        iterations=edge.iterations,
+        verification_m=finite_or_none(edge.verification_m),
+        paths=edge.paths,
+        chi2=finite_or_none(edge.chi2),
+        decided_by=edge.decided_by,
+    )

@@ -128,7 +128,7 @@ class PairRegistrar:
                 target, source, initial=pair.T_i_j, portion=overlap_ratio, settings=settings
             )
         return register_to_planes(
-            target, ends.reshape(-1, 3), initial=pair.T_i_j, planes=self._settings.planes,
+            target, ends.reshape(-1, 3), initial=pair.T_i_j,
             settings=settings, normal_noise_rad=self._settings.graph.normal_noise_rad,
         )  # fmt: skip
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
 
 import numpy as np
 
@@ -20,6 +20,34 @@ from recon4.progress import Progress, Silent
 from recon4.settings import VerificationSettings
 
 _REVISED = (Reason.VERIFICATION, Reason.ROBUST)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JudgedEdge:
+    """An edge in ``verification.json``; the fields are its keys."""
+
+    edge: int
+    """Its row in the graph."""
+    nodes: tuple[int, int]
+    kind: str
+    verification_m: float | None
+    """None = it has no alternative path."""
+    paths: int
+    chi2: float | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VerificationRecord:
+    """``verification.json``; the fields are its keys, see `Verification`."""
+
+    edges: Mapping[str, int]
+    """Number of edges by verdict."""
+    rounds: list[list[JudgedEdge]]
+    flagged: list[JudgedEdge]
+    outliers: list[JudgedEdge]
+    duplicates: tuple[tuple[int, int], ...]
+    chi2_before: float
+    chi2_after: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,18 +69,20 @@ class Verification:
     chi2_after: float
     """Of the edges kept, at the optimized poses."""
 
-    def to_json(self) -> dict[str, Any]:
+    def to_json(self) -> dict[str, object]:
         """Plain JSON values for ``verification.json``."""
         edges = self.graph.edges
-        return {
-            "edges": self.graph.verdict_counts(),
-            "rounds": [[_edge_record(edges[row], row) for row in rows] for rows in self.rounds],
-            "flagged": [_edge_record(edges[row], row) for row in self.flagged],
-            "outliers": [_edge_record(edges[row], row) for row in self.outliers],
-            "duplicates": [list(pair) for pair in self.duplicates],
-            "chi2_before": self.chi2_before,
-            "chi2_after": self.chi2_after,
-        }
+        return asdict(
+            VerificationRecord(
+                edges=self.graph.verdict_counts(),
+                rounds=[[_judged(edges[row], row) for row in rows] for rows in self.rounds],
+                flagged=[_judged(edges[row], row) for row in self.flagged],
+                outliers=[_judged(edges[row], row) for row in self.outliers],
+                duplicates=self.duplicates,
+                chi2_before=self.chi2_before,
+                chi2_after=self.chi2_after,
+            )
+        )
 
 
 def verify(
@@ -188,12 +218,12 @@ def _report_verdicts(edges: tuple[Edge, ...], rows: list[int], watcher: Progress
         )
 
 
-def _edge_record(edge: Edge, row: int) -> dict[str, Any]:
-    return {
-        "edge": row,
-        "nodes": [edge.i, edge.j],
-        "kind": str(edge.kind),
-        "verification_m": finite_or_none(edge.verification_m),
-        "paths": edge.paths,
-        "chi2": finite_or_none(edge.chi2),
-    }
+def _judged(edge: Edge, row: int) -> JudgedEdge:
+    return JudgedEdge(
+        edge=row,
+        nodes=(edge.i, edge.j),
+        kind=str(edge.kind),
+        verification_m=finite_or_none(edge.verification_m),
+        paths=edge.paths,
+        chi2=finite_or_none(edge.chi2),
+    )

@@ -27,6 +27,7 @@ from recon4.profiler.imu_chain import (
     linearize,
     make_drive,
 )
+from recon4.profiler.published_refine import PublishedRefiner
 from recon4.profiler.samples import joined, laser_points, line_points
 from recon4.profiler.stage_odometry import span_of
 from recon4.progress import Progress
@@ -35,7 +36,7 @@ from recon4.semi_rigid.refine import Refinement, corrected_by_graph
 from recon4.settings import LineSettings, PlaneSettings, Settings
 from recon4.store.arrays import load_trajectory
 from recon4.store.frames import FrameStore
-from recon4.store.line_store import load_laser_scans
+from recon4.store.line_store import load_laser_scans, load_lines
 
 _BLOCK = 5
 """Multiframes that are matched before the map is brought up to date."""
@@ -241,6 +242,11 @@ def refine_lines(
         progress: Counts multiframes.
     """
     start = corrected_by_graph(load_trajectory(odometry / "trajectory.npz"), graph)
+    if settings.lines.method == "published":
+        lines = load_lines(frames.folder)
+        published = PublishedRefiner(frames, lines, settings.lines, progress)
+        trajectory, found = published.refine(start)
+        return Refinement(trajectory, tuple(found))
     drive = make_drive(
         frames.imu,
         frames.rig,

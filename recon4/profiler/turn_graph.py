@@ -17,6 +17,7 @@ from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import save_graph
 from recon4.pose_graph.pairs import tried_event
 from recon4.pose_graph.solve import optimize
+from recon4.profiler.global_icp import preregister, register_all
 from recon4.profiler.turns import Turns, relative, unwind_turns
 from recon4.progress import Progress
 from recon4.registration.plane_map import PlaneMap
@@ -50,7 +51,8 @@ def build_turn_graph(
     lost = load_arrays(odometry / "steps.npz", ["lost"])["lost"]
     lines = load_lines(frames.folder)
     turns = unwind_turns(frames, lines, trajectory, settings=settings.lines, progress=progress)
-    graph = turn_graph(turns, trajectory, lost, settings=settings, progress=progress)
+    make = published_graph if settings.lines.method == "published" else turn_graph
+    graph = make(turns, trajectory, lost, settings=settings, progress=progress)
     save_graph(out, graph)
     return GraphFigures(
         nodes=len(graph),
@@ -93,6 +95,43 @@ def turn_graph(
     return graph.with_poses(solution.T_map_body)
 
 
+def published_graph(
+    turns: Turns,
+    trajectory: Trajectory,
+    lost: NDArray[np.bool_],
+    *,
+    settings: Settings,
+    progress: Progress,
+) -> PoseGraph:
+    """Turns registered as published: to the one before if requested, then all at once (L §4.2).
+
+    The edges are the relations of the solution; those of links have the counts of pairs.
+    """
+    first = trajectory.at(turns.t_ns)
+    s = settings.lines
+    T = preregister(turns, first, s) if s.preregister else first
+    progress.event(NodesPlaced(t_ns=tuple(turns.t_ns.tolist()), t_m=positions_of(T.t)))
+    links = linked(turns, T, settings)
+    T = register_all(turns, T, links, s)
+    progress.event(NodesPlaced(t_m=positions_of(T.t)))
+    edges = list(_chain(turns, T, lost, settings))
+    information = np.diag(np.repeat([s.turn_sd_rad, s.turn_sd_m], 3) ** -2.0)
+    for i, j, overlap in links:
+        kind = EdgeKind.NEIGHBOR if j - i <= settings.graph.neighbors else EdgeKind.LOOP
+        edge = Edge(
+            i=i,
+            j=j,
+            T_i_j=relative(T, i, j),
+            kind=kind,
+            verdict=Verdict.ACCEPTED,
+            overlap=overlap,
+            information=information,
+        )
+        progress.event(tried_event(edge))
+        edges.append(edge)
+    return PoseGraph(turns.frame_rows, turns.t_ns, T, tuple(edges))
+
+
 def linked(turns: Turns, T: SE3, settings: Settings) -> list[tuple[int, int, float]]:
     """Pairs of turns with enough closest pairs, and which part of the points has one.
 
@@ -132,7 +171,6 @@ def _register(
         target,
         _spread(turns.turns[j].points, g.source_segments).astype(np.float64),
         initial=relative(T, i, j),
-        planes=_planes_of(settings),
         settings=settings.registration,
         normal_noise_rad=g.normal_noise_rad,
     )

@@ -25,6 +25,7 @@ from recon4.recording.formats.bags import CLOUD, IMU, NAVSATFIX, ODOMETRY, Bag, 
 from recon4.recording.formats.cloud_files import cloud_fields
 from recon4.recording.formats.poses import pose_format, read_tum
 from recon4.recording.laser2d import is_laser2d, read_laser2d
+from recon4.recording.line_topics import line_topics
 from recon4.recording.open import (
     RECORDINGS,
     Recording,
@@ -221,8 +222,14 @@ def _describe_bag(info: RecordingInfo, path: Path, report: ImportReport) -> Reco
         streams = lidar_streams(bag, report)
         topics = {topic.name: topic for topic in bag.topics}
         sensors = tuple(_bag_sensor(bag, topics[stream.topic], stream.model) for stream in streams)
-        gaps = _bag_gaps(bag, [s.topic for s in streams]) if info.bytes <= _WHOLE_BYTES else ()
-        known = {s.topic for s in streams}
+        whole = info.bytes <= _WHOLE_BYTES
+        gaps = _bag_gaps(bag, [s.topic for s in streams]) if whole else ()
+        lines = line_topics(bag.topics)
+        if lines is not None:
+            sensors += tuple(_line_sensor(bag, *parts) for parts in lines.sensors)
+        if lines is not None and whole:
+            gaps += _bag_gaps(bag, [topic.name for topic, _, _ in lines.sensors])
+        known = {s.label for s in sensors}
         other = [t for t in bag.topics if t.name not in known]
         return replace(
             info,
@@ -231,8 +238,15 @@ def _describe_bag(info: RecordingInfo, path: Path, report: ImportReport) -> Reco
             sensors=sensors,
             samples=tuple(_topic_line(t, bag.seconds) for t in other if t.messages),
             gaps=gaps,
-            missing=() if streams else ("LiDAR data",),
+            missing=lines.missing if lines else () if streams else ("LiDAR data",),
         )
+
+
+def _line_sensor(bag: Bag, topic: BagTopic, model: str, content: str) -> SensorInfo:
+    rate_hz = (topic.messages - 1) / bag.seconds if bag.seconds > 0 else float("nan")
+    return SensorInfo(
+        label=topic.name, model=model, content=content, count=topic.messages, rate_hz=rate_hz
+    )
 
 
 def _bag_sensor(bag: Bag, topic: BagTopic, model: str) -> SensorInfo:

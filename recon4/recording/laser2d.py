@@ -31,7 +31,10 @@ Rows = NDArray[np.intp]
 
 _FAR_M = 60.0
 """Median range of no 2-D laser [m]: longer ones are not in meters."""
-_TO_METERS = ((1e-2, "centimeters"), (1e-3, "millimeters"))
+_LARGEST_CM, _MEDIAN_CM = 10_000.0, 1500.0
+"""Larger ranges, or half of the ranges larger, are millimeters: 100 m and 15 m as centimeters."""
+_SHORTEST_REACH_M = 3.5
+"""Reach of the weakest laser [m]: a shorter range is a measurement, however often it is there."""
 _REPEATED = 20
 """The largest range stands for "no return" if at least this many beams have it."""
 _MOUNTING_SD = 1e-3
@@ -120,7 +123,7 @@ def _without_largest(log: CarmenScans, report: ImportReport) -> tuple[float, Ran
     if log.range_max_m > 0.0:
         at_largest = ranges >= log.range_max_m
         largest = log.range_max_m
-    elif int(at_largest.sum()) >= _REPEATED:
+    elif largest >= _SHORTEST_REACH_M and int(at_largest.sum()) >= _REPEATED:
         report.derive(f"ranges of {0.99 * largest:.2f} m and more, the largest: no return")
     else:
         return largest, ranges
@@ -213,15 +216,14 @@ def _in_meters(scans: LaserScans, report: ImportReport) -> LaserScans:
     median = float(np.median(seen))
     if median <= _FAR_M:
         return scans
-    for factor, unit in _TO_METERS:
-        if median * factor <= _FAR_M:
-            report.count("scans_converted", len(scans))
-            report.warn(
-                f"half of the ranges are above {median:.0f}: they are taken as {unit}, not meters"
-            )
-            return replace(
-                scans,
-                range_m=(scans.range_m * np.float32(factor)).astype(np.float32),
-                range_max_m=scans.range_max_m * factor,
-            )
-    raise CorruptFile(f"expected ranges in meters, got a median range of {median:.3g}")
+    is_mm = max(float(seen.max()), scans.range_max_m) > _LARGEST_CM or median > _MEDIAN_CM
+    factor, unit = (1e-3, "millimeters") if is_mm else (1e-2, "centimeters")
+    if median * factor > _FAR_M:
+        raise CorruptFile(f"expected ranges in meters, got a median range of {median:.3g}")
+    report.count("scans_converted", len(scans))
+    report.warn(f"half of the ranges are above {median:.0f}: they are taken as {unit}, not meters")
+    return replace(
+        scans,
+        range_m=(scans.range_m * np.float32(factor)).astype(np.float32),
+        range_max_m=scans.range_max_m * factor,
+    )

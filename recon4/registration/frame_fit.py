@@ -38,6 +38,8 @@ class FrameFit:
     match: Match
     rounds: int
     converged: bool
+    stationary: bool
+    """Whether the body was known to stand at the end of the frame."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -97,7 +99,7 @@ class FrameFitter:
                 converged = True
                 break
         P = np.asarray(np.linalg.inv(H), np.float64)
-        return FrameFit(T_dense, delta, P, H_lidar, match, rounds, converged)
+        return FrameFit(T_dense, delta, P, H_lidar, match, rounds, converged, stationary)
 
     def _add_aiding(self, H: Array, g: Array, T_odom_body: SE3, t_ns: int) -> None:
         """Add what GNSS knows of the pose at the end to the normal equations, in place."""

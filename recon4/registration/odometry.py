@@ -125,7 +125,7 @@ class Odometry:
         self._count_lost(lost=lost)
         self._state = _updated(prediction, fit, lost=lost, first=first)
         T_dense = prediction.T_odom_body if lost or first else fit.T_dense
-        step = _step(frame, prediction, fit, T_dense=T_dense, lost=lost, stationary=stationary)
+        step = _step(frame, prediction, fit, T_dense=T_dense, lost=lost)
         if not lost:
             if self._is_keyframe(T_dense[-1]):
                 self._extend_map(segments, prediction.t_s, T_dense)
@@ -240,7 +240,6 @@ def _step(
     *,
     T_dense: SE3,
     lost: bool,
-    stationary: bool,
 ) -> OdometryStep:
     end = prediction.T_odom_body[-1]
     middle = prediction.t_s[-1] / 2
@@ -263,7 +262,7 @@ def _step(
         _motion_cov(prediction.prior if lost else fit.P),
         fit.match.weak_direction,
         _weak_sd_m(fit),
-        stationary,
+        fit.stationary,
     )
 
 

@@ -93,6 +93,11 @@ class PlaneMap:
         """Number of cubes, of all sizes."""
         return self._used
 
+    @property
+    def levels(self) -> int:
+        """Number of sizes of cubes."""
+        return self._settings.levels
+
     def add(self, p_map: Array) -> None:
         """Add points [m], (N, 3), that were seen from one place."""
         self._batch += 1

@@ -9,7 +9,7 @@ from recon4.registration.degeneracy import observable_pose
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.result import Registration, StopReason
 from recon4.registration.state import START
-from recon4.settings import PlaneSettings, RegistrationSettings
+from recon4.settings import RegistrationSettings
 
 _GATES_M = (1.0, 0.7, 0.5, 0.3, 0.2, 0.15)
 _ERROR_GATE_M = 0.5
@@ -21,7 +21,6 @@ def register_to_planes(
     source: Array,
     *,
     initial: SE3,
-    planes: PlaneSettings,
     settings: RegistrationSettings,
     normal_noise_rad: float = 0.0,
 ) -> Registration:
@@ -32,7 +31,6 @@ def register_to_planes(
         source: Points in the source frame [m], (N, 3): both ends of segments.
         initial: First ``T_target_source``; large cubes and a wide gate come first, so that it may
             be off by up to a meter.
-        planes: How many sizes of cubes there are.
         settings: Stop rules.
         normal_noise_rad: Error of a plane's normal [rad]. Directions with no more information than
             such errors create keep the initial pose, and the result has no information there.
@@ -47,7 +45,7 @@ def register_to_planes(
             T_target_source @ source,
             zero,
             center=T_target_source.t,
-            finest=max(planes.levels - rounds, 0),
+            finest=max(target.levels - rounds, 0),
             gate_m=_GATES_M[min(rounds, len(_GATES_M)) - 1],
         )
         if match.matches < _MIN_MATCHES:

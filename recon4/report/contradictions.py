@@ -42,7 +42,7 @@ def rejected_runs(georeference: Mapping[str, Any]) -> list[RejectedRun]:
     """Find them, in order of time.
 
     Args:
-        georeference: ``GeoreferenceResult.to_json``: ``t_ns``, ``residual_enu_m``, ``used``.
+        georeference: `GeoreferenceRecord` as JSON: ``t_ns``, ``residual_enu_m``, ``used``.
     """
     t_ns = np.asarray(georeference.get("t_ns", []), np.int64)
     rejected = np.flatnonzero(~np.asarray(georeference.get("used", []), bool))

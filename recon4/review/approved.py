@@ -102,8 +102,23 @@ def approval_of_map(root: Path, map_key: str) -> Approval | None:
     return None
 
 
-def latest_approval(root: Path, rows: Sequence[Row]) -> dict[str, Any] | None:
-    """Fields of the newest approval; ``current`` = the results in the folder name it.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LatestApproval:
+    """The newest approval of a project."""
+
+    version: int
+    hash: str
+    who: str
+    time: str
+    why: str
+    verdict: str
+    """On the map; empty in earlier formats."""
+    current: bool
+    """Whether the results in the folder name it."""
+
+
+def latest_approval(root: Path, rows: Sequence[Row]) -> LatestApproval | None:
+    """The newest approval; None if there is none.
 
     Raises:
         StoreError: If a file is damaged.
@@ -112,15 +127,15 @@ def latest_approval(root: Path, rows: Sequence[Row]) -> dict[str, Any] | None:
         if row.kind == DecisionKind.APPROVE:
             facts = _facts(row)
             named = ((read_summary(root) or {}).get("approval") or {}).get("hash")
-            return {
-                "version": facts["version"],
-                "hash": facts["approval"],
-                "who": row.who,
-                "time": row.time,
-                "why": row.why,
-                "verdict": facts.get("verdict", ""),
-                "current": named == facts["approval"],
-            }
+            return LatestApproval(
+                version=int(facts["version"]),
+                hash=str(facts["approval"]),
+                who=row.who,
+                time=row.time,
+                why=row.why,
+                verdict=str(facts.get("verdict", "")),
+                current=named == facts["approval"],
+            )
     return None
 
 

@@ -46,5 +46,4 @@ def decisions_in_map(root: Path) -> str | None:
     review = artifact_keys(summary).get("review")
     if review is None:
         return NOTHING_DECIDED.key
-    key: str = read_manifest(root / "artifacts" / review)["recipe"]["inputs"]["decisions"]
-    return key
+    return read_manifest(root / "artifacts" / review)["recipe"]["inputs"]["decisions"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 from recon4.settings.require import require
 
@@ -11,6 +12,9 @@ from recon4.settings.require import require
 class LineSettings:
     """Line scans of a profiler (requirements A12); rigs of LiDARs do not use them."""
 
+    method: Literal["joint", "published"] = "joint"
+    """``joint``: every line with the IMU between knots, distances from planes. ``published``: as
+    L §4: point pairs, 6D SLAM of turns, corrections between groups of lines, no IMU."""
     knot_s: float = 0.02
     """Time between two knots of the trajectory, which the IMU joins [s]."""
     rounds: int = 12
@@ -38,6 +42,21 @@ class LineSettings:
     """Standard deviation of the first trajectory from one turn to the next [m] …"""
     chain_sd_rad: float = 0.01
     """… and of its rotation [rad]."""
+    preregister: bool = False
+    """``published``: register each turn to the one before first (L §5.2, A12 L-5). It helps where
+    2-D SLAM fails, and may bend corners that were right."""
+    preregister_m: float = 1.5
+    """``published``: largest distance of two points of consecutive turns [m]."""
+    slam_rounds: int = 15
+    """``published``: rounds of the registration of turns."""
+    outer_rounds: int = 10
+    """``published``: rounds of the semi-rigid step."""
+    group_lines: int = 100
+    """``published``: line scans between two corrections."""
+    pair_every: int = 5
+    """``published``: of the points that are matched every n-th is paired."""
+    pair_voxel_m: float = 0.1
+    """``published``: a turn has one point in each voxel of this edge [m]."""
     map_stride: int = 1
     """Every n-th multiframe is built into the map."""
     map_every: int = 8
@@ -58,6 +77,13 @@ class LineSettings:
     def __post_init__(self) -> None:
         require(0.002 <= self.knot_s <= 1.0, "knot_s must be 0.002 to 1", self.knot_s)
         require(self.min_gap_s >= 0.0, "min_gap_s must be 0 or more", self.min_gap_s)
-        for name in ("rounds", "map_stride", "map_every", "match_every"):
+        for name in (
+            "rounds",
+            "map_stride",
+            "map_every",
+            "match_every",
+            "group_lines",
+            "pair_every",
+        ):
             require(getattr(self, name) >= 1, f"{name} must be 1 or more", getattr(self, name))
         require(self.laser_every >= 0, "laser_every must be 0 or more", self.laser_every)

@@ -65,6 +65,12 @@ PRESETS: dict[str, Settings] = {
         loops2d=Loop2dSettings(enabled=False),
         verification=VerificationSettings(robust="none"),
     ),
+    "wuerzburg": Settings(
+        slam2d=Slam2dSettings(method="hector", use_odometry=False, min_range_m=0.4),
+        loops2d=Loop2dSettings(enabled=False),
+        lines=LineSettings(method="published"),
+        verification=VerificationSettings(robust="none"),
+    ),
     "thesis": Settings(
         calibration=CalibrationSettings(mode="off"),
         registration=RegistrationSettings(solver="svd", max_iterations=500),

@@ -15,6 +15,9 @@ from recon4.model.pose_graph import PoseGraph, Rows
 from recon4.slam2d.edges import plane_information
 
 _GAUGE = 1e9
+_NOTHING = 1e-12
+"""Weight of structural entries, as a fraction of the largest information: the sparse factor has
+entries only where the matrix is not zero."""
 
 
 def node_covariances(graph: PoseGraph) -> Array:
@@ -35,7 +38,7 @@ def node_covariances(graph: PoseGraph) -> Array:
         (i, j, left),
         (j, i, W @ A),
         (j, j, W),
-        (every, every, np.broadcast_to(1e-9 * np.eye(3), (nodes, 3, 3))),
+        (every, every, np.full((nodes, 3, 3), _NOTHING * float(np.abs(W).max(initial=1.0)))),
         (first, first, _GAUGE * np.eye(3)[None]),
     ]
     factor = splu(

@@ -117,11 +117,11 @@ def _tracking(facts: Facts2d) -> Iterator[Finding2d]:
             "odometry: how it moved meanwhile is unknown.",
         )
     if odometry.resets:
+        by = "the odometry of the recording" if has_odometry else "the motion before"
         yield (
             Usability.CHECK if has_odometry else Usability.DO_NOT_USE,
             f"The local map started again {odometry.resets} times: the parts of the map are "
-            f"joined by {'the odometry of the recording' if has_odometry else 'a guess'} and by "
-            "loop closures only.",
+            f"joined by {by} and by loop closures only.",
         )
     if odometry.searched > _SEARCHED_RATIO * odometry.scans:
         yield (

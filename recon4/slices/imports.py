@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import asdict, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -18,7 +19,7 @@ from recon4.names import visible
 from recon4.recording.formats.reference_clouds import read_points
 from recon4.slices.frames import MapFrame
 from recon4.slices.meshes import is_mesh, load_mesh
-from recon4.slices.reference import read_facts
+from recon4.slices.reference import ReferenceFacts, read_facts
 from recon4.store.atomic import atomic_folder, write_json
 
 TILE_M = 5.0
@@ -31,7 +32,7 @@ MAX_TILES = 100_000
 
 def import_reference(
     path: Path, out: Path, *, name: str = "", frame: MapFrame | None = None
-) -> dict[str, object]:
+) -> ReferenceFacts:
     """Import a cloud or mesh as a reference; atomic.
 
     Args:
@@ -49,25 +50,26 @@ def import_reference(
     if not path.is_file():
         raise UnknownFormat(f"{path.name}: expected one file, got a folder or nothing")
     with atomic_folder(out) as folder:
-        facts: dict[str, object] = {
-            "name": name or visible(path.name),
-            "file": visible(path.name),
-            "frame": "crs" if frame else "map",
-            "T_map_reference": np.eye(4).tolist(),
-            "alignment": "none",
-        }
-        facts |= (_mesh if is_mesh(path) else _cloud)(path, folder, frame)
-        write_json(folder / "reference.json", facts)
+        mesh = is_mesh(path)
+        count = (_mesh if mesh else _cloud)(path, folder, frame)
+        facts = ReferenceFacts(
+            name=name or visible(path.name),
+            file=visible(path.name),
+            frame="crs" if frame else "map",
+            T_map_reference=np.eye(4).tolist(),
+            kind="mesh" if mesh else "cloud",
+            points=0 if mesh else count,
+            triangles=count if mesh else 0,
+        )
+        write_json(folder / "reference.json", asdict(facts))
     return facts
 
 
-def set_alignment(folder: Path, T_map_reference: SE3, *, description: str) -> dict[str, object]:
+def set_alignment(folder: Path, T_map_reference: SE3, *, description: str) -> ReferenceFacts:
     """Store the alignment of a reference with the map."""
-    facts = read_facts(folder) | {
-        "T_map_reference": T_map_reference.matrix().tolist(),
-        "alignment": description,
-    }
-    write_json(folder / "reference.json", facts)
+    matrix = T_map_reference.matrix().tolist()
+    facts = replace(read_facts(folder), T_map_reference=matrix, alignment=description)
+    write_json(folder / "reference.json", asdict(facts))
     return facts
 
 
@@ -92,17 +94,17 @@ def write_tiles(chunks: Iterable[Array], out: Path) -> TileSet:
     return TileSet.open(out)
 
 
-def _mesh(path: Path, out: Path, frame: MapFrame | None) -> dict[str, object]:
+def _mesh(path: Path, out: Path, frame: MapFrame | None) -> int:
     mesh = load_mesh(path)
     vertices = frame.from_crs(mesh.vertices_m) if frame else mesh.vertices_m
     np.savez(out / "mesh.npz", vertices_m=vertices, triangles=mesh.triangles)
-    return {"kind": "mesh", "triangles": len(mesh.triangles)}
+    return len(mesh.triangles)
 
 
-def _cloud(path: Path, out: Path, frame: MapFrame | None) -> dict[str, object]:
+def _cloud(path: Path, out: Path, frame: MapFrame | None) -> int:
     chunks = read_points(path)
     tiles = write_tiles((frame.from_crs(c) for c in chunks) if frame else chunks, out)
-    return {"kind": "cloud", "points": len(tiles)}
+    return len(tiles)
 
 
 def _deal_out(chunks: Iterable[Array], place: Path) -> dict[tuple[int, int, int], Path]:

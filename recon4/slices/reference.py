@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
+import msgspec
 import numpy as np
 from scipy.spatial import cKDTree
 
@@ -28,6 +29,26 @@ MAX_FACTS_BYTES = 1 << 20
 """Size of ``reference.json``."""
 _MARGIN_M = 2.0
 """Points of a request are measured in cubes of this size, each with its own search tree [m]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReferenceFacts:
+    """What is known of a reference: ``reference.json``."""
+
+    name: str
+    file: str = ""
+    """Name of the imported file."""
+    frame: Literal["map", "crs"] = "map"
+    """Frame of the file's coordinates."""
+    T_map_reference: list[list[float]]
+    """4 x 4, row by row."""
+    alignment: str = "none"
+    """How it was aligned with the map, as text."""
+    kind: Literal["mesh", "cloud"]
+    points: int = 0
+    """Of a cloud."""
+    triangles: int = 0
+    """Of a mesh."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,24 +145,24 @@ def load_reference(folder: Path, *, method: Method = "plane") -> Reference:
         StoreError: If it is missing or damaged.
     """
     facts = read_facts(folder)
-    T = SE3.from_matrix(_matrix(facts["T_map_reference"], folder.name))
-    name = str(facts["name"])
-    if facts["kind"] == "mesh":
-        return Reference(name, folder, T, method, mesh=_mesh(folder / "mesh.npz"))
-    return Reference(name, folder, T, method, tiles=TileSet.open(folder))
+    T = SE3.from_matrix(_matrix(facts.T_map_reference, folder.name))
+    if facts.kind == "mesh":
+        return Reference(facts.name, folder, T, method, mesh=_mesh(folder / "mesh.npz"))
+    return Reference(facts.name, folder, T, method, tiles=TileSet.open(folder))
 
 
-def read_facts(folder: Path) -> dict[str, Any]:
+def read_facts(folder: Path) -> ReferenceFacts:
     """``reference.json`` of a reference.
 
     Raises:
         StoreError: If it is missing or damaged.
     """
-    facts = read_object(folder / "reference.json", max_bytes=MAX_FACTS_BYTES)
-    missing = {"name", "kind", "T_map_reference"} - set(facts)
-    if missing:
-        raise StoreError(f"{folder.name}/reference.json lacks {sorted(missing)}")
-    return facts | {"name": visible(str(facts["name"]))}
+    record = read_object(folder / "reference.json", max_bytes=MAX_FACTS_BYTES)
+    try:
+        facts = msgspec.convert(record, ReferenceFacts)
+    except msgspec.ValidationError as error:
+        raise StoreError(f"{folder.name}/reference.json: {error}") from error
+    return replace(facts, name=visible(facts.name))
 
 
 def _mesh(path: Path) -> TriangleMesh:
@@ -158,7 +179,7 @@ def _mesh(path: Path) -> TriangleMesh:
     return TriangleMesh(vertices.astype(np.float64), triangles.astype(np.int64))
 
 
-def _matrix(value: Any, name: str) -> Array:
+def _matrix(value: list[list[float]], name: str) -> Array:
     try:
         matrix = np.array(value, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:

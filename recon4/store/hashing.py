@@ -9,11 +9,20 @@ import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import NotRequired, TypedDict
 
 BLOCK_BYTES = 1 << 20
 """Files are hashed as a whole and in blocks of this size, so that parts can be checked [bytes]."""
 _DIGEST_BYTES = 32
+
+
+class FileEntry(TypedDict):
+    """A file in a manifest, as JSON."""
+
+    bytes: int
+    sha256: str
+    blocks: NotRequired[str]
+    """See `FileDigest.to_json`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +49,7 @@ class FileDigest:
         return FileDigest(size, whole.hexdigest(), bytes(blocks) if size > BLOCK_BYTES else b"")
 
     @staticmethod
-    def from_json(value: dict[str, Any]) -> FileDigest:
+    def from_json(value: FileEntry) -> FileDigest:
         """Parse the result of `to_json`; manifests of earlier versions have no blocks.
 
         Raises:
@@ -52,9 +61,9 @@ class FileDigest:
             raise ValueError(f"{len(blocks)} bytes of block hashes do not fit {size} bytes")
         return FileDigest(size, sha256, blocks)
 
-    def to_json(self) -> dict[str, Any]:
+    def to_json(self) -> FileEntry:
         """Plain JSON values; the blocks as base64, 44 characters per MiB."""
-        record: dict[str, Any] = {"bytes": self.size, "sha256": self.sha256}
+        record: FileEntry = {"bytes": self.size, "sha256": self.sha256}
         if self.blocks:
             record["blocks"] = base64.b64encode(self.blocks).decode()
         return record

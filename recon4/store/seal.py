@@ -16,7 +16,7 @@ import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TypedDict
 
 from recon4.errors import StoreError
 from recon4.store.atomic import write_json
@@ -29,10 +29,18 @@ SEALS = "seals.json"
 LOCK = ".seals.lock"
 TURN = ".changes.lock"
 FORMAT = 1
-OPEN: dict[str, Any] = {"open": True}
-"""Entry instead of size and hash: the file is being changed."""
 
-Seal = Mapping[str, Any]
+
+class Seal(TypedDict, total=False):
+    """What a file has to be, as JSON: size and hash, or `OPEN`."""
+
+    bytes: int
+    sha256: str
+    open: bool
+
+
+OPEN: Seal = {"open": True}
+"""Entry instead of size and hash: the file is being changed."""
 
 
 def read_seals(root: Path) -> dict[str, Seal]:
@@ -179,7 +187,7 @@ def adopt(root: Path, names: Iterator[str] | list[str]) -> None:
             _write(root, seals | fresh)
 
 
-def seal_of(path: Path) -> dict[str, Any]:
+def seal_of(path: Path) -> Seal:
     """Size and hash of a file."""
     digest = FileDigest.of(path)
     return {"bytes": digest.size, "sha256": digest.sha256}
@@ -212,7 +220,7 @@ def _write(root: Path, seals: Mapping[str, Seal]) -> None:
     write_json(root / SEALS, _value(seals))
 
 
-def _value(seals: Mapping[str, Seal]) -> dict[str, Any]:
+def _value(seals: Mapping[str, Seal]) -> dict[str, object]:
     files = {name: dict(seals[name]) for name in sorted(seals)}
     return {"format": FORMAT, "sha256": hash_json(files), "files": files}
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, fields, replace
 from importlib import metadata
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, TypedDict, TypeVar
 
 import msgspec
 
@@ -22,7 +22,7 @@ from recon4.progress import Progress
 from recon4.settings import Settings, to_json
 from recon4.store.atomic import atomic_folder, write_json
 from recon4.store.checked import Altered
-from recon4.store.hashing import FileDigest, files_below, hash_file, hash_json
+from recon4.store.hashing import FileDigest, FileEntry, files_below, hash_file, hash_json
 from recon4.store.json_files import read_object
 from recon4.store.ledger import FinishedStage
 from recon4.store.project import Project
@@ -63,6 +63,29 @@ class Input:
     """Argument of the stage's function."""
 
 
+class StageRecipe(TypedDict):
+    """What the key of an artifact is the hash of, as JSON."""
+
+    stage: str
+    version: int
+    settings: dict[str, dict[str, Any]]
+    """By group."""
+    inputs: dict[str, str | None]
+    """Keys of the inputs; None = there is none."""
+
+
+class Manifest(TypedDict):
+    """``manifest.json`` of an artifact, as JSON."""
+
+    recipe: StageRecipe
+    done: dict[str, Any]
+    """Fields of `FinishedStage`."""
+    figures: object
+    """Fields of the stage's figures."""
+    versions: dict[str, str]
+    files: dict[str, FileEntry]
+
+
 @dataclass(frozen=True, slots=True)
 class Artifact:
     """The result of a stage."""
@@ -76,7 +99,7 @@ class Artifact:
         """Argument of a stage that reads it: its folder."""
         return self.folder
 
-    def manifest(self) -> dict[str, Any]:
+    def manifest(self) -> Manifest:
         """Read its manifest: recipe, versions, resources used and hashes of its files.
 
         Raises:
@@ -233,7 +256,7 @@ def only(settings: Settings, groups: tuple[str, ...]) -> Settings:
     return replace(settings, **missing)
 
 
-def read_manifest(folder: Path) -> dict[str, Any]:
+def read_manifest(folder: Path) -> Manifest:
     """Read ``manifest.json`` of an artifact.
 
     Raises:
@@ -242,7 +265,13 @@ def read_manifest(folder: Path) -> dict[str, Any]:
     path = folder / "manifest.json"
     try:
         found = read_object(path)
-        return {name: found[name] for name in ("recipe", "done", "figures", "versions", "files")}
+        return {
+            "recipe": found["recipe"],
+            "done": found["done"],
+            "figures": found["figures"],
+            "versions": found["versions"],
+            "files": found["files"],
+        }
     except KeyError as error:
         raise StoreError(f"{path} cannot be read: it lacks {error}") from error
 
@@ -309,7 +338,7 @@ def versions() -> dict[str, str]:
 
 def _recipe(
     stage: Stage[Any], settings: Settings, inputs: Mapping[str, Input | Artifact | None]
-) -> dict[str, Any]:
+) -> StageRecipe:
     return {
         "stage": stage.name,
         "version": stage.version,
@@ -318,7 +347,7 @@ def _recipe(
     }
 
 
-def _hash_files(folder: Path, progress: Progress) -> dict[str, Any]:
+def _hash_files(folder: Path, progress: Progress) -> dict[str, FileEntry]:
     """Name -> size and hash of every file of an artifact."""
     sizes = {name: (folder / name).stat().st_size for name in files_below(folder)}
     progress.start(SAVING, sum(sizes.values()), "B")
@@ -328,18 +357,16 @@ def _hash_files(folder: Path, progress: Progress) -> dict[str, Any]:
 def _write_manifest(
     folder: Path,
     done: FinishedStage,
-    recipe: dict[str, Any],
+    recipe: StageRecipe,
     *,
     figures: Figures,
-    files: dict[str, Any],
+    files: dict[str, FileEntry],
 ) -> None:
-    write_json(
-        folder / "manifest.json",
-        {
-            "recipe": recipe,
-            "done": asdict(done),
-            "figures": to_plain(figures),
-            "versions": versions(),
-            "files": files,
-        },
-    )
+    manifest: Manifest = {
+        "recipe": recipe,
+        "done": asdict(done),
+        "figures": to_plain(figures),
+        "versions": versions(),
+        "files": files,
+    }
+    write_json(folder / "manifest.json", manifest)

@@ -52,7 +52,7 @@ def test_keys_and_users_are_saved_and_restored_only_on_request(server, tmp_path)
 
     restore(tmp_path / "with", tmp_path / "new", with_keys=False, progress=Silent())
 
-    names = read_list(newest(tmp_path / "without"))["files"]
+    names = read_list(newest(tmp_path / "without")).files
     assert not [n for n in names if n.endswith((".key", "access.sqlite", ".pem"))]
     assert not (tmp_path / "new" / ".recon4" / "signing.key").exists()
     with pytest.raises(ConfigError, match="made without keys"):

@@ -37,6 +37,18 @@ export interface AlternativePath {
   residual_rad: number;
 }
 
+export interface ApprovalView {
+  version: number;
+  hash: string;
+  who: string;
+  time: string;
+  why: string;
+  verdict: string;
+  current: boolean;
+  check: "" | "checked" | "checking" | "altered";
+  altered: string;
+}
+
 export interface Approve {
   why?: string;
   confirmed?: boolean;
@@ -59,10 +71,15 @@ export interface CaptureChoices {
   rigs: Array<RigChoice>;
 }
 
+export interface CaptureFinding {
+  level: "error" | "warning" | "info";
+  text: string;
+}
+
 export interface CaptureView {
   project: string;
   state: string;
-  words: Array<Record<string, string>>;
+  words: Array<CaptureFinding>;
   rates: Record<string, number>;
   phones: number;
   may_capture: boolean;
@@ -328,6 +345,19 @@ export interface JobView {
   resumable: boolean;
 }
 
+export interface ListedReference {
+  id: string;
+  name: string;
+  file: string;
+  frame: "map" | "crs";
+  T_map_reference: Array<Array<number>> | null;
+  alignment: string;
+  kind: "mesh" | "cloud" | "damaged";
+  points: number;
+  triangles: number;
+  problem: string;
+}
+
 export interface Log {
   entries: Array<Entry>;
   chain: Chain;
@@ -425,6 +455,11 @@ export interface NewUpload {
   files: number;
   bytes: number;
   fingerprint?: string;
+}
+
+export interface OtherMap {
+  id: string;
+  words: string;
 }
 
 export interface PairFacts {
@@ -549,6 +584,17 @@ export interface RecordingSummary {
   gnss: string;
 }
 
+export interface ReferenceFacts {
+  name: string;
+  file: string;
+  frame: "map" | "crs";
+  T_map_reference: Array<Array<number>>;
+  alignment: string;
+  kind: "mesh" | "cloud";
+  points: number;
+  triangles: number;
+}
+
 export interface Rename {
   name: string;
 }
@@ -606,7 +652,7 @@ export interface ReviewView {
   busy: boolean;
   may_review: boolean;
   may_process: boolean;
-  approval: Record<string, any> | null;
+  approval: ApprovalView | null;
 }
 
 export interface RigChoice {
@@ -687,8 +733,8 @@ export interface SliceFacts {
   crs: string;
   frame: string;
   approval: string;
-  references: Array<Record<string, any>>;
-  sources: Array<Record<string, string>>;
+  references: Array<ListedReference>;
+  sources: Array<OtherMap>;
 }
 
 export interface SliceImageRequest {
@@ -1166,12 +1212,12 @@ export interface Operations {
   "POST /api/projects/{project_id}/slices/references": {
     path: { project_id: string };
     body: AddReference;
-    response: Record<string, any>;
+    response: ListedReference;
   };
   "POST /api/projects/{project_id}/slices/references/{reference_id}/align": {
     path: { project_id: string; reference_id: string };
     body: AlignRequest;
-    response: Record<string, any>;
+    response: ReferenceFacts;
   };
   "POST /api/settings/check": {
     body: Assignments;

@@ -113,7 +113,6 @@ class PlaceIndex:
             self._local_map(place),
             source,
             initial=initial,
-            planes=self._planes,
             settings=self._settings.registration,
         )
         g = self._settings.graph

@@ -74,3 +74,9 @@ def test_the_same_letters_typed_otherwise_are_the_same_password():
 @pytest.mark.parametrize("stored", [None, "", "no hash", "$argon2id$v=19$m=1"])
 def test_nothing_fits_what_is_no_hash(stored):
     assert not passwords.fits("nobody has this password", stored)
+
+
+def test_a_name_without_an_account_costs_as_much_as_one_with_an_account():
+    assert not passwords.HASHER.check_needs_rehash(passwords.STAND_IN)
+    assert passwords.HASHER.verify(passwords.STAND_IN, "nobody has this password")
+    assert not passwords.fits("nobody has this password", None)

@@ -1,6 +1,7 @@
 """Each phone gets the part of the state it lacks, no more."""
 
 import numpy as np
+from msgspec import UNSET
 
 from app.live.stream_state import Cursor, StreamState
 from recon4.live.protocol import Mark, Points
@@ -23,7 +24,8 @@ def mark(t_s, text, what="point"):
 
 
 def marks_of(stream):
-    return stream.lacking(Cursor())[0].get("marks", {"marks": []})["marks"]
+    part = stream.lacking(Cursor())[0].marks
+    return part.marks if part else []
 
 
 def test_a_phone_that_reconnects_gets_only_what_it_lacks():
@@ -32,11 +34,11 @@ def test_a_phone_that_reconnects_gets_only_what_it_lacks():
     cursor = Cursor(generation=0, points=1000)
 
     message, data = stream.lacking(cursor)
-    assert "points" not in message and data == b""
+    assert message.points is UNSET and data == b""
     stream.take(points(1000, 10))
     message, data = stream.lacking(cursor)
 
-    assert (message["points"]["start"], message["points"]["count"], len(data)) == (1000, 10, 70)
+    assert (message.points.start, message.points.count, len(data)) == (1000, 10, 70)
 
 
 def test_a_phone_with_points_of_larger_number_or_other_generation_gets_all_points():
@@ -44,7 +46,7 @@ def test_a_phone_with_points_of_larger_number_or_other_generation_gets_all_point
     stream.take(points(0, 50, generation=1))
 
     for cursor in (Cursor(generation=0, points=1000), Cursor(generation=1, points=51)):
-        assert stream.lacking(cursor)[0]["points"]["start"] == 0
+        assert stream.lacking(cursor)[0].points.start == 0
 
 
 def test_a_mark_gets_the_position_of_its_time_although_the_mapping_is_late():
@@ -79,7 +81,7 @@ def test_an_hour_of_standing_is_one_place_of_the_path():
         stream.take(pose(k * 0.1, 0.001 * (k % 2)))
     stream.take(pose(101.0, 5.0))
 
-    assert stream.lacking(Cursor())[0]["path"]["points"] == [[0.0, 0.0, 1.0], [5.0, 0.0, 1.0]]
+    assert stream.lacking(Cursor())[0].path.points == [[0.0, 0.0, 1.0], [5.0, 0.0, 1.0]]
 
 
 def test_a_mark_gets_the_position_of_the_touch_not_of_the_finished_note():
@@ -99,18 +101,18 @@ def test_marks_of_an_earlier_server_are_not_sent_twice_and_later_ones_come():
     there, new = Cursor(marks=2), Cursor()
     stream.take(pose(3.0, 1.0))
 
-    assert "marks" not in stream.lacking(there)[0]
-    assert [one.text for one in stream.lacking(new)[0]["marks"]["marks"]] == [
+    assert stream.lacking(there)[0].marks is UNSET
+    assert [one.text for one in stream.lacking(new)[0].marks.marks] == [
         "town hall",
         "crack",
     ]
     stream.take(mark(3.0, "door"))
     stream.take(pose(4.0, 2.0))
-    assert stream.lacking(there)[0]["marks"]["start"] == 2
+    assert stream.lacking(there)[0].marks.start == 2
 
 
 def test_a_phone_with_more_marks_than_there_are_gets_all():
     stream = StreamState()
     stream.restore_marks([mark(1.0, "crack")])
 
-    assert stream.lacking(Cursor(marks=3))[0]["marks"]["start"] == 0
+    assert stream.lacking(Cursor(marks=3))[0].marks.start == 0

@@ -241,7 +241,7 @@ def test_the_positions_decide_which_loops_are_rejected(
     assert sum(edge.in_graph for edge in loops) == kept
     assert all(edge.reason is Reason.ROBUST for edge in loops if not edge.in_graph)
     assert len(result.rejected) == LOOPS - kept
-    assert result.to_json()["edges_rejected"] == list(result.rejected)
+    assert result.record().edges_rejected == list(result.rejected)
     assert worst_m(result, true) < 0.15
     assert result.used.mean() > 0.98
 
@@ -273,7 +273,7 @@ def test_with_too_few_fixes_the_map_is_not_georeferenced(
     assert result.origin is None
     assert f"{kept} usable fixes" in result.reason
     assert result.graph is graph
-    assert result.to_json()["georeferenced"] is False
+    assert result.record().georeferenced is False
 
 
 def test_a_stationary_receiver_gives_no_heading_and_a_reason(

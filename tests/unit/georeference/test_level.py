@@ -156,7 +156,7 @@ def test_without_any_source_nothing_is_turned() -> None:
 
         assert leveling.source == "none"
         assert leveling.tilt_rad == 0.0
-        assert leveling.to_json()["spread_deg"] is None
+        assert leveling.record().spread_deg is None
 
 
 def floor_points(rng: np.random.Generator, tilt: SE3) -> tuple[Array, Array]:

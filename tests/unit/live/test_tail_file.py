@@ -2,7 +2,6 @@
 
 import shutil
 import threading
-import time
 
 import numpy as np
 import pytest
@@ -64,21 +63,34 @@ def bad_walk(path):
     )
 
 
+class AwaitedProgress(WriteProgress):
+    """Tells the writer that the reader has read all there is: it sees every piece."""
+
+    def __init__(self):
+        super().__init__()
+        self.awaited = threading.Semaphore(0)
+
+    def wait_beyond(self, offset):
+        if offset >= self._bytes:
+            self.awaited.release()
+        return super().wait_beyond(offset)
+
+
 @pytest.mark.parametrize("make", [walk, bad_walk])
 def test_a_growing_capture_gives_the_frames_of_the_finished_file(tmp_path, make):
     whole = make(tmp_path / "whole.pcap")
     growing = shutil.copy(whole, tmp_path / "growing.pcap")
-    growth = WriteProgress()
+    growth = AwaitedProgress()
     size = whole.stat().st_size
-    cuts = np.sort(np.random.default_rng(5).integers(0, size, 300)).tolist()
+    cuts = np.unique(np.random.default_rng(5).integers(1, size, 300)).tolist()
 
     def write():
         for cut in [*cuts, size]:
+            assert growth.awaited.acquire(timeout=60.0)
             growth.reached(cut)
-            time.sleep(0.001)  # lets the reader see the pieces
         growth.complete()
 
-    writer = threading.Timer(0.05, write)
+    writer = threading.Thread(target=write)
     writer.start()
     live = frames_of(growing, tmp_path / "live", LiveSource(lambda path: TailFile(path, growth)))
     writer.join()

@@ -9,6 +9,7 @@ from recon4.errors import ConfigError, EmptyRecording, RecordingError, UnknownFo
 from recon4.model.laser_scans import LaserScans
 from recon4.model.rig import load_rig
 from recon4.progress import Silent
+from recon4.recording.info import describe
 from recon4.recording.ingest import ingest
 from recon4.recording.sources import Sources
 from recon4.settings import IngestSettings
@@ -149,3 +150,27 @@ def test_a_rig_with_a_profiler_needs_a_bag(tmp_path):
 
     with pytest.raises(UnknownFormat, match="line scans are read from bags"):
         read(tmp_path, tmp_path / "out", load_rig("wuerzburg"))
+
+
+def test_info_names_line_scans_head_and_2d_laser(tmp_path):
+    scans = line_scans(250, range_m=3.0)
+    write(tmp_path / "bag", lines=line_scans(300)[np.r_[0:100, 150:300]], scans=scans)
+
+    found = describe(tmp_path / "bag")
+
+    text = "\n".join(found.lines())
+    assert "/profiler/line profiler: 250 line scans" in text
+    assert "/profiler/head head: 310 angles" in text
+    assert "/laser2d/scan 2-D laser: 250 scans" in text
+    assert "LiDAR data" not in text
+    assert "IMU" in " ".join(found.missing)
+    assert any(gap.sensor == "/profiler/line" and gap.seconds > 0.4 for gap in found.gaps)
+
+
+def test_info_names_what_is_missing_of_a_profiler(tmp_path):
+    write(tmp_path / "bag", head=False)
+
+    found = describe(tmp_path / "bag")
+
+    assert any("angles of the head (/profiler/head" in text for text in found.missing)
+    assert any("2-D laser" in text for text in found.missing)

@@ -54,9 +54,7 @@ def register(solver, target, source, initial, **changes):
     if solver == "planes":
         planes = PlaneMap(PLANES)
         planes.add(np.ascontiguousarray(target.reshape(-1, 3)))
-        return register_to_planes(
-            planes, source.reshape(-1, 3), initial=initial, planes=PLANES, settings=settings
-        )
+        return register_to_planes(planes, source.reshape(-1, 3), initial=initial, settings=settings)
     return register_lines(
         LineTarget(Lines.through(target[:, 0], target[:, 1])),
         Lines.through(source[:, 0], source[:, 1]),
@@ -153,7 +151,6 @@ def test_the_limit_of_rounds_is_not_convergence(solver, target_ends, source_ends
             planes,
             source_ends.reshape(-1, 3),
             initial=SE3.identity(),
-            planes=PLANES,
             settings=settings,
         )
     else:
@@ -189,7 +186,7 @@ def test_large_cubes_and_a_wide_gate_come_first_and_all_gates_are_used(target_en
     planes.add(np.ascontiguousarray(target_ends.reshape(-1, 3)))
 
     found = register_to_planes(
-        planes, target_ends.reshape(-1, 3), initial=SE3.identity(), planes=PLANES,
+        planes, target_ends.reshape(-1, 3), initial=SE3.identity(),
         settings=settings_of("planes"),
     )  # fmt: skip
 
@@ -220,7 +217,7 @@ def test_the_error_counts_what_lies_too_far_off_to_register_but_not_what_is_else
     )
 
     found = register_to_planes(
-        planes, np.concatenate([there, before, elsewhere]), initial=SE3.identity(), planes=PLANES,
+        planes, np.concatenate([there, before, elsewhere]), initial=SE3.identity(),
         settings=settings_of("planes"),
     )  # fmt: skip
 
@@ -340,7 +337,7 @@ def test_a_direction_that_only_noise_observes_keeps_the_initial_pose():
     initial = SE3(np.eye(3), np.array([0.4, 0.02, -0.02]))
 
     found = register_to_planes(
-        planes, tunnel(2000), initial=initial, planes=PLANES, settings=settings_of("planes"),
+        planes, tunnel(2000), initial=initial, settings=settings_of("planes"),
         normal_noise_rad=0.08,
     )  # fmt: skip
 

@@ -187,7 +187,7 @@ def test_the_reason_stands_wherever_the_signer_stands(unusable, key, capsys):
     (line,) = audit_review(unusable, Silent()).approvals
     assert line.endswith(f', verdict "do not use", reason "{why}"')
     latest = latest_approval(unusable, read_rows(unusable))
-    assert (latest["verdict"], latest["why"]) == ("do not use", why)
+    assert (latest.verdict, latest.why) == ("do not use", why)
 
 
 def test_a_verdict_that_was_changed_after_the_run_is_not_signed(unusable, key):
@@ -247,8 +247,8 @@ def test_an_approval_that_counted_before_a_crash_is_handed_out_later(root, key, 
         approve(root, key, SIGNER, confirmed=False)
 
     record = latest_approval(root, read_rows(root))
-    assert (before["current"], record["current"], record["version"]) == (False, True, 1)
-    assert record["hash"] in (root / "report.html").read_text()
+    assert (before.current, record.current, record.version) == (False, True, 1)
+    assert record.hash in (root / "report.html").read_text()
 
 
 def test_an_earlier_map_keeps_its_approval(root, key):

@@ -11,9 +11,18 @@ from recon4.live.newest import Newest
 from recon4.model.rig import load_rig
 from tests.unit.live.recorder.recorder_process import decode, numbers, recording, send
 
+SETTLED = """
+def settled(file):
+    state = file.state()
+    return state.datagrams + state.dropped
+"""
+"""Datagrams that were written or dropped: nothing is known of the others yet."""
+
 
 def test_a_full_disk_stops_the_file_at_a_whole_record_and_is_said(tmp_path):
-    code = """
+    code = (
+        SETTLED
+        + """
 import resource, signal, sys, time
 from pathlib import Path
 from recon4.live.recorder.capture_file import CaptureFile, Datagram
@@ -23,11 +32,12 @@ file = CaptureFile(Path(sys.argv[1]), on_written=lambda size: None)
 for k in range(200):
     file.add(Datagram(k, ("127.0.0.1", 5), 2368, k.to_bytes(4, "little") + bytes(1202)))
     if k % 10 == 9:
-        while file.state().waiting_bytes: time.sleep(0.01)
+        while settled(file) <= k: time.sleep(0.01)
 file.close()
 state = file.state()
 print(state.datagrams, state.dropped, state.problem)
 """
+    )
     path = tmp_path / "walk.pcap"
 
     done = subprocess.run([sys.executable, "-c", code, path], capture_output=True, text=True)
@@ -41,7 +51,9 @@ print(state.datagrams, state.dropped, state.problem)
 
 
 def test_after_a_full_disk_recording_goes_on(tmp_path):
-    code = """
+    code = (
+        SETTLED
+        + """
 import resource, signal, sys, time
 from pathlib import Path
 from recon4.live.recorder.capture_file import CaptureFile, Datagram
@@ -54,12 +66,12 @@ for k in range(300):
     if k == 200: resource.setrlimit(resource.RLIMIT_FSIZE, (unlimited, unlimited))
     file.add(Datagram(k, ("127.0.0.1", 5), 2368, k.to_bytes(4, "little") + bytes(1202)))
     if k % 10 == 9:
-        while file.state().waiting_bytes: time.sleep(0.01)
-        time.sleep(0.02)
+        while settled(file) <= k: time.sleep(0.01)
         problems.append(file.state().problem)
 file.close()
 print(file.state().dropped, problems[5], "/", problems[15], "/", problems[-1])
 """
+    )
     path = tmp_path / "walk.pcap"
 
     done = subprocess.run([sys.executable, "-c", code, path], capture_output=True, text=True)

@@ -1,0 +1,43 @@
+"""Which topics of a bag belong to a backpack with a profiler, for ``recon4 info``."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from recon4.recording.formats.bags import BagTopic
+from recon4.recording.line_recording import JOINTS, profiler_rig
+from recon4.recording.report import ImportReport
+
+
+@dataclass(frozen=True, slots=True)
+class LineTopics:
+    """Topics of a shipped rig with a profiler."""
+
+    sensors: tuple[tuple[BagTopic, str, str], ...]
+    """Topic, kind of sensor, and what its messages are."""
+    missing: tuple[str, ...]
+    """What the rig has and the bag lacks."""
+
+
+def line_topics(topics: Sequence[BagTopic]) -> LineTopics | None:
+    """Topics of line scans and what belongs to them; None = the bag has no line scans."""
+    rig = profiler_rig(topics, None, ImportReport())
+    if rig is None:
+        return None
+    filled = {topic.name: topic for topic in topics if topic.messages}
+    contents = {"profiler": "line scans", "laser2d": "scans"}
+    names = {"profiler": "profiler", "laser2d": "2-D laser"}
+    found, missing = [], []
+    for sensor in rig.sensors:
+        if sensor.topic in filled:
+            found.append((filled[sensor.topic], names[sensor.kind], contents[sensor.kind]))
+        else:
+            missing.append(f"{names[sensor.kind]} ({sensor.topic})")
+        if not sensor.head_topic:
+            continue
+        if sensor.head_topic in filled:
+            found.append((filled[sensor.head_topic], "head", "angles"))
+        else:
+            missing.append(f"angles of the head ({sensor.head_topic}, {JOINTS})")
+    return LineTopics(tuple(found), tuple(missing))

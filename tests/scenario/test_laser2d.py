@@ -1,0 +1,67 @@
+"""Real logs of 2-D lasers: loops closed, compared with the relations of the Freiburg benchmark."""
+
+import numpy as np
+import pytest
+
+from recon4.evaluation.relations import read_relations, relation_errors
+from recon4.evaluation.trajectories import find_trajectory
+from recon4.model.usability import Usability
+from recon4.pipeline import process
+from recon4.recording.laser2d import read_laser2d
+from recon4.recording.report import ImportReport
+from recon4.recording.sources import Sources
+from recon4.results_2d import Summary2d
+from recon4.settings import Settings, override
+from tests.planar_walks import write_carmen
+
+PUBLISHED_M, PUBLISHED_DEG = 0.045, 0.6
+"""Class of published graph SLAM on the log aces."""
+
+
+def test_aces_is_as_good_as_published_graph_slam(tmp_path, data):
+    summary = process(Sources((data("laser2d/aces.clf.bz2"),)), tmp_path)
+
+    errors = relation_errors(
+        find_trajectory(tmp_path), read_relations(data("laser2d/aces.relations"))
+    )
+    assert isinstance(summary, Summary2d)
+    assert (errors.relations, errors.outside) == (1279, 0)
+    assert errors.translation_mean_m < PUBLISHED_M
+    assert np.rad2deg(errors.rotation_mean_rad) < PUBLISHED_DEG
+    assert summary.loops > 50
+    assert summary.verdict.usability is Usability.GOOD
+    assert sum(stage.cpu_seconds for stage in summary.stages) < 0.2 * summary.duration_s
+
+
+def test_aces_needs_no_odometry(tmp_path, data):
+    whole = read_laser2d([data("laser2d/aces.clf.bz2")], ImportReport())
+    write_carmen(tmp_path / "aces.log", whole)
+    relations = read_relations(data("laser2d/aces.relations"))
+    settings = override(Settings(), ["slam2d.use_odometry=false"])
+    process(Sources((tmp_path / "aces.log",)), tmp_path / "out", settings=settings)
+
+    errors = relation_errors(find_trajectory(tmp_path / "out"), relations)
+    assert errors.translation_mean_m < PUBLISHED_M
+    assert np.rad2deg(errors.rotation_mean_rad) < PUBLISHED_DEG
+
+
+@pytest.mark.parametrize("cut", [0.3, 0.9])
+def test_intel_that_is_cut_off_is_mapped_as_far_as_it_goes(tmp_path, data, cut):
+    packed = data("laser2d/intel.clf.bz2").read_bytes()
+    (tmp_path / "cut.clf.bz2").write_bytes(packed[: int(cut * len(packed))])
+
+    found = read_laser2d([tmp_path / "cut.clf.bz2"], report := ImportReport())
+
+    assert report.outcome == "lossy"
+    assert 0.7 * cut * 13631 < len(found) < 13631
+
+
+def test_intel_closes_its_loops(tmp_path, data):
+    summary = process(Sources((data("laser2d/intel.clf.bz2"),)), tmp_path)
+
+    assert isinstance(summary, Summary2d)
+    assert summary.loops > 500
+    assert summary.lost == 0
+    assert summary.grid.crossing_ratio < 0.07
+    assert summary.verdict.usability is Usability.GOOD
+    assert sum(stage.cpu_seconds for stage in summary.stages) < 0.2 * summary.duration_s

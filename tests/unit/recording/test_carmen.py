@@ -1,0 +1,243 @@
+"""CARMEN logs: what is read, repaired, counted and refused."""
+
+import bz2
+import gzip
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.errors import CorruptFile, EmptyRecording, UnknownFormat
+from recon4.recording.formats.carmen import is_carmen, read_carmen
+from recon4.recording.formats.text_logs import log_lines
+from recon4.recording.info import describe
+from recon4.recording.laser2d import is_laser2d, read_laser2d
+from recon4.recording.open import RecordingKind, recognize
+from recon4.recording.report import ImportReport
+from tests.planar_walks import carmen_lines, furnished_room, scanned, write_carmen
+
+HEAD = "PARAM robot_frontlaser_offset 0.0 nohost 0\n"
+
+
+@pytest.fixture(scope="module")
+def walk():
+    truth = np.stack([np.linspace(-2.0, 2.0, 30), np.zeros(30), np.zeros(30)], axis=1)
+    return scanned(furnished_room(), truth)
+
+
+def flaser(ranges, time_s, laser=(1.0, 2.0, 0.5), robot=(1.0, 2.0, 0.5)):
+    numbers = " ".join(str(value) for value in [*ranges, *laser, *robot])
+    return f"FLASER {len(ranges)} {numbers} {time_s} nohost {time_s}\n"
+
+
+def read(path, text=None):
+    report = ImportReport()
+    if text is not None:
+        path.write_text(HEAD + text, "ascii")
+    return read_laser2d([path], report), report
+
+
+def test_a_log_is_read_as_it_was_written(tmp_path, walk):
+    write_carmen(tmp_path / "walk.log", walk.scans)
+
+    scans, report = read(tmp_path / "walk.log")
+
+    assert recognize(tmp_path / "walk.log") is RecordingKind.CARMEN
+    np.testing.assert_array_equal(scans.t_ns, walk.scans.t_ns)
+    np.testing.assert_allclose(scans.range_m, walk.scans.range_m, atol=6e-4)
+    np.testing.assert_allclose(scans.angles_rad, walk.scans.angles_rad, atol=1e-6)
+    np.testing.assert_allclose(scans.odometry, walk.scans.odometry, atol=1e-6)
+    assert report.outcome == "complete"
+    assert report.warnings == []
+
+
+@pytest.mark.parametrize("pack", [bz2.compress, gzip.compress])
+def test_compressed_logs_are_read_without_unpacking(tmp_path, walk, pack):
+    text = "\n".join(carmen_lines(walk.scans)) + "\n"
+    (tmp_path / "walk.log.packed").write_bytes(pack(text.encode()))
+
+    scans, _ = read(tmp_path / "walk.log.packed")
+
+    assert is_laser2d(tmp_path / "walk.log.packed")
+    assert len(scans) == 30
+
+
+@pytest.mark.parametrize("pack", [bz2.compress, gzip.compress])
+def test_a_compressed_log_that_is_cut_off_is_read_as_far_as_it_goes(tmp_path, walk, pack):
+    text = "\n".join(carmen_lines(walk.scans) * 40) + "\n"
+    packed = pack(text.encode())
+    (tmp_path / "cut").write_bytes(packed[: len(packed) * 3 // 4])
+
+    report = ImportReport()
+    found = read_carmen(tmp_path / "cut", report) if pack is gzip.compress else None
+
+    if found is None:  # bz2 has blocks of 900 kB: a quarter less may leave none
+        lines = list(log_lines(tmp_path / "cut", report))
+        assert len(lines) < text.count("\n")
+    else:
+        assert 0 < len(found.t_ns) < 1200
+    assert report.outcome == "lossy"
+    assert "cut off" in " ".join(report.warnings)
+
+
+def test_a_flaser_of_180_beams_begins_at_minus_90_degrees(tmp_path):
+    scans, _ = read(tmp_path / "log", flaser([2.0] * 180, 5.25) + flaser([2.1] * 180, 5.5))
+
+    assert scans.t_ns.tolist() == [5_250_000_000, 5_500_000_000]
+    assert scans.angle_min_rad == pytest.approx(-np.pi / 2)
+    assert scans.angle_step_rad == pytest.approx(np.deg2rad(1.0))
+
+
+@pytest.mark.parametrize(("beams", "field_deg"), [(181, 180.0), (361, 180.0), (1081, 270.0)])
+def test_lasers_of_other_layouts_are_known_by_their_beams(tmp_path, beams, field_deg):
+    scans, _ = read(tmp_path / "log", flaser([2.0] * beams, 5) + flaser([3.0] * beams, 6))
+
+    angles = np.rad2deg(scans.angles_rad[[0, -1]])
+    np.testing.assert_allclose(angles, [-field_deg / 2, field_deg / 2], atol=1e-6)
+
+
+def test_scans_out_of_order_and_duplicates_are_repaired_and_counted(tmp_path):
+    times = [1.0, 2.0, 2.0, 4.0, 3.0, 5.0]
+    text = "".join(flaser([1.0 + k] * 4, time) for k, time in enumerate(times))
+
+    scans, report = read(tmp_path / "log", text)
+
+    assert (scans.t_ns // 10**9).tolist() == [1, 2, 3, 4, 5]
+    assert scans.range_m[:, 0].tolist() == [1.0, 2.0, 5.0, 4.0, 6.0]
+    assert report.counts["scans_duplicate"] == 1
+    assert report.counts["scans_out_of_order"] == 1
+    assert len(report.warnings) == 2
+
+
+def test_damaged_lines_are_left_out_and_the_first_is_named(tmp_path):
+    good = flaser([2.0] * 5, 1.0)
+    bad = ["FLASER 5 1 2 3\n", "FLASER x 1\n", flaser([2.0, "nan1", 3, 4, 5], 2.0), "FLASER\n"]
+
+    scans, report = read(tmp_path / "log", good + "".join(bad) + flaser([2.0] * 5, 3.0))
+
+    assert len(scans) == 2
+    assert report.counts["scans_damaged"] == 4
+    assert "line 3" in report.warnings[0]
+    assert report.outcome == "lossy"
+
+
+def test_the_repeated_largest_range_is_no_return(tmp_path):
+    text = "".join(flaser([2.0, 3.0, 81.83, 81.9], float(k)) for k in range(30))
+
+    scans, report = read(tmp_path / "log", text)
+
+    assert np.isnan(scans.range_m[:, 2:]).all()
+    assert np.isfinite(scans.range_m[:, :2]).all()
+    assert "no return" in report.derived[0]
+
+
+def test_numbers_that_are_no_ranges_are_counted(tmp_path):
+    text = flaser([2.0, "nan", -1.0, 0.0, 3.0], 1.0) + flaser([2.0] * 5, 2.0)
+
+    scans, report = read(tmp_path / "log", text)
+
+    assert np.isnan(scans.range_m[0, 1:4]).all()
+    assert report.counts["ranges_not_numbers"] == 2
+
+
+@pytest.mark.parametrize(("factor", "unit"), [(100.0, "centimeters"), (1000.0, "millimeters")])
+def test_other_units_are_converted_and_said(tmp_path, walk, factor, unit):
+    large = replace(
+        walk.scans, range_m=walk.scans.range_m * np.float32(factor), range_max_m=20.0 * factor
+    )
+    write_carmen(tmp_path / "walk.log", large)
+
+    scans, report = read(tmp_path / "walk.log")
+
+    np.testing.assert_allclose(scans.range_m, walk.scans.range_m, atol=1e-3)
+    assert unit in " ".join(report.warnings)
+    assert report.counts["scans_converted"] == len(scans)
+
+
+def test_corrected_poses_of_the_laser_are_not_taken_as_odometry(tmp_path):
+    text = "".join(
+        flaser([2.0] * 4, float(k), laser=(0.9 * k, 0.1 * k, 0.0), robot=(1.0 * k, 0.0, 0.0))
+        for k in range(20)
+    )
+
+    scans, report = read(tmp_path / "log", text)
+
+    np.testing.assert_allclose(scans.odometry[:, 0], np.arange(20.0))
+    assert "corrected" in " ".join(report.derived)
+
+
+def test_the_pose_of_the_laser_is_used_where_it_is_mounted_off_the_center(tmp_path):
+    text = "".join(
+        flaser([2.0] * 4, float(k), laser=(k + 0.2, 0.0, 0.0), robot=(float(k), 0.0, 0.0))
+        for k in range(20)
+    )
+
+    scans, _ = read(tmp_path / "log", text)
+
+    np.testing.assert_allclose(scans.odometry[:, 0], np.arange(20) + 0.2)
+
+
+def test_odometry_that_never_changes_is_not_used(tmp_path):
+    scans, report = read(tmp_path / "log", flaser([2.0] * 4, 1.0) + flaser([2.5] * 4, 2.0))
+
+    assert scans.odometry is None
+    assert "never changes" in " ".join(report.derived)
+
+
+def test_the_rarer_layout_is_left_out(tmp_path):
+    text = "".join(flaser([2.0] * 4, float(k)) for k in range(5)) + flaser([2.0] * 7, 9.0)
+
+    scans, report = read(tmp_path / "log", text)
+
+    assert len(scans) == 5
+    assert report.counts["scans_of_another_layout"] == 1
+
+
+def test_rawlaser_has_no_odometry(tmp_path):
+    line = "RAWLASER1 0 -1.5 3.0 1.0 80.0 0.01 0 4 1.0 2.0 3.0 80.0 2 7 8 {0} robot {0}\n"
+
+    scans, report = read(tmp_path / "log", line.format(1.0) + line.format(2.0))
+
+    assert scans.odometry is None
+    assert scans.angle_min_rad == -1.5
+    np.testing.assert_array_equal(scans.range_m[0], [1.0, 2.0, 3.0, np.nan])
+    assert "no odometry" in " ".join(report.derived)
+
+
+def test_a_log_without_scans_is_refused(tmp_path):
+    (tmp_path / "log").write_text(HEAD + "ODOM 0 0 0 0 0 0 1.0 nohost 0.0\n", "ascii")
+
+    with pytest.raises(EmptyRecording, match="log: no scan of a laser"):
+        read(tmp_path / "log")
+
+
+def test_a_line_without_end_is_refused(tmp_path):
+    (tmp_path / "log").write_bytes(HEAD.encode() + b"FLASER 3 " + b"1.0 " * 40_000)
+
+    with pytest.raises(CorruptFile, match="line 2: expected at most 65536 bytes"):
+        read(tmp_path / "log")
+
+
+def test_a_small_file_that_becomes_huge_is_refused(tmp_path):
+    (tmp_path / "log.bz2").write_bytes(bz2.compress(b"PARAM a b c\n" * 4_000_000))
+
+    with pytest.raises(CorruptFile, match=r"expected at most \d+ bytes of text"):
+        read_carmen(tmp_path / "log.bz2", ImportReport())
+
+
+def test_other_texts_are_no_carmen_logs(tmp_path):
+    (tmp_path / "notes.txt").write_text("FLASERS are nice\nbut this is no log\n", "ascii")
+
+    assert not is_carmen(tmp_path / "notes.txt")
+    with pytest.raises(UnknownFormat, match="no reader recognizes it"):
+        recognize(tmp_path / "notes.txt")
+
+
+def test_info_says_what_a_log_holds(tmp_path, walk):
+    write_carmen(tmp_path / "walk.log", walk.scans)
+
+    text = "\n".join(describe(tmp_path / "walk.log").lines())
+
+    assert "CARMEN log of a 2-D laser" in text
+    assert "30 scans of 271 beams over 270°, 10.0 a second" in text
+    assert "odometry" in text

@@ -1,0 +1,166 @@
+"""The whole way from a log of a 2-D laser to a project folder."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.cli.main import main
+from recon4.errors import ConfigError, EmptyRecording
+from recon4.model.rig import load_rig
+from recon4.model.usability import Usability
+from recon4.pipeline import process
+from recon4.progress import Silent
+from recon4.recording.formats.poses import read_tum
+from recon4.recording.sources import Sources
+from recon4.results_2d import RESULTS_2D
+from recon4.settings import Settings, override
+from recon4.simulation.line_bag import open_line_bag
+from recon4.store.hashing import hash_file
+from recon4.verify import verify
+from tests.g2o_reader import read_g2o
+from tests.planar_walks import (
+    along,
+    blank_corridor,
+    furnished_room,
+    mirrored,
+    ring_corridor,
+    ring_walk,
+    scanned,
+    write_carmen,
+)
+
+
+@pytest.fixture(scope="module")
+def room():
+    corners = np.array([[-3.0, 0.0], [0.0, -1.0], [3.0, -2.0], [3.0, 1.0], [0.0, 1.0]])
+    return scanned(furnished_room(), along(corners))
+
+
+@pytest.fixture(scope="module")
+def mapped(tmp_path_factory, room):
+    folder = tmp_path_factory.mktemp("mapped")
+    write_carmen(folder / "walk.log", room.scans)
+    return folder, process(Sources((folder / "walk.log",)), folder / "out")
+
+
+def run(folder, scans, **given):
+    write_carmen(folder / "walk.log", scans)
+    return process(Sources((folder / "walk.log",), **given), folder / "out")
+
+
+def test_a_log_becomes_a_project_with_all_its_results(mapped, room):
+    folder, summary = mapped
+    out = folder / "out"
+
+    written = json.loads((out / "summary.json").read_text("utf-8"))
+
+    assert written == json.loads(json.dumps(summary.to_json()))
+    assert written["map"] == "2d"
+    assert {name: hash_file(out / name) for name in RESULTS_2D} == written["hashes"]["results"]
+    assert summary.verdict.usability is Usability.GOOD
+    assert summary.scans == len(room.scans)
+    assert summary.path_length_m == pytest.approx(11.4, abs=0.6)
+    trajectory = read_tum(out / "trajectory.tum")
+    distance, _ = room.errors(
+        np.stack(
+            [
+                trajectory.T_a_b.t[:, 0],
+                trajectory.T_a_b.t[:, 1],
+                np.arctan2(trajectory.T_a_b.R[:, 1, 0], trajectory.T_a_b.R[:, 0, 0]),
+            ],
+            axis=1,
+        )
+    )
+    assert distance.max() < 0.02
+    assert not verify(out, Silent()).damaged
+
+
+def test_a_second_run_reuses_every_stage(mapped):
+    folder, first = mapped
+
+    second = process(Sources((folder / "walk.log",)), folder / "out")
+
+    assert all(stage.reused for stage in second.stages)
+    assert [stage.key for stage in second.stages] == [stage.key for stage in first.stages]
+
+
+def test_a_setting_of_the_grid_makes_only_the_map_again(mapped):
+    folder, _ = mapped
+    settings = override(Settings(), ["grid2d.cell_m=0.1"])
+
+    summary = process(Sources((folder / "walk.log",)), folder / "out", settings=settings)
+
+    assert [stage.stage for stage in summary.stages if not stage.reused] == ["map_2d"]
+    assert summary.grid.cell_m == 0.1
+
+
+def test_the_command_names_the_map(tmp_path, room, capsys):
+    write_carmen(tmp_path / "walk.log", room.scans[:40])
+
+    code = main(["process", str(tmp_path / "walk.log"), "--out", str(tmp_path / "out")])
+
+    text = capsys.readouterr().out
+    assert code == 0
+    assert "40 scans (0 lost)" in text
+    assert "verdict: good" in text
+    assert "map.yaml" in text
+
+
+def test_a_bag_of_a_laser_becomes_a_map_too(tmp_path, room):
+    with open_line_bag(tmp_path / "bag") as bag:
+        bag.scans("/scan", replace(room.scans[:40], odometry=None))
+
+    summary = process(Sources((tmp_path / "bag",)), tmp_path / "out")
+
+    assert summary.scans == 40
+    assert (tmp_path / "out" / "map.png").is_file()
+
+
+def test_a_blank_corridor_is_said_not_to_be_usable(tmp_path):
+    walk = scanned(blank_corridor(), along(np.array([[0.0, 0.0], [16.0, 0.0]])), odometry=False)
+
+    summary = run(tmp_path, walk.scans)
+
+    assert summary.verdict.usability is Usability.DO_NOT_USE
+    assert "hardly observes one direction" in " ".join(summary.verdict.reasons)
+    assert summary.verdict.unobserved[0].end_s - summary.verdict.unobserved[0].start_s > 15.0
+    assert summary.grid.largest_sd_m > 5.0
+
+
+def test_a_silent_laser_without_odometry_is_part_of_the_verdict(tmp_path):
+    walk = scanned(ring_corridor(), ring_walk(0.4), odometry=False)
+    t_s = (walk.scans.t_ns - walk.scans.t_ns[0]) / 1e9
+
+    summary = run(tmp_path, walk.scans[(t_s < 5.0) | (t_s > 10.0)])
+
+    assert "silent for 5.2 s at 4.9 s" in " ".join(summary.warnings)
+    assert summary.verdict.usability is not Usability.GOOD
+    assert "is unknown" in " ".join(summary.verdict.reasons)
+
+
+def test_mirrored_scans_are_repaired_and_said(tmp_path, room):
+    summary = run(tmp_path, mirrored(room.scans))
+
+    assert "wrong order" in " ".join(summary.warnings)
+    assert summary.verdict.usability is Usability.GOOD
+
+
+def test_a_log_without_a_usable_scan_is_refused(tmp_path, room):
+    far = replace(room.scans[:10], range_m=np.full_like(room.scans.range_m[:10], 35.0))
+
+    with pytest.raises(EmptyRecording, match="none of the 10 scans has enough returns between"):
+        run(tmp_path, replace(far, range_max_m=80.0))
+
+
+def test_a_rig_does_not_belong_to_a_log(tmp_path, room):
+    with pytest.raises(ConfigError, match="processed without a rig"):
+        run(tmp_path, room.scans[:5], rig=load_rig("4recon"))
+    assert not (tmp_path / "out" / "project.json").exists()
+
+
+def test_the_graph_is_readable_by_other_solvers(mapped):
+    graph = read_g2o(mapped[0] / "out" / "graph.g2o")
+
+    assert len(graph) > 20
