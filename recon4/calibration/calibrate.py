@@ -159,7 +159,7 @@ def calibrate(
 ) -> Calibration | None:
     """Calibrate the rig on every second window and check it on the others.
 
-    The windows are tracked again with the rig to begin with: the odometry may have been lost.
+    Where tracking was lost, or the rig file is far off, the windows are tracked again first.
 
     Args:
         walk: The recording.
@@ -171,10 +171,8 @@ def calibrate(
     Returns:
         None if there are no windows with planes.
     """
-    s, recorded = settings.calibration, walk.frames.rig
-    rows = walk.rows(2 * s.windows, s.window_s, with_lost=True)
-    moved = walk.with_rig(start)
-    windows = moved.tracked_windows(rows, start, settings, imu=moved.frames.imu)
+    recorded = walk.frames.rig
+    windows = _calibration_windows(walk, start, parameters, settings=settings)
     used, others = windows[::2], windows[1::2]
     first = _estimate(used, start, parameters, settings=settings, progress=progress)
     if first is None:
@@ -195,13 +193,29 @@ def calibrate(
     return Calibration(final, rows_of_table, before, after, refusal)
 
 
+def _calibration_windows(
+    walk: RecordedWalk, start: Rig, parameters: Parameters, *, settings: Settings
+) -> list[Window]:
+    s = settings.calibration
+    change = parameters.between(walk.frames.rig, start)
+    if not walk.lost.any() and np.all(np.abs(change) < _far(parameters)):
+        return walk.windows(2 * s.windows, s.window_s)
+    rows = walk.rows(2 * s.windows, s.window_s, with_lost=True)
+    moved = walk.with_rig(start)
+    return moved.tracked_windows(rows, start, settings, imu=moved.frames.imu)
+
+
 def _is_near(found: JointEstimate, recorded: Rig) -> bool:
     """Whether no parameter is certainly so far from the rig file that the estimate may be false."""
     change = np.abs(found.parameters.between(recorded, found.rig))
-    far = {"rad": _FAR_RAD, "m": _FAR_M, "s": _FAR_S}
-    limit = np.array([far[parameter.unit] for parameter in found.parameters.listed])
     noise = _SIGMAS * np.where(np.isfinite(found.sd), found.sd, 0.0)
-    return bool(np.all(change < np.maximum(limit, noise)))
+    return bool(np.all(change < np.maximum(_far(found.parameters), noise)))
+
+
+def _far(parameters: Parameters) -> Array:
+    """Changes from which on other mounts are tried too, (P,)."""
+    far = {"rad": _FAR_RAD, "m": _FAR_M, "s": _FAR_S}
+    return np.array([far[parameter.unit] for parameter in parameters.listed])
 
 
 def _counted_from(found: JointEstimate, recorded: Rig) -> JointEstimate:

@@ -16,7 +16,7 @@ from recon4.model.trajectory import Times, Trajectory
 
 KNOT_S = 0.05
 """Distance in time of the knots of the trajectory's correction [s]."""
-_POINTS_OF_FRAME = 900
+_POINTS_OF_FRAME = 600
 """Largest number of points of one sensor in one multiframe."""
 _MARGIN_NS = 100_000_000
 """Samples of the IMU are kept this much longer than the window on both sides [ns]."""

@@ -58,7 +58,8 @@ def test_the_summary_has_inputs_settings_and_stages(project):
     assert summary["settings"]["odometry"] == to_json(preset("indoor"))["odometry"]
     assert set(summary["hashes"]["inputs"]) == {"recording.pcap", "imu.csv"}
     assert [stage["stage"] for stage in summary["stages"]] == [
-        *("frames", "odometry", "graph", "verification", "refine", "level", "intensity", "map")
+        *("frames", "odometry", "calibration", "graph", "verification"),
+        *("refine", "level", "intensity", "map"),
     ]
     assert all(stage["seconds"] > 0 and stage["peak_bytes"] > 0 for stage in summary["stages"])
     assert summary["lost"] == 0
