@@ -159,7 +159,7 @@ def calibrate(
 ) -> Calibration | None:
     """Calibrate the rig on every second window and check it on the others.
 
-    Where tracking was lost, or the rig file is far off, the windows are tracked again first.
+    The windows are tracked again with the rig of the audit: a better trajectory to begin with.
 
     Args:
         walk: The recording.
@@ -172,7 +172,10 @@ def calibrate(
         None if there are no windows with planes.
     """
     recorded = walk.frames.rig
-    windows = _calibration_windows(walk, start, parameters, settings=settings)
+    s = settings.calibration
+    rows = walk.rows(2 * s.windows, s.window_s, with_lost=True)
+    moved = walk.with_rig(start)
+    windows = moved.tracked_windows(rows, start, settings, imu=moved.frames.imu)
     used, others = windows[::2], windows[1::2]
     first = _estimate(used, start, parameters, settings=settings, progress=progress)
     if first is None:
@@ -191,18 +194,6 @@ def calibrate(
     rows_of_table = judge(final, not_observable=unknown)
     refusal = _refusal(rows_of_table, before, after, second=second, first=first)
     return Calibration(final, rows_of_table, before, after, refusal)
-
-
-def _calibration_windows(
-    walk: RecordedWalk, start: Rig, parameters: Parameters, *, settings: Settings
-) -> list[Window]:
-    s = settings.calibration
-    change = parameters.between(walk.frames.rig, start)
-    if not walk.lost.any() and np.all(np.abs(change) < _far(parameters)):
-        return walk.windows(2 * s.windows, s.window_s)
-    rows = walk.rows(2 * s.windows, s.window_s, with_lost=True)
-    moved = walk.with_rig(start)
-    return moved.tracked_windows(rows, start, settings, imu=moved.frames.imu)
 
 
 def _is_near(found: JointEstimate, recorded: Rig) -> bool:
