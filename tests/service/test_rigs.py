@@ -1,45 +1,28 @@
 """Rigs over HTTP: list, create, change, versions, uses, calibrated rigs."""
 
 import json
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from recon4.calibration.stage import CalibrationResult
-from recon4.geometry.se3 import SE3
-from recon4.model.figures import CalibrationFigures, ParameterFigures
 from recon4.model.rig import format_rig, load_rig
-from recon4.progress import Silent
-from recon4.settings import Settings
-from recon4.store.frames import FrameWriter
-from recon4.store.project import Project
-from recon4.store.stage import Stage, StageRunner
 from tests.project_builder import build_project
+from tests.rig_projects import TOML, calibrated_project, tilted
 from tests.service.running import server_thread
 from tests.service.secure import secure_server
-
-TOML = """\
-name = "field backpack"  # drawn by hand
-
-[[sensor]]
-name = "top"
-model = "VLP-16"
-xyz_m = [0.0, 0.0, 0.3]
-rpy_deg = [1.0, 2.0, 3.0]
-
-[[sensor]]
-name = "back"
-model = "HDL-32E"
-address = "192.168.1.202"
-xyz_m = [-0.12, 0.0, 0.1]
-rpy_deg = [10.0, 90.0, 0.0]
-"""
 
 
 @pytest.fixture
 def server(tmp_path):
     with server_thread(tmp_path) as running:
+        yield running
+
+
+@pytest.fixture(scope="module")
+def shared(tmp_path_factory):
+    """A server with one rig, for requests that change nothing."""
+    with server_thread(tmp_path_factory.mktemp("rigs")) as running:
+        created(running)
         yield running
 
 
@@ -59,15 +42,15 @@ def changed(server, content, **body):
     return server.post("/api/rigs/field/versions", json={"content": content, **body})
 
 
-def test_shipped_rigs_are_listed_and_read(server):
-    rigs = {rig["id"]: rig for rig in server.get("/api/rigs").json()}
+def test_shipped_rigs_are_listed_and_read(shared):
+    rigs = {rig["id"]: rig for rig in shared.get("/api/rigs").json()}
 
     assert rigs["4recon"]["shipped"] and rigs["4recon"]["path"] == "4recon"
     assert rigs["4recon"]["sensors"] == ["horizontal", "vertical"]
-    vertical = content_of(server, "4recon")["sensors"][1]
+    vertical = content_of(shared, "4recon")["sensors"][1]
     assert vertical["rpy_deg"] == [0.0, 90.0, 0.0]
     assert vertical["xyz_m"] == [-0.12, 0.0, 0.0]
-    exported = server.get("/api/rigs/4recon/versions/0/file")
+    exported = shared.get("/api/rigs/4recon/versions/0/file")
     assert exported.text == format_rig(load_rig("4recon"))
 
 
@@ -132,32 +115,30 @@ def test_a_change_of_an_outdated_version_is_rejected(server):
         ("head_rate_deg_s", 9.0, "sensors.0.head_topic", "only a profiler"),
     ],
 )
-def test_an_invalid_field_is_named(server, field, value, *, place, text):
-    created(server)
-    content = content_of(server)
+def test_an_invalid_field_is_named(shared, field, value, *, place, text):
+    content = content_of(shared)
     content["sensors"][0][field] = value
 
-    check = server.post("/api/rigs/check", json=content).json()
-    answer = changed(server, content)
+    check = shared.post("/api/rigs/check", json=content).json()
+    answer = changed(shared, content)
 
     assert list(check["problems"]) == [place]
     assert text in check["problems"][place]
     assert answer.status_code == 422
     assert answer.json()["problems"] == check["problems"]
-    assert len(server.get("/api/rigs/field").json()["versions"]) == 1
+    assert len(shared.get("/api/rigs/field").json()["versions"]) == 1
 
 
-def test_malformed_requests_name_the_field(server):
-    created(server)
-    content = content_of(server)
+def test_malformed_requests_name_the_field(shared):
+    content = content_of(shared)
     content["sensors"][0]["xyz_m"] = [0.0, 1.0]
 
-    assert "sensors.0.xyz_m" in changed(server, content).json()["detail"]
-    assert server.post("/api/rigs", json={"id": "field 2", "toml": TOML}).status_code == 422
-    assert server.post("/api/rigs", json={"id": "b"}).status_code == 400
+    assert "sensors.0.xyz_m" in changed(shared, content).json()["detail"]
+    assert shared.post("/api/rigs", json={"id": "field 2", "toml": TOML}).status_code == 422
+    assert shared.post("/api/rigs", json={"id": "b"}).status_code == 400
     both = {"id": "b", "toml": TOML, "copy_of": "4recon"}
-    assert server.post("/api/rigs", json=both).status_code == 400
-    assert changed(server, None).status_code == 400
+    assert shared.post("/api/rigs", json=both).status_code == 400
+    assert changed(shared, None).status_code == 400
 
 
 @pytest.mark.parametrize(
@@ -170,24 +151,22 @@ def test_malformed_requests_name_the_field(server):
         (TOML + "x = " + "[" * 5000, "nested too deeply"),
     ],
 )
-def test_a_file_that_is_no_rig_is_rejected(server, toml, text):
-    answer = server.post("/api/rigs", json={"id": "field", "toml": toml})
+def test_a_file_that_is_no_rig_is_rejected(shared, toml, text):
+    answer = shared.post("/api/rigs", json={"id": "other", "toml": toml})
 
     assert answer.status_code == 422
     assert text in answer.json()["detail"]
-    assert [rig["id"] for rig in server.get("/api/rigs").json() if not rig["shipped"]] == []
+    assert "other" not in [rig["id"] for rig in shared.get("/api/rigs").json()]
 
 
-def test_names_that_are_taken_are_refused(server):
-    created(server)
-
-    assert server.post("/api/rigs", json={"id": "field", "toml": TOML}).status_code == 409
-    assert server.post("/api/rigs", json={"id": "4recon", "toml": TOML}).status_code == 409
-    assert server.get("/api/rigs/other").status_code == 404
-    assert server.get("/api/rigs/field", params={"version": 7}).status_code == 404
-    assert server.get("/api/rigs/field/versions/7/file").status_code == 404
-    assert server.get("/rigs/other/", headers={"Accept": "text/html"}).status_code == 404
-    assert server.get("/rigs/field/").status_code == 200
+def test_names_that_are_taken_are_refused(shared):
+    assert shared.post("/api/rigs", json={"id": "field", "toml": TOML}).status_code == 409
+    assert shared.post("/api/rigs", json={"id": "4recon", "toml": TOML}).status_code == 409
+    assert shared.get("/api/rigs/other").status_code == 404
+    assert shared.get("/api/rigs/field", params={"version": 7}).status_code == 404
+    assert shared.get("/api/rigs/field/versions/7/file").status_code == 404
+    assert shared.get("/rigs/other/", headers={"Accept": "text/html"}).status_code == 404
+    assert shared.get("/rigs/field/").status_code == 200
 
 
 def test_a_rig_is_duplicated(server):
@@ -199,11 +178,11 @@ def test_a_rig_is_duplicated(server):
     assert content_of(server, "shipped-copy") == content_of(server, "4recon")
 
 
-def test_two_sensors_on_one_port_are_a_warning(server):
-    content = content_of(server, "4recon")
+def test_two_sensors_on_one_port_are_a_warning(shared):
+    content = content_of(shared, "4recon")
     content["sensors"][1]["port"] = 2368
 
-    check = server.post("/api/rigs/check", json=content).json()
+    check = shared.post("/api/rigs/check", json=content).json()
 
     assert check["problems"] == {}
     assert "all send to port 2368" in check["warnings"][0]
@@ -243,41 +222,6 @@ def test_only_those_who_process_change_rigs_and_the_audit_log_tells(tmp_path):
     ]
 
 
-def _frames(*, out, settings, progress, rig):
-    with FrameWriter(out, rig):
-        pass
-
-
-def _calibration(*, out, settings, progress, rig):
-    rows = [
-        ("vertical", "rotation", "y", "rad", 0.0237, 0.00035, "off"),
-        ("vertical", "clock", "", "s", 0.0001, 0.0002, "consistent"),
-        ("imu", "position", "z", "m", 0.0, None, "not observable"),
-    ]
-    names = ("sensor", "quantity", "axis", "unit", "change", "sd", "status")
-    parameters = tuple(ParameterFigures(**dict(zip(names, row, strict=True))) for row in rows)
-    figures = CalibrationFigures(
-        parameters=parameters, windows=8, rms_m=0.006, applied=rig is not None, outcome="calibrated"
-    )
-    CalibrationResult(figures=figures, rig=rig).save(out)
-
-
-def calibrated_project(root, *, rig, found):
-    """A project whose recording has a rig, and the calibrated one if it was calibrated."""
-    build_project(root, with_map=False)
-    with Project.open(root) as project:
-        runner = StageRunner(project, Settings(), Silent())
-        runner.run(Stage("frames", 1, (), lambda **given: _frames(**given, rig=rig)))
-        runner.run(Stage("calibration", 1, (), lambda **given: _calibration(**given, rig=found)))
-
-
-def tilted(rig):
-    """The rig with its last sensor 1.36° about y."""
-    *others, last = rig.sensors
-    T = SE3.from_rpy(0.0, np.deg2rad(1.36), 0.0, t=[0.0, 0.0, 0.0]) @ last.T_body_sensor
-    return replace(rig, sensors=(*others, replace(last, T_body_sensor=T)))
-
-
 def test_a_rig_names_the_projects_that_used_it(server):
     created(server)
     path = server.get("/api/rigs/field").json()["versions"][0]["path"]
@@ -302,7 +246,8 @@ def test_a_calibrated_rig_becomes_a_version_with_its_evidence(server):
     view = server.get("/api/projects/walk/calibration").json()
     assert view["applied"] and view["saved"] is None
     assert view["rig"]["id"] in ("field", "4recon")
-    assert view["parameters"][2]["status"] == "not observable"
+    assert view["parameters"][-1]["status"] == "not observable"
+    assert view["after"] == {"rms_m": 0.0061, "offset_m": 0.0012, "imu_rms": None}
 
     answer = server.post(
         "/api/projects/walk/calibration/rig", json={"rig": "field", "note": "after the repair"}
@@ -313,6 +258,7 @@ def test_a_calibrated_rig_becomes_a_version_with_its_evidence(server):
     assert newest["note"] == "after the repair"
     assert "vertical rotation y: +1.358° ± 0.020°" in newest["evidence"]
     assert "Not observable: imu position z." in newest["evidence"]
+    assert "common planes: 18.3 mm before, 6.1 mm after" in newest["evidence"]
     before, after = load_rig(path).sensors[1], load_rig(newest["path"]).sensors[1]
     angle = (before.T_body_sensor.inverse() @ after.T_body_sensor).angle()
     assert np.rad2deg(angle) == pytest.approx(1.36)

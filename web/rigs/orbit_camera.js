@@ -12,13 +12,13 @@ export class OrbitCamera {
   #fitted = 500;
 
   /** Looks at a sphere from the start direction, with all of it in a window of `size` pixels. */
-  reset({ middle, radius }, [width, height]) {
+  reset({ middle, radius }, /** @type {number[]} */ [width, height]) {
     Object.assign(this, START);
     this.fit({ middle, radius }, [width, height]);
   }
 
   /** Fits a sphere into a window and keeps the direction. */
-  fit({ middle, radius }, [width, height]) {
+  fit({ middle, radius }, /** @type {number[]} */ [width, height]) {
     this.middle = middle;
     this.pxPerM = this.#fitted = (MARGIN * Math.min(width, height)) / (2 * radius);
   }

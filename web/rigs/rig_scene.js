@@ -26,11 +26,7 @@ const REACH_M = 0.42; // how far a field of view is drawn
 const SEGMENTS = 40;
 const TURN = 2 * Math.PI;
 const COLORS = 4; // of sensors
-const AXES = [
-  ["x", [1, 0, 0]],
-  ["y", [0, 1, 0]],
-  ["z", [0, 0, 1]],
-];
+const AXES = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
 const IMU_M = [0.024, 0.018, 0.01]; // half of its size
 const ANTENNA_M = [0.12, 0.012];
 
@@ -52,14 +48,14 @@ const label = (at, role, text) => ({ kind: "text", points: [at], role, text });
 
 /** The axes of a frame, with their names if they are those of the body. */
 function axes(put, length, named = false) {
-  return AXES.flatMap(([name, axis]) => {
+  return Object.entries(AXES).flatMap(([name, axis]) => {
     const end = put(axis.map((value) => value * length));
     const role = `axis-${name}`;
     return [line([put([0, 0, 0]), end], role, 2), ...(named ? [label(end, role, name)] : [])];
   });
 }
 
-function cylinder(put, [diameter, height], role) {
+function cylinder(put, /** @type {number[]} */ [diameter, height], role) {
   const [low, high] = [-height / 2, height / 2].map((z) => circle(diameter / 2, z, 24).map(put));
   return [
     ...between(low, high).map((points) => face(points, role, 0.9)),
@@ -83,7 +79,7 @@ function band(put, [lowest, highest], role) {
   ];
 }
 
-/** The plane that a 2-D laser or an unknown LiDAR sweeps; `upright`: the x-z plane of a profiler. */
+/** The plane a 2-D laser or an unknown LiDAR sweeps; `upright`: the x-z plane of a profiler. */
 function disc(put, role, upright) {
   const flat = circle(REACH_M, 0);
   const ring = (upright ? flat.map(([x, y]) => [x, 0, y]) : flat).map(put);
