@@ -97,5 +97,6 @@ def calibrated_project(root: Path, *, rig: Rig, found: Rig | None) -> None:
 def tilted(rig: Rig) -> Rig:
     """The rig with its last sensor turned by 1.36° about y."""
     *others, last = rig.sensors
-    T = SE3.from_rpy(0.0, np.deg2rad(1.36), 0.0, t=[0.0, 0.0, 0.0]) @ last.T_body_sensor
+    turn = SE3.from_rpy(0.0, np.deg2rad(1.36), 0.0, t=[0.0, 0.0, 0.0])
+    T = SE3(turn.R @ last.T_body_sensor.R, last.T_body_sensor.t)
     return replace(rig, sensors=(*others, replace(last, T_body_sensor=T)))

@@ -23,6 +23,7 @@ const SIZES = {
 };
 const OTHER_SIZE = [0.08, 0.08];
 const REACH_M = 0.42; // how far a field of view is drawn
+const BODY_AXES_M = 0.19;
 const SEGMENTS = 40;
 const TURN = 2 * Math.PI;
 const COLORS = 4; // of sensors
@@ -45,6 +46,8 @@ const between = (low, high) =>
 const face = (points, role, alpha) => ({ kind: "face", points, role, alpha });
 const line = (points, role, width = 1) => ({ kind: "line", points, role, width });
 const label = (at, role, text) => ({ kind: "text", points: [at], role, text });
+
+const above = ([x, y, z], height) => [x, y, z + height];
 
 /** The axes of a frame, with their names if they are those of the body. */
 function axes(put, length, named = false) {
@@ -96,7 +99,7 @@ function sensorShapes(sensor, k, elevations) {
     ...(elevation ? band(put, elevation, role) : disc(put, role, sensor.kind === "profiler")),
     ...cylinder(put, size, role),
     ...axes(put, 0.11),
-    label(put([0, 0, size[1] / 2 + 0.05]), role, sensor.name),
+    label(above(sensor.xyz_m, 0.09), role, sensor.name),
   ];
 }
 
@@ -121,7 +124,7 @@ function antennaShapes(arm) {
   return [
     { ...line([[0, 0, 0], arm], "gnss"), dashed: true },
     ...cylinder(put, ANTENNA_M, "gnss"),
-    label(put([0, 0, 0.04]), "gnss", "GNSS antenna"),
+    label(above(arm, 0.045), "gnss", "GNSS antenna"),
   ];
 }
 
@@ -136,11 +139,11 @@ export function shapesOf(content, elevations) {
   const imu = (point) => placed(R, content.imu.xyz_m, point);
   const arm = content.gnss.lever_arm_m;
   return /** @type {Shape[]} */ ([
-    ...axes((point) => point, 0.3, true),
+    ...axes((point) => point, BODY_AXES_M, true),
     ...content.sensors.flatMap((sensor, k) => sensorShapes(sensor, k, elevations)),
     ...box(imu, IMU_M, "imu"),
     ...axes(imu, 0.06),
-    label(imu([0, 0, -0.035]), "imu", "IMU"),
+    label(above(content.imu.xyz_m, -0.045), "imu", "IMU"),
     ...(arm.some((value) => value !== 0) ? antennaShapes(arm) : []),
   ]);
 }
@@ -158,7 +161,7 @@ export function boundsOf(content) {
   );
   const middle = low.map((value, axis) => (value + high[axis]) / 2);
   const radius = Math.hypot(...low.map((value, axis) => high[axis] - value)) / 2;
-  return { middle, radius: Math.max(radius + 0.3, 0.45) };
+  return { middle, radius: Math.max(radius + 0.35, 0.5) };
 }
 
 /** The rig in words, for those who do not see the drawing. */

@@ -7,9 +7,10 @@ import { short } from "./rig_math.js";
 
 export const COLORS = 4; // of sensors in the drawing
 const HEADS = ["Sensor", "Model", "Position [cm]", "Rotation [°]", "Clock [ms]", "Port", "Address"];
+const NUMBERS = new Set(["Clock [ms]", "Port"]);
 const PARTS = { "Position [cm]": ["x", "y", "z"], "Rotation [°]": ["roll", "pitch", "yaw"] };
 
-const cell = (text) => make("td", { className: "number" }, text);
+const cell = (text) => make("td", { className: "number" }, text.replace("-", "−"));
 const triple = (values, digits) => values.map((value) => cell(short(value, digits)));
 const centimeters = (values) =>
   triple(
@@ -42,7 +43,11 @@ export function numbersTable({ sensors, imu, gnss }) {
   const upper = HEADS.map((text) =>
     PARTS[text]
       ? make("th", { scope: "colgroup", colSpan: 3 }, text)
-      : make("th", { scope: "col", rowSpan: 2 }, text),
+      : make(
+          "th",
+          { scope: "col", rowSpan: 2, className: NUMBERS.has(text) ? "number" : "" },
+          text,
+        ),
   );
   const lower = Object.values(PARTS).flatMap((names) =>
     names.map((text) => make("th", { scope: "col", className: "number" }, text)),
