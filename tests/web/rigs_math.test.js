@@ -114,6 +114,8 @@ test("the view fits the rig and orbits about its middle", () => {
   camera.yaw = 0;
   const seen = camera.project([0, 0.1, 0.5]);
   assert.ok(seen[0] > 0 && Math.abs(seen[1]) < 1e-6);
+  camera.yaw = Math.PI / 2; // from the left: what is in front is on the left
+  assert.ok(camera.project([0.1, 0, 0.5])[0] < 0);
 });
 
 test("zooming has limits and the words name every sensor", () => {

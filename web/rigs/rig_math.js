@@ -100,4 +100,4 @@ export function changesOf(before, after) {
 }
 
 /** A number without trailing zeros, at most `digits` decimals. */
-export const short = (value, digits) => String(Number(value.toFixed(digits)) + 0);
+export const short = (value, digits) => String(Number(value.toFixed(digits)));
