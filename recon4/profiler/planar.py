@@ -73,6 +73,11 @@ def map_in_plane(
         settings=settings,
         progress=progress,
     )
+    return PlanarMap(_tracked(found, T_body_laser), found, mirrored)
+
+
+def _tracked(found: Slam2dResult, T_body_laser: SE3) -> PlanarPoses:
+    """Poses of the scans that were tracked, with their covariance in the map's axes."""
     tracked = ~found.steps.lost
     # By 2-D SLAM: heading, x, y in the axes of the laser.
     order = [1, 2, 0]
@@ -80,7 +85,5 @@ def map_in_plane(
     R = np.zeros((len(cov), 3, 3))
     R[:, :2, :2], R[:, 2, 2] = found.trajectory.T_a_b.R[tracked, :2, :2], 1.0
     cov = R @ cov @ np.swapaxes(R, 1, 2) + np.diag(_FLOOR_SD**2)
-    poses = PlanarPoses(
-        found.trajectory.t_ns[tracked], found.trajectory.T_a_b[tracked], cov, T_body_laser
-    )
-    return PlanarMap(poses, found, mirrored)
+    trajectory = found.trajectory
+    return PlanarPoses(trajectory.t_ns[tracked], trajectory.T_a_b[tracked], cov, T_body_laser)
