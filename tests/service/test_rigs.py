@@ -198,12 +198,25 @@ def test_a_damaged_version_is_shown_with_its_problem(server):
     assert server.get("/api/rigs/field").status_code == 422
 
 
-def test_links_are_not_followed(server, tmp_path):
+def test_links_are_not_followed(server, tmp_path_factory):
     created(server)
-    (server.root / "rigs" / "linked").symlink_to(server.root / "rigs" / "field")
+    outside = tmp_path_factory.mktemp("outside") / "1"
+    outside.mkdir()
+    (outside / "linked-v1.toml").write_text(TOML)
+    (server.root / "rigs" / "linked").symlink_to(outside.parent)
 
     assert "linked" not in [rig["id"] for rig in server.get("/api/rigs").json()]
     assert server.get("/api/rigs/linked").status_code == 404
+
+
+def test_a_project_named_rigs_is_left_alone(server):
+    build_project(server.root / "rigs", with_map=False)
+
+    answer = server.post("/api/rigs", json={"id": "field", "toml": TOML})
+
+    assert answer.status_code == 409
+    assert "rigs is a project" in answer.json()["detail"]
+    assert not (server.root / "rigs" / "field").exists()
 
 
 def test_only_those_who_process_change_rigs_and_the_audit_log_tells(tmp_path):

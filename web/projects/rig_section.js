@@ -132,10 +132,11 @@ export class RigSection extends HTMLElement {
     const save = make("button", { type: "button", onclick: () => this.#ask(audit) });
     save.textContent = "Save as a new rig version…";
     const done = audit.applied;
+    const off = audit.parameters.some((one) => one.status === "off");
     return make(
       "div",
       { className: "buttons" },
-      ...(done ? [] : [calibrate]),
+      ...(off && !done ? [calibrate] : []),
       ...(done && !audit.saved ? [save] : []),
     );
   }
