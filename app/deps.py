@@ -19,6 +19,9 @@ from app.projects.thumbnail import Thumbnails
 from app.projects.trash import Trash
 from app.review.checks import ApprovalChecks
 from app.review.store import Reviews
+from app.rigs.calibrations import Calibrations
+from app.rigs.store import RigStore
+from app.rigs.uses import RigUses
 from app.settings import ServerSettings
 from app.slices.store import Slices
 from app.uploads.store import UploadStore
@@ -44,6 +47,9 @@ class Parts:
     checks: ApprovalChecks
     reviews: Reviews
     slices: Slices
+    rigs: RigStore
+    rig_uses: RigUses
+    calibrations: Calibrations
 
 
 def parts(connection: HTTPConnection) -> Parts:

@@ -63,6 +63,10 @@ from app.projects.trash import Trash
 from app.review import routes as review_routes
 from app.review.checks import ApprovalChecks
 from app.review.store import Reviews
+from app.rigs import routes as rig_routes
+from app.rigs.calibrations import Calibrations
+from app.rigs.store import RigStore
+from app.rigs.uses import RigUses
 from app.settings import ServerSettings
 from app.slices import routes as slice_routes
 from app.slices.store import Slices
@@ -112,7 +116,7 @@ def create_app(settings: ServerSettings) -> FastAPI:
         app.include_router(part.router)
     for part in (page, proxy):
         app.include_router(part.router, dependencies=REQUIRES_LOOK)
-    for part in (review_routes, slice_routes):
+    for part in (review_routes, slice_routes, rig_routes):
         app.include_router(part.router)
         app.include_router(part.page)
     for router in (live_routes.router, live_routes.page):
@@ -194,6 +198,8 @@ def _open_parts(settings: ServerSettings) -> Parts:
     pool = ComputePool(settings.state / "compute", children=child_register(settings))
     checks = ApprovalChecks()
     projects = ProjectStore(settings.root, _import_folders(settings))
+    rigs = RigStore(settings.root)
+    uses = RigUses(rigs, projects, jobs)
     viewers = ViewerPool(
         idle_s=settings.viewer_idle_s,
         points=settings.viewer_points,
@@ -217,6 +223,9 @@ def _open_parts(settings: ServerSettings) -> Parts:
         checks=checks,
         reviews=Reviews(pool),
         slices=Slices(pool, projects, checks, settings=settings),
+        rigs=rigs,
+        rig_uses=uses,
+        calibrations=Calibrations(projects, uses),
     )
 
 

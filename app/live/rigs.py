@@ -8,6 +8,7 @@ from itertools import islice
 from pathlib import Path
 from stat import S_ISREG
 
+from app.rigs.store import RIGS, newest_files
 from recon4.bounded import read_text_limited
 from recon4.errors import ConfigError, CorruptFile
 from recon4.model.rig import load_rig, rig_presets
@@ -35,6 +36,8 @@ def rig_files(
 ) -> tuple[Path, ...]:
     """TOML files directly in some folders or in their subfolders ``rigs``.
 
+    Of the rigs of the server, the newest version is listed.
+
     Args:
         folders: Folders to search.
         shows: Whether a file may be listed (`ImportFolders.shows`).
@@ -56,6 +59,7 @@ def shipped_rigs() -> list[RigChoice]:
 def _files(folder: Path) -> Iterator[Path]:
     yield from sorted(folder.glob("*.toml"))
     yield from sorted(folder.glob("rigs/*.toml"))
+    yield from newest_files(folder / RIGS)
 
 
 def _fits(path: Path) -> bool:

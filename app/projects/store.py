@@ -113,10 +113,18 @@ class ProjectStore:
         Raises:
             NotFound: If there is none yet.
         """
-        artifacts = _artifacts(self.folder(project_id))
-        if "map" not in artifacts:
+        found = self.artifact(project_id, "map")
+        if found is None:
             raise NotFound(f"project {project_id} has no map yet")
-        return artifacts["map"]
+        return found
+
+    def artifact(self, project_id: str, stage: str) -> Path | None:
+        """The artifact of a stage of the latest run; None = there is none.
+
+        Raises:
+            NotFound: If there is no such project.
+        """
+        return _artifacts(self.folder(project_id)).get(stage)
 
     def rename(self, project_id: str, name: str) -> None:
         """Change the display name of a project; its folder keeps its name.

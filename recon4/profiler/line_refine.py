@@ -27,6 +27,7 @@ from recon4.profiler.imu_chain import (
     linearize,
     make_drive,
 )
+from recon4.profiler.mirrored import is_mirrored, upright
 from recon4.profiler.published_refine import PublishedRefiner
 from recon4.profiler.samples import joined, laser_points, line_points
 from recon4.profiler.stage_odometry import span_of
@@ -255,7 +256,19 @@ def refine_lines(
         settings=settings.odometry,
     )
     chain = initial_chain(drive).following(start)
-    scans = load_laser_scans(frames.folder)
+    scans = _turned_over(load_laser_scans(frames.folder), frames, start)
     refiner = LineRefiner(frames, scans, settings.lines, settings.planes, progress)
     chain, rounds = refiner.refine(chain)
     return Refinement(linearize(chain).trajectory(), tuple(rounds))
+
+
+def _turned_over(
+    scans: LaserScans | None, frames: FrameStore, trajectory: Trajectory
+) -> LaserScans | None:
+    """The scans, turned over if the 2-D laser is mounted upside down as odometry found."""
+    row = frames.rig.row_of("laser2d")
+    if scans is None or row is None or frames.imu is None:
+        return scans
+    T_map_laser = trajectory.T_a_b @ frames.rig.sensors[row].T_body_sensor
+    leveled = Trajectory(trajectory.t_ns, T_map_laser)
+    return upright(scans) if is_mirrored(scans, leveled) else scans

@@ -11,6 +11,7 @@ from recon4.model.laser_scans import LaserScans
 from recon4.model.rig import Rig
 from recon4.model.trajectory import Trajectory
 from recon4.profiler.fusion import PlanarPoses
+from recon4.profiler.mirrored import is_mirrored, upright
 from recon4.progress import Progress
 from recon4.settings import Settings
 from recon4.slam2d.slam import Slam2dResult, slam2d
@@ -28,6 +29,8 @@ class PlanarMap:
 
     poses: PlanarPoses
     found: Slam2dResult
+    mirrored: bool
+    """The scans were turned over, because they turned against the gyroscope."""
 
 
 def map_in_plane(
@@ -35,6 +38,7 @@ def map_in_plane(
     rig: Rig,
     attitude: Trajectory,
     *,
+    has_imu: bool,
     settings: Settings,
     progress: Progress,
 ) -> PlanarMap | None:
@@ -44,6 +48,7 @@ def map_in_plane(
         scans: Of the 2-D laser.
         rig: Its mounting.
         attitude: ``R_map_body`` by the IMU.
+        has_imu: Whether the attitude is measured.
         settings: Those of 2-D SLAM.
         progress: Counts scans.
 
@@ -60,13 +65,19 @@ def map_in_plane(
         return None
     T_body_laser = rig.sensors[row].T_body_sensor
     T_map_laser = SE3(attitude.T_a_b.R @ T_body_laser.R, np.zeros_like(attitude.T_a_b.t))
-    used = scans[slice(int(first), int(last))]
+    used, leveled = scans[slice(int(first), int(last))], Trajectory(attitude.t_ns, T_map_laser)
+    mirrored = has_imu and is_mirrored(used, leveled)
     found = slam2d(
-        used,
-        attitude=Trajectory(attitude.t_ns, T_map_laser),
+        upright(used) if mirrored else used,
+        attitude=leveled,
         settings=settings,
         progress=progress,
     )
+    return PlanarMap(_tracked(found, T_body_laser), found, mirrored)
+
+
+def _tracked(found: Slam2dResult, T_body_laser: SE3) -> PlanarPoses:
+    """Poses of the scans that were tracked, with their covariance in the map's axes."""
     tracked = ~found.steps.lost
     # By 2-D SLAM: heading, x, y in the axes of the laser.
     order = [1, 2, 0]
@@ -74,7 +85,5 @@ def map_in_plane(
     R = np.zeros((len(cov), 3, 3))
     R[:, :2, :2], R[:, 2, 2] = found.trajectory.T_a_b.R[tracked, :2, :2], 1.0
     cov = R @ cov @ np.swapaxes(R, 1, 2) + np.diag(_FLOOR_SD**2)
-    poses = PlanarPoses(
-        found.trajectory.t_ns[tracked], found.trajectory.T_a_b[tracked], cov, T_body_laser
-    )
-    return PlanarMap(poses, found)
+    trajectory = found.trajectory
+    return PlanarPoses(trajectory.t_ns[tracked], trajectory.T_a_b[tracked], cov, T_body_laser)

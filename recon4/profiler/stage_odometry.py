@@ -46,7 +46,14 @@ def run_line_odometry(
         frames.imu, frames.rig, span_ns, knot_s=_FIRST_KNOT_S, settings=settings.odometry
     )
     scans = load_laser_scans(frames.folder)
-    planar = map_in_plane(scans, frames.rig, attitude(drive), settings=settings, progress=progress)
+    planar = map_in_plane(
+        scans,
+        frames.rig,
+        attitude(drive),
+        has_imu=drive.has_imu,
+        settings=settings,
+        progress=progress,
+    )
     chain = fuse(drive, planar.poses if planar else None)
     trajectory = linearize(chain).trajectory()
     save_trajectory(out / "trajectory.npz", trajectory)
@@ -83,6 +90,11 @@ def remarks(
             "no 2-D laser: the first trajectory is from the IMU alone and drifts by meters"
         )
         return tuple(found)
+    if planar.mirrored:
+        found.append(
+            "the 2-D laser turns against the gyroscope: its scans were turned over; it is mounted "
+            "upside down, or its angles have the wrong sign"
+        )
     if lost.any():
         seconds = float(lost.sum() * frames.index["duration_ns"][0]) * 1e-9
         found.append(f"2-D tracking is missing for {seconds:.1f} s: only the IMU bridges that time")

@@ -159,10 +159,10 @@ def ingest(
         imu = _imu(given, found, recording.rig, written=written, report=report)
         gnss = _gnss(given, found, recording.rig, written=written, report=report)
         _write_poses(out, found.poses, report)
-        line_count, scan_count = found.lines.close()
+        counts = found.lines.close()
         about = _summary(recording, assembler, written, report=report)
         about |= {"recordings": [path.name for path in paths], "frames": len(writer)}
-        about |= {"line_scans": line_count, "laser2d_scans": scan_count}
+        about |= dict(zip(("line_scans", "laser2d_scans"), counts, strict=True))
         about |= {"points": writer.points, "imu": _about(imu), "gnss": _about(gnss)}
         writer.add(imu=imu, gnss=gnss, report=about)
     for text in report.warnings:

@@ -90,9 +90,7 @@ def prepare_backpack(
         ConfigError: If a name is unknown, the walk too short, or the rig has no profiler.
     """
     rig = rig or load_rig("wuerzburg")
-    row = rig.row_of("profiler")
-    if row is None or any(sensor.kind == "lidar" for sensor in rig.sensors):
-        raise ConfigError(f"{rig.name}: expected a profiler, a 2-D laser and no other LiDAR")
+    row = _profiler_row(rig)
     if seed < 0:
         raise ConfigError(f"the seed must not be negative, got {seed}")
     place, found = build_world(world), models or BackpackModels()
@@ -103,7 +101,6 @@ def prepare_backpack(
     seconds = seconds or 60.0
     if not 5.0 <= seconds < 1e6:
         raise ConfigError(f"a walk takes 5 s to 1e6 s, got {seconds}")
-    laser_row = rig.row_of("laser2d")
     return BackpackSetup(
         place,
         plan_walk(place, seconds=seconds, rng=np.random.default_rng([seed, 0])),
@@ -112,15 +109,25 @@ def prepare_backpack(
         SimulatedProfiler.drawn(
             rig.sensors[row], found.profiler, np.random.default_rng([seed, 1, row])
         ),
-        None
-        if laser_row is None
-        else SimulatedLaser2d.drawn(
-            rig.sensors[laser_row], found.laser2d, np.random.default_rng([seed, 1, laser_row])
-        ),
+        _laser2d(rig, found.laser2d, seed),
         Surroundings(place.mesh, Scene(place.mesh)),
         seed,
         EPOCH_NS,
     )
+
+
+def _laser2d(rig: Rig, model: Laser2dModel, seed: int) -> SimulatedLaser2d | None:
+    row = rig.row_of("laser2d")
+    if row is None:
+        return None
+    return SimulatedLaser2d.drawn(rig.sensors[row], model, np.random.default_rng([seed, 1, row]))
+
+
+def _profiler_row(rig: Rig) -> int:
+    row = rig.row_of("profiler")
+    if row is None or any(sensor.kind == "lidar" for sensor in rig.sensors):
+        raise ConfigError(f"{rig.name}: expected a profiler, a 2-D laser and no other LiDAR")
+    return row
 
 
 def _models_of(figure: str) -> BackpackModels:

@@ -67,19 +67,23 @@ def shoot(
     noise[:, 2:] = rng.random((count, 2), dtype=np.float32)
     distance = np.empty(count, dtype=np.uint16)
     intensity, truth = np.empty(count, dtype=np.uint8), np.empty(count, dtype=np.uint8)
-    rules = np.array(
-        [
-            model.range_sd_m, model.min_range_m, model.max_range_m, model.weakest_signal,
-            model.mixed_step_m, model.loss, model.intensity_sd, model.intensity_sd_counts,
-            GLASS, RESOLUTION_M,
-        ]
-    )  # fmt: skip
     measure(
         hits.range_m, hits.triangle, hits.normal, rays, surroundings.mesh.reflectivity, blocked,
-        np.ones(count), noise, rules, distance, intensity, truth,
+        np.ones(count), noise, _rules(model), distance, intensity, truth,
     )  # fmt: skip
     range_m = np.where(distance > 0, RESOLUTION_M * distance, np.nan)
     near = blocked & (person_m > model.min_range_m)
     range_m[near] = person_m[near] + model.range_sd_m * noise[near, 0]
     intensity[near] = 40
     return BeamReturns(range_m.astype(np.float32), intensity)
+
+
+def _rules(model: LidarModel) -> Array:
+    """The errors of a model as `recon4.kernels.simulation.measure` takes them."""
+    return np.array(
+        [
+            model.range_sd_m, model.min_range_m, model.max_range_m, model.weakest_signal,
+            model.mixed_step_m, model.loss, model.intensity_sd, model.intensity_sd_counts,
+            GLASS, RESOLUTION_M,
+        ]
+    )  # fmt: skip

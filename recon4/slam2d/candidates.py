@@ -12,11 +12,13 @@ from scipy.sparse.csgraph import dijkstra
 from recon4.geometry.se3 import Array
 from recon4.model.pose_graph import EdgeKind, PoseGraph
 from recon4.settings.slam2d import Loop2dSettings
-from recon4.slam2d.edges import plane_covariance
+from recon4.slam2d.edges import plane_information
 from recon4.slam2d.keyframes import Keyframes, Rows
 
 _CHUNK = 256
 _SIGMAS = 3.0
+_LOOSE_SD_M = 0.05
+"""Motions with a larger standard deviation count by it, not by their length [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,16 +71,16 @@ def candidates(
 
 def _links(graph: PoseGraph, settings: Loop2dSettings) -> coo_array:
     """Edges with their length in meters of path, or more where the motion is uncertain."""
-    used = [edge for edge in graph.edges if edge.in_graph]
-    length = []
-    for edge in used:
-        sd_m = float(np.sqrt(np.trace(plane_covariance(edge.information)[1:, 1:])))
-        by_sd = _SIGMAS * sd_m / settings.drift_ratio
-        is_walk = edge.kind is EdgeKind.ODOMETRY
-        path_m = float(np.hypot(*edge.T_i_j.t[:2])) if is_walk else 0.0
-        length.append(path_m + (by_sd if sd_m > 0.05 else 0.1))
-    i, j = [edge.i for edge in used], [edge.j for edge in used]
-    return coo_array((length, (i, j)), shape=(len(graph), len(graph))).tocsr()
+    of = graph.relations
+    used = np.flatnonzero(of.in_graph)
+    # Height, roll and pitch are independent of the plane: its block can be inverted alone.
+    covariance = np.linalg.inv(plane_information(of.information[used]))
+    sd_m = np.sqrt(covariance[:, 1, 1] + covariance[:, 2, 2])
+    is_walk = np.array([graph.edges[row].kind is EdgeKind.ODOMETRY for row in used.tolist()])
+    path_m = np.where(is_walk, np.hypot(*of.T_i_j.t[used, :2].T), 0.0)
+    length_m = path_m + np.where(sd_m > _LOOSE_SD_M, _SIGMAS * sd_m / settings.drift_ratio, 0.1)
+    ends = (of.i[used], of.j[used])
+    return coo_array((length_m, ends), shape=(len(graph), len(graph))).tocsr()
 
 
 def _one_per_visit(near: Rows, apart_m: Array, *, most: int) -> list[int]:

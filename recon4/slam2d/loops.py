@@ -57,7 +57,12 @@ def close_loops(
     most_m = loops.first_search_m
     while most_m <= loops.last_search_m:
         found = candidates(graph, keyframes, settings=loops, most_m=most_m)
-        new = [pair for pair in found if _is_new(pair, graph, tried)]
+        closed = {(edge.i, edge.j) for edge in graph.edges if edge.in_graph}
+        new = [
+            pair
+            for pair in found
+            if (pair.target, pair.source) not in closed and _is_new(pair, graph, tried)
+        ]
         edges = list(registrar.register(new, graph, progress=progress)) if new else []
         for pair in new:
             tried[pair.target, pair.source] = _predicted(graph, pair)
@@ -80,16 +85,8 @@ def _is_new(pair: Candidate2d, graph: PoseGraph, tried: dict[Pair, Array]) -> bo
     before = tried.get((pair.target, pair.source))
     if before is None:
         return True
-    done = any(
-        edge.in_graph and (edge.i, edge.j) == (pair.target, pair.source)
-        for edge in _loops_of(graph, pair)
-    )
     moved = np.hypot(*(_predicted(graph, pair) - before)[:2])
-    return not done and bool(moved > _RETRY_MOVE_M)
-
-
-def _loops_of(graph: PoseGraph, pair: Candidate2d) -> list[Edge]:
-    return [e for e in graph.edges if e.i == pair.target and e.j == pair.source]
+    return bool(moved > _RETRY_MOVE_M)
 
 
 def _with_latest(graph: PoseGraph, edges: Iterable[Edge]) -> PoseGraph:

@@ -17,7 +17,7 @@ from playwright.sync_api import expect
 
 from app.live.stream_state import BYTES_A_POINT
 from recon4.errors import Cancelled
-from recon4.live.replay import replay
+from recon4.live.replay import replay, shipments_of
 from recon4.model.rig import format_rig, load_rig
 from recon4.pipeline import process
 from recon4.progress import Silent
@@ -31,8 +31,8 @@ from tests.service.running import server_thread
 
 pytestmark = pytest.mark.e2e
 SCREENSHOTS = os.environ.get("RECON4_SCREENSHOTS") == "1"
-SECONDS = 40.0 if SCREENSHOTS else 24.0
-"""Longer than a page on a busy machine takes to show all that a walk under way shows."""
+SECONDS, LEAST_S = 40.0, 40.0 if SCREENSHOTS else 16.0
+"""The walk lasts as long as the page needs to show all of a walk under way, within these [s]."""
 LONG = os.environ.get("RECON4_LONG") == "1"
 """Whether to make the whole map twice, not only its frames; takes minutes."""
 NEAR_M = 1.0
@@ -100,17 +100,30 @@ def wait_for_points(page, least):
         page.wait_for_timeout(100)
 
 
+class Enough(Exception):
+    """The walk lasted long enough."""
+
+
 @contextmanager
 def sending(server, walk):
-    thread = threading.Thread(
-        target=replay,
-        args=(walk,),
-        kwargs={"progress": Silent(), "target": server.app.state.parts.settings.live_address},
-    )
+    target, enough = server.app.state.parts.settings.live_address, threading.Event()
+    began_ns = next(shipments_of(walk)).t_ns
+
+    def until_enough(shipment):
+        if enough.is_set() and shipment.t_ns - began_ns > LEAST_S * 1e9:
+            raise Enough
+        return (shipment,)
+
+    def send():
+        with contextlib.suppress(Enough):
+            replay(walk, progress=Silent(), target=target, alter=until_enough)
+
+    thread = threading.Thread(target=send)
     thread.start()
     try:
         yield
     finally:
+        enough.set()
         thread.join()
 
 
@@ -142,6 +155,7 @@ def fits(page, inside="main"):
 def test_a_capture_from_its_start_to_the_map(server, link, walk, page, screenshot, tmp_path):
     begin(page, link.url)
     with sending(server, walk):
+        sensors_are_shown(page)
         wait_for_points(page, 3000)
         early, gaps = points(page), page.evaluate(GAPS)
         expect(page.locator("#well")).to_have_text(re.compile(r"\d+ %"))
@@ -150,7 +164,6 @@ def test_a_capture_from_its_start_to_the_map(server, link, walk, page, screensho
         expect(page.locator("#hint")).to_have_text(re.compile(r"Not seen: .* m wide"))
         page.get_by_role("button", name="Follow").click()
         fits_both_ways(page)
-        sensors_are_shown(page)
         if SCREENSHOTS:
             wait_for_points(page, 40_000)
         screenshot(page, "live")

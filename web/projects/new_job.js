@@ -1,7 +1,7 @@
 // <new-job>: the form that starts a job: a recording, a name, a preset, settings.
 // With `again` it repeats a job: in the same project, or in a new one that reuses finished stages.
 
-import { addJob, listProjects, projectUrl, readChoices } from "../shared/api.js";
+import { addJob, listProjects, listRigs, projectUrl, readChoices } from "../shared/api.js";
 import { attempt, make } from "../shared/dom.js";
 import "./folder_browser.js";
 import "./recording_summary.js";
@@ -104,14 +104,18 @@ export class NewJob extends HTMLElement {
       "toggle",
       () => this.#settings.open && this.#editor.show(this.#preset.value),
     );
-    const [choices, projects] =
+    const [choices, projects, rigs] =
       (await attempt(this.#message, () =>
-        Promise.all([readChoices(), this.#again ? [] : listProjects()]),
+        Promise.all([readChoices(), this.#again ? [] : listProjects(), listRigs()]),
       )) ?? [];
     this.#taken = new Set(projects?.map((one) => one.id));
     const option = (name) => make("option", { value: name }, name);
     this.#preset.append(...(choices?.presets ?? []).map(option));
-    this.#rig.append(...(choices?.rigs ?? []).map(option));
+    this.#rig.append(
+      ...(rigs ?? []).map(({ id, path, shipped, version }) =>
+        make("option", { value: path }, shipped ? id : `${id}, version ${version}`),
+      ),
+    );
     if (this.#again) this.#fill(this.#again);
   }
 

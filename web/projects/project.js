@@ -18,6 +18,7 @@ import { verdictDetails } from "../shared/map_verdict.js";
 import { factsIn, verdictLists } from "../shared/verdict.js";
 import "../shared/page_head.js";
 import "./project_tools.js";
+import "./rig_section.js";
 
 const id = decodeURIComponent(location.pathname.split("/")[2]);
 const status = document.querySelector("job-status");
@@ -120,6 +121,7 @@ async function reload() {
   try {
     project = await readProject(id);
     lacking = null;
+    document.querySelector("rig-section").reload();
   } catch (error) {
     lacking = error;
   }

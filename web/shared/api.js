@@ -316,3 +316,23 @@ export const readSurface = (project_id, point) =>
     path: { project_id },
     query: { point },
   });
+
+// -- rigs
+
+export const rigUrl = (id) => `/rigs/${name(id)}/`;
+export const rigFileUrl = (id, number) => `/api/rigs/${name(id)}/versions/${number}/file`;
+export const listRigs = () => request("GET /api/rigs");
+export const listSensorModels = () => request("GET /api/sensor-models");
+export const readRig = (rig_id, version) =>
+  request("GET /api/rigs/{rig_id}", { path: { rig_id }, query: { version } });
+export const checkRig = (content) => request("POST /api/rigs/check", { body: content });
+export const createRig = (rig) => request("POST /api/rigs", { body: rig });
+export const addRigVersion = (rig_id, version) =>
+  request("POST /api/rigs/{rig_id}/versions", { path: { rig_id }, body: version });
+export const readCalibration = (project_id) =>
+  request("GET /api/projects/{project_id}/calibration", { path: { project_id } });
+export const saveCalibratedRig = (project_id, version) =>
+  request("POST /api/projects/{project_id}/calibration/rig", {
+    path: { project_id },
+    body: version,
+  });

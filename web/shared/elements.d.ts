@@ -12,6 +12,9 @@ declare global {
     "project-tools": import("../projects/project_tools.js").ProjectTools;
     "recording-look": import("../projects/recording_summary.js").RecordingLook;
     "review-queue": import("../review/queue.js").ReviewQueue;
+    "rig-form": import("../rigs/rig_form.js").RigForm;
+    "rig-section": import("../projects/rig_section.js").RigSection;
+    "rig-view": import("../rigs/rig_view.js").RigView;
     "session-list": import("../account/session_list.js").SessionList;
     "setting-editor": import("../projects/setting_editor.js").SettingEditor;
     "slice-above": import("../slices/above.js").SliceAbove;

@@ -13,6 +13,12 @@ export interface AddReference {
   frame?: "map" | "crs";
 }
 
+export interface AgreementView {
+  rms_m: number | null;
+  offset_m: number | null;
+  imu_rms: number | null;
+}
+
 export interface AlignRequest {
   how: "none" | "icp" | "pairs";
   p_map?: Array<[number, number, number]>;
@@ -64,6 +70,24 @@ export interface Approved {
 export interface Assignments {
   preset?: string;
   settings?: Array<string>;
+}
+
+export interface CalibratedVersion {
+  rig: string;
+  create?: boolean;
+  note?: string;
+}
+
+export interface CalibrationView {
+  outcome: string;
+  applied: boolean;
+  windows: number;
+  rms_m: number | null;
+  parameters: Array<ParameterView>;
+  before: AgreementView | null;
+  after: AgreementView | null;
+  rig: SavedRig | null;
+  saved: SavedRig | null;
 }
 
 export interface CaptureChoices {
@@ -290,10 +314,24 @@ export interface FolderEntry {
   bytes: number;
 }
 
+export interface GnssContent {
+  lever_arm_m?: [number, number, number];
+  time_offset_s?: number;
+  port: number;
+  serial?: string;
+}
+
 export interface GroupView {
   name: string;
   text: string;
   settings: Array<SettingView>;
+}
+
+export interface ImuContent {
+  xyz_m?: [number, number, number];
+  rpy_deg?: [number, number, number];
+  time_offset_s?: number;
+  port: number;
 }
 
 export interface Inputs {
@@ -450,11 +488,26 @@ export interface NewRequest {
   name?: string;
 }
 
+export interface NewRig {
+  id: string;
+  content?: RigContent | null;
+  toml?: string | null;
+  copy_of?: string;
+  note?: string;
+}
+
 export interface NewUpload {
   name: string;
   files: number;
   bytes: number;
   fingerprint?: string;
+}
+
+export interface NewVersion {
+  content?: RigContent | null;
+  toml?: string | null;
+  note?: string;
+  after?: number | null;
 }
 
 export interface OtherMap {
@@ -496,6 +549,16 @@ export interface PairingView {
   login: boolean;
   roles: Array<Role>;
   fingerprint: string;
+}
+
+export interface ParameterView {
+  sensor: string;
+  quantity: string;
+  axis: string;
+  unit: "rad" | "m" | "s";
+  change: number;
+  sd: number | null;
+  status: "consistent" | "off" | "not observable";
 }
 
 export interface PasswordConfirmation {
@@ -655,11 +718,63 @@ export interface ReviewView {
   approval: ApprovalView | null;
 }
 
+export interface RigCard {
+  id: string;
+  shipped: boolean;
+  name: string;
+  sensors: Array<string>;
+  version: number;
+  when: string;
+  path: string;
+  problem: string;
+}
+
+export interface RigCheck {
+  problems: Record<string, string>;
+  warnings: Array<string>;
+}
+
 export interface RigChoice {
   rig: string;
   name: string;
   sensors: Array<string>;
   problem: string;
+}
+
+export interface RigContent {
+  name: string;
+  sensors: Array<SensorContent>;
+  imu: ImuContent;
+  gnss: GnssContent;
+}
+
+export interface RigUse {
+  project: string;
+  name: string;
+  version: number;
+}
+
+export interface RigVersion {
+  number: number;
+  path: string;
+  who: string;
+  when: string;
+  note: string;
+  evidence: string;
+  name: string;
+  sensors: Array<string>;
+  digest: string;
+  sha256: string;
+  problem: string;
+}
+
+export interface RigView {
+  id: string;
+  shipped: boolean;
+  version: number;
+  content: RigContent;
+  versions: Array<RigVersion>;
+  uses: Array<RigUse>;
 }
 
 export type Role = "nobody" | "viewer" | "operator" | "reviewer" | "admin";
@@ -673,6 +788,31 @@ export interface RowView {
   frame_j: number | null;
   why: string;
   hash: string;
+}
+
+export interface SavedRig {
+  id: string;
+  version: number;
+}
+
+export interface SensorContent {
+  name: string;
+  kind?: "lidar" | "profiler" | "laser2d";
+  model?: string;
+  xyz_m?: [number, number, number];
+  rpy_deg?: [number, number, number];
+  time_offset_s?: number;
+  address?: string;
+  port?: number;
+  topic?: string;
+  head_topic?: string;
+  head_rate_deg_s?: number;
+  enabled?: boolean;
+}
+
+export interface SensorModel {
+  model: string;
+  elevation_deg: [number, number] | null;
 }
 
 export interface SensorSummary {
@@ -938,6 +1078,10 @@ export interface Operations {
     path: { project_id: string };
     response: ProjectView;
   };
+  "GET /api/projects/{project_id}/calibration": {
+    path: { project_id: string };
+    response: CalibrationView | null;
+  };
   "GET /api/projects/{project_id}/files/{name}": {
     path: { project_id: string; name: string };
     response: string;
@@ -1035,6 +1179,21 @@ export interface Operations {
   "GET /api/recordings": {
     query?: { folder?: string };
     response: Array<FolderEntry>;
+  };
+  "GET /api/rigs": {
+    response: Array<RigCard>;
+  };
+  "GET /api/rigs/{rig_id}": {
+    path: { rig_id: string };
+    query?: { version?: number | null };
+    response: RigView;
+  };
+  "GET /api/rigs/{rig_id}/versions/{number}/file": {
+    path: { rig_id: string; number: string };
+    response: string;
+  };
+  "GET /api/sensor-models": {
+    response: Array<SensorModel>;
   };
   "GET /api/server": {
     response: ServerView;
@@ -1155,6 +1314,11 @@ export interface Operations {
     body: NewPerson;
     response: Account;
   };
+  "POST /api/projects/{project_id}/calibration/rig": {
+    path: { project_id: string };
+    body: CalibratedVersion;
+    response: SavedRig;
+  };
   "POST /api/projects/{project_id}/remake": {
     path: { project_id: string };
     response: JobView;
@@ -1218,6 +1382,19 @@ export interface Operations {
     path: { project_id: string; reference_id: string };
     body: AlignRequest;
     response: ReferenceFacts;
+  };
+  "POST /api/rigs": {
+    body: NewRig;
+    response: SavedRig;
+  };
+  "POST /api/rigs/check": {
+    body: RigContent;
+    response: RigCheck;
+  };
+  "POST /api/rigs/{rig_id}/versions": {
+    path: { rig_id: string };
+    body: NewVersion;
+    response: SavedRig;
   };
   "POST /api/settings/check": {
     body: Assignments;

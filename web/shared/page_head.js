@@ -42,6 +42,7 @@ export class PageHead extends HTMLElement {
     const link = (href, text) => make("a", { href }, text);
     this.#account.replaceChildren(
       ...(live ? [link(liveUrl, "Live")] : []),
+      link("/rigs", "Rigs"),
       ...(may.includes("process") ? [link("/api", "API")] : []),
       ...(may.includes("administer") ? [link("/people", "People")] : []),
       ...(login

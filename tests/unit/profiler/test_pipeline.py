@@ -1,5 +1,6 @@
 """The stages of a rig with a profiler on a short simulated walk."""
 
+import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +16,8 @@ from recon4.profiler.turn_graph import build_turn_graph
 from recon4.profiler.turns import unwind_turns
 from recon4.progress import Silent
 from recon4.store.arrays import load_arrays, load_trajectory
-from recon4.store.line_store import load_lines
+from recon4.store.frames import FrameStore
+from recon4.store.line_store import LineStoreWriter, load_laser_scans, load_lines
 
 
 @pytest.fixture(scope="module")
@@ -121,3 +123,24 @@ def test_a_recording_without_an_imu_is_said_to_lack_steps(frames, settings, tmp_
     assert len(steps["lost"]) == len(frames)
     found = load_trajectory(tmp_path / "trajectory.npz")
     assert position_rmse_m(found, truth) < 0.25
+
+
+def test_a_2d_laser_silent_for_seconds_is_bridged_and_said(frames, settings, tmp_path, truth):
+    folder = tmp_path / "frames"
+    shutil.copytree(frames.folder, folder)
+    scans = load_laser_scans(frames.folder)
+    t_s = (scans.t_ns - scans.t_ns[0]) * 1e-9
+    heard = scans[(t_s < 8.0) | (t_s > 13.0)]
+    for name in ("laser2d.npz", "laser2d_range_m.npy"):
+        (folder / name).unlink()
+    writer = LineStoreWriter(folder)
+    writer.append_scans(heard)
+    writer.close()
+    out = tmp_path / "odometry"
+    out.mkdir()
+
+    figures = run_line_odometry(FrameStore.open(folder), out, settings=settings, progress=Silent())
+
+    assert figures.lost in range(5, 21)  # of 50: the IMU bridges 2 s from either side
+    assert any("2-D tracking is missing" in text for text in figures.warnings)
+    assert position_rmse_m(load_trajectory(out / "trajectory.npz"), truth) < 0.25

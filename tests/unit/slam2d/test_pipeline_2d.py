@@ -6,6 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from app.projects.import_folders import ImportFolders
+from app.projects.store import ProjectStore
 from recon4.cli.main import main
 from recon4.errors import ConfigError, EmptyRecording
 from recon4.model.rig import load_rig
@@ -164,3 +166,16 @@ def test_the_graph_is_readable_by_other_solvers(mapped):
     graph = read_g2o(mapped[0] / "out" / "graph.g2o")
 
     assert len(graph) > 20
+
+
+def test_the_pages_offer_the_files_of_a_2d_map(mapped):
+    folder, _ = mapped
+
+    project = ProjectStore(folder, ImportFolders(())).get("out")
+
+    assert set(RESULTS_2D) <= {file.name for file in project.files}
+    stages = ["scans_2d", "odometry_2d", "graph_2d", "verification", "map_2d"]
+    assert [stage.stage for stage in project.stages] == stages
+    assert not project.viewable
+    assert not project.has_map
+    assert project.problem == ""

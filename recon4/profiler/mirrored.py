@@ -1,0 +1,71 @@
+"""A 2-D laser mounted upside down: its scans turn against the gyroscope."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from recon4.geometry.se3 import Array
+from recon4.model.laser_scans import LaserScans
+from recon4.model.trajectory import Trajectory
+
+_APART_NS = 200_000_000
+_MIN_TURN_RAD = float(np.deg2rad(4.0))
+_PAIRS = 40
+_MIN_PAIRS = 8
+_MOST = 0.75
+"""Part of the pairs that must turn against the gyroscope."""
+_SEARCH_RAD = float(np.deg2rad(25.0))
+_FAR_M = 30.0
+
+
+def is_mirrored(scans: LaserScans, attitude: Trajectory) -> bool:
+    """Whether most scans turn against the gyroscope.
+
+    Args:
+        scans: Of the 2-D laser.
+        attitude: ``R_map_laser`` by the IMU.
+    """
+    first = np.flatnonzero(
+        (scans.t_ns >= attitude.t_ns[0]) & (scans.t_ns + 2 * _APART_NS <= attitude.t_ns[-1])
+    )
+    if not len(first):
+        return False
+    second = np.clip(np.searchsorted(scans.t_ns, scans.t_ns[first] + _APART_NS), 0, len(scans) - 1)
+    inside = scans.t_ns[second] <= attitude.t_ns[-1]
+    first, second = first[inside], second[inside]
+    heading = [_heading(attitude.at(scans.t_ns[rows]).R) for rows in (first, second)]
+    turn = (heading[1] - heading[0] + np.pi) % (2.0 * np.pi) - np.pi
+    fast = np.argsort(-np.abs(turn))[:_PAIRS]
+    fast = fast[np.abs(turn[fast]) > _MIN_TURN_RAD]
+    if len(fast) < _MIN_PAIRS:
+        return False
+    seen = np.array([_rotation(scans, int(first[k]), int(second[k])) for k in fast])
+    against = np.sign(seen) == -np.sign(turn[fast])
+    return bool(np.mean(against & (seen != 0.0)) > _MOST)
+
+
+def upright(scans: LaserScans) -> LaserScans:
+    """The scans with their angles in the other direction."""
+    return replace(scans, angle_min_rad=-scans.angle_min_rad, angle_step_rad=-scans.angle_step_rad)
+
+
+def _rotation(scans: LaserScans, i: int, j: int) -> float:
+    """Rotation of the laser from scan ``i`` to scan ``j`` by their ranges alone [rad]."""
+    a, b = (
+        np.nan_to_num(scans.range_m[k].astype(np.float64), nan=_FAR_M).clip(max=_FAR_M)
+        for k in (i, j)
+    )
+    step = abs(scans.angle_step_rad)
+    most = min(int(_SEARCH_RAD / step), len(a) // 3)
+    shifts = range(-most, most + 1, max(1, int(np.deg2rad(0.5) / step)))
+    inner = slice(most, len(a) - most)
+    # Turned left by s beams, scan j at beam m shows what scan i shows at beam m + s.
+    cost = [np.median(np.abs(b[inner] - np.roll(a, -s)[inner])) for s in shifts]
+    best = shifts[int(np.argmin(cost))]
+    return float(best * step * np.sign(scans.angle_step_rad))
+
+
+def _heading(R: Array) -> Array:
+    return np.asarray(np.arctan2(R[:, 1, 0], R[:, 0, 0]), dtype=np.float64)

@@ -1,0 +1,102 @@
+"""Projects with an audited rig, written by the real writers."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from recon4.calibration.calibrate import Agreement
+from recon4.calibration.stage import CalibrationResult
+from recon4.geometry.se3 import SE3
+from recon4.model.figures import CalibrationFigures, ParameterFigures
+from recon4.model.rig import Rig
+from recon4.progress import Silent
+from recon4.settings import Settings
+from recon4.store.frames import FrameWriter
+from recon4.store.project import Project
+from recon4.store.stage import Stage, StageRunner
+from tests.project_builder import build_project
+
+TOML = """\
+name = "field backpack"  # drawn by hand
+
+[[sensor]]
+name = "top"
+model = "VLP-16"
+xyz_m = [0.0, 0.0, 0.3]
+rpy_deg = [1.0, 2.0, 3.0]
+
+[[sensor]]
+name = "back"
+model = "HDL-32E"
+address = "192.168.1.202"
+xyz_m = [-0.12, 0.0, 0.1]
+rpy_deg = [10.0, 90.0, 0.0]
+"""
+
+
+def _frames(*, out: Path, rig: Rig, **_: Any) -> None:
+    with FrameWriter(out, rig):
+        pass
+
+
+def _parameters() -> tuple[ParameterFigures, ...]:
+    """The vertical LiDAR is 1.36° off about y; the walk does not show the IMU's position."""
+    rows = [
+        ("vertical", "rotation", "x", "rad", 0.0004, 0.0003, "consistent"),
+        ("vertical", "rotation", "y", "rad", 0.0237, 0.00035, "off"),
+        ("vertical", "rotation", "z", "rad", -0.0002, 0.0003, "consistent"),
+        ("vertical", "position", "x", "m", 0.0012, 0.0011, "consistent"),
+        ("vertical", "position", "y", "m", -0.0008, 0.0009, "consistent"),
+        ("vertical", "position", "z", "m", 0.0021, 0.0013, "consistent"),
+        ("vertical", "clock", "", "s", 0.0001, 0.0002, "consistent"),
+        ("imu", "position", "z", "m", 0.0, None, "not observable"),
+    ]
+    names = ("sensor", "quantity", "axis", "unit", "change", "sd", "status")
+    return tuple(ParameterFigures(**dict(zip(names, row, strict=True))) for row in rows)
+
+
+def _calibration(*, out: Path, found: Rig | None, **_: Any) -> None:
+    outcome = (
+        "calibrated: windows that were not used confirm it"
+        if found
+        else "the rig file contradicts the recording"
+    )
+    figures = CalibrationFigures(
+        parameters=_parameters(),
+        windows=8,
+        rms_m=0.006,
+        applied=found is not None,
+        outcome=outcome,
+    )
+    before = Agreement(rms_m=0.0183, offset_m=0.0442, imu_rms=1.1)
+    after = Agreement(rms_m=0.0061, offset_m=0.0012, imu_rms=float("nan"))
+    pair = {"before": before, "after": after} if found else {}
+    CalibrationResult(figures=figures, rig=found, **pair).save(out)
+
+
+def calibrated_project(root: Path, *, rig: Rig, found: Rig | None) -> None:
+    """Make a project in an empty folder, with its audited rig.
+
+    Args:
+        root: Its folder.
+        rig: Rig of the recording.
+        found: The calibrated rig; None = it was only audited.
+    """
+    build_project(root, with_map=False)
+    with Project.open(root) as project:
+        runner = StageRunner(project, Settings(), Silent())
+        runner.run(Stage("frames", 1, (), partial(_frames, rig=rig)))
+        runner.run(Stage("calibration", 1, (), partial(_calibration, found=found)))
+
+
+def tilted(rig: Rig) -> Rig:
+    """The rig with its last sensor turned by 1.36° about y."""
+    *others, last = rig.sensors
+    turn = SE3.from_rpy(0.0, np.deg2rad(1.36), 0.0, t=[0.0, 0.0, 0.0])
+    T = SE3(turn.R @ last.T_body_sensor.R, last.T_body_sensor.t)
+    return replace(rig, sensors=(*others, replace(last, T_body_sensor=T)))

@@ -1,0 +1,41 @@
+"""A 2-D laser mounted upside down is found by the gyroscope; one mounted well is left alone."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.model.trajectory import Trajectory
+from recon4.profiler.mirrored import is_mirrored, upright
+from recon4.store.line_store import load_laser_scans
+
+
+@pytest.fixture(scope="module")
+def scans(frames):
+    return load_laser_scans(frames.folder)
+
+
+@pytest.fixture(scope="module")
+def attitude(frames, truth):
+    return Trajectory(truth.t_ns, truth.T_a_b @ frames.rig.sensors[0].T_body_sensor)
+
+
+def test_a_laser_that_turns_with_the_gyroscope_is_upright(scans, attitude):
+    assert not is_mirrored(scans, attitude)
+
+
+def test_ranges_in_reverse_order_are_found(scans, attitude):
+    reverse = replace(scans, range_m=np.ascontiguousarray(scans.range_m[:, ::-1]))
+
+    assert is_mirrored(reverse, attitude)
+    assert not is_mirrored(upright(reverse), attitude)
+
+
+def test_angles_of_the_wrong_sign_are_found(scans, attitude):
+    assert is_mirrored(upright(scans), attitude)
+
+
+def test_a_laser_that_hardly_turns_is_left_alone(scans, attitude):
+    still = replace(scans[:20], range_m=scans.range_m[:20, ::-1])
+
+    assert not is_mirrored(still, attitude)

@@ -1,0 +1,103 @@
+// Rotations and differences of rigs. No DOM, no network. Matrices are lists of rows.
+
+const RAD = Math.PI / 180;
+
+/** Rz(yaw) Ry(pitch) Rx(roll) of angles in degrees: maps the sensor's axes into the body. */
+export function matrixOf([roll, pitch, yaw]) {
+  const [cr, sr] = [Math.cos(roll * RAD), Math.sin(roll * RAD)];
+  const [cp, sp] = [Math.cos(pitch * RAD), Math.sin(pitch * RAD)];
+  const [cy, sy] = [Math.cos(yaw * RAD), Math.sin(yaw * RAD)];
+  return [
+    [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+    [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+    [-sp, cp * sr, cp * cr],
+  ];
+}
+
+/** A point of the sensor in the body. */
+export const placed = (R, origin, [x, y, z]) =>
+  R.map((row, k) => origin[k] + row[0] * x + row[1] * y + row[2] * z);
+
+/** The rotation vector, in the body and degrees, that turns one mount into another. */
+export function rotationBetween(before, after) {
+  const [A, B] = [matrixOf(before), matrixOf(after)];
+  const D = [0, 1, 2].map((i) =>
+    [0, 1, 2].map((j) => B[i].reduce((sum, value, k) => sum + value * A[j][k], 0)),
+  );
+  const axis = [D[2][1] - D[1][2], D[0][2] - D[2][0], D[1][0] - D[0][1]];
+  const [sine, cosine] = [Math.hypot(...axis) / 2, (D[0][0] + D[1][1] + D[2][2] - 1) / 2];
+  const angle = Math.atan2(sine, cosine);
+  if (sine > 1e-9) return axis.map((value) => ((value / 2 / sine) * angle) / RAD);
+  if (cosine > 0) return [0, 0, 0];
+  const k = [0, 1, 2].reduce((best, one) => (D[one][one] > D[best][best] ? one : best), 0);
+  const row = D[k].map((value, j) => value + (j === k ? 1 : 0)); // a half turn
+  const length = Math.hypot(...row);
+  return row.map((value) => (value / length) * 180);
+}
+
+const AXES = ["x", "y", "z"];
+const signed = (value, digits) => `${value < 0 ? "−" : "+"}${Math.abs(value).toFixed(digits)}`;
+
+/** ["x +1.00", …] of the components that round to something else than zero. */
+const components = (values, digits) =>
+  values.flatMap((value, k) =>
+    Math.abs(value) < 0.5 * 10 ** -digits ? [] : [`${AXES[k]} ${signed(value, digits)}`],
+  );
+
+const clockChange = (before, after) => {
+  const change = 1e3 * (after.time_offset_s - before.time_offset_s);
+  return Math.abs(change) < 5e-4 ? [] : [`clock ${signed(change, 3)} ms`];
+};
+
+function mountChanges(before, after) {
+  const shift = after.xyz_m.map((value, k) => 100 * (value - before.xyz_m[k]));
+  const turn = rotationBetween(before.rpy_deg, after.rpy_deg);
+  return [
+    ...components(shift, 2).map((text) => `position ${text} cm`),
+    ...components(turn, 3).map((text) => `rotation about ${text}°`),
+    ...clockChange(before, after),
+  ];
+}
+
+const PLAIN = ["kind", "model", "address", "port", "topic", "head_topic", "head_rate_deg_s"];
+const plainChanges = (before, after, keys) =>
+  keys
+    .filter((key) => before[key] !== after[key])
+    .map((key) => `${key.replaceAll("_", " ")} ${before[key] || "none"} → ${after[key] || "none"}`);
+
+function sensorChanges(before, after) {
+  const used = before.enabled === after.enabled ? [] : [after.enabled ? "enabled" : "disabled"];
+  return [...mountChanges(before, after), ...plainChanges(before, after, PLAIN), ...used];
+}
+
+function gnssChanges(before, after) {
+  const arm = after.lever_arm_m.map((value, k) => 100 * (value - before.lever_arm_m[k]));
+  return [
+    ...components(arm, 2).map((text) => `lever arm ${text} cm`),
+    ...clockChange(before, after),
+    ...plainChanges(before, after, ["port", "serial"]),
+  ];
+}
+
+/** What differs between two versions of a rig: lines of text; the sensors are found by name. */
+export function changesOf(before, after) {
+  const of = (label, texts) => texts.map((text) => `${label}: ${text}`);
+  const earlier = new Map(before.sensors.map((sensor) => [sensor.name, sensor]));
+  const names = new Set(after.sensors.map((sensor) => sensor.name));
+  const kept = after.sensors.flatMap((sensor) => {
+    const old = earlier.get(sensor.name);
+    return of(sensor.name, old ? sensorChanges(old, sensor) : ["added"]);
+  });
+  const removed = [...earlier.keys()].filter((name) => !names.has(name));
+  return [
+    ...(before.name === after.name ? [] : [`name: ${before.name} → ${after.name}`]),
+    ...kept,
+    ...removed.map((name) => `${name}: removed`),
+    ...of("IMU", mountChanges(before.imu, after.imu)),
+    ...of("IMU", plainChanges(before.imu, after.imu, ["port"])),
+    ...of("GNSS antenna", gnssChanges(before.gnss, after.gnss)),
+  ];
+}
+
+/** A number without trailing zeros, at most `digits` decimals. */
+export const short = (value, digits) => String(Number(value.toFixed(digits)));
