@@ -11,7 +11,7 @@ from stat import S_ISREG
 from app.rigs.store import RIGS, newest_files
 from recon4.bounded import read_text_limited
 from recon4.errors import ConfigError, CorruptFile
-from recon4.model.rig import load_rig, rig_presets
+from recon4.model.rig import Rig, load_rig, rig_presets
 
 MAX_FILES = 100
 LARGEST_BYTES = 1 << 17
@@ -52,8 +52,12 @@ def rigs_in(files: tuple[Path, ...]) -> list[RigChoice]:
 
 
 def shipped_rigs() -> list[RigChoice]:
-    """The rigs that come with recon4."""
-    return [_shipped(name) for name in rig_presets()]
+    """The rigs that come with recon4 and can be captured live: those with a LiDAR."""
+    return [_shipped(name) for name in rig_presets() if _has_lidar(load_rig(name))]
+
+
+def _has_lidar(rig: Rig) -> bool:
+    return any(sensor.kind == "lidar" for sensor in rig.sensors)
 
 
 def _files(folder: Path) -> Iterator[Path]:
