@@ -66,6 +66,7 @@ def test_a_rig_is_seen_as_drawing_and_numbers(server, page, look, screenshot):
     )
     expect(page.get_by_role("link", name="walk")).to_be_visible()
     expect(page.get_by_role("img", name="vertical, VLP-16, at -12, 0, 0 cm")).to_be_visible()
+    expect(page.get_by_text("at 90° only their difference counts")).to_be_visible()
     before = camera(page)
     assert colors_of(page) > 50
     fits(page)

@@ -84,6 +84,15 @@ export function numbersTable({ sensors, imu, gnss }) {
   );
 }
 
+const STEEP_DEG = 85;
+
+/** What to know about the angles of a rig; empty = nothing. */
+export const angleHint = ({ sensors, imu }) =>
+  [...sensors, imu].some(({ rpy_deg: [, pitch] }) => Math.abs(pitch) > STEEP_DEG)
+    ? "With a pitch near 90°, roll and yaw turn about the same axis: " +
+      "at 90° only their difference counts, at −90° their sum."
+    : "";
+
 /** The versions of a rig, the newest first; `show(number)` shows one. */
 export function versionList(id, versions, shown, show) {
   const item = (version) =>

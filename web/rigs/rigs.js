@@ -16,7 +16,7 @@ import "../shared/page_head.js";
 import { askDuplicate, askImport } from "./rig_dialogs.js";
 import "./rig_form.js";
 import { changesOf } from "./rig_math.js";
-import { numbersTable, useList, versionList } from "./rig_table.js";
+import { angleHint, numbersTable, useList, versionList } from "./rig_table.js";
 import "./rig_view.js";
 
 const CHECK_AFTER_MS = 250;
@@ -64,6 +64,7 @@ function drawRig() {
   byId("numbers").hidden = false;
   drawing.show(content, elevations, id);
   byId("numbers").replaceChildren(numbersTable(content));
+  byId("hint").textContent = angleHint(content);
   drawActions();
   drawAbout();
 }
