@@ -186,6 +186,7 @@ def _sensor(content: SensorContent) -> Sensor:
         port=content.port,
         topic=content.topic.strip(),
         enabled=content.enabled,
+        serial=content.serial.strip(),
     )
 
 
@@ -203,6 +204,7 @@ def _sensor_content(sensor: Sensor) -> SensorContent:
         head_topic=visible(sensor.head_topic),
         head_rate_deg_s=math.degrees(sensor.head_rate_rad_s),
         enabled=sensor.enabled,
+        serial=visible(sensor.serial),
     )
 
 

@@ -48,6 +48,8 @@ class SensorContent(RigPart):
     """Profiler: constant turn rate of its head [deg/s]; 0 = the recording has the angles."""
     enabled: bool = True
     """False: its points are stored, but neither registered nor mapped."""
+    serial: Name = Field(default="", max_length=LONGEST_TEXT)
+    """Serial number; empty = not known."""
 
 
 class ImuContent(RigPart):

@@ -24,6 +24,7 @@ const NEW_SENSOR = {
   head_topic: "",
   head_rate_deg_s: 0,
   enabled: true,
+  serial: "",
 };
 
 export class RigForm extends HTMLElement {
@@ -179,6 +180,7 @@ export class RigForm extends HTMLElement {
         path,
         this.#text(sensor, "address", { label: "Address", path: `${path}.address`, hint: "any" }),
         this.#text(sensor, "topic", { label: "Topic", path: `${path}.topic`, hint: "detected" }),
+        this.#text(sensor, "serial", { label: "Serial number", path: `${path}.serial` }),
       ),
       head ? row(...head) : null,
       make(

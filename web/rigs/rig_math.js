@@ -59,7 +59,16 @@ function mountChanges(before, after) {
   ];
 }
 
-const PLAIN = ["kind", "model", "address", "port", "topic", "head_topic", "head_rate_deg_s"];
+const PLAIN = [
+  "kind",
+  "model",
+  "serial",
+  "address",
+  "port",
+  "topic",
+  "head_topic",
+  "head_rate_deg_s",
+];
 const plainChanges = (before, after, keys) =>
   keys
     .filter((key) => before[key] !== after[key])

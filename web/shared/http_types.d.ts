@@ -808,6 +808,7 @@ export interface SensorContent {
   head_topic?: string;
   head_rate_deg_s?: number;
   enabled?: boolean;
+  serial?: string;
 }
 
 export interface SensorModel {

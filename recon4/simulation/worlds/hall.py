@@ -75,12 +75,18 @@ def _equipment(builder: MeshBuilder, rng: np.random.Generator) -> None:
     builder.ball([9.0, 0.8, 1.9], [0.4, 0.4, 0.5], 0.6)
 
 
+_START = 0.6
+"""Where a round begins, as a part of the free floor's half length."""
+
+
 def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:
     """Around the free floor, with a look at its corners, longer the more stops."""
     x, y, half_x, half_y = _FREE
     reach = half_x * (0.4 + 0.15 * stops)
-    corners = [(-reach, -half_y), (reach, -half_y), (reach, half_y), (-reach, half_y)]
+    start = (-_START * half_x, -half_y)
+    corners = [start, (reach, -half_y), (reach, half_y), (-reach, half_y)]
     stray = rng.uniform(-0.2, 0.2, (4, 2))
+    stray[0] = 0.0  # every round begins and ends in the same place
     ways = [
         Waypoint(x + cx + float(dx), y + 0.8 * cy + float(dy), stop=k + 1 < stops, look_deg=90.0)
         for k, ((cx, cy), (dx, dy)) in enumerate(zip(corners, stray, strict=True))
