@@ -19,7 +19,7 @@ from app.errors import BadRequest, ProblemDetail
 from app.network.request_caller import CalledBy, Caller
 from app.pages import page_response
 from app.projects.routes import REPORT_POLICY
-from app.slices import work
+from app.slices import readers, work
 from app.slices.exports import ExportRequest
 from app.slices.model import (
     AddReference,
@@ -120,7 +120,7 @@ async def overview_window(
 ) -> WindowSpec:
     """Left, bottom, right and top in the map [m]."""
     image = await _overview(project_id, server, caller, source=source)
-    return await run_in_threadpool(work.read_window, image.with_suffix(".json"))
+    return await run_in_threadpool(readers.read_window, image.with_suffix(".json"))
 
 
 @router.post("/pick", summary="The point of the map at a position on a slice")
@@ -152,7 +152,7 @@ async def doubles(
             ),
         )
     )
-    return await run_in_threadpool(work.read_double_walls, path)
+    return await run_in_threadpool(readers.read_double_walls, path)
 
 
 @router.post("/compare", summary="Compare slices with a reference")

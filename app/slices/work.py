@@ -9,9 +9,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import numpy as np
-from pydantic import ValidationError
 
 from app.slices.model import (
     CompareRequest,
@@ -28,7 +26,6 @@ from app.slices.model import (
     WindowSpec,
     Xyz,
 )
-from recon4.bounded import read_json_object
 from recon4.errors import ConfigError, StoreError
 from recon4.geometry.se3 import SE3
 from recon4.mapping.tiles import TileSet
@@ -41,7 +38,6 @@ from recon4.slices.colors import SENSOR_COLORS, ColorBy, Ground, Span, table
 from recon4.slices.compare import Comparison, compare, to_csv, usual_cuts
 from recon4.slices.control_points import AxisOrder, ControlPoint, ControlPreview, read_control
 from recon4.slices.cut import Cut, horizontal
-from recon4.slices.double_places import DoubleReport
 from recon4.slices.doubles import find_double_walls
 from recon4.slices.frames import MapFrame, frame_of
 from recon4.slices.imports import import_reference, set_alignment
@@ -66,7 +62,6 @@ from recon4.store.checked import CheckedArtifact
 
 Artifacts = dict[str, str]
 """Stage -> folder of its artifact."""
-MAX_KEPT_BYTES = 64 << 20
 
 
 @lru_cache(maxsize=4)
@@ -394,28 +389,3 @@ def _in_crs(frame: MapFrame, p_map: Xyz) -> Xyz | None:
 def _xyz(values: Any) -> Xyz:
     x, y, z = (float(value) for value in values)
     return x, y, z
-
-
-def read_window(path: Path) -> WindowSpec:
-    """Read the window of an image that a child process wrote.
-
-    Raises:
-        StoreError: If it is damaged or too large.
-    """
-    try:
-        return WindowSpec.model_validate(read_json_object(path, MAX_KEPT_BYTES, failure=StoreError))
-    except ValidationError as error:
-        raise StoreError(f"{path.name}: {error}") from error
-
-
-def read_double_walls(path: Path) -> DoubleReport:
-    """Read what `double_walls` wrote.
-
-    Raises:
-        StoreError: If it is damaged or too large.
-    """
-    try:
-        record = read_json_object(path, MAX_KEPT_BYTES, failure=StoreError)
-        return msgspec.convert(record, DoubleReport)
-    except msgspec.ValidationError as error:
-        raise StoreError(f"{path.name} cannot be read: {error}") from error

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from datetime import UTC, datetime, timedelta
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 
@@ -24,6 +23,7 @@ from recon4.recording.folders import folder_gaps, frames_label, list_frames
 from recon4.recording.formats.bags import CLOUD, IMU, NAVSATFIX, ODOMETRY, Bag, BagTopic
 from recon4.recording.formats.cloud_files import cloud_fields
 from recon4.recording.formats.poses import pose_format, read_tum
+from recon4.recording.info_records import RecordingInfo, SensorInfo
 from recon4.recording.laser2d import is_laser2d, read_laser2d
 from recon4.recording.line_topics import line_topics
 from recon4.recording.open import (
@@ -48,82 +48,11 @@ _HEAD_PACKETS = 4000
 _WHOLE_PACKETS = 100_000
 """Above this number of datagrams the counts of a small capture file are estimates too."""
 _PROBED_MESSAGES = 50
-_EARLIEST_NS = 300_000_000 * 1_000_000_000
-"""Times before 1979 do not count from 1970."""
-_LATEST_NS = 253_402_300_800 * 1_000_000_000
-"""Start of the year 10000."""
 _HEAD_ITEMS = 40
 _LASER_GAP_S = 1.0
 """Scans of a 2-D laser come irregularly; shorter times between them are no gap [s]."""
 _BAGS = (RecordingKind.BAG1, RecordingKind.BAG2)
 _HEAD_NS = 1_000_000_000
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SensorInfo:
-    """One LiDAR of a recording."""
-
-    label: str
-    """Address and port, topic, or folder."""
-    model: str
-    content: str
-    """``packets``, ``clouds`` or ``files``."""
-    count: int
-    """Number of them; an estimate for a large capture file."""
-    rate_hz: float
-    """Number per second; NaN = unknown."""
-    rotation_hz: float = float("nan")
-    """Measured at the head; NaN = unknown."""
-    fields: tuple[str, ...] = ()
-    remarks: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RecordingInfo:
-    """Contents of a recording."""
-
-    path: str
-    kind: str
-    bytes: int
-    t_first_ns: int = 0
-    t_last_ns: int = 0
-    """Both 0 = the recording has no times."""
-    estimated: bool = False
-    """Whether only the head of a large file was read; counts and end are estimates then."""
-    sensors: tuple[SensorInfo, ...] = ()
-    samples: tuple[str, ...] = ()
-    """Description of IMU, GNSS and poses with their rates."""
-    gaps: tuple[TimeGap, ...] = ()
-    derived: tuple[str, ...] = ()
-    """What recon4 derives because the recording lacks it."""
-    missing: tuple[str, ...] = ()
-    warnings: tuple[str, ...] = ()
-
-    @property
-    def seconds(self) -> float:
-        """Duration [s]."""
-        return (self.t_last_ns - self.t_first_ns) / 1e9
-
-    def lines(self) -> list[str]:
-        """The contents as text."""
-        about = "about " if self.estimated else ""
-        lines = [f"{self.path}: {self.kind}, {self.bytes / 1e6:.1f} MB"]
-        absolute = self.t_first_ns > _EARLIEST_NS
-        if absolute or self.t_last_ns > self.t_first_ns:
-            start = f"{utc(self.t_first_ns)} UTC" if absolute else "no absolute times"
-            lines.append(f"time      {start}, {about}{self.seconds:.2f} s")
-        for sensor in self.sensors:
-            lines += _sensor_lines(sensor, about)
-        lines += [f"samples   {text}" for text in self.samples]
-        for gap in self.gaps[:10]:
-            since_s = (gap.t_ns - self.t_first_ns) / 1e9
-            lines.append(f"gap       {gap.sensor}: {gap.seconds:.3f} s at {since_s:.2f} s")
-        if len(self.gaps) > 10:
-            lines.append(f"gap       … {len(self.gaps)} in all")
-        lines += [f"derived   {text}" for text in self.derived]
-        lines += [f"missing   {text}" for text in self.missing]
-        lines += [f"warning   {text}" for text in self.warnings]
-        return lines
 
 
 def describe(path: Path, *, settings: IngestSettings | None = None) -> RecordingInfo:
@@ -149,29 +78,9 @@ def describe(path: Path, *, settings: IngestSettings | None = None) -> Recording
     return _with_head(info, path, settings, report=report)
 
 
-def utc(t_ns: int) -> str:
-    """A time as text, to the millisecond; beyond the year 9999 in seconds."""
-    if not 0 <= t_ns < _LATEST_NS:
-        return f"{t_ns / 1e9:.3f} s since 1970"
-    time = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(milliseconds=t_ns // 1_000_000)
-    return time.strftime("%Y-%m-%d %H:%M:%S.%f")[:-3]
-
-
 def _size(path: Path) -> int:
     files = [path] if path.is_file() else [f for f in path.iterdir() if f.is_file()]
     return sum(file.stat().st_size for file in files)
-
-
-def _sensor_lines(sensor: SensorInfo, about: str) -> list[str]:
-    rate = f", {sensor.rate_hz:.1f} a second" if np.isfinite(sensor.rate_hz) else ""
-    turns = f", {sensor.rotation_hz:.2f} revolutions a second" * bool(
-        np.isfinite(sensor.rotation_hz)
-    )
-    text = f"{sensor.label} {sensor.model}: {about}{sensor.count} {sensor.content}{rate}{turns}"
-    lines = [f"lidar     {text}"]
-    if sensor.fields:
-        lines.append(f"fields    {', '.join(sensor.fields)}")
-    return lines + [f"remark    {sensor.label}: {remark}" for remark in sensor.remarks]
 
 
 # -- capture files

@@ -46,7 +46,7 @@ test("the job is repeated with calibration, once", () => {
   const inputs = {
     recordings: ["/data/walk.pcap"],
     preset: "outdoor",
-    rig: "/root/rigs/a/1/a-v1.toml",
+    rig: "/srv/rigs/a/1/a-v1.toml",
     imu: "",
     gnss: "/data/gnss.csv",
     settings: ["map.voxel_m=0.02", "calibration.mode=off"],
@@ -58,7 +58,7 @@ test("the job is repeated with calibration, once", () => {
     project: "walk",
     recordings: ["/data/walk.pcap"],
     preset: "outdoor",
-    rig: "/root/rigs/a/1/a-v1.toml",
+    rig: "/srv/rigs/a/1/a-v1.toml",
     imu: "",
     gnss: "/data/gnss.csv",
     settings: ["map.voxel_m=0.02", "calibration.mode=auto"],

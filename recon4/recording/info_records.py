@@ -1,0 +1,102 @@
+"""Contents of a recording as records and as text, for ``recon4 info``."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+
+import numpy as np
+
+from recon4.recording.assembly.assembler import TimeGap
+
+_EARLIEST_NS = 300_000_000 * 1_000_000_000
+"""Times before 1979 do not count from 1970."""
+_LATEST_NS = 253_402_300_800 * 1_000_000_000
+"""Start of the year 10000."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SensorInfo:
+    """One LiDAR of a recording."""
+
+    label: str
+    """Address and port, topic, or folder."""
+    model: str
+    content: str
+    """``packets``, ``clouds`` or ``files``."""
+    count: int
+    """Number of them; an estimate for a large capture file."""
+    rate_hz: float
+    """Number per second; NaN = unknown."""
+    rotation_hz: float = float("nan")
+    """Measured at the head; NaN = unknown."""
+    fields: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RecordingInfo:
+    """Contents of a recording."""
+
+    path: str
+    kind: str
+    bytes: int
+    t_first_ns: int = 0
+    t_last_ns: int = 0
+    """Both 0 = the recording has no times."""
+    estimated: bool = False
+    """Whether only the head of a large file was read; counts and end are estimates then."""
+    sensors: tuple[SensorInfo, ...] = ()
+    samples: tuple[str, ...] = ()
+    """Description of IMU, GNSS and poses with their rates."""
+    gaps: tuple[TimeGap, ...] = ()
+    derived: tuple[str, ...] = ()
+    """What recon4 derives because the recording lacks it."""
+    missing: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def seconds(self) -> float:
+        """Duration [s]."""
+        return (self.t_last_ns - self.t_first_ns) / 1e9
+
+    def lines(self) -> list[str]:
+        """The contents as text."""
+        about = "about " if self.estimated else ""
+        lines = [f"{self.path}: {self.kind}, {self.bytes / 1e6:.1f} MB"]
+        absolute = self.t_first_ns > _EARLIEST_NS
+        if absolute or self.t_last_ns > self.t_first_ns:
+            start = f"{utc(self.t_first_ns)} UTC" if absolute else "no absolute times"
+            lines.append(f"time      {start}, {about}{self.seconds:.2f} s")
+        for sensor in self.sensors:
+            lines += _sensor_lines(sensor, about)
+        lines += [f"samples   {text}" for text in self.samples]
+        for gap in self.gaps[:10]:
+            since_s = (gap.t_ns - self.t_first_ns) / 1e9
+            lines.append(f"gap       {gap.sensor}: {gap.seconds:.3f} s at {since_s:.2f} s")
+        if len(self.gaps) > 10:
+            lines.append(f"gap       … {len(self.gaps)} in all")
+        lines += [f"derived   {text}" for text in self.derived]
+        lines += [f"missing   {text}" for text in self.missing]
+        lines += [f"warning   {text}" for text in self.warnings]
+        return lines
+
+
+def utc(t_ns: int) -> str:
+    """A time as text, to the millisecond; beyond the year 9999 in seconds."""
+    if not 0 <= t_ns < _LATEST_NS:
+        return f"{t_ns / 1e9:.3f} s since 1970"
+    time = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(milliseconds=t_ns // 1_000_000)
+    return time.strftime("%Y-%m-%d %H:%M:%S.%f")[:-3]
+
+
+def _sensor_lines(sensor: SensorInfo, about: str) -> list[str]:
+    rate = f", {sensor.rate_hz:.1f} a second" if np.isfinite(sensor.rate_hz) else ""
+    turns = f", {sensor.rotation_hz:.2f} revolutions a second" * bool(
+        np.isfinite(sensor.rotation_hz)
+    )
+    text = f"{sensor.label} {sensor.model}: {about}{sensor.count} {sensor.content}{rate}{turns}"
+    lines = [f"lidar     {text}"]
+    if sensor.fields:
+        lines.append(f"fields    {', '.join(sensor.fields)}")
+    return lines + [f"remark    {sensor.label}: {remark}" for remark in sensor.remarks]
