@@ -16,6 +16,7 @@ from recon4.model.trajectory import Times, Trajectory
 
 KNOT_S = 0.05
 """Distance in time of the knots of the trajectory's correction [s]."""
+_KNOT_NS = round(1e9 * KNOT_S)
 _POINTS_OF_FRAME = 600
 """Largest number of points of one sensor in one multiframe."""
 _MARGIN_NS = 100_000_000
@@ -84,11 +85,12 @@ def cut_window(frames: RecordedFrames, trajectory: Trajectory, rows: range) -> W
     parts = [_thinned(frames, row) for row in rows]
     start_ns, end_ns = _span(frames, rows, trajectory)
     p, sensor, ring, t_ns = (np.concatenate(column) for column in zip(*parts, strict=True))
-    knots = max(2, round((end_ns - start_ns) * 1e-9 / KNOT_S) + 1)
+    # Exactly so far apart: rows of the IMU count on it. Later points belong to the last knot.
+    knot_ns = np.arange(start_ns, max(end_ns, start_ns + _KNOT_NS) + 1, _KNOT_NS, dtype=np.int64)
     first, last = np.searchsorted(trajectory.t_ns, [start_ns, end_ns])
     return Window(
         start_ns,
-        np.linspace(start_ns, end_ns, knots).astype(np.int64),
+        knot_ns,
         p.astype(np.float64),
         sensor,
         ring,
@@ -115,7 +117,7 @@ def place(window: Window, rig: Rig) -> PlacedPoints:
         place_points(dense_s, R, np.zeros_like(t), t_s, np.tile(axis, (len(t_s), 1)))
         for axis in np.eye(3)
     ]
-    at = t_s / KNOT_S * ((window.knots - 1) * KNOT_S / _seconds(window))
+    at = t_s / KNOT_S
     knot = np.clip(np.floor(at).astype(np.int64), 0, window.knots - 2)
     R_odom_body = np.stack(axes, axis=2)
     return PlacedPoints(
@@ -127,10 +129,6 @@ def place(window: Window, rig: Rig) -> PlacedPoints:
         knot=knot,
         fraction=np.clip(at - knot, 0.0, 1.0),
     )
-
-
-def _seconds(window: Window) -> float:
-    return float(window.knot_ns[-1] - window.knot_ns[0]) * 1e-9
 
 
 def _clock_change_s(before: Rig, after: Rig) -> Array:
