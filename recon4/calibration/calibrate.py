@@ -288,10 +288,10 @@ def _refusal(
     first: JointEstimate,
 ) -> str:
     """Why a calibrated rig must not be used; empty = it may."""
-    if not any(row.status == "off" for row in rows):
-        return "the rig file agrees with the recording"
     if second is None:
         return "the walk is too short to check the calibrated rig on another part of it"
+    if not any(row.status == "off" for row in rows):
+        return "inconclusive: longer windows do not confirm what the audit found"
     apart = np.abs(first.parameters.between(first.rig, second.rig))
     scatter = _SIGMAS * np.hypot(first.sd, second.sd)
     limit = np.maximum(scatter, 0.5 * np.abs(_known_errors(first.parameters)))

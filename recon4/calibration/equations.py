@@ -32,7 +32,7 @@ _PLANE_PRIOR = 1e-3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RoundBounds:
-    """RoundBounds of one round; they become tighter as the rig becomes better."""
+    """Bounds of one round; they become tighter as the rig becomes better."""
 
     cube_m: float
     """Edge of the cubes in which planes are looked for."""

@@ -32,7 +32,7 @@ ROUNDS = (
     _TIGHT,
     _TIGHT,
 )
-"""RoundBounds of each round of an estimate."""
+"""Bounds of each round of an estimate."""
 EXPLAIN = (
     RoundBounds(cube_m=0.6, max_sd_m=0.04, gate_m=0.40, kernel_m=0.15),
     RoundBounds(cube_m=0.6, max_sd_m=0.04, gate_m=0.40, kernel_m=0.15),

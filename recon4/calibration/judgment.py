@@ -17,7 +17,7 @@ _SIGMAS = 3.0
 
 @dataclass(frozen=True, slots=True)
 class ParameterLimits:
-    """ParameterLimits of one kind of parameter, in its unit."""
+    """Limits of one kind of parameter, in its unit."""
 
     tolerance: float
     """A smaller change is no reason to calibrate."""

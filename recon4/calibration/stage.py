@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+import msgspec
 import numpy as np
 
 from recon4.calibration.calibrate import Agreement, Calibration, audit, calibrate, reference_of
@@ -58,7 +59,7 @@ def run_calibration(
     Args:
         frames: The multiframes with their rig and IMU.
         odometry: Folder of the stage ``odometry``.
-        settings: Uses calibration, odometry and graph.
+        settings: Uses calibration, those of the odometry, and graph.
         progress: Counts rounds; a rig that is off is an event.
     """
     if settings.calibration.mode == "off":
@@ -76,7 +77,7 @@ def run_calibration(
     if settings.calibration.mode == "auto" and found.begin and found.figures.warnings:
         calibrated = calibrate(walk, found.begin, parameters, settings=settings, progress=progress)
         if calibrated is not None:
-            found = _applied(calibrated, start.remarks)
+            found = _calibrated(found, calibrated)
     for text in found.figures.warnings:
         progress.event(Warned(text=text))
     return found
@@ -92,12 +93,11 @@ def _audit(
 ) -> CalibrationResult:
     remarks = tuple(f"The IMU contradicts the recording. {text}" for text in start.remarks)
     if not len(parameters):
-        text = "nothing to compare: one LiDAR without a usable IMU"
-        return CalibrationResult(figures=CalibrationFigures(outcome=text, warnings=remarks))
+        text = "nothing to compare: neither a second LiDAR nor a usable IMU"
+        return _nothing(text, remarks)
     estimate = audit(walk, start.rig, parameters, settings=settings, progress=progress)
     if estimate is None:
-        text = "no window of the walk has planes to compare"
-        return CalibrationResult(figures=CalibrationFigures(outcome=text, warnings=remarks))
+        return _nothing("no window of the walk has planes to compare", remarks)
     rows = judge(estimate)
     exchanged = _exchanged(walk.frames.rig, estimate)
     warnings = (*remarks, *exchanged, *contradictions(rows))
@@ -107,8 +107,14 @@ def _audit(
         rms_m=estimate.rms_m,
         outcome="the rig file contradicts the recording" if warnings else _consistent(rows),
         warnings=warnings,
+        uncorrected=remarks,
     )
     return CalibrationResult(figures=figures, begin=estimate.rig)
+
+
+def _nothing(outcome: str, remarks: tuple[str, ...]) -> CalibrationResult:
+    figures = CalibrationFigures(outcome=outcome, warnings=remarks, uncorrected=remarks)
+    return CalibrationResult(figures=figures)
 
 
 def _exchanged(rig: Rig, found: JointEstimate) -> tuple[str, ...]:
@@ -131,15 +137,21 @@ def _consistent(rows: tuple[ParameterFigures, ...]) -> str:
     return f"{text}; {unknown} of {len(rows)} parameters are not observable" if unknown else text
 
 
-def _applied(found: Calibration, remarks: tuple[str, ...]) -> CalibrationResult:
-    applied = not found.refusal
+def _calibrated(audited: CalibrationResult, found: Calibration) -> CalibrationResult:
+    """What follows from a calibration; where it must not be used, the audit's findings stand."""
+    if found.refusal:
+        figures = msgspec.structs.replace(audited.figures, outcome=found.refusal)
+        return replace(audited, figures=figures, before=found.before, after=found.after)
+    uncorrected = audited.figures.uncorrected
     figures = CalibrationFigures(
         parameters=found.rows,
         windows=len(found.estimate.fits),
         rms_m=found.estimate.rms_m,
-        applied=applied,
-        outcome=found.refusal or "calibrated: windows that were not used confirm it",
-        warnings=(*remarks, *contradictions(found.rows, applied=applied)),
+        applied=True,
+        outcome="calibrated: windows that were not used confirm it",
+        warnings=(*uncorrected, *contradictions(found.rows, applied=True)),
+        uncorrected=uncorrected,
     )
-    rig = found.estimate.rig if applied else None
-    return CalibrationResult(figures=figures, rig=rig, before=found.before, after=found.after)
+    return CalibrationResult(
+        figures=figures, rig=found.estimate.rig, before=found.before, after=found.after
+    )

@@ -85,6 +85,8 @@ class CalibrationFigures(Figures, frozen=True, kw_only=True):
     outcome: str = ""
     """Why it was applied, or why not."""
     warnings: tuple[str, ...] = ()
+    uncorrected: tuple[str, ...] = ()
+    """Those of the warnings that no calibration corrects: wrong units, axes with a wrong sign."""
 
     @property
     def is_severe(self) -> bool:

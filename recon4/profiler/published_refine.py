@@ -19,8 +19,8 @@ from recon4.model.figures import RefineRound
 from recon4.model.line_scans import LineScans
 from recon4.model.trajectory import Times, Trajectory
 from recon4.profiler.samples import TimedPoints, joined, line_points
-from recon4.profiler.turns import thinned
 from recon4.progress import Progress
+from recon4.registration.scans import thinned
 from recon4.semi_rigid.knots import KnotSystem, apply_knots, solve_knots
 from recon4.settings import LineSettings
 from recon4.store.frames import FrameStore

@@ -12,6 +12,7 @@ from recon4.model.line_scans import LineScans
 from recon4.model.trajectory import Times, Trajectory
 from recon4.profiler.samples import line_points
 from recon4.progress import Progress
+from recon4.registration.scans import thinned
 from recon4.settings import LineSettings
 from recon4.store.frames import FrameStore
 
@@ -88,19 +89,6 @@ def unwind_turns(
         clouds[k] = []
         turns.append(Turn(thin.astype(np.float32), int(counts[k])))
     return Turns(node_ns, start_ns, rows, tuple(turns))
-
-
-def thinned(p: Array, voxel_m: float) -> Array:
-    """Mean of the points in each voxel, (N, 3) -> (M, 3)."""
-    if not len(p):
-        return np.empty((0, 3))
-    cell = np.floor(p / voxel_m).astype(np.int64)
-    cell -= cell.min(axis=0)
-    size = cell.max(axis=0) + 1
-    key = (cell[:, 0] * size[1] + cell[:, 1]) * size[2] + cell[:, 2]
-    _, row, count = np.unique(key, return_inverse=True, return_counts=True)
-    sums = [np.bincount(row, p[:, axis]) / count for axis in range(3)]
-    return np.ascontiguousarray(np.stack(sums, axis=1))
 
 
 def relative(T_odom_node: SE3, i: int, j: int) -> SE3:

@@ -57,7 +57,7 @@ class Scan:
 
 def make_scan(points: Array, settings: ScanSettings) -> Scan:
     """Thin points [m], (N, 3), to one per voxel (the mean) and fit a plane around each."""
-    p = _thinned(points[np.isfinite(points).all(axis=1)], settings.voxel_m)
+    p = thinned(points[np.isfinite(points).all(axis=1)], settings.voxel_m)
     tree = cKDTree(p, balanced_tree=False, compact_nodes=False)
     normals = np.zeros_like(p)
     if len(p) >= settings.neighbors:
@@ -195,7 +195,7 @@ def _refused(T: SE3, rounds: int) -> Registration:
     return Registration(T, StopReason.TOO_FEW, rounds, nan, 0.0, np.zeros((6, 6)), 0.0)
 
 
-def _thinned(p: Array, voxel_m: float) -> Array:
+def thinned(p: Array, voxel_m: float) -> Array:
     """Mean of the points in each voxel, (M, 3)."""
     if not len(p):
         return np.empty((0, 3))

@@ -96,7 +96,11 @@ def _calibration(results: Results) -> list[Finding]:
         return []
     if found.warnings:
         level = Level.BAD if found.is_severe else Level.WARNING
-        return [Finding(Level.NOTE if found.applied else level, text) for text in found.warnings]
+        corrected = Level.NOTE if found.applied else level
+        return [
+            Finding(Level.WARNING if text in found.uncorrected else corrected, text)
+            for text in found.warnings
+        ]
     text = f"Rig: {found.outcome}."
     return [Finding(Level.GOOD if found.parameters else Level.NOTE, text)]
 

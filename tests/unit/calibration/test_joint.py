@@ -142,7 +142,7 @@ def test_one_lidar_without_an_imu_leaves_nothing_to_compare(dance, tmp_path):
     rig = replace(dance.rig, sensors=(first, replace(second, enabled=False)))
     found = run(store(tmp_path, dance, rig, None))
 
-    assert found.figures.outcome == "nothing to compare: one LiDAR without a usable IMU"
+    assert found.figures.outcome == "nothing to compare: neither a second LiDAR nor a usable IMU"
     assert found.figures.parameters == ()
 
 
@@ -178,6 +178,18 @@ def test_only_the_sensors_that_are_named_are_calibrated(wrong):
 def test_a_sensor_that_is_not_in_the_rig_is_refused(right, change):
     with pytest.raises(ConfigError, match=r"expected .* got '(camera|imu)'"):
         run(right, Settings(calibration=replace(CALIBRATION, **change)))
+
+
+def test_a_calibration_that_is_refused_leaves_the_warnings_of_the_audit(wrong):
+    short = replace(CALIBRATION, mode="auto", windows=2)
+    found = run(wrong, Settings(calibration=short))
+
+    assert not found.figures.applied
+    assert found.figures.outcome == (
+        "the walk is too short to check the calibrated rig on another part of it"
+    )
+    assert found.figures.warnings == run(wrong).figures.warnings
+    assert found.figures.is_severe
 
 
 def test_a_few_multiframes_are_too_few(dance, tmp_path):
