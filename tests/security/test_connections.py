@@ -26,6 +26,7 @@ from prometheus_client.parser import text_string_to_metric_families
 
 from app.network import accept, http_timeouts, listen, slow_readers
 from app.network.connections import open_file_limit, raise_file_limit
+from tests.deadlines import BUSY_S
 from tests.project_builder import build_project
 from tests.service.running import ROOT, server_thread, wait_for
 from tests.service.secure import secure_server
@@ -264,19 +265,16 @@ def client_hello():
 def test_a_tls_handshake_that_does_not_go_on_ends(secure, sent):
     with connect(secure.url, tls=False) as connection:
         connection.sendall(sent)
-        assert SOON_S * 0.8 < lasts_s(connection) < SOON_S + 3.0
+        assert SOON_S * 0.8 < lasts_s(connection) < SOON_S + BUSY_S
     wait_for(lambda: counts_of(secure.running).timeouts["handshake"] == 1, "it is counted")
     wait_for(lambda: len(secure.running.app.state.connections) == 0, "it is forgotten")
 
 
 def test_a_tls_handshake_of_single_bytes_ends(secure):
-    with connect(secure.url, tls=False) as connection:
-        began_s = time.monotonic()
-        with contextlib.suppress(OSError):
-            for byte in client_hello():
-                connection.sendall(bytes([byte]))
-                time.sleep(0.05)  # that is how slow the sender is
-                assert time.monotonic() - began_s < SOON_S + 3.0
+    with connect(secure.url, tls=False) as connection, pytest.raises(OSError):  # noqa: PT011
+        for byte in client_hello():
+            connection.sendall(bytes([byte]))
+            time.sleep(0.05)  # that is how slow the sender is
 
 
 @pytest.mark.parametrize("sent", [b"GET / HTTP/1.1\r\n\r\n", b"\x00" * 100, b"SSH-2.0-x\r\n"])
@@ -289,7 +287,7 @@ def test_what_is_not_tls_is_closed_at_once(secure, sent):
 
 def test_a_mute_client_after_the_handshake_ends(secure):
     with connect(secure.url) as connection:
-        assert lasts_s(connection) < SOON_S + 3.0
+        assert lasts_s(connection) < SOON_S + BUSY_S
     wait_for(lambda: counts_of(secure.running).timeouts["head"] == 1, "it is counted")
 
 
@@ -312,7 +310,7 @@ def test_an_upgrade_that_is_none_ends(hurried, upgrade):
     lines = ["Connection: Upgrade", f"Upgrade: {upgrade}", "Content-Length: 5"]
     with connect(hurried.url) as connection:
         connection.sendall(head("POST", "/api/jobs", *lines))
-        assert lasts_s(connection) < http_timeouts.KEEP_ALIVE_S + 3.0
+        assert lasts_s(connection) < http_timeouts.KEEP_ALIVE_S + BUSY_S
 
 
 def test_a_body_nobody_wants_is_not_read_forever(hurried):
@@ -324,7 +322,7 @@ def test_a_body_nobody_wants_is_not_read_forever(hurried):
             while time.monotonic() - began_s < 60.0:
                 connection.sendall(bytes(1 << 16))
                 time.sleep(0.002)  # 32 MB/s, more than the least rate
-        assert time.monotonic() - began_s < SOON_S + 5.0
+        assert time.monotonic() - began_s < SOON_S + BUSY_S
 
 
 def test_an_idle_connection_ends_after_its_answer_and_after_a_late_body(hurried, monkeypatch):
@@ -333,7 +331,7 @@ def test_an_idle_connection_ends_after_its_answer_and_after_a_late_body(hurried,
         connection.sendall(head("POST", "/nothing-here", "Content-Length: 2"))
         assert connection.recv(1 << 16).startswith(b"HTTP/1.1 404")
         connection.sendall(b"{}")
-        assert 4.0 < lasts_s(connection) < http_timeouts.KEEP_ALIVE_S + 3.0
+        assert 4.0 < lasts_s(connection) < http_timeouts.KEEP_ALIVE_S + BUSY_S
 
 
 def test_a_client_that_does_not_read_its_download_is_disconnected(hurried):
@@ -386,7 +384,7 @@ def websocket(url, path, *, buffered=slow_client):
 
 def test_a_websocket_that_answers_no_ping_ends(hurried):
     with websocket(hurried.url, "/api/live/stream") as connection:
-        assert lasts_s(connection) < 2 * SOON_S + 3.0
+        assert lasts_s(connection) < 2 * SOON_S + BUSY_S
     wait_for(lambda: len(hurried.app.state.connections) == 0, "it is forgotten")
 
 

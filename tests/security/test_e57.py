@@ -128,11 +128,11 @@ def test_xml_beyond_the_caps_is_refused_soon_with_the_figure(tmp_path, sound, sh
     change, words = SHAPES[shape]
     path = with_xml(sound, tmp_path / "hostile.e57", change)
 
-    began_s = time.monotonic()
+    began_s = time.process_time()
     with pytest.raises(CorruptFile, match=words):
         list(read_points(path))
 
-    assert time.monotonic() - began_s < 10.0
+    assert time.process_time() - began_s < 10.0
 
 
 def test_a_file_with_its_xml_written_again_is_still_read(tmp_path, sound):
