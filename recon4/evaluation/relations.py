@@ -19,6 +19,8 @@ from recon4.model.trajectory import Times, Trajectory
 
 _MAX_BYTES = 256 << 20
 _COLUMNS = 8
+_LATEST_S = 2.0**33
+"""Times of this many nanoseconds still fit into 64 bits [s]."""
 _SLACK_NS = 1_000_000
 """Times of relations may lie outside of the trajectory by this much: they are rounded [ns]."""
 
@@ -55,7 +57,7 @@ def read_relations(path: Path) -> ReferenceRelations:
     """Read lines of ``t1 t2 x y z roll pitch yaw``, in seconds, meters and radians.
 
     Raises:
-        CorruptFile: Naming the line that is not eight finite numbers.
+        CorruptFile: Naming the line that is not eight finite numbers, or times out of range.
         EmptyRecording: If there is no relation.
     """
     rows: list[list[float]] = []
@@ -72,6 +74,8 @@ def read_relations(path: Path) -> ReferenceRelations:
             raise CorruptFile(
                 f"{path.name}: line {number}: expected {_COLUMNS} finite numbers, got {line[:80]!r}"
             )
+        if max(abs(value) for value in values[:2]) > _LATEST_S:
+            raise CorruptFile(f"{path.name}: line {number}: expected seconds, got {line[:80]!r}")
         times.append((round(values[0] * 1e9), round(values[1] * 1e9)))
         rows.append(values[2:])
     if not rows:

@@ -38,6 +38,7 @@ from tests.security.fuzz import seeds_recordings as recordings
 from tests.security.fuzz import seeds_tables as tables
 from tests.security.fuzz.kind import Kind, Reading
 from tests.security.fuzz.kinds_live import LIVE_KINDS
+from tests.security.fuzz.kinds_planar import PLANAR_KINDS
 
 
 def _info(path: Path) -> None:
@@ -341,5 +342,7 @@ def _made(makers: tuple[Callable[[], bytes], ...]) -> tuple[bytes, ...]:
     return tuple(make() for make in makers)
 
 
-KINDS: dict[str, Kind] = {kind.name: kind for kind in (*_ALL, *_recordings(), *LIVE_KINDS)}
+KINDS: dict[str, Kind] = {
+    kind.name: kind for kind in (*_ALL, *_recordings(), *LIVE_KINDS, *PLANAR_KINDS)
+}
 """By name."""

@@ -1,0 +1,137 @@
+"""Recordings of a profiler and a 2-D laser, and the tables that go with them."""
+
+from __future__ import annotations
+
+import bz2
+import gzip
+import tempfile
+from dataclasses import replace
+from functools import cache, partial
+from pathlib import Path
+
+import numpy as np
+
+from recon4.calibration.pose_pairs import average_pairs, hand_eye, read_pose_pairs
+from recon4.evaluation.relations import read_relations
+from recon4.model.laser_scans import LaserScans
+from recon4.model.rig import load_rig
+from recon4.recording.laser2d import is_laser2d, read_laser2d
+from recon4.recording.line_recording import LineRecording
+from recon4.recording.report import ImportReport
+from recon4.simulation.line_bag import open_line_bag
+from tests.builders import storage_file
+from tests.planar_walks import carmen_lines
+from tests.security.fuzz.kind import Kind, Reading
+
+_T0_NS = 1_700_000_000_000_000_000
+_LINE_NS = 10_000_000
+
+
+def _scans(count: int, beams: int) -> LaserScans:
+    t_ns = _T0_NS + _LINE_NS * np.arange(count, dtype=np.int64)
+    ranges = np.linspace(1.0, 8.0, count * beams, dtype=np.float32).reshape(count, beams)
+    return LaserScans(
+        t_ns=t_ns,
+        range_m=ranges,
+        angle_min_rad=-0.5,
+        angle_step_rad=0.05,
+        range_max_m=30.0,
+        time_step_s=4e-4,
+    )
+
+
+@cache
+def _carmen() -> tuple[bytes, ...]:
+    walked = np.linspace(0.0, 1.0, 30)[:, None] * np.ones(3)
+    scans = replace(_scans(30, 21), odometry=walked)
+    text = "".join(f"{line}\n" for line in carmen_lines(scans)).encode()
+    return text, bz2.compress(text), gzip.compress(text, mtime=0)
+
+
+def _read_carmen(path: Path) -> Reading:
+    assert is_laser2d(path)
+    report = ImportReport()
+    return Reading(len(read_laser2d([path], report)), salvaged=report.outcome != "complete")
+
+
+@cache
+def _bag(*, profiler: bool) -> tuple[bytes, ...]:
+    with tempfile.TemporaryDirectory() as folder:
+        with open_line_bag(Path(folder) / "bag") as bag:
+            if profiler:
+                t_ns = _T0_NS + _LINE_NS * np.arange(22, dtype=np.int64)
+                bag.head("/profiler/head", t_ns, 1e-9 * (t_ns - _T0_NS))
+                bag.scans("/profiler/line", _scans(20, 21))
+            bag.scans("/laser2d/scan", _scans(20, 21))
+        return (storage_file(Path(folder) / "bag").read_bytes(),)
+
+
+def _read_laser_bag(path: Path) -> Reading:
+    report = ImportReport()
+    found = len(read_laser2d([path], report)) if is_laser2d(path) else 0
+    return Reading(found, salvaged=report.outcome != "complete" or not found)
+
+
+def _read_line_bag(path: Path) -> Reading:
+    report = ImportReport()
+    recording = LineRecording([path], load_rig("wuerzburg"), report=report)
+    found = sum(len(item) for item in recording.read())
+    return Reading(found, salvaged=report.outcome != "complete")
+
+
+@cache
+def _relations() -> tuple[bytes, ...]:
+    rows = (f"{k}.25 {k + 3}.5 0.{k} 0.1 0 0 0 0.0{k}\n" for k in range(12))
+    return ("".join(rows).encode(),)
+
+
+@cache
+def _pose_pairs() -> tuple[bytes, ...]:
+    yaw = np.linspace(0.0, 2.0, 12)
+    quats = np.stack([0.0 * yaw, np.sin(0.1 * yaw), np.sin(yaw), np.cos(yaw)], axis=1)
+    quats /= np.linalg.norm(quats, axis=1)[:, None]
+    rows = (
+        f"{k},0.5,1,{','.join(map(str, q))},{k},0.7,1.1,{','.join(map(str, q))}\n"
+        for k, q in enumerate(quats.tolist())
+    )
+    return ("".join(rows).encode(),)
+
+
+def _read_pose_pairs(path: Path) -> Reading:
+    pairs = read_pose_pairs(path)
+    average_pairs(pairs)
+    hand_eye(pairs)
+    return Reading(len(pairs.T_world_marker))
+
+
+PLANAR_KINDS = (
+    Kind(name="carmen", file_name="a.log", seeds=_carmen, read=_read_carmen, knows_end=False),
+    Kind(
+        name="db3-laser",
+        file_name="a.db3",
+        seeds=partial(_bag, profiler=False),
+        read=_read_laser_bag,
+        header_bytes=4096,
+    ),
+    Kind(
+        name="db3-lines",
+        file_name="a.db3",
+        seeds=partial(_bag, profiler=True),
+        read=_read_line_bag,
+        header_bytes=4096,
+    ),
+    Kind(
+        name="relations",
+        file_name="a.relations",
+        seeds=_relations,
+        read=lambda path: Reading(len(read_relations(path).t_i_ns)),
+        knows_end=False,
+    ),
+    Kind(
+        name="pose-pairs",
+        file_name="pairs.csv",
+        seeds=_pose_pairs,
+        read=_read_pose_pairs,
+        knows_end=False,
+    ),
+)
