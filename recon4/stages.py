@@ -273,7 +273,7 @@ def _refine_lines(
     return found.save(out)
 
 
-FRAMES = Stage("frames", 5, ("ingest",), _frames, FrameFigures)
+FRAMES = Stage("frames", 6, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
     10,

@@ -121,7 +121,13 @@ class BagRecording:
                 decoder = PacketDecoder(row, sensor, settings=self._settings, report=self._report)
                 found[sensor.topic] = _Scans(decoder)
             elif topic is not None:
-                clouds = CloudDecoder(row, sensor.name, sensor.model, report=self._report)
+                clouds = CloudDecoder(
+                    row,
+                    sensor.name,
+                    sensor.model,
+                    report=self._report,
+                    deskewed=self._settings.deskewed,
+                )
                 period = _period_ns(topic, bag.seconds)
                 found[sensor.topic] = _Clouds(
                     clouds, sensor.time_offset_s, period, report=self._report

@@ -47,6 +47,7 @@ class CloudDecoder:
         *,
         report: ImportReport,
         points_lead: bool = False,
+        deskewed: bool = False,
     ) -> None:
         """Prepare.
 
@@ -57,9 +58,10 @@ class CloudDecoder:
             report: Receives what was detected.
             points_lead: Absolute times of points count, however far they are from the stamps
                 (file names in local time); otherwise the stamps do (one clock for a whole bag).
+            deskewed: Without the motion of the sensor inside: all points are of the stamp.
         """
         self._row, self._name, self._model, self._report = sensor_row, name, model, report
-        self._points_lead = points_lead
+        self._points_lead, self._deskewed = points_lead, deskewed
         self._ring_of: NDArray[np.uint8] | None = None
         self.absolute = False
         """Whether the points of the last cloud had absolute times."""
@@ -149,16 +151,24 @@ class CloudDecoder:
         azimuth = np.arctan2(xyz[:, 1], xyz[:, 0])
         key = find_field(table, TIME_FIELDS)
         self.absolute = False
+        if self._deskewed:
+            return np.full(len(xyz), t_ns, np.int64)
         if key and len(xyz):
             times = self._given_times(table[key], azimuth, t_ns)
             if times is not None:
                 return times
             self._report.warn(f"{self._name}: the times in field {key!r} make no sense, not used")
         if not _covers_turn(azimuth):
-            self._report.derive(f"{self._name}: no time per point, all points at the stamp")
+            self._report.warn(
+                f"{self._name}: no time per point, all points at the stamp; without a warning with "
+                "the setting ingest.deskewed"
+            )
             return np.full(len(xyz), t_ns, np.int64)
         turn, how = _turn_from_order(azimuth)
-        self._report.derive(f"{self._name}: no time per point, time from azimuth, {how}")
+        self._report.warn(
+            f"{self._name}: no time per point, time from azimuth, {how}; clouds without the motion "
+            "of the sensor inside need the setting ingest.deskewed"
+        )
         return t_ns + np.rint(np.clip(turn, 0.0, 1.0) * (period_ns - 1)).astype(np.int64)
 
     def _given_times(
@@ -174,9 +184,14 @@ class CloudDecoder:
         if high == low and len(numbers) > 1 and _covers_turn(azimuth):
             return None
         unit = next((unit for least, unit in _ABSOLUTE if low >= least), 0.0)
-        if unit and not (values.dtype.itemsize < 8 and unit != 1.0):
+        absolute = bool(unit) and not (values.dtype.itemsize < 8 and unit != 1.0)
+        if not absolute:
+            unit = _relative_unit(values.dtype, high - low, _covers_turn(azimuth))
+        # No LiDAR turns in a few milliseconds: nearly equal times are those of deskewed clouds.
+        if (high - low) * unit < 1e9 * _TURN_S[0] and _covers_turn(azimuth):
+            return None
+        if absolute:
             return self._absolute_times(values, unit, t_ns)
-        unit = _relative_unit(values.dtype, high - low, _covers_turn(azimuth))
         if not unit or max(abs(low), abs(high)) * unit > 10e9:
             return None
         return t_ns + np.rint(numbers * unit).astype(np.int64)

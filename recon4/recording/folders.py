@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
@@ -18,14 +17,13 @@ from recon4.recording.assembly.assembler import TimeGap, drop_invalid
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.cloud_points import CloudDecoder
 from recon4.recording.formats.cloud_files import is_cloud_file, read_cloud
+from recon4.recording.frame_times import ASSUMED_NS, frame_times
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 
 CLOUD_SUFFIXES = (".pcd", ".ply", ".bin")
-_PERIOD_NS = 100_000_000
 _SHORTEST_NS, _LONGEST_NS = 20_000_000, 250_000_000
 """Plausible intervals of frames [s]; outside them each frame counts as one revolution."""
-_DATE = re.compile(r"(\d{4})-(\d\d)-(\d\d)[-_T](\d\d)[-:](\d\d)[-:](\d\d)[-.](\d{1,9})$")
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +37,8 @@ class FrameFiles:
     """Length of a frame [ns]."""
     times_from: str
     """Origin of the timestamps; empty = 10 Hz is assumed."""
+    remark: str = ""
+    """Why times that are there were not used; empty = nothing to remark."""
 
 
 def natural(path: Path) -> list[tuple[int, int, str]]:
@@ -60,12 +60,24 @@ def list_frames(path: Path) -> FrameFiles:
     kinds = sorted({file.suffix.lower() for file in found})
     if len(kinds) > 1:
         raise UnknownFormat(f"{path.name}: frames of one kind expected, got {', '.join(kinds)}")
-    stamps, source = _stamps(path, found)
-    steps = np.diff(stamps)
-    period = int(np.median(steps)) if len(steps) else _PERIOD_NS
+    times = frame_times(path, found)
+    steps = np.diff(times.t_ns)
+    period = int(np.median(steps)) if len(steps) else ASSUMED_NS
     if not _SHORTEST_NS <= period <= _LONGEST_NS:
-        period = _PERIOD_NS
-    return FrameFiles(tuple(found), stamps, period, source)
+        period = ASSUMED_NS
+    return FrameFiles(tuple(found), times.t_ns, period, times.source, times.remark)
+
+
+def time_warnings(frames: FrameFiles) -> tuple[str, ...]:
+    """What the operator must know of the times; the shape of the map depends on them."""
+    remarks = (frames.remark,) if frames.remark else ()
+    if frames.times_from or len(frames.files) < 2:
+        return remarks
+    text = (
+        f"the frames have no times: {1e9 / ASSUMED_NS:g} Hz from 0 is assumed, and the map is wrong"
+        " if that is; put a times.txt with one time a line [s] beside the files"
+    )
+    return (*remarks, text)
 
 
 def read_frames(
@@ -76,10 +88,16 @@ def read_frames(
     Raises:
         RecordingError: If not one of the files can be read.
     """
-    decoder = CloudDecoder(0, sensor.name, sensor.model, report=report, points_lead=True)
-    if not frames.times_from:
-        rate = 1e9 / frames.period_ns
-        report.derive(f"no times in the file names, frames every 1/{rate:g} s from 0")
+    decoder = CloudDecoder(
+        0,
+        sensor.name,
+        sensor.model,
+        report=report,
+        points_lead=True,
+        deskewed=settings.deskewed,
+    )
+    for text in time_warnings(frames):
+        report.warn(text)
     frame_id, last_ns, failed = 0, None, None
     offset_ns = round(sensor.time_offset_s * 1e9)
     for file, stamp in zip(frames.files, frames.t_ns, strict=True):
@@ -155,33 +173,3 @@ def _cloud_files(folder: Path) -> list[Path]:
     found = [f for f in folder.iterdir() if f.suffix.lower() in CLOUD_SUFFIXES and f.is_file()]
     # A damaged file among good ones must be counted: only BIN is detected by content.
     return [f for f in found if f.suffix.lower() != ".bin" or is_cloud_file(f)]
-
-
-def _stamps(path: Path, files: list[Path]) -> tuple[Times, str]:
-    named = [name_time_ns(file.stem) for file in files]
-    known = [t for t in named if t is not None]
-    if len(known) == len(files) and (np.all(np.diff(known) > 0)):
-        return np.array(known, np.int64), "the file names"
-    for beside in (path / "times.txt", path.parent / "times.txt"):
-        if path.is_dir() and beside.is_file():
-            seconds = np.loadtxt(beside, ndmin=1)
-            if seconds.shape == (len(files),) and np.all(np.diff(seconds) > 0):
-                return np.rint(seconds * 1e9).astype(np.int64), "times.txt"
-    return np.arange(len(files), dtype=np.int64) * _PERIOD_NS, ""
-
-
-def name_time_ns(stem: str) -> int | None:
-    """Time in a file name [ns]: nanoseconds, microseconds, seconds with a fraction, or a date."""
-    if re.fullmatch(r"\d{19}", stem):
-        return int(stem)
-    if re.fullmatch(r"\d{16}", stem):
-        return int(stem) * 1000
-    if found := re.fullmatch(r"(\d{9,10})[._](\d{1,9})", stem):
-        return int(found[1]) * 1_000_000_000 + int(found[2].ljust(9, "0"))
-    if found := _DATE.search(stem):
-        try:
-            day = datetime(*(int(v) for v in found.groups()[:6]), tzinfo=UTC)  # type: ignore[misc, arg-type]
-        except ValueError:
-            return None
-        return int(day.timestamp()) * 1_000_000_000 + int(found[7].ljust(9, "0"))
-    return None

@@ -19,7 +19,7 @@ from recon4.recording.assembly.rotation import rotation_rate
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.bag_recording import cloud_table, lidar_streams
 from recon4.recording.cloud_points import INTENSITY_FIELDS, RING_FIELDS, TIME_FIELDS, find_field
-from recon4.recording.folders import folder_gaps, frames_label, list_frames
+from recon4.recording.folders import folder_gaps, frames_label, list_frames, time_warnings
 from recon4.recording.formats.bags import CLOUD, IMU, NAVSATFIX, ODOMETRY, Bag, BagTopic
 from recon4.recording.formats.cloud_files import cloud_fields
 from recon4.recording.formats.poses import pose_format, read_tum
@@ -264,6 +264,7 @@ def _describe_frames(info: RecordingInfo, path: Path, settings: IngestSettings) 
         sensors=(sensor,),
         gaps=tuple(folder_gaps(frames, path.name, settings.gap_s)),
         missing=tuple(f"field: {text}" for text in absent),
+        warnings=time_warnings(frames),
     )
 
 

@@ -21,6 +21,9 @@ class IngestSettings:
     """Farther returns are dropped [m]."""
     gap_s: float = 0.2
     """A jump of the clock larger than this is reported as a gap [s]."""
+    deskewed: bool = False
+    """The clouds are undistorted already: all points are of the cloud's stamp. For terrestrial
+    laser scans, and for clouds that another program has deskewed."""
 
     def __post_init__(self) -> None:
         require(0.0 <= self.rate_hz <= 100.0, "rate_hz must be 0 to 100", self.rate_hz)

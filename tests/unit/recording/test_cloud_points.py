@@ -61,7 +61,7 @@ def test_time_is_worked_out_from_azimuth_in_firing_order():
     shots, report = decode(without(room_cloud(start_turn=0.3), "time"))
 
     np.testing.assert_allclose(shots.t_ns - T0_NS, REL_NS, atol=1e6)
-    assert any("firing order" in text for text in report.derived)
+    assert any("firing order" in text for text in report.warnings)
 
 
 def test_time_is_worked_out_from_azimuth_ring_by_ring():
@@ -70,7 +70,7 @@ def test_time_is_worked_out_from_azimuth_ring_by_ring():
 
     shots, report = decode({key: column[order] for key, column in table.items()})
 
-    assert any("from the rear" in text for text in report.derived)
+    assert any("from the rear" in text for text in report.warnings)
     np.testing.assert_allclose(shots.t_ns - T0_NS, REL_NS, atol=1e6)
     quarter = np.searchsorted(shots.t_ns - T0_NS, 26_000_000)
     assert shots.xyz[quarter, 1] > 2.9  # clockwise from the rear: the left side comes first
@@ -81,6 +81,16 @@ def test_times_that_make_no_sense_are_not_used_and_said():
 
     np.testing.assert_allclose(shots.t_ns - T0_NS, REL_NS, atol=1e6)
     assert any("make no sense" in text for text in report.warnings)
+
+
+def test_times_that_are_nearly_equal_are_not_used_and_said():
+    table = room_cloud()
+    table["time"] = np.linspace(0.0, 1e-5, len(table["x"]))
+
+    shots, report = decode(table)
+
+    assert np.ptp(shots.t_ns) > 50_000_000
+    assert any("'time' make no sense" in text for text in report.warnings)
 
 
 def test_a_clock_of_its_own_is_tied_to_the_stamps():

@@ -1,0 +1,143 @@
+"""Times of frame files: from their names, or from a text file beside them.
+
+    times.txt         one time a line, in the order of the files, in seconds:
+                          0.000000
+                          0.103671
+    timestamps.txt    the same; KITTI raw data has dates: 2011-09-26 13:02:25.951199337
+
+Both may also have milliseconds, microseconds or nanoseconds since 1970: a number says by its size
+which it is. A line that begins with ``#`` is a comment.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+
+from recon4.bounded import lines_limited
+from recon4.errors import CorruptFile
+from recon4.model.trajectory import Times
+
+TIME_FILES = ("times.txt", "timestamps.txt")
+ASSUMED_NS = 100_000_000
+"""Interval of frames without times [ns]."""
+_MAX_BYTES = 64 << 20
+_SECOND_NS = 1_000_000_000
+_DATE = re.compile(
+    r"(\d{4})-(\d\d)-(\d\d)[-_T ](\d\d)[-:](\d\d)[-:](\d\d)(?:[-.](\d{1,9}))?(?:Z|\+00:00)?$"
+)
+_NAME_NUMBER = re.compile(r"(?:^|.*[^\d.])(\d{19}|\d{16}|\d{13}|\d{9,10}[._]\d{1,9})$")
+"""Whatever stands before the number must not end in a digit."""
+_LARGEST_S = ((1e11, _SECOND_NS), (1e14, 1_000_000), (1e17, 1000))
+"""Numbers below the first are in units of the second [ns]; larger ones are nanoseconds."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FrameTimes:
+    """Times of the files of a folder."""
+
+    t_ns: Times
+    """Increasing [ns], (N,)."""
+    source: str
+    """Where they are from; empty = assumed."""
+    remark: str = ""
+    """Why times that are there could not be used; empty = nothing to remark."""
+
+
+def frame_times(folder: Path, files: Sequence[Path]) -> FrameTimes:
+    """Times of frame files; without any, 10 Hz from 0.
+
+    Args:
+        folder: Where they lie; a text file with times lies in it or beside it.
+        files: In the order of their numbers.
+    """
+    named = [name_time_ns(file.stem) for file in files]
+    known = np.array([t for t in named if t is not None], np.int64)
+    if len(known) == len(files) and np.all(np.diff(known) > 0):
+        return FrameTimes(known, "the file names")
+    remarks = []
+    for beside in [place / name for place in (folder, folder.parent) for name in TIME_FILES]:
+        if not folder.is_dir() or not beside.is_file():
+            continue
+        try:
+            times = read_times(beside)
+        except CorruptFile as error:
+            remarks.append(f"not used: {error}")
+            continue
+        if len(times) != len(files):
+            remarks.append(f"{beside.name} has {len(times)} times for {len(files)} files, not used")
+        elif np.any(np.diff(times) <= 0):
+            row = int(np.flatnonzero(np.diff(times) <= 0)[0]) + 2
+            remarks.append(f"{beside.name}: time {row} is not later than the one before, not used")
+        else:
+            return FrameTimes(times, beside.name)
+    assumed = np.arange(len(files), dtype=np.int64) * ASSUMED_NS
+    return FrameTimes(assumed, "", "; ".join(remarks))
+
+
+def read_times(path: Path) -> Times:
+    """Read a text file with one time a line [ns], (N,).
+
+    Raises:
+        CorruptFile: If a line is neither a number nor a date.
+    """
+    found = []
+    for number, line in enumerate(lines_limited(path, max_bytes=_MAX_BYTES), 1):
+        text = line.strip()
+        if not text or text.startswith("#"):
+            continue
+        t_ns = _number_ns(text)
+        if t_ns is None:
+            t_ns = _date_ns(text)
+        if t_ns is None:
+            raise CorruptFile(
+                f"{path.name}, line {number}: expected seconds or a date, got {text!r:.60}"
+            )
+        found.append(t_ns)
+    return np.array(found, np.int64)
+
+
+def name_time_ns(stem: str) -> int | None:
+    """Time in a file name [ns]; None = there is none.
+
+    A number of nanoseconds, microseconds or milliseconds, of seconds with a fraction, or a date;
+    a prefix may stand before it.
+    """
+    if found := _NAME_NUMBER.fullmatch(stem):
+        return _number_ns(found[1].replace("_", "."))
+    date = _DATE.search(stem)
+    return _date_ns(date[0]) if date and date[7] else None
+
+
+def _number_ns(text: str) -> int | None:
+    """A number of seconds, or of smaller units since 1970, exact to the nanosecond."""
+    found = re.fullmatch(r"(\d{1,19})(?:\.(\d*))?(?:[eE]([+-]?\d{1,2}))?", text)
+    if not found:
+        return None
+    if found[3]:  # as numpy.savetxt writes it
+        return _checked(round(float(text) * _SECOND_NS))
+    whole, fraction = int(found[1]), found[2] or ""
+    unit = next((ns for largest, ns in _LARGEST_S if whole < largest), 1)
+    part = int(fraction[:18]) * unit // 10 ** min(len(fraction), 18) if fraction else 0
+    return _checked(whole * unit + part)
+
+
+def _checked(t_ns: int) -> int | None:
+    return t_ns if 0 <= t_ns < 2**63 else None
+
+
+def _date_ns(text: str) -> int | None:
+    found = _DATE.fullmatch(text)
+    if not found:
+        return None
+    try:
+        year, month, day, hour, minute, second = (int(v) for v in found.groups()[:6])
+        date = datetime(year, month, day, hour, minute, second, tzinfo=UTC)
+    except ValueError:
+        return None
+    return int(date.timestamp()) * _SECOND_NS + int((found[7] or "").ljust(9, "0"))
