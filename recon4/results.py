@@ -385,6 +385,7 @@ def _later_warnings(runs: Mapping[str, StageRun[Any]]) -> tuple[str, ...]:
     if stages.REVIEW.name in runs:
         warnings += figures_of(runs, stages.REVIEW).warnings
     level = figures_of(runs, stages.LEVEL)
+    warnings += level.warnings
     if figures_of(runs, stages.FRAMES).gnss and not level.crs:
         warnings += (f"the positions were not used, the map is local: {level.local}",)
     return warnings

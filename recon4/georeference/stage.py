@@ -10,13 +10,14 @@ import numpy as np
 from recon4.bounded import read_json_object
 from recon4.errors import GeoreferenceError, StoreError
 from recon4.geometry.se3 import Array
+from recon4.georeference.antenna_audit import antenna_contradictions, audit_antenna
 from recon4.georeference.crs import CrsTransform, GeodeticOrigin
 from recon4.georeference.floor import level_by_floor
 from recon4.georeference.gnss import GeoreferenceResult, georeference
 from recon4.georeference.level import NOT_LEVELED, Leveling, level
 from recon4.mapping.place import place_with_origins
 from recon4.model.corrections import apply_corrections
-from recon4.model.figures import LevelFigures
+from recon4.model.figures import AntennaFigures, LevelFigures
 from recon4.model.plain import to_plain
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
@@ -63,6 +64,8 @@ class LeveledMap:
     georeference: GeoreferenceResult
     crs: CrsRecord | None
     """None: the map is not georeferenced."""
+    antenna: AntennaFigures | None
+    """Audit of the antenna; None = too few fixes."""
 
     def save(self, out: Path) -> LevelFigures:
         """Write ``trajectory.npz``, the files of the graph and ``georeference.json``."""
@@ -80,6 +83,8 @@ class LeveledMap:
             crs=self.crs.name if self.crs else "",
             local=self.georeference.reason,
             edges_rejected=len(self.georeference.rejected),
+            antenna=self.antenna,
+            warnings=antenna_contradictions(self.antenna) if self.antenna else (),
         )
 
 
@@ -109,6 +114,7 @@ def level_and_georeference(
     nodes = nodes.with_poses(leveling.T_level_odom @ nodes.T_map_body)
     progress.advance()
     placed = georeference(nodes, dense, frames.gnss, rig=frames.rig, settings=settings.gnss)
+    antenna = _audit_antenna(frames, dense, placed)
     dense = apply_corrections(
         dense, nodes.t_ns, T_before=nodes.T_map_body, T_after=placed.graph.T_map_body
     )
@@ -117,7 +123,17 @@ def level_and_georeference(
     if placed.rejected:
         judged = confirmed_again(judged, settings=settings.verification)
     progress.advance()
-    return LeveledMap(dense, with_residuals(judged), leveling, placed, crs)
+    return LeveledMap(dense, with_residuals(judged), leveling, placed, crs, antenna)
+
+
+def _audit_antenna(
+    frames: FrameStore, leveled: Trajectory, placed: GeoreferenceResult
+) -> AntennaFigures | None:
+    """Compare the fixes with the trajectory before they bend it."""
+    if placed.origin is None or frames.gnss is None:
+        return None
+    T_enu_body = Trajectory(leveled.t_ns, placed.T_enu_map @ leveled.T_a_b)
+    return audit_antenna(T_enu_body, frames.gnss, frames.rig, origin=placed.origin)
 
 
 def find_level(frames: FrameStore, trajectory: Trajectory, *, source: str) -> Leveling:

@@ -147,6 +147,23 @@ class RefineFigures(Figures, frozen=True, kw_only=True):
     rounds: tuple[RefineRound, ...]
 
 
+class AntennaFigures(msgspec.Struct, frozen=True, kw_only=True):
+    """What the fixes say of the antenna in the rig file."""
+
+    arm_m: Point
+    """To be added to the lever arm, in axes of the body [m]."""
+    arm_sd_m: Point
+    """Standard deviations of it [m]."""
+    arm_sigmas: float
+    """Size of it in standard deviations, all axes together."""
+    clock_s: float
+    """To be added to the time offset of the receiver [s]."""
+    clock_sd_s: float
+    """Standard deviation of it [s]."""
+    fixes: int
+    """Number of fixes used."""
+
+
 class LevelFigures(Figures, frozen=True, kw_only=True):
     """The leveled map and its place on earth."""
 
@@ -160,6 +177,9 @@ class LevelFigures(Figures, frozen=True, kw_only=True):
     """Why the map is in a local frame; empty = it is not."""
     edges_rejected: int = 0
     """Edges that contradict the positions."""
+    antenna: AntennaFigures | None = None
+    """Audit of the antenna; None = too few fixes."""
+    warnings: tuple[str, ...] = ()
 
 
 class MapFigures(Figures, frozen=True, kw_only=True):

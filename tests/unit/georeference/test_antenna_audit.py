@@ -1,0 +1,115 @@
+"""The audit of lever arm and clock of a GNSS receiver, on walks with known errors."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.geometry.se3 import SE3
+from recon4.georeference.antenna_audit import antenna_contradictions, audit_antenna
+from recon4.georeference.crs import GeodeticOrigin, to_geodetic
+from recon4.model.figures import AntennaFigures
+from recon4.model.rig import Rig, load_rig
+from recon4.model.samples import GnssSamples
+from recon4.model.trajectory import Trajectory
+
+PLACE = GeodeticOrigin(np.deg2rad(49.2), np.deg2rad(16.6), 250.0)
+RIG = replace(load_rig("4recon"), p_body_antenna=np.array([-0.3, 0.1, 0.8]))
+
+
+def walk(seconds: float = 60.0, *, turns: bool = True) -> Trajectory:
+    """True poses at 50 Hz: a person who sways, turns and stops, or a cart that goes straight on."""
+    t = np.arange(0.0, seconds, 0.02)
+    yaw = 1.5 * np.sin(0.15 * t) if turns else np.zeros_like(t)
+    speed = 1.3 * np.clip(1.5 * np.sin(0.2 * t) + 0.7, 0.0, 1.0) if turns else np.full_like(t, 1.3)
+    step = 0.02 * speed[:, None] * np.stack([np.cos(yaw), np.sin(yaw), 0 * t], axis=1)
+    sway = (0.035 if turns else 0.0) * np.stack([np.sin(5.7 * t), np.sin(11.3 * t)], axis=1)
+    T = SE3.stack(
+        SE3.from_rpy(roll, pitch, angle, t=place)
+        for (roll, pitch), angle, place in zip(sway, yaw, np.cumsum(step, axis=0), strict=True)
+    )
+    return Trajectory((t * 1e9).astype(np.int64) + 10**18, T)
+
+
+def fixes(true: Trajectory, *, late_s: float = 0.0) -> GnssSamples:
+    """RTK fixes at 10 Hz with noise of 8 and 15 mm; ``late_s``: the receiver's clock is ahead."""
+    rng = np.random.default_rng(3)
+    t_ns = np.arange(true.t_ns[0] + 10**8, true.t_ns[-1] - 10**8, 10**8)
+    p = true.at(t_ns) @ np.tile(RIG.p_body_antenna, (len(t_ns), 1))
+    p += rng.standard_normal(p.shape) * [0.008, 0.008, 0.015]
+    lat, lon, height = to_geodetic(PLACE, p)
+    sd_m = np.tile([0.008, 0.008, 0.015], (len(t_ns), 1))
+    quality = np.full(len(t_ns), 4, np.uint8)
+    stamps = t_ns + round(1e9 * late_s)
+    return GnssSamples(stamps, lat, lon, height, sd_m, quality, np.full((len(t_ns), 3), np.nan))
+
+
+def drifting(true: Trajectory) -> Trajectory:
+    """The walk as odometry sees it: 5 mm/sqrt(s) of drift."""
+    rng = np.random.default_rng(5)
+    drift = np.cumsum(0.005 * np.sqrt(0.02) * rng.standard_normal((len(true), 3)), axis=0)
+    return Trajectory(true.t_ns, SE3(true.T_a_b.R, true.T_a_b.t + drift))
+
+
+def audit(true: Trajectory, gnss: GnssSamples, rig: Rig = RIG) -> AntennaFigures:
+    found = audit_antenna(drifting(true), gnss, rig, origin=PLACE)
+    assert found is not None
+    return found
+
+
+def test_a_right_rig_is_not_contradicted() -> None:
+    true = walk()
+
+    assert antenna_contradictions(audit(true, fixes(true))) == ()
+
+
+@pytest.mark.parametrize("error", [(0.1, 0.0, 0.0), (0.0, -0.1, 0.0), (0.03, 0.02, 0.15)])
+def test_a_wrong_lever_arm_is_measured_and_named(error: tuple[float, ...]) -> None:
+    true = walk()
+    wrong = replace(RIG, p_body_antenna=RIG.p_body_antenna + error)
+
+    found = audit(true, fixes(true), wrong)
+
+    off = np.array(found.arm_m) + error
+    assert np.all(np.abs(off) < np.maximum(3.0 * np.array(found.arm_sd_m), 0.01))
+    assert np.linalg.norm(off[:2]) < 0.02
+    (text,) = antenna_contradictions(found)
+    assert "the antenna differs from it by x" in text
+
+
+@pytest.mark.parametrize("late_s", [0.05, -0.1])
+def test_a_clock_that_is_off_is_measured_and_named(late_s: float) -> None:
+    true = walk()
+
+    found = audit(true, fixes(true, late_s=late_s))
+
+    assert found.clock_s == pytest.approx(-late_s, abs=0.01)
+    (text,) = antenna_contradictions(found)
+    assert f"their clock differs by {1e3 * found.clock_s:.0f} ms" in text
+
+
+def test_a_cart_that_goes_straight_on_shows_no_lever_arm_and_says_so() -> None:
+    true = walk(turns=False)
+
+    (text,) = antenna_contradictions(audit(true, fixes(true)))
+
+    assert "could not be checked" in text
+
+
+def test_a_single_gross_error_changes_little() -> None:
+    true = walk()
+    gnss = fixes(true)
+    gnss.height_m[100] += 3.0
+    gnss.lat_rad[200] += 1e-6  # six meters
+
+    assert antenna_contradictions(audit(true, gnss)) == ()
+
+
+def test_few_or_coarse_fixes_are_not_compared() -> None:
+    true = walk()
+    coarse = fixes(true)
+    coarse.sd_enu_m[:] = 0.5
+    few = fixes(walk(4.0))
+
+    assert audit_antenna(true, coarse, RIG, origin=PLACE) is None
+    assert audit_antenna(walk(4.0), few, RIG, origin=PLACE) is None
