@@ -1,5 +1,8 @@
 """Real logs of 2-D lasers: loops closed, compared with the relations of the Freiburg benchmark."""
 
+import bz2
+import itertools
+
 import numpy as np
 import pytest
 
@@ -57,11 +60,17 @@ def test_intel_that_is_cut_off_is_mapped_as_far_as_it_goes(tmp_path, data, cut):
 
 
 def test_intel_closes_its_loops(tmp_path, data):
-    summary = process(Sources((data("laser2d/intel.clf.bz2"),)), tmp_path)
+    """The first of three rounds; all of them: ``python -m tests.benchmarks.laser2d``."""
+    log = tmp_path / "intel.clf"
+    with bz2.open(data("laser2d/intel.clf.bz2")) as packed:
+        scans = (line for line in packed if line.startswith(b"FLASER"))
+        log.write_bytes(b"".join(itertools.islice(scans, 5000)))
+
+    summary = process(Sources((log,)), tmp_path / "out")
 
     assert isinstance(summary, Summary2d)
-    assert summary.loops > 500
-    assert summary.lost == 0
+    assert (summary.scans, summary.lost) == (5000, 0)
+    assert summary.loops > 150
     assert summary.grid.crossing_ratio < 0.07
     assert summary.verdict.usability is Usability.GOOD
     assert sum(stage.cpu_seconds for stage in summary.stages) < 0.2 * summary.duration_s
