@@ -76,6 +76,8 @@ class ServerSettings:
     """Address of the network interface for the sensors of a live capture; 0.0.0.0 = any."""
 
     def __post_init__(self) -> None:
+        # Children of the server work in folders of their own.
+        object.__setattr__(self, "root", self.root.absolute())
         if not self.lan:
             _refuse_open_network(self.host)
             if self.tls_certificate or self.tls_key:

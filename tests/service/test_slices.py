@@ -5,6 +5,7 @@ import io
 import json
 import threading
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import ezdxf
 import httpx
@@ -140,6 +141,18 @@ def test_the_map_from_above_comes_with_its_window(server):
     across, up = window["right"] - window["left"], window["top"] - window["bottom"]
     assert shown.width / shown.height == pytest.approx(across / up, rel=0.01)
     assert window["left"] < 0 < ROOM_M[0] < window["right"]
+
+
+def test_the_server_may_be_given_a_relative_folder(tmp_path, monkeypatch):
+    build_project(tmp_path / "projects" / "office", points=2000)
+    monkeypatch.chdir(tmp_path)
+
+    with server_thread(Path("projects")) as running:
+        window = running.get(f"{BASE}/overview/window")
+        image = running.get(f"{BASE}/overview")
+        thumbnail = running.get("/api/projects/office/thumbnail")
+
+    assert (window.status_code, image.status_code, thumbnail.status_code) == (200, 200, 200)
 
 
 def test_a_reference_is_added_compared_aligned_and_removed(server):
