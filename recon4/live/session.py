@@ -110,6 +110,6 @@ def load_session(project: Path) -> CaptureSession:
     if not (0.0 < session.speed < math.inf and 0 <= session.least_free_bytes < 1 << 63):
         raise StoreError(
             f"{path}: expected speed > 0 and least_free_bytes >= 0, "
-            f"got {session.speed:.6g} and {session.least_free_bytes:.6g}"
+            f"got {session.speed!r:.80} and {session.least_free_bytes!r:.80}"
         )
     return session

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +27,8 @@ from recon4.settings import PlaneSettings, Settings
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
 from recon4.store.line_store import load_lines
+
+Points = NDArray[np.float32]
 
 _COUNTED = 4000
 """Points of a turn whose closest pairs are counted."""
@@ -83,7 +85,12 @@ def turn_graph(
             target.clear()
             target.add(turns.turns[i].points.astype(np.float64))
             target_of = i
-        edge = _register(target, turns, T, ends=(i, j), overlap=overlap, settings=settings)
+        edge = _register(
+            target,
+            (turns.turns[i].points, turns.turns[j].points),
+            Link(i, j, relative(T, i, j), overlap),
+            settings=settings,
+        )
         progress.event(tried_event(edge))
         progress.advance()
         found.append(edge)
@@ -143,11 +150,7 @@ def linked(turns: Turns, T: SE3, settings: Settings) -> list[tuple[int, int, flo
     out = []
     for j in range(1, len(turns)):
         near = [i for i in range(j) if np.linalg.norm(T.t[i] - T.t[j]) < s.link_reach_m]
-        ratios = []
-        for i in near:
-            p = relative(T, i, j) @ some[j].astype(np.float64)
-            distance = trees[i].query(p, distance_upper_bound=s.link_distance_m)[0]
-            ratios.append((float(np.mean(np.isfinite(distance))), i))
+        ratios = [(_close_ratio(trees[i], some[j], relative(T, i, j), settings), i) for i in near]
         linked_to = [(ratio, i) for ratio, i in ratios if ratio * len(some[j]) >= s.link_pairs]
         close = [pair for pair in linked_to if j - pair[1] <= g.neighbors]
         far = sorted((p for p in linked_to if j - p[1] > g.neighbors), reverse=True)
@@ -155,44 +158,72 @@ def linked(turns: Turns, T: SE3, settings: Settings) -> list[tuple[int, int, flo
     return sorted(out)
 
 
+@dataclass(frozen=True, slots=True)
+class Link:
+    """Two turns to register."""
+
+    i: int
+    j: int
+    initial: SE3
+    """Predicted ``T_i_j``."""
+    overlap: float
+    """Ratio of the points of j with a close point of i."""
+
+
+def register_pair(
+    points: tuple[Points, Points], link: Link, *, settings: Settings
+) -> tuple[Edge, float]:
+    """Register two turns from a predicted pose, whatever their overlap.
+
+    Args:
+        points: Of both turns, in the body at their nodes [m], (N, 3) each.
+        link: Its overlap is not used.
+        settings: Uses lines, graph, planes and registration.
+
+    Returns:
+        The edge, with the overlap at the registered pose; and how many points that is, as counted
+        for a link.
+    """
+    target = PlaneMap(_planes_of(settings))
+    target.add(points[0].astype(np.float64))
+    edge = _register(target, points, replace(link, overlap=0.0), settings=settings)
+    some = [_spread(one, _COUNTED) for one in points]
+    tree = cKDTree(some[0], balanced_tree=False, compact_nodes=False)
+    overlap = _close_ratio(tree, some[1], edge.T_i_j, settings)
+    return replace(edge, overlap=overlap), overlap * len(some[1])
+
+
 def _register(
-    target: PlaneMap,
-    turns: Turns,
-    T: SE3,
-    *,
-    ends: tuple[int, int],
-    overlap: float,
-    settings: Settings,
+    target: PlaneMap, points: tuple[Points, Points], link: Link, *, settings: Settings
 ) -> Edge:
     """Register turn ``j`` to the planes of turn ``i`` and judge the result."""
-    i, j = ends
     g = settings.graph
     found = register_to_planes(
         target,
-        _spread(turns.turns[j].points, g.source_segments).astype(np.float64),
-        initial=relative(T, i, j),
+        _spread(points[1], g.source_segments).astype(np.float64),
+        initial=link.initial,
         settings=settings.registration,
         normal_noise_rad=g.normal_noise_rad,
     )
-    range_m = float(np.median(np.linalg.norm(turns.turns[i].points, axis=1)))
+    range_m = float(np.median(np.linalg.norm(points[0], axis=1)))
     limit_m = range_m * g.error_relative + g.error_absolute_m
     reason = Reason.NONE
     if not found.converged:
         reason = Reason.NOT_CONVERGED
     elif not found.error_m <= limit_m:
         reason = Reason.ERROR
-    elif found.match_ratio < g.min_match_ratio * min(overlap, 1.0):
+    elif found.match_ratio < g.min_match_ratio * min(link.overlap, 1.0):
         reason = Reason.FEW_MATCHES
     elif found.degeneracy < g.min_degeneracy:
         reason = Reason.DEGENERATE
     return Edge(
-        i=i,
-        j=j,
+        i=link.i,
+        j=link.j,
         T_i_j=found.T_target_source,
-        kind=EdgeKind.NEIGHBOR if j - i <= g.neighbors else EdgeKind.LOOP,
+        kind=EdgeKind.NEIGHBOR if link.j - link.i <= g.neighbors else EdgeKind.LOOP,
         verdict=Verdict.REJECTED if reason else Verdict.ACCEPTED,
         reason=reason,
-        overlap=overlap,
+        overlap=link.overlap,
         error_m=found.error_m,
         limit_m=limit_m,
         degeneracy=found.degeneracy,
@@ -200,6 +231,12 @@ def _register(
         iterations=found.iterations,
         information=_information(found, settings),
     )
+
+
+def _close_ratio(tree: cKDTree, points: Points, T_i_j: SE3, settings: Settings) -> float:
+    p_i = T_i_j @ points.astype(np.float64)
+    distance = tree.query(p_i, distance_upper_bound=settings.lines.link_distance_m)[0]
+    return float(np.mean(np.isfinite(distance)))
 
 
 def _information(found: Registration, settings: Settings) -> Array:
@@ -239,7 +276,7 @@ def _planes_of(settings: Settings) -> PlaneSettings:
     return replace(settings.planes, max_sd_m=_WIDE_SD_M)
 
 
-def _spread(points: NDArray[np.float32], limit: int) -> NDArray[np.float32]:
+def _spread(points: Points, limit: int) -> Points:
     if len(points) <= limit:
         return points
     return points[np.linspace(0, len(points) - 1, limit).astype(np.intp)]

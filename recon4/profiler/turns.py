@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.geometry.se3 import SE3, Array
+from recon4.geometry.se3 import SE3
 from recon4.model.line_scans import LineScans
 from recon4.model.trajectory import Times, Trajectory
 from recon4.profiler.samples import line_points
@@ -43,6 +43,43 @@ class Turns:
         return len(self.turns)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class TurnNodes:
+    """When the turns of a walk begin, and their nodes."""
+
+    t_ns: Times
+    """Time of each node: the middle of its turn [ns], (T,)."""
+    start_ns: Times
+    """First time of each turn, and the end of the last one [ns], (T + 1,)."""
+    frame_rows: NDArray[np.int64]
+    """Multiframe of each node, (T,)."""
+
+    def multiframes(self, frames: FrameStore, turn: int) -> range:
+        """Multiframes with points of a turn."""
+        start_ns, end_ns = self.start_ns[turn : turn + 2]
+        begins = frames.index["t_ns"]
+        ends = begins + frames.index["duration_ns"]
+        first, last = np.searchsorted(ends, start_ns), np.searchsorted(begins, end_ns)
+        return range(int(first), int(last))
+
+
+def find_turns(frames: FrameStore, lines: LineScans) -> TurnNodes:
+    """Turns of the head, each with the multiframe in its middle as node."""
+    ends = lines.turns()
+    start_ns = np.append(lines.t_ns[ends[:-1]], lines.t_ns[-1] + 1)
+    t_mid_ns = frames.t_mid_ns
+    middle = start_ns[:-1] + np.diff(start_ns) // 2
+    rows = np.clip(np.searchsorted(t_mid_ns, middle), 0, len(t_mid_ns) - 1).astype(np.int64)
+    if len(np.unique(rows)) < len(rows):  # turns shorter than a multiframe
+        rows, first = np.unique(rows, return_index=True)
+        start_ns = np.append(start_ns[first], start_ns[-1])
+    # Points before the first line scan and after the last one belong to these.
+    last = frames.index[-1]
+    start_ns[0] = min(start_ns[0], frames.index["t_ns"][0])
+    start_ns[-1] = max(start_ns[-1], last["t_ns"] + last["duration_ns"] + 1)
+    return TurnNodes(t_mid_ns[rows], start_ns, rows)
+
+
 def unwind_turns(
     frames: FrameStore,
     lines: LineScans,
@@ -60,35 +97,37 @@ def unwind_turns(
         settings: Thinning and shortest range.
         progress: Counts multiframes.
     """
-    ends = lines.turns()
-    start_ns = np.append(lines.t_ns[ends[:-1]], lines.t_ns[-1] + 1)
-    t_mid_ns = frames.t_mid_ns
-    middle = start_ns[:-1] + np.diff(start_ns) // 2
-    rows = np.clip(np.searchsorted(t_mid_ns, middle), 0, len(t_mid_ns) - 1).astype(np.int64)
-    if len(np.unique(rows)) < len(rows):  # turns shorter than a multiframe
-        rows, first = np.unique(rows, return_index=True)
-        start_ns = np.append(start_ns[first], start_ns[-1])
-    node_ns = t_mid_ns[rows]
-    T_odom_node = trajectory.at(node_ns)
-    clouds: list[list[Array]] = [[] for _ in rows]
-    progress.start("unwind", len(frames), "multiframe")
-    for row in range(len(frames)):
+    nodes = find_turns(frames, lines)
+    counts = np.diff(np.searchsorted(lines.t_ns, nodes.start_ns))
+    progress.start("unwind", len(nodes.t_ns), "turn")
+    turns = []
+    for k in range(len(nodes.t_ns)):
+        points = unwind_turn(frames, nodes, k, trajectory=trajectory, settings=settings)
+        turns.append(Turn(points, int(counts[k])))
+        progress.advance()
+    return Turns(nodes.t_ns, nodes.start_ns, nodes.frame_rows, tuple(turns))
+
+
+def unwind_turn(
+    frames: FrameStore,
+    nodes: TurnNodes,
+    turn: int,
+    *,
+    trajectory: Trajectory,
+    settings: LineSettings,
+) -> NDArray[np.float32]:
+    """Points of one turn in the body at its node [m], thinned, (N, 3)."""
+    start_ns, end_ns = nodes.start_ns[turn : turn + 2]
+    parts = [np.empty((0, 3))]
+    for row in nodes.multiframes(frames, turn):
         points = line_points(
             frames, row, every=settings.turn_every, min_range_m=settings.min_range_m
         )
-        p_odom = points.placed(trajectory)
-        turn = np.clip(np.searchsorted(start_ns, points.t_ns, side="right") - 1, 0, len(rows) - 1)
-        for k in np.unique(turn):
-            clouds[k].append(p_odom[turn == k])
-        progress.advance()
-    counts = np.diff(np.searchsorted(lines.t_ns, start_ns))
-    turns = []
-    for k, parts in enumerate(clouds):
-        p = np.concatenate(parts) if parts else np.empty((0, 3))
-        thin = thinned(T_odom_node[k].inverse() @ p, settings.turn_voxel_m)
-        clouds[k] = []
-        turns.append(Turn(thin.astype(np.float32), int(counts[k])))
-    return Turns(node_ns, start_ns, rows, tuple(turns))
+        inside = (points.t_ns >= start_ns) & (points.t_ns < end_ns)
+        parts.append(points.placed(trajectory)[inside])
+    T_odom_node = trajectory.at(nodes.t_ns[turn : turn + 1])[0]
+    p_node = T_odom_node.inverse() @ np.concatenate(parts)
+    return thinned(p_node, settings.turn_voxel_m).astype(np.float32)
 
 
 def relative(T_odom_node: SE3, i: int, j: int) -> SE3:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array, align_points
 from recon4.mapping.place import place
-from recon4.model.pose_graph import EdgeKind, PoseGraph, Reason
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason
 from recon4.pose_graph.pairs import Pair as TriedPair
 from recon4.pose_graph.pairs import PairRegistrar
 from recon4.progress import Silent
@@ -26,6 +26,7 @@ from recon4.review.apply import is_measured, rows_by_pair
 from recon4.review.decisions import Measurement, Pair, numbers_of, pose_of
 from recon4.review.queue import MAX_PATHS, AlternativePath, alternative_paths
 from recon4.review.source import Source
+from recon4.review.turn_pairs import align_turns, has_turns, multiframes_of
 from recon4.store.arrays import load_arrays, load_trajectory
 
 MAGIC = b"R4PP"
@@ -89,7 +90,7 @@ class TrajectoryNodes:
 
 
 def pair_points(source: Source, pair: Pair, reach: int) -> bytes:
-    """Points of two multiframes, each with ``reach`` others before and after, as `LAYOUT`.
+    """Points of two nodes, each with ``reach`` multiframes before and after, as `LAYOUT`.
 
     Raises:
         ConfigError: If one of them is no node of the graph, or the reach is too large.
@@ -97,8 +98,11 @@ def pair_points(source: Source, pair: Pair, reach: int) -> bytes:
     """
     if not 0 <= reach <= MAX_REACH:
         raise ConfigError(f"reach must be 0 to {MAX_REACH} multiframes, got {reach}")
-    nodes_of(source.verified, pair)
-    clouds = [_cloud(source, frame, reach) for frame in pair]
+    nodes = nodes_of(source.verified, pair)
+    clouds = [
+        _cloud(source, frame, _around(source, node, reach))
+        for frame, node in zip(pair, nodes, strict=True)
+    ]
     head = LAYOUT.pack(MAGIC, 1, len(clouds[0]), len(clouds[1]))
     return head + b"".join(np.ascontiguousarray(cloud, "<f4").tobytes() for cloud in clouds)
 
@@ -145,7 +149,10 @@ def align(source: Source, pair: Pair, predicted: tuple[float, ...]) -> Alignment
         StoreError: If artifacts are missing or damaged.
     """
     T_predicted = _checked(predicted)
-    nodes_of(source.verified, pair)
+    nodes = nodes_of(source.verified, pair)
+    if has_turns(source):
+        edge = align_turns(source, nodes, T_predicted)
+        return Alignment(_measurement(edge), edge.converged, str(edge.reason))
     # An operator's pair is registered at any overlap.
     settings = replace(source.settings, overlap=replace(source.settings.overlap, threshold=0.0))
     lost = _lost(source)
@@ -159,19 +166,24 @@ def align(source: Source, pair: Pair, predicted: tuple[float, ...]) -> Alignment
     registrar.prepare(2, Silent())
     tried = registrar.register([TriedPair(0, 1, EdgeKind.MANUAL, T_predicted)], Silent())[0]
     ends = [RangeImage(views.ends(k).reshape(-1, 3), views.nearest_m(k)) for k in (0, 1)]
-    found = Measurement(
-        T_i_j=numbers_of(tried.T_i_j),
-        information=tuple(tried.information.ravel().tolist()),
-        overlap=overlap(ends[0], ends[1], tried.T_i_j, settings=settings.overlap),
-        error_m=tried.error_m,
-        limit_m=tried.limit_m,
-        degeneracy=tried.degeneracy,
-        iterations=tried.iterations,
-    )
+    ratio = overlap(ends[0], ends[1], tried.T_i_j, settings=settings.overlap)
     reason = tried.reason
-    if not reason and found.overlap < source.settings.overlap.threshold:
+    if not reason and ratio < source.settings.overlap.threshold:
         reason = Reason.OVERLAP
+    found = _measurement(tried.evolve(overlap=ratio))
     return Alignment(found, tried.converged, str(reason))
+
+
+def _measurement(edge: Edge) -> Measurement:
+    return Measurement(
+        T_i_j=numbers_of(edge.T_i_j),
+        information=tuple(edge.information.ravel().tolist()),
+        overlap=edge.overlap,
+        error_m=edge.error_m,
+        limit_m=edge.limit_m,
+        degeneracy=edge.degeneracy,
+        iterations=edge.iterations,
+    )
 
 
 def fit_points(p_i: Array, p_j: Array) -> tuple[float, ...]:
@@ -221,10 +233,16 @@ def nodes_of(graph: PoseGraph, pair: Pair) -> tuple[int, int]:
     return int(rows[0]), int(rows[1])
 
 
-def _cloud(source: Source, frame: int, reach: int) -> NDArray[np.float64]:
-    """Points around a multiframe in its body frame [m], (N, 3), thinned evenly."""
+def _around(source: Source, node: int, reach: int) -> range:
+    """Multiframes that are shown of a node: its own, or those of its turn, and some around them."""
+    frame = int(source.verified.frame_ids[node])
+    own = multiframes_of(source, node) if has_turns(source) else range(frame, frame + 1)
+    return range(max(own.start - reach, 0), min(own.stop + reach, len(source.frames)))
+
+
+def _cloud(source: Source, frame: int, near: range) -> NDArray[np.float64]:
+    """Points of some multiframes in the body frame of one [m], (N, 3), thinned evenly."""
     frames, odometry = source.frames, source.odometry
-    near = range(max(frame - reach, 0), min(frame + reach + 1, len(frames)))
     parts = [place(frames[k], odometry, frames.rig) for k in near]
     T_odom_body = odometry.at(frames.t_mid_ns[frame : frame + 1])[0]
     p_body = T_odom_body.inverse() @ np.concatenate(parts)

@@ -10,9 +10,11 @@ from recon4.errors import StoreError
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
+from recon4.profiler.turns import TurnNodes, find_turns
 from recon4.settings import Settings
 from recon4.store.arrays import load_trajectory
 from recon4.store.frames import FrameStore, open_frames
+from recon4.store.line_store import load_lines
 from recon4.store.project import read_artifacts
 from recon4.store.recipes import check_recipes, settings_in
 
@@ -64,6 +66,11 @@ class Source:
     def frames(self) -> FrameStore:
         """The multiframes."""
         return open_frames(self._folder("frames"), self.artifacts.get("calibration"))
+
+    @cached_property
+    def turns(self) -> TurnNodes:
+        """Turns of the profiler's head: the nodes of the graph of such a rig."""
+        return find_turns(self.frames, load_lines(self.frames.folder))
 
     def _folder(self, stage: str) -> Path:
         if stage not in self.artifacts:

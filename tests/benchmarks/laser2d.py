@@ -2,8 +2,8 @@
 
     python -m tests.benchmarks.laser2d [LOG …] [--set slam2d.…=…]
 
-Logs of ``RECON4_DATA/laser2d`` if none is given. Where ``LOG.relations`` lies beside ``LOG.clf.bz2``
-the relative poses are compared with it, without any alignment.
+Logs of ``RECON4_DATA/laser2d`` if none is given. Where ``LOG.relations`` lies beside a log the
+relative poses are compared with it, without any alignment.
 """
 
 from __future__ import annotations

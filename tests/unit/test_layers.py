@@ -62,7 +62,13 @@ MAY_IMPORT = {
     "recon4/georeference": STAGE
     | {"recon4.mapping", "recon4.pose_graph", "recon4.georeference", "recon4.registration.aiding"},
     "recon4/review": STAGE
-    | {"recon4.registration", "recon4.pose_graph", "recon4.mapping", "recon4.review"}
+    | {
+        "recon4.registration",
+        "recon4.pose_graph",
+        "recon4.mapping",
+        "recon4.profiler",
+        "recon4.review",
+    }
     | {"recon4.report.approval"},
     "recon4/intensity": STAGE | {"recon4.mapping", "recon4.intensity"},
     "recon4/mapping": STAGE | {"recon4.intensity", "recon4.mapping"},

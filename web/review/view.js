@@ -51,7 +51,7 @@ export class PairView extends HTMLElement {
 
   connectedCallback() {
     const reaches = [0, 2, 5, 10].map((n) =>
-      make("option", { value: n }, n ? `± ${n} multiframes` : "One multiframe"),
+      make("option", { value: n }, n ? `± ${n} multiframes` : "Nodes only"),
     );
     this.#reach.append(...reaches);
     this.#reach.addEventListener("change", () => this.#emit("reach"));

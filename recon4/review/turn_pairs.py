@@ -1,0 +1,42 @@
+"""Pairs of turns of a profiler's head: a node stands for all line scans of its turn."""
+
+from __future__ import annotations
+
+from recon4.geometry.se3 import SE3
+from recon4.model.pose_graph import Edge, Reason
+from recon4.profiler.turn_graph import Link, register_pair
+from recon4.profiler.turns import unwind_turn
+from recon4.review.source import Source
+
+
+def has_turns(source: Source) -> bool:
+    """Whether the nodes of the graph are turns of a head."""
+    return source.frames.rig.row_of("profiler") is not None
+
+
+def multiframes_of(source: Source, node: int) -> range:
+    """Multiframes with points of a node's turn."""
+    return source.turns.multiframes(source.frames, node)
+
+
+def align_turns(source: Source, nodes: tuple[int, int], predicted: SE3) -> Edge:
+    """Register two turns as the search does, from an operator's predicted pose.
+
+    Args:
+        source: The project's latest graph.
+        nodes: Rows of the graph.
+        predicted: Initial ``T_i_j``.
+
+    Returns:
+        The edge with the reason for which the search would reject it, if there is one.
+    """
+    settings, turns = source.settings, source.turns
+    first, second = (
+        unwind_turn(source.frames, turns, node, trajectory=source.odometry, settings=settings.lines)
+        for node in nodes
+    )
+    link = Link(*nodes, initial=predicted, overlap=0.0)
+    edge, close_points = register_pair((first, second), link, settings=settings)
+    if not edge.reason and close_points < settings.lines.link_pairs:
+        return edge.evolve(reason=Reason.OVERLAP)
+    return edge
