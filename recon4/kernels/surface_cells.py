@@ -13,9 +13,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-PLANE = 7
+PLANE = 10
 """Unit normal x y z, offset n · p [m], standard deviation across [m] (0 = none), weight,
-planarity."""
+planarity, middle of its returns x y z [m] (NaN = not known)."""
 SLOTS = 3
 """Planes of a cell: a surface, an edge of two, a corner of three."""
 

@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 
 from recon4.kernels.surface_cells import SLOTS, distance_in_front, neighbor
 
+_ONE_SIDE_M = 0.012
+"""A surface whose middle is nearer to a plane than this lies on both sides of it [m]."""
+
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def onto_planes(
@@ -36,7 +39,7 @@ def onto_planes(
         while count < SLOTS and slots[c, count, 4] > 0.0:
             count += 1
         if count > 1:
-            edge_sides(xyz, starts[c], starts[c + 1], slots[c], count, slot_of, side_of)
+            edge_sides(slots[c], count, side_of)
         for p in range(starts[c], starts[c + 1]):
             slot_of[p] = SLOTS
             shift[p, :] = 0.0
@@ -129,44 +132,22 @@ def find_strays(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def edge_sides(
-    xyz: NDArray[np.float32],
-    first: int,
-    stop: int,
-    planes: NDArray[np.float64],
-    count: int,
-    slot_of: NDArray[np.uint8],
-    out: NDArray[np.float64],
-) -> None:
-    """On which side of each plane of a cell the points of the others lie: 1, -1, 0 = both.
+def edge_sides(planes: NDArray[np.float64], count: int, out: NDArray[np.float64]) -> None:
+    """On which side of each plane of a cell the surfaces of the others lie: 1, -1, 0 = both.
 
     Args:
-        xyz: Points [m], (N, 3).
-        first: First point of the cell.
-        stop: The point after its last.
         planes: Of the cell, (SLOTS, PLANE).
         count: How many there are.
-        slot_of: Plane of each point, (N,).
-        out: Receives the sides: ``out[a, b]`` = points of a, side of b, (SLOTS, SLOTS).
+        out: Receives the sides: ``out[a, b]`` = surface a, side of b, (SLOTS, SLOTS).
     """
-    for b in range(count):
-        for a in range(count):
-            front = behind = 0
-            for p in range(first, stop):
-                if slot_of[p] == a:
-                    away = (
-                        planes[b, 0] * xyz[p, 0]
-                        + planes[b, 1] * xyz[p, 1]
-                        + planes[b, 2] * xyz[p, 2]
-                        - planes[b, 3]
-                    )
-                    front += away > 1.5 * planes[b, 4]
-                    behind += away < -1.5 * planes[b, 4]
+    for a in range(count):
+        middle = planes[a, 7:10]
+        for b in range(count):
+            q = planes[b]
+            away = q[0] * middle[0] + q[1] * middle[1] + q[2] * middle[2] - q[3]
             out[a, b] = 0.0
-            if front > 4 * behind:
-                out[a, b] = 1.0
-            elif behind > 4 * front:
-                out[a, b] = -1.0
+            if abs(away) > _ONE_SIDE_M:
+                out[a, b] = 1.0 if away > 0.0 else -1.0
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -19,6 +19,10 @@ from recon4.kernels.surface_cells import (
 
 _MIN_TAIL = 250.0
 """A surface has this many times the returns of a cell that holds the end of its noise only."""
+_SAME_COS, _SAME = 0.95, 1.0
+"""Planes are similar with a larger cosine and a smaller distance [standard deviations]."""
+_THINNER = 0.95
+"""A similar plane takes the place of another one below this ratio of their deviations."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -29,10 +33,12 @@ def list_candidates(
     side: int,
     cell_m: float,
     planes: NDArray[np.float64],
-    apart: NDArray[np.float64],
     out: NDArray[np.float64],
 ) -> int:
-    """Different planes among those of a cell and its 26 neighbors.
+    """Different planes among those of the 5 x 5 x 5 cells around a cell.
+
+    Beside an edge every window within one cell holds returns of both faces, and its plane is
+    thicker than that of a window two cells away; of similar planes the thinnest is listed.
 
     Args:
         c: Row of the cell.
@@ -41,40 +47,42 @@ def list_candidates(
         side: Cells along tile and halo.
         cell_m: Edge of a cell [m].
         planes: Of `window_planes`, (C, 2, PLANE).
-        apart: Largest cosine, and smallest distance in the cell [standard deviations], of planes
-            that are different, (2,).
-        out: Receives the planes, (L, PLANE); those of the cell itself first.
+        out: Receives the planes, (L, PLANE).
 
     Returns:
         How many there are.
     """
     count = 0
     cx, cy, cz = center_of(cells[c], side, cell_m)
-    for k in range(27):
-        # The order starts at the cell itself.
-        k = (k + 13) % 27
-        o = neighbor(cells[c], k, side, where)
-        if o < 0:
+    ci, cj, ck = cells[c] % side, cells[c] // side % side, cells[c] // (side * side)
+    for k in range(125):
+        i, j, m = ci + k % 5 - 2, cj + k // 5 % 5 - 2, ck + k // 25 - 2
+        if min(i, j, m) < 0 or max(i, j, m) >= side:
+            continue
+        at = (m * side + j) * side + i
+        if where[at] < 0:
             continue
         for s in range(2):
-            p = planes[o, s]
+            p = planes[where[at], s]
             if not p[4] > 0.0:
                 continue
             away = p[0] * cx + p[1] * cy + p[2] * cz - p[3]
-            if abs(away) > cell_m + 2.0 * p[4]:
+            if abs(away) > 0.87 * cell_m + 2.0 * p[4]:
                 continue
-            new = count < len(out)
+            same = -1
             for q in range(count):
                 d = out[q]
                 if (
-                    d[0] * p[0] + d[1] * p[1] + d[2] * p[2] > apart[0]
-                    and abs(away - (d[0] * cx + d[1] * cy + d[2] * cz - d[3])) < apart[1] * p[4]
+                    d[0] * p[0] + d[1] * p[1] + d[2] * p[2] > _SAME_COS
+                    and abs(away - (d[0] * cx + d[1] * cy + d[2] * cz - d[3])) < _SAME * p[4]
                 ):
-                    new = False
+                    same = q
                     break
-            if new:
+            if same < 0 and count < len(out):
                 out[count, :] = p
                 count += 1
+            elif same >= 0 and p[4] < _THINNER * out[same, 4]:
+                out[same, :] = p
     return count
 
 
@@ -113,37 +121,37 @@ def choose_planes(
         slots: Receives the planes, (C, SLOTS, PLANE).
         slot_of: Receives the slot each point supports, SLOTS = none, (N,).
     """
-    apart = np.array([0.99, 0.6])
     listed = np.empty((24, PLANE))
+    fit = np.zeros(len(xyz), np.float32)
     for c in range(len(cells)):
+        first, stop = starts[c], starts[c + 1]
         slots[c, :, 4] = 0.0
-        for p in range(starts[c], starts[c + 1]):
-            slot_of[p] = SLOTS
-        count = list_candidates(c, cells, where, side, cell_m, planes, apart, listed)
+        slot_of[first:stop] = SLOTS
+        count = list_candidates(c, cells, where, side, cell_m, planes, listed)
         for slot in range(min(SLOTS, count)):
             best, chosen = 0.0, -1
             enough = least if slot else 0.1 * least
             for q in range(count):
                 support = 0.0
                 scale = 1.0 / (gate * listed[q, 4])
-                for p in range(starts[c], starts[c + 1]):
+                for p in range(first, stop):
                     if slot_of[p] == SLOTS:
                         away = scale * distance_in_front(listed[q], xyz, to_sensor, p)
-                        if abs(away) < 1.0:
-                            support += weight[p] * (1.0 - away * away)
+                        support += weight[p] * max(0.0, 1.0 - away * away)
                 # A plane through the tail of another surface's noise has less weight than that one.
                 if support > enough and support * listed[q, 5] > best:
                     best, chosen = support * listed[q, 5], q
             if chosen < 0 and slot == 0:
-                chosen = whose_tail(listed, count, weight[starts[c] : starts[c + 1]])
+                chosen = whose_tail(listed, count, weight[first:stop])
             if chosen < 0:
                 break
             slots[c, slot, :] = listed[chosen]
-            for p in range(starts[c], starts[c + 1]):
-                if slot_of[p] == SLOTS:
-                    away = distance_in_front(listed[chosen], xyz, to_sensor, p)
-                    if abs(away) < gate * listed[chosen, 4]:
-                        slot_of[p] = slot
+            scale = 1.0 / (gate * listed[chosen, 4])
+            for p in range(first, stop):
+                away = scale * distance_in_front(listed[chosen], xyz, to_sensor, p)
+                if 1.0 - away * away > fit[p]:
+                    fit[p] = 1.0 - away * away
+                    slot_of[p] = slot
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -213,6 +221,7 @@ def refit_planes(
         for s in range(SLOTS):
             mine, new = slots[c, s], out[c, s]
             new[:] = mine
+            new[7] = np.nan
             if not mine[4] > 0.0:
                 continue
             total[:] = 0.0
@@ -247,6 +256,9 @@ def refit_planes(
             new[4] = max(np.sqrt(found[4]), 1e-4)
             new[5] = total[0]
             new[6] = (found[5] - found[4]) / found[6]
+            new[7] = total[1] / total[0] + cx
+            new[8] = total[2] / total[0] + cy
+            new[9] = total[3] / total[0] + cz
             # What the nearest returns say of a surface that is not quite flat: those of the cell
             # and of the two beyond it along the normal, because noise crosses their borders.
             m = column

@@ -29,6 +29,7 @@ def side_moments(
     planes: NDArray[np.float64],
     gate: float,
     moments: NDArray[np.float64],
+    views: NDArray[np.float64],
 ) -> None:
     """Moments of each cell by the side its returns were seen from.
 
@@ -44,8 +45,10 @@ def side_moments(
         planes: Planes of both sides: points farther away than ``gate`` are left out, (C, 2, PLANE).
         gate: In standard deviations; 0 = all points.
         moments: Receives the sums, (C, 2, MOMENTS).
+        views: Receives the sums of the unit vectors to the sensor, (C, 2, 3).
     """
     moments[:] = 0.0
+    views[:] = 0.0
     for c in range(len(cells)):
         cx, cy, cz = center_of(cells[c], side, cell_m)
         nx, ny, nz = normals[c]
@@ -58,6 +61,11 @@ def side_moments(
                 if abs(away) > gate * plane[4]:
                     continue
             add_point(moments[c, s], weight[p], xyz[p, 0] - cx, xyz[p, 1] - cy, xyz[p, 2] - cz)
+            x, y, z = to_sensor[p, 0], to_sensor[p, 1], to_sensor[p, 2]
+            scale = weight[p] / np.sqrt(x * x + y * y + z * z + 1e-6)
+            views[c, s, 0] += scale * x
+            views[c, s, 1] += scale * y
+            views[c, s, 2] += scale * z
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -114,6 +122,7 @@ def window_planes(
     cell_m: float,
     normals: NDArray[np.float64],
     moments: NDArray[np.float64],
+    views: NDArray[np.float64],
     least_cos: float,
     limits: NDArray[np.float64],
     planes: NDArray[np.float64],
@@ -127,18 +136,23 @@ def window_planes(
         cell_m: Edge of a cell [m].
         normals: Of each cell, (C, 3).
         moments: Of `side_moments`, (C, 2, MOMENTS).
+        views: Of `side_moments`, (C, 2, 3).
         least_cos: Cells whose normals differ more are left out.
-        limits: Least weight, largest standard deviation across [m], least along [m], (3,).
+        limits: Least weight, largest standard deviation across [m], least along [m], the limit of
+            `is_bent` [m], ratio of the variance that does not depend on the incidence angle, (5,).
         planes: Receives the planes; 0 as standard deviation = none, (C, 2, PLANE).
     """
     total = np.zeros(MOMENTS)
     found = np.zeros(7)
+    columns, view = np.zeros((9, 4)), np.zeros(3)
     for c in range(len(cells)):
         for s in range(2):
             planes[c, s, 4] = 0.0
             if moments[c, s, 0] <= 0.0:
                 continue
             total[:] = 0.0
+            columns[:] = 0.0
+            view[:] = 0.0
             along = main_axis(normals[c])
             for k in range(27):
                 o = neighbor(cells[c], k, side, where)
@@ -153,12 +167,24 @@ def window_planes(
                 # Noise crosses the borders along the normal: a tail alone is no surface.
                 if abs(dot) < least_cos and not in_column(di, dj, dk, along):
                     continue
-                m = moments[o, s if dot >= 0.0 else 1 - s]
+                t = s if dot >= 0.0 else 1 - s
+                m = moments[o, t]
                 if m[0] > 0.0:
+                    view += views[o, t]
                     add_moved(total, m, di * cell_m, dj * cell_m, dk * cell_m)
+                    j = k // 3 if along == 0 else k % 3 + k // 9 * 3 if along == 1 else k % 9
+                    columns[j, 0] += m[0]
+                    columns[j, 1] += m[1] + m[0] * di * cell_m
+                    columns[j, 2] += m[2] + m[0] * dj * cell_m
+                    columns[j, 3] += m[3] + m[0] * dk * cell_m
             if total[0] < limits[0] or not plane_of(total, found):
                 continue
-            if found[4] > limits[1] ** 2 or found[5] < limits[2] ** 2:
+            if is_bent(columns, found, limits[3]):
+                continue
+            # Noise lies along the beam: across a surface seen obliquely it is less.
+            facing = found[0] * view[0] + found[1] * view[1] + found[2] * view[2]
+            facing = min(1.0, (facing / total[0]) ** 2 + limits[4])
+            if found[4] > facing * limits[1] ** 2 or found[5] < limits[2] ** 2:
                 continue
             sign = 1.0
             dot = found[0] * normals[c, 0] + found[1] * normals[c, 1] + found[2] * normals[c, 2]
@@ -170,6 +196,29 @@ def window_planes(
             p[3] = sign * found[3] + p[0] * cx + p[1] * cy + p[2] * cz
             p[4] = max(np.sqrt(found[4]), 1e-4)
             p[5] = total[0]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def is_bent(columns: NDArray[np.float64], plane: NDArray[np.float64], limit_m: float) -> bool:
+    """Whether the parts of a window lie on both sides of its plane: an edge, or a round thing.
+
+    Args:
+        columns: Weight and weighted sums x y z of the columns of cells along the normal, (9, 4).
+        plane: Of `plane_of`, (7,).
+        limit_m: Largest root mean square of their distances, beyond what noise explains [m].
+    """
+    squares = weights = 0.0
+    parts = 0
+    for j in range(9):
+        w = columns[j, 0]
+        if w > 0.0:
+            away = (
+                plane[0] * columns[j, 1] + plane[1] * columns[j, 2] + plane[2] * columns[j, 3]
+            ) / w - plane[3]
+            squares += w * away * away
+            weights += w
+            parts += 1
+    return squares - parts * plane[4] > weights * limit_m * limit_m
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

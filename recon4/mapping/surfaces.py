@@ -24,6 +24,10 @@ ONE_SHEET = 1.0
 """Below this standard deviation a surface is one sheet whatever its shape [noise]."""
 MIN_RETURNS = 12.0
 MIN_SUPPORT = 3.0
+LOOSE, STRICT = (1.5, 0.0, 1.0, 1.0), (SPREAD, ROUND_GATE, 0.3, 0.05)
+"""Rounds of fitting windows: largest deviation across [noise], gate [standard deviations], largest
+bend [noise], and the part of the noise's variance that is the same in all directions: poses and
+voxels."""
 STRAY_RATIO = 0.015
 """Largest ratio of stray returns among those around them."""
 BEND_M = 0.002
@@ -106,16 +110,17 @@ def _window_planes(
     count = len(found.cells)
     of_cell = normals[found.starts[:-1]].astype(np.float64)
     planes, moments = np.zeros((count, 2, PLANE)), np.empty((count, 2, MOMENTS))
+    views = np.empty((count, 2, 3))
     first = True
-    for spread, gate in ((1.5, 0.0), (1.5, 0.0), (SPREAD, ROUND_GATE)):
-        limits = np.array([MIN_RETURNS, spread * noise_m, 0.3 * grid.cell_m])
+    for spread, gate, bend, same in (LOOSE, LOOSE, STRICT):
+        shape = [spread * noise_m, 0.3 * grid.cell_m, bend * noise_m, same]
         surface_windows.side_moments(
             xyz, to_sensor, weight, found.starts, found.cells, grid.side_cells, grid.cell_m,
-            of_cell, planes, gate, moments,
+            of_cell, planes, gate, moments, views,
         )  # fmt: skip
         surface_windows.window_planes(
-            found.cells, found.where, grid.side_cells, grid.cell_m, of_cell, moments, 0.5, limits,
-            planes,
+            found.cells, found.where, grid.side_cells, grid.cell_m, of_cell, moments, views, 0.5,
+            np.array([MIN_RETURNS, *shape]), planes,
         )  # fmt: skip
         if first:
             surface_windows.view_axes(to_sensor, weight, found.starts, planes, of_cell)

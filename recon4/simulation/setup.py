@@ -56,7 +56,7 @@ class SimulationSetup:
 
 
 def prepare(
-    world: str,
+    world: str | World,
     *,
     seconds: float,
     seed: int,
@@ -67,7 +67,7 @@ def prepare(
     """Build a world, plan the walk and mount the sensors.
 
     Args:
-        world: One of `recon4.simulation.worlds.WORLDS`.
+        world: One of `recon4.simulation.worlds.WORLDS`, or one of your own.
         seconds: Length of the walk, at least 5; rounded to 20 ms.
         seed: Draws the walk and all noise.
         rig: VLP-16s and their mounting; None = 4RECON. Addresses and topics that are
@@ -87,7 +87,7 @@ def prepare(
     for sensor in used.sensors:
         if sensor.model != "VLP-16":
             raise ConfigError(f"only VLP-16 can be simulated, got {sensor.model} ({sensor.name})")
-    place = build_world(world)
+    place = build_world(world) if isinstance(world, str) else world
     lidars = tuple(
         Lidar.drawn(sensor, errors.lidar, np.random.default_rng([seed, 1, row]))
         for row, sensor in enumerate(used.sensors)
