@@ -36,6 +36,9 @@ STAGE_ORDER = (
 )
 """As in docs/architecture.md; a stage not named here is shown last."""
 
+VIEWABLE_STAGES = {"odometry", "map", "odometry_2d", "map_2d"}
+"""The viewer has something to show once one of them is done."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ResultFile:

@@ -15,6 +15,7 @@ from app.projects.import_folders import ImportFolders
 from app.projects.model import (
     RESULTS,
     STAGE_ORDER,
+    VIEWABLE_STAGES,
     FolderEntry,
     ProjectCard,
     ProjectView,
@@ -198,7 +199,7 @@ class ProjectStore:
             rig=_name_of(facts.get("rig")),
             files=tuple(_results(folder)),
             stages=stages,
-            viewable=any(stage.stage in ("odometry", "map") for stage in stages),
+            viewable=any(stage.stage in VIEWABLE_STAGES for stage in stages),
             has_map=any(stage.stage == "map" for stage in stages),
             summary=summary,
             problem="; ".join(filter(None, (problems, more, most))),

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.bounded import read_text_limited
+from recon4.errors import StoreError
 from recon4.settings.slam2d import Grid2dSettings
 from recon4.slam2d.occupancy import OccupancyGrid
 
@@ -14,6 +17,32 @@ _FREE, _UNKNOWN, _OCCUPIED = 254, 205, 0
 """Gray values of map_saver."""
 _OCCUPIED_THRESHOLD, _FREE_THRESHOLD = 0.65, 0.196
 """Thresholds for these gray values: 205 is a probability of 0.1961, which is neither."""
+
+
+_MAX_YAML_BYTES = 4096
+_MAX_PIXELS = 1 << 28
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlanarMap:
+    """A finished 2-D map as it was written."""
+
+    gray: NDArray[np.uint8]
+    """Occupied 0, unknown 205, free 254; the first row has the largest y, (Y, X)."""
+    cell_m: float
+    """Side of a cell [m]."""
+    origin_m: tuple[float, float]
+    """Lower left corner in the map frame [m]."""
+
+    @property
+    def occupied(self) -> NDArray[np.bool_]:
+        """Cells with a surface, (Y, X)."""
+        return self.gray == _OCCUPIED
+
+    @property
+    def free(self) -> NDArray[np.bool_]:
+        """Cells that beams crossed, (Y, X)."""
+        return self.gray == _FREE
 
 
 def trinary_image(grid: OccupancyGrid, settings: Grid2dSettings) -> NDArray[np.uint8]:
@@ -46,3 +75,25 @@ def write_map(folder: Path, grid: OccupancyGrid, settings: Grid2dSettings) -> No
         f"free_thresh: {_FREE_THRESHOLD}\n"
     )
     (folder / "map.yaml").write_text(text, "ascii")
+
+
+def read_map(folder: Path) -> PlanarMap:
+    """Read the files of `write_map`.
+
+    Raises:
+        StoreError: If they are missing, damaged or larger than any map.
+    """
+    from PIL import Image
+
+    text = read_text_limited(folder / "map.yaml", _MAX_YAML_BYTES, failure=StoreError)
+    facts = dict(line.partition(": ")[::2] for line in text.splitlines())
+    try:
+        x, y = facts["origin"].strip("[]").split(",")[:2]
+        cell_m, origin_m = float(facts["resolution"]), (float(x), float(y))
+        with Image.open(folder / "map.png", formats=["PNG"]) as image:
+            if image.mode != "L" or image.width * image.height > _MAX_PIXELS:
+                raise ValueError(f"an image of {image.width} x {image.height}, {image.mode}")
+            gray = np.asarray(image)
+    except (KeyError, ValueError, OSError, SyntaxError) as error:
+        raise StoreError(f"{folder.name}: the 2-D map cannot be read: {error}") from error
+    return PlanarMap(gray, cell_m, origin_m)

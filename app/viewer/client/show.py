@@ -20,7 +20,16 @@ from app.viewer import unix_socket
 from app.viewer.cloud.lod import Camera
 from app.viewer.cloud.pick import Ray
 from app.viewer.scene.build import Bounds
-from app.viewer.scene.nodes import AxesNode, GridNode, LabelNode, LinesNode, Node, PointsNode, alike
+from app.viewer.scene.nodes import (
+    AxesNode,
+    GridNode,
+    ImageNode,
+    LabelNode,
+    LinesNode,
+    Node,
+    PointsNode,
+    alike,
+)
 from recon4.geometry.se3 import Array, matrix_from_quat
 
 PHONE_WIDTH_PX = 700
@@ -248,6 +257,17 @@ class Screen:
                     node.p_node,
                     axes_length=node.length_m,
                     axes_radius=node.length_m / 20.0,
+                    **place,
+                )
+            case ImageNode():
+                return scene.add_image(
+                    node.path,
+                    np.flipud(node.rgba),  # viser has y downwards
+                    node.width_m,
+                    node.height_m,
+                    format="png",
+                    cast_shadow=False,
+                    receive_shadow=False,
                     **place,
                 )
             case GridNode():

@@ -30,12 +30,14 @@ from app.viewer.scene.layers import (
     LIDARS,
     NORTH,
     ODOMETRY,
+    PLAN,
     EdgeTable,
     Layer,
 )
-from app.viewer.scene.nodes import AxesNode, GridNode, LabelNode, LinesNode, Node
+from app.viewer.scene.nodes import AxesNode, GridNode, ImageNode, LabelNode, LinesNode, Node
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.trajectory import Times, Trajectory
+from recon4.slam2d.map_files import PlanarMap
 
 CLOSED_M = 2.0
 """Start and end nearer than this have one label [m]."""
@@ -47,6 +49,9 @@ PIECE = 500
 """Segments of a line, or edges, that are sent together."""
 MARK_M = 0.12
 """Half the size of the crosses at GNSS positions and measured points [m]."""
+UNDER_M = 0.05
+"""Of the image of a 2-D map below the trajectory [m]."""
+FREE_COLOR: Rgb = (38, 50, 56)
 MEASURED_COLOR: Rgb = (255, 235, 59)
 ERROR_RANGE = Range(0.0, 1.0)
 CHI2_RANGE = Range(0.0, 20.0)
@@ -88,6 +93,8 @@ class Content:
     """The points of the walk until there is a map."""
     sensors: tuple[str, ...] = ()
     """Names of the LiDARs."""
+    plan: PlanarMap | None = None
+    """The map of a 2-D laser."""
     gnss: GnssMarks | None = None
     crs: str = ""
     """Name of the CRS of the map; empty = not georeferenced."""
@@ -101,6 +108,7 @@ class Content:
     def layers(self) -> tuple[Layer, ...]:
         """Layers that can be switched on and off."""
         own = [
+            (PLAN, self.plan is not None),
             (FINAL, self.trajectory is not None),
             (ODOMETRY, self.odometry is not None),
             (FRAMES, self.edges is not None),
@@ -134,6 +142,8 @@ def describe(content: Content, view: ViewState) -> list[Node]:
     """List the nodes on screen. A hidden layer is sent but invisible: showing it is instant."""
     box = bounds(content)
     nodes: list[Node] = []
+    if content.plan is not None:
+        nodes.append(_plan(content.plan, view))
     for layer, line in ((FINAL, content.trajectory), (ODOMETRY, content.odometry)):
         if line is not None and len(line) > 1:
             nodes += _path(layer, line, view.shows(layer))
@@ -163,6 +173,8 @@ def bounds(content: Content) -> Bounds:
         if line is not None and len(line):
             corners += [line.T_a_b.t.min(axis=0), line.T_a_b.t.max(axis=0)]
             break
+    if content.plan is not None:
+        corners += _corners_m(content.plan)
     if not corners:
         return Bounds()
     return Bounds(np.min(corners, axis=0), np.max(corners, axis=0))
@@ -174,6 +186,29 @@ def grid_cell_m(box: Bounds) -> float:
         if box.size_m <= 50.0 * cell_m:
             return cell_m
     return 100.0
+
+
+def _plan(plan: PlanarMap, view: ViewState) -> ImageNode:
+    low_m, high_m = _corners_m(plan)
+    rgba = np.zeros((*plan.gray.shape, 4), np.uint8)
+    rgba[plan.free] = (*FREE_COLOR, 255)
+    rgba[plan.occupied] = (*PLAN.rgb, 255)
+    width_m, height_m, _ = high_m - low_m
+    return ImageNode(
+        path=f"/{PLAN.key}",
+        position_m=(low_m + high_m) / 2.0,
+        rgba=rgba,
+        width_m=float(width_m),
+        height_m=float(height_m),
+        visible=view.shows(PLAN),
+    )
+
+
+def _corners_m(plan: PlanarMap) -> tuple[Array, Array]:
+    """Lower left and upper right corner, just below the trajectory."""
+    rows, columns = plan.gray.shape
+    low_m = np.array([*plan.origin_m, -UNDER_M])
+    return low_m, low_m + plan.cell_m * np.array([columns, rows, 0.0])
 
 
 def _path(layer: Layer, line: Trajectory, visible: bool) -> Iterator[LinesNode]:

@@ -54,6 +54,7 @@ DECIDED_COLORS: dict[Verdict, Rgb] = {
 HIDDEN_AT_FIRST = {Reason.OVERLAP}
 """Candidates without overlap are many and not informative."""
 
+PLAN = Layer("plan", "2-D map", (236, 239, 241))
 FINAL = Layer("trajectory", "Trajectory", (255, 179, 0))
 ODOMETRY = Layer("odometry", "Odometry trajectory", (128, 110, 200), shown=False)
 FRAMES = Layer("frames", "Multiframes: body frames", (144, 164, 174), shown=False)

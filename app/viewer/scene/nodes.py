@@ -56,6 +56,16 @@ class AxesNode(Node):
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class ImageNode(Node):
+    """A horizontal image with x to the right and y up, around its position."""
+
+    rgba: NDArray[np.uint8]
+    """The first row has the largest y, (H, W, 4)."""
+    width_m: float
+    height_m: float
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class GridNode(Node):
     """A horizontal grid around its position."""
 

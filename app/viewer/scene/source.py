@@ -22,14 +22,16 @@ from recon4.geometry.se3 import Array
 from recon4.model.rig import load_rig
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
+from recon4.slam2d.map_files import read_map
 from recon4.store.arrays import load_trajectory
 from recon4.store.frames import open_frames
 from recon4.store.project import read_artifacts
 
 log = logging.getLogger(__name__)
 
-TRAJECTORY_STAGES = ("level", "refine")
-GRAPH_STAGES = ("level", "review", "verification", "graph")
+TRAJECTORY_STAGES = ("level", "refine", "map_2d")
+ODOMETRY_STAGES = ("odometry", "odometry_2d")
+GRAPH_STAGES = ("level", "review", "verification", "graph", "graph_2d")
 """Stages with these artifacts, the last one first."""
 SHOWN_WHILE_RUNNING = {"frames": (), "odometry": ("frames",), "graph": ("frames", "odometry")}
 """Running stage -> stages that are shown; the other artifacts are of an earlier run."""
@@ -101,7 +103,7 @@ class ProjectSource:
 
     def _compose(self) -> Content:
         live = self._watch.live
-        odometry = self._trajectory(("odometry",))
+        odometry = self._trajectory(ODOMETRY_STAGES)
         if live.stage == "odometry":
             odometry = live.trajectory
         trajectory = self._trajectory(TRAJECTORY_STAGES) or odometry
@@ -121,6 +123,7 @@ class ProjectSource:
             multiframes=frames,
             preview=self._preview(frames) if cloud is None else None,
             sensors=self._sensors(),
+            plan=self._of_stage("map_2d", read_map),
             gnss=self._gnss(georeference.georeference, trajectory),
             crs=georeference.crs.name if georeference.crs else "",
         )

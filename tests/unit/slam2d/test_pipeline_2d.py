@@ -8,8 +8,13 @@ import pytest
 
 from app.projects.import_folders import ImportFolders
 from app.projects.store import ProjectStore
+from app.viewer.client.view import ViewState
+from app.viewer.scene.build import bounds, describe
+from app.viewer.scene.nodes import ImageNode
+from app.viewer.scene.source import ProjectSource
 from recon4.cli.main import main
-from recon4.errors import ConfigError, EmptyRecording
+from recon4.errors import ConfigError, EmptyRecording, StoreError
+from recon4.geometry.se2 import transform
 from recon4.model.rig import load_rig
 from recon4.model.usability import Usability
 from recon4.pipeline import process
@@ -19,6 +24,7 @@ from recon4.recording.sources import Sources
 from recon4.results_2d import RESULTS_2D
 from recon4.settings import Settings, override
 from recon4.simulation.line_bag import open_line_bag
+from recon4.slam2d.map_files import read_map
 from recon4.store.hashing import hash_file
 from recon4.verify import verify
 from tests.g2o_reader import read_g2o
@@ -176,6 +182,40 @@ def test_the_pages_offer_the_files_of_a_2d_map(mapped):
     assert set(RESULTS_2D) <= {file.name for file in project.files}
     stages = ["scans_2d", "odometry_2d", "graph_2d", "verification", "map_2d"]
     assert [stage.stage for stage in project.stages] == stages
-    assert not project.viewable
+    assert project.viewable
     assert not project.has_map
     assert project.problem == ""
+
+
+def test_the_viewer_shows_the_map_its_trajectory_and_its_edges(mapped, room, tmp_path):
+    content = ProjectSource(mapped[0] / "out", tmp_path).content
+
+    nodes = describe(content, ViewState())
+    (image,) = [node for node in nodes if isinstance(node, ImageNode)]
+    rows, columns = np.nonzero(image.rgba[..., 0] > 200)
+    height, width = image.rgba.shape[:2]
+    right = ((columns + 0.5) / width - 0.5) * image.width_m
+    up = (0.5 - (rows + 0.5) / height) * image.height_m
+    p_map = np.stack([right, up], axis=1) + image.position_m[:2]
+    distance = distance_to_walls(transform(room.truth[0], p_map))
+    assert np.mean(distance < 0.1) > 0.9
+    assert any(node.path.startswith("/trajectory/") for node in nodes)
+    assert any(node.path.startswith("/edges/") for node in nodes)
+    assert bounds(content).size_m > 8.0
+
+
+def distance_to_walls(p):
+    walls = furnished_room()
+    start, along_wall = walls[:, :2], walls[:, 2:] - walls[:, :2]
+    away = p[:, None] - start
+    share = np.einsum("nwi,wi->nw", away, along_wall) / np.einsum("wi,wi->w", *[along_wall] * 2)
+    nearest = start + np.clip(share, 0.0, 1.0)[..., None] * along_wall
+    return np.linalg.norm(p[:, None] - nearest, axis=2).min(axis=1)
+
+
+def test_a_damaged_map_is_named(mapped, tmp_path):
+    (tmp_path / "map.png").write_bytes((mapped[0] / "out" / "map.png").read_bytes()[:60])
+    (tmp_path / "map.yaml").write_bytes((mapped[0] / "out" / "map.yaml").read_bytes())
+
+    with pytest.raises(StoreError, match="the 2-D map cannot be read"):
+        read_map(tmp_path)
