@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from recon4 import stages
+from recon4 import stages, stages_2d
 from recon4.errors import ConfigError, RecordingError, StoreError
 from recon4.model.figures import CalibrationFigures
 from recon4.model.rig import Rig, format_rig, load_rig
-from recon4.pipeline_2d import is_2d, process_2d
+from recon4.pipeline_2d import is_2d, process_2d, remake_2d
 from recon4.progress import Progress, Silent
 from recon4.recording.sources import Sources
 from recon4.results import About, Summary, publish
@@ -158,7 +158,7 @@ def _inputs(project: Project, sources: Sources, progress: Progress) -> dict[str,
     }
 
 
-def remake(out: Path, *, progress: Progress | None = None) -> Summary:
+def remake(out: Path, *, progress: Progress | None = None) -> Summary | Summary2d:
     """Make the map of a project again with the current decisions.
 
     The stages before them are kept as they are, so no recording is needed; the others run with the
@@ -175,6 +175,8 @@ def remake(out: Path, *, progress: Progress | None = None) -> Summary:
     """
     progress = progress or Silent()
     made = read_artifacts(out)
+    if stages_2d.MAP_2D.name in made:
+        return remake_2d(out, progress=progress)
     if "map" not in made:
         raise StoreError(f"{out.name} has no map yet: process its recording to the end first")
     before = [stage.name for stage in BEFORE_REVIEW]

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from recon4 import stages, stages_2d
 from recon4.errors import ConfigError
@@ -12,11 +14,32 @@ from recon4.recording.laser2d import is_laser2d
 from recon4.recording.sources import Sources
 from recon4.results import About
 from recon4.results_2d import Summary2d, publish_2d
+from recon4.review.decisions import Decided
+from recon4.review.journal import read_decided
 from recon4.settings import Settings
 from recon4.store.hashing import size_of
 from recon4.store.inputs import input_files
-from recon4.store.project import Project, read_description
-from recon4.store.stage import Input, StageRunner
+from recon4.store.project import Project, read_artifacts, read_description
+from recon4.store.recipes import check_recipes, settings_in
+from recon4.store.stage import Artifact, Input, Stage, StageRunner
+
+BEFORE_REVIEW_2D: tuple[Stage[Any], ...] = (
+    stages_2d.SCANS_2D,
+    stages_2d.ODOMETRY_2D,
+    stages_2d.GRAPH_2D,
+    stages.VERIFICATION,
+)
+"""What decisions of people do not change."""
+
+
+@dataclass(frozen=True, slots=True)
+class Planar:
+    """Artifacts that decisions of people do not change."""
+
+    scans: Artifact
+    odometry: Artifact
+    graph: Artifact
+    """Verified."""
 
 
 def is_2d(recordings: Sequence[Path]) -> bool:
@@ -56,19 +79,54 @@ def process_2d(
         ]
         project.describe(preset=preset, rig="", inputs=inputs)
         runner = StageRunner(project, settings, progress)
-        run_stages_2d(runner, recordings)
+        run_stages_2d(runner, recordings, read_decided(out))
         about = About(read_description(out), settings)
         return publish_2d(out, runner.runs, about, progress=progress)
 
 
-def run_stages_2d(runner: StageRunner, recordings: Input) -> None:
+def remake_2d(out: Path, *, progress: Progress) -> Summary2d:
+    """Make the 2-D map of a project again with the current decisions, without its recording.
+
+    Args:
+        out: A project that was processed to its end.
+        progress: Who watches.
+
+    Raises:
+        StoreError: If a stage is missing or damaged, the project is in use or cannot be written.
+        Recon4Error: Whatever else stops a stage.
+        Cancelled: If the watcher requested to stop; the next call continues from there.
+    """
+    made = read_artifacts(out)
+    before = [stage.name for stage in BEFORE_REVIEW_2D]
+    check_recipes(made.values())
+    settings = settings_in(made[name] for name in sorted(made, key=before.__contains__))
+    with Project.open(out) as project:
+        runner = StageRunner(project, settings, progress)
+        scans, odometry, _, graph = (runner.keep(stage) for stage in BEFORE_REVIEW_2D)
+        run_from_review_2d(runner, Planar(scans, odometry, graph), read_decided(out))
+        about = About(read_description(out), settings)
+        return publish_2d(out, runner.runs, about, progress=progress)
+
+
+def run_stages_2d(runner: StageRunner, recordings: Input, decided: Decided) -> None:
     """Every stage in order; each is skipped when its artifact is there."""
     run = runner.run
     scans = run(stages_2d.SCANS_2D, recordings=recordings)
     odometry = run(stages_2d.ODOMETRY_2D, scans=scans)
     searched = run(stages_2d.GRAPH_2D, scans=scans, odometry=odometry)
     graph = run(stages.VERIFICATION, graph=searched)
-    run(stages_2d.MAP_2D, scans=scans, odometry=odometry, graph=graph)
+    run_from_review_2d(runner, Planar(scans, odometry, graph), decided)
+
+
+def run_from_review_2d(runner: StageRunner, made: Planar, decided: Decided) -> None:
+    """The stages that depend on decisions of people, as `recon4.pipeline.run_from_review`."""
+    graph = made.graph
+    if decided:
+        decisions = Input(decided.key, decided.standing)
+        graph = runner.run(stages.REVIEW, graph=graph, decisions=decisions)
+    else:
+        runner.skip(stages.REVIEW)
+    runner.run(stages_2d.MAP_2D, scans=made.scans, odometry=made.odometry, graph=graph)
 
 
 def _check_sources(sources: Sources) -> None:

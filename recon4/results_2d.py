@@ -150,7 +150,7 @@ def _facts(runs: Mapping[str, StageRun[Any]], trajectory: Trajectory, length_m: 
         map=figures_of(runs, stages_2d.MAP_2D),
         steps=load_record(folder["odometry_2d"] / "steps.npz", Steps2d),
         poses=from_se3(trajectory.T_a_b),
-        graph=load_graph(folder[stages.VERIFICATION.name]),
+        graph=load_graph(_final_graph(folder)),
         path_length_m=length_m,
     )
 
@@ -158,7 +158,7 @@ def _facts(runs: Mapping[str, StageRun[Any]], trajectory: Trajectory, length_m: 
 def _writers(root: Path, runs: Mapping[str, StageRun[Any]]) -> list[Callable[[], None]]:
     """One function a file of `RESULTS_2D`."""
     folder = {name: run.artifact.folder for name, run in runs.items()}
-    graph = folder[stages.VERIFICATION.name]
+    graph = _final_graph(folder)
     return [
         lambda: copy_file(folder["map_2d"] / "map.png", root / "map.png"),
         lambda: copy_file(folder["map_2d"] / "map.yaml", root / "map.yaml"),
@@ -167,6 +167,11 @@ def _writers(root: Path, runs: Mapping[str, StageRun[Any]]) -> list[Callable[[],
         lambda: copy_file(graph / "edges.json", root / "edges.json"),
         lambda: _write_graph(graph, root / "graph.g2o"),
     ]
+
+
+def _final_graph(folder: Mapping[str, Path]) -> Path:
+    """The graph with the decisions of people, if there are any."""
+    return folder.get(stages.REVIEW.name) or folder[stages.VERIFICATION.name]
 
 
 def _write_trajectory(artifact: Path, path: Path) -> None:

@@ -179,7 +179,7 @@ def remake(project_id: str, server: Server, request: Request) -> JobView:
 
     Neither the recording nor an earlier job of this server is needed.
     """
-    server.projects.map_artifact(project_id)  # raises if there is no map
+    server.projects.map_of_any_kind(project_id)  # raises if there is no map
     _refuse_too_many(server)
     earlier = server.jobs.of_project(project_id)
     inputs = replace(earlier[0].inputs if earlier else Inputs(recordings=()), remake=True)

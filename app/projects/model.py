@@ -18,6 +18,9 @@ RESULTS: dict[str, str] = {
 }
 """Files of a project that may be downloaded, and their descriptions."""
 
+MAP_IMAGE = "map.png"
+"""In the artifact of a 2-D map."""
+
 STAGE_ORDER = (
     "frames",
     "odometry",
@@ -80,7 +83,7 @@ class ProjectView:
     viewable: bool
     """Whether the viewer can show it in 3-D."""
     has_map: bool
-    """Whether there is a map, for a thumbnail."""
+    """Whether there is a map, also a 2-D one, for a thumbnail."""
     summary: dict[str, Any]
     """``summary.json`` of the run; empty before."""
     problem: str = ""

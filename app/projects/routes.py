@@ -16,7 +16,7 @@ from app.jobs.model import JobState
 from app.names import Name
 from app.network.request_caller import CalledBy
 from app.projects.inspect_recording import RecordingSummary, files_beside, inspect_recording
-from app.projects.model import FolderEntry, ProjectCard, ProjectView
+from app.projects.model import MAP_IMAGE, FolderEntry, ProjectCard, ProjectView
 from app.projects.trash import Deleted
 
 router = APIRouter(
@@ -125,8 +125,10 @@ def report(project_id: str, server: Server) -> FileResponse:
 
 @router.get("/projects/{project_id}/thumbnail", response_class=FileResponse, summary="Thumbnail")
 async def thumbnail(project_id: str, server: Server, caller: CalledBy) -> FileResponse:
-    """The map from above as PNG image; made at the first request."""
-    artifact = await run_in_threadpool(server.projects.map_artifact, project_id)
+    """The map from above as PNG image, made at the first request; a 2-D map is its own image."""
+    artifact = await run_in_threadpool(server.projects.map_of_any_kind, project_id)
+    if (artifact / MAP_IMAGE).is_file():
+        return FileResponse(artifact / MAP_IMAGE, media_type="image/png")
     return FileResponse(await caller.wait(server.thumbnails.of(artifact, person=caller.name)))
 
 

@@ -116,8 +116,18 @@ class ProjectStore:
         """
         found = self.artifact(project_id, "map")
         if found is None:
+            if self.artifact(project_id, "map_2d") is not None:
+                raise NotFound(f"project {project_id} has a 2-D map: it has no points in space")
             raise NotFound(f"project {project_id} has no map yet")
         return found
+
+    def map_of_any_kind(self, project_id: str) -> Path:
+        """The artifact of the stage ``map`` or ``map_2d`` of the latest run.
+
+        Raises:
+            NotFound: If there is neither yet.
+        """
+        return self.artifact(project_id, "map_2d") or self.map_artifact(project_id)
 
     def artifact(self, project_id: str, stage: str) -> Path | None:
         """The artifact of a stage of the latest run; None = there is none.
@@ -231,7 +241,7 @@ def _read_card(folder: Path, stamp: Stamp) -> ProjectCard:
         updated=_iso(max(t_ns for t_ns in stamp if t_ns is not None) / 1e9),
         preset=visible(str(facts.get("preset") or "")),
         rig=_name_of(facts.get("rig")),
-        has_map=finished and "points" in summary,
+        has_map=finished and ("points" in summary or summary.get("map") == "2d"),
         path_length_m=_number(summary.get("path_length_m")),
         points=_whole(summary.get("points")),
         usability=_usability(summary),

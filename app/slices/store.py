@@ -116,7 +116,7 @@ class Slices:
         others = [
             OtherMap(f"project:{card.id}", f"Project {card.name}")
             for card in self._projects.all()
-            if card.has_map and card.id != project_id
+            if card.points and card.id != project_id
         ]
         return earlier[:20] + others[:200]
 

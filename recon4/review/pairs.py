@@ -24,6 +24,7 @@ from recon4.registration.overlap import RangeImage, overlap
 from recon4.registration.submap import NodeRangeImages, Submaps
 from recon4.review.apply import is_measured, rows_by_pair
 from recon4.review.decisions import Measurement, Pair, numbers_of, pose_of
+from recon4.review.planar_pairs import align_keyframes, keyframe_points
 from recon4.review.queue import MAX_PATHS, AlternativePath, alternative_paths
 from recon4.review.source import Source
 from recon4.review.turn_pairs import align_turns, has_turns, multiframes_of
@@ -99,10 +100,8 @@ def pair_points(source: Source, pair: Pair, reach: int) -> bytes:
     if not 0 <= reach <= MAX_REACH:
         raise ConfigError(f"reach must be 0 to {MAX_REACH} multiframes, got {reach}")
     nodes = nodes_of(source.verified, pair)
-    clouds = [
-        _cloud(source, frame, _around(source, node, reach))
-        for frame, node in zip(pair, nodes, strict=True)
-    ]
+    points = keyframe_points if source.is_2d else _points
+    clouds = [_thinned(points(source, node, reach)) for node in nodes]
     head = LAYOUT.pack(MAGIC, 1, len(clouds[0]), len(clouds[1]))
     return head + b"".join(np.ascontiguousarray(cloud, "<f4").tobytes() for cloud in clouds)
 
@@ -150,8 +149,9 @@ def align(source: Source, pair: Pair, predicted: tuple[float, ...]) -> Alignment
     """
     T_predicted = _checked(predicted)
     nodes = nodes_of(source.verified, pair)
-    if has_turns(source):
-        edge = align_turns(source, nodes, T_predicted)
+    if source.is_2d or has_turns(source):
+        method = align_keyframes if source.is_2d else align_turns
+        edge = method(source, nodes, T_predicted)
         return Alignment(_measurement(edge), edge.converged, str(edge.reason))
     # An operator's pair is registered at any overlap.
     settings = replace(source.settings, overlap=replace(source.settings.overlap, threshold=0.0))
@@ -240,14 +240,15 @@ def _around(source: Source, node: int, reach: int) -> range:
     return range(max(own.start - reach, 0), min(own.stop + reach, len(source.frames)))
 
 
-def _cloud(source: Source, frame: int, near: range) -> NDArray[np.float64]:
-    """Points of some multiframes in the body frame of one [m], (N, 3), thinned evenly."""
+def _points(source: Source, node: int, reach: int) -> Array:
+    """Points of a node and the multiframes around it, in its body frame [m], (N, 3)."""
     frames, odometry = source.frames, source.odometry
+    frame = int(source.verified.frame_ids[node])
+    near = _around(source, node, reach)
     parts = [place(frames[k], odometry, frames.rig) for k in near]
     T_odom_body = odometry.at(frames.t_mid_ns[frame : frame + 1])[0]
     p_body = T_odom_body.inverse() @ np.concatenate(parts)
-    p_body = p_body[np.linalg.norm(p_body, axis=1) < _MAX_RANGE_M]
-    return _thinned(p_body)
+    return np.asarray(p_body[np.linalg.norm(p_body, axis=1) < _MAX_RANGE_M])
 
 
 def _thinned(p_body: Array) -> Array:
@@ -273,7 +274,7 @@ def _upright(source: Source, graph: PoseGraph, node: int) -> tuple[float, ...]:
 
 
 def _by_odometry(source: Source, i: int, j: int) -> SE3 | None:
-    if "odometry" not in source.artifacts:
+    if not source.artifacts.keys() & {"odometry", "odometry_2d"}:
         return None
     T = source.odometry.at(source.verified.t_ns[[i, j]])
     return T[0].inverse() @ T[1]

@@ -12,13 +12,15 @@ from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
 from recon4.profiler.turns import TurnNodes, find_turns
 from recon4.settings import Settings
+from recon4.slam2d.keyframes import Keyframes
+from recon4.slam2d.stage import read_keyframes
 from recon4.store.arrays import load_trajectory
 from recon4.store.frames import FrameStore, open_frames
 from recon4.store.line_store import load_lines
 from recon4.store.project import read_artifacts
 from recon4.store.recipes import check_recipes, settings_in
 
-_MADE_WITH = ("graph", "verification")
+_MADE_WITH = ("graph", "graph_2d", "verification")
 """Stages whose settings a review uses."""
 
 
@@ -57,10 +59,22 @@ class Source:
         """Settings of the search and the verification; others are the defaults."""
         return settings_in(self.artifacts[n] for n in _MADE_WITH if n in self.artifacts)
 
+    @property
+    def is_2d(self) -> bool:
+        """Whether the nodes are scans of a 2-D laser."""
+        return "scans_2d" in self.artifacts
+
     @cached_property
     def odometry(self) -> Trajectory:
         """``T_odom_body``, dense."""
-        return load_trajectory(self._folder("odometry") / "trajectory.npz")
+        stage = "odometry_2d" if self.is_2d else "odometry"
+        return load_trajectory(self._folder(stage) / "trajectory.npz")
+
+    @cached_property
+    def keyframes(self) -> Keyframes:
+        """The nodes of a 2-D map with their returns."""
+        scans, odometry = self._folder("scans_2d"), self._folder("odometry_2d")
+        return read_keyframes(scans, odometry, settings=self.settings.slam2d)
 
     @cached_property
     def frames(self) -> FrameStore:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import shutil
 import struct
+import zlib
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -23,6 +24,8 @@ VLR_USER = b"recon4"
 VLR_RECORD = 1
 _VLR = struct.Struct("<H16sHH32s")
 _POINTS_AT, _EVLRS_AT = 96, 235
+_PNG_HEADER_BYTES = 8 + 25
+"""Signature and header chunk."""
 _HEADER_BYTES = 375
 """Of LAS 1.4, the only version `recon4.export.laz` writes."""
 
@@ -93,8 +96,19 @@ def _after_first_line(prefix: str) -> Callable[[BinaryIO, BinaryIO, Stamp], None
     return write
 
 
-def _tum(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
+def _comment_first(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
     target.write(f"# recon4 approval {stamp.json_line()}\n".encode("ascii"))
+    shutil.copyfileobj(source, target, 1 << 20)
+
+
+def _png(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
+    """A text chunk with the keyword ``recon4 approval`` after the header chunk."""
+    header = source.read(_PNG_HEADER_BYTES)
+    if len(header) < _PNG_HEADER_BYTES or header[:8] != b"\x89PNG\r\n\x1a\n":
+        raise StoreError("a PNG file was expected")
+    body = b"tEXtrecon4 approval\0" + stamp.json_line().encode("ascii")
+    target.write(header + struct.pack(">I", len(body) - 4) + body)
+    target.write(struct.pack(">I", zlib.crc32(body)))
     shutil.copyfileobj(source, target, 1 << 20)
 
 
@@ -122,7 +136,9 @@ _WRITERS: dict[str, Callable[[BinaryIO, BinaryIO, Stamp], None]] = {
     ".g2o": _after_first_line("#"),
     ".csv": _after_first_line("#"),
     ".dxf": _dxf,
-    ".tum": _tum,
+    ".tum": _comment_first,
+    ".yaml": _comment_first,
+    ".png": _png,
     ".json": _json,
     ".html": _html,
 }

@@ -27,6 +27,9 @@ _MOVED_M = 0.5
 _RETRY_MOVE_M = 0.5
 """A rejected pair is tried again after its predicted pose has moved by more than this [m]."""
 
+_GIVEN_M, _GIVEN_RAD = 0.5, 0.2
+"""How far off a pose may be that a person predicted."""
+
 Pair = tuple[int, int]
 
 
@@ -124,6 +127,16 @@ class SubmapRegistrar:
             self._map.add(points)
             for pair in group:
                 yield self._edge(pair, field, _predicted(graph, pair))
+            self._map.remove(points)
+
+    def register_at(self, pair: Pair, predicted: Array) -> Edge:
+        """Register two nodes from a pose that a person predicted: x [m], y [m], yaw [rad], (3,)."""
+        points, _ = self._keyframes.around(pair[0], self._loops.target_reach)
+        field = LikelihoodField.of(points) if len(points) else None
+        self._map.add(points)
+        try:
+            return self._edge(Candidate2d(*pair, _GIVEN_M, _GIVEN_RAD), field, predicted)
+        finally:
             self._map.remove(points)
 
     def _edge(self, pair: Candidate2d, field: LikelihoodField | None, predicted: Array) -> Edge:

@@ -19,8 +19,9 @@ from recon4.progress import Progress
 from recon4.recording.laser2d import read_laser2d
 from recon4.recording.report import ImportReport
 from recon4.settings import Settings
+from recon4.settings.slam2d import Slam2dSettings
 from recon4.slam2d.beam_order import with_true_order
-from recon4.slam2d.keyframes import make_keyframes
+from recon4.slam2d.keyframes import Keyframes, make_keyframes
 from recon4.slam2d.loops import close_loops
 from recon4.slam2d.map_files import write_map
 from recon4.slam2d.occupancy import OccupancyGrid, crossing_ratio
@@ -120,6 +121,18 @@ def run_odometry(
         searched=int(steps.searched.sum()),
         resets=int(steps.resets.sum()),
     )
+
+
+def read_keyframes(scans: Path, odometry: Path, *, settings: Slam2dSettings) -> Keyframes:
+    """The keyframes of a finished odometry, with their returns.
+
+    Args:
+        scans: Folder of `import_scans`.
+        odometry: Folder of `run_odometry`.
+        settings: Those of the odometry.
+    """
+    steps = load_record(odometry / "steps.npz", Steps2d)
+    return make_keyframes(read_scans(scans), steps, attitude=None, settings=settings)
 
 
 def build_graph(

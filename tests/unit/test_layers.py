@@ -68,6 +68,7 @@ MAY_IMPORT = {
         "recon4.mapping",
         "recon4.profiler",
         "recon4.review",
+        "recon4.slam2d",
     }
     | {"recon4.report.approval"},
     "recon4/intensity": STAGE | {"recon4.mapping", "recon4.intensity"},

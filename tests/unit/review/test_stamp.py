@@ -5,6 +5,7 @@ import json
 import laspy
 import numpy as np
 import pytest
+from PIL import Image
 
 from recon4.errors import StoreError
 from recon4.review.stamp import Stamp, stamp_file
@@ -41,6 +42,7 @@ def test_a_laz_file_keeps_its_points_and_all_its_records(tmp_path, evlr):
         ("a.g2o", "# recon4\nVERTEX\n", 1),
         ("a.csv", "# recon4 slice\nx,y\n", 1),
         ("a.tum", "1 0 0 0 0 0 0 1\n", 0),
+        ("a.yaml", "image: map.png\n", 0),
     ],
 )
 def test_a_text_file_gets_one_line_more(tmp_path, name, text, line):
@@ -61,6 +63,7 @@ def test_a_text_file_gets_one_line_more(tmp_path, name, text, line):
         ("a.laz", b"LASF\x01\x02"),
         ("a.laz", b"LASF" + bytes(20) + b"\x01\x02" + bytes(400)),  # LAS 1.2
         ("a.json", b"[1]"),
+        ("a.png", b"\xff\xd8\xff\xe0" + bytes(60)),  # JPEG
     ],
 )
 def test_a_file_that_is_something_else_is_refused(tmp_path, name, data):
@@ -70,6 +73,19 @@ def test_a_file_that_is_something_else_is_refused(tmp_path, name, data):
         stamp_file(tmp_path / name, tmp_path / name, STAMP)
 
     assert (tmp_path / name).read_bytes() == data
+
+
+def test_an_image_keeps_its_pixels_and_gets_a_text(tmp_path):
+    pixels = np.arange(12, dtype=np.uint8).reshape(3, 4)
+    Image.fromarray(pixels).save(tmp_path / "map.png")
+
+    stamp_file(tmp_path / "map.png", tmp_path / "map.png", STAMP)
+
+    with Image.open(tmp_path / "map.png") as image:
+        image.verify()
+    with Image.open(tmp_path / "map.png") as image:
+        np.testing.assert_array_equal(np.asarray(image), pixels)
+        assert json.loads(image.text["recon4 approval"])["hash"] == "ab"
 
 
 def test_a_kind_that_cannot_carry_an_approval_is_refused(tmp_path):
