@@ -15,18 +15,18 @@ from recon4.export.names import check_name
 from recon4.export.ply import export_ply
 from recon4.georeference.stage import read_crs
 from recon4.mapping.tiles import TileSet
-from recon4.model.figures import Figures
+from recon4.model.figures import Figures, UncertaintyFigures
 from recon4.model.plain import to_plain
 from recon4.model.trajectory import Trajectory
 from recon4.model.usability import MapVerdict
 from recon4.pose_graph.files import load_graph
-from recon4.pose_graph.g2o import write_g2o
 from recon4.progress import Progress, track
-from recon4.recording.formats.poses import write_kitti, write_tum
+from recon4.recording.formats.poses import write_kitti
 from recon4.report.artifacts import path_length_m
 from recon4.report.facts import InputFile, ReportFacts, StageTiming
 from recon4.report.html import write_report
 from recon4.report.verdict import Assessment, assess
+from recon4.result_files import write_graph, write_pose_covariances, write_trajectory
 from recon4.review.approval import put_back
 from recon4.review.approved import Approval, approval_of
 from recon4.review.stamp import Stamp, stamp_file
@@ -40,9 +40,11 @@ from recon4.store.project import SUMMARY, read_artifacts
 from recon4.store.seal import changing
 from recon4.store.stage import StageRun, figures_of, versions
 
+COVARIANCES = "poses_covariance.txt"
 RESULTS = (
     "trajectory.tum",
     "odometry.tum",
+    COVARIANCES,
     "map.laz",
     "edges.json",
     "graph.g2o",
@@ -127,6 +129,8 @@ class Summary:
     edges: Mapping[str, int]
     """Pairs tried by verdict, as ``edges.json`` has them: positions had the last word."""
     verdict: MapVerdict
+    uncertainty: UncertaintyFigures | None
+    """How well the poses are known; null = not stated."""
     warnings: tuple[str, ...]
     seconds: float
     """Wall clock of all stages, of the earlier run where reused [s]."""
@@ -192,6 +196,7 @@ def _publish(
         points=figures_of(runs, stages.MAP).points,
         edges=load_graph(runs["level"].artifact.folder).verdict_counts(),
         verdict=assessed.verdict,
+        uncertainty=level.uncertainty,
         warnings=(*frames.warnings, *_rig_warnings(runs), *_later_warnings(runs), *warning),
         seconds=round(sum(run.done.seconds for run in runs.values()), 3),
         peak_bytes=max(run.done.peak_bytes for run in runs.values()),
@@ -328,23 +333,14 @@ def _writers(
     """One function a file of `RESULTS`."""
     folder = {name: run.artifact.folder for name, run in runs.items()}
     return [
-        lambda: _write_trajectory(folder["level"], root / "trajectory.tum"),
-        lambda: _write_trajectory(folder["odometry"], root / "odometry.tum"),
+        lambda: write_trajectory(folder["level"], root / "trajectory.tum"),
+        lambda: write_trajectory(folder["odometry"], root / "odometry.tum"),
+        lambda: write_pose_covariances(folder["frames"], folder["level"], root / COVARIANCES),
         lambda: copy_file(folder["map"] / "map.laz", root / "map.laz"),
         lambda: copy_file(folder["level"] / "edges.json", root / "edges.json"),
-        lambda: _write_g2o(folder["level"], root / "graph.g2o"),
+        lambda: write_graph(folder["level"], root / "graph.g2o"),
         lambda: write_report(root / "report.html", assessed),
     ]
-
-
-def _write_trajectory(artifact: Path, path: Path) -> None:
-    with atomic_file(path) as temporary:
-        write_tum(temporary, load_trajectory(artifact / "trajectory.npz"))
-
-
-def _write_g2o(artifact: Path, path: Path) -> None:
-    with atomic_file(path) as temporary:
-        write_g2o(temporary, load_graph(artifact))
 
 
 def report_facts(runs: Mapping[str, StageRun[Any]], about: About, *, created: str) -> ReportFacts:

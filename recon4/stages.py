@@ -276,7 +276,7 @@ def _refine_lines(
 FRAMES = Stage("frames", 6, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    10,
+    11,
     ("segments", "registration", "planes", "scans", "odometry"),
     _odometry,
     OdometryFigures,

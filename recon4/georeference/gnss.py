@@ -90,6 +90,8 @@ class GeoreferenceResult:
     """Number of fixes in the recording."""
     rejected: tuple[int, ...] = ()
     """Rows of edges rejected because they contradict the GNSS priors."""
+    positions: PositionPriors | None = None
+    """The fixes used, as the graph has them."""
 
     @property
     def rmse_m(self) -> Array:
@@ -188,6 +190,7 @@ def _place_by_priors(
         used=used,
         samples=samples,
         rejected=tuple(rejected),
+        positions=_positions(gnss_priors.take(used), settings),
     )
 
 

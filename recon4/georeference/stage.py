@@ -23,6 +23,8 @@ from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import save_graph
 from recon4.pose_graph.relations import with_residuals
+from recon4.pose_graph.uncertainty import PoseUncertainty, pose_uncertainty
+from recon4.pose_graph.uncertainty_files import save_uncertainty, uncertainty_figures
 from recon4.pose_graph.verification import confirmed_again
 from recon4.progress import Progress
 from recon4.settings import Settings
@@ -66,9 +68,15 @@ class LeveledMap:
     """None: the map is not georeferenced."""
     antenna: AntennaFigures | None
     """Audit of the antenna; None = too few fixes."""
+    uncertainty: PoseUncertainty | None
+    """Covariances of the poses of the nodes; None = not stated."""
 
     def save(self, out: Path) -> LevelFigures:
-        """Write ``trajectory.npz``, the files of the graph and ``georeference.json``."""
+        """Write ``trajectory.npz``, the files of the graph, ``georeference.json`` and, where
+        covariances are stated, ``uncertainty.npz``.
+        """
+        if self.uncertainty is not None:
+            save_uncertainty(out, self.uncertainty)
         save_trajectory(out / "trajectory.npz", self.trajectory)
         save_graph(out, self.graph)
         record: dict[str, object] = {
@@ -84,6 +92,9 @@ class LeveledMap:
             local=self.georeference.reason,
             edges_rejected=len(self.georeference.rejected),
             antenna=self.antenna,
+            uncertainty=(
+                uncertainty_figures(self.uncertainty, self.trajectory) if self.uncertainty else None
+            ),
             warnings=antenna_contradictions(self.antenna) if self.antenna else (),
         )
 
@@ -123,7 +134,10 @@ def level_and_georeference(
     if placed.rejected:
         judged = confirmed_again(judged, settings=settings.verification)
     progress.advance()
-    return LeveledMap(dense, with_residuals(judged), leveling, placed, crs, antenna)
+    # Line scans have errors of their own kind, which the model of the covariances does not know.
+    stated = frames.rig.row_of("profiler") is None
+    uncertainty = pose_uncertainty(judged, positions=placed.positions) if stated else None
+    return LeveledMap(dense, with_residuals(judged), leveling, placed, crs, antenna, uncertainty)
 
 
 def _audit_antenna(

@@ -164,6 +164,25 @@ class AntennaFigures(msgspec.Struct, frozen=True, kw_only=True):
     """Number of fixes used."""
 
 
+class UncertaintyFigures(msgspec.Struct, frozen=True, kw_only=True):
+    """How well the poses are known, from the covariances of the final graph."""
+
+    largest_sd_m: float
+    """Largest standard deviation of a position, along its worst axis [m]."""
+    at_s: float
+    """When, after the first pose [s]."""
+    at_m: Point
+    """Where, in the map [m]."""
+    on_earth: bool
+    """False: relative to the first pose. True: on the earth."""
+    point_from_s: float
+    """A control point from here … [s]"""
+    point_to_s: float
+    """… to here [s] …"""
+    point_sd_m: float
+    """… would reduce the largest standard deviation to this [m]."""
+
+
 class LevelFigures(Figures, frozen=True, kw_only=True):
     """The leveled map and its place on earth."""
 
@@ -179,6 +198,8 @@ class LevelFigures(Figures, frozen=True, kw_only=True):
     """Edges that contradict the positions."""
     antenna: AntennaFigures | None = None
     """Audit of the antenna; None = too few fixes."""
+    uncertainty: UncertaintyFigures | None = None
+    """None = not stated: line scans, or fewer than two nodes."""
     warnings: tuple[str, ...] = ()
 
 

@@ -22,6 +22,7 @@ from recon4.registration.point_map import PointMap, WeakDirections, frame_points
 from recon4.registration.scan_chain import ScanChain, body_points
 from recon4.registration.segments import Segments, sample_segments
 from recon4.registration.state import END, END_POSE, START, STATE, VECTOR
+from recon4.registration.weak_motion import unknown_speed_sd, weak_motion_cov
 from recon4.registration.zero_velocity import is_stationary, zero_velocity_update
 from recon4.settings import Settings
 
@@ -125,7 +126,9 @@ class Odometry:
         self._count_lost(lost=lost)
         self._state = _updated(prediction, fit, lost=lost, first=first)
         T_dense = prediction.T_odom_body if lost or first else fit.T_dense
-        step = _step(frame, prediction, fit, T_dense=T_dense, lost=lost)
+        step = _step(
+            frame, prediction, fit, T_dense=T_dense, lost=lost, unknown=self._unknown(frame, fit)
+        )
         if not lost:
             if self._is_keyframe(T_dense[-1]):
                 self._extend_map(segments, prediction.t_s, T_dense)
@@ -133,6 +136,22 @@ class Odometry:
             if self._chain:
                 self._chain.keep(step.T_odom_body, frame.t_mid_ns)
         return step
+
+    def _unknown(self, frame: Multiframe, fit: FrameFit) -> Array:
+        """Covariance of the motion that neither LiDAR nor GNSS nor standing still excludes."""
+        seconds = 1e-9 * frame.duration_ns
+        aided = self._aiding and self._aiding.pose(frame.t_ns + frame.duration_ns)
+        if aided or fit.stationary:
+            return np.zeros((6, 6))
+        moved_m = float(np.linalg.norm(fit.T_dense.t[-1] - fit.T_dense.t[0]))
+        with_imu = self._chain is None
+        unknown_m = seconds * unknown_speed_sd(moved_m / seconds, with_imu=with_imu)
+        return weak_motion_cov(
+            fit.match.weak_direction,
+            _weak_sd_m(fit),
+            unknown_m=unknown_m,
+            converged=with_imu or fit.converged,
+        )
 
     def _count_lost(self, *, lost: bool) -> None:
         """Count lost frames; with an IMU reset the map after ``odometry.restart_after`` of them.
@@ -240,6 +259,7 @@ def _step(
     *,
     T_dense: SE3,
     lost: bool,
+    unknown: Array,
 ) -> OdometryStep:
     end = prediction.T_odom_body[-1]
     middle = prediction.t_s[-1] / 2
@@ -259,7 +279,7 @@ def _step(
         fit.match.degeneracy,
         float(np.linalg.norm(T_dense.t[-1] - end.t)),
         lost,
-        _motion_cov(prediction.prior if lost else fit.P),
+        _motion_cov(prediction.prior if lost else fit.P) + unknown,
         fit.match.weak_direction,
         _weak_sd_m(fit),
         fit.stationary,

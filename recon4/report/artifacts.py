@@ -18,6 +18,8 @@ from recon4.model.figures import CalibrationFigures
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
+from recon4.pose_graph.uncertainty import PoseUncertainty
+from recon4.pose_graph.uncertainty_files import load_uncertainty
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.earlier_names import STEPS, current_names
 
@@ -42,6 +44,8 @@ class Results:
     """The latest trajectory after the odometry."""
     refine: dict[str, Any] = field(default_factory=dict)
     georeference: dict[str, Any] = field(default_factory=dict)
+    uncertainty: PoseUncertainty | None = None
+    """Covariances of the final poses; None = not stated."""
     intensity: dict[str, NDArray[Any]] = field(default_factory=dict)
     """Columns of ``diagnostics.npz``."""
 
@@ -62,6 +66,7 @@ def read_results(artifacts: Mapping[str, Path]) -> Results:
         final=_latest_trajectory(artifacts, ("level", "refine")),
         refine=_json(artifacts, "refine", "refine.json"),
         georeference=_json(artifacts, "level", "georeference.json"),
+        uncertainty=load_uncertainty(artifacts["level"]) if "level" in artifacts else None,
         intensity=_arrays(artifacts, "intensity", "diagnostics.npz"),
     )
 

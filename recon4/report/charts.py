@@ -12,6 +12,7 @@ from recon4.evaluation.slices import HISTOGRAM_STEP_M
 from recon4.geometry.se3 import Array
 from recon4.model.pose_graph import PoseGraph, Verdict
 from recon4.model.trajectory import Trajectory
+from recon4.pose_graph.uncertainty import PoseUncertainty
 from recon4.report.drift import DriftClosed
 from recon4.report.edges import by_verdict, spanning
 from recon4.report.figures import BLUE, GRAY, GREEN, ORANGE, PINK, cumulative, histogram, lines
@@ -23,9 +24,12 @@ _COLORS = {Verdict.ACCEPTED: BLUE, Verdict.REJECTED: ORANGE, Verdict.UNVERIFIED:
 
 
 def walk_charts(
-    final: Trajectory, steps: dict[str, NDArray[Any]], drift: DriftClosed | None
+    final: Trajectory,
+    steps: dict[str, NDArray[Any]],
+    drift: DriftClosed | None,
+    uncertainty: PoseUncertainty | None = None,
 ) -> Charts:
-    """Drift, height and tracking over time."""
+    """Drift, uncertainty, height and tracking over time."""
     out: Charts = []
     t_s = (final.t_ns - final.t_ns[0]) / 1e9
     time = "time from the start [s]"
@@ -42,6 +46,12 @@ def walk_charts(
             "loops", groups, labels=("residual of a loop closure [cm]", "loop closures"), log=True
         )
         out.append((svg, "Residuals of accepted loop closures to odometry and final poses."))
+    if uncertainty is not None:
+        at_s = (uncertainty.t_ns - final.t_ns[0]) / 1e9
+        series = [("", at_s, 200.0 * uncertainty.sd_m, BLUE)]
+        svg = lines("uncertainty", series, labels=(time, "2σ [cm]"), least=1.0)
+        where = "on the earth" if uncertainty.on_earth else "relative to the first pose"
+        out.append((svg, f"Uncertainty of the position along its worst axis, {where}."))
     series = [("", t_s, final.T_a_b.t[:, 2], BLUE)]
     svg = lines("height", series, labels=(time, "height [m]"), least=0.1)
     out.append((svg, "Height of the body."))

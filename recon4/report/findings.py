@@ -11,7 +11,8 @@ import numpy as np
 from recon4.evaluation.table import number, percentage
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Verdict
 from recon4.model.usability import UNOBSERVED_SECONDS
-from recon4.report.artifacts import Results
+from recon4.pose_graph.uncertainty_files import uncertainty_figures
+from recon4.report.artifacts import Results, path_length_m
 from recon4.report.contradictions import rejected_runs
 from recon4.report.drift import DriftClosed
 from recon4.report.facts import ReportFacts
@@ -20,6 +21,13 @@ from recon4.report.plausibility import MAX_SPEED_M_S, too_fast
 
 _GOAL_M = 0.05
 """Required relative error, V §3 [m]."""
+_KNOWN_M, _KNOWN_PER_METER = 0.05, 0.001
+"""Positions are known well with a 2σ of 5 cm and 0.1 % of the path length [m] …"""
+_UNKNOWN = 10.0
+"""… and unknown above this multiple."""
+_ANYWHERE_M = 100.0
+_HELPS = 0.8
+"""A control point is proposed if it leaves less than this ratio of the largest deviation."""
 _MAX_WARNINGS = 12
 _MIN_CONVERGED, _HALF = 0.9, 0.5
 
@@ -58,7 +66,7 @@ def headline(findings: Sequence[Finding]) -> tuple[Level, str]:
 def find(facts: ReportFacts, results: Results, drift: DriftClosed | None) -> list[Finding]:
     """All findings, worst first."""
     found = [*_tracking(results), *_converged(results), *_observability(results)]
-    found += _calibration(results)
+    found += [*_calibration(results), *_uncertain(results)]
     found += [*_plausibility(results), *_loops(results.graph), *_closed(drift)]
     found += [*_leveled(results), *_contradicted(results), *_rejected_fixes(results)]
     found += [*_imported(results), *_accuracy(facts)]
@@ -131,6 +139,27 @@ def _describe_stretch(stretch: WeakStretch) -> str:
 
 def _distance(sd_m: float) -> str:
     return f"{sd_m:.2f} m" if sd_m < 10.0 else "above 10 m"
+
+
+def _uncertain(results: Results) -> list[Finding]:
+    """Whether the positions are known well enough, and what would help."""
+    if results.uncertainty is None or results.final is None or len(results.final) < 2:
+        return []
+    found = uncertainty_figures(results.uncertainty, results.final)
+    known_m = 2.0 * found.largest_sd_m
+    limit_m = _KNOWN_M + _KNOWN_PER_METER * float(path_length_m(results.final)[-1])
+    place = "on the earth" if found.on_earth else "relative to the start"
+    known = _cm(known_m) if known_m < _ANYWHERE_M else "more than 100 m"
+    text = f"The positions are known to ± {known} (2σ) {place}"
+    if known_m <= limit_m:
+        return [Finding(Level.GOOD, f"{text} or better.")]
+    text += f" at worst, {found.at_s:.0f} s after the start."
+    if found.point_sd_m < _HELPS * found.largest_sd_m:
+        text += (
+            f" A control point between {found.point_from_s:.0f} s and {found.point_to_s:.0f} s "
+            f"would reduce this to ± {_cm(2.0 * found.point_sd_m)}."
+        )
+    return [Finding(Level.WARNING if known_m <= _UNKNOWN * limit_m else Level.BAD, text)]
 
 
 def _plausibility(results: Results) -> list[Finding]:

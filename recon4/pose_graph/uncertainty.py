@@ -1,0 +1,306 @@
+"""Covariance of every pose of a solved graph, with the correlated errors of odometry.
+
+The error of a pose is a turn about its own origin and a shift, both in the axes of the map. It is
+the sum of the errors of all odometry edges before it (turns with their lever arms), which are
+correlated over seconds: scans that follow each other are matched to the same map with the same
+errors. Registered edges and positions then add what they measured. The factors of `ErrorModel`
+come from walks with known truth (``docs/trust.md``).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+
+from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, skew
+from recon4.model.pose_graph import EdgeKind, PoseGraph, Relations, Rows
+from recon4.model.trajectory import Times
+from recon4.pose_graph.solve import PositionPriors
+
+_MAX_KNOTS = 300
+"""More nodes than this are joined: the work grows with the third power of their number."""
+_POINT_M = 0.01
+"""Standard deviation of a control point [m]."""
+_NEARLY = 1.2
+"""Places where a control point leaves at most this multiple of the smallest deviation."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ErrorModel:
+    """True errors of edges against the covariances that the stages state.
+
+    Where the LiDAR observes a direction, the stated deviations of odometry are several times too
+    large, because they are those of single multiframes added up. Where it does not, they are those
+    of the predicted velocity, whose error stays the same for seconds.
+    """
+
+    observed: float = 0.08
+    """Factor on the standard deviation of an odometry edge along directions that are observed."""
+    weak: float = 1.0
+    """The same along directions that are not."""
+    weak_m: float = 0.05
+    """Stated deviation of half a second of odometry at which a direction is weak [m] …"""
+    weak_rad: float = 0.01
+    """… and of its turn [rad]."""
+    turn_s: float = 5.0
+    """Time over which errors of turns are correlated [s] …"""
+    shift_s: float = 1.0
+    """… those of shifts along observed directions [s] …"""
+    weak_s: float = 10.0
+    """… and along weak ones [s]."""
+    registered: float = 0.5
+    """Factor on the standard deviation of neighbor and loop edges."""
+    anchor_rad: float = 3e-4
+    """Error of a single pose that no other shares: of the first, and of each [rad] …"""
+    anchor_m: float = 1.5e-3
+    """… and of its position [m]."""
+    gnss_m: float = 0.02
+    """Error of GNSS that all fixes of a walk share [m]."""
+
+
+CALIBRATED = ErrorModel()
+
+
+@dataclass(frozen=True, slots=True)
+class HelpfulPoint:
+    """Where a control point would reduce the largest standard deviation most."""
+
+    start_ns: int
+    end_ns: int
+    """Anywhere from start to end it helps nearly as much."""
+    largest_m: float
+    """Largest standard deviation of a position that remains [m]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PoseUncertainty:
+    """Covariances of poses at some times."""
+
+    t_ns: Times
+    """(N,)."""
+    cov: Array
+    """Turn about the pose's own origin, then shift, in the axes of the map, (N, 6, 6)."""
+    on_earth: bool
+    """False: relative to the first pose. True: in the frame of the positions."""
+    helpful: HelpfulPoint
+    """Where a control point would help most."""
+
+    @property
+    def sd_m(self) -> Array:
+        """Standard deviation of the position along its worst axis [m], (N,)."""
+        worst = np.linalg.eigvalsh(self.cov[:, TRANSLATION, TRANSLATION])[:, -1]
+        return np.sqrt(np.maximum(worst, 0.0))
+
+    def at(self, t_ns: Times) -> Array:
+        """Covariances at other times, linear between two and constant outside, (M, 6, 6)."""
+        start_ns = self.t_ns[0]
+        t, known = ((v - start_ns).astype(np.float64) for v in (t_ns, self.t_ns))
+        columns = [np.interp(t, known, column) for column in self.cov.reshape(-1, 36).T]
+        return np.stack(columns, axis=1).reshape(-1, 6, 6)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Chain:
+    """Knots of the walk with the odometry between them."""
+
+    t_ns: Times
+    T_map_body: SE3
+    step_cov: Array
+    """Covariance of the step to each knot but the first, in axes of the map, (K - 1, 6, 6)."""
+    step_rho: Array
+    """Correlation of its whitened error with that of the step before, symmetric, (K - 1, 6, 6)."""
+    knot_of: Rows
+    """Knot nearest to each node, (N,)."""
+
+
+def pose_uncertainty(
+    graph: PoseGraph,
+    *,
+    positions: PositionPriors | None = None,
+    model: ErrorModel = CALIBRATED,
+) -> PoseUncertainty | None:
+    """Covariances of the poses of a graph; None with fewer than two nodes.
+
+    Args:
+        graph: Solved; its odometry edges connect consecutive nodes.
+        positions: Positions of the antenna that place the map on earth; None = the first pose is
+            the reference.
+        model: Factors on the covariances of the edges.
+    """
+    if len(graph) < 2:
+        return None
+    chain = _chain(graph, model)
+    knots = len(chain.t_ns)
+    information = _odometry_information(chain)
+    _add_edges(information, graph.relations, graph, chain, model=model)
+    first = np.eye(6) * 1e12 if positions is None else np.diag(np.repeat([1e-2, 1e-6], 3))
+    information[:6, :6] += first
+    if positions is not None:
+        _add_positions(information, positions, graph, chain, model=model)
+    every = cho_solve(cho_factor(information), np.eye(6 * knots)).reshape(knots, 6, knots, 6)
+    own = np.arange(knots)
+    alone = _alone(chain, model, on_earth=positions is not None)
+    cov = every[own, :, own, :] + alone
+    place = every[:, TRANSLATION, :, TRANSLATION].transpose(0, 2, 1, 3)
+    helpful = _helpful(place, alone[:, TRANSLATION, TRANSLATION], chain.t_ns)
+    return PoseUncertainty(chain.t_ns, cov, positions is not None, helpful)
+
+
+def _helpful(cov: Array, alone: Array, t_ns: Times) -> HelpfulPoint:
+    """Try a control point at every knot.
+
+    Args:
+        cov: Of the positions of all knots, (K, K, 3, 3).
+        alone: What no control point changes, (K, 3, 3).
+        t_ns: Times of the knots, (K,).
+    """
+    knots = len(t_ns)
+    own = np.arange(knots)
+    noise = _POINT_M**2 * np.eye(3)
+    gain = np.linalg.inv(cov[own, own] + noise)
+    largest_m = np.empty(knots)
+    for k in range(knots):
+        left = cov[own, own] - cov[:, k] @ gain[k] @ np.swapaxes(cov[:, k], 1, 2)
+        worst = np.linalg.eigvalsh(left + alone)[:, -1].max()
+        largest_m[k] = np.sqrt(max(float(worst), 0.0))
+    best = int(np.argmin(largest_m))
+    near = largest_m <= _NEARLY * largest_m[best]
+    first = last = best
+    while first > 0 and near[first - 1]:
+        first -= 1
+    while last < knots - 1 and near[last + 1]:
+        last += 1
+    return HelpfulPoint(int(t_ns[first]), int(t_ns[last]), float(largest_m[best]))
+
+
+def _chain(graph: PoseGraph, model: ErrorModel) -> _Chain:
+    """Join nodes to at most `_MAX_KNOTS` knots."""
+    stride = -(-len(graph) // _MAX_KNOTS)
+    rows = np.unique(np.append(np.arange(0, len(graph), stride), len(graph) - 1))
+    step_cov, rate = _steps(graph, model)
+    step_s = _step_seconds(graph.t_ns)
+    covs, rhos = [], []
+    for first, last in pairwise(rows.tolist()):
+        move = _transport(graph.T_map_body.t[last] - graph.T_map_body.t[first + 1 : last + 1])
+        cov = (move @ step_cov[first:last] @ np.swapaxes(move, 1, 2)).sum(axis=0)
+        # The errors of the joined steps are correlated as all others.
+        values, V = np.linalg.eigh(rate[first:last].mean(axis=0))
+        at = np.cumsum(step_s[first:last])
+        apart_s = np.abs(at[:, None] - at)[:, :, None]
+        grow = V * np.sqrt(np.exp(-apart_s * values).sum(axis=(0, 1)) / len(at)) @ V.T
+        covs.append(grow @ cov @ grow)
+        rhos.append(V * np.exp(-step_s[first:last].sum() * values) @ V.T)
+    nearest = np.abs(graph.t_ns[:, None] - graph.t_ns[rows]).argmin(axis=1)
+    return _Chain(graph.t_ns[rows], graph.T_map_body[rows], np.array(covs), np.array(rhos), nearest)
+
+
+def _step_seconds(t_ns: Times) -> Array:
+    return np.maximum(np.diff(t_ns) / 1e9, 1e-3)
+
+
+def _transport(arm_m: Array) -> Array:
+    """Matrices that map the error of a pose to that of a body ``arm_m`` (N, 3) away, (N, 6, 6)."""
+    out = np.tile(np.eye(6), (len(arm_m), 1, 1))
+    out[:, TRANSLATION, ROTATION] = -skew(arm_m)
+    return out
+
+
+def _steps(graph: PoseGraph, model: ErrorModel) -> tuple[Array, Array]:
+    """Covariance of the odometry edge to each node but the first, and rates of decorrelation.
+
+    Returns:
+        Covariances and symmetric matrices with the inverse correlation times as eigenvalues
+        [1/s], (N - 1, 6, 6) each, in axes of the map.
+    """
+    stated = np.tile(np.eye(6), (len(graph) - 1, 1, 1))
+    for edge in graph.edges:
+        if edge.kind is EdgeKind.ODOMETRY and edge.j == edge.i + 1:
+            into_map = np.kron(np.eye(2), graph.T_map_body.R[edge.j])
+            stated[edge.i] = into_map @ np.linalg.inv(edge.information) @ into_map.T
+    half_s = 0.5 / _step_seconds(graph.t_ns)[:, None]
+    cov, rate = np.zeros_like(stated), np.zeros_like(stated)
+    for part, weak_at, observed_s in (
+        (ROTATION, model.weak_rad, model.turn_s),
+        (TRANSLATION, model.weak_m, model.shift_s),
+    ):
+        values, V = np.linalg.eigh(stated[:, part, part])
+        weak = half_s**2 * values / (half_s**2 * values + weak_at**2)
+        true = values * (model.observed**2 + weak * model.weak**2)
+        inverse_s = (1.0 - weak) / observed_s + weak / model.weak_s
+        cov[:, part, part] = V * true[:, None, :] @ np.swapaxes(V, 1, 2)
+        rate[:, part, part] = V * inverse_s[:, None, :] @ np.swapaxes(V, 1, 2)
+    return cov, rate
+
+
+def _odometry_information(chain: _Chain) -> Array:
+    """Information of the errors of all knots by odometry alone, (6 K, 6 K); the gauge is free."""
+    knots = len(chain.t_ns)
+    steps = knots - 1
+    values, V = np.linalg.eigh(chain.step_cov)
+    root = np.einsum("nab,nb,ncb->nac", V, np.maximum(values, 1e-14) ** -0.5, V)
+    # Whitened steps: root (d_k - F_k d_(k-1)), correlated as an AR(1) process.
+    white = np.zeros((steps, 6, knots, 6))
+    rows = np.arange(steps)
+    move = _transport(np.diff(chain.T_map_body.t, axis=0))
+    white[rows, :, rows + 1, :] = root
+    white[rows, :, rows, :] = -root @ move
+    rho, U = np.linalg.eigh(chain.step_rho[1:])
+    rho = np.clip(rho, 0.0, 0.99)
+    back = U * (rho / np.sqrt(1.0 - rho**2))[:, None, :] @ np.swapaxes(U, 1, 2)
+    keep = U * (1.0 / np.sqrt(1.0 - rho**2))[:, None, :] @ np.swapaxes(U, 1, 2)
+    before = white[:-1].copy()
+    white[1:] = np.einsum("sab,sbkc->sakc", keep, white[1:])
+    white[1:] -= np.einsum("sab,sbkc->sakc", back, before)
+    flat = white.reshape(6 * steps, 6 * knots)
+    return np.asarray(flat.T @ flat)
+
+
+def _add_edges(
+    information: Array, of: Relations, graph: PoseGraph, chain: _Chain, *, model: ErrorModel
+) -> None:
+    """Add what registered edges measure, in place."""
+    i, j = chain.knot_of[of.i], chain.knot_of[of.j]
+    used = np.flatnonzero(of.in_graph & (of.j > of.i + 1) & (i != j))
+    if not len(used):
+        return
+    # Edges of the same two places share the errors of their sub-maps.
+    places = np.stack([i[used] // 2, j[used] // 2], axis=1)
+    _, which, count = np.unique(places, axis=0, return_inverse=True, return_counts=True)
+    move = _transport(chain.T_map_body.t[j[used]] - chain.T_map_body.t[i[used]])
+    for row, F, shared in zip(used, move, count[which.ravel()], strict=True):
+        into_map = np.kron(np.eye(2), graph.T_map_body.R[of.j[row]])
+        W = into_map @ of.information[row] @ into_map.T / (model.registered**2 * shared)
+        a, b = slice(6 * i[row], 6 * i[row] + 6), slice(6 * j[row], 6 * j[row] + 6)
+        information[a, a] += F.T @ W @ F
+        information[b, b] += W
+        information[a, b] -= F.T @ W
+        information[b, a] -= W @ F
+
+
+def _add_positions(
+    information: Array,
+    positions: PositionPriors,
+    graph: PoseGraph,
+    chain: _Chain,
+    *,
+    model: ErrorModel,
+) -> None:
+    """Add positions of the antenna, in place."""
+    arm = np.einsum("nij,nj->ni", graph.T_map_body.R[positions.node], positions.p_body)
+    J = np.concatenate([-skew(arm), np.tile(np.eye(3), (len(arm), 1, 1))], axis=2)
+    for node, row, sd_m in zip(chain.knot_of[positions.node], J, positions.sd_m, strict=True):
+        own = slice(6 * node, 6 * node + 6)
+        information[own, own] += row.T @ np.diag(sd_m**-2.0) @ row
+
+
+def _alone(chain: _Chain, model: ErrorModel, *, on_earth: bool) -> Array:
+    """What the errors of single poses add, and on earth that of all positions, (K, 6, 6)."""
+    alone = np.diag(np.repeat([model.anchor_rad, model.anchor_m], 3) ** 2)
+    if on_earth:
+        common = np.diag(np.repeat([0.0, model.gnss_m], 3) ** 2)
+        return np.tile(alone + common, (len(chain.t_ns), 1, 1))
+    move = _transport(chain.T_map_body.t - chain.T_map_body.t[0])
+    return np.asarray(move @ alone @ np.swapaxes(move, 1, 2) + alone)

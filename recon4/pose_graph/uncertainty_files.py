@@ -1,0 +1,88 @@
+"""Covariances of poses as files and figures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from recon4.model.figures import UncertaintyFigures
+from recon4.model.trajectory import Trajectory
+from recon4.pose_graph.uncertainty import HelpfulPoint, PoseUncertainty
+from recon4.store.arrays import load_arrays
+from recon4.store.atomic import atomic_file
+
+_FILE = "uncertainty.npz"
+_NAMES = ("rx", "ry", "rz", "x", "y", "z")
+_UPPER = np.triu_indices(6)
+
+
+def save_uncertainty(folder: Path, found: PoseUncertainty) -> None:
+    """Write ``uncertainty.npz``."""
+    helpful = found.helpful
+    np.savez(
+        folder / _FILE,
+        t_ns=found.t_ns,
+        cov=found.cov,
+        on_earth=np.array(found.on_earth),
+        point_ns=np.array([helpful.start_ns, helpful.end_ns], np.int64),
+        point_sd_m=np.array(helpful.largest_m),
+    )
+
+
+def load_uncertainty(folder: Path) -> PoseUncertainty | None:
+    """Read it from a folder of the stage ``level``; None where nothing is stated.
+
+    Raises:
+        StoreError: If it is damaged.
+    """
+    if not (folder / _FILE).is_file():
+        return None
+    found = load_arrays(folder / _FILE, ["t_ns", "cov", "on_earth", "point_ns", "point_sd_m"])
+    start_ns, end_ns = found["point_ns"].tolist()
+    helpful = HelpfulPoint(start_ns, end_ns, float(found["point_sd_m"]))
+    return PoseUncertainty(found["t_ns"], found["cov"], bool(found["on_earth"]), helpful)
+
+
+def uncertainty_figures(found: PoseUncertainty, trajectory: Trajectory) -> UncertaintyFigures:
+    """The largest standard deviation, where it is, and what would reduce it."""
+    worst = int(np.argmax(found.sd_m))
+    start_ns = int(trajectory.t_ns[0])
+    inside = np.clip(found.t_ns[[worst]], trajectory.t_ns[0], trajectory.t_ns[-1])
+    x, y, z = np.round(trajectory.at(inside).t[0], 2).tolist()
+
+    def after_start(t_ns: int) -> float:
+        return round(max(t_ns - start_ns, 0) / 1e9, 2)
+
+    return UncertaintyFigures(
+        largest_sd_m=round(float(found.sd_m[worst]), 4),
+        at_s=after_start(int(found.t_ns[worst])),
+        at_m=(x, y, z),
+        on_earth=found.on_earth,
+        point_from_s=after_start(found.helpful.start_ns),
+        point_to_s=after_start(found.helpful.end_ns),
+        point_sd_m=round(found.helpful.largest_m, 4),
+    )
+
+
+def write_covariances(path: Path, poses: Trajectory, found: PoseUncertainty | None) -> None:
+    """Write poses with their covariances as text, a line each; None = they are not stated.
+
+    The covariance is that of (turn about the pose's own origin, position), both in the axes of the
+    map; its upper triangle is written row by row.
+    """
+    if found is None:
+        with atomic_file(path) as temporary:
+            temporary.write_text("# no covariances are stated for these poses\n", "utf-8")
+        return
+    columns = [f"cov_{_NAMES[a]}_{_NAMES[b]}" for a, b in zip(*_UPPER, strict=True)]
+    kind = "on the earth" if found.on_earth else "relative to the first pose"
+    cov = found.at(poses.t_ns)[:, _UPPER[0], _UPPER[1]]
+    numbers = np.hstack([poses.T_a_b.t, poses.T_a_b.quat_xyzw()])
+    with atomic_file(path) as temporary, temporary.open("w", encoding="utf-8") as file:
+        file.write(f"# poses of the multiframes at their middle, covariances {kind}\n")
+        file.write(f"# s x y z qx qy qz qw {' '.join(columns)}\n")
+        for t_ns, pose, row in zip(poses.t_ns.tolist(), numbers, cov, strict=True):
+            seconds = f"{t_ns // 1_000_000_000}.{t_ns % 1_000_000_000:09d}"
+            values = " ".join(f"{v:.9g}" for v in pose) + " " + " ".join(f"{v:.4e}" for v in row)
+            file.write(f"{seconds} {values}\n")

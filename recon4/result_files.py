@@ -1,0 +1,34 @@
+"""Writers of single result files from the artifacts of a run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from recon4.model.trajectory import Trajectory
+from recon4.pose_graph.files import load_graph
+from recon4.pose_graph.g2o import write_g2o
+from recon4.pose_graph.uncertainty_files import load_uncertainty, write_covariances
+from recon4.recording.formats.poses import write_tum
+from recon4.store.arrays import load_trajectory
+from recon4.store.atomic import atomic_file
+from recon4.store.frames import FrameStore
+
+
+def write_trajectory(artifact: Path, path: Path) -> None:
+    """Write the trajectory of a stage as TUM."""
+    with atomic_file(path) as temporary:
+        write_tum(temporary, load_trajectory(artifact / "trajectory.npz"))
+
+
+def write_pose_covariances(frames: Path, level: Path, path: Path) -> None:
+    """Write the final poses of the multiframes with their covariances."""
+    dense = load_trajectory(level / "trajectory.npz")
+    t_ns = FrameStore.open(frames).t_mid_ns
+    t_ns = t_ns[(t_ns >= dense.t_ns[0]) & (t_ns <= dense.t_ns[-1])]
+    write_covariances(path, Trajectory(t_ns, dense.at(t_ns)), load_uncertainty(level))
+
+
+def write_graph(artifact: Path, path: Path) -> None:
+    """Write the graph of a stage as g2o."""
+    with atomic_file(path) as temporary:
+        write_g2o(temporary, load_graph(artifact))

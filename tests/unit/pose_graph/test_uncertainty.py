@@ -1,0 +1,171 @@
+"""Covariances of a graph's poses against errors drawn at random."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from recon4.geometry.se3 import SE3, Array, so3_log
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
+from recon4.model.trajectory import Trajectory
+from recon4.pose_graph import uncertainty
+from recon4.pose_graph.solve import PositionPriors
+from recon4.pose_graph.uncertainty import ErrorModel, pose_uncertainty
+from recon4.pose_graph.uncertainty_files import (
+    load_uncertainty,
+    save_uncertainty,
+    uncertainty_figures,
+    write_covariances,
+)
+
+STEP_SD = np.array([1e-3, 1e-3, 2e-3, 0.004, 0.006, 0.005])
+EXACT = ErrorModel(observed=1.0, weak=0.0, turn_s=2.0, shift_s=2.0, anchor_rad=1e-6, anchor_m=1e-5)
+"""The stated deviations are true, and correlated over 2 s."""
+
+
+def walk(nodes: int) -> tuple[np.ndarray, SE3]:
+    """Times and true poses of a walk around a square, a node each half second."""
+    t_ns = (np.arange(nodes) * 5e8).astype(np.int64)
+    yaw = np.cumsum(np.where(np.arange(nodes) % 15 == 14, 0.5 * np.pi, 0.0))
+    step = 0.6 * np.stack([np.cos(yaw), np.sin(yaw), np.zeros(nodes)], axis=1)
+    poses = (
+        SE3.from_rpy(0.02, -0.03, angle, t=place)
+        for angle, place in zip(yaw, np.cumsum(step, axis=0), strict=True)
+    )
+    return t_ns, SE3.stack(poses)
+
+
+def edge(T: SE3, i: int, j: int, kind: EdgeKind, sd: Array) -> Edge:
+    return Edge(
+        i=i,
+        j=j,
+        T_i_j=T[i].inverse() @ T[j],
+        kind=kind,
+        verdict=Verdict.ACCEPTED,
+        information=np.diag(sd**-2.0),
+    )
+
+
+def chain(nodes: int = 60, *loops: tuple[int, int], sd: Array = STEP_SD) -> PoseGraph:
+    t_ns, T = walk(nodes)
+    edges = [edge(T, k, k + 1, EdgeKind.ODOMETRY, sd) for k in range(nodes - 1)]
+    edges += [edge(T, i, j, EdgeKind.LOOP, np.full(6, 0.002)) for i, j in loops]
+    return PoseGraph(np.arange(nodes), t_ns, T, tuple(edges))
+
+
+def drawn(graph: PoseGraph, rng: np.random.Generator, *, tau_s: float) -> SE3:
+    """Poses that accumulate errors of the stated deviations, correlated in time."""
+    T = graph.T_map_body
+    rho = np.exp(-0.5 / tau_s)
+    # In axes of the map, as errors of one map are.
+    poses, error = [T[0]], rng.standard_normal(6)
+    for k in range(len(graph) - 1):
+        body = np.kron(np.eye(2), T.R[k + 1].T)
+        xi = STEP_SD * (body @ error)
+        poses.append(poses[-1] @ (T[k].inverse() @ T[k + 1]) @ SE3.exp(xi))
+        error = rho * error + np.sqrt(1.0 - rho**2) * rng.standard_normal(6)
+    return SE3.stack(poses)
+
+
+def nees(graph: PoseGraph, cov: Array, seeds: int = 60) -> float:
+    """Mean squared error over the stated covariance and degrees of freedom, of the last pose."""
+    found = []
+    for seed in range(seeds):
+        wrong = drawn(graph, np.random.default_rng(seed), tau_s=2.0)[-1]
+        T = graph.T_map_body[-1]
+        e = np.concatenate([so3_log(T.R @ wrong.R.T), T.t - wrong.t])
+        found.append(e @ np.linalg.solve(cov, e) / 6.0)
+    return float(np.mean(found))
+
+
+def stated(graph: PoseGraph, model: ErrorModel = EXACT) -> uncertainty.PoseUncertainty:
+    found = pose_uncertainty(graph, model=model)
+    assert found is not None
+    return found
+
+
+def test_errors_of_a_chain_have_the_stated_covariance() -> None:
+    graph = chain()
+
+    assert nees(graph, stated(graph).cov[-1]) == pytest.approx(1.0, abs=0.25)
+
+
+def test_joined_nodes_state_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    graph = chain(400)
+    joined = stated(graph)
+    monkeypatch.setattr(uncertainty, "_MAX_KNOTS", 1000)
+
+    each = stated(graph)
+
+    assert len(joined.t_ns) < len(each.t_ns) == 400
+    assert joined.sd_m[-1] == pytest.approx(each.sd_m[-1], rel=0.05)
+
+
+def test_a_loop_closure_makes_the_end_known() -> None:
+    open_end, closed = stated(chain()), stated(chain(60, (0, 59)))
+
+    assert closed.sd_m[-1] < 0.01 < 0.2 * open_end.sd_m[-1]
+    assert closed.sd_m.max() > 3.0 * closed.sd_m[-1]  # the middle is known less
+
+
+def test_many_edges_of_one_place_count_as_few() -> None:
+    one = stated(chain(60, (0, 59)))
+    many = stated(chain(60, (0, 58), (1, 58), (0, 59), (1, 59)))
+
+    assert many.sd_m[-1] > 0.6 * one.sd_m[-1]
+
+
+def test_a_direction_that_is_not_observed_is_unknown_for_long() -> None:
+    weak = STEP_SD.copy()
+    weak[3] = 0.25  # forward, half a meter a second
+    graph = chain(60, sd=weak)
+
+    sd_m = stated(graph, ErrorModel()).sd_m
+
+    assert sd_m[-1] > 0.25 * np.sqrt(59)
+    assert stated(chain(), ErrorModel()).sd_m[-1] < 0.05 * sd_m[-1]
+
+
+def test_positions_keep_the_walk_on_earth() -> None:
+    graph = chain()
+    every = np.arange(0, 60, 5)
+    arm = np.tile([0.1, 0.0, 0.5], (12, 1))
+    priors = PositionPriors(every, graph.T_map_body.t[every], arm, np.full((12, 3), 0.05))
+
+    found = pose_uncertainty(graph, positions=priors, model=ErrorModel(gnss_m=0.03))
+
+    assert found is not None and found.on_earth
+    assert np.all(found.sd_m > 0.03)
+    assert np.all(found.sd_m < 0.08)
+
+
+def test_a_control_point_helps_most_where_least_is_known() -> None:
+    graph = chain()
+    found = stated(graph)
+
+    figures = uncertainty_figures(found, Trajectory(graph.t_ns, graph.T_map_body))
+
+    assert figures.at_s == pytest.approx(29.5, abs=1.0)
+    assert 10.0 < figures.point_from_s <= figures.point_to_s <= 29.5
+    assert figures.point_sd_m < 0.6 * figures.largest_sd_m
+
+
+def test_files_keep_what_is_stated(tmp_path: Path) -> None:
+    graph = chain(10)
+    found = stated(graph)
+    save_uncertainty(tmp_path, found)
+
+    again = load_uncertainty(tmp_path)
+
+    assert again is not None
+    np.testing.assert_array_equal(again.cov, found.cov)
+    assert again.helpful == found.helpful
+    write_covariances(tmp_path / "a.txt", Trajectory(graph.t_ns, graph.T_map_body), again)
+    rows = np.loadtxt(tmp_path / "a.txt")
+    assert rows.shape == (10, 1 + 7 + 21)
+    np.testing.assert_allclose(rows[:, 8 + 20], found.cov[:, 5, 5], rtol=1e-3)  # cov_z_z, the last
+
+
+def test_a_graph_of_one_node_states_nothing(tmp_path: Path) -> None:
+    assert pose_uncertainty(chain(1)) is None
+    assert load_uncertainty(tmp_path) is None
