@@ -6,7 +6,7 @@
 Every walk is simulated once and written with every degradation. Each recording goes through the
 stages up to the final trajectory and the verdict; no map is made. Each run is one line of
 ``OUT/runs.jsonl``; runs that are there are not repeated, so a stopped table continues. The table
-is ``OUT/table.md``. What the classes mean is in `Judgment.of` and in ``docs/trust.md``.
+is ``OUT/table.md``. What the classes mean is in `judge` and in ``docs/trust.md``.
 """
 
 from __future__ import annotations
@@ -23,12 +23,7 @@ from typing import Any
 import numpy as np
 
 from recon4.errors import Recon4Error
-from recon4.evaluation.ate import absolute_error, pair_poses
-from recon4.geometry.se3 import Array
-from recon4.georeference.crs import GeodeticOrigin, to_enu, to_geodetic
-from recon4.georeference.stage import read_crs
 from recon4.model.rig import Rig, format_rig, load_rig
-from recon4.model.trajectory import Trajectory
 from recon4.model.usability import MapVerdict, Usability
 from recon4.pipeline import run_before_review, run_trajectory
 from recon4.progress import Silent
@@ -39,11 +34,10 @@ from recon4.settings import preset
 from recon4.simulation.degradation import parse_degradations
 from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import record
-from recon4.simulation.world import BRNO
-from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.hashing import hash_json
-from recon4.store.project import Project
+from recon4.store.project import Project, read_artifacts
 from recon4.store.stage import Input, StageRun, StageRunner
+from tests.benchmarks.proving_errors import Errors, measure
 
 WALKS = (
     "corridor/1", "corridor:1/2", "corridor:2/3", "corridor:3/4", "tunnel/1", "tunnel:1/2",
@@ -55,42 +49,12 @@ WALKS = (
 DEGRADATIONS = (
     "none", "extrinsics", "imu-rotation", "imu-clock", "lidar-clock", "imu-grade", "imu-unit",
     "imu-axes", "swap-lidars", "wrong-model", "dead-beams", "packet-loss", "beam-bias", "lever-arm",
+    "gnss-clock", "no-imu",
 )  # fmt: skip
 ONLY_OUTDOORS = {"lever-arm", "gnss-clock", "no-gnss"}
-BASE_M, PER_METER = 0.05, 0.001
-"""A right trajectory has at most this error: 5 cm and 0.1 % of the path length [m]."""
-GROSS = 3.0
-"""No pose of a right trajectory is farther off than this multiple of it."""
-PLACED_M = 0.10
-"""A georeferenced trajectory has at most this error on the earth [m]."""
 GENERIC = "No loop closure was accepted"
 """A reason that says nothing of the recording but that nobody came back to a place."""
 _REASON_LENGTH = 160
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Errors:
-    """Errors of one run against the truth."""
-
-    length_m: float
-    """True path length."""
-    ate_m: float
-    """RMSE of the positions of the final trajectory after the best rigid alignment."""
-    largest_m: float
-    """Largest of these errors."""
-    closing_m: float
-    """Error of the odometry's motion from the first to the last pose."""
-    stated_m: float
-    """Stated 2 sigma of that motion."""
-    placed_m: float | None
-    """RMSE on the earth without any alignment; None = not georeferenced."""
-
-    @property
-    def right(self) -> bool:
-        """Whether the trajectory is right, whatever the program says of it."""
-        limit = BASE_M + PER_METER * self.length_m
-        placed = self.placed_m is None or self.placed_m <= PLACED_M
-        return self.ate_m <= limit and self.largest_m <= GROSS * limit and placed
 
 
 def judge(errors: Errors | None, verdict: MapVerdict) -> str:
@@ -191,50 +155,6 @@ def _inputs(recording: Path, rig: Rig) -> dict[str, Input | None]:
     } | {n: Input(n, path) if path.exists() else None for n, path in samples.items()}
 
 
-def measure(runs: Mapping[str, StageRun[Any]], truth: Trajectory) -> Errors:
-    """Compare the trajectories of a run with the truth."""
-    level, odometry = runs["level"].artifact.folder, runs["odometry"].artifact.folder
-    final, raw = (load_trajectory(folder / "trajectory.npz") for folder in (level, odometry))
-    pairs = pair_poses(final, truth)
-    error = absolute_error(pairs).position_m
-    ends = pair_poses(raw, truth)
-    motion = ends.T_map_body[0].inverse() @ ends.T_map_body[-1]
-    true_motion = ends.T_true_body[0].inverse() @ ends.T_true_body[-1]
-    cov = load_arrays(odometry / "steps.npz", ["motion_cov"])["motion_cov"]
-    # Errors of consecutive multiframes are correlated: standard deviations add up.
-    sd_m = np.sqrt(np.trace(cov[1:, 3:, 3:], axis1=1, axis2=2))
-    placed = _on_earth(level, pairs.T_map_body.t)
-    return Errors(
-        length_m=_length_m(truth),
-        ate_m=error.rmse,
-        largest_m=error.maximum,
-        closing_m=float(np.linalg.norm((true_motion.inverse() @ motion).t)),
-        stated_m=2.0 * float(sd_m.sum()),
-        placed_m=None if placed is None else _rms(placed - pairs.T_true_body.t),
-    )
-
-
-def _on_earth(level: Path, p_map: Array) -> Array | None:
-    """Positions in the axes of the truth by the map's place on earth; None = it has none."""
-    crs = read_crs(level)
-    if crs is None:
-        return None
-    lat_rad, lon_rad = np.deg2rad([BRNO.lat_deg, BRNO.lon_deg]).tolist()
-    true = GeodeticOrigin(lat_rad, lon_rad, BRNO.height_m)
-    lat, lon, height_m = to_geodetic(crs.origin, p_map)
-    return to_enu(true, lat, lon, height_m=height_m)
-
-
-def _rms(difference: Array) -> float:
-    return float(np.sqrt((difference**2).sum(axis=1).mean()))
-
-
-def _length_m(truth: Trajectory) -> float:
-    """Path length in steps of half a second, without the sway of the body."""
-    places = truth.T_a_b.t[:: max(1, round(0.5e9 / np.diff(truth.t_ns).mean()))]
-    return float(np.linalg.norm(np.diff(places, axis=0), axis=1).sum())
-
-
 def applies(degradation: str, *, outdoors: bool) -> bool:
     """Whether a degradation changes anything in a world."""
     return outdoors or degradation not in ONLY_OUTDOORS
@@ -250,23 +170,38 @@ def table(lines: Sequence[Mapping[str, Any]]) -> str:
     order = {"SILENT": 0, "vague": 1, "announced": 2, "right": 3}
     rows = [
         "| walk | degradation | length m | ATE cm | largest cm | closing cm | stated 2σ cm "
-        "| on earth cm | lost | warnings | verdict | class | first reason |",
-        "|---|---|" + "---:|" * 8 + "---|---|---|",
+        "| NEES | on earth cm | lost | warnings | verdict | class | first reason |",
+        "|---|---|" + "---:|" * 9 + "---|---|---|",
     ]
     for line in sorted(lines, key=lambda r: (order[r["outcome"]], r["walk"], r["degradation"])):
         e = line["errors"] or {}
         figures = [_number(e.get("length_m"), 1.0, 0)]
         figures += [
             _number(e.get(name), 100.0, 1)
-            for name in ("ate_m", "largest_m", "closing_m", "stated_m", "placed_m")
+            for name in ("ate_m", "largest_m", "closing_m", "stated_m")
         ]
+        figures += [_number(e.get("nees"), 1.0, 2), _number(e.get("placed_m"), 100.0, 1)]
         reason = (line["reasons"] or [""])[0][:_REASON_LENGTH].replace("|", "/")
         cells = [f"{line['walk']}, {line['seconds']:g} s", line["degradation"], *figures]
         cells += [f"{line['lost']} of {line['multiframes']}", str(line["warnings"])]
         rows.append("| " + " | ".join([*cells, line["verdict"], line["outcome"], reason]) + " |")
     counts = {name: sum(line["outcome"] == name for line in lines) for name in order}
     total = ", ".join(f"{count} {name}" for name, count in counts.items())
-    return "\n".join([*rows, "", f"{len(lines)} runs: {total}."]) + "\n"
+    return "\n".join([*rows, "", f"{len(lines)} runs: {total}.", "", _calibration(lines)]) + "\n"
+
+
+def _calibration(lines: Sequence[Mapping[str, Any]]) -> str:
+    """How true the stated covariances are, as a sentence."""
+    errors = [line["errors"] for line in lines if line["errors"] and "nees" in line["errors"]]
+    if not errors:
+        return "No covariances were stated."
+    nees = np.array([e["nees"] for e in errors])
+    bad, announced = (sum(e[name] for e in errors) for name in ("bad_places", "bad_announced"))
+    return (
+        f"NEES per degree of freedom in {len(nees)} runs: mean {nees.mean():.2f}, median "
+        f"{np.median(nees):.2f}; {announced} of {bad} places that are wrong by more than 5 cm "
+        "have a stated 2σ above 5 cm."
+    )
 
 
 def _number(value: float | None, factor: float, digits: int) -> str:
@@ -281,8 +216,13 @@ def read_lines(path: Path) -> list[dict[str, Any]]:
     return [json.loads(line) for line in whole]
 
 
-def run_walk(walk: str, degradations: Sequence[str], out: Path, *, seconds: float) -> Iterator[Run]:
-    """Simulate a walk with every degradation and prove each recording."""
+def run_walk(
+    walk: str, degradations: Sequence[str], out: Path, *, seconds: float, keep: bool = False
+) -> Iterator[Run]:
+    """Simulate a walk with every degradation and prove each recording.
+
+    With ``keep`` the artifacts without points stay in ``OUT/kept``, for studies of the errors.
+    """
     world, seed = walk.split("/")
     setup = prepare(world, seconds=seconds, seed=int(seed))
     wanted = [d for d in degradations if applies(d, outdoors=setup.world.outdoors)]
@@ -294,9 +234,23 @@ def run_walk(walk: str, degradations: Sequence[str], out: Path, *, seconds: floa
     for k, degradation in enumerate(wanted):
         project = work / f"project{k}"
         yield prove(work / f"recording{k}", project, walk=walk, degradation=degradation)
-        shutil.rmtree(project)
+        if keep:
+            name = f"{walk}_{degradation}".replace("/", "-").replace(":", "v")
+            _keep(work / f"recording{k}", project, out / "kept" / name)
+        shutil.rmtree(project, ignore_errors=True)
         shutil.rmtree(work / f"recording{k}")
     shutil.rmtree(work)
+
+
+def _keep(recording: Path, project: Path, into: Path) -> None:
+    shutil.rmtree(into, ignore_errors=True)
+    points = ("xyz.npy", "intensity.npy", "ring.npy", "sensor.npy", "echo.npy", "dt_ns.npy")
+    if project.is_dir():
+        for stage, folder in read_artifacts(project).items():
+            shutil.copytree(folder, into / stage, ignore=shutil.ignore_patterns(*points))
+    into.mkdir(parents=True, exist_ok=True)
+    for name in ("truth.tum", "world.json"):
+        shutil.copy(recording / name, into)
 
 
 def main() -> None:
@@ -306,6 +260,7 @@ def main() -> None:
     parser.add_argument("--walks", default=",".join(WALKS))
     parser.add_argument("--degradations", default=",".join(DEGRADATIONS))
     parser.add_argument("--seconds", type=float, default=20.0)
+    parser.add_argument("--keep", action="store_true", help="keep artifacts without points")
     parser.add_argument("--table", action="store_true", help="only write the table")
     a = parser.parse_args()
     a.out.mkdir(parents=True, exist_ok=True)
@@ -313,7 +268,8 @@ def main() -> None:
     for walk in [] if a.table else a.walks.split(","):
         done = {(r["walk"], r["degradation"], r["seconds"]) for r in read_lines(path)}
         missing = [d for d in a.degradations.split(",") if (walk, d, a.seconds) not in done]
-        for run in run_walk(walk, missing, a.out, seconds=a.seconds) if missing else ():
+        runs = run_walk(walk, missing, a.out, seconds=a.seconds, keep=a.keep) if missing else ()
+        for run in runs:
             with path.open("a", encoding="utf-8") as file:
                 file.write(json.dumps(run.to_json()) + "\n")
             ate = _number(run.errors.ate_m if run.errors else None, 100.0, 1)

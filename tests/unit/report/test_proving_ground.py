@@ -8,12 +8,12 @@ from recon4.model.usability import Usability
 from recon4.report.verdict import MapVerdict
 from recon4.simulation.degradation import KINDS
 from recon4.simulation.worlds import build_world
+from tests.benchmarks.proving_errors import Errors
 from tests.benchmarks.proving_ground import (
     DEGRADATIONS,
     GENERIC,
     ONLY_OUTDOORS,
     WALKS,
-    Errors,
     judge,
     read_lines,
     run_walk,
@@ -23,7 +23,10 @@ from tests.benchmarks.proving_ground import (
 
 GOOD = MapVerdict(Usability.GOOD, ())
 CHECK = MapVerdict(Usability.CHECK, (f"{GENERIC}: the drift is not corrected.", "Tilted."))
-FINE = Errors(length_m=50.0, ate_m=0.09, largest_m=0.2, closing_m=0.1, stated_m=0.2, placed_m=None)
+FINE = Errors(
+    length_m=50.0, ate_m=0.09, largest_m=0.2, closing_m=0.1, stated_m=0.2, nees=1.0,
+    bad_places=3, bad_announced=2, placed_m=None,
+)  # fmt: skip
 
 
 @pytest.mark.parametrize(
