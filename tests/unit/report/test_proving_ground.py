@@ -95,7 +95,9 @@ def test_a_run_is_measured_and_written_down(tunnel):
         assert run.multiframes == 50
         assert run.errors.length_m == pytest.approx(4.8, abs=0.3)
         assert 0.0 < run.errors.ate_m <= run.errors.largest_m
-        assert run.errors.stated_m > 0.0
+        assert run.errors.stated_m > run.errors.largest_m
+        assert run.errors.bad_announced == run.errors.bad_places > 0
+        assert run.errors.nees < 3.0
     text = table([run.to_json() for run in tunnel.values()])
     assert text.count("| tunnel/1, 5 s |") == 2
     assert "2 runs: 0 SILENT" in text
