@@ -40,7 +40,7 @@ from recon4.store.project import SUMMARY, read_artifacts
 from recon4.store.seal import changing
 from recon4.store.stage import StageRun, figures_of, versions
 
-COVARIANCES = "poses_covariance.txt"
+COVARIANCES = "poses_covariance.csv"
 RESULTS = (
     "trajectory.tum",
     "odometry.tum",

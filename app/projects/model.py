@@ -12,7 +12,7 @@ RESULTS: dict[str, str] = {
     "map.yaml": "2-D map, description for nav2",
     "trajectory.tum": "Trajectory, TUM",
     "odometry.tum": "Odometry trajectory, TUM",
-    "poses_covariance.txt": "Poses of the multiframes with covariances",
+    "poses_covariance.csv": "Poses of the multiframes with covariances, CSV",
     "edges.json": "Edges with verdicts",
     "graph.g2o": "Pose graph, g2o",
     "summary.json": "Figures, settings and hashes",

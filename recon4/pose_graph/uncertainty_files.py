@@ -66,23 +66,20 @@ def uncertainty_figures(found: PoseUncertainty, trajectory: Trajectory) -> Uncer
 
 
 def write_covariances(path: Path, poses: Trajectory, found: PoseUncertainty | None) -> None:
-    """Write poses with their covariances as text, a line each; None = they are not stated.
+    """Write poses with their covariances as CSV, a row each; None = not stated, the header only.
 
     The covariance is that of (turn about the pose's own origin, position), both in the axes of the
     map; its upper triangle is written row by row.
     """
-    if found is None:
-        with atomic_file(path) as temporary:
-            temporary.write_text("# no covariances are stated for these poses\n", "utf-8")
-        return
-    columns = [f"cov_{_NAMES[a]}_{_NAMES[b]}" for a, b in zip(*_UPPER, strict=True)]
-    kind = "on the earth" if found.on_earth else "relative to the first pose"
-    cov = found.at(poses.t_ns)[:, _UPPER[0], _UPPER[1]]
-    numbers = np.hstack([poses.T_a_b.t, poses.T_a_b.quat_xyzw()])
+    upper = zip(*_UPPER, strict=True)
+    columns = ["t_ns", "x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"]
+    columns += [f"cov_{_NAMES[a]}_{_NAMES[b]}" for a, b in upper]
     with atomic_file(path) as temporary, temporary.open("w", encoding="utf-8") as file:
-        file.write(f"# poses of the multiframes at their middle, covariances {kind}\n")
-        file.write(f"# s x y z qx qy qz qw {' '.join(columns)}\n")
+        file.write(",".join(columns) + "\n")
+        if found is None:
+            return
+        cov = found.at(poses.t_ns)[:, _UPPER[0], _UPPER[1]]
+        numbers = np.hstack([poses.T_a_b.t, poses.T_a_b.quat_xyzw()])
         for t_ns, pose, row in zip(poses.t_ns.tolist(), numbers, cov, strict=True):
-            seconds = f"{t_ns // 1_000_000_000}.{t_ns % 1_000_000_000:09d}"
-            values = " ".join(f"{v:.9g}" for v in pose) + " " + " ".join(f"{v:.4e}" for v in row)
-            file.write(f"{seconds} {values}\n")
+            values = [*(f"{v:.9g}" for v in pose), *(f"{v:.4e}" for v in row)]
+            file.write(f"{t_ns},{','.join(values)}\n")

@@ -160,12 +160,19 @@ def test_files_keep_what_is_stated(tmp_path: Path) -> None:
     assert again is not None
     np.testing.assert_array_equal(again.cov, found.cov)
     assert again.helpful == found.helpful
-    write_covariances(tmp_path / "a.txt", Trajectory(graph.t_ns, graph.T_map_body), again)
-    rows = np.loadtxt(tmp_path / "a.txt")
+    path = tmp_path / "poses_covariance.csv"
+    write_covariances(path, Trajectory(graph.t_ns, graph.T_map_body), again)
+    rows = np.loadtxt(path, delimiter=",", skiprows=1)
     assert rows.shape == (10, 1 + 7 + 21)
     np.testing.assert_allclose(rows[:, 8 + 20], found.cov[:, 5, 5], rtol=1e-3)  # cov_z_z, the last
 
 
 def test_a_graph_of_one_node_states_nothing(tmp_path: Path) -> None:
-    assert pose_uncertainty(chain(1)) is None
+    path = tmp_path / "poses_covariance.csv"
+    graph = chain(1)
+
+    write_covariances(path, Trajectory(graph.t_ns, graph.T_map_body), pose_uncertainty(graph))
+
     assert load_uncertainty(tmp_path) is None
+    (header,) = path.read_text().splitlines()
+    assert header.startswith("t_ns,x_m")
