@@ -39,7 +39,7 @@ def simulate(
     """Simulate a walk: packets, IMU, GNSS, and the truth they can be judged by."""
     from recon4.model.rig import load_rig
     from recon4.simulation.backpack import prepare_backpack, simulate_backpack
-    from recon4.simulation.degradation import parse_degradations
+    from recon4.simulation.degradation import PEOPLE, parse_degradations
     from recon4.simulation.setup import prepare
     from recon4.simulation.simulate import simulate as run
     from recon4.terminal import watcher
@@ -55,6 +55,7 @@ def simulate(
             )
             simulate_backpack(walk, out, degradations=degradations, progress=progress)
         else:
-            setup = prepare(world, seconds=seconds or 60.0, seed=seed, rig=mounted)
+            people = int(degradations.get(PEOPLE, 0))
+            setup = prepare(world, seconds=seconds or 60.0, seed=seed, rig=mounted, people=people)
             run(setup, out, bag=bag, degradations=degradations, progress=progress)
     write(f"{out}")

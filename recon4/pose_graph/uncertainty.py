@@ -22,6 +22,8 @@ from recon4.pose_graph.solve import PositionPriors
 
 _MAX_KNOTS = 300
 """More nodes than this are joined: the work grows with the third power of their number."""
+_UNKNOWN_STEP = (0.3, 5.0)
+"""Largest standard deviation of an odometry edge: turn [rad], shift [m]."""
 _POINT_M = 0.01
 """Standard deviation of a control point [m]."""
 _NEARLY = 1.2
@@ -41,10 +43,17 @@ class ErrorModel:
     """Factor on the standard deviation of an odometry edge along directions that are observed."""
     weak: float = 1.0
     """The same along directions that are not."""
+    observed_m: float = 0.002
+    """Half a second of odometry along observed directions is not more wrong than this [m] …"""
+    observed_rad: float = 3e-4
+    """… and its turn than this [rad]."""
     weak_m: float = 0.05
     """Stated deviation of half a second of odometry at which a direction is weak [m] …"""
     weak_rad: float = 0.01
     """… and of its turn [rad]."""
+    weak_ratio: float = 10.0
+    """The same as a multiple of what is usual on the walk: without an IMU odometry states
+    centimeters also where it is right to millimeters."""
     turn_s: float = 5.0
     """Time over which errors of turns are correlated [s] …"""
     shift_s: float = 1.0
@@ -57,6 +66,8 @@ class ErrorModel:
     """Error of a single pose that no other shares: of the first, and of each [rad] …"""
     anchor_m: float = 1.5e-3
     """… and of its position [m]."""
+    anchor_ratio: float = 0.06
+    """The same as a ratio of what half a second of odometry usually states."""
     gnss_m: float = 0.02
     """Error of GNSS that all fixes of a walk share [m]."""
 
@@ -110,6 +121,8 @@ class _Chain:
     T_map_body: SE3
     step_cov: Array
     """Covariance of the step to each knot but the first, in axes of the map, (K - 1, 6, 6)."""
+    usual: Array
+    """Stated deviation of half a second of odometry as usual on the walk: turn [rad], shift [m]."""
     step_rho: Array
     """Correlation of its whitened error with that of the step before, symmetric, (K - 1, 6, 6)."""
     knot_of: Rows
@@ -136,7 +149,7 @@ def pose_uncertainty(
     knots = len(chain.t_ns)
     information = _odometry_information(chain)
     _add_edges(information, graph.relations, graph, chain, model=model)
-    first = np.eye(6) * 1e12 if positions is None else np.diag(np.repeat([1e-2, 1e-6], 3))
+    first = np.eye(6) * 1e9 if positions is None else np.diag(np.repeat([1e-2, 1e-6], 3))
     information[:6, :6] += first
     if positions is not None:
         _add_positions(information, positions, graph, chain, model=model)
@@ -180,7 +193,7 @@ def _chain(graph: PoseGraph, model: ErrorModel) -> _Chain:
     """Join nodes to at most `_MAX_KNOTS` knots."""
     stride = -(-len(graph) // _MAX_KNOTS)
     rows = np.unique(np.append(np.arange(0, len(graph), stride), len(graph) - 1))
-    step_cov, rate = _steps(graph, model)
+    step_cov, rate, usual = _steps(graph, model)
     step_s = _step_seconds(graph.t_ns)
     covs, rhos = [], []
     for first, last in pairwise(rows.tolist()):
@@ -194,7 +207,8 @@ def _chain(graph: PoseGraph, model: ErrorModel) -> _Chain:
         covs.append(grow @ cov @ grow)
         rhos.append(V * np.exp(-step_s[first:last].sum() * values) @ V.T)
     nearest = np.abs(graph.t_ns[:, None] - graph.t_ns[rows]).argmin(axis=1)
-    return _Chain(graph.t_ns[rows], graph.T_map_body[rows], np.array(covs), np.array(rhos), nearest)
+    poses = graph.T_map_body[rows]
+    return _Chain(graph.t_ns[rows], poses, np.array(covs), usual, np.array(rhos), nearest)
 
 
 def _step_seconds(t_ns: Times) -> Array:
@@ -208,12 +222,12 @@ def _transport(arm_m: Array) -> Array:
     return out
 
 
-def _steps(graph: PoseGraph, model: ErrorModel) -> tuple[Array, Array]:
+def _steps(graph: PoseGraph, model: ErrorModel) -> tuple[Array, Array, Array]:
     """Covariance of the odometry edge to each node but the first, and rates of decorrelation.
 
     Returns:
         Covariances and symmetric matrices with the inverse correlation times as eigenvalues
-        [1/s], (N - 1, 6, 6) each, in axes of the map.
+        [1/s], (N - 1, 6, 6) each, in axes of the map; what half a second usually states, (2,).
     """
     stated = np.tile(np.eye(6), (len(graph) - 1, 1, 1))
     for edge in graph.edges:
@@ -221,18 +235,24 @@ def _steps(graph: PoseGraph, model: ErrorModel) -> tuple[Array, Array]:
             into_map = np.kron(np.eye(2), graph.T_map_body.R[edge.j])
             stated[edge.i] = into_map @ np.linalg.inv(edge.information) @ into_map.T
     half_s = 0.5 / _step_seconds(graph.t_ns)[:, None]
-    cov, rate = np.zeros_like(stated), np.zeros_like(stated)
-    for part, weak_at, observed_s in (
-        (ROTATION, model.weak_rad, model.turn_s),
-        (TRANSLATION, model.weak_m, model.shift_s),
+    cov, rate, usual = np.zeros_like(stated), np.zeros_like(stated), np.zeros(2)
+    for row, (part, weak_at, most, observed_s) in enumerate(
+        (
+            (ROTATION, model.weak_rad, model.observed_rad, model.turn_s),
+            (TRANSLATION, model.weak_m, model.observed_m, model.shift_s),
+        )
     ):
         values, V = np.linalg.eigh(stated[:, part, part])
-        weak = half_s**2 * values / (half_s**2 * values + weak_at**2)
-        true = values * (model.observed**2 + weak * model.weak**2)
+        usual[row] = np.median(half_s[:, 0] * np.sqrt(values[:, 0]))
+        ratio = half_s * np.sqrt(values) / max(weak_at, model.weak_ratio * usual[row])
+        weak = ratio**4 / (1.0 + ratio**4)
+        observed = np.minimum(model.observed**2 * values, (most / half_s) ** 2)
+        # Bounded, so that a walk that was lost leaves numbers that can be worked with.
+        true = np.minimum(observed + weak * model.weak**2 * values, _UNKNOWN_STEP[row] ** 2)
         inverse_s = (1.0 - weak) / observed_s + weak / model.weak_s
         cov[:, part, part] = V * true[:, None, :] @ np.swapaxes(V, 1, 2)
         rate[:, part, part] = V * inverse_s[:, None, :] @ np.swapaxes(V, 1, 2)
-    return cov, rate
+    return cov, rate, usual
 
 
 def _odometry_information(chain: _Chain) -> Array:
@@ -298,7 +318,8 @@ def _add_positions(
 
 def _alone(chain: _Chain, model: ErrorModel, *, on_earth: bool) -> Array:
     """What the errors of single poses add, and on earth that of all positions, (K, 6, 6)."""
-    alone = np.diag(np.repeat([model.anchor_rad, model.anchor_m], 3) ** 2)
+    single = np.maximum([model.anchor_rad, model.anchor_m], model.anchor_ratio * chain.usual)
+    alone = np.diag(np.repeat(single, 3) ** 2)
     if on_earth:
         common = np.diag(np.repeat([0.0, model.gnss_m], 3) ** 2)
         return np.tile(alone + common, (len(chain.t_ns), 1, 1))

@@ -1,7 +1,8 @@
 """Errors of a recording that its rig file does not know: ``recon4 simulate --degrade``.
 
-Nothing here changes the walk or the rays. A degradation changes what is written: what the rig file
-says, the clocks of the stamps, the samples of the IMU, which shots and packets there are.
+Nothing here changes the walk, and only `PEOPLE` the rays. A degradation changes what is written:
+what the rig file says, the clocks of the stamps, the samples of the IMU, which shots and packets
+there are.
 """
 
 from __future__ import annotations
@@ -58,17 +59,20 @@ KINDS: Mapping[str, DegradationKind] = {
     "dead-beams": DegradationKind(6, LASERS, "", "number of lasers that return nothing"),
     "beam-bias": DegradationKind(0.03, 1, "m", "standard deviation of a range bias of each laser"),
     "packet-loss": DegradationKind(0.25, 0.95, "", "ratio of packets or line scans lost, in runs"),
+    "people": DegradationKind(5, 12, "", "number of people who walk along and hide the view"),
     "no-head": DegradationKind(_SWITCH, 1, "", "the angles of the profiler's head are missing"),
     "head-stuck": DegradationKind(_SWITCH, 1, "", "the profiler reports one angle of its head"),
     "laser2d-silent": DegradationKind(5.0, 1e4, "s", "the 2-D laser is silent from 20 s on"),
     "laser2d-mirrored": DegradationKind(_SWITCH, 1, "", "the 2-D laser is mounted upside down"),
     "no-laser2d": DegradationKind(_SWITCH, 1, "", "no 2-D laser was recorded"),
 }
+PEOPLE = "people"
+"""The only one that changes the rays, see `recon4.simulation.companions`."""
 ONLY_PROFILER = frozenset(
     {"no-head", "head-stuck", "laser2d-silent", "laser2d-mirrored", "no-laser2d"}
 )
 """Degradations of rigs with a profiler."""
-NOT_PROFILER = frozenset({"wrong-model", "dead-beams", "beam-bias", "swap-lidars"})
+NOT_PROFILER = frozenset({"wrong-model", "dead-beams", "beam-bias", "swap-lidars", PEOPLE})
 """Degradations that a rig with a profiler cannot have."""
 
 

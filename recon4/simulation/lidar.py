@@ -8,12 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.mesh import GLASS, WorldMesh
-from recon4.geometry.raycast import Scene
+from recon4.geometry.raycast import Hits, Scene
 from recon4.geometry.se3 import Array
 from recon4.kernels.simulation import hits_carrier, make_rays, measure
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times
 from recon4.recording.velodyne.models import BLOCKS, MODELS
+from recon4.simulation.companions import REFLECTIVITY, Companions
 from recon4.simulation.walk import Walk
 
 _VLP16 = MODELS["VLP-16"]
@@ -141,12 +142,14 @@ class Lidar:
         blocked = np.zeros(count, dtype=np.bool_)
         if self.model.carrier:
             hits_carrier(shot, mount.R, mount.t, CARRIER, blocked)
-        out = self._measure(rays, blocked, surroundings, rng=rng)
+        hits = surroundings.cast(rays, walk, np.tile(t_s, 2))
+        out = self._measure(hits, rays, blocked, surroundings, rng=rng)
         azimuth = np.mod(shot[:, 0], 2.0 * np.pi).reshape(t_ns.shape)
         return Firings(t_ns, azimuth, *(column.reshape(t_ns.shape) for column in out))
 
     def _measure(
         self,
+        hits: Hits,
         rays: NDArray[np.float32],
         blocked: NDArray[np.bool_],
         surroundings: Surroundings,
@@ -154,7 +157,6 @@ class Lidar:
         rng: np.random.Generator,
     ) -> tuple[NDArray[np.uint16], NDArray[np.uint8], NDArray[np.uint8]]:
         count = len(blocked)
-        hits = surroundings.scene.cast(rays)
         noise = np.empty((count, 4), dtype=np.float32)
         noise[:, :2] = rng.standard_normal((count, 2), dtype=np.float32)
         noise[:, 2:] = rng.random((count, 2), dtype=np.float32)
@@ -170,7 +172,7 @@ class Lidar:
         )  # fmt: skip
         gain = np.tile(self.gain, count // LASERS)
         measure(
-            hits.range_m, hits.triangle, hits.normal, rays, surroundings.mesh.reflectivity, blocked,
+            hits.range_m, hits.triangle, hits.normal, rays, surroundings.reflectivity, blocked,
             gain, noise, rules, distance, intensity, truth,
         )  # fmt: skip
         return distance, intensity, truth
@@ -178,7 +180,21 @@ class Lidar:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Surroundings:
-    """A mesh and its ray caster."""
+    """A mesh with its ray caster, and people who walk with the carrier."""
 
     mesh: WorldMesh
     scene: Scene
+    companions: Companions | None = None
+
+    @property
+    def reflectivity(self) -> NDArray[np.float32]:
+        """Of all triangles; the last is that of people."""
+        return np.append(self.mesh.reflectivity, np.float32(REFLECTIVITY))
+
+    def cast(self, rays: NDArray[np.float32], walk: Walk, t_s: Array) -> Hits:
+        """First hits of rays (N, 6) at their times [s], (N,)."""
+        hits = self.scene.cast(rays)
+        if self.companions is None:
+            return hits
+        people = len(self.mesh.reflectivity)
+        return self.companions.hide(hits, rays, walk=walk, t_s=t_s, surface=people)

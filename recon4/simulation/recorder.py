@@ -120,6 +120,7 @@ def _parameters(setup: SimulationSetup) -> dict[str, object]:
         "world": setup.world.name,
         "outdoors": setup.world.outdoors,
         "origin": asdict(setup.world.origin),
+        "people": len(setup.surroundings.companions or ()),
         "seconds": setup.walk.seconds,
         "seed": setup.seed,
         "epoch_ns": setup.epoch_ns,

@@ -31,9 +31,10 @@ from recon4.recording.formats.poses import read_tum
 from recon4.report.verdict import assess
 from recon4.results import About, report_facts
 from recon4.settings import preset
-from recon4.simulation.degradation import parse_degradations
+from recon4.simulation.degradation import PEOPLE, parse_degradations
 from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import record
+from recon4.simulation.worlds import build_world
 from recon4.store.hashing import hash_json
 from recon4.store.project import Project, read_artifacts
 from recon4.store.stage import Input, StageRun, StageRunner
@@ -49,7 +50,7 @@ WALKS = (
 DEGRADATIONS = (
     "none", "extrinsics", "imu-rotation", "imu-clock", "lidar-clock", "imu-grade", "imu-unit",
     "imu-axes", "swap-lidars", "wrong-model", "dead-beams", "packet-loss", "beam-bias", "lever-arm",
-    "gnss-clock", "no-imu",
+    "gnss-clock", "no-imu", "people",
 )  # fmt: skip
 ONLY_OUTDOORS = {"lever-arm", "gnss-clock", "no-gnss"}
 GENERIC = "No loop closure was accepted"
@@ -224,13 +225,17 @@ def run_walk(
     With ``keep`` the artifacts without points stay in ``OUT/kept``, for studies of the errors.
     """
     world, seed = walk.split("/")
-    setup = prepare(world, seconds=seconds, seed=int(seed))
-    wanted = [d for d in degradations if applies(d, outdoors=setup.world.outdoors)]
+    outdoors = build_world(world).outdoors
+    wanted = [d for d in degradations if applies(d, outdoors=outdoors)]
     work = out / "work"
     shutil.rmtree(work, ignore_errors=True)
     work.mkdir(parents=True)
     folders = {work / f"recording{k}": values_of(d) for k, d in enumerate(wanted)}
-    record(setup, folders, bag=False, progress=Silent())
+    for people in {values.get(PEOPLE, 0.0) for values in folders.values()}:
+        same = {f: v for f, v in folders.items() if v.get(PEOPLE, 0.0) == people}
+        # The rays of a walk are cast once for all degradations that leave them as they are.
+        setup = prepare(world, seconds=seconds, seed=int(seed), people=int(people))
+        record(setup, same, bag=False, progress=Silent())
     for k, degradation in enumerate(wanted):
         project = work / f"project{k}"
         yield prove(work / f"recording{k}", project, walk=walk, degradation=degradation)

@@ -19,7 +19,10 @@ from recon4.pose_graph.uncertainty_files import (
 )
 
 STEP_SD = np.array([1e-3, 1e-3, 2e-3, 0.004, 0.006, 0.005])
-EXACT = ErrorModel(observed=1.0, weak=0.0, turn_s=2.0, shift_s=2.0, anchor_rad=1e-6, anchor_m=1e-5)
+EXACT = ErrorModel(
+    observed=1.0, weak=0.0, observed_m=1.0, observed_rad=1.0, turn_s=2.0, shift_s=2.0,
+    anchor_rad=1e-6, anchor_m=1e-5, anchor_ratio=0.0,
+)  # fmt: skip
 """The stated deviations are true, and correlated over 2 s."""
 
 
@@ -124,6 +127,13 @@ def test_a_direction_that_is_not_observed_is_unknown_for_long() -> None:
 
     assert sd_m[-1] > 0.25 * np.sqrt(59)
     assert stated(chain(), ErrorModel()).sd_m[-1] < 0.05 * sd_m[-1]
+
+
+def test_a_walk_that_was_lost_leaves_finite_numbers() -> None:
+    found = stated(chain(60, sd=np.repeat([2.0, 600.0], 3)), ErrorModel())
+
+    assert np.isfinite(found.cov).all()
+    assert found.sd_m[-1] > 1.0
 
 
 def test_positions_keep_the_walk_on_earth() -> None:
