@@ -2,7 +2,7 @@
 
 The information of the points along such a direction comes from noise of the normals and from the
 pattern of the rings, which moves with the sensor. It is not merely weak but wrong, and in the same
-way for seconds: in a tunnel the filter believes in millimeters a multiframe and is wrong by 4 cm.
+way for seconds: in a tunnel the filter states millimeters a multiframe and is wrong by 4 cm.
 Its covariance therefore says nothing there; the speed of the carrier bounds the error.
 """
 

@@ -1,8 +1,8 @@
 """People who walk with the carrier and hide part of the view: surfaces that do not stand still.
 
 Each keeps a place beside, before or behind the carrier, as a group does that is being led. They
-seem to stand in the body while the world moves past, so a registration that trusts them believes
-in less motion than there was.
+seem to stand in the body while the world moves past, so a registration that matches them estimates
+less motion than there was.
 """
 
 from __future__ import annotations
