@@ -24,7 +24,7 @@ _MAX_PIXELS = 1 << 28
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class PlanarMap:
+class TrinaryMap:
     """A finished 2-D map as it was written."""
 
     gray: NDArray[np.uint8]
@@ -77,7 +77,7 @@ def write_map(folder: Path, grid: OccupancyGrid, settings: Grid2dSettings) -> No
     (folder / "map.yaml").write_text(text, "ascii")
 
 
-def read_map(folder: Path) -> PlanarMap:
+def read_map(folder: Path) -> TrinaryMap:
     """Read the files of `write_map`.
 
     Raises:
@@ -96,4 +96,4 @@ def read_map(folder: Path) -> PlanarMap:
             gray = np.asarray(image)
     except (KeyError, ValueError, OSError, SyntaxError) as error:
         raise StoreError(f"{folder.name}: the 2-D map cannot be read: {error}") from error
-    return PlanarMap(gray, cell_m, origin_m)
+    return TrinaryMap(gray, cell_m, origin_m)

@@ -37,7 +37,7 @@ from app.viewer.scene.layers import (
 from app.viewer.scene.nodes import AxesNode, GridNode, ImageNode, LabelNode, LinesNode, Node
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.trajectory import Times, Trajectory
-from recon4.slam2d.map_files import PlanarMap
+from recon4.slam2d.map_files import TrinaryMap
 
 CLOSED_M = 2.0
 """Start and end nearer than this have one label [m]."""
@@ -93,7 +93,7 @@ class Content:
     """The points of the walk until there is a map."""
     sensors: tuple[str, ...] = ()
     """Names of the LiDARs."""
-    plan: PlanarMap | None = None
+    plan: TrinaryMap | None = None
     """The map of a 2-D laser."""
     gnss: GnssMarks | None = None
     crs: str = ""
@@ -188,7 +188,7 @@ def grid_cell_m(box: Bounds) -> float:
     return 100.0
 
 
-def _plan(plan: PlanarMap, view: ViewState) -> ImageNode:
+def _plan(plan: TrinaryMap, view: ViewState) -> ImageNode:
     low_m, high_m = _corners_m(plan)
     rgba = np.zeros((*plan.gray.shape, 4), np.uint8)
     rgba[plan.free] = (*FREE_COLOR, 255)
@@ -204,7 +204,7 @@ def _plan(plan: PlanarMap, view: ViewState) -> ImageNode:
     )
 
 
-def _corners_m(plan: PlanarMap) -> tuple[Array, Array]:
+def _corners_m(plan: TrinaryMap) -> tuple[Array, Array]:
     """Lower left and upper right corner, just below the trajectory."""
     rows, columns = plan.gray.shape
     low_m = np.array([*plan.origin_m, -UNDER_M])
