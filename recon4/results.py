@@ -314,17 +314,27 @@ def export_poses(project: Path, path: Path) -> int:
     """
     check_name(path, ".txt")
     artifacts = read_artifacts(project)
+    dense = final_trajectory(project, artifacts)
+    t_ns = FrameStore.open(artifacts["frames"]).t_mid_ns
+    with atomic_file(path) as temporary:
+        write_kitti(temporary, Trajectory(t_ns, dense.at(t_ns)))
+    return len(t_ns)
+
+
+def final_trajectory(project: Path, artifacts: Mapping[str, Path]) -> Trajectory:
+    """The trajectory ``T_map_body`` of a finished run, compared with its approval if there is one.
+
+    Raises:
+        Altered: If it was approved and is not what was approved.
+        StoreError: If there is none yet.
+    """
     if not {"frames", "level"} <= artifacts.keys():
         raise StoreError(f"{project} has no finished trajectory yet: run recon4 process")
     approval = approval_of(project, {name: folder.name for name, folder in artifacts.items()})
     if approval:
         for stage in ("frames", "level"):
             approval.evidence.artifact(stage, artifacts[stage]).check_all()
-    dense = load_trajectory(artifacts["level"] / "trajectory.npz")
-    t_ns = FrameStore.open(artifacts["frames"]).t_mid_ns
-    with atomic_file(path) as temporary:
-        write_kitti(temporary, Trajectory(t_ns, dense.at(t_ns)))
-    return len(t_ns)
+    return load_trajectory(artifacts["level"] / "trajectory.npz")
 
 
 def _writers(

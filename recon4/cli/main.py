@@ -150,7 +150,8 @@ def export(
     file: Annotated[
         Path,
         typer.Argument(
-            help="File to write; the suffix selects the format: .laz, .ply; .txt = KITTI poses."
+            help="File to write; the suffix selects the format: .laz, .ply; .txt = KITTI poses; "
+            ".3dtk = folder of scans with poses for 3DTK."
         ),
     ],
     *,
@@ -164,6 +165,7 @@ def export(
 ) -> None:
     """Write the map of a project, in any CRS when it is georeferenced, or its poses."""
     confine_command(write=[file.parent])
+    from recon4.exports_3dtk import export_3dtk
     from recon4.results import export_map, export_poses
     from recon4.terminal import watcher
 
@@ -173,6 +175,9 @@ def export(
         write(f"{export_poses(project, file)} poses in {file}")
         return
     with watcher() as progress:
+        if file.suffix.lower() == ".3dtk":
+            write(f"{export_3dtk(project, file, progress=progress)} points in {file}")
+            return
         points = export_map(project, file, crs=crs, raw=raw, strays=strays, progress=progress)
     write(f"{points} points in {file}")
 

@@ -10,18 +10,20 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import CorruptFile, EmptyRecording, RecordingError, UnknownFormat
+from recon4.geometry.se3 import SE3
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Sensor
-from recon4.model.trajectory import Times
+from recon4.model.trajectory import Times, Trajectory
 from recon4.recording.assembly.assembler import TimeGap, drop_invalid
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.cloud_points import CloudDecoder
 from recon4.recording.formats.cloud_files import is_cloud_file, read_cloud
+from recon4.recording.formats.three_dtk import POSE_SUFFIX, SCAN_SUFFIX, read_pose
 from recon4.recording.frame_times import ASSUMED_NS, frame_times
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 
-CLOUD_SUFFIXES = (".pcd", ".ply", ".bin")
+CLOUD_SUFFIXES = (".pcd", ".ply", ".bin", SCAN_SUFFIX)
 _SHORTEST_NS, _LONGEST_NS = 20_000_000, 250_000_000
 """Plausible intervals of frames [s]; outside them each frame counts as one revolution."""
 
@@ -39,6 +41,11 @@ class FrameFiles:
     """Origin of the timestamps; empty = 10 Hz is assumed."""
     remark: str = ""
     """Why times that are there were not used; empty = nothing to remark."""
+
+    @property
+    def are_static(self) -> bool:
+        """Whether they are scans of 3DTK, which have no motion inside."""
+        return self.files[0].suffix.lower() == SCAN_SUFFIX
 
 
 def natural(path: Path) -> list[tuple[int, int, str]]:
@@ -82,8 +89,10 @@ def time_warnings(frames: FrameFiles) -> tuple[str, ...]:
 
 def read_frames(
     frames: FrameFiles, sensor: Sensor, *, settings: IngestSettings, report: ImportReport
-) -> Iterator[Multiframe]:
+) -> Iterator[Multiframe | Trajectory]:
     """Read file by file; a damaged one is skipped, counted and reported.
+
+    A pose beside a file follows it as `Trajectory`.
 
     Raises:
         RecordingError: If not one of the files can be read.
@@ -94,7 +103,7 @@ def read_frames(
         sensor.model,
         report=report,
         points_lead=True,
-        deskewed=settings.deskewed,
+        deskewed=settings.deskewed or frames.are_static,
     )
     for text in time_warnings(frames):
         report.warn(text)
@@ -124,6 +133,9 @@ def read_frames(
             frame = replace(frame, t_ns=last_ns + frames.period_ns)
         last_ns, frame_id = frame.t_ns, frame_id + 1
         yield frame
+        pose = file.with_suffix(POSE_SUFFIX)
+        if frames.are_static and pose.is_file():
+            yield _pose_at(frame.t_ns, pose)
     if not frame_id and failed is not None:
         raise failed
 
@@ -167,6 +179,11 @@ def _multiframe(shots: Shots, frame_id: int, start_ns: int, *, period_ns: int) -
         shots.echo,
         np.clip(shots.t_ns - start_ns, 0, 2**31 - 1).astype(np.int32),
     )
+
+
+def _pose_at(t_ns: int, path: Path) -> Trajectory:
+    T = read_pose(path)
+    return Trajectory(np.array([t_ns]), SE3(T.R[None], T.t[None]))
 
 
 def _cloud_files(folder: Path) -> list[Path]:

@@ -43,7 +43,7 @@ class RecordingKind(StrEnum):
     PCAP = "Velodyne pcap"
     BAG1 = "rosbag1"
     BAG2 = "rosbag2"
-    FRAMES = "frames (PCD, PLY or KITTI BIN)"
+    FRAMES = "frames (PCD, PLY, KITTI BIN or 3DTK)"
     IMU_CSV = "IMU samples (CSV)"
     GNSS_CSV = "GNSS samples (CSV)"
     POSES = "poses (TUM or KITTI)"

@@ -27,6 +27,7 @@ from recon4.recording.formats.cloud_headers import (
     pcd_layout,
     ply_layout,
 )
+from recon4.recording.formats.three_dtk import SCAN_SUFFIX, read_scan, scan_fields
 
 Table = dict[str, NDArray[Any]]
 """Column name -> values, (N,) each."""
@@ -42,18 +43,20 @@ def is_cloud_file(path: Path) -> bool:
     """Whether the content is that of a PCD or PLY file, or plausibly of a KITTI BIN file."""
     with path.open("rb") as file:
         head = file.read(HEADER_BYTES)
-    if is_ply(head) or is_pcd(head):
+    if is_ply(head) or is_pcd(head) or path.suffix.lower() == SCAN_SUFFIX:
         return True
     return path.suffix.lower() == ".bin" and _is_bin(head, path.stat().st_size)
 
 
 def read_cloud(path: Path) -> Table:
-    """Read a PCD, PLY or BIN file of at most `MAX_FRAME_BYTES` as a whole.
+    """Read a PCD, PLY or BIN file of at most `MAX_FRAME_BYTES`, or a scan of 3DTK, as a whole.
 
     Raises:
         CorruptFile: If the bytes do not match what the header promises, or there are too many.
         UnknownFormat: If it is none of the three.
     """
+    if path.suffix.lower() == SCAN_SUFFIX:
+        return read_scan(path)
     with open_regular(path) as file:
         layout = _layout(file, path)
         _check_size(file, layout, path.name)
@@ -97,6 +100,8 @@ def cloud_fields(path: Path) -> list[str]:
     Raises:
         CorruptFile, UnknownFormat: As `read_cloud`.
     """
+    if path.suffix.lower() == SCAN_SUFFIX:
+        return list(scan_fields(path))
     with open_regular(path) as file:
         return list(_layout(file, path).named())
 

@@ -15,6 +15,7 @@ from recon4.calibration.pose_pairs import average_pairs, hand_eye, read_pose_pai
 from recon4.evaluation.relations import read_relations
 from recon4.model.laser_scans import LaserScans
 from recon4.model.rig import load_rig
+from recon4.recording.formats.three_dtk import read_pose, read_scan
 from recon4.recording.laser2d import is_laser2d, read_laser2d
 from recon4.recording.line_recording import LineRecording
 from recon4.recording.report import ImportReport
@@ -104,7 +105,31 @@ def _read_pose_pairs(path: Path) -> Reading:
     return Reading(len(pairs.T_world_marker))
 
 
+@cache
+def _scan_3d() -> tuple[bytes, ...]:
+    rows = "".join(f"{k}.25 {2 * k} 300.5 {k}\n" for k in range(20))
+    return rows.encode(), b"4 x 5\n1 2 3\n4 5 6\n"
+
+
+@cache
+def _pose_3d() -> tuple[bytes, ...]:
+    return (b"100.5 -20 300\n0.5 -90 12.25\n",)
+
+
+def _read_pose_3d(path: Path) -> Reading:
+    read_pose(path)
+    return Reading(1)
+
+
 PLANAR_KINDS = (
+    Kind(
+        name="scan-3d",
+        file_name="scan000.3d",
+        seeds=_scan_3d,
+        read=lambda path: Reading(len(read_scan(path)["x"])),
+        knows_end=False,
+    ),
+    Kind(name="pose-3d", file_name="a.pose", seeds=_pose_3d, read=_read_pose_3d, knows_end=False),
     Kind(name="carmen", file_name="a.log", seeds=_carmen, read=_read_carmen, knows_end=False),
     Kind(
         name="db3-laser",

@@ -1,0 +1,62 @@
+"""Scans with poses for 3DTK: one a node of the pose graph, in a folder."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from recon4.mapping.place import place
+from recon4.model.trajectory import Trajectory
+from recon4.progress import Progress, track
+from recon4.recording.formats.three_dtk import (
+    POSE_SUFFIX,
+    SCAN_SUFFIX,
+    write_pose,
+    write_scan,
+)
+from recon4.store.frames import FrameStore
+
+
+@dataclass(frozen=True, slots=True)
+class ScanRows:
+    """Multiframes that belong to one scan."""
+
+    t_ns: int
+    """Time of its pose [ns]."""
+    rows: range
+
+
+def export_scans(
+    frames: FrameStore,
+    trajectory: Trajectory,
+    scans: Sequence[ScanRows],
+    folder: Path,
+    *,
+    progress: Progress,
+) -> int:
+    """Write undistorted scans: ``scan000.3d``, ``scan000.pose`` and ``scan000.frames`` each.
+
+    Args:
+        frames: The points.
+        trajectory: ``T_map_body``.
+        scans: Which multiframes make a scan, and when.
+        folder: An empty folder.
+        progress: Counts scans.
+
+    Returns:
+        Points written.
+    """
+    points = 0
+    for number, scan in enumerate(track(scans, progress, what="export", unit="scans")):
+        T_map_body = trajectory.at(np.array([scan.t_ns]))[0]
+        parts = [frames[row] for row in scan.rows]
+        p_map = np.concatenate([place(part, trajectory, frames.rig) for part in parts])
+        intensity = np.concatenate([part.intensity for part in parts])
+        name = folder / f"scan{number:03d}"
+        write_scan(name.with_suffix(SCAN_SUFFIX), T_map_body.inverse() @ p_map, intensity)
+        write_pose(name.with_suffix(POSE_SUFFIX), T_map_body)
+        points += len(p_map)
+    return points
