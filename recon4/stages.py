@@ -25,7 +25,9 @@ from recon4.review.decisions import Standing
 from recon4.settings import Settings
 from recon4.store.stage import Stage
 
-_MATCHING = ("segments", "overlap", "registration", "planes", "odometry", "graph")
+_MATCHING = (
+    "segments", "overlap", "registration", "planes", "odometry", "graph", "recognition",
+)  # fmt: skip
 
 
 def _frames(
@@ -288,7 +290,7 @@ CALIBRATION = Stage(
     _calibration,
     CalibrationFigures,
 )
-GRAPH = Stage("graph", 6, _MATCHING, _graph, GraphFigures)
+GRAPH = Stage("graph", 7, _MATCHING, _graph, GraphFigures)
 VERIFICATION = Stage(
     "verification", 2, ("verification", "graph"), _verification, VerificationFigures
 )

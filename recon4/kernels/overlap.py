@@ -64,3 +64,34 @@ def inside_ratio(
         if range_m < buffer[column, row] * (1.0 + relative) + absolute_m:
             inside += 1
     return inside / max(len(p), 1)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def seen_through_ratio(
+    buffer: NDArray[np.float32],
+    p: NDArray[np.float64],
+    R: NDArray[np.float64],
+    t: NDArray[np.float64],
+    relative: float,
+    absolute_m: float,
+) -> float:
+    """Fraction of points where the buffer's sensor saw through to something farther away.
+
+    Only points in filled bins count, no farther than the surface seen there. 0 if there are none.
+    """
+    azimuth_bins, elevation_bins = buffer.shape
+    known = through = 0
+    for k in range(len(p)):
+        x = R[0, 0] * p[k, 0] + R[0, 1] * p[k, 1] + R[0, 2] * p[k, 2] + t[0]
+        y = R[1, 0] * p[k, 0] + R[1, 1] * p[k, 1] + R[1, 2] * p[k, 2] + t[1]
+        z = R[2, 0] * p[k, 0] + R[2, 1] * p[k, 1] + R[2, 2] * p[k, 2] + t[2]
+        column, row, range_m = _bin(x, y, z, azimuth_bins, elevation_bins)
+        if column < 0 or buffer[column, row] == 0.0:
+            continue
+        surface = buffer[column, row]
+        if range_m > surface * (1.0 + relative) + absolute_m:
+            continue
+        known += 1
+        if range_m < surface * (1.0 - relative) - absolute_m:
+            through += 1
+    return through / max(known, 1)

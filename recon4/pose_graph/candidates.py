@@ -30,7 +30,7 @@ def rounds(nodes: int, settings: GraphSettings) -> list[Selection]:
         return [partial(pairs_at_distances, distances=d, settings=settings) for d in schedule]
     selections: list[Selection] = [partial(neighbor_pairs, settings=settings)]
     if settings.mode != "10":
-        selections += [partial(revisit_pairs, settings=settings, limit=2)]
+        selections += [partial(revisit_pairs, settings=settings, limit=min(2, settings.revisits))]
         selections += [partial(revisit_pairs, settings=settings, limit=settings.revisits)]
     return selections
 

@@ -15,7 +15,7 @@ from recon4.model.plain import finite_or_none
 from recon4.model.pose_graph import Edge, EdgeKind, Reason, Verdict
 from recon4.progress import Progress
 from recon4.registration.collar_lines import LineTarget, register_lines
-from recon4.registration.overlap import RangeImage, overlap
+from recon4.registration.overlap import RangeImage, overlap, seen_through
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.planes import register_to_planes
 from recon4.registration.result import Registration
@@ -70,6 +70,11 @@ class PairRegistrar:
                     progress.event(tried_event(edge))
                 progress.advance(len(done))
         return [edges[k] for k in range(len(pairs))]
+
+    def seen_through(self, edge: Edge) -> float:
+        """Fraction of the points of one node that lie in the free space of the other, 0..1."""
+        i, j = self._view(edge.i), self._view(edge.j)
+        return seen_through(i, j, edge.T_i_j, settings=self._settings.overlap)
 
     def _try_chunk(self, groups: list[list[int]], pairs: Sequence[Pair]) -> dict[int, Edge]:
         submaps, planes = self._make_submaps(), PlaneMap(self._settings.planes)

@@ -22,6 +22,7 @@ from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.candidates import Ends, retry_pairs, rounds
 from recon4.pose_graph.files import save_graph
 from recon4.pose_graph.pairs import Pair, PairRegistrar
+from recon4.pose_graph.recognition import recognize
 from recon4.pose_graph.solve import optimize
 from recon4.progress import Progress
 from recon4.registration.submap import NodeRangeImages, Submaps, node_rows
@@ -31,6 +32,8 @@ from recon4.store.frames import FrameStore
 
 _LOST_SD_FACTOR = 200.0
 """Factor on the standard deviation of an odometry edge across a lost multiframe."""
+_BEFORE_RECOGNITION = 2
+"""Rounds before places are recognized: neighbors, and the nearest revisits."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,21 +99,62 @@ def search(
         progress: Counts pairs and receives an event for each registration.
         scratch: Folder for unnamed temporary files of 0.2 MB per node.
     """
-    g = settings.graph
-    trajectory, lost = odometry.trajectory, odometry.lost
-    rows = node_rows(frames.t_mid_ns, g.node_stride, lost)
+    start = start_graph(frames, odometry, settings=settings.graph)
+    return close_loops(
+        start, frames, odometry, settings=settings, progress=progress, scratch=scratch
+    )
+
+
+def start_graph(
+    frames: FrameStore, odometry: OdometryTrack, *, settings: GraphSettings
+) -> PoseGraph:
+    """Nodes with their poses by odometry, and the odometry edges between them."""
+    lost = odometry.lost
+    rows = node_rows(frames.t_mid_ns, settings.node_stride, lost)
     t_ns = frames.t_mid_ns[rows]
-    T_odom_body = trajectory.at(t_ns)
-    edges = odometry_edges(T_odom_body, rows, lost, motion_cov=odometry.motion_cov, settings=g)
-    graph = PoseGraph(rows.astype(np.int64), t_ns, T_odom_body, edges)
-    progress.event(NodesPlaced(t_ns=tuple(t_ns.tolist()), t_m=positions_of(T_odom_body.t)))
+    T_odom_body = odometry.trajectory.at(t_ns)
+    edges = odometry_edges(
+        T_odom_body, rows, lost, motion_cov=odometry.motion_cov, settings=settings
+    )
+    return PoseGraph(rows.astype(np.int64), t_ns, T_odom_body, edges)
+
+
+def close_loops(
+    graph: PoseGraph,
+    frames: FrameStore,
+    odometry: OdometryTrack,
+    *,
+    settings: Settings,
+    progress: Progress,
+    scratch: Path,
+) -> PoseGraph:
+    """Register pairs of the nodes of `start_graph` in all rounds; arguments as of `search`."""
+    g, rows = settings.graph, graph.frame_ids.astype(np.intp)
+    progress.event(
+        NodesPlaced(t_ns=tuple(graph.t_ns.tolist()), t_m=positions_of(graph.T_map_body.t))
+    )
     views = NodeRangeImages(len(rows), settings, scratch)
     registrar = PairRegistrar(
-        lambda: Submaps(frames, trajectory, rows, settings=settings, skip=lost), views, settings
+        lambda: Submaps(frames, odometry.trajectory, rows, settings=settings, skip=odometry.lost),
+        views,
+        settings,
     )
     registrar.prepare(len(rows), progress)
     expected: dict[Ends, SE3] = {}
-    for select in rounds(len(rows), g):
+    selections = rounds(len(rows), g)
+    for select in selections[:_BEFORE_RECOGNITION]:
+        graph = _try(graph, select(graph), registrar, expected=expected, progress=progress)
+    if settings.recognition.enabled and len(selections) > _BEFORE_RECOGNITION and not g.exhaustive:
+        leveled = frames.imu is not None and settings.odometry.use_imu
+        for _ in range(settings.recognition.passes):
+            edges = recognize(
+                graph, views, registrar,
+                settings=settings.recognition, leveled=leveled, progress=progress,
+            )  # fmt: skip
+            graph = _joined(graph, edges, progress)
+            if not any(edge.in_graph for edge in edges):
+                break
+    for select in selections[_BEFORE_RECOGNITION:]:
         graph = _try(graph, select(graph), registrar, expected=expected, progress=progress)
     for _ in range(g.retry_rounds):
         again = retry_pairs(graph, expected, move_m=g.retry_move_m)
@@ -171,6 +215,20 @@ def _try(
     solution = optimize(graph, kernel="cauchy")
     progress.event(NodesPlaced(t_m=positions_of(solution.T_map_body.t)))
     return graph.with_poses(solution.T_map_body)
+
+
+def _joined(graph: PoseGraph, recognized: list[Edge], progress: Progress) -> PoseGraph:
+    """The graph with recognized places, optimized.
+
+    Without a kernel first: it would ignore loop closures that move the map by meters.
+    """
+    graph = graph.with_edges(_newest(graph.edges, recognized))
+    if not any(edge.in_graph for edge in recognized):
+        return graph
+    for kernel in ("none", "cauchy"):
+        graph = graph.with_poses(optimize(graph, kernel=kernel).T_map_body)
+    progress.event(NodesPlaced(t_m=positions_of(graph.T_map_body.t)))
+    return graph
 
 
 def _newest(edges: tuple[Edge, ...], tried: list[Edge]) -> tuple[Edge, ...]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array
-from recon4.kernels.overlap import inside_ratio, nearest_ranges
+from recon4.kernels.overlap import inside_ratio, nearest_ranges, seen_through_ratio
 from recon4.settings import OverlapSettings
 
 
@@ -50,6 +50,30 @@ def overlap(
     if settings.mode == "min":
         return min(forward, backward)
     return 2.0 * forward * backward / max(forward + backward, 1e-12)
+
+
+def seen_through(
+    source: RangeImage, target: RangeImage, T_source_target: SE3, *, settings: OverlapSettings
+) -> float:
+    """Fraction of points in the free space of the other view, 0..1: the larger of both directions.
+
+    A view of the same place has hardly any: a ray that went on to a wall passed nothing solid.
+
+    Args:
+        source: One view.
+        target: The other view.
+        T_source_target: Maps points of the target into the source.
+        settings: Tolerances.
+    """
+    return max(
+        seen_through_ratio(
+            view.nearest_m, other.points, T.R, T.t,
+            settings.relative_tolerance, settings.absolute_tolerance_m,
+        )
+        for view, other, T in (
+            (source, target, T_source_target), (target, source, T_source_target.inverse()),
+        )
+    )  # fmt: skip
 
 
 def _inside(

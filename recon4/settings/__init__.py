@@ -7,7 +7,7 @@ own groups, so that a changed setting reruns only the stages that depend on it.
 from recon4.settings.assign import canonical, override, to_json
 from recon4.settings.calibration import CalibrationSettings, EntropySettings
 from recon4.settings.georeference import GnssSettings, LevelSettings
-from recon4.settings.graph import GraphSettings, VerificationSettings
+from recon4.settings.graph import GraphSettings, RecognitionSettings, VerificationSettings
 from recon4.settings.ingest import IngestSettings
 from recon4.settings.intensity import IntensitySettings
 from recon4.settings.lines import LineSettings
@@ -46,6 +46,7 @@ __all__ = [
     "OdometrySettings",
     "OverlapSettings",
     "PlaneSettings",
+    "RecognitionSettings",
     "RefineSettings",
     "RegistrationSettings",
     "ScanSettings",

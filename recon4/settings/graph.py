@@ -97,3 +97,50 @@ class VerificationSettings:
             "inlier_probability must be 0.5 to below 1",
             self.inlier_probability,
         )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RecognitionSettings:
+    """Place recognition: loop closures that lie beyond the search radius of revisits."""
+
+    enabled: bool = True
+    """Search for places beyond the search radius; off = only revisits near the predicted pose."""
+    passes: int = 4
+    """Largest number of searches; each begins with the poses that the one before has corrected."""
+    spacing_m: float = 1.5
+    """Path length from one place to the next [m]."""
+    reach_m: float = 8.0
+    """Path before and after a place whose walls form its image [m]."""
+    min_path_m: float = 15.0
+    """Places with less path in between are not compared [m]."""
+    candidates: int = 10
+    """Number of earlier places with the most similar descriptors that each place is laid onto."""
+    hypotheses: int = 5
+    """Number of poses of a place that are registered."""
+    min_score: float = 0.5
+    """Smallest cosine of two images laid onto each other."""
+    bound_sd: float = 2.0
+    """A recognized place may move a node by this many standard deviations of the graph …"""
+    bound_m: float = 0.3
+    """… plus this [m] …"""
+    bound_ratio: float = 0.005
+    """… plus this ratio of the path length in between. Farther ones are ambiguous: they are
+    announced and wait for a decision."""
+    search_ratio: float = 0.1
+    """The search goes farther by this ratio of the path length in between, so that a drift larger
+    than stated is announced."""
+    max_seen_through: float = 0.06
+    """Largest fraction of points in the free space of the other visit."""
+    min_places: int = 3
+    """Number of nodes in a row that must agree on a correction."""
+    rival_ratio: float = 0.5
+    """Another correction with at least this ratio of the nodes of the best one makes both
+    ambiguous."""
+
+    def __post_init__(self) -> None:
+        for name in ("spacing_m", "reach_m"):
+            value = getattr(self, name)
+            require(value > 0.0, f"{name} must be above 0", value)
+        for name in ("passes", "candidates", "hypotheses", "min_places"):
+            value = getattr(self, name)
+            require(value >= 1, f"{name} must be 1 or more", value)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from recon4.errors import ConfigError
 from recon4.settings.calibration import CalibrationSettings
 from recon4.settings.georeference import GnssSettings, LevelSettings
-from recon4.settings.graph import GraphSettings, VerificationSettings
+from recon4.settings.graph import GraphSettings, RecognitionSettings, VerificationSettings
 from recon4.settings.ingest import IngestSettings
 from recon4.settings.intensity import IntensitySettings
 from recon4.settings.lines import LineSettings
@@ -41,6 +41,7 @@ class Settings:
     odometry: OdometrySettings = field(default_factory=OdometrySettings)
     calibration: CalibrationSettings = field(default_factory=CalibrationSettings)
     graph: GraphSettings = field(default_factory=GraphSettings)
+    recognition: RecognitionSettings = field(default_factory=RecognitionSettings)
     verification: VerificationSettings = field(default_factory=VerificationSettings)
     refine: RefineSettings = field(default_factory=RefineSettings)
     lines: LineSettings = field(default_factory=LineSettings)
@@ -88,6 +89,7 @@ PRESETS: dict[str, Settings] = {
             loop_sd_m=0.1,
             loop_sd_rad=0.01,
         ),
+        recognition=RecognitionSettings(enabled=False),
         verification=VerificationSettings(robust="none"),
         gnss=GnssSettings(judge_edges=False),
         intensity=IntensitySettings(method="bins", min_contrast=0.0),

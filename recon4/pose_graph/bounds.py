@@ -1,0 +1,80 @@
+"""How far two nodes may be off relative to each other: a bound along the edges between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import dijkstra
+
+from recon4.geometry.se3 import SE3, Array
+from recon4.model.pose_graph import PoseGraph, Rows
+
+_YAW = 2
+"""Row of the rotation about the vertical among the tangents of an edge in map axes."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RelativeBounds:
+    """Standard deviations of the relative pose of some nodes, by the best connected edges.
+
+    Errors along a path are taken as fully correlated: standard deviations add up, as they do for a
+    drift that grows evenly. Heights of a leveled walk do not drift like that: variances add up.
+    """
+
+    horizontal_m: Array
+    """[m], (K, K)."""
+    vertical_m: Array
+    """[m], (K, K)."""
+    yaw_rad: Array
+    """[rad], (K, K)."""
+
+
+def relative_bounds(graph: PoseGraph, nodes: Rows, *, leveled: bool) -> RelativeBounds:
+    """Bounds between all pairs of ``nodes`` (K,), along the edges in the graph.
+
+    A rotation error moves what follows by the error times half the extent of the walk.
+
+    Args:
+        graph: Its poses turn the covariances of the edges into map axes.
+        nodes: Rows of nodes.
+        leveled: The vertical is known (by an IMU), so tilts do not add up to heights.
+    """
+    of = graph.relations
+    used = np.flatnonzero(of.in_graph)
+    cov_j = np.asarray(np.linalg.inv(of.information[used]), np.float64)
+    cov = _in_map_axes(graph.T_map_body, cov_j, of.j[used])
+    sd = np.sqrt(np.maximum(np.einsum("eaa->ea", cov), 0.0))
+    t_m = graph.T_map_body.t
+    arm_m = 0.5 * float(np.linalg.norm(np.ptp(t_m[:, :2], axis=0)))
+    tilt = np.linalg.norm(sd[:, :2], axis=1)
+    horizontal = sd[:, 3:5].max(axis=1) + arm_m * sd[:, _YAW]
+    vertical = sd[:, 5] ** 2 if leveled else sd[:, 5] + arm_m * tilt
+    i, j, count = of.i[used], of.j[used], len(graph)
+    far_m, height, turn_rad = (
+        _along(i, j, weight, count=count, nodes=nodes)
+        for weight in (horizontal, vertical, sd[:, _YAW])
+    )
+    return RelativeBounds(far_m, np.sqrt(height) if leveled else height, turn_rad)
+
+
+def _in_map_axes(T_map_body: SE3, cov: Array, j: Rows) -> Array:
+    """Covariances of tangents at nodes ``j`` with the axes of the map, (E, 6, 6)."""
+    A = np.zeros((len(j), 6, 6))
+    A[:, :3, :3] = A[:, 3:, 3:] = T_map_body.R[j]
+    turned: Array = A @ cov @ np.swapaxes(A, 1, 2)
+    return turned
+
+
+def _along(i: Rows, j: Rows, weight: Array, *, count: int, nodes: Rows) -> Array:
+    """Sum of the weights along the best path between some nodes, (K, K)."""
+    # Of several edges between two nodes the best counts; a sparse matrix would add them.
+    low, high = np.minimum(i, j), np.maximum(i, j)
+    order = np.lexsort((weight, high, low))
+    key = low[order] * count + high[order]
+    first = np.unique(key, return_index=True)[1]
+    rows = order[first]
+    matrix = csr_array((weight[rows] + 1e-12, (low[rows], high[rows])), shape=(count, count))
+    found: Array = dijkstra(matrix, directed=False, indices=nodes)[:, nodes]
+    return found

@@ -1,0 +1,146 @@
+"""Density images: the walls around a place from above, their descriptor and their correlation.
+
+The vertical is known, so two visits of a place differ by a rotation about it and a shift. As in
+MapClosures (Gupta 2024) the place is drawn as an image from above; here the rotation-invariant
+spectrum of the image finds candidates, and a correlation by FFT over rotations and all shifts
+finds the pose.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import fft, ndimage
+
+from recon4.geometry.se3 import Array
+
+CELL_M = 0.4
+_CELLS = 128
+RADIUS_M = 15.0
+"""Radius of an image; with the largest shift nothing wraps around."""
+MAX_SHIFT_M = 10.0
+_MOST = 4.0
+"""Points in a cell beyond which it is full."""
+_YAW_STEP_RAD = np.deg2rad(5.0)
+_APART_M, _APART_RAD = 1.5, 0.25
+"""Maxima closer than this belong to one hypothesis."""
+_RADII, _ANGLES = 12, 32
+_HEIGHTS_M = np.arange(-2.5, 5.0, 0.25)
+
+Spectrum = NDArray[np.complex64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DensityImage:
+    """The walls around a place, with what is compared of them."""
+
+    walls_m: Array
+    """Horizontal positions of wall points relative to the place, map axes [m], (N, 2)."""
+    spectrum: Spectrum
+    """Fourier transform of the blurred image of unit norm."""
+    descriptor: Array
+    """Unit vector, invariant to rotations and shifts, (D,)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Overlay:
+    """A rotation and shift that lays one image onto another."""
+
+    yaw_rad: float
+    shift_m: tuple[float, float]
+    score: float
+    """Cosine of the two images, 0..1."""
+
+
+def make_density_image(walls_m: Array, heights_m: Array) -> DensityImage:
+    """Draw the walls around a place.
+
+    Args:
+        walls_m: Horizontal positions relative to the place [m], (N, 2).
+        heights_m: Heights of all points relative to the body [m], (M,): floor and ceiling.
+    """
+    near = walls_m[np.linalg.norm(walls_m, axis=1) < RADIUS_M]
+    image = ndimage.gaussian_filter(_raster(near), 1.0)
+    spectrum = fft.rfft2(image / max(float(np.linalg.norm(image)), 1e-9))
+    return DensityImage(near, spectrum, _descriptor(image, heights_m))
+
+
+def overlays(
+    target: DensityImage, source: DensityImage, *, yaws: Array, most: int
+) -> list[Overlay]:
+    """The best overlays of ``source`` onto ``target``, best first, at most ``most``.
+
+    Args:
+        target: Image of the earlier place.
+        source: Image to be moved.
+        yaws: Rotations that are tried [rad], (Y,).
+        most: Number of overlays; those next to a better one are omitted.
+    """
+    reach = round(MAX_SHIFT_M / CELL_M)
+    shifts = np.arange(-reach, reach + 1)
+    scores = np.stack([_correlate(target, source, float(yaw), shifts) for yaw in yaws])
+    found = []
+    for _ in range(most):
+        k, a, b = np.unravel_index(int(np.argmax(scores)), scores.shape)
+        shift = (float(shifts[a] * CELL_M), float(shifts[b] * CELL_M))
+        found.append(Overlay(float(yaws[k]), shift, float(scores[k, a, b])))
+        _suppress(scores, yaws, at=(int(k), int(a), int(b)))
+    return [one for one in found if np.isfinite(one.score)]
+
+
+def yaws_within(bound_rad: float) -> Array:
+    """Rotations to try: up to a bound on either side, at most a full turn, (Y,)."""
+    if bound_rad >= np.pi:
+        return np.arange(-np.pi, np.pi, _YAW_STEP_RAD)
+    steps = int(np.ceil(bound_rad / _YAW_STEP_RAD))
+    return np.arange(-steps, steps + 1) * _YAW_STEP_RAD
+
+
+def _correlate(
+    target: DensityImage, source: DensityImage, yaw: float, shifts: NDArray[Any]
+) -> NDArray[np.float32]:
+    c, s = np.cos(yaw), np.sin(yaw)
+    image = _raster(source.walls_m @ np.array([[c, s], [-s, c]]))
+    # The source is not blurred: blurring both would widen the maximum.
+    image /= max(float(np.linalg.norm(ndimage.gaussian_filter(image, 1.0))), 1e-9)
+    scores = fft.irfft2(target.spectrum * np.conj(fft.rfft2(image)), s=image.shape)
+    chosen: NDArray[np.float32] = scores[np.ix_(shifts, shifts)]
+    return chosen
+
+
+def _suppress(scores: NDArray[np.float32], yaws: Array, *, at: tuple[int, int, int]) -> None:
+    """Exclude the neighborhood of a maximum."""
+    near = round(_APART_M / CELL_M)
+    turned = np.abs((yaws - yaws[at[0]] + np.pi) % (2.0 * np.pi) - np.pi)
+    a, b = max(at[1] - near, 0), max(at[2] - near, 0)
+    rows = np.flatnonzero(turned <= _APART_RAD)
+    scores[rows, a : at[1] + near + 1, b : at[2] + near + 1] = -np.inf
+
+
+def _raster(p_m: Array) -> NDArray[np.float32]:
+    cells = np.floor(p_m / CELL_M + 0.5).astype(np.int64) + _CELLS // 2
+    cells = cells[((cells >= 0) & (cells < _CELLS)).all(axis=1)]
+    counts = np.bincount(cells[:, 0] * _CELLS + cells[:, 1], minlength=_CELLS**2)
+    full = np.minimum(counts.reshape(_CELLS, _CELLS), _MOST) / _MOST
+    return full.astype(np.float32)
+
+
+def _descriptor(image: NDArray[np.float32], heights_m: Array) -> Array:
+    """Magnitudes of the spectrum are invariant to shifts; their own spectrum around the circle is
+    invariant to rotations. A histogram of heights tells low rooms from halls.
+    """
+    magnitude = np.log1p(np.abs(fft.fftshift(fft.fft2(image))))
+    radius = np.linspace(2.0, _CELLS / 4.0, _RADII)
+    angle = np.arange(_ANGLES) * np.pi / _ANGLES  # the other half repeats it
+    center = _CELLS // 2
+    at = np.stack([np.outer(radius, np.cos(angle)), np.outer(radius, np.sin(angle))]) + center
+    polar = ndimage.map_coordinates(magnitude, at, order=1)
+    waves = np.abs(fft.rfft(polar, axis=1))[:, : _ANGLES // 4]
+    # The means of the rings are alike everywhere; they would hide the rest.
+    rings = (waves[:, 1:] / np.maximum(waves[:, :1], 1e-9)).ravel()
+    heights = np.sqrt(np.histogram(heights_m, _HEIGHTS_M)[0].astype(np.float64))
+    parts = [part / max(float(np.linalg.norm(part)), 1e-9) for part in (rings, heights)]
+    return np.concatenate(parts) / np.sqrt(2.0)

@@ -1,0 +1,192 @@
+"""Judgment of recognized places: which corrections agree, which compete, which are believable."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from recon4.geometry.se3 import SE3
+from recon4.model.pose_graph import Edge, PoseGraph, Reason, Verdict
+from recon4.pose_graph.places import Places
+from recon4.settings import RecognitionSettings
+
+_LINK_M = 15.0
+"""Corrections with more path in between neither confirm nor exclude each other [m]."""
+_AGREE_M, _AGREE_RATIO, _AGREE_RAD = 0.4, 0.05, 0.09
+"""Largest difference of the corrections of two places: [m], ratio of the path in between, [rad]."""
+_MAX_HEIGHT_SLACK_M = 1.0
+"""Less than a storey, however long the walk [m]."""
+_NEUTRAL = (Reason.OVERLAP, Reason.DEGENERATE)
+"""Reasons that say nothing against a hypothesis."""
+_MAX_CONTRADICTED = 0.15
+"""Largest part of the nodes whose views contradict a correction."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RecognizedChain:
+    """A hypothesis, registered at a place and followed along the path."""
+
+    place: int
+    """Row of the place."""
+    earlier: int
+    """Row of the earlier place it was laid onto."""
+    edges: list[Edge]
+    """At the place first, then at nodes before and after it."""
+
+    @property
+    def confirmed(self) -> list[Edge]:
+        """Edges whose views fit."""
+        return [edge for edge in self.edges if edge.in_graph]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _ChainGroup:
+    """Chains that agree on one correction."""
+
+    chains: list[RecognizedChain]
+    is_within: bool
+    """Whether it moves the nodes by no more than the graph's uncertainty."""
+
+    @property
+    def nodes(self) -> set[int]:
+        return {edge.j for chain in self.chains for edge in chain.confirmed}
+
+    @property
+    def contradicted(self) -> int:
+        return len({
+            edge.j for chain in self.chains for edge in chain.edges
+            if contradicts(edge)
+        } - self.nodes)  # fmt: skip
+
+
+def contradicts(edge: Edge) -> bool:
+    """Whether the two views of an edge overlap but do not fit."""
+    ran_out = edge.reason is Reason.NOT_CONVERGED and edge.error_m <= edge.limit_m
+    return not edge.in_graph and edge.reason not in _NEUTRAL and not ran_out
+
+
+def judge_chains(
+    graph: PoseGraph,
+    places: Places,
+    chains: Sequence[RecognizedChain],
+    *,
+    settings: RecognitionSettings,
+) -> list[Edge]:
+    """Decide which recognized places become loop closures.
+
+    Args:
+        graph: The graph so far.
+        places: Its places.
+        chains: Registered hypotheses; edges that were rejected stay as they are.
+        settings: Limits.
+
+    Returns:
+        All edges of the chains.
+    """
+    groups = _groups(graph, places, [chain for chain in chains if chain.confirmed], settings)
+    reasons: dict[int, Reason] = {}
+    for group in groups:
+        reason = _reason(group, groups, places, settings)
+        reasons |= {id(edge): reason for chain in group.chains for edge in chain.confirmed}
+    return [_judged(edge, reasons.get(id(edge))) for chain in chains for edge in chain.edges]
+
+
+def _judged(edge: Edge, reason: Reason | None) -> Edge:
+    if not reason:
+        return edge
+    return edge.evolve(verdict=Verdict.REJECTED, reason=reason)
+
+
+def _reason(
+    group: _ChainGroup,
+    groups: Sequence[_ChainGroup],
+    places: Places,
+    settings: RecognitionSettings,
+) -> Reason:
+    """Why a group is not accepted; `Reason.NONE` = it is."""
+    support = len(group.nodes)
+    if support < settings.min_places or group.contradicted > _MAX_CONTRADICTED * support:
+        return Reason.UNCONFIRMED
+    if not group.is_within:
+        return Reason.AMBIGUOUS
+    for other in groups:
+        weighs = len(other.nodes) >= settings.rival_ratio * support
+        if other is not group and other.is_within and weighs and _compete(places, group, other):
+            return Reason.AMBIGUOUS
+    return Reason.NONE
+
+
+def _compete(places: Places, a: _ChainGroup, b: _ChainGroup) -> bool:
+    """Whether two groups, which do not agree, correct nodes close to each other."""
+    path_a, path_b = (places.path_m[sorted(group.nodes)] for group in (a, b))
+    return bool(path_a.min() <= path_b.max() + _LINK_M and path_b.min() <= path_a.max() + _LINK_M)
+
+
+def _groups(
+    graph: PoseGraph,
+    places: Places,
+    chains: Sequence[RecognizedChain],
+    settings: RecognitionSettings,
+) -> list[_ChainGroup]:
+    """Chains that agree with each other directly or through others."""
+    label = list(range(len(chains)))
+    for a in range(len(chains)):
+        for b in range(a):
+            if label[a] != label[b] and _chains_agree(graph, places, chains[a], chains[b]):
+                old, new = max(label[a], label[b]), min(label[a], label[b])
+                label = [new if value == old else value for value in label]
+    members = [
+        [chain for chain, value in zip(chains, label, strict=True) if value == group]
+        for group in sorted(set(label))
+    ]
+    return [_ChainGroup(some, _is_within(graph, places, some, settings)) for some in members]
+
+
+def _chains_agree(graph: PoseGraph, places: Places, a: RecognizedChain, b: RecognizedChain) -> bool:
+    """Whether the motion between corrected poses of two chains is that of the odometry."""
+    return any(_agree(graph, places, one, other) for one in a.confirmed for other in b.confirmed)
+
+
+def _agree(graph: PoseGraph, places: Places, a: Edge, b: Edge) -> bool:
+    path_m = abs(float(places.path_m[a.j] - places.path_m[b.j]))
+    if path_m > _LINK_M:
+        return False
+    T_a_b = graph.T_map_body[a.j].inverse() @ graph.T_map_body[b.j]
+    apart = (_corrected(graph, a) @ T_a_b).inverse() @ _corrected(graph, b)
+    limit_m = _AGREE_M + _AGREE_RATIO * path_m
+    return bool(np.linalg.norm(apart.t) < limit_m and apart.angle() < _AGREE_RAD)
+
+
+def _corrected(graph: PoseGraph, edge: Edge) -> SE3:
+    """Pose of the later node in the map by an edge."""
+    return graph.T_map_body[edge.i] @ edge.T_i_j
+
+
+def _is_within(
+    graph: PoseGraph,
+    places: Places,
+    chains: Sequence[RecognizedChain],
+    settings: RecognitionSettings,
+) -> bool:
+    """Whether most edges move their nodes by no more than the graph's uncertainty."""
+    moves = [within for chain in chains for within in _moves_within(graph, places, chain, settings)]
+    return sum(moves) * 2 > len(moves)
+
+
+def _moves_within(
+    graph: PoseGraph, places: Places, chain: RecognizedChain, settings: RecognitionSettings
+) -> Iterator[bool]:
+    """For each confirmed edge, whether it moves its node within the bounds."""
+    at = (chain.earlier, chain.place)
+    far_m, height_m = (
+        settings.bound_sd * float(sd[at])
+        for sd in (places.bounds.horizontal_m, places.bounds.vertical_m)
+    )
+    for edge in chain.confirmed:
+        move = _corrected(graph, edge).t - graph.T_map_body.t[edge.j]
+        walked_m = float(places.path_m[edge.j] - places.path_m[edge.i])
+        slack_m = settings.bound_m + settings.bound_ratio * walked_m
+        across = np.linalg.norm(move[:2]) <= far_m + slack_m
+        yield bool(across and abs(move[2]) <= height_m + min(slack_m, _MAX_HEIGHT_SLACK_M))

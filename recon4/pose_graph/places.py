@@ -1,0 +1,106 @@
+"""Places along a walk: sub-maps of odometry every few meters, as images from above."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import Array
+from recon4.model.pose_graph import EdgeKind, PoseGraph, Rows
+from recon4.pose_graph.density import DensityImage, make_density_image
+from recon4.pose_graph.bounds import RelativeBounds, relative_bounds
+from recon4.registration.submap import NodeRangeImages
+from recon4.settings import RecognitionSettings
+
+_POINTS = 1500
+"""Points of a node that are drawn."""
+_BELOW_M, _ABOVE_M = 0.9, 0.8
+"""Points between these heights below and above the body count as walls [m]."""
+_BROKEN_SD_M = 1.0
+"""Odometry edges that are less certain do not join the parts of a sub-map [m]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Places:
+    """Nodes a few meters apart, each with the walls around it."""
+
+    node: Rows
+    """Node of each place, in the order of the walk, (K,)."""
+    path_m: Array
+    """Path length from the start to every node of the graph [m], (N,)."""
+    images: tuple[DensityImage, ...]
+    descriptors: Array
+    """Unit vectors, (K, D)."""
+    bounds: RelativeBounds
+    """Standard deviations between all pairs of places."""
+
+    def __len__(self) -> int:
+        return len(self.node)
+
+
+def make_places(
+    graph: PoseGraph, views: NodeRangeImages, settings: RecognitionSettings, *, leveled: bool
+) -> Places:
+    """Draw the places of a walk with the current poses of its graph.
+
+    Args:
+        graph: Poses with a vertical z axis.
+        views: Segments of every node.
+        settings: Spacing and extent of the places.
+        leveled: The vertical is known by an IMU.
+    """
+    t_m = graph.T_map_body.t
+    steps = np.linalg.norm(np.diff(t_m, axis=0), axis=1)
+    path_m = np.concatenate([[0.0], np.cumsum(steps)])
+    part = _unbroken_parts(graph)
+    nodes = _every(path_m, part, settings.spacing_m)
+    images = []
+    for node in nodes:
+        near = np.abs(path_m - path_m[node]) <= settings.reach_m
+        members = np.flatnonzero(near & (part == part[node]))
+        images.append(_image(graph, views, node, members))
+    return Places(
+        node=nodes,
+        path_m=path_m,
+        images=tuple(images),
+        descriptors=np.stack([image.descriptor for image in images]),
+        bounds=relative_bounds(graph, nodes, leveled=leveled),
+    )
+
+
+def _unbroken_parts(graph: PoseGraph) -> NDArray[np.int64]:
+    """Number of the stretch of certain odometry that each node belongs to, (N,)."""
+    breaks = np.zeros(len(graph), np.int64)
+    for edge in graph.edges:
+        if edge.kind is EdgeKind.ODOMETRY:
+            cov = np.linalg.inv(edge.information)
+            breaks[edge.j] = np.sqrt(np.trace(cov[3:, 3:])) > _BROKEN_SD_M
+    return np.cumsum(breaks)
+
+
+def _every(path_m: Array, part: NDArray[np.int64], spacing_m: float) -> Rows:
+    """Nodes at least ``spacing_m`` of path apart; every part has one."""
+    chosen = [0]
+    for node in range(1, len(path_m)):
+        far = path_m[node] - path_m[chosen[-1]] >= spacing_m
+        if far or part[node] != part[chosen[-1]]:
+            chosen.append(node)
+    return np.array(chosen, np.intp)
+
+
+def _image(graph: PoseGraph, views: NodeRangeImages, node: int, members: Rows) -> DensityImage:
+    """The walls around a node, from the nodes of its sub-map."""
+    center = graph.T_map_body.t[node]
+    walls, heights = [], []
+    for member in members:
+        p_body = views.ends(int(member)).reshape(-1, 3)
+        p_body = p_body[:: max(1, len(p_body) // _POINTS)]
+        T_map_body = graph.T_map_body[int(member)]
+        p_map = T_map_body @ p_body
+        height = p_map[:, 2] - T_map_body.t[2]
+        is_wall = (height > -_BELOW_M) & (height < _ABOVE_M)
+        walls.append(p_map[is_wall, :2] - center[:2])
+        heights.append(height)
+    return make_density_image(np.concatenate(walls), np.concatenate(heights))

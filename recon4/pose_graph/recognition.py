@@ -1,0 +1,308 @@
+"""Place recognition: loop closures beyond the search radius of revisits.
+
+Every few meters the walls around the body are drawn from above (`places`). A place is compared
+with all earlier ones by its descriptor; the most similar are laid onto each other (`density`). The
+poses that fit best are registered like any pair and must pass further tests:
+
+- the points of one visit do not lie where the other one saw through (free space);
+- several places in a row agree on the same correction;
+- no other correction is as well supported (repeated columns, doors, rooms);
+- the correction lies within what the graph states of its own uncertainty. Storeys that look alike
+  differ by a height that odometry cannot have missed.
+
+What fails only the last two is *ambiguous*: it is kept out of the graph and announced.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from recon4.geometry.se3 import SE3, Array, so3_exp
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.pose_graph.density import MAX_SHIFT_M, Overlay, overlays, yaws_within
+from recon4.pose_graph.groups import RecognizedChain, contradicts, judge_chains
+from recon4.pose_graph.pairs import Pair, PairRegistrar
+from recon4.pose_graph.places import Places, make_places
+from recon4.progress import Progress
+from recon4.registration.submap import NodeRangeImages
+from recon4.settings import RecognitionSettings
+
+_NEAR_M, _NEAR_RAD = 1.5, 0.26
+"""Hypotheses of one place that are closer than this are the same."""
+_HEIGHT_M = 1.0
+"""Two visits of one place differ in height by less than this, beside the drift [m]."""
+_YAW_RAD = 0.26
+"""Rotations that are always tried [rad]."""
+_GROWTH_M, _MAX_GROWTH = 1.2, 12
+"""Step along the path at which a correction is tested [m], and the largest number of steps."""
+_PARTED_M = 3.0
+"""The two paths have parted where they are farther apart [m]."""
+_STEP_M, _STEP_RAD = 0.4, 0.07
+"""Largest change of a correction over one step."""
+_UNLIKELY = 0.1
+"""Score that a hypothesis loses if it moves a node by as much as is likely."""
+_FAR, _MAX_FAR = 1.2, 1
+"""Hypotheses of a place that are farther than likely; they can only be announced."""
+_MAX_STUCK = 2
+"""A correction is followed past this many nodes that contradict it, to count them."""
+_CLOSED_NODES = 2
+"""A place is known if an accepted loop closure ends this many nodes from it, or closer."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _PlaceHypothesis:
+    """A possible correction of a place."""
+
+    place: int
+    T_map_body: SE3
+    """Pose of its node in the map if it is right."""
+    score: float
+    """Cosine of the images, 0..1."""
+    earlier: int
+    """The earlier place it was laid onto."""
+    unlikely: float
+    """How far it moves the node, as a ratio of what is likely."""
+
+    @property
+    def is_far(self) -> bool:
+        """Whether it can only be announced."""
+        return self.unlikely > _FAR
+
+    @property
+    def rank(self) -> float:
+        """Larger is better."""
+        return self.score - _UNLIKELY * min(self.unlikely, 2.0)
+
+
+def recognize(
+    graph: PoseGraph,
+    views: NodeRangeImages,
+    registrar: PairRegistrar,
+    *,
+    settings: RecognitionSettings,
+    leveled: bool,
+    progress: Progress,
+) -> list[Edge]:
+    """Find loop closures between places that the graph does not join yet.
+
+    Args:
+        graph: The graph so far; z of its map is vertical.
+        views: Segments of every node.
+        registrar: Registers pairs of nodes.
+        settings: What is searched and what is accepted.
+        leveled: The vertical is known by an IMU.
+        progress: Receives an event for each registered pair.
+
+    Returns:
+        An edge for every registered pair, accepted or rejected with its reason.
+    """
+    places = make_places(graph, views, settings, leveled=leveled)
+    hypotheses = [
+        one
+        for place in _open_places(graph, places)
+        for one in _hypotheses(graph, places, place, settings)
+    ]
+    pairs, kept = _pairs(graph, hypotheses, places)
+    if not pairs:
+        return []
+    edges = _register(pairs, registrar, settings, progress)
+    chains = [
+        RecognizedChain(place=one.place, earlier=one.earlier, edges=[edge])
+        for one, edge in zip(kept, edges, strict=True)
+    ]
+    _grow(graph, places, chains, lambda more: _register(more, registrar, settings, progress))
+    return judge_chains(graph, places, chains, settings=settings)
+
+
+def _register(
+    pairs: Sequence[Pair],
+    registrar: PairRegistrar,
+    settings: RecognitionSettings,
+    progress: Progress,
+) -> list[Edge]:
+    """Register pairs and compare them with the free space.
+
+    Pairs that ran out of rounds close to a fit continue from there.
+    """
+    if not pairs:
+        return []
+    edges = registrar.register(pairs, progress)
+    again = [k for k, edge in enumerate(edges) if _is_close(edge)]
+    further = [Pair(e.i, e.j, e.kind, e.T_i_j) for e in (edges[k] for k in again)]
+    for k, edge in zip(again, registrar.register(further, progress) if again else [], strict=True):
+        edges[k] = edge
+    return [_check_free_space(edge, registrar, settings) for edge in edges]
+
+
+def _is_close(edge: Edge) -> bool:
+    return edge.reason is Reason.NOT_CONVERGED and edge.error_m <= edge.limit_m
+
+
+def _open_places(graph: PoseGraph, places: Places) -> list[int]:
+    """Places that no loop closure joins to an earlier visit.
+
+    Where a pair was degenerate, as in a bare corridor, no other pose would be better determined.
+    """
+    closed = np.zeros(len(graph), np.bool_)
+    for edge in graph.edges:
+        known = edge.in_graph or edge.reason is Reason.DEGENERATE
+        if edge.kind is EdgeKind.LOOP and known:
+            closed[max(edge.j - _CLOSED_NODES, 0) : edge.j + _CLOSED_NODES + 1] = True
+    return np.flatnonzero(~closed[places.node]).tolist()
+
+
+def _hypotheses(
+    graph: PoseGraph, places: Places, place: int, settings: RecognitionSettings
+) -> list[_PlaceHypothesis]:
+    """The best distinct corrections of a place, by laying it onto similar earlier places."""
+    T_map_place = graph.T_map_body[places.node]
+    found = []
+    for k in _candidates(places, T_map_place.t, place, settings):
+        yaws = yaws_within(settings.bound_sd * float(places.bounds.yaw_rad[k, place]) + _YAW_RAD)
+        likely_m = settings.bound_sd * float(places.bounds.horizontal_m[k, place])
+        for overlay in overlays(
+            places.images[k], places.images[place], yaws=yaws, most=settings.hypotheses
+        ):
+            T = _moved(T_map_place[place], T_map_place[k], overlay)
+            move_m = float(np.linalg.norm(T.t - T_map_place.t[place]))
+            unlikely = move_m / (likely_m + settings.bound_m)
+            if overlay.score >= settings.min_score:
+                found.append(_PlaceHypothesis(place, T, overlay.score, k, unlikely))
+    return _distinct(sorted(found, key=lambda one: -one.rank), settings.hypotheses)
+
+
+def _distinct(ranked: Sequence[_PlaceHypothesis], most: int) -> list[_PlaceHypothesis]:
+    """The first of those that are the same; only a few that are far."""
+    chosen: list[_PlaceHypothesis] = []
+    for one in ranked:
+        too_many = one.is_far and sum(other.is_far for other in chosen) >= _MAX_FAR
+        if len(chosen) < most and not too_many and not any(_same(one, o) for o in chosen):
+            chosen.append(one)
+    return chosen
+
+
+def _candidates(places: Places, t_m: Array, place: int, settings: RecognitionSettings) -> list[int]:
+    """The earlier places within reach with the most similar descriptors."""
+    path_m = places.path_m[places.node]
+    walked_m = path_m[place] - path_m[:place]
+    bounds, ratio = places.bounds, settings.search_ratio * walked_m
+    offset = t_m[:place] - t_m[place]
+    across = bounds.horizontal_m[:place, place] * settings.bound_sd + ratio + 0.5 * MAX_SHIFT_M
+    height = bounds.vertical_m[:place, place] * settings.bound_sd + ratio + _HEIGHT_M
+    # Parts of a walk whose relative pose is unknown are compared however short the path is.
+    apart = (walked_m >= settings.min_path_m) | (bounds.horizontal_m[:place, place] > walked_m)
+    near = (np.linalg.norm(offset[:, :2], axis=1) <= across) & (np.abs(offset[:, 2]) <= height)
+    rows = np.flatnonzero(near & apart)
+    alike = places.descriptors[rows] @ places.descriptors[place]
+    chosen: list[int] = rows[np.argsort(-alike, kind="stable")[: settings.candidates]].tolist()
+    return chosen
+
+
+def _moved(T_map_body: SE3, T_map_earlier: SE3, overlay: Overlay) -> SE3:
+    """Pose of a place in the map if it is laid onto an earlier one; the height above it is 0."""
+    turn = so3_exp([0.0, 0.0, overlay.yaw_rad])
+    return SE3(turn @ T_map_body.R, T_map_earlier.t + np.append(overlay.shift_m, 0.0))
+
+
+def _same(a: _PlaceHypothesis, b: _PlaceHypothesis) -> bool:
+    apart = a.T_map_body.inverse() @ b.T_map_body
+    return bool(np.linalg.norm(apart.t) < _NEAR_M and apart.angle() < _NEAR_RAD)
+
+
+def _taken(graph: PoseGraph) -> set[tuple[int, int]]:
+    """Pairs that are not registered again; better poses may decide what was not clear before."""
+    unclear = (Reason.AMBIGUOUS, Reason.UNCONFIRMED)
+    return {(e.i, e.j) for e in graph.edges if e.in_graph or e.reason not in unclear}
+
+
+def _pairs(
+    graph: PoseGraph, hypotheses: Sequence[_PlaceHypothesis], places: Places
+) -> tuple[list[Pair], list[_PlaceHypothesis]]:
+    """One pair for each hypothesis: the place and the earlier node nearest to where it moves."""
+    taken = _taken(graph)
+    pairs, kept = [], []
+    for one in hypotheses:
+        j, k = int(places.node[one.place]), int(places.node[one.earlier])
+        near = np.flatnonzero(np.abs(places.path_m - places.path_m[k]) <= MAX_SHIFT_M)
+        near = near[near < j]
+        away = np.linalg.norm(graph.T_map_body.t[near] - one.T_map_body.t, axis=1)
+        free = [int(i) for i in near[np.argsort(away, kind="stable")] if (int(i), j) not in taken]
+        if not free:
+            continue
+        taken.add((free[0], j))
+        T_i_j = graph.T_map_body[free[0]].inverse() @ one.T_map_body
+        pairs.append(Pair(free[0], j, EdgeKind.LOOP, T_i_j))
+        kept.append(one)
+    return pairs, kept
+
+
+def _grow(
+    graph: PoseGraph,
+    places: Places,
+    chains: Sequence[RecognizedChain],
+    register: Callable[[list[Pair]], list[Edge]],
+) -> None:
+    """Follow each correction along the path, both ways, as long as the views fit.
+
+    A true revisit ends where the two paths part. A place that only looks alike ends where the views
+    contradict each other.
+    """
+    taken = _taken(graph) | {(e.i, e.j) for c in chains for e in c.edges}
+    fronts = [(c, c.edges[0], way, 0) for c in chains if c.edges[0].in_graph for way in (-1, 1)]
+    for _ in range(_MAX_GROWTH):
+        pairs, kept = [], []
+        for chain, edge, way, stuck in fronts:
+            pair = _next_pair(graph, places, edge, way)
+            if pair is not None and (pair.i, pair.j) not in taken:
+                taken.add((pair.i, pair.j))
+                pairs.append(pair)
+                kept.append((chain, way, stuck))
+        if not pairs:
+            return
+        fronts = []
+        for pair, (chain, way, stuck), edge in zip(pairs, kept, register(pairs), strict=True):
+            edge = _checked_drift(pair, edge)
+            chain.edges.append(edge)
+            stuck = stuck + 1 if contradicts(edge) else 0
+            if stuck <= _MAX_STUCK:
+                # Without a fit the correction is carried on from its prediction.
+                ahead = edge if edge.in_graph else edge.evolve(T_i_j=pair.T_i_j)
+                fronts.append((chain, ahead, way, stuck))
+
+
+def _checked_drift(pair: Pair, edge: Edge) -> Edge:
+    """Reject an edge that moved far from where the neighboring one predicted it."""
+    apart = pair.T_i_j.inverse() @ edge.T_i_j
+    if not edge.in_graph or (np.linalg.norm(apart.t) < _STEP_M and apart.angle() < _STEP_RAD):
+        return edge
+    return edge.evolve(verdict=Verdict.REJECTED, reason=Reason.UNCONFIRMED)
+
+
+def _next_pair(graph: PoseGraph, places: Places, edge: Edge, way: int) -> Pair | None:
+    """The same correction a step along the path; None = the paths part there."""
+    path_m = places.path_m
+    ahead = np.flatnonzero(way * (path_m - path_m[edge.j]) >= _GROWTH_M)
+    if not len(ahead):
+        return None
+    j = int(ahead[0] if way > 0 else ahead[-1])
+    T_corrected = graph.T_map_body[edge.i] @ edge.T_i_j
+    T_map_body = T_corrected @ graph.T_map_body[edge.j].inverse() @ graph.T_map_body[j]
+    near = np.flatnonzero(np.abs(path_m - path_m[edge.i]) <= MAX_SHIFT_M)
+    near = near[path_m[near] < path_m[j] - MAX_SHIFT_M]
+    if not len(near):
+        return None
+    away_m = np.linalg.norm(graph.T_map_body.t[near] - T_map_body.t, axis=1)
+    i = int(near[np.argmin(away_m)])
+    if away_m.min() > _PARTED_M:
+        return None
+    return Pair(i, j, EdgeKind.LOOP, graph.T_map_body[i].inverse() @ T_map_body)
+
+
+def _check_free_space(edge: Edge, registrar: PairRegistrar, settings: RecognitionSettings) -> Edge:
+    """Reject an edge if one visit sees points where the other one saw through."""
+    if not edge.in_graph or registrar.seen_through(edge) <= settings.max_seen_through:
+        return edge
+    return edge.evolve(verdict=Verdict.REJECTED, reason=Reason.SEEN_THROUGH)

@@ -1,0 +1,199 @@
+"""Place recognition: images from above, bounds, and which corrections are believed."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.geometry.se3 import SE3
+from recon4.kernels.overlap import nearest_ranges, seen_through_ratio
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.pose_graph.density import make_density_image, overlays, yaws_within
+from recon4.pose_graph.groups import RecognizedChain, judge_chains
+from recon4.pose_graph.places import Places
+from recon4.pose_graph.bounds import relative_bounds
+from recon4.settings import RecognitionSettings
+
+SETTINGS = RecognitionSettings()
+TWO_CUBES = np.array([[0.0, 0.0], [0.0, 4.0], [6.0, 4.0], [6.0, -1.0]])
+
+
+def walls_of(corners, count=2000):
+    """Points along the lines between corners, with noise of 2 cm."""
+    rng = np.random.default_rng(4)
+    k = rng.integers(0, len(corners) - 1, count)
+    part = rng.random(count)[:, None]
+    return corners[k] * (1 - part) + corners[k + 1] * part + rng.normal(0, 0.02, (count, 2))
+
+
+def turned(p, yaw_rad, shift_m):
+    c, s = np.cos(yaw_rad), np.sin(yaw_rad)
+    return p @ np.array([[c, s], [-s, c]]) + shift_m
+
+
+def image(walls_m):
+    return make_density_image(walls_m, np.array([-1.2, 1.4]))
+
+
+# -- images from above
+
+
+def test_the_best_overlay_is_the_rotation_and_shift_between_two_visits():
+    walls = walls_of(TWO_CUBES)
+    seen = turned(walls, np.deg2rad(-70.0), np.array([1.0, -2.0]))
+
+    best = overlays(image(walls), image(seen), yaws=yaws_within(np.pi), most=1)[0]
+
+    back = turned(seen, best.yaw_rad, np.array(best.shift_m))
+    assert np.linalg.norm(back - walls, axis=1).max() < 0.7
+
+
+def test_the_descriptor_depends_neither_on_heading_nor_on_position():
+    walls = walls_of(TWO_CUBES)
+    here = image(walls).descriptor
+    again = image(turned(walls, 1.0, np.array([2.0, 1.0]))).descriptor
+    other = image(walls_of(np.array([[-9.0, 1.0], [9.0, 1.0], [9.0, -1.0]]))).descriptor
+
+    assert here @ again > 0.95
+    assert here @ other < here @ again - 0.03
+
+
+# -- free space
+
+
+def test_a_point_in_front_of_what_was_seen_contradicts_it():
+    wall = np.array([[5.0, 0.01 * k, 0.01 * m] for k in range(-20, 21) for m in range(-20, 21)])
+    buffer = nearest_ranges(wall, 180, 90, 5)
+    same, closer, behind = (wall * factor for factor in (1.0, 0.5, 2.0))
+    ratios = [
+        seen_through_ratio(buffer, p, np.eye(3), np.zeros(3), 0.1, 0.3)
+        for p in (same, closer, behind)
+    ]
+
+    assert ratios == [0.0, 1.0, 0.0]
+
+
+# -- bounds
+
+
+def edge(i, j, *, sd_m=0.1, T_i_j=None, kind=EdgeKind.ODOMETRY, reason=Reason.NONE):
+    return Edge(
+        i=i,
+        j=j,
+        T_i_j=SE3(np.eye(3), np.array([float(j - i), 0.0, 0.0])) if T_i_j is None else T_i_j,
+        kind=kind,
+        verdict=Verdict.REJECTED if reason else Verdict.ACCEPTED,
+        reason=reason,
+        information=np.diag([1e8, 1e8, 1e8, *[sd_m**-2.0] * 3]),
+    )
+
+
+def straight(nodes, *more):
+    """A walk along x with a node every meter."""
+    t = np.zeros((nodes, 3))
+    t[:, 0] = np.arange(nodes)
+    T = SE3(np.broadcast_to(np.eye(3), (nodes, 3, 3)).copy(), t)
+    chain = tuple(edge(k, k + 1) for k in range(nodes - 1))
+    return PoseGraph(np.arange(nodes), np.arange(nodes) * 10**9, T, (*chain, *more))
+
+
+def test_errors_add_up_along_the_walk_and_a_loop_closure_shortens_it():
+    ends = np.array([0, 40])
+    open_m = relative_bounds(straight(41), ends, leveled=True).horizontal_m[0, 1]
+    loop = edge(2, 38, kind=EdgeKind.LOOP)
+    closed_m = relative_bounds(straight(41, loop), ends, leveled=True).horizontal_m[0, 1]
+
+    assert open_m == pytest.approx(4.0, rel=0.05)
+    assert closed_m == pytest.approx(0.5, rel=0.1)
+
+
+def test_heights_of_a_leveled_walk_do_not_drift():
+    ends = np.array([0, 36])
+    leveled, free = (
+        relative_bounds(straight(37), ends, leveled=known).vertical_m[0, 1]
+        for known in (True, False)
+    )
+
+    assert leveled == pytest.approx(0.6)
+    assert free > 3.5
+
+
+def test_a_rejected_edge_shortens_nothing():
+    loop = edge(2, 38, kind=EdgeKind.LOOP, reason=Reason.ERROR)
+    bounds = relative_bounds(straight(41, loop), np.array([0, 40]), leveled=True)
+
+    assert bounds.horizontal_m[0, 1] == pytest.approx(4.0, rel=0.05)
+
+
+# -- which corrections are believed
+
+
+WALK = straight(41)
+
+
+def places_of(graph):
+    """A place at every node."""
+    nodes = np.arange(len(graph))
+    bounds = relative_bounds(graph, nodes, leveled=True)
+    return Places(nodes, np.arange(len(graph), dtype=float), (), np.zeros((41, 1)), bounds)
+
+
+def chain(first, *, off_m=(0.0, 0.0, 0.0), nodes=5, bad=0):
+    """Nodes from ``first`` on, seen again at nodes 0, 1, …, moved by ``off_m``."""
+    edges = [
+        edge(k, first + k, kind=EdgeKind.LOOP, T_i_j=SE3(
+            np.eye(3), np.array([float(first), 0.0, 0.0]) + off_m))
+        for k in range(nodes)
+    ]  # fmt: skip
+    edges += [
+        edge(nodes + k, first + nodes + k, kind=EdgeKind.LOOP, reason=Reason.SEEN_THROUGH)
+        for k in range(bad)
+    ]
+    return RecognizedChain(place=first, earlier=0, edges=edges)
+
+
+def reasons(*chains, settings=SETTINGS):
+    judged = judge_chains(WALK, places_of(WALK), chains, settings=settings)
+    out, at = [], 0
+    for one in chains:
+        out.append({e.reason for e in judged[at : at + len(one.edges)]} - {Reason.SEEN_THROUGH})
+        at += len(one.edges)
+    return out
+
+
+def test_a_correction_within_the_uncertainty_is_accepted():
+    assert reasons(chain(30, off_m=(2.0, 3.0, 0.1))) == [{Reason.NONE}]
+
+
+def test_a_correction_beyond_the_uncertainty_is_ambiguous():
+    assert reasons(chain(30, off_m=(0.0, 9.0, 0.0))) == [{Reason.AMBIGUOUS}]
+
+
+def test_a_storey_is_beyond_the_uncertainty_however_far_the_walk_drifts():
+    assert reasons(chain(30, off_m=(0.0, 0.0, 3.0))) == [{Reason.AMBIGUOUS}]
+
+
+def test_two_corrections_that_are_equally_good_are_both_ambiguous():
+    found = reasons(chain(30, off_m=(1.0, 0.0, 0.0)), chain(30, off_m=(-4.0, 0.0, 0.0), nodes=4))
+
+    assert found == [{Reason.AMBIGUOUS}, {Reason.AMBIGUOUS}]
+
+
+def test_a_weaker_rival_does_not_count():
+    found = reasons(chain(28, off_m=(1.0, 0.0, 0.0), nodes=9), chain(30, off_m=(-4, 0, 0), nodes=4))
+
+    assert found[0] == {Reason.NONE}
+
+
+def test_one_place_alone_is_not_believed():
+    assert reasons(chain(30, nodes=2)) == [{Reason.UNCONFIRMED}]
+
+
+def test_views_that_contradict_a_correction_outvote_it():
+    assert reasons(chain(30, bad=2)) == [{Reason.UNCONFIRMED}]
+
+
+def test_chains_that_agree_support_each_other():
+    apart = (chain(26, nodes=2), replace(chain(32, nodes=2), place=32))
+
+    assert reasons(*apart) == [{Reason.NONE}, {Reason.NONE}]
