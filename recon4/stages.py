@@ -278,7 +278,7 @@ def _refine_lines(
 FRAMES = Stage("frames", 6, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    11,
+    12,
     ("segments", "registration", "planes", "scans", "odometry"),
     _odometry,
     OdometryFigures,

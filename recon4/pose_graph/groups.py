@@ -1,4 +1,4 @@
-"""Judgment of recognized places: which corrections agree, which compete, which are believable."""
+"""Judgment of recognized places: which corrections agree, which compete, which are plausible."""
 
 from __future__ import annotations
 

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Rows
-from recon4.pose_graph.density import DensityImage, make_density_image
 from recon4.pose_graph.bounds import RelativeBounds, relative_bounds
+from recon4.pose_graph.density import DensityImage, make_density_image
 from recon4.registration.submap import NodeRangeImages
 from recon4.settings import RecognitionSettings
 

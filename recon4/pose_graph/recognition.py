@@ -19,6 +19,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array, so3_exp
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
@@ -141,17 +142,38 @@ def _is_close(edge: Edge) -> bool:
     return edge.reason is Reason.NOT_CONVERGED and edge.error_m <= edge.limit_m
 
 
+def without_settled(graph: PoseGraph) -> PoseGraph:
+    """The graph whose ambiguous edges are those of places that are still open.
+
+    Where a loop closure was accepted later, the other hypotheses were wrong.
+    """
+    closed = _closed_nodes(graph)
+    return graph.with_edges(
+        tuple(
+            edge.evolve(reason=Reason.UNCONFIRMED)
+            if edge.reason is Reason.AMBIGUOUS and closed[edge.j]
+            else edge
+            for edge in graph.edges
+        )
+    )
+
+
 def _open_places(graph: PoseGraph, places: Places) -> list[int]:
     """Places that no loop closure joins to an earlier visit.
 
     Where a pair was degenerate, as in a bare corridor, no other pose would be better determined.
     """
+    return np.flatnonzero(~_closed_nodes(graph)[places.node]).tolist()
+
+
+def _closed_nodes(graph: PoseGraph) -> NDArray[np.bool_]:
+    """Nodes at the later end of a loop closure, with their neighbors, (N,)."""
     closed = np.zeros(len(graph), np.bool_)
     for edge in graph.edges:
         known = edge.in_graph or edge.reason is Reason.DEGENERATE
         if edge.kind is EdgeKind.LOOP and known:
             closed[max(edge.j - _CLOSED_NODES, 0) : edge.j + _CLOSED_NODES + 1] = True
-    return np.flatnonzero(~closed[places.node]).tolist()
+    return closed
 
 
 def _hypotheses(

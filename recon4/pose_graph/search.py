@@ -22,8 +22,9 @@ from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.candidates import Ends, retry_pairs, rounds
 from recon4.pose_graph.files import save_graph
 from recon4.pose_graph.pairs import Pair, PairRegistrar
-from recon4.pose_graph.recognition import recognize
-from recon4.pose_graph.solve import optimize
+from recon4.pose_graph.pieces import Pieces, joined_pieces, placed, weakened
+from recon4.pose_graph.recognition import recognize, without_settled
+from recon4.pose_graph.solve import Kernel, Solution, optimize
 from recon4.progress import Progress
 from recon4.registration.submap import NodeRangeImages, Submaps, node_rows
 from recon4.settings import GraphSettings, Settings
@@ -32,6 +33,7 @@ from recon4.store.frames import FrameStore
 
 _LOST_SD_FACTOR = 200.0
 """Factor on the standard deviation of an odometry edge across a lost multiframe."""
+_KERNELS: tuple[Kernel, ...] = ("none", "cauchy")
 _BEFORE_RECOGNITION = 2
 """Rounds before places are recognized: neighbors, and the nearest revisits."""
 
@@ -46,6 +48,8 @@ class OdometryTrack:
     """Multiframes where odometry was lost, (number of multiframes,)."""
     motion_cov: Array
     """`OdometryStep.motion_cov` of each, (number of multiframes, 6, 6)."""
+    piece: Pieces
+    """`OdometryStep.piece` of each, (number of multiframes,)."""
 
     @staticmethod
     def load(folder: Path) -> OdometryTrack:
@@ -54,9 +58,9 @@ class OdometryTrack:
         Raises:
             StoreError: If a file is missing or damaged.
         """
-        steps = load_arrays(folder / "steps.npz", ["lost", "motion_cov"])
+        steps = load_arrays(folder / "steps.npz", ["lost", "motion_cov", "piece"])
         trajectory = load_trajectory(folder / "trajectory.npz")
-        return OdometryTrack(trajectory, steps["lost"], steps["motion_cov"])
+        return OdometryTrack(trajectory, steps["lost"], steps["motion_cov"], steps["piece"])
 
 
 def build_graph(
@@ -116,6 +120,7 @@ def start_graph(
     edges = odometry_edges(
         T_odom_body, rows, lost, motion_cov=odometry.motion_cov, settings=settings
     )
+    edges = weakened(edges, odometry.piece[rows], t_ns)
     return PoseGraph(rows.astype(np.int64), t_ns, T_odom_body, edges)
 
 
@@ -140,10 +145,10 @@ def close_loops(
         settings,
     )
     registrar.prepare(len(rows), progress)
-    expected: dict[Ends, SE3] = {}
+    attempts = _Attempts(registrar, odometry.piece[rows], progress)
     selections = rounds(len(rows), g)
     for select in selections[:_BEFORE_RECOGNITION]:
-        graph = _try(graph, select(graph), registrar, expected=expected, progress=progress)
+        graph = attempts.run(graph, select(graph))
     if settings.recognition.enabled and len(selections) > _BEFORE_RECOGNITION and not g.exhaustive:
         leveled = frames.imu is not None and settings.odometry.use_imu
         for _ in range(settings.recognition.passes):
@@ -151,15 +156,14 @@ def close_loops(
                 graph, views, registrar,
                 settings=settings.recognition, leveled=leveled, progress=progress,
             )  # fmt: skip
-            graph = _joined(graph, edges, progress)
+            graph = attempts.add(graph, edges)
             if not any(edge.in_graph for edge in edges):
                 break
     for select in selections[_BEFORE_RECOGNITION:]:
-        graph = _try(graph, select(graph), registrar, expected=expected, progress=progress)
+        graph = attempts.run(graph, select(graph))
     for _ in range(g.retry_rounds):
-        again = retry_pairs(graph, expected, move_m=g.retry_move_m)
-        graph = _try(graph, again, registrar, expected=expected, progress=progress)
-    return graph
+        graph = attempts.run(graph, retry_pairs(graph, attempts.expected, move_m=g.retry_move_m))
+    return without_settled(graph)
 
 
 def odometry_edges(
@@ -198,37 +202,40 @@ def odometry_edges(
     return tuple(edges)
 
 
-def _try(
-    graph: PoseGraph,
-    pairs: list[Pair],
-    registrar: PairRegistrar,
-    *,
-    expected: dict[Ends, SE3],
-    progress: Progress,
-) -> PoseGraph:
-    """Register pairs and optimize; ``expected`` receives the initial pose of each pair."""
-    if not pairs:
+class _Attempts:
+    """Registers pairs and optimizes the graph after each round."""
+
+    def __init__(self, registrar: PairRegistrar, pieces: Pieces, progress: Progress) -> None:
+        self._registrar, self._pieces, self._progress = registrar, pieces, progress
+        self.expected: dict[Ends, SE3] = {}
+        """Initial ``T_i_j`` of the last registration of each pair."""
+
+    def run(self, graph: PoseGraph, pairs: list[Pair]) -> PoseGraph:
+        """Register pairs and optimize; pairs of pieces that nothing joins yet are left out."""
+        joined = joined_pieces(graph, self._pieces)
+        pairs = [pair for pair in pairs if joined[pair.i] == joined[pair.j]]
+        if not pairs:
+            return graph
+        self.expected.update({(pair.i, pair.j): pair.T_i_j for pair in pairs})
+        edges = self._registrar.register(pairs, self._progress)
+        graph = graph.with_edges(_newest(graph.edges, edges))
+        return self._placed(graph, optimize(graph, kernel="cauchy"))
+
+    def add(self, graph: PoseGraph, recognized: list[Edge]) -> PoseGraph:
+        """Add recognized places and optimize.
+
+        Without a kernel first: it would ignore loop closures that move the map by meters.
+        """
+        graph = placed(graph, joined_pieces(graph, self._pieces), recognized)
+        graph = graph.with_edges(_newest(graph.edges, recognized))
+        if any(edge.in_graph for edge in recognized):
+            for kernel in _KERNELS:
+                graph = self._placed(graph, optimize(graph, kernel=kernel))
         return graph
-    expected.update({(pair.i, pair.j): pair.T_i_j for pair in pairs})
-    edges = registrar.register(pairs, progress)
-    graph = graph.with_edges(_newest(graph.edges, edges))
-    solution = optimize(graph, kernel="cauchy")
-    progress.event(NodesPlaced(t_m=positions_of(solution.T_map_body.t)))
-    return graph.with_poses(solution.T_map_body)
 
-
-def _joined(graph: PoseGraph, recognized: list[Edge], progress: Progress) -> PoseGraph:
-    """The graph with recognized places, optimized.
-
-    Without a kernel first: it would ignore loop closures that move the map by meters.
-    """
-    graph = graph.with_edges(_newest(graph.edges, recognized))
-    if not any(edge.in_graph for edge in recognized):
-        return graph
-    for kernel in ("none", "cauchy"):
-        graph = graph.with_poses(optimize(graph, kernel=kernel).T_map_body)
-    progress.event(NodesPlaced(t_m=positions_of(graph.T_map_body.t)))
-    return graph
+    def _placed(self, graph: PoseGraph, solution: Solution) -> PoseGraph:
+        self._progress.event(NodesPlaced(t_m=positions_of(solution.T_map_body.t)))
+        return graph.with_poses(solution.T_map_body)
 
 
 def _newest(edges: tuple[Edge, ...], tried: list[Edge]) -> tuple[Edge, ...]:

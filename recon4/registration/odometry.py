@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 
 import numpy as np
 
-from recon4.geometry.se3 import SE3, Array, interpolate
+from recon4.geometry.se3 import SE3, Array, interpolate, so3_exp
 from recon4.kernels.imu import place_points
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
@@ -16,6 +16,7 @@ from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.registration.aiding import GnssAiding
 from recon4.registration.frame_fit import FrameFit, FrameFitter
+from recon4.registration.lost import FreshChain, LostLimits
 from recon4.registration.motion import FreeMotion, ImuMotion, Motion, MotionState, Prediction
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.point_map import PointMap, WeakDirections, frame_points
@@ -25,6 +26,11 @@ from recon4.registration.state import END, END_POSE, START, STATE, VECTOR
 from recon4.registration.weak_motion import unknown_speed_sd, weak_motion_cov
 from recon4.registration.zero_velocity import is_stationary, zero_velocity_update
 from recon4.settings import Settings
+
+_TRUSTED_FRAMES = 30
+"""If a new map is lost before this many frames, the state it began with was wrong."""
+_INTERRUPTED_NS = 2_000_000_000
+"""Longest gap between two frames that is bridged without an IMU [ns]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,6 +64,8 @@ class OdometryStep:
     """Standard deviation of the position along it by the LiDARs of this frame alone [m]."""
     stationary: bool = False
     """Whether the IMU says that the body stands."""
+    piece: int = 0
+    """Number of the piece of the walk; the motion from one piece to the next is not known."""
 
 
 class Odometry:
@@ -86,6 +94,8 @@ class Odometry:
         )
         self._chain = None if with_imu else ScanChain(settings.scans)
         self._state: MotionState | None = None
+        self._good: MotionState | None = None
+        """The state after the last frame that was not lost."""
         self._before_hole: MotionState | None = None
         """During a gap in the IMU samples: the last state before it, with the IMU biases."""
         self._fitter = FrameFitter(
@@ -99,6 +109,11 @@ class Odometry:
         self._keyframes: deque[Array] = deque()
         self._last_keyframe = SE3.identity()
         self._lost_frames = 0
+        self._limits = LostLimits(settings.odometry)
+        self._fresh: FreshChain | None = None
+        """Without an IMU: the scans since tracking was lost."""
+        self._end_ns: int | None = None
+        self._piece = self._resets = self._tracked_frames = 0
 
     def extend_imu(self, imu: ImuSamples) -> None:
         """Append newer IMU samples of a live capture. Without an IMU at first this does nothing."""
@@ -108,6 +123,8 @@ class Odometry:
     def push(self, frame: Multiframe) -> OdometryStep:
         """Register the next multiframe; frames come in the order of their time."""
         segments = sample_segments(frame, self._rig, self._settings.segments)
+        if self._is_interrupted(frame):
+            self._begin_piece(frame.t_ns)
         first = not self._keyframes
         found = self._place(frame)
         prediction = self._predict(frame)
@@ -121,20 +138,27 @@ class Odometry:
         stationary = self._motion.is_stationary(prediction.end)
         fit = self._fitter.fit(self._map, segments, prediction, weak=weak, stationary=stationary)
         lost = not first and (not found or self._is_lost(fit))
+        if not lost and not first:
+            self._limits.learn(fit.match.match_ratio)
         if self._chain and not lost and is_stationary(self._chain.located):
             fit = zero_velocity_update(fit, prediction, self._chain.last[0])
-        self._count_lost(lost=lost)
         self._state = _updated(prediction, fit, lost=lost, first=first)
+        if not lost:
+            self._good = self._state
+        self._count_lost(prediction.end.t_ns, lost=lost)
         T_dense = prediction.T_odom_body if lost or first else fit.T_dense
         step = _step(
             frame, prediction, fit, T_dense=T_dense, lost=lost, unknown=self._unknown(frame, fit)
         )
+        step = replace(step, piece=self._piece)
         if not lost:
             if self._is_keyframe(T_dense[-1]):
                 self._extend_map(segments, prediction.t_s, T_dense)
                 self._points.add(points(), prediction.t_s, T_dense)
             if self._chain:
                 self._chain.keep(step.T_odom_body, frame.t_mid_ns)
+        self._follow_lost(frame, step)
+        self._end_ns = frame.t_ns + frame.duration_ns
         return step
 
     def _unknown(self, frame: Multiframe, fit: FrameFit) -> Array:
@@ -153,17 +177,65 @@ class Odometry:
             converged=with_imu or fit.converged,
         )
 
-    def _count_lost(self, *, lost: bool) -> None:
+    def _is_interrupted(self, frame: Multiframe) -> bool:
+        """Whether the motion since the last frame is unknown: a long gap that no IMU covers."""
+        if self._end_ns is None or frame.t_ns - self._end_ns <= _INTERRUPTED_NS:
+            return False
+        return self._chain is not None or not self._motion.covers(self._end_ns, frame.t_ns)
+
+    def _begin_piece(self, t_ns: int) -> None:
+        """Begin a new map at the last pose, because the motion since then is not known."""
+        self._clear_map()
+        self._piece += 1
+        self._tracked_frames = 0
+        if self._chain is not None:
+            self._chain = ScanChain(self._settings.scans)
+        if self._good is not None:
+            # Not where the prediction has run to while tracking was lost.
+            self._state, self._before_hole = self._at_rest(self._good, t_ns), None
+
+    def _at_rest(self, state: MotionState, t_ns: int) -> MotionState:
+        """The last position and heading, with what the IMU says of the attitude now."""
+        if self._chain is not None:
+            return self._free.at_rest(state, t_ns)
+        leveled = self._motion.initial(t_ns)
+        vector = leveled.vector.copy()
+        vector[VECTOR.position] = state.vector[VECTOR.position]
+        yaw_rad = float(np.arctan2(state.R[1, 0], state.R[0, 0]))
+        return replace(leveled, R=so3_exp([0.0, 0.0, yaw_rad]) @ leveled.R, vector=vector)
+
+    def _clear_map(self) -> None:
+        self._map.clear()
+        self._points.clear()
+        self._keyframes.clear()
+        self._lost_frames, self._fresh = 0, None
+
+    def _follow_lost(self, frame: Multiframe, step: OdometryStep) -> None:
+        """Without an IMU: once the scans since tracking was lost are sure, begin a new piece."""
+        if self._chain is None:
+            return
+        if not step.lost:
+            self._fresh = None
+            return
+        if self._fresh is None:
+            self._fresh = FreshChain(self._settings.scans)
+        if self._fresh.push(body_points(frame, self._rig), frame.t_mid_ns):
+            self._begin_piece(frame.t_ns + frame.duration_ns)
+
+    def _count_lost(self, t_ns: int, *, lost: bool) -> None:
         """Count lost frames; with an IMU reset the map after ``odometry.restart_after`` of them.
 
-        Only the IMU determined the motion meanwhile, so the edge of the pose graph is weak.
+        Only the IMU determined the motion meanwhile, so the edge of the pose graph is weak. If the
+        map before was lost soon too, the state itself is wrong, and a new piece begins.
         """
         self._lost_frames = self._lost_frames + 1 if lost else 0
+        self._tracked_frames += not lost
         if self._chain is None and self._lost_frames >= self._settings.odometry.restart_after:
-            self._map.clear()
-            self._points.clear()
-            self._keyframes.clear()
-            self._lost_frames = 0
+            if self._tracked_frames < _TRUSTED_FRAMES and self._resets + self._piece:
+                self._begin_piece(t_ns)
+            else:
+                self._clear_map()
+            self._tracked_frames, self._resets = 0, self._resets + 1
 
     def _place(self, frame: Multiframe) -> bool:
         """Without an IMU: predict the frame by registration to the last good scan.
@@ -219,9 +291,8 @@ class Odometry:
         )
 
     def _is_lost(self, fit: FrameFit) -> bool:
-        o = self._settings.odometry
-        bad = fit.match.match_ratio < o.lost_match_ratio or not fit.match.mean_m < o.lost_error_m
-        return bad or not np.isfinite(fit.delta).all()
+        sure = self._chain is not None and self._chain.is_sure
+        return not np.isfinite(fit.delta).all() or self._limits.is_lost(fit.match, sure=sure)
 
     def _is_keyframe(self, T_odom_body: SE3) -> bool:
         """Whether the body moved or turned far enough since the last keyframe."""

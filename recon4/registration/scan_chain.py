@@ -30,6 +30,14 @@ class ScanChain:
         self._now: Scan | None = None
         self._T_odom_body, self._t_ns = SE3.identity(), 0
         self._motion = self._located = SE3.identity()
+        self.is_sure = False
+        """Whether most of the newest scan lies on the last good one."""
+        self._sure_scans = 0
+
+    @property
+    def sure_scans(self) -> int:
+        """How many scans in a row were located surely and kept."""
+        return self._sure_scans
 
     @property
     def located(self) -> SE3:
@@ -43,16 +51,18 @@ class ScanChain:
 
     def locate(self, points: Array) -> SE3 | None:
         """Pose of a new scan in the last good one, or None; points in the body [m], (N, 3)."""
-        self._now = make_scan(points, self._settings)
+        self._now, self.is_sure = make_scan(points, self._settings), False
         if self._scan is None:
             return None
         found = search_scans(self._scan, self._now, initial=self._motion, settings=self._settings)
         self._located = found.T_target_source
+        self.is_sure = found.match_ratio >= self._settings.confident_inlier_ratio
         # With two distorted scans the matches may oscillate: the inlier ratio decides.
         return None if found.stop is StopReason.TOO_FEW else found.T_target_source
 
     def keep(self, T_odom_body: SE3, t_ns: int) -> None:
         """Make the scan just located the last good one, with its pose and time [ns]."""
+        self._sure_scans = self._sure_scans + 1 if self.is_sure else 0
         if self._scan is not None:
             self._motion = self._T_odom_body.inverse() @ T_odom_body
         self._scan, self._T_odom_body, self._t_ns = self._now, T_odom_body, t_ns

@@ -109,6 +109,7 @@ def _save_steps(path: Path, steps: list[OdometryStep]) -> None:
         degeneracy=np.array([s.degeneracy for s in steps]),
         prediction_offset_m=np.array([s.prediction_offset_m for s in steps]),
         lost=np.array([s.lost for s in steps]),
+        piece=np.array([s.piece for s in steps], np.int64),
         motion_cov=np.array([s.motion_cov for s in steps]).reshape(-1, 6, 6),
         weak_direction=np.array([s.weak_direction for s in steps]).reshape(-1, 3),
         stationary=np.array([s.stationary for s in steps]),

@@ -17,6 +17,7 @@ from recon4.report.contradictions import rejected_runs
 from recon4.report.drift import DriftClosed
 from recon4.report.facts import ReportFacts
 from recon4.report.observability import WeakStretch, weak_stretches
+from recon4.report.places import ambiguous_places, separate_pieces
 from recon4.report.plausibility import MAX_SPEED_M_S, too_fast
 
 _GOAL_M = 0.05
@@ -67,6 +68,7 @@ def find(facts: ReportFacts, results: Results, drift: DriftClosed | None) -> lis
     """All findings, worst first."""
     found = [*_tracking(results), *_converged(results), *_observability(results)]
     found += [*_calibration(results), *_uncertain(results)]
+    found += [*_pieces(results), *_look_alike(results.graph)]
     found += [*_plausibility(results), *_loops(results.graph), *_closed(drift)]
     found += [*_leveled(results), *_contradicted(results), *_rejected_fixes(results)]
     found += [*_imported(results), *_accuracy(facts)]
@@ -86,6 +88,31 @@ def _tracking(results: Results) -> list[Finding]:
         where = f", first {(t_ns[lost][0] - t_ns[0]) / 1e9:.1f} s after the start"
     how_many = f"{lost.sum()} of {len(lost)} multiframes ({percentage(lost.mean())})"
     return [Finding(Level.BAD, f"Tracking was lost in {how_many}{where}.")]
+
+
+def _pieces(results: Results) -> list[Finding]:
+    return [
+        Finding(
+            Level.BAD,
+            f"From {piece.start_s:.0f} s to {piece.end_s:.0f} s after the start the walk is a "
+            f"separate piece of {piece.multiframes} multiframes: how the body got there was not "
+            "recorded, and no place of it was recognized. Its position in the map is not known. "
+            "A loop closure by hand joins it.",
+        )
+        for piece in separate_pieces(results)[:_MAX_WARNINGS]
+    ]
+
+
+def _look_alike(graph: PoseGraph | None) -> list[Finding]:
+    return [
+        Finding(
+            Level.WARNING,
+            f"What was seen from {place.start_s:.0f} s to {place.end_s:.0f} s looks like the place "
+            f"at {place.like_s:.0f} s, but the trajectory puts it elsewhere or another place looks "
+            f"the same: {place.pairs} loop closures are ambiguous and wait in the review.",
+        )
+        for place in ambiguous_places(graph)[:_MAX_WARNINGS]
+    ]
 
 
 def _converged(results: Results) -> list[Finding]:

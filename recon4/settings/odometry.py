@@ -59,7 +59,14 @@ class OdometrySettings:
     lost_error_m: float = 0.1
     """With a larger error tracking is lost [m]."""
     lost_match_ratio: float = 0.3
-    """With a smaller match ratio tracking is lost."""
+    """With a smaller match ratio tracking is lost …"""
+    lost_usual_ratio: float = 0.5
+    """… or below this part of the sensor's usual match ratio, whichever is less …"""
+    lost_after_frames: int = 10
+    """… which is known after this many frames."""
+    lost_least_ratio: float = 0.1
+    """The least match ratio, whatever is usual; without an IMU it is enough if the scan also fits
+    the scan before."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -84,5 +91,7 @@ class ScanSettings:
     """With a smaller inlier ratio the registration has not converged."""
     confident_inlier_ratio: float = 0.45
     """With a smaller inlier ratio other initial poses are tried."""
+    sure_scans: int = 10
+    """After tracking was lost a new map begins when this many scans in a row fit each other."""
     starts: int = 10
     """Number of overlays of the ground plans that are tried."""

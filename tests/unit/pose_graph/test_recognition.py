@@ -1,4 +1,4 @@
-"""Place recognition: images from above, bounds, and which corrections are believed."""
+"""Place recognition: images from above, bounds, and which corrections are accepted."""
 
 from dataclasses import replace
 
@@ -8,10 +8,10 @@ import pytest
 from recon4.geometry.se3 import SE3
 from recon4.kernels.overlap import nearest_ranges, seen_through_ratio
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.pose_graph.bounds import relative_bounds
 from recon4.pose_graph.density import make_density_image, overlays, yaws_within
 from recon4.pose_graph.groups import RecognizedChain, judge_chains
 from recon4.pose_graph.places import Places
-from recon4.pose_graph.bounds import relative_bounds
 from recon4.settings import RecognitionSettings
 
 SETTINGS = RecognitionSettings()
@@ -125,7 +125,7 @@ def test_a_rejected_edge_shortens_nothing():
     assert bounds.horizontal_m[0, 1] == pytest.approx(4.0, rel=0.05)
 
 
-# -- which corrections are believed
+# -- which corrections are accepted
 
 
 WALK = straight(41)
@@ -185,7 +185,7 @@ def test_a_weaker_rival_does_not_count():
     assert found[0] == {Reason.NONE}
 
 
-def test_one_place_alone_is_not_believed():
+def test_one_place_alone_is_not_accepted():
     assert reasons(chain(30, nodes=2)) == [{Reason.UNCONFIRMED}]
 
 

@@ -164,6 +164,7 @@ def drifting_search(stroll, folder, watch, *assignments):
         replace(stroll.truth, T_a_b=SE3(T.R, T.t + drift)),
         np.zeros(len(stroll), bool),
         np.broadcast_to(0.01 * np.eye(6), (len(stroll), 6, 6)),
+        np.zeros(len(stroll), int),
     )
     return search(
         stroll,
@@ -276,7 +277,7 @@ def test_a_recording_without_a_single_point_goes_through(stroll, tmp_path):
 
 def test_all_lost_leaves_one_node(stroll, tmp_path):
     n = len(stroll)
-    odometry = OdometryTrack(stroll.truth, np.ones(n, bool), np.zeros((n, 6, 6)))
+    odometry = OdometryTrack(stroll.truth, np.ones(n, bool), np.zeros((n, 6, 6)), np.zeros(n, int))
     graph = search(stroll, odometry, settings=settings_of(), progress=Silent(), scratch=tmp_path)
 
     assert len(graph) == 1

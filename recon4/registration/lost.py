@@ -1,0 +1,73 @@
+"""When tracking is lost, and when it is sure of itself again."""
+
+from __future__ import annotations
+
+from collections import deque
+
+import numpy as np
+
+from recon4.geometry.se3 import SE3, Array
+from recon4.registration.plane_map import Match
+from recon4.registration.scan_chain import ScanChain
+from recon4.settings import OdometrySettings, ScanSettings
+
+_USUAL_FRAMES = 50
+"""Number of frames from which the usual match ratio is learned."""
+
+
+class LostLimits:
+    """Compares a frame's match ratio with what is usual for the sensor.
+
+    A dense LiDAR indoors matches nine tenths of its segments, a thinned one without rings a
+    quarter. A fixed limit calls the latter lost at once.
+    """
+
+    def __init__(self, settings: OdometrySettings) -> None:
+        self._settings = settings
+        self._ratios: deque[float] = deque(maxlen=_USUAL_FRAMES)
+
+    def learn(self, match_ratio: float) -> None:
+        """Count a frame that was tracked."""
+        self._ratios.append(match_ratio)
+
+    @property
+    def match_ratio(self) -> float:
+        """With a smaller match ratio tracking is lost."""
+        s = self._settings
+        if len(self._ratios) < s.lost_after_frames:
+            return s.lost_match_ratio
+        usual = s.lost_usual_ratio * float(np.median(self._ratios))
+        return float(np.clip(usual, s.lost_least_ratio, s.lost_match_ratio))
+
+    def is_lost(self, match: Match, *, sure: bool) -> bool:
+        """Whether a frame is lost.
+
+        Args:
+            match: Of the last round.
+            sure: The scan was also located surely in the scan before it, so that only the least
+                match ratio is demanded.
+        """
+        least = min(self._settings.lost_least_ratio, self.match_ratio) if sure else self.match_ratio
+        return match.match_ratio < least or not match.mean_m < self._settings.lost_error_m
+
+
+class FreshChain:
+    """Follows the scans after tracking was lost, until enough in a row fit each other."""
+
+    def __init__(self, settings: ScanSettings) -> None:
+        self._settings = settings
+        self._chain = ScanChain(settings)
+        self._T_begin_now = SE3.identity()
+
+    def push(self, points_body: Array, t_ns: int) -> bool:
+        """Add a lost scan; whether the scans are sure of their motion now.
+
+        Args:
+            points_body: Points in the body [m], (N, 3).
+            t_ns: Middle of the scan [ns].
+        """
+        found = self._chain.locate(points_body)
+        if found is not None and self._chain.is_sure:
+            self._T_begin_now = self._T_begin_now @ found
+        self._chain.keep(self._T_begin_now, t_ns)
+        return self._chain.sure_scans >= self._settings.sure_scans

@@ -1,0 +1,87 @@
+"""When tracking is lost: limits that follow the sensor, gaps, and maps that begin again."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.registration.lost import LostLimits
+from recon4.registration.odometry import Odometry
+from recon4.registration.plane_map import Match
+from recon4.settings import OdometrySettings, Settings, override
+from tests.scanned_room import strolling, walk, without_points
+
+
+@pytest.fixture(scope="module")
+def stroll():
+    return walk(strolling, 24)
+
+
+def match_of(ratio, mean_m=0.01):
+    residual_m = np.zeros(1000)
+    return Match(np.zeros((12, 12)), np.zeros(12), residual_m, round(1000 * ratio), mean_m, 0.0)
+
+
+def limits(*ratios):
+    found = LostLimits(OdometrySettings())
+    for ratio in ratios:
+        found.learn(ratio)
+    return found
+
+
+def test_a_sensor_that_matches_little_is_lost_later():
+    sparse, dense = limits(*[0.25] * 20), limits(*[0.9] * 20)
+
+    assert not sparse.is_lost(match_of(0.2), sure=False)
+    assert dense.is_lost(match_of(0.2), sure=False)
+    assert sparse.is_lost(match_of(0.09), sure=False)
+
+
+def test_before_anything_is_usual_the_scan_before_decides():
+    first = limits()
+
+    assert first.is_lost(match_of(0.25), sure=False)
+    assert not first.is_lost(match_of(0.25), sure=True)
+    assert first.is_lost(match_of(0.25, mean_m=0.2), sure=True)
+
+
+@pytest.mark.parametrize("with_imu", [True, False])
+def test_a_gap_that_no_imu_covers_begins_a_new_piece_at_the_last_pose(stroll, with_imu):
+    gap_ns = 3_000_000_000
+    frames = [
+        frame if k < 12 else replace(frame, t_ns=frame.t_ns + gap_ns)
+        for k, frame in enumerate(stroll)
+    ]
+    imu = stroll.imu
+    late = imu.t_ns > frames[11].t_ns + frames[11].duration_ns
+    imu = replace(imu, t_ns=np.where(late, imu.t_ns + gap_ns, imu.t_ns)) if with_imu else None
+    odometry = Odometry(stroll.rig, Settings(), imu)
+
+    steps = [odometry.push(frame) for frame in frames]
+
+    assert [step.piece for step in steps] == [0] * 12 + [1] * 12
+    assert not any(step.lost for step in steps)
+    jump_m = np.linalg.norm(steps[12].T_odom_body.t - steps[11].T_odom_body.t)
+    assert jump_m < 0.1  # with the speed before the gap it would be 1.5 m
+
+
+def test_without_an_imu_sure_scans_begin_a_new_piece_after_tracking_was_lost(stroll):
+    settings = override(Settings(), ["scans.sure_scans=3", "odometry.lost_error_m=1e-9"])
+    odometry = Odometry(stroll.rig, settings)
+
+    steps = [odometry.push(frame) for frame in list(stroll)[:8]]
+
+    # The second is lost; it and three that fit each other end the loss.
+    assert [step.lost for step in steps] == [False, True, True, True, True, False, True, True]
+    assert [step.piece for step in steps] == [0, 0, 0, 0, 0, 1, 1, 1]
+
+
+def test_empty_scans_are_never_sure(stroll):
+    settings = override(Settings(), ["scans.sure_scans=3"])
+    frames = [frame if k < 4 else without_points(frame) for k, frame in enumerate(stroll)]
+    odometry = Odometry(stroll.rig, settings)
+
+    steps = [odometry.push(frame) for frame in frames[:14]]
+
+    assert all(step.piece == 0 for step in steps)
+    assert all(step.lost for step in steps[4:])
