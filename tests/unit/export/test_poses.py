@@ -5,7 +5,10 @@ import pytest
 
 from recon4.cli.main import main
 from recon4.errors import StoreError
+from recon4.mapping.place import place
+from recon4.pose_graph.files import load_graph
 from recon4.recording.formats.poses import read_kitti
+from recon4.recording.formats.three_dtk import read_pose, read_scan
 from recon4.results import export_poses
 from recon4.store.frames import FrameStore
 from recon4.store.project import read_artifacts
@@ -42,3 +45,23 @@ def test_a_project_without_a_trajectory_is_refused(tmp_path):
 
     with pytest.raises(StoreError, match="no finished trajectory yet"):
         export_poses(tmp_path / "room", tmp_path / "p.txt")
+
+
+def test_scans_for_3dtk_lie_in_the_map_where_their_poses_put_them(project, tmp_path, capsys):
+    folder = tmp_path / "room.3dtk"
+
+    assert main(["export", str(project), str(folder)]) == 0
+
+    artifacts = read_artifacts(project)
+    frames, graph = FrameStore.open(artifacts["frames"]), load_graph(artifacts["verification"])
+    assert len(list(folder.glob("scan*.3d"))) == len(graph)
+    assert "points in" in capsys.readouterr().out
+    for k, frame_id in enumerate(graph.frame_ids[:3]):
+        columns = read_scan(folder / f"scan{k:03d}.3d")
+        p_scan = np.stack([columns[axis] for axis in "xyz"], axis=1)
+        row = int(np.flatnonzero(frames.index["frame_id"] == frame_id)[0])
+        expected = place(frames[row], loop_walk(), frames.rig)
+        p_map = read_pose(folder / f"scan{k:03d}.pose") @ p_scan
+        np.testing.assert_allclose(p_map, expected, atol=2e-4)
+    assert main(["export", str(project), str(folder)]) != 0
+    assert "exists already" in capsys.readouterr().err
