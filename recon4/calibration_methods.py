@@ -24,12 +24,11 @@ from recon4.model.rig import Rig, RigCalibration
 from recon4.pipeline import calibrate_recording
 from recon4.progress import Progress
 from recon4.recording.sources import Sources
+from recon4.report.rig import SHOWN
 from recon4.settings import EntropySettings, Settings, override, preset
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
 from recon4.store.project import read_artifacts
-
-_SHOWN = {"rad": (float(np.rad2deg(1.0)), "°"), "m": (1e3, "mm"), "s": (1e3, "ms")}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -211,12 +210,12 @@ def _note(method: str, figures: CalibrationFigures) -> RigCalibration:
     known = [row for row in figures.parameters if row.sd is not None]
     largest = {
         unit: max((row.sd or 0.0 for row in known if row.unit == unit), default=0.0)
-        for unit in _SHOWN
+        for unit in SHOWN
     }
     return RigCalibration(
         date=datetime.now(UTC).date().isoformat(),
         method=method,
-        sd_deg=round(largest["rad"] * _SHOWN["rad"][0], 4),
+        sd_deg=round(largest["rad"] * SHOWN["rad"][0], 4),
         sd_mm=round(largest["m"] * 1e3, 2),
         sd_ms=round(largest["s"] * 1e3, 3),
     )
@@ -225,7 +224,7 @@ def _note(method: str, figures: CalibrationFigures) -> RigCalibration:
 def _table(rows: tuple[ParameterFigures, ...]) -> list[str]:
     lines = []
     for row in rows:
-        factor, unit = _SHOWN[row.unit]
+        factor, unit = SHOWN[row.unit]
         sd = "" if row.sd is None else f" ± {factor * row.sd:.3f}"
         name = " ".join(part for part in (row.sensor, row.quantity, row.axis) if part)
         lines.append(f"{name:<28} {factor * row.change:+9.3f}{sd:<10} {unit:<3} {row.status}")
@@ -235,6 +234,6 @@ def _table(rows: tuple[ParameterFigures, ...]) -> list[str]:
 def _changes(listed: tuple[Parameter, ...], change: Array) -> list[str]:
     lines = []
     for parameter, value in zip(listed, change, strict=True):
-        factor, unit = _SHOWN[parameter.unit]
+        factor, unit = SHOWN[parameter.unit]
         lines.append(f"{parameter.name:<28} {factor * value:+9.3f} {unit}")
     return lines

@@ -14,6 +14,7 @@ from recon4.report.facts import ReportFacts
 from recon4.report.intensity import dependencies
 from recon4.report.maps import ABOVE, FRONT, Raster, height_png, ink_png, intensity_png
 from recon4.report.plan import PlanOverlay, PlanPath, frame_around, plan_svg
+from recon4.report.rig import rig_charts
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,6 +118,11 @@ def intensity_figures(results: Results, rasters: list[Raster]) -> list[ChartFigu
         )
         out.append(ChartFigure(Markup(svg), caption, scale=("grays", f"{low:.0f}", f"{high:.0f}")))
     return out + _framed(charts.intensity_charts(dependencies(results.intensity)))
+
+
+def rig_figures(results: Results) -> list[ChartFigure]:
+    """Differences of the recording from the rig file."""
+    return _framed(rig_charts(results.calibration))
 
 
 def georeference_figures(results: Results) -> list[ChartFigure]:

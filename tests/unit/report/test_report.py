@@ -324,3 +324,31 @@ def test_every_step_knows_how_many_edges_span_it() -> None:
 
     # odometry everywhere, the loop 0-19 everywhere, the unverified 1-18 all but at the ends
     assert spans.tolist() == [2, *[3] * 17, 2]
+
+
+def test_the_rig_is_compared_parameter_by_parameter(facts: ReportFacts, tmp_path: Path) -> None:
+    rows = (("rotation", "x", "rad", 0.024, 0.0005, "off"), ("clock", "", "s", 0.0, None, "off"))
+    parameters = [
+        {
+            "sensor": "<vertical>",
+            "quantity": quantity,
+            "axis": axis,
+            "unit": unit,
+            "change": change,
+            "sd": sd,
+            "status": status,
+        }
+        for quantity, axis, unit, change, sd, status in rows
+    ]
+    figures = {"parameters": parameters, "outcome": "the rig file differs", "windows": 4}
+    (tmp_path / "calibration").mkdir()
+    (tmp_path / "calibration" / "calibration.json").write_text(json.dumps({"figures": figures}))
+    artifacts = {**facts.artifacts, "calibration": tmp_path / "calibration"}
+
+    page = Tags(render(assess(replace(facts, artifacts=artifacts))))
+
+    assert "+1.375 ± 0.029 °" in page.text
+    assert "<vertical> rotation x: off" in page.text
+    assert "Outcome: the rig file differs." in page.text
+    assert ("data-name", "rig-rad") in page.attributes
+    assert ("data-name", "rig-s") not in page.attributes  # without any standard deviation

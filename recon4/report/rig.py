@@ -1,0 +1,72 @@
+"""The rig against the recording: a table and one chart for each unit of the parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from recon4.evaluation.table import number
+from recon4.model.figures import CalibrationFigures, ParameterFigures
+from recon4.report.figures import BLUE, GRAY, ORANGE, Chart
+
+SHOWN = {"rad": (57.295779513082, "°"), "m": (1e3, "mm"), "s": (1e3, "ms")}
+"""Factor and unit in which parameters are shown."""
+_COLORS = {"consistent": BLUE, "off": ORANGE, "not observable": GRAY}
+_TITLES = {"rad": "rotation [°]", "m": "position [mm]", "s": "clock [ms]"}
+_WIDTH_SD = 2.0
+"""Standard deviations that the bars extend to each side."""
+
+
+class RigRow(NamedTuple):
+    """One parameter in the table."""
+
+    name: str
+    change: str
+    """With sign, unit and standard deviation."""
+    status: str
+
+
+def rig_rows(found: CalibrationFigures | None) -> list[RigRow]:
+    """What the recording says of each parameter of the rig."""
+    return [_row(one) for one in found.parameters] if found else []
+
+
+def rig_charts(found: CalibrationFigures | None) -> list[tuple[str, str]]:
+    """Differences from the rig file with bars of two standard deviations, as SVG and caption."""
+    out = []
+    for unit, title in _TITLES.items():
+        rows = [one for one in found.parameters if one.unit == unit] if found else []
+        if any(one.sd is not None for one in rows):
+            caption = f"Difference from the rig file, {title}; bars: two standard deviations."
+            out.append((_chart(rows, unit, title), caption))
+    return out
+
+
+def _row(one: ParameterFigures) -> RigRow:
+    factor, unit = SHOWN[one.unit]
+    sd = "" if one.sd is None else f" ± {number(one.sd, 3, factor)}"
+    return RigRow(_name(one), f"{factor * one.change:+.3f}{sd} {unit}", one.status)
+
+
+def _name(one: ParameterFigures) -> str:
+    return " ".join(part for part in (one.sensor, one.quantity, one.axis) if part)
+
+
+def _chart(rows: Sequence[ParameterFigures], unit: str, title: str) -> str:
+    factor, _ = SHOWN[unit]
+    chart = Chart(f"rig-{unit}", height=0.7 + 0.26 * len(rows))
+    for at, one in enumerate(rows):
+        if one.sd is None:
+            continue
+        chart.axes.errorbar(
+            factor * one.change,
+            at,
+            xerr=_WIDTH_SD * factor * one.sd,
+            fmt="o",
+            ms=4.0,
+            color=_COLORS[one.status],
+        )
+    chart.axes.axvline(0.0, color=GRAY, lw=1.0, ls="--")
+    chart.axes.set(xlabel=title, ylim=(len(rows) - 0.5, -0.5))
+    chart.axes.set_yticks(range(len(rows)), [f"{_name(one)}: {one.status}" for one in rows])
+    return chart.svg(legend=False)
