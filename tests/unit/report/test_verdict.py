@@ -6,6 +6,7 @@ import pytest
 from recon4.geometry.se3 import SE3
 from recon4.model.trajectory import Trajectory
 from recon4.model.usability import Usability
+from recon4.pose_graph.uncertainty import HelpfulPoint, PoseUncertainty
 from recon4.report.artifacts import Results
 from recon4.report.facts import ReportFacts
 from recon4.report.findings import Finding, Level, find
@@ -119,6 +120,43 @@ def test_what_makes_a_map_unusable_is_announced(results, usability, reason):
 
     assert verdict.usability is usability
     assert reason in " ".join(verdict.reasons)
+
+
+def uncertain(largest_sd_m: float, *, point_sd_m: float = 0.01) -> Results:
+    """A walk of 13.5 m whose last pose is known least."""
+    final = walk(1.5)
+    sd_m = np.linspace(0.001, largest_sd_m, len(final))
+    cov = np.zeros((len(final), 6, 6))
+    cov[:, 3, 3] = sd_m**2
+    helpful = HelpfulPoint(7_000_000_000, 9_000_000_000, point_sd_m)
+    known = PoseUncertainty(final.t_ns, cov, on_earth=False, helpful=helpful)
+    return Results(final=final, uncertainty=known)
+
+
+@pytest.mark.parametrize(
+    ("largest_sd_m", "usability"),
+    [
+        (0.030, Usability.GOOD),  # 2σ of 6 cm; 5 cm and 0.1 % of 14.9 m are allowed
+        (0.034, Usability.CHECK),
+        (0.320, Usability.CHECK),
+        (0.330, Usability.DO_NOT_USE),
+    ],
+)
+def test_positions_that_are_not_known_are_announced(largest_sd_m, usability):
+    verdict = map_verdict(find(facts(), uncertain(largest_sd_m), None))
+
+    assert verdict.usability is usability
+
+
+def test_the_control_point_that_helps_most_is_proposed():
+    (reason,) = map_verdict(find(facts(), uncertain(0.2), None)).reasons
+    (nothing_helps,) = map_verdict(find(facts(), uncertain(0.2, point_sd_m=0.19), None)).reasons
+    (lost,) = map_verdict(find(facts(), uncertain(500.0), None)).reasons
+
+    assert "known to ± 40.0 cm (2σ) relative to the start at worst, 10 s after the start" in reason
+    assert "A control point between 7 s and 9 s would reduce this to ± 2.0 cm." in reason
+    assert "control point" not in nothing_helps
+    assert "more than 100 m" in lost
 
 
 def test_a_map_nothing_is_known_of_is_not_good():
