@@ -50,7 +50,8 @@ class GnssAiding:
     def pull(self, T_enu_body: SE3, t_ns: int) -> tuple[Array, Array]:
         """Information (6, 6) and gradient (6,) of a left correction about the body's origin.
 
-        A Cauchy weight limits the influence of an outlier.
+        Cauchy weights limit the influence of an outlier. The heading has one, too: with the clock
+        of the receiver 50 ms off, it is wrong by 6° in a turn.
         """
         H, g = np.zeros((6, 6)), np.zeros(6)
         found = self._around(t_ns)
@@ -62,14 +63,14 @@ class GnssAiding:
         J = np.hstack([-skew(arm), np.eye(3)])
         r = T_enu_body.t + arm - p_antenna
         z = r / self.sd_m[row]
-        weight = 1.0 / (1.0 + float(z @ z) / _OUTLIER_SD**2)
-        W = np.diag(weight / self.sd_m[row] ** 2)
+        W = np.diag(_cauchy(float(z @ z)) / self.sd_m[row] ** 2)
         H += J.T @ W @ J
         g += J.T @ W @ r
         # The heading only: roll and pitch come from gravity.
         turn = so3_log(T_enu_body.R @ self.R_enu_body[row + (s > 0.5)].T)[2]
-        H[2, 2] += self.attitude_sd_rad**-2
-        g[2] += self.attitude_sd_rad**-2 * turn
+        weight = _cauchy((turn / self.attitude_sd_rad) ** 2) / self.attitude_sd_rad**2
+        H[2, 2] += weight
+        g[2] += weight * turn
         return H, g
 
     def _around(self, t_ns: int) -> tuple[int, float] | None:
@@ -80,3 +81,8 @@ class GnssAiding:
         if gap_ns > _MAX_GAP_NS:
             return None
         return right - 1, (t_ns - int(self.t_ns[right - 1])) / gap_ns
+
+
+def _cauchy(z2: float) -> float:
+    """Weight of a squared residual in standard deviations."""
+    return 1.0 / (1.0 + z2 / _OUTLIER_SD**2)
