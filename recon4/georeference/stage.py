@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +23,7 @@ from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import save_graph
 from recon4.pose_graph.relations import with_residuals
-from recon4.pose_graph.uncertainty import PoseUncertainty, pose_uncertainty
+from recon4.pose_graph.uncertainty import CALIBRATED, PoseUncertainty, pose_uncertainty
 from recon4.pose_graph.uncertainty_files import save_uncertainty, uncertainty_figures
 from recon4.pose_graph.verification import confirmed_again
 from recon4.progress import Progress
@@ -37,6 +37,8 @@ _FLOOR_POINTS = 2000
 """Numbers of multiframes, and of points of each, that are sampled to find the floor."""
 
 _MAX_JSON_BYTES = 16 << 20
+_WALK_M_S = 1.3
+"""Speed by which an error of the receiver's clock becomes one of the position [m/s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -134,10 +136,25 @@ def level_and_georeference(
     if placed.rejected:
         judged = confirmed_again(judged, settings=settings.verification)
     progress.advance()
-    # Line scans have errors of their own kind, which the model of the covariances does not know.
-    stated = frames.rig.row_of("profiler") is None
-    uncertainty = pose_uncertainty(judged, positions=placed.positions) if stated else None
+    uncertainty = _uncertainty(frames, judged, placed, antenna=antenna)
     return LeveledMap(dense, with_residuals(judged), leveling, placed, crs, antenna, uncertainty)
+
+
+def _uncertainty(
+    frames: FrameStore,
+    graph: PoseGraph,
+    placed: GeoreferenceResult,
+    *,
+    antenna: AntennaFigures | None,
+) -> PoseUncertainty | None:
+    """Covariances of the final poses, with an error of the antenna that was found."""
+    if frames.rig.row_of("profiler") is not None:
+        return None  # line scans have errors of their own kind, which the model does not know
+    model = CALIBRATED
+    if antenna is not None and antenna_contradictions(antenna):
+        known_m = float(np.linalg.norm(antenna.arm_m)) + _WALK_M_S * abs(antenna.clock_s)
+        model = replace(model, gnss_m=float(np.hypot(model.gnss_m, known_m)))
+    return pose_uncertainty(graph, positions=placed.positions, model=model)
 
 
 def _audit_antenna(
