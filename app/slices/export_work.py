@@ -17,7 +17,7 @@ from app.slices.work import (
 from recon4.review.stamp import stamp_file
 from recon4.slices.export import SliceSelection, write_csv, write_dxf, write_geotiff, write_laz
 from recon4.slices.points import SliceWindow
-from recon4.slices.sheet import SheetText, lay_out, source_text, write_sheet
+from recon4.slices.sheet import SheetText, lay_out, source_text, surface_text, write_sheet
 from recon4.slices.slice_image import RasterGrid, draw
 
 FINEST_M = 0.005
@@ -39,7 +39,7 @@ def export(
         Altered: If a tile differs from the approved one.
     """
     path, evidence = Path(out), context.evidence
-    tiles, frame = map_of(artifacts, evidence), map_frame(artifacts)
+    tiles, frame = map_of(artifacts, evidence).on(ask.surface), map_frame(artifacts)
     cuts = ask.cut.cut().repeated(ask.count, spacing_m=ask.spacing_m)
     window = SliceWindow(**ask.window.model_dump()) if ask.window else None
     chosen = SliceSelection(tiles, cuts, window)
@@ -66,13 +66,14 @@ def _export_geotiff(
     reference: str,
     context: ExportContext,
 ) -> None:
-    tiles, cut = map_of(artifacts, context.evidence), ask.cut.cut()
+    tiles, cut = map_of(artifacts, context.evidence).on(ask.surface), ask.cut.cut()
     window = window_of(ask, tiles, cut)
     side_m = max(window.right - window.left, window.top - window.bottom)
     paper = RasterGrid(window, max(FINEST_M, side_m / MAX_GEOTIFF_PX))
     against = reference_of(reference, ask.method)
     made = draw(tiles, cut, paper, color=ask.color, reference=against)
-    description = f"{context.project}: {stamp_text(context.evidence)}"
+    stamp = stamp_text(context.evidence)
+    description = f"{context.project}: {surface_text(tiles.surface)}. {stamp}"
     frame = map_frame(artifacts)
     rgba = made.rgba(span_of(ask, made), "light")
     write_geotiff(made, path, frame=frame, rgba=rgba, description=description)
@@ -86,7 +87,7 @@ def _export_sheet(
     reference: str,
     context: ExportContext,
 ) -> None:
-    tiles, cut = map_of(artifacts, context.evidence), ask.cut.cut()
+    tiles, cut = map_of(artifacts, context.evidence).on(ask.surface), ask.cut.cut()
     against = reference_of(reference, ask.method)
     layout = lay_out(window_of(ask, tiles, cut), ask.size, ask.scale)
     made = draw(tiles, cut, layout.paper, color=ask.color, reference=against)
@@ -95,6 +96,7 @@ def _export_sheet(
         frame=map_frame(artifacts).text,
         sources=source_text(context.key),
         approval=stamp_text(context.evidence),
+        surface=surface_text(tiles.surface),
         reference=against.name if against else "",
         sensors=tuple(str(name) for name in tiles.facts.get("sensors", [])),
     )

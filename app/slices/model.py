@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.names import Name
+from recon4.mapping.tiles import Surface
 from recon4.review.evidence import Evidence
 from recon4.slices.colors import ColorBy, Ground
 from recon4.slices.cut import MAX_SLICES, MAX_THICKNESS_M, Cut, free, horizontal, vertical
@@ -80,6 +81,8 @@ class SliceView(Strict):
     method: Literal["plane", "point"] = "plane"
     source: str = ""
     """``""`` = the latest map, ``map:KEY`` = an earlier one, ``project:ID`` = that of another."""
+    surface: Surface = "fitted"
+    """Where points are drawn: on their fitted surfaces if the map has them, or as measured."""
 
 
 class SliceImageRequest(SliceView):
@@ -104,6 +107,8 @@ class SliceImageView(BaseModel):
     pixel_m: float
     points: int
     """Points of the map in the window."""
+    surface: Surface
+    """Where they lie: on fitted surfaces, or where they were measured."""
     name: str
     """Name of the cut."""
     low: float
@@ -126,6 +131,7 @@ class PickRequest(Strict):
     uv: Xy
     radius_m: float = Field(default=0.05, gt=0.0, le=5.0)
     source: str = ""
+    surface: Surface = "fitted"
 
 
 class PickView(BaseModel):
@@ -245,6 +251,10 @@ class SliceFacts(BaseModel):
     """Facts about the map that can be cut."""
 
     points: int
+    strays: int
+    """Stray returns; slices leave them out."""
+    surface: Surface
+    """Where its points lie; those on fitted surfaces can also be shown as measured."""
     bounds_m: tuple[Xyz, Xyz]
     fields: list[str]
     sensors: list[str]

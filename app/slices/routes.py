@@ -128,12 +128,8 @@ async def pick(project_id: str, ask: PickRequest, server: Server, caller: Called
     """Coordinates of the nearest full-resolution point, in the map and in its CRS."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, ask.source)
     terms = server.slices.terms(project_id, caller.name, ask.source)
-    cut = ask.cut.cut()
-    return await caller.wait(
-        server.slices.run_interactive(
-            terms, work.pick_point, artifacts, cut, ask.uv, radius_m=ask.radius_m
-        )
-    )
+    ask.cut.cut()  # an invalid plane is rejected before the request waits
+    return await caller.wait(server.slices.run_interactive(terms, work.pick_point, artifacts, ask))
 
 
 @router.get("/doubles", summary="Double walls")

@@ -17,6 +17,7 @@ from app.slices.model import (
     ExportContext,
     ListedReference,
     OtherMap,
+    PickRequest,
     PickView,
     SliceFacts,
     SliceImageRequest,
@@ -116,6 +117,8 @@ def facts(
     times = tiles.facts["time_ns"] or [0, 0]
     return SliceFacts(
         points=len(tiles),
+        strays=tiles.strays,
+        surface=tiles.surface,
         bounds_m=(low, high),
         fields=list(tiles.fields),
         sensors=[str(name) for name in tiles.facts.get("sensors", [])],
@@ -134,7 +137,7 @@ def slice_image(
 ) -> SliceImageView:
     """Draw an image of a slice; of an approved map only checked tiles are drawn."""
     began = time.perf_counter()
-    tiles, cut = map_of({"map": map_folder}, evidence), ask.cut.cut()
+    tiles, cut = map_of({"map": map_folder}, evidence).on(ask.surface), ask.cut.cut()
     window = _shaped(window_of(ask, tiles, cut), ask.width / ask.height)
     paper = RasterGrid(window, (window.right - window.left) / ask.width)
     made = draw(tiles, cut, paper, color=ask.color, reference=reference_of(reference, ask.method))
@@ -145,6 +148,7 @@ def slice_image(
         window=WindowSpec(**asdict(window)),
         pixel_m=paper.pixel_m,
         points=made.points,
+        surface=tiles.surface,
         name=cut.name,
         low=span.low,
         high=span.high,
@@ -186,11 +190,10 @@ def overview(map_folder: str, image: str, about: str) -> None:
         temporary.write_bytes(png(rgba))
 
 
-def pick_point(
-    artifacts: Artifacts, cut: Cut, uv: tuple[float, float], *, radius_m: float
-) -> PickView:
+def pick_point(artifacts: Artifacts, ask: PickRequest) -> PickView:
     """The point of the map nearest to a position on a slice."""
-    found = pick(tiles_of(artifacts["map"]), cut, uv, radius_m=radius_m)
+    tiles = tiles_of(artifacts["map"]).on(ask.surface)
+    found = pick(tiles, ask.cut.cut(), ask.uv, radius_m=ask.radius_m)
     if found is None:
         return PickView(found=False)
     return PickView(

@@ -148,7 +148,14 @@ def _write_image(tiles: TileSet, cut: Cut, file: Path, *, frame: MapFrame, look:
     from recon4.slices.colors import LABELS
     from recon4.slices.export import write_geotiff
     from recon4.slices.points import extent
-    from recon4.slices.sheet import SheetText, approval_text, lay_out, source_text, write_sheet
+    from recon4.slices.sheet import (
+        SheetText,
+        approval_text,
+        lay_out,
+        source_text,
+        surface_text,
+        write_sheet,
+    )
     from recon4.slices.slice_image import RasterGrid, draw
 
     if look.color not in LABELS:
@@ -159,7 +166,7 @@ def _write_image(tiles: TileSet, cut: Cut, file: Path, *, frame: MapFrame, look:
     if file.suffix.lower() == ".tif":
         side_m = max(window.right - window.left, window.top - window.bottom)
         made = draw(tiles, cut, RasterGrid(window, max(0.005, side_m / 6000)), color=color)
-        title = f"{look.name}: {approval}"
+        title = f"{look.name}: {surface_text(tiles.surface)}. {approval}"
         write_geotiff(
             made, file, frame=frame, rgba=made.rgba(made.span, "light"), description=title
         )
@@ -167,6 +174,7 @@ def _write_image(tiles: TileSet, cut: Cut, file: Path, *, frame: MapFrame, look:
     layout = lay_out(window)
     made = draw(tiles, cut, layout.paper, color=color)
     key = tiles.tiles[0].folder.parent.name if tiles.tiles else ""
-    text = SheetText(look.name, frame.text, source_text(key), approval)
+    lie = surface_text(tiles.surface)
+    text = SheetText(look.name, frame.text, source_text(key), approval, lie)
     write_sheet(made, layout, file, span=made.span, text=text)
     return made.points

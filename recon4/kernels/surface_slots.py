@@ -47,7 +47,7 @@ def list_candidates(
         side: Cells along tile and halo.
         cell_m: Edge of a cell [m].
         planes: Of `window_planes`, (C, 2, PLANE).
-        out: Receives the planes, (L, PLANE).
+        out: Receives the planes, (L, PLANE); those of the cell itself first.
 
     Returns:
         How many there are.
@@ -56,6 +56,7 @@ def list_candidates(
     cx, cy, cz = center_of(cells[c], side, cell_m)
     ci, cj, ck = cells[c] % side, cells[c] // side % side, cells[c] // (side * side)
     for k in range(125):
+        k = (k + 62) % 125  # the cell itself first
         i, j, m = ci + k % 5 - 2, cj + k // 5 % 5 - 2, ck + k // 25 - 2
         if min(i, j, m) < 0 or max(i, j, m) >= side:
             continue
@@ -81,9 +82,15 @@ def list_candidates(
             if same < 0 and count < len(out):
                 out[count, :] = p
                 count += 1
-            elif same >= 0 and p[4] < _THINNER * out[same, 4]:
+            elif same >= 0 and thickness_at_most(p) < _THINNER * thickness_at_most(out[same]):
                 out[same, :] = p
     return count
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def thickness_at_most(plane: NDArray[np.float64]) -> float:
+    """Standard deviation across a plane, plus what few returns leave uncertain of it [m]."""
+    return plane[4] * (1.0 + 2.0 / np.sqrt(plane[5]))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

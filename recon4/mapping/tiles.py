@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from types import TracebackType
-from typing import Any, BinaryIO, Self, TypeVar
+from typing import Any, BinaryIO, Literal, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,13 @@ from numpy.typing import NDArray
 from recon4.bounded import read_json_object
 from recon4.errors import StoreError
 from recon4.geometry.se3 import Array
+from recon4.mapping.columns import (
+    check_columns,
+    column_header,
+    column_shape,
+    map_rows,
+    row_offset,
+)
 from recon4.mapping.tile import FIELDS, Columns, spatial_order
 from recon4.store.atomic import raise_if_full, write_json
 from recon4.store.checked import Altered, CheckedArtifact
@@ -30,8 +37,9 @@ RAW_OFFSET = "raw_offset_m"
 """From the surface to where the point was measured; only in maps of fitted surfaces."""
 MARGIN_M = 0.2
 """No point was measured farther than this from its surface [m]."""
+Surface = Literal["fitted", "raw"]
+"""Where points lie: on the surfaces fitted to all returns, or where they were measured."""
 Number = TypeVar("Number", int, float)
-_HEADER_BYTES = 128
 _MAX_FACTS_BYTES = 256 << 20
 """``tiles.json`` has some 300 bytes per tile."""
 
@@ -92,7 +100,7 @@ class Tile:
         needed = {*fields, RAW_OFFSET} if moved else set(fields)
         for name in sorted(needed):
             self._check(name, count)
-        columns = {name: _map_rows(self.folder, name, self.start, count=count) for name in needed}
+        columns = {name: map_rows(self.folder, name, self.start, count=count) for name in needed}
         if moved:
             columns["xyz"] = columns["xyz"] + columns[RAW_OFFSET].astype(np.float32)
         return {name: columns[name] for name in fields}
@@ -100,7 +108,7 @@ class Tile:
     def _check(self, name: str, count: int) -> None:
         if self.checked is None or count == 0:
             return
-        first, row_bytes = _row_offset(name, self.start)
+        first, row_bytes = row_offset(name, self.start)
         try:
             self.checked.check(f"tiles/{name}.npy", first, first + count * row_bytes)
         except Altered as error:
@@ -133,6 +141,8 @@ class TileSet:
     crs: MapCrs | None
     facts: dict[str, Any]
     """The rest of ``tiles.json``: ``points``, ``bounds_m``, ``time_ns``, ``removed`` …"""
+    surface: Surface
+    """Where its points lie."""
 
     @staticmethod
     def open(folder: Path, checked: CheckedArtifact | None = None) -> TileSet:
@@ -160,9 +170,10 @@ class TileSet:
             points = int(facts["points"])
         except (ValueError, KeyError, TypeError, IndexError, OverflowError) as error:
             raise StoreError(f"{path} is not the list of a map's tiles: {error!r}") from error
-        _check_columns(folder / "tiles", fields, points + sum(tile.strays for tile in tiles))
+        check_columns(folder / "tiles", fields, points + sum(tile.strays for tile in tiles))
         _check_rows(tiles, points, path.name)
-        return TileSet(tiles, fields, crs or None, facts)
+        surface: Surface = "fitted" if RAW_OFFSET in fields else "raw"
+        return TileSet(tiles, fields, crs or None, facts, surface)
 
     def __len__(self) -> int:
         return int(self.facts["points"])
@@ -179,7 +190,12 @@ class TileSet:
         """The same map with every point where it was measured; itself if it has no surfaces."""
         if RAW_OFFSET not in self.fields:
             return self
-        return replace(self, tiles=tuple(tile.as_measured() for tile in self.tiles))
+        tiles = tuple(tile.as_measured() for tile in self.tiles)
+        return replace(self, tiles=tiles, surface="raw")
+
+    def on(self, surface: Surface) -> TileSet:
+        """The same map with its points on their surfaces, or where they were measured."""
+        return self.as_measured() if surface == "raw" else self
 
     def only_strays(self) -> TileSet:
         """The stray returns as a map of their own; its bounds are those of the map."""
@@ -230,7 +246,7 @@ class TileWriter:
         (self._folder / "tiles").mkdir(parents=True)
         for name in self._fields:
             self._files[name] = (self._folder / "tiles" / f"{name}.npy").open("wb")
-            self._files[name].write(_header(name, 0))
+            self._files[name].write(column_header(name, 0))
         return self
 
     def __exit__(
@@ -240,7 +256,7 @@ class TileWriter:
             for name, file in self._files.items():
                 with file:
                     file.seek(0)
-                    file.write(_header(name, self._points))
+                    file.write(column_header(name, self._points))
         except OSError as failed:
             raise_if_full(failed, self._folder)
             raise StoreError(f"cannot write {self._folder}: {failed.strerror}") from failed
@@ -260,7 +276,7 @@ class TileWriter:
             return
         for name in self._fields:
             column = np.ascontiguousarray(columns[name], dtype=FIELDS[name][0])
-            assert column.shape == _shape(name, count), f"{name}: {column.shape}"
+            assert column.shape == column_shape(name, count), f"{name}: {column.shape}"
             self._files[name].write(column.data)
         origin = np.array(ijk) * self._tile_m
         # A tile of strays only has their bounds: every tile has some.
@@ -348,50 +364,3 @@ def _check_rows(tiles: Sequence[Tile], points: int, name: str) -> None:
         raise StoreError(
             f"{name}: {points} points, but the tiles do not add up to them: they have {at}"
         )
-
-
-def _shape(name: str, rows: int) -> tuple[int, ...]:
-    width = FIELDS[name][1]
-    return (rows, width) if width > 1 else (rows,)
-
-
-def _header(name: str, rows: int) -> bytes:
-    """Header of a version 1.0 ``.npy`` file, of constant size so that it can be rewritten."""
-    shape = _shape(name, rows)
-    text = f"{{'descr': '{FIELDS[name][0]}', 'fortran_order': False, 'shape': {shape}, }}"
-    body = text.encode("latin1").ljust(_HEADER_BYTES - 11) + b"\n"
-    return b"\x93NUMPY\x01\x00" + len(body).to_bytes(2, "little") + body
-
-
-def _row_offset(name: str, row: int) -> tuple[int, int]:
-    """Offset of a row in its file, and the size of a row [bytes]."""
-    row_bytes = np.dtype(FIELDS[name][0]).itemsize * FIELDS[name][1]
-    return _HEADER_BYTES + row * row_bytes, row_bytes
-
-
-def _map_rows(folder: Path, name: str, start: int, *, count: int) -> NDArray[Any]:
-    dtype = np.dtype(FIELDS[name][0])
-    if count == 0:
-        return np.empty(_shape(name, 0), dtype)
-    offset, _ = _row_offset(name, start)
-    try:
-        mapped = np.memmap(
-            folder / f"{name}.npy", dtype, mode="r", offset=offset, shape=_shape(name, count)
-        )
-    except (OSError, ValueError, OverflowError) as error:
-        raise StoreError(f"{folder.name}/{name}.npy cannot be read: {error}") from error
-    return mapped.view(np.ndarray)
-
-
-def _check_columns(folder: Path, fields: Sequence[str], points: int) -> None:
-    for name in fields:
-        if name not in FIELDS:
-            raise StoreError(f"tiles.json: unknown field {name!r}; known: {list(FIELDS)}")
-        path = folder / f"{name}.npy"
-        expected = _HEADER_BYTES + points * np.dtype(FIELDS[name][0]).itemsize * FIELDS[name][1]
-        found = path.stat().st_size if path.is_file() else -1
-        if found != expected:
-            raise StoreError(
-                f"{folder.name}/{name}.npy: expected {expected} bytes for {points} points, "
-                f"got {found if found >= 0 else 'no file'}"
-            )

@@ -11,6 +11,7 @@ import numpy as np
 
 import recon4
 from recon4.errors import ConfigError
+from recon4.mapping.tiles import Surface
 from recon4.model.usability import Usability
 from recon4.names import visible
 from recon4.slices.colors import (
@@ -54,6 +55,8 @@ class SheetText:
     """Program version and key of the map."""
     approval: str
     """Who approved the map and when, or `Not approved`."""
+    surface: str
+    """Where the points lie, see `surface_text`."""
     reference: str = ""
     sensors: tuple[str, ...] = field(default=())
 
@@ -187,6 +190,7 @@ def _head(figure: Any, drawn: SliceImage, layout: SheetLayout, *, text: SheetTex
         f"1 : {layout.scale} on {layout.size.upper()}     "
         f"thickness {_length(drawn.cut.thickness_m)}"
         f"     {drawn.points:,} points".replace(",", "\u2009")
+        + f" {text.surface}"
         + f"     {text.frame}"
     )
     figure.text(
@@ -275,6 +279,11 @@ def approval_text(approval: Mapping[str, Any] | None) -> str:
         else ""
     )
     return f"{signed}. Verdict on the map: {verdict}{reason}"
+
+
+def surface_text(surface: Surface) -> str:
+    """Where the points of a map lie, for sheets and captions."""
+    return "on fitted surfaces" if surface == "fitted" else "as measured"
 
 
 def source_text(artifact_key: str) -> str:

@@ -5,10 +5,11 @@ import { cutText, distanceText, imageText, pointText } from "../../web/slices/ca
 
 test("a caption names the map, the color and the points", () => {
   const sources = [{ id: "v1", words: "Version 1" }];
-  const of = (source) => imageText({ source, color: "time", points: "12" }, sources);
-  assert.equal(of(""), "This map · Time · 12 points");
-  assert.equal(of("v1"), "Version 1 · Time · 12 points");
-  assert.equal(of("gone"), "gone · Time · 12 points");
+  const image = { color: "time", points: "12", surface: "raw" };
+  const of = (source) => imageText({ source, ...image }, sources);
+  assert.equal(of(""), "This map · Time · 12 points as measured");
+  assert.equal(of("v1"), "Version 1 · Time · 12 points as measured");
+  assert.equal(of("gone"), "gone · Time · 12 points as measured");
   assert.equal(cutText("free", "B"), "Free plane B");
 });
 

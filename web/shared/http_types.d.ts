@@ -572,6 +572,7 @@ export interface PickRequest {
   uv: [number, number];
   radius_m?: number;
   source?: string;
+  surface?: "fitted" | "raw";
 }
 
 export interface PickView {
@@ -866,6 +867,8 @@ export interface SettingsCheck {
 
 export interface SliceFacts {
   points: number;
+  strays: number;
+  surface: "fitted" | "raw";
   bounds_m: [[number, number, number], [number, number, number]];
   fields: Array<string>;
   sensors: Array<string>;
@@ -887,6 +890,7 @@ export interface SliceImageRequest {
   reference?: string;
   method?: "plane" | "point";
   source?: string;
+  surface?: "fitted" | "raw";
   width: number;
   height: number;
   ground?: "light" | "dark";
@@ -899,6 +903,7 @@ export interface SliceImageView {
   window: WindowSpec;
   pixel_m: number;
   points: number;
+  surface: "fitted" | "raw";
   name: string;
   low: number;
   high: number;

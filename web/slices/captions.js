@@ -1,6 +1,6 @@
 // Captions of slices, of points picked on them and of distances. No DOM, no network.
 
-import { COLORS } from "./state.js";
+import { COLORS, SURFACES } from "./state.js";
 
 const KINDS = { horizontal: "Horizontal", vertical: "Vertical", free: "Free plane" };
 const fixed = (xs) => xs.map((x) => x.toFixed(3)).join("  ");
@@ -9,9 +9,9 @@ const fixed = (xs) => xs.map((x) => x.toFixed(3)).join("  ");
 export const cutText = (kind, name) => `${KINDS[kind]} ${name}`;
 
 /** What a slice image shows. */
-export function imageText({ source, color, points }, sources) {
+export function imageText({ source, color, points, surface }, sources) {
   const name = source ? (sources.find((one) => one.id === source)?.words ?? source) : "This map";
-  return `${name} · ${COLORS[color]} · ${points} points`;
+  return `${name} · ${COLORS[color]} · ${points} points ${SURFACES[surface]}`;
 }
 
 /** Coordinates and attributes of a picked point. */

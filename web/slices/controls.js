@@ -1,7 +1,7 @@
 // Where to cut and what to show: the fields beside the slice. No network.
 
 import { fill, make } from "../shared/dom.js";
-import { anglesOf, COLORS, normalFrom } from "./state.js";
+import { anglesOf, COLORS, normalFrom, SURFACES } from "./state.js";
 
 /** @type {Array<[string, string, string]>} */
 const KINDS = [
@@ -117,6 +117,24 @@ export function controls(root, { change, toKind }) {
       text,
     );
 
+  const points = (state) =>
+    make(
+      "div",
+      { className: "segmented", role: "group", ariaLabel: "Where points are drawn" },
+      ...Object.entries(SURFACES).map(([surface, text]) =>
+        make(
+          "button",
+          {
+            type: "button",
+            ariaPressed: String(state.surface === surface),
+            title: `Points ${text}  R`,
+            onclick: () => change({ surface }, { keep: true }),
+          },
+          `Points ${text}`,
+        ),
+      ),
+    );
+
   function looks(state) {
     const colors = Object.entries(COLORS).filter(
       ([key]) => key !== "normalized" || !facts || facts.fields.includes("intensity_normalized"),
@@ -144,6 +162,7 @@ export function controls(root, { change, toKind }) {
         thick(state, "Thin, 2 cm", 0.02),
         thick(state, "Thick, 10 cm", 0.1),
       ),
+      facts?.surface === "fitted" ? points(state) : null,
       field(
         "Color by",
         select(able, state.color, (color) => change({ color, lo: null, hi: null }, { keep: true })),

@@ -16,7 +16,7 @@ import { controls } from "./controls.js";
 import { findings } from "./findings.js";
 import { legend } from "./legend.js";
 import { help } from "./help.js";
-import { COLORS, cutOf, format, moved, normalFrom, parse, unframed } from "./state.js";
+import { COLORS, SURFACES, cutOf, format, moved, normalFrom, parse, unframed } from "./state.js";
 import { factsIn } from "../shared/verdict.js";
 import "../shared/map_verdict.js";
 import "../shared/page_head.js";
@@ -95,6 +95,7 @@ const ask = (view, more) => ({
   reference: state.ref,
   method: state.method,
   source: state.source,
+  surface: state.surface,
   ground: dark.matches ? "dark" : "light",
   ...view.wanted,
   ...more,
@@ -132,7 +133,7 @@ async function loadSecond(mine) {
   if (mine !== turn) return;
   await second.show(image);
   captions[1].textContent = imageText(
-    { source: state.beside, color, points: count(image.points) },
+    { source: state.beside, color, points: count(image.points), surface: image.surface },
     facts.sources,
   );
 }
@@ -140,16 +141,18 @@ async function loadSecond(mine) {
 function describe() {
   const [name, points] = [shown.name, count(shown.points)];
   captions[0].textContent = imageText(
-    { source: state.source, color: state.color, points },
+    { source: state.source, color: state.color, points, surface: shown.surface },
     facts.sources,
   );
-  first.label = `Slice ${name}, ${points} points, colored by ${COLORS[state.color]}`;
+  const where = `${points} points ${SURFACES[shown.surface]}`;
+  first.label = `Slice ${name}, ${where}, colored by ${COLORS[state.color]}`;
   second.label = captions[1].textContent;
   fill(
     facing,
     make("strong", {}, cutText(state.kind, name)),
     make("span", {}, `${Number((state.t * 100).toFixed(1))} cm thick`),
-    make("span", {}, `${points} points`),
+    make("span", {}, where),
+    ...(facts.strays ? [make("span", {}, `${count(facts.strays)} stray returns left out`)] : []),
     make("span", { className: "frame" }, facts.frame),
     make("span", {}, facts.approval),
   );
@@ -170,6 +173,7 @@ async function place({ u, v, reach }) {
     uv: [u, v],
     radius_m: Math.min(5, Math.max(0.005, reach)),
     source: state.source,
+    surface: state.surface,
   });
   if (!answer.found) {
     reading.textContent = "No point of the map here";
@@ -248,6 +252,7 @@ const KEYS = {
   "-": () => thicker(0.5),
   c: () => nextColor(),
   m: () => measure(),
+  r: () => otherSurface(),
   0: () => change(unframed(state), { keep: true }),
   Escape: () => measure(false),
   "?": () => byId("help", HTMLDialogElement).showModal(),
@@ -258,6 +263,11 @@ const thicker = (times) =>
     { t: Number(Math.min(100, Math.max(0.001, state.t * times)).toPrecision(6)) },
     { keep: true },
   );
+
+function otherSurface() {
+  if (facts.surface === "fitted")
+    change({ surface: state.surface === "raw" ? "fitted" : "raw" }, { keep: true });
+}
 
 function nextColor() {
   const able = Object.keys(COLORS).filter(

@@ -10,6 +10,7 @@ const WORDS = {
   beside: "",
   besideColor: "",
   source: "",
+  surface: "fitted",
 };
 const MAYBE = ["lo", "hi", "u", "v", "m"];
 
@@ -21,6 +22,9 @@ export const COLORS = {
   sensor: "Sensor",
   distance: "Distance to reference",
 };
+
+/** Where the points are drawn. */
+export const SURFACES = { fitted: "on fitted surfaces", raw: "as measured" };
 
 /** The state in the query of an address; an invalid value becomes the default. */
 export function parse(query) {
@@ -37,6 +41,7 @@ export function parse(query) {
   }
   if (!["horizontal", "vertical", "free"].includes(state.kind)) state.kind = "horizontal";
   if (!(state.color in COLORS)) state.color = "height";
+  if (!(state.surface in SURFACES)) state.surface = "fitted";
   if (!(state.t > 0)) state.t = NUMBERS.t;
   state.given = given.has("kind");
   return state;

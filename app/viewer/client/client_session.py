@@ -25,6 +25,7 @@ from app.viewer.scene.build import Content, bounds, describe
 from app.viewer.scene.nodes import Node, PointsNode
 from app.viewer.scene.source import ProjectSource
 from recon4.errors import Recon4Error
+from recon4.mapping.tiles import Surface
 
 log = logging.getLogger(__name__)
 
@@ -91,7 +92,8 @@ class ClientSession:
         span = span_of(content, view)
         self._budget.allow(min(view.detail or self._most, self._most))
         budget = self._budget.points if view.adapt else view.detail or self._most
-        done = self._detail.refine(content.cloud, view, span, budget=min(budget, self._most))
+        cloud = content.cloud and content.cloud.on(view.surface)
+        done = self._detail.refine(cloud, view, span, budget=min(budget, self._most))
         self._panel.explain(legend(content, view, points=self._detail.points))
         if view != self._kept:
             self._kept = view
@@ -131,6 +133,8 @@ class ClientSession:
         match name:
             case "normalized":
                 self._change(lambda view: replace(view, color_by=_other_intensity(view)))
+            case "surface":
+                self._change(lambda view: replace(view, surface=_other_surface(view)))
             case "whole range":
                 self._change(lambda view: view.with_range(None))
             case "play":
@@ -159,6 +163,10 @@ DIRECTIONS = {
 def _other_intensity(view: ViewState) -> Any:
     raw = view.color_by == "normalized intensity"
     return "raw intensity" if raw else "normalized intensity"
+
+
+def _other_surface(view: ViewState) -> Surface:
+    return "raw" if view.surface == "fitted" else "fitted"
 
 
 def _preview(content: Content, view: ViewState) -> list[PointsNode]:

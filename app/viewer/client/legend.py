@@ -25,6 +25,8 @@ class Legend:
     points: int = 0
     """Points on screen."""
     points_in_map: int = 0
+    surface: str = ""
+    """Where the points lie, and how many stray returns are left out; empty = no fitted surfaces."""
     grid_cell_m: float = 0.0
     edge_color: EdgeColor = "verdict"
     edge_span: Range = ERROR_RANGE
@@ -52,12 +54,22 @@ def legend(content: Content, view: ViewState, *, points: int = 0) -> Legend:
         layers=tuple(layer for layer in content.layers if view.shows(layer)),
         points=points,
         points_in_map=len(content.cloud) if content.cloud else 0,
+        surface=surface_caption(content, view),
         grid_cell_m=grid_cell_m(bounds(content)),
         edge_color=view.edge_color,
         edge_span=CHI2_RANGE if view.edge_color == "chi²" else ERROR_RANGE,
         multiframes=multiframe_caption(content, view),
         preview=shows_preview(content, view),
     )
+
+
+def surface_caption(content: Content, view: ViewState) -> str:
+    """Where the points on screen lie; empty if the map has no fitted surfaces."""
+    if content.cloud is None or content.cloud.tiles.surface == "raw":
+        return ""
+    where = "On fitted surfaces" if view.surface == "fitted" else "As measured"
+    strays = f"{content.cloud.tiles.strays:,}".replace(",", "\u202f")
+    return f"{where}, {strays} stray returns left out"
 
 
 def shows_preview(content: Content, view: ViewState) -> bool:

@@ -21,6 +21,8 @@ def legend_html(legend: Legend) -> str:
     if legend.color_by is not None:
         points = f"<b>Points by {html.escape(legend.color_by)}</b>{_scale(legend)}"
         points += f"<div>{count(legend.points)} of {count(legend.points_in_map)} points</div>"
+        if legend.surface:
+            points += f"<div>{html.escape(legend.surface)}</div>"
     if legend.preview:
         points += f"<b>Preview by height</b>{_bar(legend.palette, HEIGHTS, 'm above the backpack')}"
         points += "<div>One multiframe per second, until there is a map</div>"

@@ -15,10 +15,12 @@ from app.viewer.client.view import EdgeColor, Points, ViewState
 from app.viewer.cloud.palette import Palette, Range
 from app.viewer.scene.build import Content
 from app.viewer.scene.layers import Layer
+from recon4.mapping.tiles import Surface
 
 Update = Callable[[ViewState], ViewState]
 HOTKEYS: tuple[tuple[str, Any, str], ...] = (
     ("Raw or normalized intensity", "N", "normalized"),
+    ("Points on fitted surfaces or as measured", "R", "surface"),
     ("Fit the map into the view", "F", "fit"),
     ("View from above", "7", "above"),
     ("View from the south", "1", "south"),
@@ -28,6 +30,14 @@ HOTKEYS: tuple[tuple[str, Any, str], ...] = (
     ("Play or stop", "P", "play"),
 )
 """Label, key, and name for `PanelCallbacks.command`."""
+
+
+LIE: dict[str, Surface] = {"on fitted surfaces": "fitted", "as measured": "raw"}
+"""Where points lie, as on screen."""
+
+
+def _lie(view: ViewState) -> str:
+    return next(text for text, surface in LIE.items() if surface == view.surface)
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +65,7 @@ class Panel:
     def offer(self, content: Content, view: ViewState, max_points: int) -> None:
         """Create the folders of controls for the content; unchanged folders stay as they are."""
         if content.cloud is not None:
-            offered = (content.colors, max_points)
+            offered = (content.colors, content.cloud.tiles.surface, max_points)
             self._fold("points", offered, lambda: self._point_folder(content, view, max_points))
         if content.multiframes is not None:
             frames = len(content.multiframes)
@@ -71,7 +81,8 @@ class Panel:
         values = {
             "color": view.color_by, "palette": view.palette, "size": view.point_size_m,
             "adapt": view.adapt, "low": span.low, "high": span.high, "points": view.points,
-            "moment": view.moment, "window": view.window_s, "edges": view.edge_color,
+            "surface": _lie(view), "moment": view.moment, "window": view.window_s,
+            "edges": view.edge_color,
         }  # fmt: skip
         for name, value in values.items():
             self._set(name, value)
@@ -142,6 +153,12 @@ class Panel:
                 lambda view, value: replace(view, color_by=value),
             )
             self._button("Raw or normalized (N)", "normalized")
+            if content.cloud is not None and content.cloud.tiles.surface == "fitted":
+                self._bind(
+                    "surface",
+                    gui.add_dropdown("Points lie (R)", tuple(LIE), initial_value=_lie(view)),
+                    lambda view, value: replace(view, surface=LIE[value]),
+                )
             self._bind(
                 "palette",
                 gui.add_dropdown("Palette", get_args(Palette), initial_value=view.palette),

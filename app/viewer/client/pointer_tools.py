@@ -75,9 +75,9 @@ class PointerTools:
         with self._one:
             ray = replace(ray, point_m=view.point_size_m)
             if self._measuring:
-                self._measure(ray)
+                self._measure(ray, view)
             elif not (self._picked_edge(ray, view) or self._picked_gnss(ray, view)):
-                self._pick_point(ray)
+                self._pick_point(ray, view)
             self._news = True
         self._change(lambda view: view)
 
@@ -94,8 +94,8 @@ class PointerTools:
                 self._screen.download("measurements.csv", measurements_csv(view.measurements))
         self._news = True
 
-    def _measure(self, ray: Ray) -> None:
-        point = self._pick_point(ray)
+    def _measure(self, ray: Ray, view: ViewState) -> None:
+        point = self._pick_point(ray, view)
         if point is None:
             return
         if self._first is None:
@@ -131,9 +131,10 @@ class PointerTools:
         self._show_facts(gnss_facts(content.gnss, row, began_ns=began_ns))
         return True
 
-    def _pick_point(self, ray: Ray) -> PickedPoint | None:
+    def _pick_point(self, ray: Ray, view: ViewState) -> PickedPoint | None:
         content = self._source.content
-        point = None if content.cloud is None else pick_point(content.cloud, ray)
+        cloud = content.cloud and content.cloud.on(view.surface)
+        point = None if cloud is None else pick_point(cloud, ray)
         self._last = None if point is None else point.p_map
         if point is None or content.cloud is None:
             self._panel.show_picked(None)

@@ -10,6 +10,7 @@ from typing import Any, Literal, get_args
 
 from app.viewer.cloud.palette import Palette, Range
 from app.viewer.scene.layers import Layer
+from recon4.mapping.tiles import Surface
 from recon4.store.earlier_names import PALETTES
 
 ColorBy = Literal[
@@ -50,6 +51,8 @@ class ViewState:
     chosen: Mapping[str, bool] = field(default_factory=dict)
     """Layers a person switched, by key; the others have their default."""
     points: Points = "map"
+    surface: Surface = "fitted"
+    """Where the points of the map are drawn, if it has fitted surfaces."""
     moment: int = 0
     """Selected multiframe."""
     window_s: float = 0.0
@@ -109,6 +112,7 @@ def _view(record: dict[str, Any]) -> ViewState:
         point_size_m=min(max(_number(record["point_size_m"]), 0.001), 1.0),
         chosen={str(key)[:80]: on is True for key, on in list(record["chosen"].items())[:200]},
         points=_one_of(record["points"], get_args(Points)),
+        surface=_one_of(record.get("surface", "fitted"), get_args(Surface)),
         moment=max(int(record["moment"]), 0),
         window_s=min(max(_number(record["window_s"]), 0.0), 60.0),
         edge_color=_one_of(record["edge_color"], get_args(EdgeColor)),

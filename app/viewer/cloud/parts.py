@@ -27,7 +27,7 @@ from app.viewer.cloud.palette import (
     usual_range,
 )
 from recon4.geometry.se3 import Array
-from recon4.mapping.tiles import Tile, TileSet
+from recon4.mapping.tiles import RAW_OFFSET, Surface, Tile, TileSet
 
 BASE_POINTS = 60_000
 """Most points of the coarsest sample, which is sent first and always on screen."""
@@ -64,17 +64,19 @@ class CloudPart:
 class Cloud:
     """A finished map."""
 
-    def __init__(self, artifact: Path, *, began_ns: int = 0) -> None:
+    def __init__(self, artifact: Path, *, began_ns: int = 0, surface: Surface = "fitted") -> None:
         """Open it.
 
         Args:
             artifact: Folder of the stage ``map``.
             began_ns: When the recording began [ns].
+            surface: Where points are drawn; a map without fitted surfaces has them as measured.
 
         Raises:
             StoreError: If the map is missing or damaged.
         """
-        self.tiles = TileSet.open(artifact)
+        self.tiles = TileSet.open(artifact).on(surface)
+        self._artifact = artifact
         self.began_ns = began_ns
         self._columns = {
             name: np.load(artifact / "tiles" / f"{name}.npy", mmap_mode="r").view(np.ndarray)
@@ -86,6 +88,16 @@ class Cloud:
 
     def __len__(self) -> int:
         return len(self.tiles)
+
+    def on(self, surface: Surface) -> Cloud:
+        """The same map with its points on fitted surfaces, or where they were measured."""
+        return self if surface == "fitted" else self._measured
+
+    @cached_property
+    def _measured(self) -> Cloud:
+        if self.tiles.surface == "raw":
+            return self
+        return Cloud(self._artifact, began_ns=self.began_ns, surface="raw")
 
     @property
     def colors(self) -> tuple[ColorBy, ...]:
@@ -147,12 +159,18 @@ class Cloud:
 
     def column(self, tile: Tile, name: str) -> NDArray[Any]:
         """All rows of a field in a tile, mapped."""
-        return self._columns[name][tile.start : tile.stop]
+        return self._read(name, slice(tile.start, tile.stop))
 
     def _rows(self, field: str, chunk: Chunk) -> NDArray[Any]:
         row, number = chunk
         rows: Rows = self._chunks[row][number]
-        return self._columns[field][rows.within(self.tiles.tiles[row].start)]
+        return self._read(field, rows.within(self.tiles.tiles[row].start))
+
+    def _read(self, field: str, rows: slice) -> NDArray[Any]:
+        values = self._columns[field][rows]
+        if field == "xyz" and self.tiles.surface == "raw" and RAW_OFFSET in self._columns:
+            values = values + self._columns[RAW_OFFSET][rows].astype(np.float32)
+        return values
 
     def _base_values(self, color_by: ColorBy) -> NDArray[Any]:
         kept: dict[ColorBy, NDArray[Any]] = self.__dict__.setdefault("_base", {})

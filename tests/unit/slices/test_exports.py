@@ -177,7 +177,7 @@ def test_an_image_too_large_for_one_transformation_is_rejected(tiles, tmp_path):
 def test_a_sheet_is_the_same_file_each_time(tiles, tmp_path, ending):
     layout = lay_out(SliceWindow(0.0, -1.0, 3.0, 5.0))
     drawn = draw(tiles, CUT, layout.paper)
-    text = SheetText("office", LOCAL.text, "recon4", approval_text(None))
+    text = SheetText("office", LOCAL.text, "recon4", approval_text(None), "as measured")
 
     for name in ("a", "b"):
         write_sheet(drawn, layout, tmp_path / f"{name}.{ending}", span=drawn.span, text=text)

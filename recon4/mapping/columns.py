@@ -1,0 +1,73 @@
+"""Columns of the map on disk: one ``.npy`` file per field, with a header of constant size."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import StoreError
+from recon4.mapping.tile import FIELDS
+
+_HEADER_BYTES = 128
+
+
+def column_shape(name: str, rows: int) -> tuple[int, ...]:
+    """Shape of a column."""
+    width = FIELDS[name][1]
+    return (rows, width) if width > 1 else (rows,)
+
+
+def column_header(name: str, rows: int) -> bytes:
+    """Header of a version 1.0 ``.npy`` file, of constant size so that it can be rewritten."""
+    shape = column_shape(name, rows)
+    text = f"{{'descr': '{FIELDS[name][0]}', 'fortran_order': False, 'shape': {shape}, }}"
+    body = text.encode("latin1").ljust(_HEADER_BYTES - 11) + b"\n"
+    return b"\x93NUMPY\x01\x00" + len(body).to_bytes(2, "little") + body
+
+
+def row_offset(name: str, row: int) -> tuple[int, int]:
+    """Offset of a row in its file, and the size of a row [bytes]."""
+    row_bytes = np.dtype(FIELDS[name][0]).itemsize * FIELDS[name][1]
+    return _HEADER_BYTES + row * row_bytes, row_bytes
+
+
+def map_rows(folder: Path, name: str, start: int, *, count: int) -> NDArray[Any]:
+    """Rows of a column, mapped.
+
+    Raises:
+        StoreError: If they cannot be read.
+    """
+    dtype = np.dtype(FIELDS[name][0])
+    if count == 0:
+        return np.empty(column_shape(name, 0), dtype)
+    offset, _ = row_offset(name, start)
+    try:
+        mapped = np.memmap(
+            folder / f"{name}.npy", dtype, mode="r", offset=offset, shape=column_shape(name, count)
+        )
+    except (OSError, ValueError, OverflowError) as error:
+        raise StoreError(f"{folder.name}/{name}.npy cannot be read: {error}") from error
+    return mapped.view(np.ndarray)
+
+
+def check_columns(folder: Path, fields: Sequence[str], points: int) -> None:
+    """Check that there is a column of the right size for every field.
+
+    Raises:
+        StoreError: If a field is unknown or a file has another size.
+    """
+    for name in fields:
+        if name not in FIELDS:
+            raise StoreError(f"tiles.json: unknown field {name!r}; known: {list(FIELDS)}")
+        path = folder / f"{name}.npy"
+        expected = _HEADER_BYTES + points * np.dtype(FIELDS[name][0]).itemsize * FIELDS[name][1]
+        found = path.stat().st_size if path.is_file() else -1
+        if found != expected:
+            raise StoreError(
+                f"{folder.name}/{name}.npy: expected {expected} bytes for {points} points, "
+                f"got {found if found >= 0 else 'no file'}"
+            )
