@@ -217,6 +217,7 @@ def _map(
     intensity: Path,
     calibration: Path | None = None,
 ) -> MapFigures:
+    from recon4.evaluation.thickness import plane_thickness
     from recon4.export.laz import export_laz
     from recon4.georeference.stage import read_crs
     from recon4.intensity.table import IntensityTable
@@ -241,7 +242,16 @@ def _map(
         progress=progress,
     )
     low, high = (tuple(corner.tolist()) for corner in tiles.bounds_m)
-    return MapFigures(points=len(tiles), bounds_m=(low, high))
+    return MapFigures(
+        points=len(tiles),
+        bounds_m=(low, high),
+        strays=tiles.strays,
+        surface=tiles.surface,
+        thickness=plane_thickness(tiles),
+        thickness_as_measured=(
+            plane_thickness(tiles.as_measured()) if tiles.surface == "fitted" else None
+        ),
+    )
 
 
 def _line_odometry(

@@ -104,17 +104,20 @@ def _against_truth(result: Path, truth: Path, *, model: Path | None, floor: bool
     from recon4.evaluation.evaluate import evaluate as evaluate_result
     from recon4.store.project import is_project, read_artifacts
 
-    chunks, frames = None, None
+    chunks = measured = frames = None
     artifacts = read_artifacts(result) if is_project(result) else {}
     if "map" in artifacts:
         chunks = _map_chunks(artifacts["map"])
+        measured = _measured_chunks(artifacts["map"])
     if floor:
         if "frames" not in artifacts:
             raise typer.BadParameter(f"--floor needs a project with its frames, got {result}")
         from recon4.store.frames import open_frames
 
         frames = open_frames(artifacts["frames"], artifacts.get("calibration"))
-    return evaluate_result(result, truth=truth, model=model, chunks=chunks, frames=frames)
+    return evaluate_result(
+        result, truth=truth, model=model, chunks=chunks, measured=measured, frames=frames
+    )
 
 
 def _relation_errors(result: Path, relations: Path) -> RelationErrors:
@@ -161,3 +164,13 @@ def _map_chunks(folder: Path) -> Callable[[], Iterator[Array]]:
     from recon4.mapping.tiles import TileSet
 
     return lambda: (tile.xyz_m() for tile in TileSet.open(folder))
+
+
+def _measured_chunks(folder: Path) -> Callable[[], Iterator[Array]] | None:
+    """The points where they were measured; None if the map has no fitted surfaces."""
+    from recon4.mapping.tiles import TileSet
+
+    tiles = TileSet.open(folder)
+    if tiles.surface == "raw":
+        return None
+    return lambda: (tile.xyz_m() for tile in tiles.as_measured())

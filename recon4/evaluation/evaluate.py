@@ -67,6 +67,9 @@ class Evaluation:
     """Not aligned: meaningful if estimate and truth are in one frame."""
     drift: tuple[Drift, ...]
     relative: RelativeError | None = None
+    """Of the map as delivered."""
+    measured: RelativeError | None = None
+    """The same points where they were measured; None = the map has no fitted surfaces."""
     floor: ErrorFloor | None = None
     quality: MapQuality | None = None
 
@@ -87,6 +90,7 @@ def evaluate(
     truth: Path,
     model: Path | None = None,
     chunks: Chunks | None = None,
+    measured: Chunks | None = None,
     frames: Frames | None = None,
 ) -> Evaluation:
     """Evaluate a result against ground truth.
@@ -97,6 +101,7 @@ def evaluate(
         model: True model as a triangle mesh in the frame of ``truth``; needed for e_r.
         chunks: Function that returns an iterator over the map's points, for example
             ``lambda: TileSet.open(folder).points()``; needed for e_r and the map's quality.
+        measured: The same for the points where they were measured, if the map has fitted surfaces.
         frames: Multiframes; with ``model``, every tenth gives e_r of the true poses from the same
             points.
 
@@ -108,12 +113,14 @@ def evaluate(
     pairs = pair_poses(at_frames(estimate), true)
     aligned = absolute_error(pairs)
     mesh = read_mesh(model) if model is not None else None
-    floor = relative = None
+    floor = relative = as_measured = None
     if mesh is not None and frames is not None:
         tenth = [frames[row] for row in range(0, len(frames), _EVERY)]
         floor = relative_error_floor(tenth, frames.rig, mesh, estimate=estimate, truth=true)
     if mesh is not None and chunks is not None:
         relative = _relative(chunks, mesh, start=aligned.T_true_map)
+        if measured is not None:
+            as_measured = _relative(measured, mesh, start=aligned.T_true_map)
     return Evaluation(
         estimate=project_or_trajectory.name,
         truth=truth.name,
@@ -126,6 +133,7 @@ def evaluate(
         unaligned=absolute_error(pairs, alignment="none"),
         drift=drifts(pairs),
         relative=relative,
+        measured=as_measured,
         floor=floor,
         quality=map_quality(chunks) if chunks is not None else None,
     )

@@ -31,6 +31,8 @@ def evaluation_text(found: Evaluation) -> str:
     parts = [head, ate_text(found), *(drift_text(drift) for drift in found.drift)]
     if found.relative is not None:
         parts.append(relative_text(found.relative))
+    if found.relative is not None and found.measured is not None:
+        parts.append(surfaces_text(found.relative, found.measured))
     if found.floor is not None:
         parts.append(floor_text(found.floor))
     if found.quality is not None:
@@ -126,6 +128,13 @@ def relative_text(error: RelativeError) -> str:
     far = f"> {error.outlier_m:g} m"
     header = (f"e_r (aligned: {error.alignment})", "points", far, "mean cm", "< 2 cm", "< 5 cm")
     return text_table(header, rows)
+
+
+def surfaces_text(delivered: RelativeError, measured: RelativeError) -> str:
+    """e_r of the delivered map beside that of the same points where they were measured."""
+    pairs = (("on fitted surfaces", delivered), ("as measured", measured))
+    rows = [(name, *_slice_row(error.point_weighted)[1:]) for name, error in pairs]
+    return text_table(("Map", "points", "far", "mean cm", "< 2 cm", "< 5 cm"), rows)
 
 
 def floor_text(floor: ErrorFloor) -> str:

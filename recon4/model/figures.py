@@ -203,12 +203,40 @@ class LevelFigures(Figures, frozen=True, kw_only=True):
     warnings: tuple[str, ...] = ()
 
 
+class PlaceThickness(msgspec.Struct, frozen=True):
+    """Thickness of the planar surfaces of a tile."""
+
+    middle_m: Point
+    """Of the tile's points [m]."""
+    p50_m: float
+    planar_coverage: float
+
+
+class PlaneThickness(msgspec.Struct, frozen=True, kw_only=True):
+    """Standard deviation of points across planar surfaces [m]; None = there are none."""
+
+    p50_m: float | None
+    p95_m: float | None
+    planar_coverage: float | None
+    """Ratio of the places that are planar, 0..1."""
+    thickest: tuple[PlaceThickness, ...] = ()
+    """The tiles with the thickest surfaces."""
+
+
 class MapFigures(Figures, frozen=True, kw_only=True):
     """The map."""
 
     points: int
     bounds_m: tuple[Point, Point]
     """Lowest and highest corner [m]."""
+    strays: int = 0
+    """Stray returns, which ``points`` does not count."""
+    surface: Literal["fitted", "raw"] = "raw"
+    """Where the points lie: on fitted surfaces, or where they were measured."""
+    thickness: PlaneThickness | None = None
+    """Of the surfaces, as delivered; None = of an earlier version."""
+    thickness_as_measured: PlaneThickness | None = None
+    """The same of the points as measured; None = the points lie there."""
 
 
 class Scan2dFigures(Figures, frozen=True, kw_only=True):

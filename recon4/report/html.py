@@ -11,7 +11,9 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from recon4.evaluation.table import number, percentage
+from recon4.evaluation.thickness import plane_thickness
 from recon4.mapping.tiles import TileSet
+from recon4.model.figures import PlaneThickness
 from recon4.model.pose_graph import EdgeKind
 from recon4.report import chart_groups
 from recon4.report.approval import draft_block
@@ -45,6 +47,7 @@ def render(assessed: Assessment) -> str:
     """The report as HTML text; all names are escaped."""
     facts, results, drift = assessed.facts, assessed.results, assessed.drift
     tiles = TileSet.open(facts.artifacts["map"]) if "map" in facts.artifacts else None
+    thickness = plane_thickness(tiles) if tiles is not None else None
     rasters = rasterize(lambda: map_chunks(tiles)) if tiles is not None else []
     level, verdict = headline(assessed.findings)
     environment = Environment(
@@ -67,7 +70,8 @@ def render(assessed: Assessment) -> str:
         approval=draft_block(),
         level=level.name.lower(),
         verdict=verdict,
-        key_figures=_key_figures(facts, results, drift, tiles=tiles),
+        key_figures=_key_figures(facts, results, drift, tiles=tiles) + _thickness(thickness),
+        thickness=thickness,
         maps=chart_groups.map_figures(rasters),
         walk=chart_groups.trajectory_figures(results, drift, rasters),
         edges=chart_groups.edge_figures(results, rasters),
@@ -123,6 +127,8 @@ def _key_figures(
         out.append(("multiframes", _grouped(len(results.steps["lost"])), ""))
     if tiles is not None:
         out.append(("points in the map", _grouped(len(tiles)), ""))
+        if tiles.surface == "fitted":
+            out.append(("stray returns left out", _grouped(tiles.strays), ""))
     if results.graph is not None:
         kept = sum(edge.in_graph for edge in results.graph.edges)
         out.append(
@@ -141,6 +147,16 @@ def _key_figures(
     if facts.stages:
         out.append(("computing time", _duration(sum(s.seconds for s in facts.stages)), "min:s"))
     return out
+
+
+def _thickness(found: PlaneThickness | None) -> list[tuple[str, str, str]]:
+    if found is None or found.p50_m is None or found.p95_m is None or found.planar_coverage is None:
+        return []
+    spread = f"{number(found.p50_m, 2, 100.0)} / {number(found.p95_m, 2, 100.0)}"
+    return [
+        ("thickness of planar surfaces, median / p95", spread, "cm"),
+        ("planar places", number(found.planar_coverage, 0, 100.0), "%"),
+    ]
 
 
 def _flat(value: Any, prefix: str = "") -> list[tuple[str, str]]:

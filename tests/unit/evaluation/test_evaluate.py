@@ -126,15 +126,20 @@ def test_everything_at_once_with_model_and_map(tmp_path: Path) -> None:
     trimesh.Trimesh(mesh.vertices_m, mesh.triangles).export(tmp_path / "model.ply")
     points, normals = sample_mesh(mesh, spacing_m=0.03, rng=np.random.default_rng(0))
     points += 0.01 * np.random.default_rng(1).normal(size=(len(points), 1)) * normals
+    rough = np.random.default_rng(2).normal(size=(len(points), 1))
 
     found = evaluate(
         tmp_path / "estimate.tum",
         truth=tmp_path / "truth.tum",
         model=tmp_path / "model.ply",
         chunks=lambda: np.array_split(points, 7),
+        measured=lambda: np.array_split(points + 0.01 * rough * normals, 7),
     )
 
     assert found.relative is not None
+    assert found.measured is not None
+    assert found.measured.point_weighted.mean_m > 1.2 * found.relative.point_weighted.mean_m
+    assert "as measured" in found.table()
     assert found.relative.alignment == "ICP"
     assert found.relative.point_weighted.mean_m == pytest.approx(0.008, rel=0.15)
     assert found.quality is not None

@@ -1,0 +1,81 @@
+"""Thickness of the planar surfaces of a map, as a whole and by place; needs no ground truth.
+
+Thickness alone can be made small by keeping only what is flat, so the planar coverage is always
+beside it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from recon4.geometry.se3 import Array
+from recon4.mapping.tiles import TileSet
+from recon4.model.figures import PlaceThickness, PlaneThickness
+
+CELL_M = 0.2
+"""Edge of the cubes whose points are tested for a plane [m]."""
+_EVERY = 8
+"""One of so many points of each tile is used."""
+_MIN_POINTS = 15
+_PLANAR = 0.1
+"""As in `recon4.evaluation.sharpness`: the middle eigenvalue is at least 1/0.1 times the smallest
+and at least 0.1 times the largest."""
+_MIN_CELLS = 10
+_PLACES = 10
+
+
+def plane_thickness(tiles: TileSet) -> PlaneThickness:
+    """Standard deviation of the points across the planar ones of all cubes of 20 cm.
+
+    Args:
+        tiles: The map; an even eighth of its points is read, tile by tile.
+    """
+    found: list[Array] = []
+    places: list[PlaceThickness] = []
+    cells = 0
+    for tile in tiles:
+        variance = _variances(tile.xyz_m(limit=-(-len(tile) // _EVERY)))
+        planar = (variance[:, 0] < _PLANAR * variance[:, 1]) & (
+            variance[:, 1] > _PLANAR * variance[:, 2]
+        )
+        thickness = np.sqrt(np.maximum(variance[planar, 0], 0.0))
+        cells += len(variance)
+        found.append(thickness)
+        if len(thickness) >= _MIN_CELLS:
+            x, y, z = (np.array(tile.low_m) + np.array(tile.high_m)) / 2.0
+            share = len(thickness) / len(variance)
+            middle = (round(float(x), 2), round(float(y), 2), round(float(z), 2))
+            places.append(PlaceThickness(middle, float(np.median(thickness)), share))
+    every = np.concatenate(found or [np.empty(0)])
+    p50, p95 = np.percentile(every, [50, 95]).tolist() if len(every) else (None, None)
+    places.sort(key=lambda place: (-place.p50_m, place.middle_m))
+    return PlaneThickness(
+        p50_m=p50,
+        p95_m=p95,
+        planar_coverage=len(every) / cells if cells else None,
+        thickest=tuple(places[:_PLACES]),
+    )
+
+
+def _variances(p: Array) -> Array:
+    """Eigenvalues of the covariances of the cubes with enough points, ascending, (C, 3) [m²]."""
+    if not len(p):
+        return np.empty((0, 3))
+    cell = np.floor(p / CELL_M).astype(np.int64)
+    cell -= cell.min(axis=0)
+    size = cell.max(axis=0) + 1
+    key = (cell[:, 0] * size[1] + cell[:, 1]) * size[2] + cell[:, 2]
+    n = np.bincount(key)
+    used = np.flatnonzero(n >= _MIN_POINTS)
+    local = p - (cell + 0.5) * CELL_M  # small numbers: sums of squares keep their digits
+    local -= local.mean(axis=0)
+    first = np.stack([np.bincount(key, local[:, i])[used] for i in range(3)], axis=1)
+    second = np.empty((len(used), 3, 3))
+    for i in range(3):
+        for j in range(i, 3):
+            second[:, i, j] = second[:, j, i] = np.bincount(key, local[:, i] * local[:, j])[used]
+    count = n[used, None]
+    mean = first / count
+    covariance = second / count[:, :, None] - mean[:, :, None] * mean[:, None, :]
+    values: Array = np.linalg.eigvalsh(covariance * (count / (count - 1.0))[:, :, None])
+    return values
