@@ -6,16 +6,18 @@ beside it.
 
 from __future__ import annotations
 
+from math import ceil
+
 import numpy as np
 
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
 from recon4.model.figures import PlaceThickness, PlaneThickness
 
-CELL_M = 0.2
+CELL_M = 0.3
 """Edge of the cubes whose points are tested for a plane [m]."""
-_EVERY = 8
-"""One of so many points of each tile is used."""
+_MOST_POINTS = 4_000_000
+"""Of a larger map an even sample of about this size is used."""
 _MIN_POINTS = 15
 _PLANAR = 0.1
 """As in `recon4.evaluation.sharpness`: the middle eigenvalue is at least 1/0.1 times the smallest
@@ -25,16 +27,17 @@ _PLACES = 10
 
 
 def plane_thickness(tiles: TileSet) -> PlaneThickness:
-    """Standard deviation of the points across the planar ones of all cubes of 20 cm.
+    """Standard deviation of the points across the planar ones of all cubes of 30 cm.
 
     Args:
-        tiles: The map; an even eighth of its points is read, tile by tile.
+        tiles: The map; it is read tile by tile.
     """
+    used = min(1.0, _MOST_POINTS / max(1, len(tiles)))
     found: list[Array] = []
     places: list[PlaceThickness] = []
     cells = 0
     for tile in tiles:
-        variance = _variances(tile.xyz_m(limit=-(-len(tile) // _EVERY)))
+        variance = _variances(tile.xyz_m(limit=ceil(used * len(tile))))
         planar = (variance[:, 0] < _PLANAR * variance[:, 1]) & (
             variance[:, 1] > _PLANAR * variance[:, 2]
         )

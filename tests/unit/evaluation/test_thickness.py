@@ -18,17 +18,17 @@ def made(folder, p, offset_m=None):
 
 
 def test_the_thickness_is_the_noise_across_a_wall(rng, tmp_path):
-    p, _ = wall(rng, 60_000, x_m=1.1, sigma_m=0.012)
+    p, _ = wall(rng, 60_000, x_m=1.05, sigma_m=0.012)
 
     found = plane_thickness(made(tmp_path / "map", p))
 
     assert found.p50_m == pytest.approx(0.012, rel=0.1)
     assert found.p50_m < found.p95_m < 0.02
-    assert found.planar_coverage == pytest.approx(1.0, abs=0.02)
+    assert found.planar_coverage > 0.9
 
 
 def test_fitted_points_are_thin_and_the_same_as_measured_thick(rng, tmp_path):
-    p, _ = wall(rng, 60_000, x_m=1.1, sigma_m=0.001)
+    p, _ = wall(rng, 60_000, x_m=1.05, sigma_m=0.001)
     offset = np.zeros_like(p)
     offset[:, 0] = 0.015 * rng.standard_normal(len(p))
 
@@ -39,26 +39,23 @@ def test_fitted_points_are_thin_and_the_same_as_measured_thick(rng, tmp_path):
 
 
 def test_what_is_not_planar_lowers_the_coverage_only(rng, tmp_path):
-    p, _ = wall(rng, 40_000, x_m=1.1, sigma_m=0.01)
+    p, _ = wall(rng, 40_000, x_m=1.05, sigma_m=0.01)
     leaves = rng.uniform([2.0, 0.0, 0.0], [3.0, 2.0, 2.0], (200_000, 3))
 
-    # The first rows of a tile are an even sample of it.
-    both = rng.permutation(np.concatenate([p, leaves]))
-
-    found = plane_thickness(made(tmp_path / "map", both))
+    found = plane_thickness(made(tmp_path / "map", np.concatenate([p, leaves])))
 
     assert found.p50_m == pytest.approx(0.01, rel=0.1)
     assert 0.1 < found.planar_coverage < 0.5
 
 
 def test_the_thickest_place_comes_first(rng, tmp_path):
-    thin, _ = wall(rng, 40_000, x_m=1.1, sigma_m=0.005)
-    thick, _ = wall(rng, 40_000, x_m=11.1, sigma_m=0.02)
+    thin, _ = wall(rng, 40_000, x_m=1.05, sigma_m=0.005)
+    thick, _ = wall(rng, 40_000, x_m=11.25, sigma_m=0.02)
 
     places = plane_thickness(made(tmp_path / "map", np.concatenate([thin, thick]))).thickest
 
     assert len(places) == 2
-    assert places[0].middle_m[0] == pytest.approx(11.1, abs=0.02)
+    assert places[0].middle_m[0] == pytest.approx(11.25, abs=0.02)
     assert places[0].p50_m > 3 * places[1].p50_m
 
 
