@@ -80,5 +80,5 @@ def _variances(p: Array) -> Array:
     count = n[used, None]
     mean = first / count
     covariance = second / count[:, :, None] - mean[:, :, None] * mean[:, None, :]
-    values: Array = np.linalg.eigvalsh(covariance * (count / (count - 1.0))[:, :, None])
-    return values
+    covariance *= (count / (count - 1.0))[:, :, None]
+    return np.asarray(np.linalg.eigvalsh(covariance), dtype=np.float64)

@@ -1,8 +1,8 @@
 """Fitted surfaces on real sequences: thickness of planar surfaces before and after.
 
-    python -m tests.benchmarks.surfaces_real [corridor] [muehlburg] [nclt] [--pictures FOLDER]
+    python -m tests.benchmarks.surfaces_real [corridor] [muehlburg] [nclt] [--images FOLDER]
 
-``nclt`` is placed by its true poses, the others by `Odometry` without refinement. Pictures are
+``nclt`` is placed by its true poses, the others by `Odometry` without refinement. Images are
 horizontal slices of 10 cm, as measured on the left and fitted on the right.
 """
 
@@ -33,7 +33,7 @@ from tests.benchmarks.loaders import muehlburg, nclt, nclt_truth, one_sensor, st
 from tests.benchmarks.real_sequences import DATA, corridor
 
 _SCANS = 150
-"""Of the long sequences, so many multiframes are used."""
+"""Multiframes used of the long sequences."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,7 +49,7 @@ def main() -> None:
     """Run the requested sequences, by default all."""
     parser = argparse.ArgumentParser()
     parser.add_argument("names", nargs="*", default=["corridor", "muehlburg", "nclt"])
-    parser.add_argument("--pictures", type=Path)
+    parser.add_argument("--images", type=Path)
     a = parser.parse_args()
     rows = []
     for name in a.names:
@@ -58,8 +58,8 @@ def main() -> None:
             measured = plane_thickness(tiles.as_measured())
             now = plane_thickness(tiles)
             rows += [_row(name, "as measured", measured), _row("", "fitted", now)]
-            if a.pictures:
-                (a.pictures / f"surfaces_{name}.png").write_bytes(picture(tiles))
+            if a.images:
+                (a.images / f"surfaces_{name}.png").write_bytes(slice_pair(tiles))
     head = ("sequence", "points", "p50 mm", "p95 mm", "planar places %")
     print(text_table(head, rows))
 
@@ -88,7 +88,7 @@ def fitted(sequence: Sequence, folder: Path) -> TileSet:
     return build_map(frames, sequence.trajectory, None, folder / "map", settings=settings)
 
 
-def picture(tiles: TileSet, *, side_m: float = 5.0, pixels: int = 420) -> bytes:
+def slice_pair(tiles: TileSet, *, side_m: float = 5.0, pixels: int = 420) -> bytes:
     """A square of a slice where most vertical surfaces are, as measured and fitted."""
     p = np.concatenate([tile.xyz_m(limit=2000) for tile in tiles])
     normal = np.concatenate([tile.read(["normal"], limit=2000)["normal"] for tile in tiles])
