@@ -16,6 +16,7 @@ from recon4.calibration.gravity_alignment import align_gravity
 from recon4.calibration.map_alignment import align_maps, with_mount
 from recon4.calibration.parameters import Parameter
 from recon4.calibration.pose_pairs import average_pairs, hand_eye, read_pose_pairs
+from recon4.calibration.slices import slice_points
 from recon4.calibration.walk import RecordedWalk
 from recon4.errors import CalibrationError, ConfigError
 from recon4.geometry.se3 import SE3, Array
@@ -24,11 +25,12 @@ from recon4.model.rig import Rig, RigCalibration
 from recon4.pipeline import calibrate_recording
 from recon4.progress import Progress
 from recon4.recording.sources import Sources
+from recon4.report.calibration_page import THICKNESS_M, CalibrationPage, RigSlice
 from recon4.report.rig import SHOWN
 from recon4.settings import EntropySettings, Settings, override, preset
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
-from recon4.store.project import read_artifacts
+from recon4.store.project import is_project, read_artifacts
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,6 +42,8 @@ class CalibratedRig:
     outcome: str
     lines: tuple[str, ...] = ()
     """Table for the terminal."""
+    figures: CalibrationFigures | None = None
+    """Of the method joint."""
 
 
 def check_method(method: str) -> None:
@@ -73,13 +77,42 @@ def calibrate_by(
     return _METHODS[method](sources, folder, sensors, progress)
 
 
+def page_of(method: str, found: CalibratedRig, sources: Sources, folder: Path) -> CalibrationPage:
+    """The page about a result, with a slice before and after if there is a recording.
+
+    Args:
+        method: As `calibrate_by`.
+        found: Its result.
+        sources: The recording and the rig.
+        folder: The project folder that `calibrate_by` used.
+
+    Raises:
+        StoreError: If its artifacts are damaged.
+    """
+    assert sources.rig is not None
+    slices = []
+    if found.rig is not None and is_project(folder):
+        walk = _recorded(folder)
+        for name, rig in (("rig file", sources.rig), ("calibrated", found.rig)):
+            points = slice_points(walk, rig, thickness_m=THICKNESS_M)
+            slices.append(RigSlice(name, tuple(points)))
+    return CalibrationPage(
+        title=sources.rig.name,
+        method=method,
+        outcome=found.outcome,
+        figures=found.figures,
+        lines=() if found.figures else found.lines,
+        slices=slices,
+    )
+
+
 def _joint(sources: Sources, folder: Path, sensors: str, progress: Progress) -> CalibratedRig:
     chosen = _settings(f"calibration.sensors={sensors}", "calibration.mode=auto")
     figures, rig = calibrate_recording(sources, folder, settings=chosen, progress=progress)
     lines = (*_table(figures.parameters), *figures.warnings)
     if rig is not None:
         rig = replace(rig, calibration=_note("joint", figures))
-    return CalibratedRig(rig, figures.outcome, lines)
+    return CalibratedRig(rig, figures.outcome, lines, figures)
 
 
 def _maps(sources: Sources, folder: Path, sensors: str, progress: Progress) -> CalibratedRig:
@@ -192,10 +225,14 @@ def _walk(
     """The recording with its odometry; the stages run if they have not."""
     chosen = _settings(f"calibration.sensors={sensors}", "calibration.mode=off")
     calibrate_recording(sources, folder, settings=chosen, progress=progress)
+    return _recorded(folder), chosen
+
+
+def _recorded(folder: Path) -> RecordedWalk:
     made = read_artifacts(folder)
     lost = load_arrays(made["odometry"] / "steps.npz", ["lost"])["lost"].astype(bool)
     trajectory = load_trajectory(made["odometry"] / "trajectory.npz")
-    return RecordedWalk(FrameStore.open(made["frames"]), trajectory, lost), chosen
+    return RecordedWalk(FrameStore.open(made["frames"]), trajectory, lost)
 
 
 def _reference(rig: Rig, settings: Settings) -> int:

@@ -42,9 +42,10 @@ def calibrate(
     folder = project or out.with_suffix(".project")
     confine_command(write=[result_folder(folder), out.parent])
 
-    from recon4.calibration_methods import calibrate_by, check_method
+    from recon4.calibration_methods import calibrate_by, check_method, page_of
     from recon4.model.rig import load_rig
     from recon4.recording.sources import Sources, require_files
+    from recon4.report.calibration_page import write_calibration_page
     from recon4.terminal import watcher
 
     check_method(method)
@@ -53,6 +54,9 @@ def calibrate(
     with watcher() as progress:
         found = calibrate_by(method, sources, folder, sensors=sensors, progress=progress)
     write("\n".join(found.lines))
+    page = out.with_suffix(".html")
+    write_calibration_page(page, page_of(method, found, sources, folder))
+    write(f"page    {page}")
     _write(found, out)
 
 

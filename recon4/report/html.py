@@ -50,47 +50,51 @@ def render(assessed: Assessment) -> str:
     thickness = plane_thickness(tiles) if tiles is not None else None
     rasters = rasterize(lambda: map_chunks(tiles)) if tiles is not None else []
     level, verdict = headline(assessed.findings)
-    environment = Environment(
+    page = (
+        environment()
+        .get_template("template.html.jinja")
+        .render(
+            facts=facts,
+            thickness=thickness,
+            results=results,
+            findings=assessed.findings,
+            approval=draft_block(),
+            level=level.name.lower(),
+            verdict=verdict,
+            key_figures=_key_figures(facts, results, drift, tiles=tiles) + _thickness(thickness),
+            maps=chart_groups.map_figures(rasters),
+            walk=chart_groups.trajectory_figures(results, drift, rasters),
+            edges=chart_groups.edge_figures(results, rasters),
+            edge_kinds=[str(kind) for kind in EdgeKind],
+            edge_rows=_edge_rows(facts, results),
+            accuracy=chart_groups.accuracy_figures(facts),
+            intensity=chart_groups.intensity_figures(results, rasters),
+            rig_rows=rig_rows(results.calibration),
+            rig_figures=chart_groups.rig_figures(results),
+            placed=placed_rows(results.georeference),
+            placed_charts=chart_groups.georeference_figures(results),
+            imported=imported_rows(results.imported),
+            changed=changed_settings(facts.settings, facts.preset),
+            all_settings=_flat(asdict(facts.settings)),
+            frame=_frame(facts, results),
+            total_s=sum(stage.seconds for stage in facts.stages),
+            peak_bytes=max((stage.peak_bytes for stage in facts.stages), default=0),
+        )
+    )
+    return page.encode("utf-8", errors="replace").decode("utf-8")  # invalid file names
+
+
+def environment() -> Environment:
+    """Templates of this folder, with the filters they use; all texts are escaped."""
+    made = Environment(
         loader=PackageLoader("recon4.report", "."),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {
-        "number": number,
-        "percentage": percentage,
-        "short": _short,
-        "size": _size,
-    }
-    page = environment.get_template("template.html.jinja").render(
-        facts=facts,
-        results=results,
-        findings=assessed.findings,
-        approval=draft_block(),
-        level=level.name.lower(),
-        verdict=verdict,
-        key_figures=_key_figures(facts, results, drift, tiles=tiles) + _thickness(thickness),
-        thickness=thickness,
-        maps=chart_groups.map_figures(rasters),
-        walk=chart_groups.trajectory_figures(results, drift, rasters),
-        edges=chart_groups.edge_figures(results, rasters),
-        edge_kinds=[str(kind) for kind in EdgeKind],
-        edge_rows=_edge_rows(facts, results),
-        accuracy=chart_groups.accuracy_figures(facts),
-        intensity=chart_groups.intensity_figures(results, rasters),
-        rig_rows=rig_rows(results.calibration),
-        rig_figures=chart_groups.rig_figures(results),
-        placed=placed_rows(results.georeference),
-        placed_charts=chart_groups.georeference_figures(results),
-        imported=imported_rows(results.imported),
-        changed=changed_settings(facts.settings, facts.preset),
-        all_settings=_flat(asdict(facts.settings)),
-        frame=_frame(facts, results),
-        total_s=sum(stage.seconds for stage in facts.stages),
-        peak_bytes=max((stage.peak_bytes for stage in facts.stages), default=0),
-    )
-    return page.encode("utf-8", errors="replace").decode("utf-8")  # invalid file names
+    made.filters |= {"number": number, "percentage": percentage, "short": _short, "size": _size}
+    return made
 
 
 def _edge_rows(facts: ReportFacts, results: Results) -> list[EdgeRow]:

@@ -1,0 +1,47 @@
+"""A horizontal slice through a part of the walk, with the points of each LiDAR."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.calibration.walk import RecordedWalk
+from recon4.geometry.se3 import Array
+from recon4.mapping.place import place
+from recon4.model.rig import Rig
+
+_SECONDS = 6.0
+_MAX_POINTS = 12_000
+"""Drawn of each LiDAR."""
+_REACH_M = 6.0
+
+
+def slice_points(walk: RecordedWalk, rig: Rig, *, thickness_m: float) -> list[tuple[str, Array]]:
+    """Points near the height of the body in the part of the walk where it turns most.
+
+    Args:
+        walk: The recording; its trajectory is used with every rig.
+        rig: Mounts of the LiDARs.
+        thickness_m: Of the slice [m].
+
+    Returns:
+        Name of each LiDAR and its points around the body, x and y [m], (N, 2).
+    """
+    rows = walk.rows(1, _SECONDS)
+    if not rows:
+        return []
+    frames = walk.with_rig(rig).frames
+    middle = walk.trajectory.at(frames.t_mid_ns[[rows[0][len(rows[0]) // 2]]]).t[0]
+    found: list[list[Array]] = [[] for _ in rig.sensors]
+    for row in rows[0]:
+        frame = frames[row]
+        p = place(frame, walk.trajectory, rig) - middle
+        near = (np.abs(p[:, 2]) < thickness_m / 2.0) & (np.abs(p[:, :2]).max(axis=1) < _REACH_M)
+        for sensor, parts in enumerate(found):
+            parts.append(p[near & (frame.sensor == sensor), :2])
+    named = zip(rig.sensors, found, strict=True)
+    return [(sensor.name, _some(np.concatenate(parts))) for sensor, parts in named]
+
+
+def _some(p: NDArray[np.float64]) -> Array:
+    return p[:: max(1, -(-len(p) // _MAX_POINTS))]

@@ -1,0 +1,79 @@
+"""The page of a calibration: parameters, a slice before and after, figures of the method."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from markupsafe import Markup
+
+from recon4.geometry.se3 import Array
+from recon4.model.figures import CalibrationFigures
+from recon4.report.chart_groups import ChartFigure
+from recon4.report.figures import BLUE, GREEN, ORANGE, PINK, Chart
+from recon4.report.html import environment
+from recon4.report.rig import rig_charts, rig_rows
+from recon4.store.atomic import write_text
+
+THICKNESS_M = 0.2
+"""Of the slice [m]."""
+_COLORS = (BLUE, ORANGE, GREEN, PINK)
+_HEIGHT_IN = 4.6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RigSlice:
+    """Points of each LiDAR in a horizontal slice."""
+
+    name: str
+    """Of the rig, as ``rig file``."""
+    p_m: tuple[tuple[str, Array], ...]
+    """Name of each LiDAR and its points, x and y [m], (N, 2)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CalibrationPage:
+    """Content of the page."""
+
+    title: str
+    method: str
+    outcome: str
+    figures: CalibrationFigures | None = None
+    """Of the method joint."""
+    lines: tuple[str, ...] = ()
+    """Of the other methods."""
+    slices: Sequence[RigSlice] = ()
+
+
+def write_calibration_page(path: Path, page: CalibrationPage) -> None:
+    """Write the page as one HTML file without scripts and network.
+
+    Raises:
+        StoreError: If the file cannot be written.
+    """
+    charts = rig_charts(page.figures)
+    text = (
+        environment()
+        .get_template("calibration.html.jinja")
+        .render(
+            title=page.title,
+            method=page.method,
+            outcome=page.outcome,
+            rows=rig_rows(page.figures),
+            charts=[ChartFigure(Markup(svg), caption) for svg, caption in charts],
+            slices=[ChartFigure(Markup(_chart(one)), one.name) for one in page.slices],
+            thickness_m=THICKNESS_M,
+            lines=page.lines,
+        )
+    )
+    write_text(path, text)
+
+
+def _chart(one: RigSlice) -> str:
+    chart = Chart(f"slice-{one.name}", height=_HEIGHT_IN)
+    for k, (name, p_m) in enumerate(one.p_m):
+        color = _COLORS[k % len(_COLORS)]
+        chart.axes.plot(*p_m.T, ".", ms=1.2, color=color, label=name, rasterized=True)
+    chart.axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
+    return chart.svg()

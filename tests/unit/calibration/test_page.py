@@ -1,0 +1,62 @@
+"""The page of a calibration, and the slices in it."""
+
+import numpy as np
+
+from recon4.calibration.slices import slice_points
+from recon4.calibration.walk import RecordedWalk
+from recon4.model.figures import CalibrationFigures, ParameterFigures
+from recon4.report.calibration_page import CalibrationPage, RigSlice, write_calibration_page
+from recon4.store.arrays import load_trajectory
+from tests.unit.calibration.conftest import mounted, store
+
+
+def distance_m(slices):
+    """Mean distance of the second LiDAR's points from the nearest ones of the first."""
+    (_, first), (_, second) = slices
+    return np.linalg.norm(second[:, None] - first[None], axis=2).min(axis=1).mean()
+
+
+def test_a_wrong_mount_shows_two_walls_where_the_right_one_shows_one(dance, tmp_path):
+    recorded = store(tmp_path, dance, dance.rig, None)
+    walk = RecordedWalk(
+        recorded.frames,
+        load_trajectory(recorded.odometry / "trajectory.npz"),
+        np.zeros(len(recorded.frames), bool),
+    )
+    wrong = mounted(dance.rig, 1, shift_m=(0.3, -0.2, 0.0))
+
+    right = slice_points(walk, dance.rig, thickness_m=0.2)
+    off = slice_points(walk, wrong, thickness_m=0.2)
+
+    assert [name for name, _ in right] == [sensor.name for sensor in dance.rig.sensors]
+    assert all(200 < len(p) <= 12_000 for _, p in right)
+    assert distance_m(off) > 2.0 * distance_m(right)
+
+
+def test_the_page_has_parameters_slices_and_escaped_texts(tmp_path):
+    row = ParameterFigures(
+        sensor="<b>",
+        quantity="clock",
+        axis="",
+        unit="s",
+        change=0.005,
+        sd=0.0001,
+        status="off",
+    )
+    points = (("one", np.zeros((9, 2))), ("two", np.ones((9, 2))))
+    page = CalibrationPage(
+        title="rig <1>",
+        method="joint",
+        outcome="written",
+        figures=CalibrationFigures(parameters=(row,)),
+        slices=(RigSlice("rig file", points), RigSlice("calibrated", points)),
+    )
+
+    write_calibration_page(tmp_path / "page.html", page)
+
+    text = (tmp_path / "page.html").read_text()
+    assert "rig &lt;1&gt;" in text and "rig <1>" not in text
+    assert "+5.000 ± 0.100 ms" in text
+    assert "&lt;b&gt; clock" in text and "<b> clock" not in text
+    assert all(f'data-name="{name}"' in text for name in ("rig-s", "slice-rig file"))
+    assert not any(tag in text for tag in ("<script", "<link", "<iframe", 'src="http'))
