@@ -24,6 +24,8 @@ _MAX_KNOTS = 300
 """More nodes than this are joined: the work grows with the third power of their number."""
 _UNKNOWN_STEP = (0.3, 5.0)
 """Largest standard deviation of an odometry edge: turn [rad], shift [m]."""
+_TILT_RAD = 0.005
+"""Standard deviation of the tilt of a leveled map [rad]."""
 _POINT_M = 0.01
 """Standard deviation of a control point [m]."""
 _NEARLY = 1.2
@@ -149,7 +151,9 @@ def pose_uncertainty(
     knots = len(chain.t_ns)
     information = _odometry_information(chain)
     _add_edges(information, graph.relations, graph, chain, model=model)
-    first = np.eye(6) * 1e9 if positions is None else np.diag(np.repeat([1e-2, 1e-6], 3))
+    # On the earth only the tilt is known beforehand, by leveling; else the first pose is exact.
+    loose = np.diag([_TILT_RAD**-2.0, _TILT_RAD**-2.0, 1e-2, 1e-6, 1e-6, 1e-6])
+    first = np.eye(6) * 1e9 if positions is None else loose
     information[:6, :6] += first
     if positions is not None:
         _add_positions(information, positions, graph, chain, model=model)
