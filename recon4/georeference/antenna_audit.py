@@ -84,13 +84,13 @@ def audit_antenna(
         What is to be added to the rig file's values, with standard deviations; None = too few
         fixes.
     """
-    rows = _beside(trajectory, gnss, rig, origin, clock_s=0.0)
+    rows = _beside(trajectory, gnss, rig, origin=origin, clock_s=0.0)
     if rows is None:
         return None
     x, cov = _solve(rows)
     clock_s = float(x[3])
     for _ in range(_RELINEARIZED):
-        shifted = _beside(trajectory, gnss, rig, origin, clock_s=clock_s)
+        shifted = _beside(trajectory, gnss, rig, origin=origin, clock_s=clock_s)
         if shifted is None:
             break
         rows = shifted
@@ -150,8 +150,8 @@ def _beside(
     trajectory: Trajectory,
     gnss: GnssSamples,
     rig: Rig,
-    origin: GeodeticOrigin,
     *,
+    origin: GeodeticOrigin,
     clock_s: float,
 ) -> FixRows | None:
     t_ns = gnss.t_ns + round(1e9 * clock_s)

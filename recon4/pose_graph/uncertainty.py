@@ -16,7 +16,7 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, skew
-from recon4.model.pose_graph import EdgeKind, PoseGraph, Relations, Rows
+from recon4.model.pose_graph import EdgeKind, PoseGraph, Rows
 from recon4.model.trajectory import Times
 from recon4.pose_graph.solve import PositionPriors
 
@@ -150,13 +150,13 @@ def pose_uncertainty(
     chain = _chain(graph, model)
     knots = len(chain.t_ns)
     information = _odometry_information(chain)
-    _add_edges(information, graph.relations, graph, chain, model=model)
+    _add_edges(information, graph, chain, model=model)
     # On the earth only the tilt is known beforehand, by leveling; else the first pose is exact.
     loose = np.diag([_TILT_RAD**-2.0, _TILT_RAD**-2.0, 1e-2, 1e-6, 1e-6, 1e-6])
     first = np.eye(6) * 1e9 if positions is None else loose
     information[:6, :6] += first
     if positions is not None:
-        _add_positions(information, positions, graph, chain, model=model)
+        _add_positions(information, positions, graph=graph, chain=chain)
     every = cho_solve(cho_factor(information), np.eye(6 * knots)).reshape(knots, 6, knots, 6)
     own = np.arange(knots)
     alone = _alone(chain, model, on_earth=positions is not None)
@@ -282,10 +282,9 @@ def _odometry_information(chain: _Chain) -> Array:
     return np.asarray(flat.T @ flat)
 
 
-def _add_edges(
-    information: Array, of: Relations, graph: PoseGraph, chain: _Chain, *, model: ErrorModel
-) -> None:
+def _add_edges(information: Array, graph: PoseGraph, chain: _Chain, *, model: ErrorModel) -> None:
     """Add what registered edges measure, in place."""
+    of = graph.relations
     i, j = chain.knot_of[of.i], chain.knot_of[of.j]
     used = np.flatnonzero(of.in_graph & (of.j > of.i + 1) & (i != j))
     if not len(used):
@@ -307,10 +306,9 @@ def _add_edges(
 def _add_positions(
     information: Array,
     positions: PositionPriors,
+    *,
     graph: PoseGraph,
     chain: _Chain,
-    *,
-    model: ErrorModel,
 ) -> None:
     """Add positions of the antenna, in place."""
     arm = np.einsum("nij,nj->ni", graph.T_map_body.R[positions.node], positions.p_body)

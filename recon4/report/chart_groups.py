@@ -73,7 +73,9 @@ def trajectory_figures(
     if not shown:
         svg = plan_svg(None, ABOVE, frame_around(final.T_a_b.t, ABOVE), overlay=overlay)
         out.append(ChartFigure(Markup(svg), "Trajectory from above.", tuple(legend)))
-    return out + _framed(charts.walk_charts(final, results.steps, drift, results.uncertainty))
+    return out + _framed(
+        charts.walk_charts(final, results.steps, drift, uncertainty=results.uncertainty)
+    )
 
 
 def edge_figures(results: Results, rasters: list[Raster]) -> list[ChartFigure]:

@@ -27,6 +27,7 @@ def walk_charts(
     final: Trajectory,
     steps: dict[str, NDArray[Any]],
     drift: DriftClosed | None,
+    *,
     uncertainty: PoseUncertainty | None = None,
 ) -> Charts:
     """Drift, uncertainty, height and tracking over time."""
