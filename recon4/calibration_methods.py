@@ -46,6 +46,19 @@ class CalibratedRig:
     """Of the method joint."""
 
 
+@dataclass(frozen=True, slots=True)
+class _Task:
+    """What a method is given."""
+
+    sources: Sources
+    """The recording and its rig."""
+    folder: Path
+    """Project folder for multiframes and odometry."""
+    sensors: str
+    """Names of the sensors to calibrate; empty = all."""
+    progress: Progress
+
+
 def check_method(method: str) -> None:
     """Check the name of a method.
 
@@ -74,10 +87,12 @@ def calibrate_by(
         Recon4Error: Whatever stops a stage.
     """
     check_method(method)
-    return _METHODS[method](sources, folder, sensors, progress)
+    return _METHODS[method](_Task(sources, folder, sensors, progress))
 
 
-def page_of(method: str, found: CalibratedRig, sources: Sources, folder: Path) -> CalibrationPage:
+def page_of(
+    method: str, found: CalibratedRig, sources: Sources, *, folder: Path
+) -> CalibrationPage:
     """The page about a result, with a slice before and after if there is a recording.
 
     Args:
@@ -106,17 +121,19 @@ def page_of(method: str, found: CalibratedRig, sources: Sources, folder: Path) -
     )
 
 
-def _joint(sources: Sources, folder: Path, sensors: str, progress: Progress) -> CalibratedRig:
-    chosen = _settings(f"calibration.sensors={sensors}", "calibration.mode=auto")
-    figures, rig = calibrate_recording(sources, folder, settings=chosen, progress=progress)
+def _joint(task: _Task) -> CalibratedRig:
+    chosen = _settings(f"calibration.sensors={task.sensors}", "calibration.mode=auto")
+    figures, rig = calibrate_recording(
+        task.sources, task.folder, settings=chosen, progress=task.progress
+    )
     lines = (*_table(figures.parameters), *figures.warnings)
     if rig is not None:
         rig = replace(rig, calibration=_note("joint", figures))
     return CalibratedRig(rig, figures.outcome, lines, figures)
 
 
-def _maps(sources: Sources, folder: Path, sensors: str, progress: Progress) -> CalibratedRig:
-    walk, chosen = _walk(sources, folder, sensors, progress)
+def _maps(task: _Task) -> CalibratedRig:
+    walk, chosen = _walk(task)
     rig = walk.frames.rig
     reference = _reference(rig, chosen)
     parameters = calibrated_parameters(
@@ -145,8 +162,8 @@ def _maps(sources: Sources, folder: Path, sensors: str, progress: Progress) -> C
     return CalibratedRig(rig, "calibrated by maps", (*_changes(parameters.listed, changed), *lines))
 
 
-def _entropy(sources: Sources, folder: Path, sensors: str, progress: Progress) -> CalibratedRig:
-    walk, chosen = _walk(sources, folder, sensors, progress)
+def _entropy(task: _Task) -> CalibratedRig:
+    walk, chosen = _walk(task)
     rig, settings = walk.frames.rig, EntropySettings()
     parameters = calibrated_parameters(
         rig, reference=_reference(rig, chosen), with_imu=False, settings=chosen.calibration
@@ -154,21 +171,21 @@ def _entropy(sources: Sources, folder: Path, sensors: str, progress: Progress) -
     windows = walk.windows(chosen.calibration.audit_windows, chosen.calibration.audit_window_s)
     if not windows or not len(parameters):
         raise CalibrationError("entropy: expected two LiDARs and some seconds of walk")
-    progress.start("calibration", settings.evaluations, "evaluations")
+    task.progress.start("calibration", settings.evaluations, "evaluations")
     found = calibrate_by_entropy(
-        windows, rig, parameters, settings=settings, progress=progress.advance
+        windows, rig, parameters, settings=settings, progress=task.progress.advance
     )
     lines = _changes(parameters.listed, found.change)
     cost = f"cost {found.costs[0]:.4f} -> {found.costs[-1]:.4f} in {len(found.costs)} evaluations"
     return CalibratedRig(found.rig, "calibrated by entropy", (*lines, cost))
 
 
-def _gravity(sources: Sources, folder: Path, sensors: str, progress: Progress) -> CalibratedRig:
-    assert sources.rig is not None
-    if sources.recordings[0].suffix == ".csv":
-        rig, pairs = sources.rig, read_inclinations(sources.recordings[0])
+def _gravity(task: _Task) -> CalibratedRig:
+    assert task.sources.rig is not None
+    if task.sources.recordings[0].suffix == ".csv":
+        rig, pairs = task.sources.rig, read_inclinations(task.sources.recordings[0])
     else:
-        walk, _ = _walk(sources, folder, sensors, progress)
+        walk, _ = _walk(task)
         rig, pairs = walk.frames.rig, find_inclinations(walk.frames, walk.frames.rig)
     if len(pairs) < 2:
         raise CalibrationError(
@@ -186,11 +203,11 @@ def _gravity(sources: Sources, folder: Path, sensors: str, progress: Progress) -
     return CalibratedRig(turned, "calibrated by gravity", tuple(lines))
 
 
-def _pairs(sources: Sources, folder: Path, sensors: str, progress: Progress) -> CalibratedRig:
-    assert sources.rig is not None
-    rig, pairs = sources.rig, read_pose_pairs(sources.recordings[0])
+def _pairs(task: _Task) -> CalibratedRig:
+    assert task.sources.rig is not None
+    rig, pairs = task.sources.rig, read_pose_pairs(task.sources.recordings[0])
     names = {sensor.name: row for row, sensor in enumerate(rig.sensors)}
-    name = sensors or next(iter(names))
+    name = task.sensors or next(iter(names))
     if name not in names:
         raise ConfigError(f"expected a sensor of the rig ({', '.join(names)}), got {name!r:.80}")
     found = average_pairs(pairs)
@@ -206,7 +223,7 @@ def _pairs(sources: Sources, folder: Path, sensors: str, progress: Progress) -> 
     return CalibratedRig(mounted, f"mount of {name!r} from {len(lines)} pairs of poses", lines)
 
 
-_METHODS: dict[str, Callable[[Sources, Path, str, Progress], CalibratedRig]] = {
+_METHODS: dict[str, Callable[[_Task], CalibratedRig]] = {
     "joint": _joint,
     "maps": _maps,
     "gravity": _gravity,
@@ -219,13 +236,11 @@ def _settings(*assignments: str) -> Settings:
     return override(preset("indoor"), [text for text in assignments if not text.endswith("=")])
 
 
-def _walk(
-    sources: Sources, folder: Path, sensors: str, progress: Progress
-) -> tuple[RecordedWalk, Settings]:
+def _walk(task: _Task) -> tuple[RecordedWalk, Settings]:
     """The recording with its odometry; the stages run if they have not."""
-    chosen = _settings(f"calibration.sensors={sensors}", "calibration.mode=off")
-    calibrate_recording(sources, folder, settings=chosen, progress=progress)
-    return _recorded(folder), chosen
+    chosen = _settings(f"calibration.sensors={task.sensors}", "calibration.mode=off")
+    calibrate_recording(task.sources, task.folder, settings=chosen, progress=task.progress)
+    return _recorded(task.folder), chosen
 
 
 def _recorded(folder: Path) -> RecordedWalk:

@@ -20,10 +20,8 @@ from recon4.model.figures import (
     VerificationFigures,
 )
 from recon4.model.rig import Rig
-from recon4.progress import Progress
 from recon4.review.decisions import Standing
-from recon4.settings import Settings
-from recon4.store.stage import Stage
+from recon4.store.stage import Stage, StageContext
 
 _MATCHING = (
     "segments", "overlap", "registration", "planes", "odometry", "graph", "recognition",
@@ -31,10 +29,8 @@ _MATCHING = (
 
 
 def _frames(
+    context: StageContext,
     *,
-    out: Path,
-    settings: Settings,
-    progress: Progress,
     recordings: tuple[Path, ...],
     rig: Rig | None,
     imu: Path | None,
@@ -44,8 +40,8 @@ def _frames(
     from recon4.recording.sources import Sources
 
     sources = Sources(recordings, rig, imu, gnss)
-    ingest(sources, out, settings=settings.ingest, progress=progress)
-    return frames_figures(out)
+    ingest(sources, context.out, settings=context.settings.ingest, progress=context.progress)
+    return frames_figures(context.out)
 
 
 def frames_figures(folder: Path) -> FrameFigures:
@@ -65,62 +61,56 @@ def frames_figures(folder: Path) -> FrameFigures:
 
 
 def _odometry(
-    *,
-    out: Path,
-    settings: Settings,
-    progress: Progress,
-    frames: Path,
-    calibration: Path | None = None,
+    context: StageContext, *, frames: Path, calibration: Path | None = None
 ) -> OdometryFigures:
     from recon4.georeference.gnss_aiding import make_gnss_aiding
     from recon4.registration.stage import run_odometry
     from recon4.store.frames import open_frames
 
     store = open_frames(frames, calibration)
-    aiding = make_gnss_aiding(store.gnss, store.rig, settings.odometry)
-    return run_odometry(store, out, settings=settings, progress=progress, aiding=aiding)
+    aiding = make_gnss_aiding(store.gnss, store.rig, context.settings.odometry)
+    return run_odometry(
+        store, context.out, settings=context.settings, progress=context.progress, aiding=aiding
+    )
 
 
-def _calibration(
-    *, out: Path, settings: Settings, progress: Progress, frames: Path, odometry: Path
-) -> CalibrationFigures:
+def _calibration(context: StageContext, *, frames: Path, odometry: Path) -> CalibrationFigures:
     from recon4.calibration.stage import run_calibration
     from recon4.store.frames import FrameStore
 
     store = FrameStore.open(frames)
-    return run_calibration(store, odometry, settings=settings, progress=progress).save(out)
+    return run_calibration(
+        store, odometry, settings=context.settings, progress=context.progress
+    ).save(context.out)
 
 
 def _graph(
-    *,
-    out: Path,
-    settings: Settings,
-    progress: Progress,
-    frames: Path,
-    odometry: Path,
-    calibration: Path | None = None,
+    context: StageContext, *, frames: Path, odometry: Path, calibration: Path | None = None
 ) -> GraphFigures:
     from recon4.pose_graph.search import build_graph
     from recon4.store.frames import open_frames
 
     store = open_frames(frames, calibration)
-    return build_graph(store, odometry, out, settings=settings, progress=progress)
+    return build_graph(
+        store, odometry, context.out, settings=context.settings, progress=context.progress
+    )
 
 
-def _verification(
-    *, out: Path, settings: Settings, progress: Progress, graph: Path
-) -> VerificationFigures:
+def _verification(context: StageContext, *, graph: Path) -> VerificationFigures:
     from recon4.pose_graph.files import load_graph, save_graph
     from recon4.pose_graph.verification import verify
     from recon4.store.atomic import write_json
 
-    if settings.graph.mode in ("10", "overlap"):  # V Table 3.2: these stop before verification
-        save_graph(out, load_graph(graph))
+    # V Table 3.2: these modes stop before verification.
+    if context.settings.graph.mode in ("10", "overlap"):
+        save_graph(context.out, load_graph(graph))
         return VerificationFigures()
-    found = verify(load_graph(graph), settings=settings.verification, progress=progress)
-    save_graph(out, found.graph)
+    found = verify(
+        load_graph(graph), settings=context.settings.verification, progress=context.progress
+    )
+    save_graph(context.out, found.graph)
     record = found.to_json()
-    write_json(out / "verification.json", record)
+    write_json(context.out / "verification.json", record)
     return VerificationFigures(
         edges=found.graph.verdict_counts(),
         chi2_before=found.chi2_before,
@@ -129,23 +119,18 @@ def _verification(
 
 
 def _review(
-    *,
-    out: Path,
-    settings: Settings,
-    progress: Progress,
-    graph: Path,
-    decisions: tuple[Standing, ...],
+    context: StageContext, *, graph: Path, decisions: tuple[Standing, ...]
 ) -> ReviewFigures:
     from recon4.review.solve import run_review
 
-    return run_review(graph, decisions, out, settings=settings, progress=progress)
+    return run_review(
+        graph, decisions, context.out, settings=context.settings, progress=context.progress
+    )
 
 
 def _refine(
+    context: StageContext,
     *,
-    out: Path,
-    settings: Settings,
-    progress: Progress,
     frames: Path,
     odometry: Path,
     graph: Path,
@@ -156,15 +141,15 @@ def _refine(
     from recon4.store.frames import open_frames
 
     store = open_frames(frames, calibration)
-    found = refine(store, odometry, load_graph(graph), settings=settings, progress=progress)
-    return found.save(out)
+    found = refine(
+        store, odometry, load_graph(graph), settings=context.settings, progress=context.progress
+    )
+    return found.save(context.out)
 
 
 def _level(
+    context: StageContext,
     *,
-    out: Path,
-    settings: Settings,
-    progress: Progress,
     frames: Path,
     refined: Path,
     graph: Path,
@@ -179,20 +164,14 @@ def _level(
         open_frames(frames, calibration),
         load_trajectory(refined / "trajectory.npz"),
         load_graph(graph),
-        settings=settings,
-        progress=progress,
+        settings=context.settings,
+        progress=context.progress,
     )
-    return leveled.save(out)
+    return leveled.save(context.out)
 
 
 def _intensity(
-    *,
-    out: Path,
-    settings: Settings,
-    progress: Progress,
-    frames: Path,
-    level: Path,
-    calibration: Path | None = None,
+    context: StageContext, *, frames: Path, level: Path, calibration: Path | None = None
 ) -> None:
     from recon4.intensity.normalize import write_intensity
     from recon4.store.arrays import load_trajectory
@@ -201,17 +180,15 @@ def _intensity(
     write_intensity(
         open_frames(frames, calibration),
         load_trajectory(level / "trajectory.npz"),
-        out,
-        settings=settings.intensity,
-        progress=progress,
+        context.out,
+        settings=context.settings.intensity,
+        progress=context.progress,
     )
 
 
 def _map(
+    context: StageContext,
     *,
-    out: Path,
-    settings: Settings,
-    progress: Progress,
     frames: Path,
     level: Path,
     intensity: Path,
@@ -229,17 +206,17 @@ def _map(
         open_frames(frames, calibration),
         load_trajectory(level / "trajectory.npz"),
         IntensityTable.load(intensity / "table.npz"),
-        out,
-        settings=settings.map,
-        progress=progress,
+        context.out,
+        settings=context.settings.map,
+        progress=context.progress,
     )
     crs = read_crs(level)
     export_laz(
-        out,
-        out / "map.laz",
+        context.out,
+        context.out / "map.laz",
         crs=crs.wkt if crs else None,
         to_crs=crs.to_crs if crs else None,
-        progress=progress,
+        progress=context.progress,
     )
     low, high = (tuple(corner.tolist()) for corner in tiles.bounds_m)
     return MapFigures(
@@ -254,35 +231,37 @@ def _map(
     )
 
 
-def _line_odometry(
-    *, out: Path, settings: Settings, progress: Progress, frames: Path
-) -> OdometryFigures:
+def _line_odometry(context: StageContext, *, frames: Path) -> OdometryFigures:
     from recon4.profiler.stage_odometry import run_line_odometry
     from recon4.store.frames import FrameStore
 
-    return run_line_odometry(FrameStore.open(frames), out, settings=settings, progress=progress)
+    return run_line_odometry(
+        FrameStore.open(frames), context.out, settings=context.settings, progress=context.progress
+    )
 
 
-def _turn_graph(
-    *, out: Path, settings: Settings, progress: Progress, frames: Path, odometry: Path
-) -> GraphFigures:
+def _turn_graph(context: StageContext, *, frames: Path, odometry: Path) -> GraphFigures:
     from recon4.profiler.turn_graph import build_turn_graph
     from recon4.store.frames import FrameStore
 
     store = FrameStore.open(frames)
-    return build_turn_graph(store, odometry, out, settings=settings, progress=progress)
+    return build_turn_graph(
+        store, odometry, context.out, settings=context.settings, progress=context.progress
+    )
 
 
 def _refine_lines(
-    *, out: Path, settings: Settings, progress: Progress, frames: Path, odometry: Path, graph: Path
+    context: StageContext, *, frames: Path, odometry: Path, graph: Path
 ) -> RefineFigures:
     from recon4.pose_graph.files import load_graph
     from recon4.profiler.line_refine import refine_lines
     from recon4.store.frames import FrameStore
 
     store = FrameStore.open(frames)
-    found = refine_lines(store, odometry, load_graph(graph), settings=settings, progress=progress)
-    return found.save(out)
+    found = refine_lines(
+        store, odometry, load_graph(graph), settings=context.settings, progress=context.progress
+    )
+    return found.save(context.out)
 
 
 FRAMES = Stage("frames", 6, ("ingest",), _frames, FrameFigures)

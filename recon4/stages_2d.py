@@ -5,48 +5,34 @@ from __future__ import annotations
 from pathlib import Path
 
 from recon4.model.figures import GraphFigures, Map2dFigures, Odometry2dFigures, Scan2dFigures
-from recon4.progress import Progress
-from recon4.settings import Settings
-from recon4.store.stage import Stage
+from recon4.store.stage import Stage, StageContext
 
 
-def _scans(
-    *, out: Path, settings: Settings, progress: Progress, recordings: tuple[Path, ...]
-) -> Scan2dFigures:
+def _scans(context: StageContext, *, recordings: tuple[Path, ...]) -> Scan2dFigures:
     from recon4.slam2d.stage import import_scans
 
-    return import_scans(recordings, out, progress=progress)
+    return import_scans(recordings, context.out, progress=context.progress)
 
 
-def _odometry(
-    *, out: Path, settings: Settings, progress: Progress, scans: Path
-) -> Odometry2dFigures:
+def _odometry(context: StageContext, *, scans: Path) -> Odometry2dFigures:
     from recon4.slam2d.stage import run_odometry
 
-    return run_odometry(scans, out, settings=settings, progress=progress)
+    return run_odometry(scans, context.out, settings=context.settings, progress=context.progress)
 
 
-def _graph(
-    *, out: Path, settings: Settings, progress: Progress, scans: Path, odometry: Path
-) -> GraphFigures:
+def _graph(context: StageContext, *, scans: Path, odometry: Path) -> GraphFigures:
     from recon4.slam2d.stage import build_graph
 
-    return build_graph(scans, odometry, out, settings=settings, progress=progress)
+    return build_graph(
+        scans, odometry, context.out, settings=context.settings, progress=context.progress
+    )
 
 
-def _map(
-    *,
-    out: Path,
-    settings: Settings,
-    progress: Progress,
-    scans: Path,
-    odometry: Path,
-    graph: Path,
-) -> Map2dFigures:
+def _map(context: StageContext, *, scans: Path, odometry: Path, graph: Path) -> Map2dFigures:
     from recon4.slam2d.stage import build_map
 
     artifacts = {"scans": scans, "odometry": odometry, "graph": graph}
-    return build_map(artifacts, out, settings=settings, progress=progress)
+    return build_map(artifacts, context.out, settings=context.settings, progress=context.progress)
 
 
 SCANS_2D = Stage("scans_2d", 1, (), _scans, Scan2dFigures)

@@ -15,7 +15,7 @@ from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
 from recon4.model.rig import Rig, Sensor
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import save_graph
-from recon4.progress import Progress, Silent
+from recon4.progress import Silent
 from recon4.report.approval import draft_block
 from recon4.review.approval import approve
 from recon4.review.approved import Approval
@@ -26,7 +26,7 @@ from recon4.store.frames import FrameWriter
 from recon4.store.hashing import hash_file
 from recon4.store.project import Project, read_artifacts
 from recon4.store.seal import changing
-from recon4.store.stage import Input, Stage, StageRunner
+from recon4.store.stage import Input, Stage, StageContext, StageRunner
 
 ROOM_M = (16.0, 10.0, 3.0)
 TILE_M = 10.0
@@ -142,7 +142,7 @@ def room_points(rng: np.random.Generator, count: int) -> np.ndarray:
     return p
 
 
-def _frames(*, out: Path, settings: Settings, progress: Progress) -> None:
+def _frames(context: StageContext) -> None:
     rng, walk = np.random.default_rng(8), loop_walk()
     sensors = tuple(
         Sensor(
@@ -152,7 +152,7 @@ def _frames(*, out: Path, settings: Settings, progress: Progress) -> None:
     )
     nothing = {"imu_time_offset_s": 0.0, "p_body_antenna": np.zeros(3), "gnss_time_offset_s": 0.0}
     rig = Rig(name="4RECON", sensors=sensors, T_body_imu=SE3.identity(), **nothing)
-    with FrameWriter(out, rig) as writer:
+    with FrameWriter(context.out, rig) as writer:
         for k, t_ns in enumerate(walk.t_ns[:-1].tolist()):
             writer.append(_multiframe(k, t_ns, walk.T_a_b[k], rig, rng))
 
@@ -177,28 +177,31 @@ def _multiframe(
     )
 
 
-def _odometry(*, out: Path, settings: Settings, progress: Progress, walk: Trajectory) -> None:
+def _odometry(context: StageContext, *, walk: Trajectory) -> None:
     drift = np.linspace(0.0, 1.0, len(walk))[:, None] * [0.4, -0.3, 0.1]
     save_trajectory(
-        out / "trajectory.npz", Trajectory(walk.t_ns, SE3(walk.T_a_b.R, walk.T_a_b.t + drift))
+        context.out / "trajectory.npz",
+        Trajectory(walk.t_ns, SE3(walk.T_a_b.R, walk.T_a_b.t + drift)),
     )
 
 
-def _verification(*, out: Path, settings: Settings, progress: Progress, walk: Trajectory) -> None:
-    save_graph(out, verified_graph(walk))
+def _verification(context: StageContext, *, walk: Trajectory) -> None:
+    save_graph(context.out, verified_graph(walk))
 
 
-def _level(*, out: Path, settings: Settings, progress: Progress, walk: Trajectory) -> None:
-    save_trajectory(out / "trajectory.npz", walk)
-    save_graph(out, verified_graph(walk))
+def _level(context: StageContext, *, walk: Trajectory) -> None:
+    save_trajectory(context.out / "trajectory.npz", walk)
+    save_graph(context.out, verified_graph(walk))
     local = {"origin": None, "reason": "no positions"}
-    write_json(out / "georeference.json", {"levelling": {}, "georeference": local, "crs": {}})
+    write_json(
+        context.out / "georeference.json", {"levelling": {}, "georeference": local, "crs": {}}
+    )
 
 
-def _map(*, out: Path, settings: Settings, progress: Progress, points: int) -> None:
+def _map(context: StageContext, *, points: int) -> None:
     rng = np.random.default_rng(7)
     p = room_points(rng, points)
-    with TileWriter(out, list(FIELDS), tile_m=TILE_M) as writer:
+    with TileWriter(context.out, list(FIELDS), tile_m=TILE_M) as writer:
         writer.facts = {"voxel_m": 0.01, "crs": None}
         ijk = np.floor(p / TILE_M).astype(np.int64)
         for key in np.unique(ijk, axis=0):

@@ -31,7 +31,7 @@ from recon4.store.atomic import write_json
 from recon4.store.frames import FrameStore, FrameWriter
 from recon4.store.project import SUMMARY, Project, read_description
 from recon4.store.seal import changing
-from recon4.store.stage import Input, Stage, StageRunner
+from recon4.store.stage import Input, Stage, StageContext, StageRunner
 from tests.room_walks import FRAME_NS, T0_NS
 from tests.scanned_room import RIG, scan
 
@@ -91,26 +91,24 @@ def judge(root: Path, **verdict: object) -> None:
         write_json(path, record)
 
 
-def _frames(*, out: Path, settings: Settings, progress: Progress, walk: None) -> FrameFigures:
-    with FrameWriter(out, RIG) as writer:
+def _frames(context: StageContext, *, walk: None) -> FrameFigures:
+    with FrameWriter(context.out, RIG) as writer:
         for k in range(NODES):
             writer.append(scan(rounds, T0_NS + k * FRAME_NS, frame_id=k, columns=240))
-    points = FrameStore.open(out).points
+    points = FrameStore.open(context.out).points
     return FrameFigures(multiframes=NODES, points=points, rig=RIG.name, imu=False, gnss=False)
 
 
-def _odometry(
-    *, out: Path, settings: Settings, progress: Progress, frames: Path
-) -> OdometryFigures:
+def _odometry(context: StageContext, *, frames: Path) -> OdometryFigures:
     store = FrameStore.open(frames)
     t_s = np.arange(-0.1, NODES * 0.1 + 0.15, 0.01)
     t_ns = T0_NS + np.rint(t_s * 1e9).astype(np.int64)
-    save_trajectory(out / "trajectory.npz", Trajectory(t_ns, drifting(t_s)))
+    save_trajectory(context.out / "trajectory.npz", Trajectory(t_ns, drifting(t_s)))
     mid = store.t_mid_ns
     T = drifting((mid - T0_NS) * 1e-9)
     nothing, one = np.zeros(NODES), np.ones(NODES)
     np.savez(
-        out / "steps.npz",
+        context.out / "steps.npz",
         frame_id=np.arange(NODES), t_mid_ns=mid, quat_xyzw=T.quat_xyzw(), t_m=T.t,
         error_m=0.01 * one, match_ratio=one, rounds=one, converged=one > 0, degeneracy=0.1 * one,
         prediction_offset_m=nothing, lost=nothing > 0,
@@ -119,7 +117,7 @@ def _odometry(
     return OdometryFigures(multiframes=NODES, lost=0)
 
 
-def _graph(*, out: Path, settings: Settings, progress: Progress, frames: Path) -> GraphFigures:
+def _graph(context: StageContext, *, frames: Path) -> GraphFigures:
     mid = FrameStore.open(frames).t_mid_ns
     t_s = (mid - T0_NS) * 1e-9
     true, odom = rounds(t_s), drifting(t_s)
@@ -131,7 +129,7 @@ def _graph(*, out: Path, settings: Settings, progress: Progress, frames: Path) -
     edges += [_edge(true, i, j, EdgeKind.LOOP, rng, WRONG.get((i, j))) for i, j in pairs]
     edges += [_apart(odom, k, k + 25) for k in range(0, 40, 8)]
     frame_ids = np.arange(NODES, dtype=np.int64)
-    save_graph(out, PoseGraph(frame_ids, mid, odom, tuple(edges)))
+    save_graph(context.out, PoseGraph(frame_ids, mid, odom, tuple(edges)))
     return GraphFigures(nodes=NODES, edges=len(edges), accepted=len(edges))
 
 

@@ -18,7 +18,7 @@ from recon4.progress import Silent
 from recon4.settings import Settings
 from recon4.store.frames import FrameWriter
 from recon4.store.project import Project
-from recon4.store.stage import Stage, StageRunner
+from recon4.store.stage import Stage, StageContext, StageRunner
 from tests.project_builder import build_project
 
 TOML = """\
@@ -39,8 +39,8 @@ rpy_deg = [10.0, 90.0, 0.0]
 """
 
 
-def _frames(*, out: Path, rig: Rig, **_: Any) -> None:
-    with FrameWriter(out, rig):
+def _frames(context: StageContext, *, rig: Rig, **_: Any) -> None:
+    with FrameWriter(context.out, rig):
         pass
 
 
@@ -60,7 +60,7 @@ def _parameters() -> tuple[ParameterFigures, ...]:
     return tuple(ParameterFigures(**dict(zip(names, row, strict=True))) for row in rows)
 
 
-def _calibration(*, out: Path, found: Rig | None, **_: Any) -> None:
+def _calibration(context: StageContext, *, found: Rig | None, **_: Any) -> None:
     outcome = (
         "calibrated: windows that were not used confirm it"
         if found
@@ -76,7 +76,7 @@ def _calibration(*, out: Path, found: Rig | None, **_: Any) -> None:
     before = Agreement(rms_m=0.0183, offset_m=0.0442, imu_rms=1.1)
     after = Agreement(rms_m=0.0061, offset_m=0.0012, imu_rms=float("nan"))
     pair = {"before": before, "after": after} if found else {}
-    CalibrationResult(figures=figures, rig=found, **pair).save(out)
+    CalibrationResult(figures=figures, rig=found, **pair).save(context.out)
 
 
 def calibrated_project(root: Path, *, rig: Rig, found: Rig | None) -> None:

@@ -115,7 +115,9 @@ async def read_choices(server: Server, caller: CalledBy) -> CaptureChoices:
 
 
 @router.post("", status_code=201, dependencies=CAPTURE, summary="Start a capture")
-async def start_capture(new: NewCapture, server: Server, who: Who, caller: CalledBy) -> CaptureView:
+async def start_capture(
+    new: NewCapture, server: Server, who: Who, *, caller: CalledBy
+) -> CaptureView:
     """Open the sensors' ports and record; the project exists from the start."""
     rig = new.rig
     if Path(new.rig).suffix:

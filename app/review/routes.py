@@ -177,7 +177,7 @@ def fit_picked(picked: PointPairs) -> list[float]:
 
 
 @router.post("/decisions", status_code=201, dependencies=REVIEW, summary="Decide")
-def decide(project_id: str, new: NewDecision, server: Server, who: Who) -> ReviewView:
+def decide(project_id: str, new: NewDecision, server: Server, *, who: Who) -> ReviewView:
     """Append a decision to the journal; it is on disk before the response is sent."""
     root, pair = server.projects.folder(project_id), (new.frame_i, new.frame_j)
     measured = new.kind in ("replace", "add")
@@ -194,13 +194,13 @@ def decide(project_id: str, new: NewDecision, server: Server, who: Who) -> Revie
 
 
 @router.post("/undo", status_code=201, dependencies=REVIEW, summary="Undo")
-def undo(project_id: str, step: Step, server: Server, who: Who) -> ReviewView:
+def undo(project_id: str, step: Step, server: Server, *, who: Who) -> ReviewView:
     """Undo the last decision, by any reviewer."""
     return _step(DecisionKind.UNDO, project_id, step, server=server, who=who)
 
 
 @router.post("/redo", status_code=201, dependencies=REVIEW, summary="Redo")
-def redo(project_id: str, step: Step, server: Server, who: Who) -> ReviewView:
+def redo(project_id: str, step: Step, server: Server, *, who: Who) -> ReviewView:
     """Redo the decision that was undone last."""
     return _step(DecisionKind.REDO, project_id, step, server=server, who=who)
 

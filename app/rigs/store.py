@@ -82,7 +82,7 @@ class RigStore:
         """
         with self._adding:
             self._refuse_name(rig_id)
-            return self._add(rig_id, 1, rig, about)
+            return self._add(rig_id, 1, rig, about=about)
 
     def add(self, rig_id: str, rig: CheckedRig, *, after: int | None, **about: str) -> RigVersion:
         """Store the next version of a rig.
@@ -106,7 +106,7 @@ class RigStore:
                 )
             if newest >= MAX_VERSIONS:
                 raise Conflict(f"rig {rig_id} has {MAX_VERSIONS} versions: start a new rig")
-            return self._add(rig_id, newest + 1, rig, about)
+            return self._add(rig_id, newest + 1, rig, about=about)
 
     def _refuse_name(self, rig_id: str) -> None:
         if rig_id in rig_presets():
@@ -118,7 +118,9 @@ class RigStore:
         if len(self.ids()) >= MAX_RIGS:
             raise Conflict(f"there are {MAX_RIGS} rigs already")
 
-    def _add(self, rig_id: str, number: int, rig: CheckedRig, about: dict[str, str]) -> RigVersion:
+    def _add(
+        self, rig_id: str, number: int, rig: CheckedRig, *, about: dict[str, str]
+    ) -> RigVersion:
         home = self._folder / rig_id
         make_folders(home)
         sweep(home)

@@ -39,7 +39,7 @@ from app.slices.model import (
     WindowSpec,
     Xyz,
 )
-from app.slices.store import Asking
+from app.slices.store import Asking, ReferenceFolder
 from recon4.errors import ConfigError
 from recon4.slices.compare import Comparison
 from recon4.slices.control_points import ControlPreview
@@ -69,7 +69,7 @@ def slices_page(project_id: str, server: Server) -> HTMLResponse:
 
 @router.get("", summary="Facts about the map")
 async def read_facts(
-    project_id: str, server: Server, caller: CalledBy, source: str = ""
+    project_id: str, server: Server, caller: CalledBy, *, source: str = ""
 ) -> SliceFacts:
     """Bounds, frame, fields, references and the other maps to compare with."""
     slices = server.slices
@@ -85,7 +85,7 @@ async def read_facts(
 
 @router.post("/image", summary="An image of a slice")
 async def slice_image(
-    project_id: str, ask: SliceImageRequest, server: Server, caller: CalledBy
+    project_id: str, ask: SliceImageRequest, server: Server, *, caller: CalledBy
 ) -> SliceImageView:
     """All points of the map in the window, at full resolution.
 
@@ -100,14 +100,20 @@ async def slice_image(
     asking = Asking(ask.page, ask.turn)
     return await caller.wait(
         slices.run_latest(
-            asking, terms, work.slice_image, artifacts["map"], reference, ask, evidence
+            asking,
+            terms,
+            work.slice_image,
+            artifacts["map"],
+            reference,
+            ask,
+            evidence=evidence,
         )
     )
 
 
 @router.get("/overview", response_class=FileResponse, summary="The map from above")
 async def overview(
-    project_id: str, server: Server, caller: CalledBy, source: str = ""
+    project_id: str, server: Server, caller: CalledBy, *, source: str = ""
 ) -> FileResponse:
     """A transparent PNG; its window is at ``/overview/window``."""
     image = await _overview(project_id, server, caller, source=source)
@@ -124,7 +130,7 @@ async def overview_window(
 
 
 @router.post("/pick", summary="The point of the map at a position on a slice")
-async def pick(project_id: str, ask: PickRequest, server: Server, caller: CalledBy) -> PickView:
+async def pick(project_id: str, ask: PickRequest, server: Server, *, caller: CalledBy) -> PickView:
     """Coordinates of the nearest full-resolution point, in the map and in its CRS."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, ask.source)
     terms = server.slices.terms(project_id, caller.name, ask.source)
@@ -134,7 +140,7 @@ async def pick(project_id: str, ask: PickRequest, server: Server, caller: Called
 
 @router.get("/doubles", summary="Double walls")
 async def doubles(
-    project_id: str, server: Server, caller: CalledBy, source: str = ""
+    project_id: str, server: Server, caller: CalledBy, *, source: str = ""
 ) -> DoubleReport:
     """Surfaces visited twice: double walls, then the others by ratio of separation and limit."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, source)
@@ -153,7 +159,7 @@ async def doubles(
 
 @router.post("/compare", summary="Compare slices with a reference")
 async def compare(
-    project_id: str, ask: CompareRequest, server: Server, caller: CalledBy
+    project_id: str, ask: CompareRequest, server: Server, *, caller: CalledBy
 ) -> Comparison:
     """Mean distance and ratios within 2 and 5 cm of every slice (V Table 3.2)."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, ask.source)
@@ -166,7 +172,7 @@ async def compare(
 
 @router.post("/references", status_code=201, dependencies=PROCESS, summary="Add a reference")
 async def add_reference(
-    project_id: str, add: AddReference, server: Server, caller: CalledBy
+    project_id: str, add: AddReference, server: Server, *, caller: CalledBy
 ) -> ListedReference:
     """A cloud or mesh on this computer (PLY, PCD, LAS, LAZ, E57, XYZ, CSV, OBJ, STL)."""
     path = await run_in_threadpool(server.projects.importable, add.path)
@@ -182,7 +188,13 @@ async def add_reference(
     )
     facts = await caller.wait(
         server.slices.write_reference(
-            project_id, out, terms, work.add_reference, str(path), REFERENCE, add.name, in_crs
+            ReferenceFolder(project_id, out),
+            terms,
+            work.add_reference,
+            str(path),
+            REFERENCE,
+            name=add.name,
+            artifacts=in_crs,
         )
     )
     return ListedReference.of(out.name, facts)
@@ -212,14 +224,13 @@ async def align(
     )
     return await caller.wait(
         server.slices.write_reference(
-            project_id,
-            Path(folder),
+            ReferenceFolder(project_id, Path(folder)),
             terms,
             work.align_reference,
             artifacts["map"],
             folder,
             ask.how,
-            pairs,
+            pairs=pairs,
         )
     )
 
@@ -263,7 +274,7 @@ async def export(
 
 @router.post("/control/preview", dependencies=PROCESS, summary="Preview a survey file")
 async def preview_control(
-    project_id: str, file: ControlFile, server: Server, caller: CalledBy
+    project_id: str, file: ControlFile, server: Server, *, caller: CalledBy
 ) -> ControlPreview:
     """Points found in a CSV file, and the question to answer before they are stored."""
     server.projects.folder(project_id)
@@ -302,7 +313,7 @@ async def control_report(project_id: str, server: Server, caller: CalledBy) -> C
 
 @router.get("/control/report.{ending}", summary="Residuals as a file")
 async def control_file(
-    project_id: str, ending: Literal["csv", "html"], server: Server, caller: CalledBy
+    project_id: str, ending: Literal["csv", "html"], server: Server, *, caller: CalledBy
 ) -> Response:
     """CSV, or a sheet to print and sign; both name the map and its approval."""
     slices = server.slices
@@ -322,7 +333,7 @@ async def control_file(
 
 
 @router.get("/control/surface", summary="The map's surface at a surveyed point")
-async def surface(project_id: str, point: str, server: Server, caller: CalledBy) -> SurfacePoint:
+async def surface(project_id: str, point: str, server: Server, *, caller: CalledBy) -> SurfacePoint:
     """Position of a surveyed point in the map, and its foot on the nearest surface."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     state = await run_in_threadpool(server.slices.control, project_id)

@@ -46,6 +46,14 @@ class Superseded(Conflict):
 
 
 @dataclass(frozen=True, slots=True)
+class ReferenceFolder:
+    """Where a reference of a project is, or is going to be."""
+
+    project_id: str
+    folder: Path
+
+
+@dataclass(frozen=True, slots=True)
 class Asking:
     """Position of a request among those of its page."""
 
@@ -201,17 +209,18 @@ class Slices:
 
     async def write_reference(
         self,
-        project_id: str,
-        folder: Path,
+        reference: ReferenceFolder,
         terms: Terms,
         function: Callable[..., T],
         *args: object,
+        **kwargs: object,
     ) -> T:
         """Run a function that writes a reference in a child process, and seal the files."""
-        root, names = self._projects.folder(project_id), (_name_of(folder),)
+        root = self._projects.folder(reference.project_id)
+        names = (_name_of(reference.folder),)
         await run_in_threadpool(begin_change, root, names)
         try:
-            return await self.run_background(terms, function, *args)
+            return await self.run_background(terms, function, *args, **kwargs)
         finally:
             await run_in_threadpool(end_change, root, names)
 
@@ -283,7 +292,12 @@ class Slices:
         return await self._pool.run_interactive(Lane.SLICE, terms, function, *args, **kwargs)
 
     async def run_latest(
-        self, asking: Asking, terms: Terms, function: Callable[..., T], *args: object
+        self,
+        asking: Asking,
+        terms: Terms,
+        function: Callable[..., T],
+        *args: object,
+        **kwargs: object,
     ) -> T:
         """Run interactive work; of several requests of a page only the latest is completed.
 
@@ -291,14 +305,14 @@ class Slices:
             Superseded: If the page sent a newer request.
         """
         if not asking.page:
-            return await self.run_interactive(terms, function, *args)
+            return await self.run_interactive(terms, function, *args, **kwargs)
         page = (terms.person, asking.page)
         before = self._newest.get(page)
         if before is not None and before.turn > asking.turn:
             raise Superseded("a newer image was requested")
         if before is not None:
             before.work.cancel()
-        work = asyncio.ensure_future(self.run_interactive(terms, function, *args))
+        work = asyncio.ensure_future(self.run_interactive(terms, function, *args, **kwargs))
         self._newest[page] = _Latest(asking.turn, work)
         self._newest.move_to_end(page)
         while len(self._newest) > MAX_PAGES:

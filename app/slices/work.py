@@ -133,7 +133,7 @@ def facts(
 
 
 def slice_image(
-    map_folder: str, reference: str, ask: SliceImageRequest, evidence: Evidence | None = None
+    map_folder: str, reference: str, ask: SliceImageRequest, *, evidence: Evidence | None = None
 ) -> SliceImageView:
     """Draw an image of a slice; of an approved map only checked tiles are drawn."""
     began = time.perf_counter()
@@ -228,7 +228,7 @@ def comparison_csv(map_folder: str, reference: str, ask: CompareRequest) -> str:
     return to_csv(compare(tiles, [spec.cut() for spec in ask.cuts] or usual_cuts(tiles), against))
 
 
-def add_reference(path: str, out: str, name: str, artifacts: Artifacts | None) -> ReferenceFacts:
+def add_reference(path: str, out: str, *, name: str, artifacts: Artifacts | None) -> ReferenceFacts:
     """Import a file of unknown origin; ``artifacts`` if it is in the map's CRS."""
     frame = map_frame(artifacts) if artifacts else None
     if frame is not None and frame.to_crs is None:
@@ -237,7 +237,7 @@ def add_reference(path: str, out: str, name: str, artifacts: Artifacts | None) -
 
 
 def align_reference(
-    map_folder: str, reference: str, how: str, pairs: tuple[list[Xyz], list[Xyz]]
+    map_folder: str, reference: str, how: str, *, pairs: tuple[list[Xyz], list[Xyz]]
 ) -> ReferenceFacts:
     """Align a reference with the map; its earlier alignment is replaced."""
     folder = Path(reference)

@@ -154,7 +154,7 @@ def _add_points(
     normal = surfaces.normal[plane]
     away = placed.odom[rows] - surfaces.center[plane]
     r: Array = np.sum(normal * away, axis=1)
-    columns, values = _derivatives(window, placed, rows, normal, parameters=parameters)
+    columns, values = _derivatives(window, placed, rows, normal=normal, parameters=parameters)
     weight = 1.0 / (_POINT_SD_M**2 * (1.0 + (r / kernel_m) ** 2))
     tangents = _tangents(surfaces.normal)[plane]
     plane_values = np.column_stack([np.einsum("nij,ni->nj", tangents, away), -np.ones(len(rows))])
@@ -177,8 +177,8 @@ def _derivatives(
     window: Window,
     placed: PlacedPoints,
     rows: NDArray[np.intp],
-    normal: Array,
     *,
+    normal: Array,
     parameters: Parameters,
 ) -> tuple[NDArray[np.int64], Array]:
     """Columns and derivatives of the distances of points from fixed planes, (M, 19) each."""
@@ -233,7 +233,7 @@ def _add_motion(
     diagonal[: 6 * knots] += np.tile(_KNOT_SD**-2.0, knots)
     diagonal[:6] += _FIXED
     diagonal[6 * knots : own] += _BIAS_SD**-2.0
-    found = imu_rows(state.window, rig, state.biases, settings)
+    found = imu_rows(state.window, rig, state.biases, settings=settings)
     if found is None:
         _add_chain(H, knots)
         return float("nan")

@@ -93,7 +93,7 @@ class ImuRows:
 
 
 def imu_rows(
-    window: Window, rig: Rig, biases: WindowBiases, settings: OdometrySettings
+    window: Window, rig: Rig, biases: WindowBiases, *, settings: OdometrySettings
 ) -> ImuRows | None:
     """Residuals of gyroscope and accelerometer in a window; None without an IMU.
 

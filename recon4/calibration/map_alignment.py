@@ -61,7 +61,7 @@ def align_maps(
         ]
         if all(maps):
             both = (maps[0][0], maps[1][0])
-            mount = _aligned(both, rig, (reference, row), settings)
+            mount = _aligned(both, rig, (reference, row), settings=settings)
             found += [mount] if mount is not None else []
     if not found:
         return None
@@ -78,7 +78,7 @@ def align_maps(
 
 
 def _aligned(
-    both: tuple[Window, Window], rig: Rig, rows: tuple[int, int], settings: Settings
+    both: tuple[Window, Window], rig: Rig, rows: tuple[int, int], *, settings: Settings
 ) -> SE3 | None:
     """Both maps begin at the same body pose, so what is between them is the mount's error."""
     target, source = (

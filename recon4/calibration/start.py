@@ -52,7 +52,7 @@ def find_start(walk: RecordedWalk, *, reference: int, settings: Settings) -> Sta
         return Start(rig, False, ())
     found = align_gyro(walk.trajectory, walk.frames.t_mid_ns, imu)
     if found is not None and (found.mirrored or found.explained < _MIN_EXPLAINED):
-        found = _align_alone(walk, imu, reference, settings) or found
+        found = _align_alone(walk, imu, reference, settings=settings) or found
     if found is not None and found.mirrored:
         text = "The turn rates of the IMU fit the LiDARs only with left-handed axes: an axis has "
         return Start(rig, False, (text + "the wrong sign.",))
@@ -68,7 +68,7 @@ def find_start(walk: RecordedWalk, *, reference: int, settings: Settings) -> Sta
 
 
 def _align_alone(
-    walk: RecordedWalk, imu: ImuSamples, reference: int, settings: Settings
+    walk: RecordedWalk, imu: ImuSamples, reference: int, *, settings: Settings
 ) -> GyroAlignment | None:
     """Alignment to a trajectory of the reference LiDAR alone, where all together contradict."""
     rows = walk.rows(1, _ALONE_S, with_lost=True)

@@ -64,7 +64,7 @@ def find_surfaces(
     sensors = int(sensor.max()) + 1 if len(sensor) else 1
     cube = _cube_rows(p, cube_m)
     listed, group = np.unique(cube * sensors + sensor, return_inverse=True)
-    groups = _fit(p, group, len(listed), max_sd_m)
+    groups = _fit(p, group, len(listed), max_sd_m=max_sd_m)
     cube_of_group = listed // sensors
     kept = _agreeing(groups, cube_of_group, gate_m)
     planes, plane_of_group = np.unique(cube_of_group[kept], return_inverse=True)
@@ -88,7 +88,7 @@ def _cube_rows(p: Array, cube_m: float) -> NDArray[np.int64]:
     return rows
 
 
-def _fit(p: Array, group: NDArray[np.intp], groups: int, max_sd_m: float) -> _Groups:
+def _fit(p: Array, group: NDArray[np.intp], groups: int, *, max_sd_m: float) -> _Groups:
     count = np.bincount(group, minlength=groups).astype(np.float64)
     mean = _sums(group, p, groups) / count[:, None]
     d = p - mean[group]

@@ -187,6 +187,7 @@ def settings(
     preset: PresetOption = "indoor",
     assignments: SetOption = None,
     as_json: JsonOption = False,
+    *,
     markdown: Annotated[bool, typer.Option("--markdown", help="Write docs/settings.md.")] = False,
 ) -> None:
     """Show every setting in force, with its meaning."""

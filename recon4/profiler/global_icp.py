@@ -28,7 +28,7 @@ class PairedTurns:
             self.points.append(turn.points[::step].astype(np.float64))
         self._trees = [cKDTree(p, balanced_tree=False, compact_nodes=False) for p in self.points]
 
-    def pairs(self, i: int, j: int, T_i_j: SE3, reach_m: float) -> tuple[Array, Array]:
+    def pairs(self, i: int, j: int, T_i_j: SE3, *, reach_m: float) -> tuple[Array, Array]:
         """Closest points of ``i`` to those of ``j``, each in its own frame [m], (N, 3) each."""
         distance, nearest = self._trees[i].query(
             T_i_j @ self.points[j], distance_upper_bound=reach_m
@@ -55,7 +55,7 @@ def preregister(turns: Turns, T: SE3, settings: LineSettings) -> SE3:
             SE3(R[k - 1], t[k - 1]) @ relative(T, k - 1, k)
         )
         for _ in range(settings.slam_rounds):
-            p, q = paired.pairs(k - 1, k, T_i_j, settings.preregister_m)
+            p, q = paired.pairs(k - 1, k, T_i_j, reach_m=settings.preregister_m)
             if len(p) < _MIN_PAIRS:
                 break
             found = align_points(p, q)
@@ -68,7 +68,7 @@ def preregister(turns: Turns, T: SE3, settings: LineSettings) -> SE3:
     return SE3(proper(R), t)
 
 
-def register_all(turns: Turns, T: SE3, links: Links, settings: LineSettings) -> SE3:
+def register_all(turns: Turns, T: SE3, links: Links, *, settings: LineSettings) -> SE3:
     """Poses of all turns from the closest pairs of all links, solved at once (L Eq. 2).
 
     The rotation is linearized and pairs are searched again in every round, as in ICP. The first
@@ -90,7 +90,7 @@ def register_all(turns: Turns, T: SE3, links: Links, settings: LineSettings) -> 
         H += 1e-3 * np.eye(6 * count)
         for i, j, _ in links:
             T_i, T_j = SE3(R[i], t[i]), SE3(R[j], t[j])
-            p, q = paired.pairs(i, j, T_i.inverse() @ T_j, settings.link_distance_m)
+            p, q = paired.pairs(i, j, T_i.inverse() @ T_j, reach_m=settings.link_distance_m)
             if len(p) >= _MIN_PAIRS:
                 _add(H, g, (i, j), r=T_i @ p - T_j @ q, arms=(p @ R[i].T, q @ R[j].T))
         step = -np.linalg.solve(H, g).reshape(count, 6)

@@ -59,10 +59,10 @@ def run_line_odometry(
     save_trajectory(out / "trajectory.npz", trajectory)
     lost = _lost(frames.t_mid_ns, planar, drive)
     _save_steps(out / "steps.npz", frames, trajectory, planar=planar, lost=lost)
-    warnings = remarks(drive, planar, lost, frames)
+    warnings = remarks(drive, planar, lost, frames=frames)
     for text in warnings:
         progress.event(Warned(text=text))
-    _report(trajectory, frames, lost, progress)
+    _report(trajectory, frames, lost, progress=progress)
     return OdometryFigures(
         multiframes=len(frames),
         lost=int(lost.sum()),
@@ -78,7 +78,7 @@ def span_of(frames: FrameStore) -> tuple[int, int]:
 
 
 def remarks(
-    drive: Drive, planar: PlanarMap | None, lost: NDArray[np.bool_], frames: FrameStore
+    drive: Drive, planar: PlanarMap | None, lost: NDArray[np.bool_], *, frames: FrameStore
 ) -> tuple[str, ...]:
     """What the first trajectory lacks, in words."""
     found = []
@@ -161,7 +161,7 @@ def _save_steps(
 
 
 def _report(
-    trajectory: Trajectory, frames: FrameStore, lost: NDArray[np.bool_], progress: Progress
+    trajectory: Trajectory, frames: FrameStore, lost: NDArray[np.bool_], *, progress: Progress
 ) -> None:
     """Poses for a display, and where tracking began to be lost."""
     t_ns = frames.t_mid_ns

@@ -73,7 +73,7 @@ def turn_graph(
 ) -> PoseGraph:
     """Nodes at the turns, edges between those that see the same."""
     T = trajectory.at(turns.t_ns)
-    edges = _chain(turns, T, lost, settings)
+    edges = _chain(turns, T, lost, settings=settings)
     graph = PoseGraph(turns.frame_rows, turns.t_ns, T, edges)
     progress.event(NodesPlaced(t_ns=tuple(turns.t_ns.tolist()), t_m=positions_of(T.t)))
     links = linked(turns, T, settings)
@@ -119,9 +119,9 @@ def published_graph(
     T = preregister(turns, first, s) if s.preregister else first
     progress.event(NodesPlaced(t_ns=tuple(turns.t_ns.tolist()), t_m=positions_of(T.t)))
     links = linked(turns, T, settings)
-    T = register_all(turns, T, links, s)
+    T = register_all(turns, T, links, settings=s)
     progress.event(NodesPlaced(t_m=positions_of(T.t)))
-    edges = list(_chain(turns, T, lost, settings))
+    edges = list(_chain(turns, T, lost, settings=settings))
     information = np.diag(np.repeat([s.turn_sd_rad, s.turn_sd_m], 3) ** -2.0)
     for i, j, overlap in links:
         kind = EdgeKind.NEIGHBOR if j - i <= settings.graph.neighbors else EdgeKind.LOOP
@@ -251,7 +251,9 @@ def _information(found: Registration, settings: Settings) -> Array:
     return 0.5 * (information + information.T)
 
 
-def _chain(turns: Turns, T: SE3, lost: NDArray[np.bool_], settings: Settings) -> tuple[Edge, ...]:
+def _chain(
+    turns: Turns, T: SE3, lost: NDArray[np.bool_], *, settings: Settings
+) -> tuple[Edge, ...]:
     """Edges between consecutive turns by the first trajectory."""
     s = settings.lines
     edges = []

@@ -135,7 +135,10 @@ def _describe_bag(info: RecordingInfo, path: Path, report: ImportReport) -> Reco
         gaps = _bag_gaps(bag, [s.topic for s in streams]) if whole else ()
         lines = line_topics(bag.topics)
         if lines is not None:
-            sensors += tuple(_line_sensor(bag, *parts) for parts in lines.sensors)
+            sensors += tuple(
+                _line_sensor(bag, topic, model, content=content)
+                for topic, model, content in lines.sensors
+            )
         if lines is not None and whole:
             gaps += _bag_gaps(bag, [topic.name for topic, _, _ in lines.sensors])
         known = {s.label for s in sensors}
@@ -151,7 +154,7 @@ def _describe_bag(info: RecordingInfo, path: Path, report: ImportReport) -> Reco
         )
 
 
-def _line_sensor(bag: Bag, topic: BagTopic, model: str, content: str) -> SensorInfo:
+def _line_sensor(bag: Bag, topic: BagTopic, model: str, *, content: str) -> SensorInfo:
     rate_hz = (topic.messages - 1) / bag.seconds if bag.seconds > 0 else float("nan")
     return SensorInfo(
         label=topic.name, model=model, content=content, count=topic.messages, rate_hz=rate_hz

@@ -91,7 +91,7 @@ class FrameFitter:
             H, g = information.copy(), information @ delta + g_prior
             H[POSES, POSES] += H_lidar
             g[POSES] += g_lidar
-            self._add_aiding(H, g, T_dense[-1], prediction.end.t_ns)
+            self._add_aiding(H, g, T_dense[-1], t_ns=prediction.end.t_ns)
             step = np.asarray(-np.linalg.solve(H, g), np.float64)
             delta = delta + step
             T_dense = _correct(prediction, delta, center)
@@ -101,7 +101,7 @@ class FrameFitter:
         P = np.asarray(np.linalg.inv(H), np.float64)
         return FrameFit(T_dense, delta, P, H_lidar, match, rounds, converged, stationary)
 
-    def _add_aiding(self, H: Array, g: Array, T_odom_body: SE3, t_ns: int) -> None:
+    def _add_aiding(self, H: Array, g: Array, T_odom_body: SE3, *, t_ns: int) -> None:
         """Add what GNSS knows of the pose at the end to the normal equations, in place."""
         if self.aiding is not None:
             H_aiding, g_aiding = self.aiding.pull(T_odom_body, t_ns)

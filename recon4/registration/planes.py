@@ -64,14 +64,18 @@ def register_to_planes(
             break
     H = match.H[START, START]
     if normal_noise_rad and stop is StopReason.SMALL_STEP:
-        H, T_target_source = _observable(H, initial, T_target_source, normal_noise_rad)
+        H, T_target_source = _observable(
+            H, initial, T_target_source, normal_noise_rad=normal_noise_rad
+        )
     error_m = _error(target, T_target_source, source, fraction=zero)
     return Registration(
         T_target_source, stop, rounds, error_m, match.match_ratio, H, match.degeneracy,
     )  # fmt: skip
 
 
-def _observable(H: Array, initial: SE3, found: SE3, normal_noise_rad: float) -> tuple[Array, SE3]:
+def _observable(
+    H: Array, initial: SE3, found: SE3, *, normal_noise_rad: float
+) -> tuple[Array, SE3]:
     """Information and pose without what only errors of the normals seem to observe.
 
     It is removed at the end: during the rounds a pose far off would be held where it is wrong.

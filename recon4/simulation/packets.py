@@ -42,8 +42,8 @@ def pack(
     firings: Firings,
     row: int,
     setup: SimulationSetup,
-    degradation: Degradation,
     *,
+    degradation: Degradation,
     rng: np.random.Generator,
 ) -> Packets:
     """Data packets, which arrive a tenth of a millisecond after their last shot."""

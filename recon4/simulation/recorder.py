@@ -65,7 +65,7 @@ class WalkRecorder:
         if degradation.values:
             parts = [degradation.shots(part, row, second) for row, part in enumerate(parts)]
         packets = [
-            pack(firings, row, setup, degradation, rng=setup.rng(4, row, second))
+            pack(firings, row, setup, degradation=degradation, rng=setup.rng(4, row, second))
             for row, firings in enumerate(parts)
         ]
         write_positions(self._pcap, second, setup)

@@ -82,7 +82,7 @@ class Odometry2d:
                 self._insert(k, scan)
             return
         self._growth.add(predicted)
-        match = self._register(k, scan, start, predicted)
+        match = self._register(k, scan, start, predicted=predicted)
         found = observed(match.H, self._settings.normal_noise_rad) if match else None
         if match is None or found is None or match.match_ratio < self._settings.min_match_ratio:
             self._lose(k, start, scan)
@@ -104,7 +104,7 @@ class Odometry2d:
         )
 
     def _register(
-        self, k: int, scan: ScanPoints, start: Array, predicted: Predicted
+        self, k: int, scan: ScanPoints, start: Array, *, predicted: Predicted
     ) -> Match2d | None:
         if len(scan.points) < _FEWEST_POINTS:
             return None

@@ -38,6 +38,17 @@ _KEY_PACKAGES = ("numpy", "scipy", "numba", "gtsam", "laspy", "pyproj")
 
 
 @dataclass(frozen=True, slots=True)
+class StageContext:
+    """What every stage is given besides its inputs."""
+
+    out: Path
+    """Folder of its artifact, empty at the start."""
+    settings: Settings
+    """Those of its groups; the others are None."""
+    progress: Progress
+
+
+@dataclass(frozen=True, slots=True)
 class Stage(Generic[OfStage]):
     """A stage: a pure function of its inputs and of some groups of settings."""
 
@@ -47,8 +58,8 @@ class Stage(Generic[OfStage]):
     groups: tuple[str, ...]
     """Groups of `Settings` it reads; the others are None when it runs."""
     function: Callable[..., OfStage | None]
-    """``function(out=folder, settings=…, progress=…, **inputs)``. Writes into the empty folder
-    ``out``; returns the figures for the manifest, None = it has none."""
+    """``function(context, **inputs)``. Writes into the empty folder ``context.out``; returns the
+    figures for the manifest, None = it has none."""
     figures: type[OfStage] = Figures  # type: ignore[assignment]  # those of a stage without any
     """Record of its figures."""
 
@@ -221,9 +232,7 @@ class StageRunner:
         settings = only(self._settings, stage.groups)
         meter = Meter()
         with atomic_folder(artifact.folder) as folder:
-            figures = stage.function(
-                out=folder, settings=settings, progress=self._progress, **values
-            )
+            figures = stage.function(StageContext(folder, settings, self._progress), **values)
             done = FinishedStage(
                 key=artifact.key,
                 stage=stage.name,

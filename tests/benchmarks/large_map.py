@@ -13,10 +13,10 @@ import numpy as np
 
 from recon4.mapping.tile import FIELDS, progressive
 from recon4.mapping.tiles import TileWriter
-from recon4.progress import Progress, Silent
+from recon4.progress import Silent
 from recon4.settings import Settings
 from recon4.store.project import Project
-from recon4.store.stage import Input, Stage, StageRunner
+from recon4.store.stage import Input, Stage, StageContext, StageRunner
 from tests.project_builder import BEGAN_NS, _level, _odometry, _verification, loop_walk
 
 ROOM_M = 5.0
@@ -64,8 +64,8 @@ def write_large_map(out: Path, *, points: int) -> None:
             writer.append(tile, _columns(rows[order][progressive(np.arange(len(rows)))], rng))
 
 
-def _map(*, out: Path, settings: Settings, progress: Progress, points: int) -> None:
-    write_large_map(out, points=points)
+def _map(context: StageContext, *, points: int) -> None:
+    write_large_map(context.out, points=points)
 
 
 def _room(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:

@@ -24,7 +24,7 @@ from recon4.progress import Silent
 from recon4.settings import Settings
 from recon4.store.arrays import save_trajectory
 from recon4.store.project import Project
-from recon4.store.stage import Stage, StageRunner
+from recon4.store.stage import Stage, StageContext, StageRunner
 from tests.project_builder import BEGAN_NS, loop_walk
 from tests.service.running import Running, server_thread
 from tests.service.viser_client import ViserClient, camera, viewing
@@ -202,8 +202,8 @@ def make_project(root: Path, points: int) -> None:
         runner.run(Stage("map", 1, (), lambda **named: _map(points, named["out"])))
 
 
-def _level(*, out: Path, settings: Settings, progress: object) -> None:
-    save_trajectory(out / "trajectory.npz", loop_walk())
+def _level(context: StageContext) -> None:
+    save_trajectory(context.out / "trajectory.npz", loop_walk())
 
 
 def _map(points: int, out: Path) -> None:

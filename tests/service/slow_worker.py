@@ -24,7 +24,7 @@ from recon4.progress import Progress
 from recon4.sandbox import Policy
 from recon4.settings import Settings
 from recon4.store.project import Project
-from recon4.store.stage import Input, Stage, StageRunner
+from recon4.store.stage import Input, Stage, StageContext, StageRunner
 
 
 def take_memory() -> None:
@@ -90,27 +90,25 @@ def work(folder: JobFolder, progress: Progress) -> None:
     (root / "summary.json").write_text("{}")
 
 
-def _frames(*, out: Path, settings: Settings, progress: Progress, recording: Path) -> None:
+def _frames(context: StageContext, *, recording: Path) -> None:
     _note(recording, "frames")
-    progress.start("Reading", 10, "frames")
-    progress.advance(10)
-    (out / "report.json").write_text("{}")
+    context.progress.start("Reading", 10, "frames")
+    context.progress.advance(10)
+    (context.out / "report.json").write_text("{}")
 
 
-def _odometry(
-    *, out: Path, settings: Settings, progress: Progress, recording: Path, frames: Path
-) -> None:
+def _odometry(context: StageContext, *, recording: Path, frames: Path) -> None:
     _note(recording, "odometry")
-    progress.start("Odometry", 100, "multiframes")
+    context.progress.start("Odometry", 100, "multiframes")
     gate = os.open(recording / "gate", os.O_RDWR)
     while not select.select([gate], [], [], 0.02)[0]:
-        progress.advance(0)
+        context.progress.advance(0)
     word = os.read(gate, 100).decode()
     os.close(gate)
     DEEDS.get(word, lambda: None)()
-    progress.advance(100)
+    context.progress.advance(100)
     _note(recording, "finished")
-    (out / "done.txt").write_text("done")
+    (context.out / "done.txt").write_text("done")
 
 
 def _note(recording: Path, what: str) -> None:

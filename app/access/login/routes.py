@@ -101,7 +101,7 @@ class SessionView:
 
 
 @router.post("/login", dependencies=[ALLOW_ANONYMOUS])
-def login(given: Credentials, request: Request, response: Response, server: Server) -> Me:
+def login(given: Credentials, request: Request, response: Response, *, server: Server) -> Me:
     """Sign in; the response sets the session cookie."""
     access = _with_login(server.access)
     try:
@@ -113,7 +113,7 @@ def login(given: Credentials, request: Request, response: Response, server: Serv
 
 
 @router.post("/setup", dependencies=[ALLOW_ANONYMOUS])
-def set_up(given: FirstAdmin, request: Request, response: Response, server: Server) -> Me:
+def set_up(given: FirstAdmin, request: Request, response: Response, *, server: Server) -> Me:
     """Create the first admin with the one-time token that the server showed at its start."""
     access = _with_login(server.access)
     result = access.logins.set_up(

@@ -14,7 +14,7 @@ from urllib.parse import urlsplit
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.access.middleware.rejection import Rejection, answer, note
+from app.access.middleware.rejection import Rejection, note
 from app.access.middleware.session import SessionMiddleware
 from app.access.people import LOCAL
 
@@ -75,7 +75,7 @@ class OriginMiddleware:
             await self._app(scope, receive, send)
         else:
             await note(scope, rejection)
-            await answer(rejection, scope, receive, send)
+            await rejection.answer(scope, receive, send)
 
     def _with_headers(self, scope: Scope, send: Send) -> Send:
         private = self._login and scope["path"].startswith("/api/")

@@ -22,21 +22,20 @@ class Rejection:
     detail: str
     headers: dict[str, str] = field(default_factory=dict)
 
-
-async def answer(rejection: Rejection, scope: Scope, receive: Receive, send: Send) -> None:
-    """Send the rejection as the response, or close the WebSocket."""
-    if scope["type"] == "websocket":
-        await receive()
-        await send({"type": "websocket.close", "code": 1008, "reason": rejection.detail})
-        return
-    body = json.dumps({"error": rejection.error, "detail": rejection.detail}).encode()
-    headers = {"content-type": "application/json", "content-length": str(len(body))}
-    raw = [
-        (name.lower().encode(), text.encode())
-        for name, text in (headers | rejection.headers).items()
-    ]
-    await send({"type": "http.response.start", "status": rejection.status, "headers": raw})
-    await send({"type": "http.response.body", "body": body})
+    async def answer(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Send the rejection as the response, or close the WebSocket."""
+        if scope["type"] == "websocket":
+            await receive()
+            await send({"type": "websocket.close", "code": 1008, "reason": self.detail})
+            return
+        body = json.dumps({"error": self.error, "detail": self.detail}).encode()
+        headers = {"content-type": "application/json", "content-length": str(len(body))}
+        raw = [
+            (name.lower().encode(), text.encode())
+            for name, text in (headers | self.headers).items()
+        ]
+        await send({"type": "http.response.start", "status": self.status, "headers": raw})
+        await send({"type": "http.response.body", "body": body})
 
 
 async def note(scope: Scope, rejection: Rejection) -> None:

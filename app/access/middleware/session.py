@@ -13,7 +13,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from app.access.login.login_backoff import TokenBuckets
 from app.access.login.login_service import Access
 from app.access.login.sessions import AuthenticatedSession, Session, form_token
-from app.access.middleware.rejection import Rejection, answer, note
+from app.access.middleware.rejection import Rejection, note
 from app.access.people import NOBODY
 
 COOKIE = "__Host-sid"
@@ -56,7 +56,7 @@ class SessionMiddleware:
         if (rejection := self._judge(scope, authenticated)) is not None:
             if rejection.status == 403:
                 await note(scope, rejection)
-            await answer(rejection, scope, receive, send)
+            await rejection.answer(scope, receive, send)
         elif authenticated is None:
             await self._app(scope, receive, send)
         else:

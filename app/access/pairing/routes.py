@@ -131,7 +131,7 @@ def read_pairing(server: Server, who: Who) -> PairingView:
 @router.post(
     "/invitations", status_code=201, dependencies=MANAGE_PHONES, summary="Invite a phone (QR code)"
 )
-def invite(new: NewInvitation, request: Request, server: Server, who: Who) -> InvitationView:
+def invite(new: NewInvitation, request: Request, server: Server, *, who: Who) -> InvitationView:
     """Create a one-time link for one phone, valid for two minutes."""
     _with_login(server)
     token = server.access.pairings.invite(who, new.role)
@@ -141,7 +141,7 @@ def invite(new: NewInvitation, request: Request, server: Server, who: Who) -> In
 
 
 @router.post("/redeem", dependencies=ALLOW_ANONYMOUS, summary="Redeem an invitation")
-def redeem(given: Token, request: Request, response: Response, server: Server) -> Me:
+def redeem(given: Token, request: Request, response: Response, *, server: Server) -> Me:
     """Redeem the token of a QR code; the response sets the session cookie of the phone."""
     _with_login(server)
     _signed_out(request)
@@ -163,7 +163,7 @@ def request_pairing(new: NewRequest, request: Request, server: Server) -> Pairin
 
 
 @router.post("/claim", dependencies=ALLOW_ANONYMOUS, summary="Claim a pairing")
-def claim(given: Token, request: Request, response: Response, server: Server) -> Me | None:
+def claim(given: Token, request: Request, response: Response, *, server: Server) -> Me | None:
     """Claim the session of a phone: null while it waits; once approved, sets the session cookie."""
     _with_login(server)
     _signed_out(request)
@@ -174,7 +174,7 @@ def claim(given: Token, request: Request, response: Response, server: Server) ->
 
 
 @router.post("/approve", dependencies=MANAGE_PHONES, summary="Approve a phone")
-def approve(given: PairingApproval, request: Request, server: Server, who: Who) -> Approved:
+def approve(given: PairingApproval, request: Request, server: Server, *, who: Who) -> Approved:
     """Approve the phone that shows these digits; check that you see the phone."""
     _with_login(server)
     try:

@@ -56,7 +56,9 @@ def test_all_turns_are_registered_at_once(poses):
     turns = turns_of([poses[k] for k in range(4)], rng)
     links = [(i, j, 1.0) for j in range(4) for i in range(j)]
 
-    found = register_all(turns, disturbed(poses, rng, sd_m=0.08, sd_rad=0.02), links, SETTINGS)
+    found = register_all(
+        turns, disturbed(poses, rng, sd_m=0.08, sd_rad=0.02), links, settings=SETTINGS
+    )
 
     assert np.abs(found.t - poses.t).max() < 2e-3
     assert np.degrees((poses.inverse() @ found).angle()).max() < 0.05
@@ -66,7 +68,7 @@ def test_a_turn_without_links_stays(poses):
     turns = turns_of([poses[k] for k in range(4)], np.random.default_rng(1))
     start = disturbed(poses, np.random.default_rng(2), sd_m=0.05, sd_rad=0.01)
 
-    found = register_all(turns, start, [(0, 1, 1.0)], SETTINGS)
+    found = register_all(turns, start, [(0, 1, 1.0)], settings=SETTINGS)
 
     assert np.allclose(found.t[2:], start.t[2:], atol=1e-6)
     assert np.linalg.norm(found.t[1] - start.t[1]) > 0.01

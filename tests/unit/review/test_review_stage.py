@@ -23,8 +23,8 @@ from recon4.store.stage import Input, Stage, StageRunner
 from tests.unit.review.graphs import two_rounds
 
 
-def _searched(*, out, settings, progress, graph):
-    save_graph(out, graph)
+def _searched(context, *, graph):
+    save_graph(context.out, graph)
 
 
 SEARCH = Stage("graph", 1, (), _searched)

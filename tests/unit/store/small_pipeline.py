@@ -23,26 +23,26 @@ class WordCount(Figures, frozen=True, kw_only=True):
     words: int
 
 
-def count(*, out, settings, progress, text):
-    (out / "deep").mkdir()
-    (out / "deep" / "lengths.json").write_text(json.dumps([len(w) for w in text.split()]))
-    (out / "range.txt").write_text(str(settings.ingest.max_range_m))
+def count(context, *, text):
+    (context.out / "deep").mkdir()
+    (context.out / "deep" / "lengths.json").write_text(json.dumps([len(w) for w in text.split()]))
+    (context.out / "range.txt").write_text(str(context.settings.ingest.max_range_m))
     return WordCount(words=len(text.split()))
 
 
-def scale(*, out, settings, progress, counted):
+def scale(context, *, counted):
     lengths = json.loads((counted / "deep" / "lengths.json").read_text())
     for k, length in enumerate(lengths):
-        progress.advance()
-        (out / f"{k}.txt").write_text(f"{length * settings.map.voxel_m:.6f}")
+        context.progress.advance()
+        (context.out / f"{k}.txt").write_text(f"{length * context.settings.map.voxel_m:.6f}")
 
 
-def total(*, out, settings, progress, counted, scaled):
+def total(context, *, counted, scaled):
     range_m = float((counted / "range.txt").read_text())
     found = sum(
         float(path.read_text()) for path in sorted(scaled.iterdir()) if path.suffix == ".txt"
     )
-    (out / "total.txt").write_text(f"{found * range_m:.6f}")
+    (context.out / "total.txt").write_text(f"{found * range_m:.6f}")
 
 
 COUNT = Stage("count", 1, ("ingest",), count, WordCount)

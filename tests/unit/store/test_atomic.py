@@ -135,8 +135,8 @@ def test_a_stage_on_a_full_disk_leaves_nothing_and_can_resume(small_disk):
     from recon4.store.project import Project
     from recon4.store.stage import Stage, StageRunner
 
-    def fills(*, out, settings, progress):
-        (out / "large").write_bytes(b"\x01" * 300_000)
+    def fills(context):
+        (context.out / "large").write_bytes(b"\x01" * 300_000)
 
     ballast = small_disk / "ballast"
     ballast.write_bytes(b"\x00" * 250_000)

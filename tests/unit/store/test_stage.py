@@ -83,8 +83,8 @@ def test_the_key_does_not_depend_on_where_the_input_lies():
 
 
 def test_a_stage_that_reads_a_group_it_did_not_declare_fails_at_once(tmp_path):
-    def sly(*, out, settings, progress):
-        (out / "x").write_text(str(settings.map.voxel_m))
+    def sly(context):
+        (context.out / "x").write_text(str(context.settings.map.voxel_m))
 
     with Project.open(tmp_path / "p") as project:
         runner = StageRunner(project, SETTINGS, Silent())
@@ -94,8 +94,8 @@ def test_a_stage_that_reads_a_group_it_did_not_declare_fails_at_once(tmp_path):
 
 
 def test_a_stage_that_fails_leaves_nothing_and_keeps_what_was_finished(tmp_path):
-    def fails(*, out, settings, progress, counted):
-        (out / "half").write_text("half")
+    def fails(context, *, counted):
+        (context.out / "half").write_text("half")
         raise Recon4Error("no floor found")
 
     with Project.open(tmp_path / "p") as project:

@@ -1,0 +1,127 @@
+"""Counts of the shape of the code, with places: ``python -m tests.structure [KIND…]``.
+
+`tests/unit/test_structure.py` holds the counts at or below its limits.
+"""
+
+from __future__ import annotations
+
+import ast
+import sys
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+PACKAGES = ("recon4", "app")
+KERNELS = "recon4/kernels/"
+"""Compiled functions: numba passes their arguments by position, and calls cost time."""
+
+DICTS = "dict[str, Any]"
+PARAMETERS = "more than 5 parameters"
+POSITIONAL = "more than 3 positional parameters"
+FUNCTIONS = "functions over 50 lines"
+FILES = "files over 400 lines"
+
+MAX_PARAMETERS = 5
+MAX_POSITIONAL = 3
+MAX_FUNCTION_LINES = 50
+MAX_FILE_LINES = 400
+
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where something was counted."""
+
+    kind: str
+    file: str
+    line: int
+    what: str
+
+
+def places(root: Path = ROOT) -> list[Place]:
+    """Everything that is counted, in the order of the files."""
+    found: list[Place] = []
+    for package in PACKAGES:
+        for path in sorted((root / package).rglob("*.py")):
+            found += places_in(path.read_text("utf-8"), path.relative_to(root).as_posix())
+    for path in sorted((root / "tests").rglob("*.py")):
+        found += _long_file(path.read_text("utf-8"), path.relative_to(root).as_posix())
+    return found
+
+
+def places_in(source: str, file: str) -> list[Place]:
+    """What is counted in one file of the product.
+
+    Args:
+        source: The text of the file.
+        file: Its path from the root of the project, with slashes.
+    """
+    tree = ast.parse(source)
+    found = [*_long_file(source, file), *_dicts(tree, file)]
+    if not file.startswith(KERNELS):
+        found += _functions(tree, file)
+    return found
+
+
+def counts(found: list[Place]) -> Counter[str]:
+    """How many places there are of each kind."""
+    return Counter(place.kind for place in found)
+
+
+def _long_file(source: str, file: str) -> list[Place]:
+    lines = len(source.splitlines())
+    return [Place(FILES, file, 1, f"{lines} lines")] if lines > MAX_FILE_LINES else []
+
+
+def _dicts(tree: ast.Module, file: str) -> Iterator[Place]:
+    """``dict[str, Any]`` and ``Mapping[str, Any]`` count alike; so does a key ``int | str``."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Subscript) and ast.unparse(node) in _ANONYMOUS:
+            yield Place(DICTS, file, node.lineno, ast.unparse(node))
+
+
+_ANONYMOUS = {"dict[str, Any]", "Mapping[str, Any]", "MutableMapping[str, Any]"}
+
+
+def _functions(tree: ast.Module, file: str) -> Iterator[Place]:
+    methods = {
+        id(item) for node in ast.walk(tree) if isinstance(node, ast.ClassDef) for item in node.body
+    }
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            yield from _function(node, file, is_method=id(node) in methods)
+
+
+def _function(node: Function, file: str, *, is_method: bool) -> Iterator[Place]:
+    bound = is_method and not _is_static(node)
+    positional = len(node.args.posonlyargs) + len(node.args.args) - bound
+    every = positional + len(node.args.kwonlyargs)
+    lines = (node.end_lineno or node.lineno) - node.lineno + 1
+    if every > MAX_PARAMETERS:
+        yield Place(PARAMETERS, file, node.lineno, f"{node.name}: {every}")
+    if positional > MAX_POSITIONAL:
+        yield Place(POSITIONAL, file, node.lineno, f"{node.name}: {positional}")
+    if lines > MAX_FUNCTION_LINES:
+        yield Place(FUNCTIONS, file, node.lineno, f"{node.name}: {lines} lines")
+
+
+def _is_static(node: Function) -> bool:
+    return any(ast.unparse(decorator) == "staticmethod" for decorator in node.decorator_list)
+
+
+def main() -> None:
+    """Print the places, then the counts."""
+    found = places()
+    chosen = sys.argv[1:]
+    for place in found:
+        if not chosen or any(word in place.kind for word in chosen):
+            print(f"{place.file}:{place.line}: {place.kind}: {place.what}")
+    for kind in (DICTS, PARAMETERS, POSITIONAL, FUNCTIONS, FILES):
+        print(f"{counts(found)[kind]:4d} {kind}")
+
+
+if __name__ == "__main__":
+    main()
