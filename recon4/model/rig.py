@@ -3,35 +3,36 @@
 from __future__ import annotations
 
 import json
-import re
-import tomllib
 from dataclasses import dataclass
 from datetime import date
 from importlib import resources
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Literal, get_args
 
 import numpy as np
 
 from recon4.bounded import read_text_limited
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array
+from recon4.model.toml_tables import TomlTable, parse_toml
 
 IMU_PORT, GNSS_PORT = 8309, 8310
 """Default UDP ports, next to Velodyne's 2368 (data) and 8308 (positions)."""
 MAX_RIG_BYTES = 128 * 1024
 """A rig file has some hundred bytes per sensor."""
 MAX_SENSORS = 64
-_MAX_TEXT = 1000
-_MAX_DOTS = 100
-_BETWEEN_KEYS = re.compile(r"[=\[\]{},\n]")
-_LARGEST = 4e9
-"""Clocks differ by seconds since 1970 at most; nanoseconds must fit into 64 bits."""
 SENSOR_MODELS = ("VLP-16", "VLP-16 Hi-Res", "VLP-32C", "HDL-32E", "HDL-64E", "generic")
 SensorKind = Literal["lidar", "profiler", "laser2d"]
 """``lidar``: many beams that spin. ``profiler``: one beam that measures line scans, on a head that
 turns slowly. ``laser2d``: one beam that spins in a plane."""
-_KINDS: tuple[str, ...] = get_args(SensorKind)
+_KINDS: tuple[SensorKind, ...] = get_args(SensorKind)
+_MOUNTING_KEYS = {"xyz_m", "rpy_deg", "quat_xyzw", "time_offset_s", "port"}
+_SENSOR_KEYS = _MOUNTING_KEYS | {
+    "name", "model", "address", "topic", "enabled", "serial", "kind", "head_topic",
+    "head_rate_deg_s",
+}  # fmt: skip
+_IMU_KEYS = _MOUNTING_KEYS
+_GNSS_KEYS = {"lever_arm_m", "time_offset_s", "port", "serial"}
 _MAX_HEAD_DEG_S = 3600.0
 
 
@@ -153,73 +154,53 @@ def parse_rig(text: str, *, where: str) -> Rig:
     Raises:
         ConfigError: Names the key, the expected and the found value.
     """
-    table = _toml(text, where)
-    _refuse_unknown(table, {"name", "sensor", "imu", "gnss", "calibration"}, where)
+    values = parse_toml(text, where, max_characters=MAX_RIG_BYTES)
+    table = TomlTable.of(values, where, {"name", "sensor", "imu", "gnss", "calibration"})
     rows = table.get("sensor", [])
     if not isinstance(rows, list) or not 1 <= len(rows) <= MAX_SENSORS:
         raise ConfigError(
             f"{where}: a rig needs at least one [[sensor]] and at most {MAX_SENSORS}, "
             f"got {len(rows) if isinstance(rows, list) else rows!r:.40}"
         )
-    sensors = tuple(_sensor(row, f"{where}: sensor {k}") for k, row in enumerate(rows))
+    sensors = tuple(
+        _sensor(TomlTable.of(row, f"{where}: sensor {k}", _SENSOR_KEYS))
+        for k, row in enumerate(rows)
+    )
     names = [sensor.name for sensor in sensors]
     if len(set(names)) < len(names):
         raise ConfigError(f"{where}: sensor names must differ, got {names}")
-    imu, gnss = table.get("imu", {}), table.get("gnss", {})
-    _refuse_unknown(
-        imu, {"xyz_m", "rpy_deg", "quat_xyzw", "time_offset_s", "port"}, f"{where}: imu"
-    )
-    _refuse_unknown(gnss, {"lever_arm_m", "time_offset_s", "port", "serial"}, f"{where}: gnss")
+    imu = TomlTable.of(table.get("imu", {}), f"{where}: imu", _IMU_KEYS)
+    gnss = TomlTable.of(table.get("gnss", {}), f"{where}: gnss", _GNSS_KEYS)
     return Rig(
-        name=_text(table, "name", where, where=where),
+        name=table.text("name", where),
         sensors=sensors,
-        T_body_imu=_mounting(imu, f"{where}: imu"),
-        imu_time_offset_s=_number(imu, "time_offset_s", 0.0, where=f"{where}: imu"),
-        p_body_antenna=_vector(
-            gnss, "lever_arm_m", 3, default=(0.0, 0.0, 0.0), where=f"{where}: gnss"
-        ),
-        gnss_time_offset_s=_number(gnss, "time_offset_s", 0.0, where=f"{where}: gnss"),
-        imu_port=_port(imu, IMU_PORT, f"{where}: imu"),
-        gnss_port=_port(gnss, GNSS_PORT, f"{where}: gnss"),
-        gnss_serial=_text(gnss, "serial", "", where=f"{where}: gnss"),
+        T_body_imu=_mounting(imu),
+        imu_time_offset_s=imu.number("time_offset_s"),
+        p_body_antenna=gnss.vector("lever_arm_m", 3),
+        gnss_time_offset_s=gnss.number("time_offset_s"),
+        imu_port=imu.port(IMU_PORT),
+        gnss_port=gnss.port(GNSS_PORT),
+        gnss_serial=gnss.text("serial"),
         calibration=_calibration(table.get("calibration"), f"{where}: calibration"),
     )
 
 
-def _calibration(row: Any, where: str) -> RigCalibration | None:
-    if row is None:
+def _calibration(value: object, where: str) -> RigCalibration | None:
+    if value is None:
         return None
-    _refuse_unknown(row, {"date", "method", "sd_deg", "sd_mm", "sd_ms"}, where)
-    text = _text(row, "date", "", where=where)
+    row = TomlTable.of(value, where, {"date", "method", "sd_deg", "sd_mm", "sd_ms"})
+    text = row.text("date")
     try:
         date.fromisoformat(text)
     except ValueError:
         raise ConfigError(f"{where}: date must be as 2026-11-22, got {text!r:.80}") from None
     return RigCalibration(
         date=text,
-        method=_text(row, "method", "", where=where),
-        sd_deg=_number(row, "sd_deg", 0.0, where=where),
-        sd_mm=_number(row, "sd_mm", 0.0, where=where),
-        sd_ms=_number(row, "sd_ms", 0.0, where=where),
+        method=row.text("method"),
+        sd_deg=row.number("sd_deg"),
+        sd_mm=row.number("sd_mm"),
+        sd_ms=row.number("sd_ms"),
     )
-
-
-def _toml(text: str, where: str) -> dict[str, Any]:
-    """Parse TOML with bounded size, nesting and length of keys.
-
-    tomllib needs quadratic time for dotted keys, and recursion for nested arrays.
-    """
-    if len(text) > MAX_RIG_BYTES:
-        raise ConfigError(f"{where}: expected at most {MAX_RIG_BYTES} characters, got {len(text)}")
-    longest = max((part.count(".") for part in _BETWEEN_KEYS.split(text)), default=0)
-    if longest > _MAX_DOTS:
-        raise ConfigError(f"{where}: expected keys of few parts, got one with {longest} dots")
-    try:
-        return tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, ValueError) as error:
-        raise ConfigError(f"{where}: not a TOML file: {str(error)[:300]}") from error
-    except RecursionError as error:
-        raise ConfigError(f"{where}: not a TOML file: nested too deeply") from error
 
 
 def _quoted(text: str) -> str:
@@ -274,126 +255,58 @@ def _kind_lines(sensor: Sensor) -> list[str]:
     return lines + ([f"head_rate_deg_s = {rate_deg_s!r}"] if rate_deg_s else [])
 
 
-def _sensor(row: dict[str, Any], where: str) -> Sensor:
-    known = {"name", "model", "xyz_m", "rpy_deg", "quat_xyzw", "time_offset_s"}
-    known |= {
-        "address",
-        "port",
-        "topic",
-        "enabled",
-        "serial",
-        "kind",
-        "head_topic",
-        "head_rate_deg_s",
-    }
-    _refuse_unknown(row, known, where)
-    kind = _kind(row, where)
-    model = _text(row, "model", "VLP-16" if kind == "lidar" else "generic", where=where)
+def _sensor(row: TomlTable) -> Sensor:
+    kind = _kind(row)
+    model = row.text("model", "VLP-16" if kind == "lidar" else "generic")
     models = SENSOR_MODELS if kind == "lidar" else ("generic",)
     if model not in models:
         raise ConfigError(
-            f"{where}: model must be one of {models} for a {kind}, got {model[:80]!r}"
+            f"{row.where}: model must be one of {models} for a {kind}, got {model[:80]!r}"
         )
-    if kind != "profiler" and {"head_topic", "head_rate_deg_s"} & set(row):
-        raise ConfigError(f"{where}: only a profiler has a head, this is a {kind}")
-    if not _text(row, "name", "", where=where):
-        raise ConfigError(f"{where}: name must be a text, got {row.get('name')!r:.80}")
+    if kind != "profiler" and ("head_topic" in row or "head_rate_deg_s" in row):
+        raise ConfigError(f"{row.where}: only a profiler has a head, this is a {kind}")
+    name = row.text("name")
+    if not name:
+        raise ConfigError(f"{row.where}: name must be a text, got {row.get('name')!r:.80}")
     return Sensor(
-        name=row["name"],
+        name=name,
         model=model,
-        T_body_sensor=_mounting(row, where),
+        T_body_sensor=_mounting(row),
         kind=kind,
-        head_topic=_text(row, "head_topic", "", where=where),
-        head_rate_rad_s=_head_rate(row, where),
-        time_offset_s=_number(row, "time_offset_s", 0.0, where=where),
-        address=_text(row, "address", "", where=where),
-        port=_port(row, 2368, where),
-        topic=_text(row, "topic", "", where=where),
-        enabled=_flag(row, "enabled", where),
-        serial=_text(row, "serial", "", where=where),
+        head_topic=row.text("head_topic"),
+        head_rate_rad_s=_head_rate(row),
+        time_offset_s=row.number("time_offset_s"),
+        address=row.text("address"),
+        port=row.port(2368),
+        topic=row.text("topic"),
+        enabled=row.flag("enabled", default=True),
+        serial=row.text("serial"),
     )
 
 
-def _kind(row: dict[str, Any], where: str) -> SensorKind:
+def _kind(row: TomlTable) -> SensorKind:
     found = row.get("kind", "lidar")
-    if found not in _KINDS:
-        raise ConfigError(f"{where}: kind must be one of {_KINDS}, got {found!r:.80}")
-    kind: SensorKind = found
-    return kind
+    for kind in _KINDS:
+        if found == kind:
+            return kind
+    raise ConfigError(f"{row.where}: kind must be one of {_KINDS}, got {found!r:.80}")
 
 
-def _head_rate(row: dict[str, Any], where: str) -> float:
-    rate_deg_s = _number(row, "head_rate_deg_s", 0.0, where=where)
+def _head_rate(row: TomlTable) -> float:
+    rate_deg_s = row.number("head_rate_deg_s")
     if abs(rate_deg_s) > _MAX_HEAD_DEG_S:
         raise ConfigError(
-            f"{where}: head_rate_deg_s must be within ±{_MAX_HEAD_DEG_S:g}, got {rate_deg_s:g}"
+            f"{row.where}: head_rate_deg_s must be within ±{_MAX_HEAD_DEG_S:g}, got {rate_deg_s:g}"
         )
     return float(np.deg2rad(rate_deg_s))
 
 
-def _mounting(row: dict[str, Any], where: str) -> SE3:
-    xyz_m = _vector(row, "xyz_m", 3, default=(0.0, 0.0, 0.0), where=where)
+def _mounting(row: TomlTable) -> SE3:
+    xyz_m = row.vector("xyz_m", 3)
     if "quat_xyzw" in row:
-        quat = _vector(row, "quat_xyzw", 4, default=(), where=where)
+        quat = row.vector("quat_xyzw", 4)
         if not 0.99 < np.linalg.norm(quat) < 1.01:
-            raise ConfigError(f"{where}: quat_xyzw must have length 1, got {quat.tolist()}")
+            raise ConfigError(f"{row.where}: quat_xyzw must have length 1, got {quat.tolist()}")
         return SE3.from_quat(quat, xyz_m)
-    roll, pitch, yaw = np.deg2rad(_vector(row, "rpy_deg", 3, default=(0.0, 0.0, 0.0), where=where))
+    roll, pitch, yaw = np.deg2rad(row.vector("rpy_deg", 3))
     return SE3.from_rpy(roll, pitch, yaw, t=xyz_m)
-
-
-def _vector(
-    row: dict[str, Any], key: str, size: int, *, default: tuple[float, ...], where: str
-) -> Array:
-    value = row.get(key, default)
-    if not isinstance(value, list | tuple) or len(value) != size or not all(map(_usable, value)):
-        raise ConfigError(
-            f"{where}: {key} must be {size} finite numbers, got {value!r:.80} (at most 4e9)"
-        )
-    return np.asarray(value, dtype=np.float64)
-
-
-def _number(row: dict[str, Any], key: str, default: float, *, where: str) -> float:
-    value = row.get(key, default)
-    if not _usable(value):
-        raise ConfigError(
-            f"{where}: {key} must be a finite number, got {value!r:.80} (at most 4e9)"
-        )
-    return float(value)
-
-
-def _usable(value: Any) -> bool:
-    # A comparison is exact for whole numbers of any length; NaN fails it.
-    number = isinstance(value, int | float) and not isinstance(value, bool)
-    return number and -_LARGEST <= value <= _LARGEST
-
-
-def _text(row: dict[str, Any], key: str, default: str, *, where: str) -> str:
-    value = row.get(key, default)
-    if not isinstance(value, str) or len(value) > _MAX_TEXT:
-        raise ConfigError(
-            f"{where}: {key} must be a text of at most {_MAX_TEXT} characters, got {value!r:.80}"
-        )
-    return value
-
-
-def _flag(row: dict[str, Any], key: str, where: str) -> bool:
-    value = row.get(key, True)
-    if not isinstance(value, bool):
-        raise ConfigError(f"{where}: {key} must be true or false, got {value!r:.80}")
-    return value
-
-
-def _port(row: dict[str, Any], default: int, where: str) -> int:
-    port = _number(row, "port", default, where=where)
-    if not 0 <= port <= 65535 or port != int(port):
-        raise ConfigError(f"{where}: port must be 0 to 65535, got {port:g}")
-    return int(port)
-
-
-def _refuse_unknown(row: Any, known: set[str], where: str) -> None:
-    if not isinstance(row, dict):
-        raise ConfigError(f"{where}: expected a table, got {row!r:.80}")
-    unknown = sorted(set(row) - known)
-    if unknown:
-        raise ConfigError(f"{where}: unknown {str(unknown)[:200]}; known: {sorted(known)}")

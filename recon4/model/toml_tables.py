@@ -1,0 +1,129 @@
+"""Tables of TOML text of unknown origin, read with checks of every value."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from dataclasses import dataclass
+from typing import TypeGuard
+
+import numpy as np
+
+from recon4.errors import ConfigError
+from recon4.geometry.se3 import Array
+
+_MAX_TEXT = 1000
+_MAX_DOTS = 100
+_BETWEEN_KEYS = re.compile(r"[=\[\]{},\n]")
+_LARGEST = 4e9
+"""Clocks differ by seconds since 1970 at most; nanoseconds must fit into 64 bits."""
+
+
+@dataclass(frozen=True, slots=True)
+class TomlTable:
+    """One table of a file; every error names the place, the key and what was found."""
+
+    values: dict[str, object]
+    where: str
+    """File and table, for errors."""
+
+    @staticmethod
+    def of(value: object, where: str, known: set[str]) -> TomlTable:
+        """Check that a value is a table without other keys than the known ones.
+
+        Raises:
+            ConfigError: If it is not.
+        """
+        if not isinstance(value, dict):
+            raise ConfigError(f"{where}: expected a table, got {value!r:.80}")
+        unknown = sorted(set(value) - known)
+        if unknown:
+            raise ConfigError(f"{where}: unknown {str(unknown)[:200]}; known: {sorted(known)}")
+        return TomlTable(value, where)
+
+    def __contains__(self, key: str) -> bool:
+        return key in self.values
+
+    def get(self, key: str, default: object = None) -> object:
+        """A value that the caller checks."""
+        return self.values.get(key, default)
+
+    def number(self, key: str, default: float = 0.0) -> float:
+        """A finite number."""
+        value = self.get(key, default)
+        if not _is_usable(value):
+            raise ConfigError(
+                f"{self.where}: {key} must be a finite number, got {value!r:.80} (at most 4e9)"
+            )
+        return float(value)
+
+    def vector(self, key: str, size: int, default: tuple[float, ...] = (0.0, 0.0, 0.0)) -> Array:
+        """Finite numbers, (size,)."""
+        value = self.get(key, default)
+        if (
+            not isinstance(value, list | tuple)
+            or len(value) != size
+            or not all(map(_is_usable, value))
+        ):
+            raise ConfigError(
+                f"{self.where}: {key} must be {size} finite numbers, got {value!r:.80} "
+                "(at most 4e9)"
+            )
+        return np.asarray(value, dtype=np.float64)
+
+    def text(self, key: str, default: str = "") -> str:
+        """A text of limited length."""
+        value = self.get(key, default)
+        if not isinstance(value, str) or len(value) > _MAX_TEXT:
+            raise ConfigError(
+                f"{self.where}: {key} must be a text of at most {_MAX_TEXT} characters, "
+                f"got {value!r:.80}"
+            )
+        return value
+
+    def flag(self, key: str, *, default: bool) -> bool:
+        """True or false."""
+        value = self.get(key, default)
+        if not isinstance(value, bool):
+            raise ConfigError(f"{self.where}: {key} must be true or false, got {value!r:.80}")
+        return value
+
+    def port(self, default: int) -> int:
+        """The key ``port``, 0 to 65535."""
+        port = self.number("port", default)
+        if not 0 <= port <= 65535 or port != int(port):
+            raise ConfigError(f"{self.where}: port must be 0 to 65535, got {port:g}")
+        return int(port)
+
+
+def parse_toml(text: str, where: str, *, max_characters: int) -> dict[str, object]:
+    """Parse TOML with bounded size, nesting and length of keys.
+
+    tomllib needs quadratic time for dotted keys, and recursion for nested arrays.
+
+    Args:
+        text: The text of a file.
+        where: Its name, for errors.
+        max_characters: Longer texts are refused.
+
+    Raises:
+        ConfigError: If it is too long, too deep or not TOML.
+    """
+    if len(text) > max_characters:
+        raise ConfigError(f"{where}: expected at most {max_characters} characters, got {len(text)}")
+    longest = max((part.count(".") for part in _BETWEEN_KEYS.split(text)), default=0)
+    if longest > _MAX_DOTS:
+        raise ConfigError(f"{where}: expected keys of few parts, got one with {longest} dots")
+    try:
+        return tomllib.loads(text)
+    except (tomllib.TOMLDecodeError, ValueError) as error:
+        raise ConfigError(f"{where}: not a TOML file: {str(error)[:300]}") from error
+    except RecursionError as error:
+        raise ConfigError(f"{where}: not a TOML file: nested too deeply") from error
+
+
+def _is_usable(value: object) -> TypeGuard[int | float]:
+    # A comparison is exact for whole numbers of any length; NaN fails it.
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    return -_LARGEST <= value <= _LARGEST
