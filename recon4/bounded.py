@@ -197,8 +197,8 @@ def parse_json(
     if isinstance(text, bytes):
         text = decode_text(text, name, failure=failure)
     try:
-        strict: dict[str, Any] = {"parse_constant": _finite, "parse_float": _finite}
-        value = json.loads(text, **(strict if finite else {}))
+        check = _finite if finite else None
+        value = json.loads(text, parse_constant=check, parse_float=check)
     except ValueError as error:
         raise failure(f"{name}: expected JSON, got something else: {error}") from error
     except RecursionError as error:

@@ -14,10 +14,11 @@ from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.pipeline_2d import is_2d, process_2d, remake_2d
 from recon4.progress import Progress, Silent
 from recon4.recording.sources import Sources
-from recon4.results import About, Summary, publish
+from recon4.results import Summary, publish
 from recon4.results_2d import Summary2d
 from recon4.review.decisions import NOTHING_DECIDED, Decided
 from recon4.review.journal import read_decided
+from recon4.run_summary import About
 from recon4.settings import Settings
 from recon4.settings import preset as settings_of
 from recon4.store.frames import CALIBRATED_RIG
@@ -25,10 +26,10 @@ from recon4.store.hashing import hash_json, size_of
 from recon4.store.inputs import input_file, input_files
 from recon4.store.project import (
     Project,
+    ProjectDescription,
     discard_unbegun,
     is_project,
     read_artifacts,
-    read_description,
 )
 from recon4.store.recipes import check_recipes, settings_in
 from recon4.store.stage import Artifact, Input, Stage, StageRunner, figures_of
@@ -114,7 +115,7 @@ def _process(
         runner = StageRunner(project, settings, progress)
         inputs = _inputs(project, sources, progress)
         run_stages(runner, inputs, decided=read_decided(out))
-        about = About(read_description(out), settings)
+        about = About(ProjectDescription.read(out), settings)
         return publish(out, runner.runs, about, progress=progress)
 
 
@@ -191,7 +192,7 @@ def remake(out: Path, *, progress: Progress | None = None) -> Summary | Summary2
         run_from_review(
             runner, measurements, odometry=odometry, graph=graph, decided=read_decided(out)
         )
-        about = About(read_description(out), settings)
+        about = About(ProjectDescription.read(out), settings)
         return publish(out, runner.runs, about, progress=progress)
 
 

@@ -12,14 +12,14 @@ from recon4.errors import ConfigError
 from recon4.progress import Progress
 from recon4.recording.laser2d import is_laser2d
 from recon4.recording.sources import Sources
-from recon4.results import About
 from recon4.results_2d import Summary2d, publish_2d
 from recon4.review.decisions import Decided
 from recon4.review.journal import read_decided
+from recon4.run_summary import About
 from recon4.settings import Settings
 from recon4.store.hashing import size_of
 from recon4.store.inputs import input_files
-from recon4.store.project import Project, read_artifacts, read_description
+from recon4.store.project import Project, ProjectDescription, read_artifacts
 from recon4.store.recipes import check_recipes, settings_in
 from recon4.store.stage import Artifact, Input, Stage, StageRunner
 
@@ -80,7 +80,7 @@ def process_2d(
         project.describe(preset=preset, rig="", inputs=inputs)
         runner = StageRunner(project, settings, progress)
         run_stages_2d(runner, recordings, read_decided(out))
-        about = About(read_description(out), settings)
+        about = About(ProjectDescription.read(out), settings)
         return publish_2d(out, runner.runs, about, progress=progress)
 
 
@@ -104,7 +104,7 @@ def remake_2d(out: Path, *, progress: Progress) -> Summary2d:
         runner = StageRunner(project, settings, progress)
         scans, odometry, _, graph = (runner.keep(stage) for stage in BEFORE_REVIEW_2D)
         run_from_review_2d(runner, Planar(scans, odometry, graph), read_decided(out))
-        about = About(read_description(out), settings)
+        about = About(ProjectDescription.read(out), settings)
         return publish_2d(out, runner.runs, about, progress=progress)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,27 +15,33 @@ from recon4.export.names import check_name
 from recon4.export.ply import export_ply
 from recon4.georeference.stage import read_crs
 from recon4.mapping.tiles import TileSet
-from recon4.model.figures import Figures, UncertaintyFigures
-from recon4.model.plain import to_plain
+from recon4.model.figures import UncertaintyFigures
 from recon4.model.trajectory import Trajectory
-from recon4.model.usability import MapVerdict
 from recon4.pose_graph.files import load_graph
 from recon4.progress import Progress, track
 from recon4.recording.formats.poses import write_kitti
 from recon4.report.artifacts import path_length_m
-from recon4.report.facts import InputFile, ReportFacts, StageTiming
+from recon4.report.facts import ReportFacts, StageTiming
 from recon4.report.html import write_report
 from recon4.report.verdict import Assessment, assess
 from recon4.result_files import write_graph, write_pose_covariances, write_trajectory
 from recon4.review.approval import put_back
 from recon4.review.approved import Approval, approval_of
 from recon4.review.stamp import Stamp, stamp_file
-from recon4.settings import Settings, to_json
+from recon4.run_summary import (
+    About,
+    RunSummary,
+    StageSummary,
+    duration_s,
+    hashes_of,
+    peak_bytes_of,
+    seconds_of,
+)
+from recon4.settings import values_by_group
 from recon4.store.arrays import load_trajectory
 from recon4.store.atomic import atomic_file, copy_file, write_json
 from recon4.store.checked import Altered
 from recon4.store.frames import FrameStore
-from recon4.store.hashing import hash_file
 from recon4.store.project import SUMMARY, read_artifacts
 from recon4.store.seal import changing
 from recon4.store.stage import StageRun, figures_of, versions
@@ -53,105 +59,23 @@ RESULTS = (
 """Files of a finished run, beside its summary."""
 
 
-@dataclass(frozen=True, slots=True)
-class About:
-    """Request of a run."""
-
-    project: Mapping[str, Any]
-    """``project.json``: name, preset, inputs."""
-    settings: Settings
-    """In force."""
-
-
-FORMAT = 2
-"""Format of ``summary.json``; 2 introduced ``path_length_m`` and ratios in the settings."""
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StageSummary:
-    """How a stage went; the fields are its keys in ``summary.json``."""
-
-    key: str
-    """Of its artifact."""
-    stage: str
-    version: int
-    finished: str
-    """When its artifact was made, ISO 8601 UTC."""
-    seconds: float
-    """Wall clock [s]."""
-    cpu_seconds: float
-    """Processor time, children included [s]."""
-    peak_bytes: int
-    reused: bool
-    """Whether an earlier run made it."""
-    figures: Figures
-
-    @staticmethod
-    def of(run: StageRun[Any]) -> StageSummary:
-        """The summary of a stage that ran."""
-        done = run.done
-        return StageSummary(
-            key=done.key,
-            stage=done.stage,
-            version=done.version,
-            finished=done.finished,
-            seconds=round(done.seconds, 3),
-            cpu_seconds=round(done.cpu_seconds, 3),
-            peak_bytes=done.peak_bytes,
-            reused=run.reused,
-            figures=run.figures,
-        )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Summary:
+class Summary(RunSummary):
     """Contents of ``summary.json``; the fields are its keys."""
 
-    name: str
-    """Of the project."""
-    created: str
-    """When the run ended, ISO 8601 UTC."""
-    preset: str
-    """What the settings started from."""
     rig: str
     """Name of the rig that was used."""
     crs: str
     """Code of the map's CRS; empty = a local frame."""
-    duration_s: float
-    """Time covered by the trajectory [s]."""
-    path_length_m: float
-    """Path length, in steps of half a second [m]."""
     multiframes: int
     lost: int
     """Multiframes the odometry could not place."""
     points: int
     """In the map."""
-    edges: Mapping[str, int]
-    """Pairs tried by verdict, as ``edges.json`` has them: positions had the last word."""
-    verdict: MapVerdict
     uncertainty: UncertaintyFigures | None
     """How well the poses are known; null = not stated."""
-    warnings: tuple[str, ...]
-    seconds: float
-    """Wall clock of all stages, of the earlier run where reused [s]."""
-    peak_bytes: int
-    """Largest resident memory of any stage [bytes]."""
-    stages: tuple[StageSummary, ...]
-    """How each stage went, in order."""
-    versions: Mapping[str, str]
-    settings: Mapping[str, Any]
     approval: Stamp | None
     """Who approved these results, when, as which version; null = a draft."""
-    hashes: Mapping[str, Mapping[str, str]]
-    """SHA-256 of ``inputs`` and of ``results``, by file name."""
-    folder: Path
-    """The project; not written, so that it may be moved."""
-
-    def to_json(self) -> dict[str, Any]:
-        """Plain JSON values."""
-        names = [one.name for one in fields(self) if one.name != "folder"]
-        values: dict[str, Any] = to_plain({name: getattr(self, name) for name in names})
-        return {"format": FORMAT} | values
 
 
 def publish(
@@ -184,12 +108,12 @@ def _publish(
     approval, warning = _put_back(root, {name: run.artifact.key for name, run in runs.items()})
     frames, level = figures_of(runs, stages.FRAMES), figures_of(runs, stages.LEVEL)
     summary = Summary(
-        name=about.project["name"],
+        name=about.project.name,
         created=created,
-        preset=about.project["preset"],
+        preset=about.project.preset,
         rig=frames.rig,
         crs=level.crs,
-        duration_s=round(int(trajectory.t_ns[-1] - trajectory.t_ns[0]) / 1e9, 3),
+        duration_s=duration_s(trajectory),
         path_length_m=round(float(path_length_m(trajectory)[-1]), 3),
         multiframes=frames.multiframes,
         lost=figures_of(runs, stages.ODOMETRY).lost,
@@ -198,16 +122,13 @@ def _publish(
         verdict=assessed.verdict,
         uncertainty=level.uncertainty,
         warnings=(*frames.warnings, *_rig_warnings(runs), *_later_warnings(runs), *warning),
-        seconds=round(sum(run.done.seconds for run in runs.values()), 3),
-        peak_bytes=max(run.done.peak_bytes for run in runs.values()),
+        seconds=seconds_of(runs),
+        peak_bytes=peak_bytes_of(runs),
         stages=tuple(StageSummary.of(run) for run in runs.values()),
         versions=versions(),
-        settings=to_json(about.settings),
+        settings=values_by_group(about.settings),
         approval=approval.stamp if approval else None,
-        hashes={
-            "inputs": {file["name"]: file["sha256"] for file in about.project["inputs"]},
-            "results": {name: hash_file(root / name) for name in RESULTS},
-        },
+        hashes=hashes_of(root, about.project, RESULTS),
         folder=root,
     )
     write_json(root / SUMMARY, summary.to_json())
@@ -356,9 +277,9 @@ def _writers(
 def report_facts(runs: Mapping[str, StageRun[Any]], about: About, *, created: str) -> ReportFacts:
     """What the report and the verdict are made of; the stages up to ``level`` are enough."""
     return ReportFacts(
-        title=about.project["name"],
+        title=about.project.name,
         created=created,
-        preset=about.project["preset"],
+        preset=about.project.preset,
         settings=about.settings,
         artifacts={name: run.artifact.folder for name, run in runs.items()},
         stages=tuple(
@@ -367,10 +288,7 @@ def report_facts(runs: Mapping[str, StageRun[Any]], about: About, *, created: st
             )
             for name, run in runs.items()
         ),
-        inputs=tuple(
-            InputFile(file["name"], file["bytes"], file["sha256"])
-            for file in about.project["inputs"]
-        ),
+        inputs=about.project.inputs,
         versions=versions(),
         rig=figures_of(runs, stages.FRAMES).rig,
         crs=figures_of(runs, stages.LEVEL).crs,

@@ -4,29 +4,33 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from recon4 import stages, stages_2d
 from recon4.geometry.se2 import from_se3
 from recon4.model.figures import Map2dFigures
-from recon4.model.plain import to_plain
 from recon4.model.pose_graph import EdgeKind
 from recon4.model.trajectory import Trajectory
-from recon4.model.usability import MapVerdict
 from recon4.pose_graph.files import load_graph
-from recon4.pose_graph.g2o import write_g2o
 from recon4.progress import Progress, track
-from recon4.recording.formats.poses import write_tum
 from recon4.report.artifacts import path_length_m
-from recon4.results import FORMAT, About, StageSummary
-from recon4.settings import to_json
+from recon4.result_files import write_graph, write_trajectory
+from recon4.run_summary import (
+    About,
+    RunSummary,
+    StageSummary,
+    duration_s,
+    hashes_of,
+    peak_bytes_of,
+    seconds_of,
+)
+from recon4.settings import values_by_group
 from recon4.slam2d.steps import Steps2d
 from recon4.slam2d.verdict import Facts2d, judge
 from recon4.store.arrays import load_record, load_trajectory
-from recon4.store.atomic import atomic_file, copy_file, write_json
-from recon4.store.hashing import hash_file
+from recon4.store.atomic import copy_file, write_json
 from recon4.store.project import SUMMARY
 from recon4.store.seal import changing
 from recon4.store.stage import StageRun, figures_of, versions
@@ -43,49 +47,17 @@ RESULTS_2D = (
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Summary2d:
+class Summary2d(RunSummary):
     """Contents of ``summary.json`` of a 2-D map; the fields are its keys."""
 
-    name: str
-    """Of the project."""
     map: str = "2d"
     """Kind of the map."""
-    created: str
-    """When the run ended, ISO 8601 UTC."""
-    preset: str
-    """What the settings started from."""
-    duration_s: float
-    """Time covered by the trajectory [s]."""
-    path_length_m: float
-    """Path length, in steps of half a second [m]."""
     scans: int
     lost: int
     """Scans where tracking was lost."""
     loops: int
     """Loop closures in the graph."""
-    edges: Mapping[str, int]
-    """Edges by verdict, as ``edges.json`` has them."""
     grid: Map2dFigures
-    verdict: MapVerdict
-    warnings: tuple[str, ...]
-    seconds: float
-    """Wall clock of all stages, of the earlier run where reused [s]."""
-    peak_bytes: int
-    """Largest resident memory of any stage [bytes]."""
-    stages: tuple[StageSummary, ...]
-    """How each stage went, in order."""
-    versions: Mapping[str, str]
-    settings: Mapping[str, Any]
-    hashes: Mapping[str, Mapping[str, str]]
-    """SHA-256 of ``inputs`` and of ``results``, by file name."""
-    folder: Path
-    """The project; not written, so that it may be moved."""
-
-    def to_json(self) -> dict[str, Any]:
-        """Plain JSON values."""
-        names = [one.name for one in fields(self) if one.name != "folder"]
-        values: dict[str, Any] = to_plain({name: getattr(self, name) for name in names})
-        return {"format": FORMAT} | values
 
 
 def publish_2d(
@@ -117,10 +89,10 @@ def _summary(root: Path, runs: Mapping[str, StageRun[Any]], about: About) -> Sum
     length_m = float(path_length_m(trajectory)[-1]) if len(trajectory) > 1 else 0.0
     facts = _facts(runs, trajectory, length_m)
     return Summary2d(
-        name=about.project["name"],
+        name=about.project.name,
         created=time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()),
-        preset=about.project["preset"],
-        duration_s=round(int(trajectory.t_ns[-1] - trajectory.t_ns[0]) / 1e9, 3),
+        preset=about.project.preset,
+        duration_s=duration_s(trajectory),
         path_length_m=round(length_m, 3),
         scans=facts.scans.scans,
         lost=facts.odometry.lost,
@@ -129,15 +101,12 @@ def _summary(root: Path, runs: Mapping[str, StageRun[Any]], about: About) -> Sum
         grid=facts.map,
         verdict=judge(facts),
         warnings=facts.scans.warnings,
-        seconds=round(sum(run.done.seconds for run in runs.values()), 3),
-        peak_bytes=max(run.done.peak_bytes for run in runs.values()),
+        seconds=seconds_of(runs),
+        peak_bytes=peak_bytes_of(runs),
         stages=tuple(StageSummary.of(run) for run in runs.values()),
         versions=versions(),
-        settings=to_json(about.settings),
-        hashes={
-            "inputs": {file["name"]: file["sha256"] for file in about.project["inputs"]},
-            "results": {name: hash_file(root / name) for name in RESULTS_2D},
-        },
+        settings=values_by_group(about.settings),
+        hashes=hashes_of(root, about.project, RESULTS_2D),
         folder=root,
     )
 
@@ -162,23 +131,13 @@ def _writers(root: Path, runs: Mapping[str, StageRun[Any]]) -> list[Callable[[],
     return [
         lambda: copy_file(folder["map_2d"] / "map.png", root / "map.png"),
         lambda: copy_file(folder["map_2d"] / "map.yaml", root / "map.yaml"),
-        lambda: _write_trajectory(folder["map_2d"], root / "trajectory.tum"),
-        lambda: _write_trajectory(folder["odometry_2d"], root / "odometry.tum"),
+        lambda: write_trajectory(folder["map_2d"], root / "trajectory.tum"),
+        lambda: write_trajectory(folder["odometry_2d"], root / "odometry.tum"),
         lambda: copy_file(graph / "edges.json", root / "edges.json"),
-        lambda: _write_graph(graph, root / "graph.g2o"),
+        lambda: write_graph(graph, root / "graph.g2o"),
     ]
 
 
 def _final_graph(folder: Mapping[str, Path]) -> Path:
     """The graph with the decisions of people, if there are any."""
     return folder.get(stages.REVIEW.name) or folder[stages.VERIFICATION.name]
-
-
-def _write_trajectory(artifact: Path, path: Path) -> None:
-    with atomic_file(path) as temporary:
-        write_tum(temporary, load_trajectory(artifact / "trajectory.npz"))
-
-
-def _write_graph(artifact: Path, path: Path) -> None:
-    with atomic_file(path) as temporary:
-        write_g2o(temporary, load_graph(artifact))

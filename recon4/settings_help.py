@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 from itertools import pairwise
 from typing import Any, get_args, get_type_hints
 
-from recon4.settings import PRESETS, Settings, to_json
+from recon4.settings import PRESETS, Settings, values_by_group
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,9 +43,9 @@ def describe_settings() -> tuple[GroupHelp, ...]:
     return tuple(_group(f.name) for f in fields(Settings))
 
 
-def differences(settings: Settings) -> dict[str, Any]:
+def differences(settings: Settings) -> dict[str, object]:
     """``group.field`` -> value of what is not as by default."""
-    chosen, default = to_json(settings), to_json(Settings())
+    chosen, default = values_by_group(settings), values_by_group(Settings())
     return {
         f"{group}.{name}": value
         for group, values in chosen.items()

@@ -19,6 +19,7 @@ from recon4.model.figures import (
     ReviewFigures,
     VerificationFigures,
 )
+from recon4.model.import_notes import import_notes
 from recon4.model.rig import Rig
 from recon4.review.decisions import Standing
 from recon4.store.stage import Stage, StageContext
@@ -49,14 +50,15 @@ def frames_figures(folder: Path) -> FrameFigures:
     from recon4.store.frames import FrameStore
 
     store = FrameStore.open(folder)
+    notes = import_notes(store.report)
     return FrameFigures(
         multiframes=len(store),
         points=store.points,
         rig=store.rig.name,
         imu=store.imu is not None,
         gnss=store.gnss is not None,
-        outcome=store.report.get("outcome", "complete"),
-        warnings=tuple(store.report.get("warnings", [])),
+        outcome=notes.outcome,
+        warnings=notes.warnings,
     )
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.geometry.se3 import SE3
+from recon4.mapping.notes import MapNotes
 from recon4.mapping.tile import FIELDS
 from recon4.mapping.tiles import TileWriter
 from recon4.model.multiframe import Multiframe
@@ -202,7 +203,7 @@ def _map(context: StageContext, *, points: int) -> None:
     rng = np.random.default_rng(7)
     p = room_points(rng, points)
     with TileWriter(context.out, list(FIELDS), tile_m=TILE_M) as writer:
-        writer.facts = {"voxel_m": 0.01, "crs": None}
+        writer.notes = MapNotes(voxel_m=0.01)
         ijk = np.floor(p / TILE_M).astype(np.int64)
         for key in np.unique(ijk, axis=0):
             mine = p[np.all(ijk == key, axis=1)]

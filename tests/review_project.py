@@ -23,13 +23,14 @@ from recon4.model.trajectory import Trajectory
 from recon4.pipeline import remake
 from recon4.pose_graph.files import save_graph
 from recon4.progress import Progress, Silent
-from recon4.results import About, publish
+from recon4.results import publish
 from recon4.review.journal import read_decided
+from recon4.run_summary import About
 from recon4.settings import MapSettings, Settings
 from recon4.store.arrays import save_trajectory
 from recon4.store.atomic import write_json
 from recon4.store.frames import FrameStore, FrameWriter
-from recon4.store.project import SUMMARY, Project, read_description
+from recon4.store.project import SUMMARY, Project, ProjectDescription
 from recon4.store.seal import changing
 from recon4.store.stage import Input, Stage, StageContext, StageRunner
 from tests.room_walks import FRAME_NS, T0_NS
@@ -78,7 +79,7 @@ def make(root: Path, *, graph_only: bool = False, progress: Progress | None = No
         level = runner.run(stages.LEVEL, frames=frames, refined=refined, graph=graph)
         intensity = runner.run(stages.INTENSITY, frames=frames, level=level)
         runner.run(stages.MAP, frames=frames, level=level, intensity=intensity)
-        about = About(read_description(root), SETTINGS)
+        about = About(ProjectDescription.read(root), SETTINGS)
         publish(root, runner.runs, about, progress=progress or Silent())
 
 

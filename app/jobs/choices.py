@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from app.access.people import Permission, needs
 from recon4.errors import WrongSettings
 from recon4.model.rig import rig_presets
-from recon4.settings import PRESETS, override, preset, to_json
+from recon4.settings import PRESETS, override, preset, values_by_group
 from recon4.settings_help import GroupHelp, SettingHelp, describe_settings
 
 router = APIRouter(prefix="/api", tags=["settings"], dependencies=[Depends(needs(Permission.LOOK))])
@@ -90,7 +90,7 @@ def read_choices() -> Choices:
 @router.get("/settings", summary="Every setting")
 def read_settings(of: str = "indoor") -> list[GroupView]:
     """List every setting with meaning, unit, default, and value in the preset ``of``."""
-    values = to_json(preset(of))
+    values = values_by_group(preset(of))
     return [_group(group, values[group.name]) for group in _described()]
 
 
@@ -110,7 +110,7 @@ def _described() -> tuple[GroupHelp, ...]:
     return describe_settings()
 
 
-def _group(group: GroupHelp, values: dict[str, Any]) -> GroupView:
+def _group(group: GroupHelp, values: dict[str, object]) -> GroupView:
     settings = [_setting(one, values[one.name]) for one in group.settings]
     return GroupView(name=group.name, text=_plain(group.text), settings=settings)
 

@@ -7,7 +7,7 @@ import secrets
 from collections.abc import AsyncIterator, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Depends, Query, Request
 from fastapi.responses import FileResponse, PlainTextResponse
@@ -38,7 +38,7 @@ router = APIRouter(
 )
 PROCESS = [Depends(needs(Permission.PROCESS))]
 START = [*PROCESS, Depends(at_most(10, within_s=3600.0, what="jobs"))]
-REFUSALS: dict[int | str, dict[str, Any]] = {
+REFUSALS: dict[int | str, dict[str, object]] = {
     status: {"model": ProblemDetail} for status in (403, 429, 507)
 }
 

@@ -121,7 +121,7 @@ class JobStore:
             return [_job(row) for row in connection.execute(query).mappings()]
 
 
-def _row(job: Job) -> dict[str, Any]:
+def _row(job: Job) -> dict[str, object]:
     row = asdict(job)
     return row | {"inputs": json.dumps(row["inputs"])}
 

@@ -14,7 +14,6 @@ import socket
 import ssl
 from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 from app.network.connections import Connection, ConnectionTable, client_network
 from app.network.slow_readers import ReaderWatch
@@ -184,17 +183,15 @@ class Acceptor:
         self, sock: AcceptedSocket, connection: Connection, left_s: float | None
     ) -> None:
         """Hand the socket to asyncio, which closes it in every case."""
-        tls: dict[str, Any] = {}
-        if self._context is not None:
-            tls = {
-                "ssl": self._context,
-                "ssl_handshake_timeout": left_s,
-                "ssl_shutdown_timeout": SHUTDOWN_TIMEOUT_S,
-            }
+        secure = self._context is not None
         counts = self._table.counts
         try:
             transport, _ = await self._loop.connect_accepted_socket(
-                lambda: self._protocol(connection), sock, **tls
+                lambda: self._protocol(connection),
+                sock,
+                ssl=self._context,
+                ssl_handshake_timeout=left_s if secure else None,
+                ssl_shutdown_timeout=SHUTDOWN_TIMEOUT_S if secure else None,
             )
         except ConnectionAbortedError:  # what asyncio raises for a late handshake
             counts.timeouts["handshake"] += 1

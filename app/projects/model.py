@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 RESULTS: dict[str, str] = {
     "report.html": "Quality report",
@@ -85,7 +84,7 @@ class ProjectView:
     """Whether the viewer can show it in 3-D."""
     has_map: bool
     """Whether there is a map, also a 2-D one, for a thumbnail."""
-    summary: dict[str, Any]
+    summary: dict[str, object]
     """``summary.json`` of the run; empty before."""
     problem: str = ""
     """Files of the project that cannot be read, and why; empty = none."""

@@ -249,14 +249,14 @@ def _read_card(folder: Path, stamp: Stamp) -> ProjectCard:
     )
 
 
-def _usability(summary: dict[str, Any]) -> str:
+def _usability(summary: dict[str, object]) -> str:
     """The verdict on the map; empty where there is none, as in files of format 1."""
     verdict = summary.get("verdict")
     usability = verdict.get("usability") if isinstance(verdict, dict) else None
     return usability if usability in list(Usability) else ""
 
 
-def _name(facts: dict[str, Any], folder: Path) -> str:
+def _name(facts: dict[str, object], folder: Path) -> str:
     return visible(str(facts.get("name") or folder.name))
 
 
@@ -333,13 +333,13 @@ def _stage(row: StageRow) -> StageView:
     )
 
 
-def _summary(folder: Path) -> tuple[dict[str, Any], str]:
+def _summary(folder: Path) -> tuple[dict[str, object], str]:
     """``summary.json`` with current names, and the problem with it."""
     summary, problem = _object(folder, "summary.json")
     return current_names(summary, SUMMARY), problem
 
 
-def _object(folder: Path, name: str) -> tuple[dict[str, Any], str]:
+def _object(folder: Path, name: str) -> tuple[dict[str, object], str]:
     """A JSON object and the problem with its file; a page shows the readable rest."""
     path = folder / name
     if not path.exists():

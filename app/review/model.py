@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -109,7 +109,7 @@ class MapFacts:
     min_reason_characters: int
     """Shortest reason that is accepted then."""
     warnings: list[str]
-    figures: dict[str, Any]
+    figures: dict[str, object]
     """The figures that an approval signs, by their names in ``summary.json``."""
 
 

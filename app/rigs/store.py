@@ -13,7 +13,6 @@ from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
 from stat import S_ISREG
-from typing import Any
 
 from app.errors import Conflict, NotFound
 from app.rigs.model import RIG_ID, RigVersion
@@ -200,7 +199,7 @@ def _is_file(path: Path) -> bool:
     return regular and found.st_size <= MAX_RIG_BYTES
 
 
-def _text(row: dict[str, Any], key: str, *, most: int = 200) -> str:
+def _text(row: dict[str, object], key: str, *, most: int = 200) -> str:
     value = row.get(key, "")
     if not isinstance(value, str):
         return ""

@@ -98,6 +98,6 @@ def _export_sheet(
         approval=stamp_text(context.evidence),
         surface=surface_text(tiles.surface),
         reference=against.name if against else "",
-        sensors=tuple(str(name) for name in tiles.facts.get("sensors", [])),
+        sensors=tiles.notes.sensors,
     )
     write_sheet(made, layout, path, span=span_of(ask, made), text=text)

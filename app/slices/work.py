@@ -114,15 +114,14 @@ def facts(
     """Facts about the map, its references, other maps and its approval."""
     tiles, frame = tiles_of(artifacts["map"]), map_frame(artifacts)
     low, high = (_xyz(np.nan_to_num(corner)) for corner in tiles.bounds_m)
-    times = tiles.facts["time_ns"] or [0, 0]
     return SliceFacts(
         points=len(tiles),
         strays=tiles.strays,
         surface=tiles.surface,
         bounds_m=(low, high),
         fields=list(tiles.fields),
-        sensors=[str(name) for name in tiles.facts.get("sensors", [])],
-        seconds=(times[1] - times[0]) / 1e9,
+        sensors=list(tiles.notes.sensors),
+        seconds=(tiles.last_ns - tiles.first_ns) / 1e9,
         key=Path(artifacts["map"]).name,
         crs=frame.crs,
         frame=frame.text,

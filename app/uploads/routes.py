@@ -6,7 +6,7 @@ import asyncio
 import contextlib
 from datetime import UTC, datetime
 from email.utils import formatdate
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Depends, Path, Request, Response
 from fastapi.routing import APIRoute
@@ -157,7 +157,7 @@ def remove_upload(upload_id: str, server: Server, request: Request) -> None:
     audit(request, "give up upload", upload.folder)
 
 
-def _headers(*rows: tuple[str, bool, str]) -> list[dict[str, Any]]:
+def _headers(*rows: tuple[str, bool, str]) -> list[dict[str, object]]:
     """Parameters of OpenAPI: name, whether it is required, description."""
     return [
         {
@@ -171,7 +171,7 @@ def _headers(*rows: tuple[str, bool, str]) -> list[dict[str, Any]]:
     ]
 
 
-CREATE: dict[str, Any] = {
+CREATE: dict[str, object] = {
     "parameters": _headers(
         ("Tus-Resumable", True, "1.0.0"),
         ("Upload-Length", True, "Bytes of the file"),
@@ -182,7 +182,7 @@ CREATE: dict[str, Any] = {
         ),
     )
 }
-CHUNK: dict[str, Any] = {
+CHUNK: dict[str, object] = {
     "parameters": _headers(
         ("Tus-Resumable", True, "1.0.0"),
         ("Upload-Offset", True, "Position of the bytes: the offset that HEAD returns"),

@@ -55,7 +55,7 @@ def calibrate(
         found = calibrate_by(method, sources, folder, sensors=sensors, progress=progress)
     write("\n".join(found.lines))
     page = out.with_suffix(".html")
-    write_calibration_page(page, page_of(method, found, sources, folder))
+    write_calibration_page(page, page_of(method, found, sources, folder=folder))
     write(f"page    {page}")
     _write(found, out)
 

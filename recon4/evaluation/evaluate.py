@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -77,7 +76,7 @@ class Evaluation:
         """The figures as text tables for a terminal."""
         return evaluation_text(self)
 
-    def to_json(self) -> dict[str, Any]:
+    def to_json(self) -> dict[str, object]:
         """Plain JSON values; NaN becomes null, arrays with one row per pose are left out."""
         plain = _plain(self)
         assert isinstance(plain, dict)

@@ -130,7 +130,7 @@ def _header(tiles: TileSet, offset: NDArray[np.float64], crs: str | None) -> Any
     header.system_identifier = "MERGE"
     # The same map gives the same bytes: no random UUID and no date of the day.
     header.uuid = uuid.UUID(int=0)
-    first_ns = int(tiles.facts["time_ns"][0])
+    first_ns = tiles.first_ns
     header.creation_date = day_of(max(first_ns, 0))
     header.global_encoding.gps_time_type = (
         laspy.header.GpsTimeType.STANDARD

@@ -58,7 +58,7 @@ def export_ply(
     center(tiles, transform)
     fields = [name for name in _COLUMNS if name in tiles.fields]
     row = _row(fields)
-    absolute = is_absolute(int(tiles.facts["time_ns"][0]))
+    absolute = is_absolute(tiles.first_ns)
     stream = blocks(
         tiles, [*fields, "normal", "t_ns"], to_crs=transform, progress=progress or Silent()
     )

@@ -11,7 +11,7 @@ fields.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, TypeVar, cast
+from typing import Annotated, TypeVar, cast
 
 import msgspec
 
@@ -329,9 +329,9 @@ def kind_of(message: Message) -> str:
     return cast("str", message.__struct_config__.tag)
 
 
-def fields_of(record: Message) -> dict[str, Any]:
+def fields_of(record: Message) -> dict[str, object]:
     """The fields of a message as JSON values, without ``kind``; for files."""
-    fields: dict[str, Any] = msgspec.to_builtins(record)
+    fields: dict[str, object] = msgspec.to_builtins(record)
     del fields["kind"]
     return fields
 

@@ -14,10 +14,11 @@ import numpy as np
 from recon4.intensity.table import IntensityTable
 from recon4.mapping.buckets import BURST, TileBuckets
 from recon4.mapping.grid import Grid
+from recon4.mapping.notes import MapCrs, MapNotes
 from recon4.mapping.place import place_with_origins
 from recon4.mapping.records import Records, Tile, split_into_tiles
 from recon4.mapping.tile import FIELDS, SURFACE_FIELDS, MadeTile, Recipe, make_tile
-from recon4.mapping.tiles import MapCrs, TileSet, TileWriter
+from recon4.mapping.tiles import TileSet, TileWriter
 from recon4.model.events import MapBuilt
 from recon4.model.frames import Frames
 from recon4.model.trajectory import Trajectory
@@ -73,12 +74,12 @@ def build_map(
         buckets = TileBuckets(Path(folder), grid, burst=burst)
         _distribute(frames, trajectory, buckets, settings=settings, progress=progress)
         removed = _finish_tiles(buckets, recipe, writer, progress=progress)
-        writer.facts = {
-            "voxel_m": settings.voxel_m,
-            "crs": crs and {"wkt": crs.wkt, "origin_m": list(crs.origin_m)},
-            "sensors": [sensor.name for sensor in frames.rig.sensors],
-            "removed": dict(removed),
-        }
+        writer.notes = MapNotes(
+            voxel_m=settings.voxel_m,
+            crs=crs,
+            sensors=tuple(sensor.name for sensor in frames.rig.sensors),
+            removed=dict(removed),
+        )
     made = TileSet.open(out)
     progress.event(MapBuilt(points=len(made), removed=dict(removed)))
     return made

@@ -9,7 +9,7 @@ Rows ``start`` to ``stop`` belong to a tile; any first part of them is an even s
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from types import TracebackType
@@ -18,7 +18,6 @@ from typing import Any, BinaryIO, Literal, Self, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.bounded import read_json_object
 from recon4.errors import StoreError
 from recon4.geometry.se3 import Array
 from recon4.mapping.columns import (
@@ -28,6 +27,7 @@ from recon4.mapping.columns import (
     map_rows,
     row_offset,
 )
+from recon4.mapping.notes import MapCrs, MapNotes, read_map_list
 from recon4.mapping.tile import FIELDS, Columns, spatial_order
 from recon4.store.atomic import raise_if_full, write_json
 from recon4.store.checked import Altered, CheckedArtifact
@@ -40,18 +40,7 @@ MARGIN_M = 0.2
 Surface = Literal["fitted", "raw"]
 """Where points lie: on the surfaces fitted to all returns, or where they were measured."""
 Number = TypeVar("Number", int, float)
-_MAX_FACTS_BYTES = 256 << 20
-"""``tiles.json`` has some 300 bytes per tile."""
-
-
-@dataclass(frozen=True, slots=True)
-class MapCrs:
-    """Coordinate reference system of the map."""
-
-    wkt: str
-    """The CRS as WKT."""
-    origin_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Coordinates of the map's origin in it [m]; the axes are parallel."""
+_MALFORMED = (ValueError, KeyError, TypeError, IndexError, OverflowError, AttributeError)
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,9 +127,13 @@ class TileSet:
 
     tiles: tuple[Tile, ...]
     fields: tuple[str, ...]
-    crs: MapCrs | None
-    facts: dict[str, Any]
-    """The rest of ``tiles.json``: ``points``, ``bounds_m``, ``time_ns``, ``removed`` …"""
+    points: int
+    tile_m: float
+    """Edge of a tile [m]."""
+    first_ns: int
+    """Time of the first point [ns]; 0 = there are none."""
+    last_ns: int
+    notes: MapNotes
     surface: Surface
     """Where its points lie."""
 
@@ -160,26 +153,33 @@ class TileSet:
         if checked is not None:
             checked.check("tiles.json")
         try:
-            facts = _read_facts(path)
+            facts = read_map_list(path)
             if facts["format"] != FORMAT:
                 raise StoreError(f"{path.name}: expected format {FORMAT}, got {facts['format']}")
             fields = tuple(str(name) for name in facts["fields"])
-            rows = facts.pop("tiles")
-            tiles = tuple(_tile(folder / "tiles", fields, row, checked=checked) for row in rows)
-            crs = facts["crs"] and MapCrs(facts["crs"]["wkt"], tuple(facts["crs"]["origin_m"]))
-            points = int(facts["points"])
-        except (ValueError, KeyError, TypeError, IndexError, OverflowError) as error:
+            tiles = tuple(
+                _tile(folder / "tiles", fields, row, checked=checked) for row in facts["tiles"]
+            )
+            points, tile_m = int(facts["points"]), float(facts["tile_m"])
+            first_ns, last_ns = (int(t_ns) for t_ns in facts["time_ns"] or (0, 0))
+            notes = MapNotes.of(facts)
+        except _MALFORMED as error:
             raise StoreError(f"{path} is not the list of a map's tiles: {error!r}") from error
         check_columns(folder / "tiles", fields, points + sum(tile.strays for tile in tiles))
         _check_rows(tiles, points, path.name)
         surface: Surface = "fitted" if RAW_OFFSET in fields else "raw"
-        return TileSet(tiles, fields, crs or None, facts, surface)
+        return TileSet(tiles, fields, points, tile_m, first_ns, last_ns, notes, surface)
 
     def __len__(self) -> int:
-        return int(self.facts["points"])
+        return self.points
 
     def __iter__(self) -> Iterator[Tile]:
         return iter(self.tiles)
+
+    @property
+    def crs(self) -> MapCrs | None:
+        """Coordinate reference system; None = a local frame."""
+        return self.notes.crs
 
     @property
     def strays(self) -> int:
@@ -202,7 +202,7 @@ class TileSet:
         return replace(
             self,
             tiles=tuple(tile.stray_part() for tile in self.tiles if tile.strays),
-            facts=self.facts | {"points": self.strays},
+            points=self.strays,
         )
 
     @property
@@ -239,8 +239,7 @@ class TileWriter:
         self._rows: list[_TileRow] = []
         self._points = 0
         self._files: dict[str, BinaryIO] = {}
-        self.facts: dict[str, Any] = {}
-        """Further entries of ``tiles.json``."""
+        self.notes = MapNotes()
 
     def __enter__(self) -> Self:
         (self._folder / "tiles").mkdir(parents=True)
@@ -303,7 +302,8 @@ class TileWriter:
         ]
         times = [t for row in rows for t in row.time_ns]
         points = self._points - sum(row.strays for row in rows)
-        facts = {"format": FORMAT, "points": points, "bounds_m": bounds} | self.facts
+        facts: dict[str, object] = {"format": FORMAT, "points": points, "bounds_m": bounds}
+        facts |= self.notes.to_json()
         facts["time_ns"] = [min(times), max(times)] if times else None
         listed = [asdict(row) for row in rows]
         for row in listed:
@@ -313,15 +313,12 @@ class TileWriter:
         write_json(self._folder / "tiles.json", facts)
 
 
-def _read_facts(path: Path) -> dict[str, Any]:
-    try:
-        return read_json_object(path, _MAX_FACTS_BYTES, failure=StoreError)
-    except StoreError as error:
-        raise StoreError(f"{path} is not the list of a map's tiles: {error}") from error
-
-
 def _tile(
-    folder: Path, fields: tuple[str, ...], row: dict[str, Any], *, checked: CheckedArtifact | None
+    folder: Path,
+    fields: tuple[str, ...],
+    row: Mapping[str, Any],
+    *,
+    checked: CheckedArtifact | None,
 ) -> Tile:
     return Tile(
         folder,

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
 
 import msgspec
 
@@ -56,7 +55,7 @@ class MapVerdict:
     """What the LiDAR hardly observes, in order of time."""
 
 
-def verdict_in(summary: Mapping[str, Any]) -> MapVerdict | None:
+def verdict_in(summary: Mapping[str, object]) -> MapVerdict | None:
     """The verdict in ``summary.json``; None where there is none, as in files of format 1.
 
     Raises:

@@ -15,7 +15,7 @@ from recon4.errors import StoreError
 from recon4.geometry.se3 import SE3
 from recon4.model.plain import finite_or_none
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
-from recon4.store.arrays import load_arrays
+from recon4.store.arrays import load_arrays, save_arrays
 
 _NUMBERS = ("overlap", "error_m", "limit_m", "degeneracy", "verification_m", "chi2")
 _COUNTS = ("iterations", "paths")
@@ -27,7 +27,7 @@ _EDGES = ("i", "j", "edge_R", "edge_t", "information", "converged")
 def save_graph(folder: Path, graph: PoseGraph) -> None:
     """Write ``graph.npz`` (all data, exact) and ``edges.json`` (every registered pair)."""
     of = graph.relations
-    columns: dict[str, Any] = {
+    columns: dict[str, NDArray[Any]] = {
         "frame_ids": graph.frame_ids,
         "t_ns": graph.t_ns,
         "node_R": graph.T_map_body.R,
@@ -42,7 +42,7 @@ def save_graph(folder: Path, graph: PoseGraph) -> None:
     for names, kind in ((_NUMBERS, np.float64), (_COUNTS, np.int64), (_TEXTS, np.str_)):
         for name in names:
             columns[name] = np.array([getattr(edge, name) for edge in graph.edges], dtype=kind)
-    np.savez(folder / "graph.npz", **columns)
+    save_arrays(folder / "graph.npz", columns)
     write_edges_json(folder / "edges.json", graph)
 
 
@@ -69,8 +69,8 @@ def load_graph(folder: Path) -> PoseGraph:
 
 
 def _edge(columns: Mapping[str, NDArray[Any]], row: int) -> Edge:
-    fields: dict[str, Any] = {name: float(columns[name][row]) for name in _NUMBERS}
-    fields |= {name: int(columns[name][row]) for name in _COUNTS}
+    number = {name: float(columns[name][row]) for name in _NUMBERS}
+    count = {name: int(columns[name][row]) for name in _COUNTS}
     return Edge(
         i=int(columns["i"][row]),
         j=int(columns["j"][row]),
@@ -81,7 +81,14 @@ def _edge(columns: Mapping[str, NDArray[Any]], row: int) -> Edge:
         information=columns["information"][row],
         converged=bool(columns["converged"][row]),
         decided_by=str(columns["decided_by"][row]),
-        **fields,
+        overlap=number["overlap"],
+        error_m=number["error_m"],
+        limit_m=number["limit_m"],
+        degeneracy=number["degeneracy"],
+        verification_m=number["verification_m"],
+        chi2=number["chi2"],
+        iterations=count["iterations"],
+        paths=count["paths"],
     )
 
 

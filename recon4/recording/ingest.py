@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -301,7 +301,7 @@ def _write_poses(out: Path, parts: Sequence[Trajectory], report: ImportReport) -
 
 def _summary(
     recording: Recording, assembler: Assembler, written: _IngestSpan, *, report: ImportReport
-) -> dict[str, Any]:
+) -> dict[str, object]:
     gaps = [*recording.gaps, *assembler.gaps]
     return {
         "kind": str(recording.kind),
@@ -333,7 +333,7 @@ def _number(value: float | None) -> float | None:
     return None if value is None or not np.isfinite(value) else round(float(value), 4)
 
 
-def _about(samples: ImuSamples | GnssSamples | None) -> dict[str, Any] | None:
+def _about(samples: ImuSamples | GnssSamples | None) -> dict[str, object] | None:
     if samples is None:
         return None
     span_s = float(samples.t_ns[-1] - samples.t_ns[0]) / 1e9

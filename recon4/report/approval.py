@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from html import escape
-from typing import Any
 
 from recon4.model.usability import Usability
 
@@ -25,7 +24,7 @@ def draft_block() -> str:
     return _block("note", "draft", "Not approved by anybody.")
 
 
-def approved_block(stamp: Mapping[str, Any]) -> str:
+def approved_block(stamp: Mapping[str, object]) -> str:
     """HTML for an approved map, from the fields of its stamp; all of them are escaped.
 
     A map approved in spite of its verdict says so, with the reason of the signer.

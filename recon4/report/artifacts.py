@@ -20,6 +20,7 @@ from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
 from recon4.pose_graph.uncertainty import PoseUncertainty
 from recon4.pose_graph.uncertainty_files import load_uncertainty
+from recon4.report.placement import Placement, placement_in
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.earlier_names import STEPS, current_names
 
@@ -30,7 +31,7 @@ _MAX_JSON_BYTES = 64 << 20
 class Results:
     """The artifacts of a run in memory, without points. None or empty = missing."""
 
-    imported: dict[str, Any] = field(default_factory=dict)
+    imported: dict[str, object] = field(default_factory=dict)
     """``report.json`` of the frames."""
     odometry: Trajectory | None = None
     steps: dict[str, NDArray[Any]] = field(default_factory=dict)
@@ -39,15 +40,24 @@ class Results:
     """Audit of the rig."""
     graph: PoseGraph | None = None
     """The latest graph: leveled, else reviewed, else verified, else as searched."""
-    verification: dict[str, Any] = field(default_factory=dict)
+    verification: dict[str, object] = field(default_factory=dict)
     final: Trajectory | None = None
     """The latest trajectory after the odometry."""
-    refine: dict[str, Any] = field(default_factory=dict)
-    georeference: dict[str, Any] = field(default_factory=dict)
+    refine: dict[str, object] = field(default_factory=dict)
+    georeference: dict[str, object] = field(default_factory=dict)
     uncertainty: PoseUncertainty | None = None
     """Covariances of the final poses; None = not stated."""
     intensity: dict[str, NDArray[Any]] = field(default_factory=dict)
     """Columns of ``diagnostics.npz``."""
+
+    @property
+    def placement(self) -> Placement:
+        """How the map was leveled and georeferenced.
+
+        Raises:
+            StoreError: If ``georeference.json`` is not as written.
+        """
+        return placement_in(self.georeference)
 
 
 def read_results(artifacts: Mapping[str, Path]) -> Results:
@@ -88,7 +98,7 @@ def _file(artifacts: Mapping[str, Path], stage: str, name: str) -> Path | None:
     return path if path is not None and path.is_file() else None
 
 
-def _json(artifacts: Mapping[str, Path], stage: str, name: str) -> dict[str, Any]:
+def _json(artifacts: Mapping[str, Path], stage: str, name: str) -> dict[str, object]:
     path = _file(artifacts, stage, name)
     if path is None:
         return {}

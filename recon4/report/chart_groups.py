@@ -129,7 +129,7 @@ def rig_figures(results: Results) -> list[ChartFigure]:
 
 def georeference_figures(results: Results) -> list[ChartFigure]:
     """Residuals at the GNSS positions."""
-    return _framed(charts.gnss_charts(results.georeference))
+    return _framed(charts.gnss_charts(results.placement.gnss))
 
 
 def _framed(drawn: charts.Charts) -> list[ChartFigure]:

@@ -17,6 +17,7 @@ from recon4.report.drift import DriftClosed
 from recon4.report.edges import by_verdict, spanning
 from recon4.report.figures import BLUE, GRAY, GREEN, ORANGE, PINK, cumulative, histogram, lines
 from recon4.report.intensity import Dependency
+from recon4.report.placement import GnssFacts
 
 Charts = list[tuple[str, str]]
 """SVG and caption of each chart."""
@@ -114,14 +115,12 @@ def accuracy_charts(found: Evaluation) -> Charts:
     return out
 
 
-def gnss_charts(placed: dict[str, Any]) -> Charts:
-    """Residuals at the GNSS positions, from ``georeference.json``."""
-    found = _holding("residual_enu_m", placed)
-    if found is None or not len(found["residual_enu_m"]):
+def gnss_charts(gnss: GnssFacts) -> Charts:
+    """Residuals at the GNSS positions."""
+    if not gnss.residual_enu_m:
         return []
-    residual_cm = 100.0 * np.asarray(found["residual_enu_m"], dtype=np.float64)
-    used = np.asarray(found.get("used", np.ones(len(residual_cm))), dtype=bool)
-    t_ns = np.asarray(found.get("t_ns", np.arange(len(used)) * 10**9), dtype=np.int64)
+    residual_cm = 100.0 * np.asarray(gnss.residual_enu_m, dtype=np.float64)
+    used, t_ns = np.asarray(gnss.used, dtype=bool), np.asarray(gnss.t_ns, dtype=np.int64)
     t_s = ((t_ns - t_ns[0]) / 1e9)[used]
     if not used.any():
         return []
@@ -185,14 +184,6 @@ def _tracking_charts(steps: dict[str, NDArray[Any]], time: str) -> Charts:
         svg = lines("match-ratio", series, labels=(time, "match ratio [%]"))
         out.append((svg, "Odometry: match ratio, the segments with a partner in the local map."))
     return out
-
-
-def _holding(key: str, facts: dict[str, Any]) -> dict[str, Any] | None:
-    """The first mapping that has a key: this one or a nested one."""
-    if key in facts:
-        return facts
-    inner = [_holding(key, value) for value in facts.values() if isinstance(value, dict)]
-    return next((table for table in inner if table is not None), None)
 
 
 def _groups(values: dict[Verdict, Array]) -> list[tuple[str, Array, str]]:

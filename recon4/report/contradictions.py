@@ -7,13 +7,12 @@ Multipath beside a building does that in every walk, so a run is a warning, no v
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from recon4.geometry.se3 import Array
+from recon4.report.placement import GnssFacts
 
 MIN_FIXES, MIN_SECONDS = 10, 1.0
 """Shorter runs count as noise."""
@@ -38,17 +37,17 @@ class RejectedRun:
     """Largest difference in height [m]."""
 
 
-def rejected_runs(georeference: Mapping[str, Any]) -> list[RejectedRun]:
+def rejected_runs(gnss: GnssFacts) -> list[RejectedRun]:
     """Find them, in order of time.
 
     Args:
-        georeference: `GeoreferenceRecord` as JSON: ``t_ns``, ``residual_enu_m``, ``used``.
+        gnss: The fixes with their residuals.
     """
-    t_ns = np.asarray(georeference.get("t_ns", []), np.int64)
-    rejected = np.flatnonzero(~np.asarray(georeference.get("used", []), bool))
+    t_ns = np.asarray(gnss.t_ns, np.int64)
+    rejected = np.flatnonzero(~np.asarray(gnss.used, bool))
     if not len(t_ns) or not len(rejected):
         return []
-    residual_m = np.asarray(georeference["residual_enu_m"], np.float64)
+    residual_m = np.asarray(gnss.residual_enu_m, np.float64)
     t_s = (t_ns - t_ns[0]) / 1e9
     runs = np.split(rejected, np.flatnonzero(np.diff(t_s[rejected]) > _BRIDGED_S) + 1)
     return [

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from recon4.evaluation.evaluate import Evaluation
 from recon4.settings import Settings
+from recon4.store.project import InputFile
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,15 +24,6 @@ class StageTiming:
     """Largest resident memory [bytes]."""
     reused: bool = False
     """Result of an earlier run was reused."""
-
-
-@dataclass(frozen=True, slots=True)
-class InputFile:
-    """An input file of the run."""
-
-    name: str
-    size_bytes: int
-    sha256: str
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

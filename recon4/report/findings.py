@@ -9,6 +9,7 @@ from enum import IntEnum
 import numpy as np
 
 from recon4.evaluation.table import number, percentage
+from recon4.model.import_notes import import_notes
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Verdict
 from recon4.model.usability import UNOBSERVED_SECONDS
 from recon4.pose_graph.uncertainty_files import uncertainty_figures
@@ -145,7 +146,7 @@ def _observability(results: Results) -> list[Finding]:
     if not stretches:
         return []
     seconds = sum(stretch.seconds for stretch in stretches)
-    positions = results.georeference.get("georeference", {}).get("georeferenced", False)
+    positions = results.placement.gnss.georeferenced
     level = Level.BAD if seconds >= UNOBSERVED_SECONDS and not positions else Level.WARNING
     return [Finding(level, _describe_stretch(stretch)) for stretch in stretches[:_MAX_WARNINGS]]
 
@@ -240,14 +241,14 @@ def _closed(drift: DriftClosed | None) -> list[Finding]:
 
 
 def _leveled(results: Results) -> list[Finding]:
-    if results.georeference.get("levelling", {}).get("source") != "none":
+    if results.placement.is_leveled:
         return []
     text = "The map is not leveled: its heights and slopes are relative to the first sensor pose."
     return [Finding(Level.WARNING, text)]
 
 
 def _contradicted(results: Results) -> list[Finding]:
-    count = len(results.georeference.get("georeference", {}).get("edges_rejected", []))
+    count = len(results.placement.gnss.edges_rejected)
     if not count:
         return []
     text = f"Rejected automatically: {count} verified loop closures contradict the GNSS priors."
@@ -263,17 +264,16 @@ def _rejected_fixes(results: Results) -> list[Finding]:
             f"{run.height_m:.2f} m in height from the trajectory. They were rejected: either the "
             "trajectory or GNSS is wrong there. A control point would tell which.",
         )
-        for run in rejected_runs(results.georeference.get("georeference", {}))[:_MAX_WARNINGS]
+        for run in rejected_runs(results.placement.gnss)[:_MAX_WARNINGS]
     ]
 
 
 def _imported(results: Results) -> list[Finding]:
-    imported = results.imported
+    notes = import_notes(results.imported)
     out = []
-    outcome = imported.get("outcome", "complete")
-    if outcome != "complete":
-        out.append(Finding(Level.WARNING, f"The recording was read as: {outcome}."))
-    warnings = [str(text) for text in imported.get("warnings", [])]
+    if notes.outcome != "complete":
+        out.append(Finding(Level.WARNING, f"The recording was read as: {notes.outcome}."))
+    warnings = notes.warnings
     out += [Finding(Level.WARNING, text) for text in warnings[:_MAX_WARNINGS]]
     if len(warnings) > _MAX_WARNINGS:
         text = f"{len(warnings) - _MAX_WARNINGS} more warnings under Import."

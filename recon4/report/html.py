@@ -107,7 +107,7 @@ def _frame(facts: ReportFacts, results: Results) -> str:
     """Frame and unit of the coordinates."""
     if facts.crs:
         return f"{facts.crs} (meters)"
-    leveled = results.georeference.get("levelling", {}).get("source") != "none"
+    leveled = results.placement.is_leveled
     return f"local map frame, {'z up' if leveled else 'not leveled'} (meters)"
 
 

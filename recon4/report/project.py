@@ -8,9 +8,9 @@ import msgspec
 
 from recon4.errors import StoreError
 from recon4.evaluation.evaluate import Evaluation
-from recon4.report.facts import InputFile, ReportFacts, StageTiming
+from recon4.report.facts import ReportFacts, StageTiming
 from recon4.store.json_files import read_object
-from recon4.store.project import read_artifacts, read_description
+from recon4.store.project import ProjectDescription, read_artifacts
 from recon4.store.recipes import settings_in
 
 _MAX_BYTES = 16 << 20
@@ -57,7 +57,7 @@ def project_facts(root: Path, evaluation: Evaluation) -> ReportFacts:
     if not (root / "summary.json").is_file():
         raise StoreError(f"expected a project with a finished run, got {root}")
     record = read_object(root / "summary.json", max_bytes=_MAX_BYTES)
-    described = read_description(root)
+    described = ProjectDescription.read(root)
     artifacts = read_artifacts(root)
     try:
         summary = msgspec.convert(record, _Summary)
@@ -68,10 +68,7 @@ def project_facts(root: Path, evaluation: Evaluation) -> ReportFacts:
             settings=settings_in(artifacts.values()),
             artifacts=artifacts,
             stages=tuple(_timing(stage) for stage in summary.stages),
-            inputs=tuple(
-                InputFile(file["name"], file["bytes"], file["sha256"])
-                for file in described.get("inputs", [])
-            ),
+            inputs=described.inputs,
             versions=summary.versions,
             rig=summary.rig,
             crs=summary.crs,

@@ -88,7 +88,7 @@ _UNITS = (
 )
 
 
-def _rows(values: Mapping[str, Any], prefix: str) -> Rows:
+def _rows(values: Mapping[str, object], prefix: str) -> Rows:
     out: Rows = []
     for name, value in values.items():
         if name in _NO_ROW:
@@ -101,7 +101,7 @@ def _rows(values: Mapping[str, Any], prefix: str) -> Rows:
     return out
 
 
-def _sensor(one: Mapping[str, Any]) -> str:
+def _sensor(one: Mapping[str, object]) -> str:
     parts = [str(one.get("model", ""))]
     parts += [f"{name} {one[name]}" for name in ("topic", "address", "port") if one.get(name)]
     if "points" in one:

@@ -13,14 +13,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict
 
 import msgspec
 
 from recon4.errors import StoreError
 from recon4.model.usability import MapVerdict, Usability, verdict_in
 from recon4.review.approved import VERSIONS, Approval, approval_of
-from recon4.review.decisions import Decided, Decision, DecisionKind, fold
+from recon4.review.decisions import ApprovalFacts, Decided, Decision, DecisionKind, fold
 from recon4.review.journal import Row, append, broken, head, read_rows
 from recon4.review.signature import sign
 from recon4.review.source import graph_key
@@ -50,6 +50,47 @@ _FIGURES = (
 
 class NotApprovable(StoreError):
     """The results cannot be approved as they are."""
+
+
+class SignedVerdict(TypedDict):
+    """`MapVerdict` as JSON in a statement."""
+
+    usability: str
+    """`NO_VERDICT` if the run worked none out."""
+    reasons: list[str]
+    unobserved: list[object]
+
+
+class SignedJournal(TypedDict):
+    """The journal at the time of an approval, as JSON in its statement."""
+
+    rows: int
+    head: str
+    decisions: str
+    """`Decided.key`."""
+
+
+class ApprovalStatement(TypedDict):
+    """What is signed, as JSON in format `FORMAT`."""
+
+    format: int
+    project: str
+    version: int
+    who: str
+    role: str
+    why: str
+    time: str
+    verdict: SignedVerdict
+    figures: dict[str, object]
+    """By their names in ``summary.json``, with ``chi2`` and ``conflicts``."""
+    artifacts: dict[str, str]
+    """Stage -> key."""
+    manifests: dict[str, str]
+    """Stage -> SHA-256 of its manifest."""
+    inputs: dict[str, str]
+    """File name -> SHA-256."""
+    results: dict[str, str]
+    journal: SignedJournal
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,12 +143,12 @@ def approve(
         sweep(root / VERSIONS)
         version = 1 + sum(row.kind == DecisionKind.APPROVE for row in asked.rows)
         approval = _issue(root, asked, version=version, key_file=key_file)
-        facts = {
-            "version": version,
-            "approval": approval.hash,
-            "artifacts": hash_json(asked.keys),
-            "verdict": approval.stamp.verdict,
-        }
+        facts = ApprovalFacts(
+            version=version,
+            approval=approval.hash,
+            artifacts=hash_json(asked.keys),
+            verdict=approval.stamp.verdict,
+        )
         decision = Decision(
             kind=DecisionKind.APPROVE, who=signer["who"], why=signer["why"], facts=facts
         )
@@ -128,7 +169,7 @@ def reason_needed(verdict: MapVerdict | None) -> str:
     return ""
 
 
-def signed_figures(summary: Mapping[str, Any]) -> dict[str, Any]:
+def signed_figures(summary: Mapping[str, object]) -> dict[str, object]:
     """The figures of a run that an approval signs, by their names in ``summary.json``."""
     return {name: summary[name] for name in _FIGURES if name in summary}
 
@@ -201,7 +242,7 @@ def _asked(root: Path, signer: Mapping[str, str]) -> _ApprovalRequest:
     )
 
 
-def _verdict(summary: Mapping[str, Any]) -> MapVerdict | None:
+def _verdict(summary: Mapping[str, object]) -> MapVerdict | None:
     try:
         return verdict_in(summary)
     except StoreError as error:
@@ -271,7 +312,9 @@ def _issue(root: Path, asked: _ApprovalRequest, *, version: int, key_file: Path)
     return Approval(version, stamp.hash, folder, stamp, asked.keys, statement["manifests"], issued)
 
 
-def _statement(root: Path, asked: _ApprovalRequest, *, version: int, time: str) -> dict[str, Any]:
+def _statement(
+    root: Path, asked: _ApprovalRequest, *, version: int, time: str
+) -> ApprovalStatement:
     summary = asked.summary
     figures = signed_figures(summary)
     last = {stage["stage"]: stage.get("figures", {}) for stage in summary["stages"]}
@@ -280,7 +323,9 @@ def _statement(root: Path, asked: _ApprovalRequest, *, version: int, time: str) 
         "format": FORMAT,
         "project": summary["name"],
         "version": version,
-        **{name: asked.signer[name] for name in ("who", "role", "why")},
+        "who": asked.signer["who"],
+        "role": asked.signer["role"],
+        "why": asked.signer["why"],
         "time": time,
         "verdict": _judged(asked.verdict),
         "figures": figures | {"chi2": graph.get("chi2_after"), "conflicts": asked.conflicts},
@@ -299,11 +344,11 @@ def _statement(root: Path, asked: _ApprovalRequest, *, version: int, time: str) 
     }
 
 
-def _judged(verdict: MapVerdict | None) -> dict[str, Any]:
+def _judged(verdict: MapVerdict | None) -> SignedVerdict:
     """The verdict as signed; `NO_VERDICT` as usability if the run worked none out."""
     if verdict is None:
         return {"usability": NO_VERDICT, "reasons": [], "unobserved": []}
-    record: dict[str, Any] = msgspec.to_builtins(verdict)
+    record: SignedVerdict = msgspec.to_builtins(verdict)
     return record
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from recon4.review.decisions import DecisionKind
+from recon4.review.decisions import ApprovalFacts, DecisionKind
 from recon4.review.evidence import Evidence
 from recon4.review.journal import Row, broken, read_rows
 from recon4.review.signature import fingerprint, is_signed
@@ -81,7 +81,7 @@ def approval_of(root: Path, keys: Mapping[str, str]) -> Approval | None:
     wanted = hash_json(dict(keys))
     rows = read_rows(root)
     for row in reversed(rows):
-        if row.kind == DecisionKind.APPROVE and _facts(row).get("artifacts") == wanted:
+        if row.kind == DecisionKind.APPROVE and _facts(row).artifacts == wanted:
             return _counted(root, rows, row)
     return None
 
@@ -128,13 +128,13 @@ def latest_approval(root: Path, rows: Sequence[Row]) -> LatestApproval | None:
             facts = _facts(row)
             named = ((read_summary(root) or {}).get("approval") or {}).get("hash")
             return LatestApproval(
-                version=int(facts["version"]),
-                hash=str(facts["approval"]),
+                version=facts.version,
+                hash=facts.approval,
                 who=row.who,
                 time=row.time,
                 why=row.why,
-                verdict=str(facts.get("verdict", "")),
-                current=named == facts["approval"],
+                verdict=facts.verdict,
+                current=named == facts.approval,
             )
     return None
 
@@ -151,7 +151,7 @@ def read_approval(folder: Path, row: Row) -> tuple[Approval, str]:
         found = json.loads(path.read_text("utf-8"))
         statement, issued, signature = found["statement"], found["issued"], found["signature"]
         key = fingerprint(signature["public_key"])
-        stamp = _stamp(int(facts["version"]), statement, str(facts["approval"]))
+        stamp = _stamp(facts.version, statement, facts.approval)
         artifacts, manifests = dict(statement["artifacts"]), dict(statement.get("manifests", {}))
         signed_head = statement["journal"]["head"]
         approval = Approval(
@@ -171,7 +171,7 @@ def read_approval(folder: Path, row: Row) -> tuple[Approval, str]:
 
 
 def _counted(root: Path, rows: Sequence[Row], row: Row) -> Approval:
-    version = str(_facts(row).get("version"))
+    version = str(_facts(row).version)
     if wrong := broken(rows):
         raise Altered(f"the journal was altered: {wrong[0]}")
     try:
@@ -180,11 +180,14 @@ def _counted(root: Path, rows: Sequence[Row], row: Row) -> Approval:
         raise Altered(f"the approval of version {version} is not valid: {error}") from error
 
 
-def _facts(row: Row) -> dict[str, Any]:
-    return row.decision().facts or {}
+def _facts(row: Row) -> ApprovalFacts:
+    facts = row.decision().facts
+    if facts is None:
+        raise Altered("the journal has an approval without version and hash")
+    return facts
 
 
-def _stamp(version: int, statement: dict[str, Any], sha256: str) -> Stamp:
+def _stamp(version: int, statement: Mapping[str, Any], sha256: str) -> Stamp:
     who = {name: str(statement[name]) for name in ("who", "role", "time")}
     if "verdict" in statement:  # since format 3
         who |= {"verdict": str(statement["verdict"]["usability"]), "why": str(statement["why"])}

@@ -6,7 +6,6 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from recon4.model.usability import Usability
 from recon4.names import visible
@@ -71,7 +70,7 @@ def _check(folder: Path, row: Row) -> tuple[list[str], str]:
     return _files(folder, dict(approval.issued)), key
 
 
-def _files(folder: Path, issued: dict[str, Any]) -> list[str]:
+def _files(folder: Path, issued: dict[str, object]) -> list[str]:
     there = {path.name for path in folder.iterdir()} - {"approval.json"}
     wrong = [f"{name} is missing" for name in sorted(issued.keys() - there)]
     wrong += [f"{name} does not belong here" for name in sorted(there - issued.keys())]

@@ -6,11 +6,12 @@ A decision names its pair by the ids of two multiframes, so it stays valid after
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, replace
 from enum import StrEnum
-from typing import Any
+from typing import Any, TypedDict
 
+import msgspec
 import numpy as np
 
 from recon4.errors import ConfigError, StoreError
@@ -74,6 +75,29 @@ class Measurement:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ApprovalFacts:
+    """What the journal says of an approval; the fields are its keys."""
+
+    version: int
+    approval: str
+    """SHA-256 of the signed statement."""
+    artifacts: str = ""
+    """SHA-256 of the keys of all artifacts."""
+    verdict: str = ""
+    """On the map; empty before statement format 3."""
+
+
+class DecisionBody(TypedDict):
+    """Fields that the journal stores beside its columns, as JSON values."""
+
+    T_i_j: list[float]
+    measurement: Mapping[str, Any] | None
+    """Fields of `Measurement`; null = not a number."""
+    facts: Mapping[str, object] | None
+    """Fields of `ApprovalFacts`."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Decision:
     """One row of the journal before it is written."""
 
@@ -86,8 +110,8 @@ class Decision:
     """The pose the reviewer saw, x y z qx qy qz qw; empty where there is no edge."""
     measurement: Measurement | None = None
     """Of `REPLACE` and `ADD`."""
-    facts: dict[str, Any] | None = None
-    """Of `APPROVE`: version and hash."""
+    facts: ApprovalFacts | None = None
+    """Of `APPROVE`."""
 
     def __post_init__(self) -> None:
         if self.who in ("", AUTOMATIC):
@@ -103,13 +127,16 @@ class Decision:
         if (self.measurement is None) == (self.kind in MEASURED):
             raise ConfigError(f"a decision to {self.kind} with or without a measurement")
 
-    def body(self) -> dict[str, Any]:
-        """Fields that the journal stores beside its columns, as JSON values."""
-        measured = to_plain(self.measurement)
-        return {"T_i_j": list(self.T_i_j), "measurement": measured, "facts": self.facts}
+    def body(self) -> DecisionBody:
+        """What the journal stores beside its columns."""
+        return {
+            "T_i_j": list(self.T_i_j),
+            "measurement": to_plain(self.measurement),
+            "facts": asdict(self.facts) if self.facts else None,
+        }
 
     @staticmethod
-    def of(kind: str, who: str, why: str, *, pair: Pair | None, body: dict[str, Any]) -> Decision:
+    def of(kind: str, who: str, why: str, *, pair: Pair | None, body: DecisionBody) -> Decision:
         """Decode a row of the journal.
 
         Raises:
@@ -124,9 +151,9 @@ class Decision:
                 pair=pair,
                 T_i_j=tuple(body["T_i_j"]),
                 measurement=_measurement(record) if record else None,
-                facts=body["facts"],
+                facts=msgspec.convert(body["facts"], ApprovalFacts | None),
             )
-        except (KeyError, TypeError, ValueError) as error:
+        except (KeyError, TypeError, ValueError, msgspec.ValidationError) as error:
             raise StoreError(f"the journal has a row that is no decision: {error}") from error
 
 
@@ -223,7 +250,14 @@ def numbers_of(T_a_b: SE3) -> tuple[float, ...]:
     return (*map(float, T_a_b.t), *map(float, T_a_b.quat_xyzw()))
 
 
-def _measurement(record: dict[str, Any]) -> Measurement:
-    known: dict[str, Any] = {n: math.nan if v is None else v for n, v in record.items()}
-    known |= {name: tuple(record[name]) for name in ("T_i_j", "information")}
-    return Measurement(**known)
+def _measurement(record: Mapping[str, Any]) -> Measurement:
+    known = {name: math.nan if value is None else value for name, value in record.items()}
+    return Measurement(
+        T_i_j=tuple(record["T_i_j"]),
+        information=tuple(record["information"]),
+        overlap=known["overlap"],
+        error_m=known["error_m"],
+        limit_m=known["limit_m"],
+        degeneracy=known["degeneracy"],
+        iterations=record["iterations"],
+    )

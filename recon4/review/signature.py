@@ -5,8 +5,8 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from cryptography.exceptions import InvalidSignature
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey, Ed25519PublicKey
@@ -47,7 +47,7 @@ def sign(value: object, key_file: Path) -> dict[str, str]:
     }
 
 
-def is_signed(value: object, signature: dict[str, Any]) -> bool:
+def is_signed(value: object, signature: Mapping[str, str]) -> bool:
     """Verify the signature of a value with the public key it contains."""
     try:
         public = Ed25519PublicKey.from_public_bytes(bytes.fromhex(signature["public_key"]))

@@ -12,7 +12,7 @@ import zlib
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import BinaryIO
 
 from recon4.errors import StoreError
 from recon4.report.approval import approved_block, replace_block
@@ -46,7 +46,7 @@ class Stamp:
     why: str = ""
     """The signer's reason or remark; empty before statement format 3."""
 
-    def to_json(self) -> dict[str, Any]:
+    def to_json(self) -> dict[str, object]:
         """Plain JSON values, without the fields that are empty."""
         values = {field.name: getattr(self, field.name) for field in fields(self)}
         return {name: value for name, value in values.items() if value != ""}

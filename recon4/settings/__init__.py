@@ -4,7 +4,7 @@ Code, command line, API and docs are generated from these declarations. A stage 
 own groups, so that a changed setting reruns only the stages that depend on it.
 """
 
-from recon4.settings.assign import canonical, override, to_json
+from recon4.settings.assign import canonical, override, to_json, values_by_group
 from recon4.settings.calibration import CalibrationSettings, EntropySettings
 from recon4.settings.georeference import GnssSettings, LevelSettings
 from recon4.settings.graph import GraphSettings, RecognitionSettings, VerificationSettings
@@ -59,4 +59,5 @@ __all__ = [
     "override",
     "preset",
     "to_json",
+    "values_by_group",
 ]

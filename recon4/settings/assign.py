@@ -19,7 +19,7 @@ def override(settings: Settings, assignments: list[str]) -> Settings:
         WrongSettings: Names every wrong setting with the expected and the given value.
     """
     problems: dict[str, str] = {}
-    values: dict[str, dict[str, Any]] = {}
+    values: dict[str, dict[str, object]] = {}
     for text in assignments:
         path, _, value = (part.strip() for part in text.partition("="))
         try:
@@ -53,7 +53,7 @@ def _find(settings: Settings, text: str) -> tuple[str, str, Any]:
     return group_name, name, get_type_hints(type(group))[name]
 
 
-def _replaced(group: Any, name: str, values: dict[str, Any], *, problems: dict[str, str]) -> Any:
+def _replaced(group: Any, name: str, values: dict[str, object], *, problems: dict[str, str]) -> Any:
     """The group with other values; invalid ones are skipped and added to ``problems``."""
     left = dict(values)
     while left:
@@ -69,10 +69,15 @@ def _replaced(group: Any, name: str, values: dict[str, Any], *, problems: dict[s
     return group
 
 
-def to_json(settings: object) -> dict[str, Any]:
+def to_json(settings: object) -> dict[str, object]:
     """Plain JSON values of a group or of all settings."""
     assert is_dataclass(settings) and not isinstance(settings, type)
     return asdict(settings)
+
+
+def values_by_group(settings: Settings) -> dict[str, dict[str, object]]:
+    """Plain JSON values of all settings, by group."""
+    return {group.name: to_json(getattr(settings, group.name)) for group in fields(settings)}
 
 
 def canonical(settings: object) -> str:

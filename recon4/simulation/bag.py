@@ -47,7 +47,7 @@ class BagWriter:
             self._connect(sensor.topic, "velodyne_msgs/msg/VelodyneScan") for sensor in rig.sensors
         ]
         self._waiting: list[list[Any]] = [[] for _ in rig.sensors]
-        self._connections: dict[str, Any] = {}
+        self._connections: dict[str, object] = {}
 
     def packets(self, row: int, t_ns: Times, payloads: NDArray[np.uint8]) -> None:
         """Append packets of a sensor, times of arrival (N,) and payloads (N, 1206)."""

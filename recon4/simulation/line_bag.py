@@ -39,7 +39,7 @@ class LineBag:
 
         self._writer = writer
         self._store = get_typestore(Stores.ROS2_HUMBLE)
-        self._connections: dict[str, Any] = {}
+        self._connections: dict[str, object] = {}
 
     def scans(
         self, topic: str, scans: LaserScans, intensity: NDArray[np.uint8] | None = None

@@ -72,11 +72,11 @@ def find_double_walls(
     progress.start("double walls", len(tiles), "points")
     # Points moved onto a common surface would hide that it was measured at two places.
     tiles = tiles.as_measured()
-    first_ns = (tiles.facts["time_ns"] or [0])[0]
+    first_ns = tiles.first_ns
     found, split = [], []
     for tile in tiles:
         visits = _visits(tile, rule, first_ns)
-        inner = _inner(visits, tile, rule, tile_m=float(tiles.facts["tile_m"]))
+        inner = _inner(visits, tile, rule, tile_m=tiles.tile_m)
         found.append(_judge(visits.take(inner), rule))
         split.append(visits.take(~inner))
         progress.advance(len(tile))

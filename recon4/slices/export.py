@@ -67,8 +67,8 @@ def write_laz(chosen: SliceSelection, path: Path, *, frame: MapFrame) -> int:
     with scratch_folder(0) as folder:
         out = folder / "tiles"
         out.mkdir()
-        with TileWriter(out, tiles.fields, tile_m=float(tiles.facts["tile_m"])) as writer:
-            writer.facts = {name: tiles.facts[name] for name in ("voxel_m", "crs")}
+        with TileWriter(out, tiles.fields, tile_m=tiles.tile_m) as writer:
+            writer.notes = tiles.notes
             for _, part, _ in chosen.parts(tiles.fields):
                 order = progressive(np.arange(len(part)))
                 writer.append(part.tile.ijk, {k: v[order] for k, v in part.columns.items()})

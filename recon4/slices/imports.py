@@ -83,7 +83,6 @@ def write_tiles(chunks: Iterable[Array], out: Path) -> TileSet:
     with TemporaryDirectory(dir=out, prefix="buckets-") as place:
         names = _deal_out(chunks, Path(place))
         with TileWriter(out, ["xyz", "normal"], tile_m=TILE_M) as writer:
-            writer.facts = {"voxel_m": 0.0, "crs": None}
             for ijk in sorted(names):
                 xyz = np.fromfile(names[ijk], np.float32).reshape(-1, 3)
                 xyz = xyz[progressive(_spatial(xyz))]

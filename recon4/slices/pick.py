@@ -46,7 +46,7 @@ def pick(tiles: TileSet, cut: Cut, uv: tuple[float, float], *, radius_m: float) 
         return None
     off_m, uvd, about = best
     if "t_ns" in about:
-        about["time_s"] = (about.pop("t_ns") - float((tiles.facts["time_ns"] or [0])[0])) / 1e9
+        about["time_s"] = (about.pop("t_ns") - tiles.first_ns) / 1e9
     x, y, z = (float(value) for value in cut.to_map(uvd[None])[0])
     return Picked((x, y, z), (float(uvd[0]), float(uvd[1])), off_m, about)
 

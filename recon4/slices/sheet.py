@@ -263,7 +263,7 @@ def _length(length_m: float) -> str:
     return f"{100.0 * length_m:g} cm" if length_m < 1.0 else f"{length_m:g} m"
 
 
-def approval_text(approval: Mapping[str, Any] | None) -> str:
+def approval_text(approval: Mapping[str, object] | None) -> str:
     """Who approved a map and when, for sheets and files."""
     if not approval:
         return "Not approved"

@@ -182,7 +182,7 @@ def _values(part: TilePart, cut: Cut, color: ColorBy, *, tiles: TileSet) -> NDAr
         return z.astype(np.float32)
     column = part.columns[_FIELD[color]]
     if color == "time":
-        first_ns = (tiles.facts["time_ns"] or [0])[0]
+        first_ns = tiles.first_ns
         return ((column - first_ns) / 1e9).astype(np.float32)
     return column.astype(np.float32)
 

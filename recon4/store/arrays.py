@@ -7,6 +7,7 @@ import math
 import tokenize
 import zipfile
 import zlib
+from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, TypeVar
@@ -50,6 +51,11 @@ def load_record(path: Path, kind: type[Record]) -> Record:
         StoreError: If the file is missing, damaged or of another kind.
     """
     return kind(**load_arrays(path, [f.name for f in fields(kind)]))  # type: ignore[arg-type]
+
+
+def save_arrays(path: Path, arrays: Mapping[str, NDArray[Any]]) -> None:
+    """Write named arrays."""
+    np.savez(path, allow_pickle=False, **arrays)
 
 
 def save_trajectory(path: Path, trajectory: Trajectory) -> None:

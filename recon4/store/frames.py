@@ -114,7 +114,7 @@ class FrameWriter:
         *,
         imu: ImuSamples | None = None,
         gnss: GnssSamples | None = None,
-        report: dict[str, Any] | None = None,
+        report: dict[str, object] | None = None,
     ) -> None:
         """Write IMU samples, GNSS samples and the report of the recording."""
         with storing(self._folder):
@@ -154,7 +154,7 @@ class FrameStore:
     """Of the recording, or calibrated."""
     imu: ImuSamples | None
     gnss: GnssSamples | None
-    report: dict[str, Any]
+    report: dict[str, object]
     recorded: Rig
     """The rig whose clock offsets are in the files."""
 
@@ -316,7 +316,7 @@ def _check_columns(folder: Path, points: int) -> None:
             )
 
 
-def _read_report(path: Path) -> dict[str, Any]:
+def _read_report(path: Path) -> dict[str, object]:
     try:
         return read_json_object(path, _MAX_REPORT_BYTES, failure=StoreError)
     except StoreError as error:

@@ -6,6 +6,7 @@ import os
 import shutil
 import time
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,42 @@ SUMMARY = "summary.json"
 SEALED = ("project.json", LEDGER)
 """Files that change while a project is open and are sealed when it is closed."""
 MAX_DESCRIPTION_BYTES = 4 << 20
+
+
+@dataclass(frozen=True, slots=True)
+class InputFile:
+    """An input file of the run."""
+
+    name: str
+    size_bytes: int
+    sha256: str
+
+
+@dataclass(frozen=True, slots=True)
+class ProjectDescription:
+    """What ``project.json`` says of a run."""
+
+    name: str
+    preset: str
+    """What the settings started from."""
+    inputs: tuple[InputFile, ...] = ()
+
+    @staticmethod
+    def read(root: Path) -> ProjectDescription:
+        """Read it without opening the project.
+
+        Raises:
+            StoreError: If ``project.json`` is missing or damaged.
+        """
+        found = read_description(root)
+        try:
+            inputs = tuple(
+                InputFile(file["name"], file["bytes"], file["sha256"])
+                for file in found.get("inputs", ())
+            )
+            return ProjectDescription(found["name"], found.get("preset", ""), inputs)
+        except (KeyError, TypeError) as error:
+            raise StoreError(f"{root / 'project.json'} cannot be read: {error!r}") from error
 
 
 class Project:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import fields, replace
 from pathlib import Path
-from typing import Any
 
 from recon4.settings import Settings, current_name
 from recon4.store.seal import check_sealed
@@ -34,7 +33,7 @@ def settings_in(artifacts: Iterable[Path]) -> Settings:
     Raises:
         StoreError: If an artifact is damaged.
     """
-    recorded: dict[str, dict[str, Any]] = {}
+    recorded: dict[str, Mapping[str, object]] = {}
     for folder in artifacts:
         recorded |= read_manifest(folder)["recipe"]["settings"]
     settings = Settings()

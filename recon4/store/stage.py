@@ -34,6 +34,8 @@ SAVING = "save"
 
 OfStage = TypeVar("OfStage", bound=Figures)
 """Figures of a stage."""
+_NOT_DECLARED: Any = None
+"""In place of a group of settings that a stage does not declare."""
 _KEY_PACKAGES = ("numpy", "scipy", "numba", "gtsam", "laspy", "pyproj")
 
 
@@ -79,7 +81,7 @@ class StageRecipe(TypedDict):
 
     stage: str
     version: int
-    settings: dict[str, dict[str, Any]]
+    settings: Mapping[str, Mapping[str, object]]
     """By group."""
     inputs: dict[str, str | None]
     """Keys of the inputs; None = there is none."""
@@ -89,7 +91,7 @@ class Manifest(TypedDict):
     """``manifest.json`` of an artifact, as JSON."""
 
     recipe: StageRecipe
-    done: dict[str, Any]
+    done: Mapping[str, object]
     """Fields of `FinishedStage`."""
     figures: object
     """Fields of the stage's figures."""
@@ -213,7 +215,7 @@ class StageRunner:
             self._set_aside(artifact, damage)
             return None
         if row is None:
-            row = FinishedStage(**artifact.manifest()["done"])
+            row = _finished_stage(artifact)
             ledger.add(row)
         return row
 
@@ -261,8 +263,8 @@ def only(settings: Settings, groups: tuple[str, ...]) -> Settings:
 
     A stage that reads a group it did not declare fails immediately instead of being cached wrongly.
     """
-    missing: dict[str, Any] = {f.name: None for f in fields(settings) if f.name not in groups}
-    return replace(settings, **missing)
+    missing = [f.name for f in fields(settings) if f.name not in groups]
+    return replace(settings, **dict.fromkeys(missing, _NOT_DECLARED))
 
 
 def read_manifest(folder: Path) -> Manifest:
@@ -343,6 +345,14 @@ def versions() -> dict[str, str]:
         except metadata.PackageNotFoundError:
             found[name] = "missing"
     return found
+
+
+def _finished_stage(artifact: Artifact) -> FinishedStage:
+    """The record in a manifest, for a ledger that lost it."""
+    try:
+        return msgspec.convert(artifact.manifest()["done"], FinishedStage)
+    except msgspec.ValidationError as error:
+        raise StoreError(f"{artifact.folder / 'manifest.json'} cannot be read: {error}") from error
 
 
 def _recipe(

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from recon4.mapping.notes import MapNotes
 from recon4.mapping.tile import FIELDS, progressive
 from recon4.mapping.tiles import TileWriter
 from recon4.progress import Silent
@@ -47,7 +48,7 @@ def write_large_map(out: Path, *, points: int) -> None:
     cells = [(i, j, k) for k in range(ROOMS[2]) for j in range(ROOMS[1]) for i in range(ROOMS[0])]
     share = np.diff(np.linspace(0, points, len(cells) + 1).astype(int))
     with TileWriter(out, list(FIELDS), tile_m=TILE_M) as writer:
-        writer.facts = {"voxel_m": 0.01, "crs": None, "sensors": ["V1", "V2"], "removed": {}}
+        writer.notes = MapNotes(voxel_m=0.01, sensors=("V1", "V2"))
         rooms: dict[tuple[int, int, int], list[np.ndarray]] = {}
         for (i, j, k), count in zip(cells, share, strict=True):
             xyz, normal = _room(rng, int(count))

@@ -29,14 +29,15 @@ from recon4.pipeline import run_before_review, run_trajectory
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
 from recon4.report.verdict import assess
-from recon4.results import About, report_facts
+from recon4.results import report_facts
+from recon4.run_summary import About
 from recon4.settings import preset
 from recon4.simulation.degradation import PEOPLE, parse_degradations
 from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import record
 from recon4.simulation.worlds import build_world
 from recon4.store.hashing import hash_json
-from recon4.store.project import Project, read_artifacts
+from recon4.store.project import Project, ProjectDescription, read_artifacts
 from recon4.store.stage import Input, StageRun, StageRunner
 from tests.benchmarks.proving_errors import Errors, measure
 
@@ -143,7 +144,7 @@ def _process(recording: Path, work: Path) -> tuple[Mapping[str, StageRun[Any]], 
         runner = StageRunner(project, settings, Silent())
         measurements, odometry, graph = run_before_review(runner, _inputs(recording, rig))
         run_trajectory(runner, measurements, odometry=odometry, graph=graph)
-        about = About({"name": recording.name, "preset": name, "inputs": []}, settings)
+        about = About(ProjectDescription(recording.name, name), settings)
         return runner.runs, assess(report_facts(runner.runs, about, created="")).verdict
 
 

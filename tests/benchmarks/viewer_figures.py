@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 import psutil
 
+from recon4.mapping.notes import MapNotes
 from recon4.mapping.tile import FIELDS, progressive
 from recon4.mapping.tiles import TileWriter
 from recon4.progress import Silent
@@ -210,7 +211,7 @@ def _map(points: int, out: Path) -> None:
     rng = np.random.default_rng(3)
     tiles = points // IN_A_TILE
     with TileWriter(out, list(FIELDS), tile_m=TILE_M) as writer:
-        writer.facts = {"voxel_m": 0.02, "crs": None}
+        writer.notes = MapNotes(voxel_m=0.02)
         for k in range(tiles):
             ijk = (k // LANE_TILES, k % LANE_TILES, 0)
             writer.append(ijk, _columns(_surface(rng, house=ijk[1] in (0, LANE_TILES - 1)), rng))

@@ -15,7 +15,7 @@ from recon4.pipeline import remake
 from recon4.progress import Silent
 from recon4.review.approval import put_back
 from recon4.review.approved import approval_of
-from recon4.review.decisions import Decision, DecisionKind
+from recon4.review.decisions import ApprovalFacts, Decision, DecisionKind
 from recon4.review.journal import append
 from recon4.review.signature import sign
 from recon4.review.source import Source
@@ -237,7 +237,7 @@ def sign_as_before(root, key_file):
     write_json(path, record)
     (root / "decisions.sqlite").unlink()
     (root / "seals.json").unlink()
-    facts = {"version": 1, "approval": sha256, "artifacts": hash_json(statement["artifacts"])}
+    facts = ApprovalFacts(version=1, approval=sha256, artifacts=hash_json(statement["artifacts"]))
     append(root, Decision(kind=DecisionKind.APPROVE, who="anna", facts=facts))
 
 

@@ -11,7 +11,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 import viser
@@ -47,6 +47,13 @@ class _Drawn:
     node: PointsNode
     handle: Any
     style: object
+
+
+class _Place(TypedDict):
+    """What every drawn node has."""
+
+    position: Array
+    visible: bool
 
 
 class Screen:
@@ -228,7 +235,7 @@ class Screen:
 
     def _draw(self, node: Node) -> Any:
         scene = self._client.scene
-        place: dict[str, Any] = {"position": node.position_m, "visible": node.visible}
+        place: _Place = {"position": node.position_m, "visible": node.visible}
         match node:
             case PointsNode():
                 return scene.add_point_cloud(

@@ -108,7 +108,7 @@ class Cloud:
     def boxes(self) -> TileBoxes:
         """Input of the selection of detail."""
         tiles = self.tiles.tiles
-        apart_m = float(self.tiles.facts.get("voxel_m") or SURFACE_M)
+        apart_m = self.tiles.notes.voxel_m or SURFACE_M
         low = np.array([tile.low_m for tile in tiles]).reshape(-1, 3)
         high = np.array([tile.high_m for tile in tiles]).reshape(-1, 3)
         x, y, z = (high - low).T

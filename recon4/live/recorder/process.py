@@ -19,7 +19,8 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+
+import msgspec
 
 from recon4.errors import Recon4Error, StoreError
 from recon4.live.confinement import confine_recorder
@@ -123,7 +124,7 @@ class Recorder:
             await asyncio.to_thread(self._serial.close)
             await asyncio.sleep(0)  # its last sentences are recorded
         await asyncio.to_thread(self._file.close)
-        outcome = Stopped(why=self._why, **self._state())
+        outcome = Stopped(why=self._why, **msgspec.structs.asdict(self._status()))
         with suppress(StoreError):  # on a full disk; clients still receive the message
             write_json(self._session.outcome, fields_of(outcome))
         self._lines.send(outcome)
@@ -169,30 +170,29 @@ class Recorder:
         self._counted, self._counted_s = Counter(self._counts), now_s
         self._data_counted = Counter(self._data)
         self._disk.update(now_s)
-        self._lines.send(Status(**self._state()))
+        self._lines.send(self._status())
         if not self._disk.state.enough:
             self._why = "the disk is nearly full"
             self._over.set()
 
-    def _state(self) -> dict[str, Any]:
-        """The fields of `RecorderState`."""
-        return {
-            "t_ns": stretched(time.time_ns(), self._session.speed),
-            "began_ns": self._began_ns,
-            "seconds": round(time.monotonic() - self._began_s, 1),
-            "paused": self._paused,
-            "skipped_in_pauses": self._skipped,
-            "senders": self._rates,
-            "ports": {str(port.number): port.expected for port in self._ports},
-            "kernel_drops": sum(port.kernel_drops for port in self._ports),
-            "serial": None if self._serial is None else self._serial.problem,
-            "file": self._file.state(),
-            "disk": self._disk.state,
-            "notes": self._notes_problem,
-        }
+    def _status(self) -> Status:
+        return Status(
+            t_ns=stretched(time.time_ns(), self._session.speed),
+            began_ns=self._began_ns,
+            seconds=round(time.monotonic() - self._began_s, 1),
+            paused=self._paused,
+            skipped_in_pauses=self._skipped,
+            senders=self._rates,
+            ports={str(port.number): port.expected for port in self._ports},
+            kernel_drops=sum(port.kernel_drops for port in self._ports),
+            serial=None if self._serial is None else self._serial.problem,
+            file=self._file.state(),
+            disk=self._disk.state,
+            notes=self._notes_problem,
+        )
 
     def _initial_messages(self) -> list[Message]:
-        return [Written(self._file.state().written_bytes), Status(**self._state())]
+        return [Written(self._file.state().written_bytes), self._status()]
 
     def _handle(self, request: Request) -> None:
         match request:

@@ -26,6 +26,7 @@ from app.viewer.scene.build import (
 from app.viewer.scene.layers import EdgeTable, edge_layer, edge_layers
 from app.viewer.scene.nodes import LinesNode
 from app.viewer.scene.source import ProjectSource
+from recon4.mapping.notes import MapNotes
 from recon4.mapping.tile import FIELDS
 from recon4.mapping.tiles import TileWriter
 from recon4.model.pose_graph import Verdict
@@ -46,7 +47,7 @@ def cloud_of(folder, p_tile, ijk=(0, 0, 0), tile_m=10.0):
     }
     columns["xyz"] = np.asarray(p_tile, dtype=np.float32)
     with TileWriter(folder, list(FIELDS), tile_m=tile_m) as writer:
-        writer.facts = {"voxel_m": 0.01, "crs": None}
+        writer.notes = MapNotes(voxel_m=0.01)
         writer.append(ijk, columns)
     return Cloud(folder)
 

@@ -16,7 +16,8 @@ from recon4.export.laz import export_laz
 from recon4.export.ply import export_ply
 from recon4.intensity.normalize import learn_intensity
 from recon4.mapping.build import build_map
-from recon4.mapping.tiles import MapCrs, TileSet
+from recon4.mapping.notes import MapCrs
+from recon4.mapping.tiles import TileSet
 from recon4.model.trajectory import Trajectory
 from recon4.settings import IntensitySettings, MapSettings
 from tests.room_walks import T0_NS, Walk, room_walk

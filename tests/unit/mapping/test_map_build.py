@@ -10,9 +10,10 @@ import pytest
 from recon4.errors import OutOfRange, StoreError
 from recon4.mapping.build import build_map
 from recon4.mapping.grid import Grid
+from recon4.mapping.notes import MapCrs
 from recon4.mapping.place import place
 from recon4.mapping.tile import FIELDS, SURFACE_FIELDS
-from recon4.mapping.tiles import MapCrs, TileSet
+from recon4.mapping.tiles import TileSet
 from recon4.model.events import MapBuilt
 from recon4.progress import Silent
 from recon4.settings import MapSettings
@@ -161,8 +162,8 @@ def test_lonely_points_are_removed_and_counted(tmp_path):
     tiles = build(walk, tmp_path / "map", MapSettings(voxel_m=0.0, normal_cell_m=0.2))
     kept = build(walk, tmp_path / "kept", ALL)
 
-    assert tiles.facts["removed"]["lonely"] >= 1
-    assert len(tiles) == len(kept) - tiles.facts["removed"]["lonely"]
+    assert tiles.notes.removed["lonely"] >= 1
+    assert len(tiles) == len(kept) - tiles.notes.removed["lonely"]
     assert not (points(tiles, "frame_id") == 3)[
         np.linalg.norm(everything(tiles) - [1.35, 0.5, 0.5], axis=1) < 0.15
     ].any()
@@ -178,8 +179,8 @@ def test_points_of_long_range_are_removed_next_to_points_of_short_range(tmp_path
     _, group = np.unique(cell, axis=0, return_inverse=True)
     nearest = np.full(group.max() + 1, np.inf)
     np.minimum.at(nearest, group, points(tiles, "range_m"))
-    assert tiles.facts["removed"]["far"] + len(tiles) == 20 * 3000
-    assert tiles.facts["removed"]["far"] > 100
+    assert tiles.notes.removed["far"] + len(tiles) == 20 * 3000
+    assert tiles.notes.removed["far"] > 100
     assert (points(tiles, "range_m") <= 1.5 * nearest[group] + 1e-4).all()
 
 
@@ -287,8 +288,8 @@ def test_fitted_tiles_hold_both_positions_of_every_point_and_the_strays_last(tmp
     fitted, raw = fitted_and_raw(tmp_path)
 
     assert fitted.strays >= 1
-    assert len(fitted) + fitted.strays == len(raw) + raw.facts["removed"]["lonely"]
-    assert fitted.facts["removed"].get("lonely", 0) == 0
+    assert len(fitted) + fitted.strays == len(raw) + raw.notes.removed["lonely"]
+    assert fitted.notes.removed.get("lonely", 0) == 0
     measured = everything(fitted.as_measured())
     every = np.concatenate([measured, everything(fitted.as_measured().only_strays())])
     lookup = {tuple(v) for v in np.floor(everything(raw) * 100 + 1e-3).astype(int)}

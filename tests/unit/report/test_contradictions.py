@@ -7,6 +7,7 @@ from recon4.report.artifacts import Results
 from recon4.report.contradictions import rejected_runs
 from recon4.report.facts import ReportFacts
 from recon4.report.findings import Level, find
+from recon4.report.placement import placement_in
 from recon4.settings import preset
 
 
@@ -24,13 +25,17 @@ def fixes(rejected, residual_m, *, count=300):
     }
 
 
+def gnss(record):
+    return placement_in({"georeference": record}).gnss
+
+
 def growing(count):
     """Fixes from which the trajectory runs away, to 3 m at last."""
     return np.column_stack([np.linspace(0.5, 3.0, count), np.zeros(count), np.full(count, 0.2)])
 
 
 def test_the_last_fixes_from_which_the_trajectory_runs_away_are_a_contradiction():
-    (found,) = rejected_runs(fixes(slice(239, 300), growing(61)))
+    (found,) = rejected_runs(gnss(fixes(slice(239, 300), growing(61))))
 
     assert (found.start_s, found.end_s, found.fixes) == pytest.approx((23.9, 29.9, 61))
     assert found.horizontal_m == pytest.approx(3.0)
@@ -41,13 +46,13 @@ def test_scattered_outliers_are_noise():
     scattered = np.arange(0, 300, 15)
     jumping = np.random.default_rng(1).normal(0.0, 2.0, (40, 3))
 
-    assert rejected_runs(fixes(scattered, [2.0, 0.0, 0.0])) == []
-    assert rejected_runs(fixes(slice(100, 140), jumping)) == []
-    assert rejected_runs(fixes(slice(100, 108), growing(8))) == []
+    assert rejected_runs(gnss(fixes(scattered, [2.0, 0.0, 0.0]))) == []
+    assert rejected_runs(gnss(fixes(slice(100, 140), jumping))) == []
+    assert rejected_runs(gnss(fixes(slice(100, 108), growing(8)))) == []
 
 
 def test_without_gnss_nothing_is_contradicted():
-    assert rejected_runs({"georeferenced": False}) == []
+    assert rejected_runs(gnss({"georeferenced": False})) == []
 
 
 def test_a_contradiction_is_a_warning_as_multipath_of_a_good_map_looks_the_same():

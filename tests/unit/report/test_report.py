@@ -95,7 +95,6 @@ def write_map(folder: Path) -> None:
     }
     folder.mkdir()
     with TileWriter(folder, list(columns), tile_m=20.0) as writer:
-        writer.facts["crs"] = None
         writer.append((0, 0, 0), columns)
 
 
@@ -128,10 +127,11 @@ def facts(tmp_path: Path) -> ReportFacts:
     (folders["frames"] / "report.json").write_text(json.dumps(imported))
     placed = {
         "georeferenced": True,
+        "t_ns": [k * 10**9 for k in range(9)],
         "residual_enu_m": [[0.01, -0.02, 0.03]] * 9,
         "used": [True] * 9,
     }
-    (folders["level"] / "georeference.json").write_text(json.dumps(placed))
+    (folders["level"] / "georeference.json").write_text(json.dumps({"georeference": placed}))
     np.savez(
         folders["intensity"] / "diagnostics.npz",
         channel_count=np.full(32, 1000),
@@ -257,8 +257,8 @@ def test_a_report_without_any_artifact_can_still_be_written(
 def test_a_map_without_points_has_no_charts_of_it(facts: ReportFacts, tmp_path: Path) -> None:
     empty = tmp_path / "empty"
     empty.mkdir()
-    with TileWriter(empty, ["xyz", "intensity"], tile_m=10.0) as writer:
-        writer.facts["crs"] = None
+    with TileWriter(empty, ["xyz", "intensity"], tile_m=10.0):
+        pass
 
     page = render(assess(replace(facts, artifacts={"map": empty})))
 

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from recon4.errors import StoreError
 from recon4.review.decisions import (
     NOTHING_DECIDED,
+    ApprovalFacts,
     Decision,
     DecisionKind,
     Measurement,
@@ -91,7 +92,7 @@ def test_a_measurement_stays_when_its_pair_is_rejected_and_accepted_again():
 
 
 def test_an_approval_changes_nothing_and_is_not_undone():
-    facts = {"version": 1, "approval": "ab"}
+    facts = ApprovalFacts(version=1, approval="ab")
     rows = [decide(DecisionKind.REJECT), decide(DecisionKind.APPROVE, facts=facts)]
 
     assert fold([*rows, decide(DecisionKind.UNDO)]) == fold(

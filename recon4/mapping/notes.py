@@ -1,0 +1,74 @@
+"""What ``tiles.json`` says of a whole map, besides its tiles."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from recon4.bounded import read_json_object
+from recon4.errors import StoreError
+
+_MAX_BYTES = 256 << 20
+"""``tiles.json`` has some 300 bytes per tile."""
+
+
+@dataclass(frozen=True, slots=True)
+class MapCrs:
+    """Coordinate reference system of the map."""
+
+    wkt: str
+    """The CRS as WKT."""
+    origin_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Coordinates of the map's origin in it [m]; the axes are parallel."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapNotes:
+    """How a map was made; the fields are keys of ``tiles.json``."""
+
+    voxel_m: float = 0.0
+    """Edge of the cubes that keep one point [m]; 0 = not thinned."""
+    crs: MapCrs | None = None
+    sensors: tuple[str, ...] = ()
+    """Names of the sensors, in the order of their numbers in the points."""
+    removed: Mapping[str, int] = field(default_factory=dict)
+    """Reason -> number of points that are not in the map."""
+
+    @staticmethod
+    def of(facts: Mapping[str, Any]) -> MapNotes:
+        """Read them from a parsed ``tiles.json``.
+
+        Raises:
+            KeyError, TypeError, ValueError: If they are not as written.
+        """
+        crs = facts["crs"]
+        return MapNotes(
+            voxel_m=float(facts.get("voxel_m") or 0.0),
+            crs=MapCrs(crs["wkt"], tuple(crs["origin_m"])) if crs else None,
+            sensors=tuple(str(name) for name in facts.get("sensors", ())),
+            removed={str(name): int(n) for name, n in facts.get("removed", {}).items()},
+        )
+
+    def to_json(self) -> dict[str, object]:
+        """Entries of ``tiles.json``."""
+        crs = self.crs and {"wkt": self.crs.wkt, "origin_m": list(self.crs.origin_m)}
+        return {
+            "voxel_m": self.voxel_m,
+            "crs": crs,
+            "sensors": list(self.sensors),
+            "removed": dict(self.removed),
+        }
+
+
+def read_map_list(path: Path) -> dict[str, Any]:
+    """Parse a ``tiles.json``.
+
+    Raises:
+        StoreError: If it is missing or damaged.
+    """
+    try:
+        return read_json_object(path, _MAX_BYTES, failure=StoreError)
+    except StoreError as error:
+        raise StoreError(f"{path} is not the list of a map's tiles: {error}") from error

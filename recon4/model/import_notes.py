@@ -1,0 +1,29 @@
+"""What later stages read of the import report, ``report.json`` of the stage ``frames``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import msgspec
+
+from recon4.errors import StoreError
+
+
+class ImportNotes(msgspec.Struct, frozen=True):
+    """Outcome and warnings of reading a recording."""
+
+    outcome: str = "complete"
+    """``complete``, ``lossy`` (salvaged) or ``nothing``."""
+    warnings: tuple[str, ...] = ()
+
+
+def import_notes(report: Mapping[str, object]) -> ImportNotes:
+    """Read a parsed import report; missing parts are as by default.
+
+    Raises:
+        StoreError: If a value has another type.
+    """
+    try:
+        return msgspec.convert(report, ImportNotes)
+    except msgspec.ValidationError as error:
+        raise StoreError(f"report.json of the frames cannot be read: {error}") from error

@@ -1,0 +1,54 @@
+"""What the report reads of ``georeference.json``; its table prints the rest as it is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import msgspec
+
+from recon4.errors import StoreError
+
+
+class LevelFacts(msgspec.Struct, frozen=True):
+    """How the map was leveled."""
+
+    source: str = ""
+    """``imu``, ``ins``, ``floor`` or ``none``; empty = not known."""
+
+
+class GnssFacts(msgspec.Struct, frozen=True):
+    """How the map was georeferenced."""
+
+    georeferenced: bool = False
+    edges_rejected: tuple[int, ...] = ()
+    """Loop closures that contradict the GNSS priors."""
+    t_ns: tuple[int, ...] = ()
+    """Times of the usable fixes [ns], (M,)."""
+    residual_enu_m: tuple[tuple[float, float, float], ...] = ()
+    """Measured minus solved position, east, north, up [m], (M, 3)."""
+    used: tuple[bool, ...] = ()
+    """Whether a fix is a GNSS prior, (M,)."""
+
+
+class Placement(msgspec.Struct, frozen=True):
+    """How the map was leveled and georeferenced."""
+
+    leveling: LevelFacts = msgspec.field(name="levelling", default=LevelFacts())
+    gnss: GnssFacts = msgspec.field(name="georeference", default=GnssFacts())
+
+    @property
+    def is_leveled(self) -> bool:
+        """Whether the z axis is vertical."""
+        return self.leveling.source != "none"
+
+
+def placement_in(record: Mapping[str, object]) -> Placement:
+    """Read a parsed ``georeference.json``; missing parts are as by default.
+
+    Raises:
+        StoreError: If a value has another type.
+    """
+    try:
+        return msgspec.convert(record, Placement)
+    except msgspec.ValidationError as error:
+        raise StoreError(f"georeference.json cannot be read: {error}") from error

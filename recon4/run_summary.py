@@ -1,0 +1,128 @@
+"""What ``summary.json`` says of every finished run, with a 3-D or a 2-D map."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+from recon4.model.figures import Figures
+from recon4.model.plain import to_plain
+from recon4.model.trajectory import Trajectory
+from recon4.model.usability import MapVerdict
+from recon4.settings import Settings
+from recon4.store.hashing import hash_file
+from recon4.store.project import ProjectDescription
+from recon4.store.stage import StageRun
+
+FORMAT = 2
+"""Format of ``summary.json``; 2 introduced ``path_length_m`` and ratios in the settings."""
+
+
+@dataclass(frozen=True, slots=True)
+class About:
+    """Request of a run."""
+
+    project: ProjectDescription
+    settings: Settings
+    """In force."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StageSummary:
+    """How a stage went; the fields are its keys in ``summary.json``."""
+
+    key: str
+    """Of its artifact."""
+    stage: str
+    version: int
+    finished: str
+    """When its artifact was made, ISO 8601 UTC."""
+    seconds: float
+    """Wall clock [s]."""
+    cpu_seconds: float
+    """Processor time, children included [s]."""
+    peak_bytes: int
+    reused: bool
+    """Whether an earlier run made it."""
+    figures: Figures
+
+    @staticmethod
+    def of(run: StageRun[Any]) -> StageSummary:
+        """The summary of a stage that ran."""
+        done = run.done
+        return StageSummary(
+            key=done.key,
+            stage=done.stage,
+            version=done.version,
+            finished=done.finished,
+            seconds=round(done.seconds, 3),
+            cpu_seconds=round(done.cpu_seconds, 3),
+            peak_bytes=done.peak_bytes,
+            reused=run.reused,
+            figures=run.figures,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunSummary:
+    """The keys of ``summary.json`` that all maps have."""
+
+    name: str
+    """Of the project."""
+    created: str
+    """When the run ended, ISO 8601 UTC."""
+    preset: str
+    """What the settings started from."""
+    duration_s: float
+    """Time covered by the trajectory [s]."""
+    path_length_m: float
+    """Path length, in steps of half a second [m]."""
+    edges: Mapping[str, int]
+    """Edges by verdict, as ``edges.json`` has them."""
+    verdict: MapVerdict
+    warnings: tuple[str, ...]
+    seconds: float
+    """Wall clock of all stages, of the earlier run where reused [s]."""
+    peak_bytes: int
+    """Largest resident memory of any stage [bytes]."""
+    stages: tuple[StageSummary, ...]
+    """How each stage went, in order."""
+    versions: Mapping[str, str]
+    settings: Mapping[str, Mapping[str, object]]
+    """Group -> setting -> value."""
+    hashes: Mapping[str, Mapping[str, str]]
+    """SHA-256 of ``inputs`` and of ``results``, by file name."""
+    folder: Path
+    """The project; not written, so that it may be moved."""
+
+    def to_json(self) -> dict[str, object]:
+        """Plain JSON values."""
+        names = [one.name for one in fields(self) if one.name != "folder"]
+        return {"format": FORMAT} | {name: to_plain(getattr(self, name)) for name in names}
+
+
+def duration_s(trajectory: Trajectory) -> float:
+    """Time covered by a trajectory [s]."""
+    return round(int(trajectory.t_ns[-1] - trajectory.t_ns[0]) / 1e9, 3)
+
+
+def seconds_of(runs: Mapping[str, StageRun[Any]]) -> float:
+    """Wall clock of all stages, of the earlier run where reused [s]."""
+    return round(sum(run.done.seconds for run in runs.values()), 3)
+
+
+def peak_bytes_of(runs: Mapping[str, StageRun[Any]]) -> int:
+    """Largest resident memory of any stage [bytes]."""
+    return max(run.done.peak_bytes for run in runs.values())
+
+
+def hashes_of(
+    root: Path, described: ProjectDescription, results: tuple[str, ...]
+) -> dict[str, dict[str, str]]:
+    """SHA-256 of the inputs, as described, and of result files, as they are now."""
+    return {
+        "inputs": {file.name: file.sha256 for file in described.inputs},
+        "results": {name: hash_file(root / name) for name in results},
+    }
