@@ -146,23 +146,25 @@ def _put_back(root: Path, keys: Mapping[str, str]) -> tuple[Approval | None, tup
     return approval, ()
 
 
-def export_map(
-    project: Path,
-    path: Path,
-    *,
-    crs: str,
-    raw: bool = False,
-    strays: bool = False,
-    progress: Progress,
-) -> int:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapExport:
+    """What of a map is written to a file."""
+
+    crs: str = ""
+    """Code of a CRS; empty = that of the map, or its local frame."""
+    raw: bool = False
+    """Points where they were measured, not on their surfaces."""
+    strays: bool = False
+    """Also the stray returns, marked as noise; only as LAZ."""
+
+
+def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progress) -> int:
     """Write the map of a finished run as LAZ or PLY; the file notes an approval.
 
     Args:
         project: The project folder.
         path: File to write; ``.laz`` or ``.ply``.
-        crs: Code of a CRS; empty = that of the map, or its local frame.
-        raw: Points where they were measured, not on their surfaces.
-        strays: Also the stray returns, marked as noise; only as LAZ.
+        wanted: Coordinates and kinds of points.
         progress: Counts points.
 
     Returns:
@@ -177,22 +179,22 @@ def export_map(
     artifacts = read_artifacts(project)
     if "map" not in artifacts:
         raise StoreError(f"{project} has no map yet: run recon4 process")
-    ending = _ending_of_map(path, strays=strays)
+    ending = _ending_of_map(path, strays=wanted.strays)
     approval = approval_of(project, {name: folder.name for name, folder in artifacts.items()})
     checked = None
     if approval:
         approval.evidence.check_frame(artifacts)
         checked = approval.evidence.artifact("map", artifacts["map"])
-    place = read_crs(artifacts["level"], crs)
+    place = read_crs(artifacts["level"], wanted.crs)
     to_crs = place.to_crs if place else None
     tiles = TileSet.open(artifacts["map"], checked)
-    tiles = tiles.as_measured() if raw else tiles
+    tiles = tiles.as_measured() if wanted.raw else tiles
     # The stamp goes onto a file beside it, so that a file without one is never there.
     with atomic_file(path) as temporary:
         if ending == ".laz":
             wkt = place.wkt if place else None
             count = export_laz(
-                tiles, temporary, crs=wkt, to_crs=to_crs, strays=strays, progress=progress
+                tiles, temporary, crs=wkt, to_crs=to_crs, strays=wanted.strays, progress=progress
             )
         else:
             count = export_ply(tiles, temporary, to_crs=to_crs, progress=progress)

@@ -110,10 +110,15 @@ async def read_queue(project_id: str, server: Server, caller: CalledBy) -> Respo
     return Response(record, media_type="application/json")
 
 
+def _pair(frame_i: Frame, frame_j: Frame) -> tuple[int, int]:
+    """The multiframes of a pair, from the query."""
+    return frame_i, frame_j
+
+
 @router.get("/walk", dependencies=LOOK, summary="Nodes along the trajectory")
 async def read_walk(project_id: str, server: Server, caller: CalledBy) -> TrajectoryNodes:
     """Nodes of the graph: multiframe, seconds since the start, position."""
-    return await _of_pairs(project_id, server, caller, trajectory_nodes)
+    return await _of_pairs(server, caller, trajectory_nodes, project_id=project_id)
 
 
 @router.get("/pair", dependencies=LOOK, summary="One pair")
@@ -121,7 +126,7 @@ async def read_pair(
     project_id: str, server: Server, caller: CalledBy, *, frame_i: Frame, frame_j: Frame
 ) -> PairFacts:
     """Poses of a pair, registered or not, and its alternative paths."""
-    return await _of_pairs(project_id, server, caller, pair_facts, (frame_i, frame_j))
+    return await _of_pairs(server, caller, pair_facts, (frame_i, frame_j), project_id=project_id)
 
 
 @router.get("/points", dependencies=LOOK, summary="Points of a pair")
@@ -130,8 +135,7 @@ async def read_points(
     server: Server,
     caller: CalledBy,
     *,
-    frame_i: Frame,
-    frame_j: Frame,
+    pair: Annotated[tuple[int, int], Depends(_pair)],
     reach: Annotated[int, Query(ge=0, le=10)] = 0,
 ) -> Response:
     """Points of two multiframes and ``reach`` others before and after each, at most 30 000 each.
@@ -139,7 +143,7 @@ async def read_points(
     Little-endian: ``R4PP``, uint32 version (1), uint32 numbers of points of i and of j, then
     float32 x y z of the points of i in the body frame at i, then of j at j [m].
     """
-    record = await _of_pairs(project_id, server, caller, pair_points, (frame_i, frame_j), reach)
+    record = await _of_pairs(server, caller, pair_points, pair, reach, project_id=project_id)
     return Response(record, media_type="application/octet-stream")
 
 
@@ -152,7 +156,9 @@ async def align_pair(
     The journal is not changed.
     """
     root, pair = server.projects.folder(project_id), (predicted.frame_i, predicted.frame_j)
-    found = await _of_pairs(project_id, server, caller, align, pair, tuple(predicted.T_i_j))
+    found = await _of_pairs(
+        server, caller, align, pair, tuple(predicted.T_i_j), project_id=project_id
+    )
     measured = found.measurement
     return AlignmentView(
         measurement=server.reviews.remember(root, pair, found) if found.converged else "",
@@ -257,7 +263,7 @@ async def approve(
 
 
 async def _of_pairs(
-    project_id: str, server: Parts, caller: Caller, function: Callable[..., T], *args: object
+    server: Parts, caller: Caller, function: Callable[..., T], *args: object, project_id: str
 ) -> T:
     """Run a function of the project's graph in the compute pool and return its result."""
     root = server.projects.folder(project_id)

@@ -92,6 +92,18 @@ class Reduced:
         return self.own + self.coupling @ delta
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _NormalEquations:
+    """Of the unknowns of a window and the parameters of the rig; filled in place."""
+
+    H: Array
+    """Information, (Q + P, Q + P)."""
+    g: Array
+    """Gradient, (Q + P,)."""
+    parameters: Parameters
+    """The last P unknowns."""
+
+
 def reduce_window(
     state: WindowState,
     rig: Rig,
@@ -119,10 +131,9 @@ def reduce_window(
         return None
     own = state.unknowns
     H, g = np.zeros((own + len(parameters),) * 2), np.zeros(own + len(parameters))
-    r, weight = _add_points(
-        H, g, window, placed, surfaces=surfaces, parameters=parameters, kernel_m=bounds.kernel_m
-    )
-    imu_rms = _add_motion(H, g, state, rig, parameters=parameters, settings=settings)
+    normal = _NormalEquations(H, g, parameters)
+    r, weight = _add_points(normal, window, placed, surfaces=surfaces, kernel_m=bounds.kernel_m)
+    imu_rms = _add_motion(normal, state, rig, settings=settings)
     right = np.column_stack([H[:own, own:], g[:own]])
     solved: Array = np.asarray(np.linalg.solve(H[:own, :own], right), np.float64)
     coupling, step = -solved[:, :-1], -solved[:, -1]
@@ -140,21 +151,22 @@ def reduce_window(
 
 
 def _add_points(
-    H: Array,
-    g: Array,
+    equations: _NormalEquations,
     window: Window,
     placed: PlacedPoints,
     *,
     surfaces: SharedSurfaces,
-    parameters: Parameters,
     kernel_m: float,
 ) -> tuple[Array, Array]:
     """Add the points, the planes eliminated; returns their distances and weights, (M,) each."""
+    H, g = equations.H, equations.g
     rows, plane = surfaces.point, surfaces.plane
     normal = surfaces.normal[plane]
     away = placed.odom[rows] - surfaces.center[plane]
     r: Array = np.sum(normal * away, axis=1)
-    columns, values = _derivatives(window, placed, rows, normal=normal, parameters=parameters)
+    columns, values = _derivatives(
+        window, placed, rows, normal=normal, parameters=equations.parameters
+    )
     weight = 1.0 / (_POINT_SD_M**2 * (1.0 + (r / kernel_m) ** 2))
     tangents = _tangents(surfaces.normal)[plane]
     plane_values = np.column_stack([np.einsum("nij,ni->nj", tangents, away), -np.ones(len(rows))])
@@ -219,15 +231,10 @@ def _offset_m(surfaces: SharedSurfaces, sensor: NDArray[np.uint8], r: Array) -> 
 
 
 def _add_motion(
-    H: Array,
-    g: Array,
-    state: WindowState,
-    rig: Rig,
-    *,
-    parameters: Parameters,
-    settings: OdometrySettings,
+    equations: _NormalEquations, state: WindowState, rig: Rig, *, settings: OdometrySettings
 ) -> float:
     """Add IMU and priors of the motion; returns the root mean square residual of the IMU."""
+    H, g, parameters = equations.H, equations.g, equations.parameters
     knots, own = state.window.knots, state.unknowns
     diagonal = np.einsum("ii->i", H)
     diagonal[: 6 * knots] += np.tile(_KNOT_SD**-2.0, knots)

@@ -68,7 +68,6 @@ def calibrate_jointly(
     parameters: Parameters,
     *,
     settings: Settings,
-    rounds: Sequence[RoundBounds] = ROUNDS,
     progress: Callable[[], None] = lambda: None,
 ) -> JointEstimate:
     """Estimate mounts and clocks from windows of a walk.
@@ -78,7 +77,6 @@ def calibrate_jointly(
         rig: Where to begin: some degrees and centimeters from the truth.
         parameters: What is estimated; what is known already has a small ``prior_sd``.
         settings: Noise of the IMU, number of threads.
-        rounds: RoundBounds of each round.
         progress: Called after each round.
     """
     first, states = rig, [_first_state(window) for window in windows]
@@ -87,7 +85,7 @@ def calibrate_jointly(
     prior = np.diag(parameters.prior_sd**-2.0)
     found: list[Reduced | None] = []
     with ThreadPoolExecutor(settings.graph.workers) as pool:
-        for bounds in rounds:
+        for bounds in ROUNDS:
             found = list(pool.map(_reducer(rig, parameters, noise, bounds=bounds), states))
             H, g = _total(found, len(parameters))
             pull = g + prior @ parameters.between(first, rig)

@@ -166,7 +166,7 @@ def export(
     """Write the map of a project, in any CRS when it is georeferenced, or its poses."""
     confine_command(write=[file.parent])
     from recon4.exports_3dtk import export_3dtk
-    from recon4.results import export_map, export_poses
+    from recon4.results import MapExport, export_map, export_poses
     from recon4.terminal import watcher
 
     if file.suffix.lower() == ".txt":
@@ -178,7 +178,8 @@ def export(
         if file.suffix.lower() == ".3dtk":
             write(f"{export_3dtk(project, file, progress=progress)} points in {file}")
             return
-        points = export_map(project, file, crs=crs, raw=raw, strays=strays, progress=progress)
+        wanted = MapExport(crs=crs, raw=raw, strays=strays)
+        points = export_map(project, file, wanted, progress=progress)
     write(f"{points} points in {file}")
 
 

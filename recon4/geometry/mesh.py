@@ -89,21 +89,20 @@ class MeshBuilder:
         self,
         start: ArrayLike,
         end: ArrayLike,
-        radius_m: float,
+        radius_m: float | tuple[float, float],
         *,
         reflectivity: float,
         sides: int = 6,
-        end_radius_m: float | None = None,
     ) -> None:
-        """A closed prism around an axis: pole, rail, wire, trunk, cone."""
+        """A closed prism around an axis: pole, rail, wire; a trunk or cone has two radii [m]."""
         a, b = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
         axis = (b - a) / np.linalg.norm(b - a)
         side = np.cross(axis, [1.0, 0.0, 0.0] if abs(axis[0]) < 0.9 else [0.0, 1.0, 0.0])
         side /= np.linalg.norm(side)
         angle = np.linspace(0.0, 2.0 * np.pi, sides, endpoint=False)
         ring = np.outer(np.cos(angle), side) + np.outer(np.sin(angle), np.cross(axis, side))
-        far_radius = radius_m if end_radius_m is None else end_radius_m
-        corners = np.vstack([a + radius_m * ring, b + far_radius * ring, a, b])
+        near_m, far_m = radius_m if isinstance(radius_m, tuple) else (radius_m, radius_m)
+        corners = np.vstack([a + near_m * ring, b + far_m * ring, a, b])
         k = np.arange(sides)
         n = (k + 1) % sides
         low, high = np.full(sides, 2 * sides), np.full(sides, 2 * sides + 1)

@@ -10,7 +10,8 @@ from recon4.geometry.se3 import SE3
 from recon4.model.laser_scans import LaserScans
 from recon4.model.rig import Rig
 from recon4.model.trajectory import Trajectory
-from recon4.profiler.fusion import PlanarPoses
+from recon4.profiler.fusion import PlanarPoses, attitude
+from recon4.profiler.imu_chain import Drive
 from recon4.profiler.mirrored import is_mirrored, upright
 from recon4.progress import Progress
 from recon4.settings import Settings
@@ -36,9 +37,8 @@ class PlanarMap:
 def map_in_plane(
     scans: LaserScans | None,
     rig: Rig,
-    attitude: Trajectory,
+    drive: Drive,
     *,
-    has_imu: bool,
     settings: Settings,
     progress: Progress,
 ) -> PlanarMap | None:
@@ -47,8 +47,7 @@ def map_in_plane(
     Args:
         scans: Of the 2-D laser.
         rig: Its mounting.
-        attitude: ``R_map_body`` by the IMU.
-        has_imu: Whether the attitude is measured.
+        drive: The IMU, for the attitude.
         settings: Those of 2-D SLAM.
         progress: Counts scans.
 
@@ -58,15 +57,16 @@ def map_in_plane(
     row = rig.row_of("laser2d")
     if scans is None or row is None:
         return None
+    R_map_body = attitude(drive)
     first, last = np.searchsorted(
-        scans.t_ns, [attitude.t_ns[0] - _NEAR_NS, attitude.t_ns[-1] + _NEAR_NS]
+        scans.t_ns, [R_map_body.t_ns[0] - _NEAR_NS, R_map_body.t_ns[-1] + _NEAR_NS]
     )
     if last - first < _MIN_SCANS:
         return None
     T_body_laser = rig.sensors[row].T_body_sensor
-    T_map_laser = SE3(attitude.T_a_b.R @ T_body_laser.R, np.zeros_like(attitude.T_a_b.t))
-    used, leveled = scans[slice(int(first), int(last))], Trajectory(attitude.t_ns, T_map_laser)
-    mirrored = has_imu and is_mirrored(used, leveled)
+    T_map_laser = SE3(R_map_body.T_a_b.R @ T_body_laser.R, np.zeros_like(R_map_body.T_a_b.t))
+    used, leveled = scans[slice(int(first), int(last))], Trajectory(R_map_body.t_ns, T_map_laser)
+    mirrored = drive.has_imu and is_mirrored(used, leveled)
     found = slam2d(
         upright(used) if mirrored else used,
         attitude=leveled,

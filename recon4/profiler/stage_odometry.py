@@ -11,7 +11,7 @@ from recon4.geometry.se3 import SE3
 from recon4.model.events import PosesAdded, TrackingLost, Warned, positions_of
 from recon4.model.figures import OdometryFigures
 from recon4.model.trajectory import Times, Trajectory
-from recon4.profiler.fusion import attitude, fuse
+from recon4.profiler.fusion import fuse
 from recon4.profiler.imu_chain import Drive, linearize, make_drive
 from recon4.profiler.planar import PlanarMap, map_in_plane
 from recon4.progress import Progress
@@ -49,8 +49,7 @@ def run_line_odometry(
     planar = map_in_plane(
         scans,
         frames.rig,
-        attitude(drive),
-        has_imu=drive.has_imu,
+        drive,
         settings=settings,
         progress=progress,
     )

@@ -150,7 +150,10 @@ def linked(turns: Turns, T: SE3, settings: Settings) -> list[tuple[int, int, flo
     out = []
     for j in range(1, len(turns)):
         near = [i for i in range(j) if np.linalg.norm(T.t[i] - T.t[j]) < s.link_reach_m]
-        ratios = [(_close_ratio(trees[i], some[j], relative(T, i, j), settings), i) for i in near]
+        ratios = [
+            (_close_ratio(trees[i], some[j], relative(T, i, j), reach_m=s.link_distance_m), i)
+            for i in near
+        ]
         linked_to = [(ratio, i) for ratio, i in ratios if ratio * len(some[j]) >= s.link_pairs]
         close = [pair for pair in linked_to if j - pair[1] <= g.neighbors]
         far = sorted((p for p in linked_to if j - p[1] > g.neighbors), reverse=True)
@@ -189,7 +192,7 @@ def register_pair(
     edge = _register(target, points, replace(link, overlap=0.0), settings=settings)
     some = [_spread(one, _COUNTED) for one in points]
     tree = cKDTree(some[0], balanced_tree=False, compact_nodes=False)
-    overlap = _close_ratio(tree, some[1], edge.T_i_j, settings)
+    overlap = _close_ratio(tree, some[1], edge.T_i_j, reach_m=settings.lines.link_distance_m)
     return replace(edge, overlap=overlap), overlap * len(some[1])
 
 
@@ -233,9 +236,9 @@ def _register(
     )
 
 
-def _close_ratio(tree: cKDTree, points: Points, T_i_j: SE3, settings: Settings) -> float:
+def _close_ratio(tree: cKDTree, points: Points, T_i_j: SE3, *, reach_m: float) -> float:
     p_i = T_i_j @ points.astype(np.float64)
-    distance = tree.query(p_i, distance_upper_bound=settings.lines.link_distance_m)[0]
+    distance = tree.query(p_i, distance_upper_bound=reach_m)[0]
     return float(np.mean(np.isfinite(distance)))
 
 

@@ -102,6 +102,18 @@ class _IngestSpan:
 
 
 @dataclass(frozen=True, slots=True)
+class _Receivers:
+    """Who receives the contents of a recording."""
+
+    writer: FrameWriter
+    """Multiframes."""
+    samples: _Samples
+    """Everything else."""
+    watch: Callable[[Multiframe | ImuSamples | GnssSamples], None]
+    """Samples as read, besides."""
+
+
+@dataclass(frozen=True, slots=True)
 class LiveSource:
     """How a running capture differs from a finished recording."""
 
@@ -137,8 +149,7 @@ def ingest(
         ConfigError: If rig, clocks or units are wrong.
         StoreError: If the store cannot be written.
     """
-    live = live or LiveSource()
-    report = live.report
+    report = (live := live or LiveSource()).report
     sources = _sort_out(sources)
     paths = sources.recordings
     given = _Samples.of_files(sources, out)
@@ -150,12 +161,10 @@ def ingest(
     )
     with FrameWriter(out, recording.rig) as writer:
         found = _Samples(given.lines)
-        written = _write_frames(
-            recording, assembler, writer, found=found, watch=live.watch, progress=progress
-        )
+        receivers = _Receivers(writer, found, live.watch)
+        written = _write_frames(recording, assembler, receivers, progress=progress)
         if not written.duration_ns:
-            counted = ", ".join(f"{name} {n}" for name, n in sorted(report.counts.items()))
-            raise EmptyRecording(f"{paths[0].name}: no usable points ({counted or 'nothing read'})")
+            raise _without_points(paths[0], report)
         imu = _imu(given, found, recording.rig, written=written, report=report)
         gnss = _gnss(given, found, recording.rig, written=written, report=report)
         _write_poses(out, found.poses, report)
@@ -167,6 +176,11 @@ def ingest(
         writer.add(imu=imu, gnss=gnss, report=about)
     for text in report.warnings:
         progress.event(Warned(text=text))
+
+
+def _without_points(path: Path, report: ImportReport) -> EmptyRecording:
+    counted = ", ".join(f"{name} {n}" for name, n in sorted(report.counts.items()))
+    return EmptyRecording(f"{path.name}: no usable points ({counted or 'nothing read'})")
 
 
 def _sort_out(sources: Sources) -> Sources:
@@ -183,26 +197,20 @@ def _sort_out(sources: Sources) -> Sources:
 
 
 def _write_frames(
-    recording: Recording,
-    assembler: Assembler,
-    writer: FrameWriter,
-    *,
-    found: _Samples,
-    watch: Callable[[Multiframe | ImuSamples | GnssSamples], None],
-    progress: Progress,
+    recording: Recording, assembler: Assembler, receivers: _Receivers, *, progress: Progress
 ) -> _IngestSpan:
-    """Write the multiframes as they are cut; ``found`` receives the other contents."""
+    """Write the multiframes as they are cut, and keep the other contents."""
     written = _IngestSpan()
     for item in _items(recording, assembler):
         if not isinstance(item, Multiframe):
-            found.keep(item)
+            receivers.samples.keep(item)
             if isinstance(item, ImuSamples | GnssSamples):
-                watch(item)
+                receivers.watch(item)
             continue
         if not written.duration_ns:
             count = round(recording.seconds * 1e9 / item.duration_ns)
             progress.start("frames", count, "multiframe")
-        writer.append(item)
+        receivers.writer.append(item)
         written.add(item)
         progress.advance()
     written.jumps_ns = [-round(gap.seconds * 1e9) for gap in assembler.gaps if gap.seconds < 0]

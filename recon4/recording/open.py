@@ -123,21 +123,7 @@ def open_recording(
         RecordingError: If it cannot be read.
         ConfigError: If the rig is wrong or cannot be chosen.
     """
-    if not paths:
-        raise ConfigError("no recording given")
-    kinds = [recognize(path) for path in paths]
-    kind = kinds[0]
-    if kind is RecordingKind.CARMEN:
-        raise UnknownFormat(
-            f"{paths[0].name}: {kind}: it has no points of a LiDAR; process it alone"
-        )
-    if kind not in RECORDINGS:
-        raise UnknownFormat(f"{paths[0].name}: {kind} alone is no recording: it has no points")
-    if rig is not None and rig.row_of("profiler") is not None and kind not in _BAGS:
-        raise UnknownFormat(f"{paths[0].name}: line scans are read from bags, got {kind}")
-    if any(other is not kind for other in kinds):
-        names = ", ".join(f"{path.name} ({k})" for path, k in zip(paths, kinds, strict=True))
-        raise UnknownFormat(f"recordings of one kind expected, got {names}")
+    kind = _one_kind(paths, rig)
     if kind is RecordingKind.PCAP:
         files = [f for path in paths for f in pcap_files(path)]
         if rig is None:
@@ -154,6 +140,31 @@ def open_recording(
         return Recording(kind, lines.rig, lines.read, lines.seconds)
     bag = BagRecording(files, rig, settings=settings, report=report)
     return Recording(kind, bag.rig, bag.read, bag.seconds)
+
+
+def _one_kind(paths: Sequence[Path], rig: Rig | None) -> RecordingKind:
+    """The kind of recordings that belong together and fit the rig.
+
+    Raises:
+        UnknownFormat: If they do not, or are no recordings.
+        ConfigError: If there are none.
+    """
+    if not paths:
+        raise ConfigError("no recording given")
+    kinds = [recognize(path) for path in paths]
+    kind = kinds[0]
+    if kind is RecordingKind.CARMEN:
+        raise UnknownFormat(
+            f"{paths[0].name}: {kind}: it has no points of a LiDAR; process it alone"
+        )
+    if kind not in RECORDINGS:
+        raise UnknownFormat(f"{paths[0].name}: {kind} alone is no recording: it has no points")
+    if rig is not None and rig.row_of("profiler") is not None and kind not in _BAGS:
+        raise UnknownFormat(f"{paths[0].name}: line scans are read from bags, got {kind}")
+    if any(other is not kind for other in kinds):
+        names = ", ".join(f"{path.name} ({k})" for path, k in zip(paths, kinds, strict=True))
+        raise UnknownFormat(f"recordings of one kind expected, got {names}")
+    return kind
 
 
 def _profiler_rig(files: Sequence[Path], rig: Rig | None, report: ImportReport) -> Rig | None:

@@ -7,11 +7,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.geometry.mesh import GLASS
 from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.carrier import carrier_range
-from recon4.kernels.simulation import make_rays, measure
-from recon4.simulation.lidar import RESOLUTION_M, LidarModel, Surroundings
+from recon4.kernels.simulation import make_rays
+from recon4.simulation.lidar import (
+    RESOLUTION_M,
+    LidarModel,
+    RaysAndHits,
+    Surroundings,
+    hit_noise,
+    measure_hits,
+)
 from recon4.simulation.walk import Walk
 
 WUERZBURG_CARRIER = np.array([0.24, 0.0, 0.3, -1.5, 0.12])
@@ -28,10 +34,19 @@ class BeamReturns:
     """0..255, (N,)."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class BeamShots:
+    """Shots of one beam."""
+
+    t_s: Array
+    """Time of each since the start of the walk [s], (N,)."""
+    direction: Array
+    """Azimuth, counterclockwise about the sensor's z, and elevation [rad], (N, 2)."""
+    T_body_sensor: SE3
+
+
 def shoot(
-    t_s: Array,
-    direction: Array,
-    T_body_sensor: SE3,
+    shots: BeamShots,
     *,
     walk: Walk,
     surroundings: Surroundings,
@@ -41,49 +56,32 @@ def shoot(
     """Measure from a walking body.
 
     Args:
-        t_s: Time of each shot since the start of the walk [s], (N,).
-        direction: Azimuth, counterclockwise about the sensor's z, and elevation [rad], (N, 2).
-        T_body_sensor: Mounting.
+        shots: Time and direction of each shot.
         walk: Motion of the body.
         surroundings: What is hit.
         model: Errors; the carrier is hit if it has one.
         rng: Draws the errors.
     """
-    count = len(t_s)
+    count, direction = len(shots.t_s), shots.direction
     half = 0.5 * model.divergence_rad
     shot = np.zeros((count, 5))
     shot[:, 0], shot[:, 1] = -direction[:, 0], direction[:, 1]
     shot[:, 3:] = rng.uniform(-half, half, (count, 2))
-    R, t = T_body_sensor.R, T_body_sensor.t
+    R, t = shots.T_body_sensor.R, shots.T_body_sensor.t
     rays = np.empty((2 * count, 6), dtype=np.float32)
-    make_rays(walk.state(t_s), R, t, shot, rays)
+    make_rays(walk.state(shots.t_s), R, t, shot, rays)
     person_m: Array = np.full(count, np.inf)
     if model.carrier:
         carrier_range(shot, R, t, WUERZBURG_CARRIER, person_m)
     hits = surroundings.scene.cast(rays)
     blocked = person_m < hits.range_m[:count]
-    noise = np.empty((count, 4), dtype=np.float32)
-    noise[:, :2] = rng.standard_normal((count, 2), dtype=np.float32)
-    noise[:, 2:] = rng.random((count, 2), dtype=np.float32)
-    distance = np.empty(count, dtype=np.uint16)
-    intensity, truth = np.empty(count, dtype=np.uint8), np.empty(count, dtype=np.uint8)
-    measure(
-        hits.range_m, hits.triangle, hits.normal, rays, surroundings.mesh.reflectivity, blocked,
-        np.ones(count), noise, _rules(model), distance, intensity, truth,
+    noise = hit_noise(count, rng)
+    found = measure_hits(
+        RaysAndHits(rays, hits, blocked, noise), np.ones(count),
+        surroundings=surroundings, model=model,
     )  # fmt: skip
-    range_m = np.where(distance > 0, RESOLUTION_M * distance, np.nan)
+    range_m = np.where(found.distance > 0, RESOLUTION_M * found.distance, np.nan)
     near = blocked & (person_m > model.min_range_m)
     range_m[near] = person_m[near] + model.range_sd_m * noise[near, 0]
-    intensity[near] = 40
-    return BeamReturns(range_m.astype(np.float32), intensity)
-
-
-def _rules(model: LidarModel) -> Array:
-    """The errors of a model as `recon4.kernels.simulation.measure` takes them."""
-    return np.array(
-        [
-            model.range_sd_m, model.min_range_m, model.max_range_m, model.weakest_signal,
-            model.mixed_step_m, model.loss, model.intensity_sd, model.intensity_sd_counts,
-            GLASS, RESOLUTION_M,
-        ]
-    )  # fmt: skip
+    found.intensity[near] = 40
+    return BeamReturns(range_m.astype(np.float32), found.intensity)

@@ -143,39 +143,15 @@ class Lidar:
         if self.model.carrier:
             hits_carrier(shot, mount.R, mount.t, CARRIER, blocked)
         hits = surroundings.cast(rays, walk, np.tile(t_s, 2))
-        out = self._measure(hits, rays, blocked, surroundings, rng=rng)
+        found = measure_hits(
+            RaysAndHits(rays, hits, blocked, hit_noise(count, rng)),
+            np.tile(self.gain, count // LASERS),
+            surroundings=surroundings,
+            model=self.model,
+        )
+        columns = (found.distance, found.intensity, found.reflectivity)
         azimuth = np.mod(shot[:, 0], 2.0 * np.pi).reshape(t_ns.shape)
-        return Firings(t_ns, azimuth, *(column.reshape(t_ns.shape) for column in out))
-
-    def _measure(
-        self,
-        hits: Hits,
-        rays: NDArray[np.float32],
-        blocked: NDArray[np.bool_],
-        surroundings: Surroundings,
-        *,
-        rng: np.random.Generator,
-    ) -> tuple[NDArray[np.uint16], NDArray[np.uint8], NDArray[np.uint8]]:
-        count = len(blocked)
-        noise = np.empty((count, 4), dtype=np.float32)
-        noise[:, :2] = rng.standard_normal((count, 2), dtype=np.float32)
-        noise[:, 2:] = rng.random((count, 2), dtype=np.float32)
-        distance = np.empty(count, dtype=np.uint16)
-        intensity, truth = np.empty(count, dtype=np.uint8), np.empty(count, dtype=np.uint8)
-        model = self.model
-        rules = np.array(
-            [
-                model.range_sd_m, model.min_range_m, model.max_range_m, model.weakest_signal,
-                model.mixed_step_m, model.loss, model.intensity_sd, model.intensity_sd_counts,
-                GLASS, RESOLUTION_M,
-            ]
-        )  # fmt: skip
-        gain = np.tile(self.gain, count // LASERS)
-        measure(
-            hits.range_m, hits.triangle, hits.normal, rays, surroundings.reflectivity, blocked,
-            gain, noise, rules, distance, intensity, truth,
-        )  # fmt: skip
-        return distance, intensity, truth
+        return Firings(t_ns, azimuth, *(column.reshape(t_ns.shape) for column in columns))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -198,3 +174,66 @@ class Surroundings:
             return hits
         people = len(self.mesh.reflectivity)
         return self.companions.hide(hits, rays, walk=walk, t_s=t_s, surface=people)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RaysAndHits:
+    """Two rays per shot, and what they hit. N shots."""
+
+    rays: NDArray[np.float32]
+    """Origin and direction in the world, (2 N, 6)."""
+    hits: Hits
+    blocked: NDArray[np.bool_]
+    """The person hides what is behind, (N,)."""
+    noise: NDArray[np.float32]
+    """Of `hit_noise`, (N, 4)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MeasuredHits:
+    """What a sensor makes of hits."""
+
+    distance: NDArray[np.uint16]
+    """In units of 2 mm, 0 = no return, (N,)."""
+    intensity: NDArray[np.uint8]
+    """0..255, (N,)."""
+    reflectivity: NDArray[np.uint8]
+    """Hundred times the true one, 0 = no return, (N,)."""
+
+
+def hit_noise(count: int, rng: np.random.Generator) -> NDArray[np.float32]:
+    """Random numbers of each shot: two normal, two uniform, (N, 4)."""
+    noise = np.empty((count, 4), dtype=np.float32)
+    noise[:, :2] = rng.standard_normal((count, 2), dtype=np.float32)
+    noise[:, 2:] = rng.random((count, 2), dtype=np.float32)
+    return noise
+
+
+def measure_hits(
+    given: RaysAndHits, gain: Array, *, surroundings: Surroundings, model: LidarModel
+) -> MeasuredHits:
+    """Measure hits with the errors of a model.
+
+    Args:
+        given: Rays and hits.
+        gain: Of the laser of each shot, (N,).
+        surroundings: What was hit.
+        model: Errors.
+    """
+    count, hits = len(gain), given.hits
+    found = MeasuredHits(
+        np.empty(count, np.uint16), np.empty(count, np.uint8), np.empty(count, np.uint8)
+    )
+    rules = np.array(
+        [
+            model.range_sd_m, model.min_range_m, model.max_range_m, model.weakest_signal,
+            model.mixed_step_m, model.loss, model.intensity_sd, model.intensity_sd_counts,
+            GLASS, RESOLUTION_M,
+        ]
+    )  # fmt: skip
+    measure(
+        hits.range_m, hits.triangle, hits.normal, given.rays, surroundings.reflectivity,
+        given.blocked, gain, given.noise, rules, found.distance, found.intensity,
+        found.reflectivity,
+    )  # fmt: skip
+    return found

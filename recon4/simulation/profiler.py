@@ -11,7 +11,7 @@ from recon4.geometry.se3 import Array
 from recon4.model.laser_scans import LaserScans
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times
-from recon4.simulation.beams import shoot
+from recon4.simulation.beams import BeamShots, shoot
 from recon4.simulation.head import HeadModel
 from recon4.simulation.lidar import LidarModel, Surroundings
 from recon4.simulation.walk import Walk
@@ -127,7 +127,7 @@ class SimulatedProfiler:
             np.linspace(model.lowest_rad, model.highest_rad, model.shots), len(t_ns)
         )
         returns = shoot(
-            t_s.ravel(), direction, self.sensor.T_body_sensor,
+            BeamShots(t_s.ravel(), direction, self.sensor.T_body_sensor),
             walk=walk, surroundings=surroundings, model=model.errors, rng=rng,
         )  # fmt: skip
         head = model.head.angle_rad(t_s[:, 0] + self.head_s)
@@ -173,7 +173,7 @@ class SimulatedLaser2d:
         angles = model.angle_min_rad + model.angle_step_rad * np.arange(model.beams)
         direction[:, 0] = np.tile(angles, len(t_ns))
         returns = shoot(
-            t_s.ravel(), direction, self.sensor.T_body_sensor,
+            BeamShots(t_s.ravel(), direction, self.sensor.T_body_sensor),
             walk=walk, surroundings=surroundings, model=model.errors, rng=rng,
         )  # fmt: skip
         return LaserScans(

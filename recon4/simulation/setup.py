@@ -64,7 +64,6 @@ def prepare(
     seed: int,
     rig: Rig | None = None,
     models: Models | None = None,
-    epoch_ns: int = EPOCH_NS,
     people: int = 0,
 ) -> SimulationSetup:
     """Build a world, plan the walk and mount the sensors.
@@ -76,7 +75,6 @@ def prepare(
         rig: VLP-16s and their mounting; None = 4RECON. Addresses and topics that are
             missing are filled in.
         models: Errors of the sensors; None = those of the real ones.
-        epoch_ns: UTC of the start [ns].
         people: Number of people who walk with the carrier and hide part of the view.
 
     Raises:
@@ -107,7 +105,7 @@ def prepare(
         lidars,
         Surroundings(place.mesh, Scene(place.mesh), companions),
         seed,
-        epoch_ns,
+        EPOCH_NS,
     )
 
 

@@ -1120,7 +1120,7 @@ export interface Operations {
   };
   "GET /api/projects/{project_id}/review/points": {
     path: { project_id: string };
-    query: { frame_i: number; frame_j: number; reach?: number };
+    query: { reach?: number; frame_i: number; frame_j: number };
     response: any;
   };
   "GET /api/projects/{project_id}/review/queue": {

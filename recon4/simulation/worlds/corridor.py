@@ -29,6 +29,7 @@ from recon4.simulation.worlds.walls import (
     LINOLEUM,
     PLASTER,
     WOOD,
+    SlabExtent,
     slab,
 )
 
@@ -94,7 +95,7 @@ def _side(
             ((left, right), wall, lintel, PLASTER),
         ):
             if span[1] > span[0]:
-                slab(builder, span, reach, level=level, along=0, reflectivity=value)
+                slab(builder, SlabExtent(span, reach, level), along=0, reflectivity=value)
         at = right
 
 
@@ -118,7 +119,7 @@ def _end(builder: MeshBuilder, inner_m: float, outer_m: float) -> None:
         ((left, right), (back_m, outer_m), (0.0, DOOR_TOP_M), WOOD),
         ((left, right), (inner_m, outer_m), (DOOR_TOP_M, HEIGHT_M), PLASTER),
     ):
-        slab(builder, span, reach, level=level, along=1, reflectivity=value)
+        slab(builder, SlabExtent(span, reach, level), along=1, reflectivity=value)
 
 
 def _route(rng: np.random.Generator, stops: int, *, length_m: float) -> list[Waypoint]:

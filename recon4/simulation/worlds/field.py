@@ -116,9 +116,7 @@ def _village_line(builder: MeshBuilder) -> None:
     places = [(-120.0 + 34.0 * k, -80.0 - 3.0 * np.sin(k)) for k in range(8)]
     for x, y in places:
         z = float(height(x, y))
-        builder.tube(
-            [x, y, z - 0.5], [x, y, z + 8.0], 0.13, reflectivity=WOOD, sides=8, end_radius_m=0.09
-        )
+        builder.tube([x, y, z - 0.5], [x, y, z + 8.0], (0.13, 0.09), reflectivity=WOOD, sides=8)
         builder.tube([x, y - 0.8, z + 7.6], [x, y + 0.8, z + 7.6], 0.05, reflectivity=WOOD, sides=4)
     for (x0, y0), (x1, y1) in pairwise(places):
         for side in (-0.7, 0.7):

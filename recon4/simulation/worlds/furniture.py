@@ -35,7 +35,7 @@ def furnish(
         along = 0.45
         while along < reach - 0.9:
             y = far + inward * (along + 0.8)
-            along += _piece(builder, wall_x, y, side=side, kind=kind, rng=rng)
+            along += _piece(builder, (wall_x, y), side=side, kind=kind, rng=rng)
     if kind == 2:
         board(builder, west + 0.02, 0.5 * (south + north_y), length_m=2.0)
     cupboard_y = near - 0.35 * inward
@@ -45,14 +45,14 @@ def furnish(
 
 def _piece(
     builder: MeshBuilder,
-    wall_x: float,
-    y: float,
+    at_wall: tuple[float, float],
     *,
     side: float,
     kind: int,
     rng: np.random.Generator,
 ) -> float:
-    """One piece of furniture against a side wall; returns how much of the wall it takes [m]."""
+    """A piece of furniture against a side wall at x, y [m]; returns how much of it it takes."""
+    wall_x, y = at_wall
     choice = rng.random()
     if kind == 3 or (kind == 1 and side > 0) or choice < 0.2:
         shelf(builder, wall_x + 0.2 * side, y, height_m=rng.uniform(1.4, 2.2), rng=rng)

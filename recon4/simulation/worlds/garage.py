@@ -59,7 +59,7 @@ def build(variant: int = 0) -> World:
         builder.block([x, y, 0.0], [0.1, 4.4, 0.003], PAPER)
         if rng.random() < taken:
             yaw = 0.5 * np.pi * inward
-            car(builder, x + 0.5 * GRID_M, y, yaw_rad=yaw, ground=_floor, rng=rng)
+            car(builder, (x + 0.5 * GRID_M, y), yaw_rad=yaw, ground=_floor, rng=rng)
     return World(name="garage", mesh=builder.mesh(), route=_route, stops=_STOPS)
 
 

@@ -28,11 +28,11 @@ def tree(
     crown = rng.uniform(1.3, 2.3)
     height = rng.uniform(2.3, 3.2) + 0.5 * crown
     top = np.array([x + rng.uniform(-0.2, 0.2), y + rng.uniform(-0.2, 0.2), z + height])
-    builder.tube([x, y, z - 0.3], top, 0.16, reflectivity=WOOD, sides=8, end_radius_m=0.1)
+    builder.tube([x, y, z - 0.3], top, (0.16, 0.1), reflectivity=WOOD, sides=8)
     for _ in range(2):
         angle = rng.uniform(0.0, 2.0 * np.pi)
         bough = top + np.array([np.cos(angle), np.sin(angle), 1.2])
-        builder.tube(top - [0, 0, 0.4], bough, 0.07, reflectivity=WOOD, sides=5, end_radius_m=0.03)
+        builder.tube(top - [0, 0, 0.4], bough, (0.07, 0.03), reflectivity=WOOD, sides=5)
     bumps = rng.uniform(0.75, 1.15, (7, 12))
     builder.ball(
         top + np.array([0, 0, 0.8 * crown]), [crown, crown, 1.1 * crown], LEAVES, bumps=bumps
@@ -51,9 +51,7 @@ def bush(
 def pole(builder: MeshBuilder, x: float, y: float, *, ground: Ground, arm: ArrayLike) -> None:
     """A street lamp with an arm (dx, dy) [m]."""
     z, (dx, dy) = float(ground(x, y)), np.asarray(arm, dtype=np.float64)
-    builder.tube(
-        [x, y, z - 0.3], [x, y, z + 6.0], 0.08, reflectivity=STEEL, sides=10, end_radius_m=0.05
-    )
+    builder.tube([x, y, z - 0.3], [x, y, z + 6.0], (0.08, 0.05), reflectivity=STEEL, sides=10)
     builder.tube([x, y, z + 5.9], [x + dx, y + dy, z + 6.2], 0.04, reflectivity=STEEL)
     builder.block([x + dx, y + dy, z + 6.1], [0.5, 0.5, 0.12], 0.6)
 
@@ -68,14 +66,14 @@ def sign(builder: MeshBuilder, x: float, y: float, *, ground: Ground, along: Arr
 
 def car(
     builder: MeshBuilder,
-    x: float,
-    y: float,
+    at: tuple[float, float],
     *,
     yaw_rad: float,
     ground: Ground,
     rng: np.random.Generator,
 ) -> None:
-    """A parked car: body, cabin, wheels, number plates."""
+    """A parked car at x, y [m]: body, cabin, wheels, number plates."""
+    x, y = at
     z = float(ground(x, y))
     paint, length = rng.uniform(0.08, 0.8), rng.uniform(3.9, 4.7)
     builder.block([x, y, z + 0.25], [length, 1.78, 0.6], paint, yaw_rad=yaw_rad)

@@ -24,7 +24,16 @@ from recon4.simulation.worlds.outdoors import (
     sign,
     tree,
 )
-from recon4.simulation.worlds.walls import PLASTER, STEEL, WOOD, Opening, WallShape, slab, wall
+from recon4.simulation.worlds.walls import (
+    PLASTER,
+    STEEL,
+    WOOD,
+    Opening,
+    SlabExtent,
+    WallShape,
+    slab,
+    wall,
+)
 
 LENGTH_M, WIDTH_M = 60.0, 36.0
 KERB_M, FAR_KERB_M, FAR_FACADE_M = 2.5, 9.5, 12.0
@@ -149,7 +158,8 @@ class _Facade:
         facing = self.front.facing
         reach = (self.face_m + facing * depth[0], self.face_m + facing * depth[1])
         levels = (self.base_m + level[0], self.base_m + level[1])
-        slab(self.builder, span, reach, level=levels, along=self.front.along, reflectivity=value)
+        extent = SlabExtent(span, reach, levels)
+        slab(self.builder, extent, along=self.front.along, reflectivity=value)
 
     def storey(self, number: int, openings: list[Opening]) -> None:
         """The wall of a storey; the lowest one reaches into the ground."""
@@ -235,7 +245,7 @@ def _furnish_side(builder: MeshBuilder, side: int, rng: np.random.Generator) -> 
             if rng.random() < 0.65 and abs(along - length / 2) > 5.0:
                 x, y = _place(side, along, d)
                 angle = yaw + turn + rng.uniform(-0.03, 0.03)
-                car(builder, x, y, yaw_rad=angle, ground=height, rng=rng)
+                car(builder, (x, y), yaw_rad=angle, ground=height, rng=rng)
     for along in np.arange(7.0, length, 12.0):
         if abs(along - length / 2) > 3.0:
             x, y = _place(side, along, KERB_M - 0.35)

@@ -96,23 +96,28 @@ class _Bricks:
             return
         reach = (self.middle_m - depth / 2, self.middle_m + depth / 2)
         levels = (self.bottom_m + level[0], self.bottom_m + level[1])
-        slab(self.builder, span, reach, level=levels, along=self.along, reflectivity=value)
+        extent = SlabExtent(span, reach, levels)
+        slab(self.builder, extent, along=self.along, reflectivity=value)
 
 
-def slab(
-    builder: MeshBuilder,
-    span: tuple[float, float],
-    reach: tuple[float, float],
-    *,
-    level: tuple[float, float],
-    along: int,
-    reflectivity: float,
-) -> None:
-    """A box given by its extent along a facade (axis 0 or 1), across it and in height [m]."""
+@dataclass(frozen=True, slots=True)
+class SlabExtent:
+    """Extent of a box of a facade, from and to [m]."""
+
+    span: tuple[float, float]
+    """Along the facade."""
+    reach: tuple[float, float]
+    """Across it, in any order."""
+    level: tuple[float, float]
+    """In height."""
+
+
+def slab(builder: MeshBuilder, extent: SlabExtent, *, along: int, reflectivity: float) -> None:
+    """A box of a facade along axis 0 or 1."""
     corners = np.empty((2, 3))
-    corners[:, along] = span
-    corners[:, 1 - along] = sorted(reach)
-    corners[:, 2] = level
+    corners[:, along] = extent.span
+    corners[:, 1 - along] = sorted(extent.reach)
+    corners[:, 2] = extent.level
     builder.box(corners[0], corners[1], reflectivity)
 
 
