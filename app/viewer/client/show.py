@@ -278,21 +278,24 @@ class Screen:
                     **place,
                 )
             case GridNode():
-                return scene.add_grid(
-                    node.path,
-                    node.width_m,
-                    node.width_m,
-                    cell_size=node.cell_m,
-                    section_size=10.0 * node.cell_m,
-                    cell_color=node.rgb,
-                    section_color=node.rgb,
-                    shadow_opacity=0.0,
-                    **place,
-                )
+                return self._draw_grid(node, place)
             case LabelNode():
                 return scene.add_label(node.path, node.text, **place)
             case _:
                 raise AssertionError(node)
+
+    def _draw_grid(self, node: GridNode, place: _Place) -> Any:
+        return self._client.scene.add_grid(
+            node.path,
+            node.width_m,
+            node.width_m,
+            cell_size=node.cell_m,
+            section_size=10.0 * node.cell_m,
+            cell_color=node.rgb,
+            section_color=node.rgb,
+            shadow_opacity=0.0,
+            **place,
+        )
 
 
 class Viewer:
