@@ -55,4 +55,4 @@ def export_3dtk(project: Path, folder: Path, *, progress: Progress) -> int:
         turns = find_turns(store, load_lines(store.folder))
         scans = [ScanRows(int(t), turns.multiframes(store, k)) for k, t in enumerate(turns.t_ns)]
     with atomic_folder(folder) as temporary:
-        return export_scans(store, dense, scans, temporary, progress=progress)
+        return export_scans(store, dense, scans, folder=temporary, progress=progress)

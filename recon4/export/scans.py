@@ -33,8 +33,8 @@ def export_scans(
     frames: FrameStore,
     trajectory: Trajectory,
     scans: Sequence[ScanRows],
-    folder: Path,
     *,
+    folder: Path,
     progress: Progress,
 ) -> int:
     """Write undistorted scans: ``scan000.3d``, ``scan000.pose`` and ``scan000.frames`` each.

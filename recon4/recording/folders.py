@@ -97,13 +97,9 @@ def read_frames(
     Raises:
         RecordingError: If not one of the files can be read.
     """
+    static = settings.deskewed or frames.are_static
     decoder = CloudDecoder(
-        0,
-        sensor.name,
-        sensor.model,
-        report=report,
-        points_lead=True,
-        deskewed=settings.deskewed or frames.are_static,
+        0, sensor.name, sensor.model, report=report, points_lead=True, deskewed=static
     )
     for text in time_warnings(frames):
         report.warn(text)
