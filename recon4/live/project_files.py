@@ -19,7 +19,7 @@ from recon4.store.atomic import make_folders, write_text
 from recon4.store.hashing import hash_json, size_of
 from recon4.store.inputs import input_file, input_files
 from recon4.store.project import Project, is_project
-from recon4.store.stage import Input, StageRunner, figures_of
+from recon4.store.stage import Input, StageContext, StageRunner, figures_of
 
 
 def begin(project: Path, rig: Rig, **how: Any) -> CaptureSession:
@@ -79,10 +79,10 @@ def finish(session: CaptureSession, frames: Path, settings: Settings) -> int:
         StoreError: If the project is in use or cannot be written.
     """
 
-    def moved(*, out: Path, **_: Any) -> FrameFigures:
+    def moved(context: StageContext, **_: object) -> FrameFigures:
         for path in frames.iterdir():
-            shutil.move(path, out / path.name)
-        return stages.frames_figures(out)
+            shutil.move(path, context.out / path.name)
+        return stages.frames_figures(context.out)
 
     progress = Silent()
     with Project.open(session.project) as project:

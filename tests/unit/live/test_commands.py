@@ -34,7 +34,7 @@ def test_a_recording_without_a_server_is_stopped_by_ctrl_c_and_is_a_project(tmp_
         rest, complaint = recorder.communicate(timeout=60)
 
     assert "2300 datagrams sent" in sent
-    assert (sender.returncode, recorder.returncode) == (0, 0), complaint
+    assert (sender.returncode, recorder.returncode) == (0, 0), complaint + rest
     assert "Ctrl-C stops" in said[0]
     assert "2300 datagrams recorded, 0 lost; " in rest
     assert f"next: recon4 process {out}/recordings/walk.pcap" in rest
