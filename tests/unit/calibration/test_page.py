@@ -1,28 +1,28 @@
 """The page of a calibration, and the slices in it."""
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from recon4.calibration.slices import slice_points
 from recon4.calibration.walk import RecordedWalk
 from recon4.model.figures import CalibrationFigures, ParameterFigures
 from recon4.report.calibration_page import CalibrationPage, RigSlice, write_calibration_page
-from recon4.store.arrays import load_trajectory
-from tests.unit.calibration.conftest import mounted, store
+from recon4.store.frames import FrameStore, FrameWriter
+from tests.unit.calibration.conftest import mounted
 
 
 def distance_m(slices):
     """Mean distance of the second LiDAR's points from the nearest ones of the first."""
     (_, first), (_, second) = slices
-    return np.linalg.norm(second[:, None] - first[None], axis=2).min(axis=1).mean()
+    return cKDTree(first).query(second)[0].mean()
 
 
 def test_a_wrong_mount_shows_two_walls_where_the_right_one_shows_one(dance, tmp_path):
-    recorded = store(tmp_path, dance, dance.rig, None)
-    walk = RecordedWalk(
-        recorded.frames,
-        load_trajectory(recorded.odometry / "trajectory.npz"),
-        np.zeros(len(recorded.frames), bool),
-    )
+    with FrameWriter(tmp_path, dance.rig) as writer:
+        for frame in dance:
+            writer.append(frame)
+    frames = FrameStore.open(tmp_path)
+    walk = RecordedWalk(frames, dance.truth, np.zeros(len(frames), bool))
     wrong = mounted(dance.rig, 1, shift_m=(0.3, -0.2, 0.0))
 
     right = slice_points(walk, dance.rig, thickness_m=0.2)
