@@ -156,7 +156,7 @@ def test_who_stands_still_learns_nothing_wrong(tmp_path):
 
 
 def test_turns_about_the_vertical_leave_axes_unobservable(tmp_path):
-    flat = scanned_room.walk(planar, 100, noise_m=0.01)
+    flat = scanned_room.walk(planar, 70, noise_m=0.01)
     found = run(store(tmp_path, flat, flat.rig, flat.imu), AUTO)
 
     unknown = {(row.sensor, row.quantity, row.axis) for row in found.figures.parameters
