@@ -15,6 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array, diags_array, eye_array, kron
+from scipy.sparse.linalg import splu
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.georeference.crs import GeodeticOrigin, to_enu
@@ -44,6 +46,8 @@ _LAGS = 30
 """Longest lag of the residuals' correlation, in fixes."""
 _PARAMETERS = 4
 """Lever arm (3) and clock."""
+_PRIOR = 1e-6
+"""Information of every unknown, so that all are determined."""
 ARM_M, CLOCK_S = 0.05, 0.02
 """Smaller errors are not announced."""
 _SIGMAS = 4.5
@@ -184,42 +188,54 @@ def _velocity(trajectory: Trajectory, rig: Rig, t_ns: Times) -> Array:
 
 
 def _solve(rows: FixRows) -> tuple[Array, Array]:
-    """Lever arm and clock, (4,), and their covariance from the residuals, (4, 4)."""
-    J, prior = _design(rows)
+    """Lever arm and clock, (4,), and their covariance from the residuals, (4, 4).
+
+    The drift has three unknowns every two seconds; it is eliminated, so that the work grows with
+    the length of the walk.
+    """
+    J, J_drift, walk = _design(rows)
     y = (rows.offset_m / rows.sd_m).ravel()
     weight = np.ones(len(y))
     for _ in range(_ROUNDS):
-        H = (J * weight[:, None]).T @ J + prior
-        x = np.linalg.solve(H, J.T @ (weight * y))
-        residual = y - J @ x
+        weighted = J_drift.multiply(weight[:, None]).tocsc()
+        drift = splu((J_drift.T @ weighted + walk).tocsc())
+        cross, of_y = weighted.T @ J, weighted.T @ y
+        eliminated = drift.solve(cross)
+        H = (J * weight[:, None]).T @ J + _PRIOR * np.eye(_PARAMETERS) - cross.T @ eliminated
+        x = np.linalg.solve(H, J.T @ (weight * y) - eliminated.T @ of_y)
+        residual = y - J @ x - J_drift @ drift.solve(of_y - cross @ x)
         z2 = np.repeat((residual.reshape(-1, 3) ** 2).sum(axis=1), 3)
         scale2 = max(float(np.median(z2)) / 2.37, 1.0)  # the median of chi-square with 3 degrees
         weight = 1.0 / (1.0 + z2 / (scale2 * _CAUCHY_SD**2))
-    cov = np.linalg.inv(H)[:_PARAMETERS, :_PARAMETERS]
     used = np.sqrt(weight) * residual
     inflated = _SD_FACTOR**2 * scale2 * _correlation(used.reshape(-1, 3))
-    return np.asarray(x[:_PARAMETERS], np.float64), np.asarray(inflated * cov, np.float64)
+    return np.asarray(x, np.float64), np.asarray(inflated * np.linalg.inv(H), np.float64)
 
 
-def _design(rows: FixRows) -> tuple[Array, Array]:
-    """Jacobian of the normalized offsets, (3 N, 4 + 3 K), and the information of the drift."""
+def _design(rows: FixRows) -> tuple[Array, csr_array, csr_array]:
+    """Jacobians of the normalized offsets, and the information of the drift.
+
+    Returns:
+        Of lever arm and clock, (3 N, 4); of the drift at its knots, (3 N, 3 K); (3 K, 3 K).
+    """
     count = len(rows.t_s)
     at = rows.t_s / _KNOT_S
     knots = int(at[-1]) + 2
     left = np.minimum(at.astype(np.int64), knots - 2)
     s = at - left
-    J = np.zeros((count, 3, _PARAMETERS + 3 * knots))
-    J[:, :, :3] = rows.R_enu_body
-    J[:, :, 3] = rows.velocity_m_s
-    for axis in range(3):
-        J[np.arange(count), axis, _PARAMETERS + 3 * left + axis] = 1.0 - s
-        J[np.arange(count), axis, _PARAMETERS + 3 * (left + 1) + axis] = s
-    J /= rows.sd_m[:, :, None]
-    change = np.diff(np.eye(knots), axis=0)
-    walk = np.kron(change.T @ change, np.eye(3)) / (_DRIFT_M**2 * _KNOT_S)
-    prior = 1e-6 * np.eye(_PARAMETERS + 3 * knots)
-    prior[_PARAMETERS:, _PARAMETERS:] += walk
-    return J.reshape(3 * count, -1), prior
+    J = np.concatenate([rows.R_enu_body, rows.velocity_m_s[:, :, None]], axis=2)
+    J = (J / rows.sd_m[:, :, None]).reshape(3 * count, _PARAMETERS)
+    fix = np.arange(count)
+    between = csr_array(
+        (np.concatenate([1.0 - s, s]), (np.tile(fix, 2), np.concatenate([left, left + 1]))),
+        shape=(count, knots),
+    )
+    J_drift = (
+        kron(between, np.eye(3), format="csr").multiply(1.0 / rows.sd_m.reshape(-1, 1)).tocsr()
+    )
+    change = diags_array([-1.0, 1.0], offsets=[0, 1], shape=(knots - 1, knots))
+    walk = kron(change.T @ change, np.eye(3)) / (_DRIFT_M**2 * _KNOT_S)
+    return J, J_drift, (walk + _PRIOR * eye_array(3 * knots)).tocsr()
 
 
 def _correlation(residual: NDArray[np.float64]) -> float:
