@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import Edge, PoseGraph, Reason, Verdict
@@ -41,7 +44,7 @@ class RecognizedChain:
         return [edge for edge in self.edges if edge.in_graph]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class _ChainGroup:
     """Chains that agree on one correction."""
 
@@ -49,12 +52,14 @@ class _ChainGroup:
     is_within: bool
     """Whether it moves the nodes by no more than the graph's uncertainty."""
 
-    @property
+    @cached_property
     def nodes(self) -> set[int]:
+        """Nodes whose views fit."""
         return {edge.j for chain in self.chains for edge in chain.confirmed}
 
     @property
     def contradicted(self) -> int:
+        """Number of nodes whose views contradict it."""
         return len({
             edge.j for chain in self.chains for edge in chain.edges
             if contradicts(edge)
@@ -131,17 +136,32 @@ def _groups(
     settings: RecognitionSettings,
 ) -> list[_ChainGroup]:
     """Chains that agree with each other directly or through others."""
-    label = list(range(len(chains)))
-    for a in range(len(chains)):
-        for b in range(a):
-            if label[a] != label[b] and _chains_agree(graph, places, chains[a], chains[b]):
-                old, new = max(label[a], label[b]), min(label[a], label[b])
-                label = [new if value == old else value for value in label]
-    members = [
-        [chain for chain, value in zip(chains, label, strict=True) if value == group]
-        for group in sorted(set(label))
+    agree = [
+        (a, b)
+        for a, b in _neighboring(places, chains)
+        if _chains_agree(graph, places, chains[a], chains[b])
     ]
+    rows = np.array(agree, np.intp).reshape(-1, 2)
+    joined = coo_array((np.ones(len(rows)), (rows[:, 0], rows[:, 1])), shape=(len(chains),) * 2)
+    count, label = connected_components(joined, directed=False)
+    members: list[list[RecognizedChain]] = [[] for _ in range(count)]
+    for chain, group in zip(chains, label, strict=True):
+        members[group].append(chain)
     return [_ChainGroup(some, _is_within(graph, places, some, settings)) for some in members]
+
+
+def _neighboring(places: Places, chains: Sequence[RecognizedChain]) -> Iterator[tuple[int, int]]:
+    """Chains with so little path in between that they could agree."""
+    spans = [
+        (float(path_m.min()), float(path_m.max()), k)
+        for k, chain in enumerate(chains)
+        for path_m in [places.path_m[[edge.j for edge in chain.confirmed]]]
+    ]
+    near: list[tuple[float, float, int]] = []
+    for start_m, end_m, k in sorted(spans):
+        near = [span for span in near if span[1] >= start_m - _LINK_M]
+        yield from ((span[2], k) for span in near)
+        near.append((start_m, end_m, k))
 
 
 def _chains_agree(graph: PoseGraph, places: Places, a: RecognizedChain, b: RecognizedChain) -> bool:

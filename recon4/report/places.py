@@ -58,7 +58,7 @@ def _joined(graph: PoseGraph | None, piece: Times, t_ns: Times) -> Times:
     row = np.clip(np.searchsorted(t_ns, graph.t_ns), 0, len(piece) - 1)
     of_node, joined = piece[row], joined_pieces(graph, piece[row])
     label = piece.copy()
-    for node, old in enumerate(of_node.tolist()):
+    for old, node in zip(*np.unique(of_node, return_index=True), strict=True):
         label[piece == old] = joined[node]
     return label
 
