@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -9,14 +10,17 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.export.names import check_name
 from recon4.export.scans import ScanRows, export_scans
+from recon4.model.pose_graph import PoseGraph
 from recon4.pose_graph.files import load_graph
 from recon4.profiler.turns import find_turns
 from recon4.progress import Progress
 from recon4.results import final_trajectory
 from recon4.store.atomic import atomic_folder
-from recon4.store.frames import open_frames
+from recon4.store.frames import FrameStore, open_frames
 from recon4.store.line_store import load_lines
 from recon4.store.project import read_artifacts
+
+_ALWAYS = (0, 2**63 - 1)
 
 
 def export_3dtk(project: Path, folder: Path, *, progress: Progress) -> int:
@@ -45,14 +49,23 @@ def export_3dtk(project: Path, folder: Path, *, progress: Progress) -> int:
     dense = final_trajectory(project, artifacts)
     store = open_frames(artifacts["frames"], artifacts.get("calibration"))
     graph = load_graph(artifacts["verification"])
-    if store.rig.row_of("profiler") is None:
-        rows = np.searchsorted(store.index["frame_id"], graph.frame_ids)
-        scans = [
-            ScanRows(int(t_ns), range(int(row), int(row) + 1))
-            for t_ns, row in zip(graph.t_ns, rows, strict=True)
-        ]
-    else:
-        turns = find_turns(store, load_lines(store.folder))
-        scans = [ScanRows(int(t), turns.multiframes(store, k)) for k, t in enumerate(turns.t_ns)]
+    scans = _multiframes if store.rig.row_of("profiler") is None else _turns
     with atomic_folder(folder) as temporary:
-        return export_scans(store, dense, scans, folder=temporary, progress=progress)
+        return export_scans(store, dense, scans(store, graph), folder=temporary, progress=progress)
+
+
+def _multiframes(store: FrameStore, graph: PoseGraph) -> list[ScanRows]:
+    rows = np.searchsorted(store.index["frame_id"], graph.frame_ids).tolist()
+    return [
+        ScanRows(t_ns, range(row, row + 1), _ALWAYS)
+        for t_ns, row in zip(graph.t_ns.tolist(), rows, strict=True)
+    ]
+
+
+def _turns(store: FrameStore, _: PoseGraph) -> list[ScanRows]:
+    turns = find_turns(store, load_lines(store.folder))
+    spans = pairwise(turns.start_ns.tolist())
+    return [
+        ScanRows(t_ns, turns.multiframes(store, k), span_ns)
+        for k, (t_ns, span_ns) in enumerate(zip(turns.t_ns.tolist(), spans, strict=True))
+    ]

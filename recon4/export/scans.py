@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.mapping.place import place
+from recon4.model.multiframe import Multiframe
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, track
 from recon4.recording.formats.three_dtk import (
@@ -27,6 +28,8 @@ class ScanRows:
     t_ns: int
     """Time of its pose [ns]."""
     rows: range
+    span_ns: tuple[int, int]
+    """Points from the first to before the second time belong to it [ns]."""
 
 
 def export_scans(
@@ -52,7 +55,7 @@ def export_scans(
     points = 0
     for number, scan in enumerate(track(scans, progress, what="export", unit="scans")):
         T_map_body = trajectory.at(np.array([scan.t_ns]))[0]
-        parts = [frames[row] for row in scan.rows]
+        parts = [_within(frames[row], scan.span_ns) for row in scan.rows]
         p_map = np.concatenate([place(part, trajectory, frames.rig) for part in parts])
         intensity = np.concatenate([part.intensity for part in parts])
         name = folder / f"scan{number:03d}"
@@ -60,3 +63,8 @@ def export_scans(
         write_pose(name.with_suffix(POSE_SUFFIX), T_map_body)
         points += len(p_map)
     return points
+
+
+def _within(frame: Multiframe, span_ns: tuple[int, int]) -> Multiframe:
+    t_ns = frame.t_ns + frame.dt_ns.astype(np.int64)
+    return frame.take(np.flatnonzero((t_ns >= span_ns[0]) & (t_ns < span_ns[1])))
