@@ -11,6 +11,7 @@ from recon4.geometry.se3 import SE3
 from recon4.mapping.notes import MapNotes
 from recon4.mapping.tile import FIELDS
 from recon4.mapping.tiles import TileWriter
+from recon4.model.figures import MapFigures
 from recon4.model.multiframe import Multiframe
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
 from recon4.model.rig import Rig, Sensor
@@ -45,7 +46,7 @@ def build_project(root: Path, *, points: int = 60_000, with_map: bool = True) ->
             return
         runner.run(Stage("verification", 1, (), _verification), walk=walk)
         runner.run(Stage("level", 1, (), _level), walk=walk)
-        runner.run(Stage("map", 1, (), _map), points=Input(f"points {points}", points))
+        runner.run(Stage("map", 1, (), _map, MapFigures), points=Input(f"points {points}", points))
     (root / "trajectory.tum").write_text("0 0 0 0 0 0 0 1\n")
     (root / "report.html").write_text(
         "<!doctype html><title>Report</title><h1>Report</h1>" + draft_block()
@@ -199,7 +200,7 @@ def _level(context: StageContext, *, walk: Trajectory) -> None:
     )
 
 
-def _map(context: StageContext, *, points: int) -> None:
+def _map(context: StageContext, *, points: int) -> MapFigures:
     rng = np.random.default_rng(7)
     p = room_points(rng, points)
     with TileWriter(context.out, list(FIELDS), tile_m=TILE_M) as writer:
@@ -208,6 +209,8 @@ def _map(context: StageContext, *, points: int) -> None:
         for key in np.unique(ijk, axis=0):
             mine = p[np.all(ijk == key, axis=1)]
             writer.append(tuple(int(k) for k in key), _columns(mine - key * TILE_M, rng))
+    low, high = (tuple(corner.tolist()) for corner in (p.min(axis=0), p.max(axis=0)))
+    return MapFigures(points=points, bounds_m=(low, high))
 
 
 def _columns(xyz: np.ndarray, rng: np.random.Generator) -> dict[str, np.ndarray]:

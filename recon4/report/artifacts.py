@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from recon4.bounded import read_json_object
 from recon4.errors import StoreError
 from recon4.geometry.se3 import Array
-from recon4.model.figures import CalibrationFigures
+from recon4.model.figures import CalibrationFigures, MapFigures, PlaneThickness
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
@@ -23,6 +23,7 @@ from recon4.pose_graph.uncertainty_files import load_uncertainty
 from recon4.report.placement import Placement, placement_in
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.earlier_names import STEPS, current_names
+from recon4.store.stage import read_figures
 
 _MAX_JSON_BYTES = 64 << 20
 
@@ -49,6 +50,8 @@ class Results:
     """Covariances of the final poses; None = not stated."""
     intensity: dict[str, NDArray[Any]] = field(default_factory=dict)
     """Columns of ``diagnostics.npz``."""
+    thickness: PlaneThickness | None = None
+    """Of the planar surfaces of the map, as the stage ``map`` measured it."""
 
     @property
     def placement(self) -> Placement:
@@ -78,6 +81,7 @@ def read_results(artifacts: Mapping[str, Path]) -> Results:
         georeference=_json(artifacts, "level", "georeference.json"),
         uncertainty=load_uncertainty(artifacts["level"]) if "level" in artifacts else None,
         intensity=_arrays(artifacts, "intensity", "diagnostics.npz"),
+        thickness=_thickness(artifacts),
     )
 
 
@@ -127,6 +131,12 @@ def _calibration(artifacts: Mapping[str, Path]) -> CalibrationFigures | None:
         return msgspec.convert(record, CalibrationFigures)
     except msgspec.ValidationError as error:
         raise StoreError(f"calibration/calibration.json cannot be read: {error}") from error
+
+
+def _thickness(artifacts: Mapping[str, Path]) -> PlaneThickness | None:
+    if _file(artifacts, "map", "manifest.json") is None:
+        return None
+    return read_figures(artifacts["map"], MapFigures).thickness
 
 
 def _latest_trajectory(artifacts: Mapping[str, Path], stages: tuple[str, ...]) -> Trajectory | None:

@@ -6,11 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from markupsafe import Markup
-
 from recon4.geometry.se3 import Array
 from recon4.model.figures import CalibrationFigures
-from recon4.report.chart_groups import ChartFigure
+from recon4.report.chart_groups import framed
 from recon4.report.figures import BLUE, GREEN, ORANGE, PINK, Chart
 from recon4.report.html import environment
 from recon4.report.rig import rig_charts, rig_rows
@@ -52,7 +50,6 @@ def write_calibration_page(path: Path, page: CalibrationPage) -> None:
     Raises:
         StoreError: If the file cannot be written.
     """
-    charts = rig_charts(page.figures)
     text = (
         environment()
         .get_template("calibration.html.jinja")
@@ -61,8 +58,8 @@ def write_calibration_page(path: Path, page: CalibrationPage) -> None:
             method=page.method,
             outcome=page.outcome,
             rows=rig_rows(page.figures),
-            charts=[ChartFigure(Markup(svg), caption) for svg, caption in charts],
-            slices=[ChartFigure(Markup(_chart(one)), one.name) for one in page.slices],
+            charts=framed(rig_charts(page.figures)),
+            slices=framed([(_chart(one), one.name) for one in page.slices]),
             thickness_m=THICKNESS_M,
             lines=page.lines,
         )

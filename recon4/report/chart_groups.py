@@ -73,7 +73,7 @@ def trajectory_figures(
     if not shown:
         svg = plan_svg(None, ABOVE, frame_around(final.T_a_b.t, ABOVE), overlay=overlay)
         out.append(ChartFigure(Markup(svg), "Trajectory from above.", tuple(legend)))
-    return out + _framed(
+    return out + framed(
         charts.walk_charts(final, results.steps, drift, uncertainty=results.uncertainty)
     )
 
@@ -96,14 +96,14 @@ def edge_figures(results: Results, rasters: list[Raster]) -> list[ChartFigure]:
     svg = plan_svg(png, ABOVE, frame, overlay=PlanOverlay(paths), css="ink faint")
     caption = "Every candidate pair, from above. Of very many pairs an even sample is drawn."
     out = [ChartFigure(Markup(svg), caption, legend)]
-    return out + _framed(charts.edge_charts(graph))
+    return out + framed(charts.edge_charts(graph))
 
 
 def accuracy_figures(facts: ReportFacts) -> list[ChartFigure]:
     """Errors against the ground truth."""
     if facts.evaluation is None:
         return []
-    return _framed(charts.accuracy_charts(facts.evaluation))
+    return framed(charts.accuracy_charts(facts.evaluation))
 
 
 def intensity_figures(results: Results, rasters: list[Raster]) -> list[ChartFigure]:
@@ -119,18 +119,19 @@ def intensity_figures(results: Results, rasters: list[Raster]) -> list[ChartFigu
             "after normalization." if after else "as measured."
         )
         out.append(ChartFigure(Markup(svg), caption, scale=("grays", f"{low:.0f}", f"{high:.0f}")))
-    return out + _framed(charts.intensity_charts(dependencies(results.intensity)))
+    return out + framed(charts.intensity_charts(dependencies(results.intensity)))
 
 
 def rig_figures(results: Results) -> list[ChartFigure]:
     """Differences of the recording from the rig file."""
-    return _framed(rig_charts(results.calibration))
+    return framed(rig_charts(results.calibration))
 
 
 def georeference_figures(results: Results) -> list[ChartFigure]:
     """Residuals at the GNSS positions."""
-    return _framed(charts.gnss_charts(results.placement.gnss))
+    return framed(charts.gnss_charts(results.placement.gnss))
 
 
-def _framed(drawn: charts.Charts) -> list[ChartFigure]:
+def framed(drawn: charts.Charts) -> list[ChartFigure]:
+    """Charts with their captions for the page."""
     return [ChartFigure(Markup(svg), caption) for svg, caption in drawn]

@@ -11,7 +11,6 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from recon4.evaluation.table import number, percentage
-from recon4.evaluation.thickness import plane_thickness
 from recon4.mapping.tiles import TileSet
 from recon4.model.figures import PlaneThickness
 from recon4.model.pose_graph import EdgeKind
@@ -47,7 +46,6 @@ def render(assessed: Assessment) -> str:
     """The report as HTML text; all names are escaped."""
     facts, results, drift = assessed.facts, assessed.results, assessed.drift
     tiles = TileSet.open(facts.artifacts["map"]) if "map" in facts.artifacts else None
-    thickness = plane_thickness(tiles) if tiles is not None else None
     rasters = rasterize(lambda: map_chunks(tiles)) if tiles is not None else []
     level, verdict = headline(assessed.findings)
     page = (
@@ -55,13 +53,13 @@ def render(assessed: Assessment) -> str:
         .get_template("template.html.jinja")
         .render(
             facts=facts,
-            thickness=thickness,
+            thickness=results.thickness,
             results=results,
             findings=assessed.findings,
             approval=draft_block(),
             level=level.name.lower(),
             verdict=verdict,
-            key_figures=_key_figures(facts, results, drift, tiles=tiles) + _thickness(thickness),
+            key_figures=_key_figures(facts, results, drift, tiles=tiles),
             maps=chart_groups.map_figures(rasters),
             walk=chart_groups.trajectory_figures(results, drift, rasters),
             edges=chart_groups.edge_figures(results, rasters),
@@ -150,7 +148,7 @@ def _key_figures(
         out.append(("e_r", number(e_r, 2, 100.0), "cm"))
     if facts.stages:
         out.append(("computing time", _duration(sum(s.seconds for s in facts.stages)), "min:s"))
-    return out
+    return out + _thickness(results.thickness)
 
 
 def _thickness(found: PlaneThickness | None) -> list[tuple[str, str, str]]:
