@@ -42,6 +42,23 @@ def nearest_ranges(
     return buffer
 
 
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def _beside_surface(
+    buffer: NDArray[np.float32],
+    p: NDArray[np.float64],
+    R: NDArray[np.float64],
+    t: NDArray[np.float64],
+) -> tuple[float, float]:
+    """Range of a point in the buffer's frame, and of the surface in its bin, 0 = none."""
+    x = R[0, 0] * p[0] + R[0, 1] * p[1] + R[0, 2] * p[2] + t[0]
+    y = R[1, 0] * p[0] + R[1, 1] * p[1] + R[1, 2] * p[2] + t[1]
+    z = R[2, 0] * p[0] + R[2, 1] * p[1] + R[2, 2] * p[2] + t[2]
+    column, row, range_m = _bin(x, y, z, buffer.shape[0], buffer.shape[1])
+    if column < 0:
+        return range_m, 0.0
+    return range_m, float(buffer[column, row])
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
 def inside_ratio(
     buffer: NDArray[np.float32],
@@ -52,16 +69,12 @@ def inside_ratio(
     absolute_m: float,
 ) -> float:
     """Fraction of points, transformed by (R, t) to the buffer's frame, inside its view volume."""
-    azimuth_bins, elevation_bins = buffer.shape
     inside = 0
     for k in range(len(p)):
-        x = R[0, 0] * p[k, 0] + R[0, 1] * p[k, 1] + R[0, 2] * p[k, 2] + t[0]
-        y = R[1, 0] * p[k, 0] + R[1, 1] * p[k, 1] + R[1, 2] * p[k, 2] + t[1]
-        z = R[2, 0] * p[k, 0] + R[2, 1] * p[k, 1] + R[2, 2] * p[k, 2] + t[2]
-        column, row, range_m = _bin(x, y, z, azimuth_bins, elevation_bins)
-        if column < 0 or buffer[column, row] == 0.0:
+        range_m, surface_m = _beside_surface(buffer, p[k], R, t)
+        if surface_m == 0.0:
             continue
-        if range_m < buffer[column, row] * (1.0 + relative) + absolute_m:
+        if range_m < surface_m * (1.0 + relative) + absolute_m:
             inside += 1
     return inside / max(len(p), 1)
 
@@ -79,19 +92,14 @@ def seen_through_ratio(
 
     Only points in filled bins count, no farther than the surface seen there. 0 if there are none.
     """
-    azimuth_bins, elevation_bins = buffer.shape
     known = through = 0
     for k in range(len(p)):
-        x = R[0, 0] * p[k, 0] + R[0, 1] * p[k, 1] + R[0, 2] * p[k, 2] + t[0]
-        y = R[1, 0] * p[k, 0] + R[1, 1] * p[k, 1] + R[1, 2] * p[k, 2] + t[1]
-        z = R[2, 0] * p[k, 0] + R[2, 1] * p[k, 1] + R[2, 2] * p[k, 2] + t[2]
-        column, row, range_m = _bin(x, y, z, azimuth_bins, elevation_bins)
-        if column < 0 or buffer[column, row] == 0.0:
+        range_m, surface_m = _beside_surface(buffer, p[k], R, t)
+        if surface_m == 0.0:
             continue
-        surface = buffer[column, row]
-        if range_m > surface * (1.0 + relative) + absolute_m:
+        if range_m > surface_m * (1.0 + relative) + absolute_m:
             continue
         known += 1
-        if range_m < surface * (1.0 - relative) - absolute_m:
+        if range_m < surface_m * (1.0 - relative) - absolute_m:
             through += 1
     return through / max(known, 1)

@@ -149,10 +149,16 @@ def align(source: Source, pair: Pair, predicted: tuple[float, ...]) -> Alignment
     """
     T_predicted = _checked(predicted)
     nodes = nodes_of(source.verified, pair)
-    if source.is_2d or has_turns(source):
-        method = align_keyframes if source.is_2d else align_turns
-        edge = method(source, nodes, T_predicted)
-        return Alignment(_measurement(edge), edge.converged, str(edge.reason))
+    if source.is_2d:
+        edge = align_keyframes(source, nodes, T_predicted)
+    elif has_turns(source):
+        edge = align_turns(source, nodes, T_predicted)
+    else:
+        edge = _align_multiframes(source, pair, T_predicted)
+    return Alignment(_measurement(edge), edge.converged, str(edge.reason))
+
+
+def _align_multiframes(source: Source, pair: Pair, T_predicted: SE3) -> Edge:
     # An operator's pair is registered at any overlap.
     settings = replace(source.settings, overlap=replace(source.settings.overlap, threshold=0.0))
     lost = _lost(source)
@@ -167,11 +173,9 @@ def align(source: Source, pair: Pair, predicted: tuple[float, ...]) -> Alignment
     tried = registrar.register([TriedPair(0, 1, EdgeKind.MANUAL, T_predicted)], Silent())[0]
     ends = [RangeImage(views.ends(k).reshape(-1, 3), views.nearest_m(k)) for k in (0, 1)]
     ratio = overlap(ends[0], ends[1], tried.T_i_j, settings=settings.overlap)
-    reason = tried.reason
-    if not reason and ratio < source.settings.overlap.threshold:
-        reason = Reason.OVERLAP
-    found = _measurement(tried.evolve(overlap=ratio))
-    return Alignment(found, tried.converged, str(reason))
+    if not tried.reason and ratio < source.settings.overlap.threshold:
+        tried = tried.evolve(reason=Reason.OVERLAP)
+    return tried.evolve(overlap=ratio)
 
 
 def _measurement(edge: Edge) -> Measurement:
