@@ -31,7 +31,7 @@ from recon4.store.project import (
     is_project,
     read_artifacts,
 )
-from recon4.store.recipes import check_recipes, settings_in
+from recon4.store.recipes import settings_to_repeat
 from recon4.store.stage import Artifact, Input, Stage, StageRunner, figures_of
 
 BEFORE_REVIEW: tuple[Stage[Any], ...] = (
@@ -180,10 +180,7 @@ def remake(out: Path, *, progress: Progress | None = None) -> Summary | Summary2
         return remake_2d(out, progress=progress)
     if "map" not in made:
         raise StoreError(f"{out.name} has no map yet: process its recording to the end first")
-    before = [stage.name for stage in BEFORE_REVIEW]
-    # Of a setting that a cut-off run changed, what the kept stages were made with counts.
-    check_recipes(made.values())
-    settings = settings_in(made[name] for name in sorted(made, key=before.__contains__))
+    settings = settings_to_repeat(made, BEFORE_REVIEW)
     with Project.open(out) as project:
         runner = StageRunner(project, settings, progress)
         frames, odometry, _, graph = (runner.keep(stage) for stage in BEFORE_REVIEW)
@@ -257,17 +254,9 @@ def run_from_review(
     graph: Artifact,
     decided: Decided,
 ) -> None:
-    """The stages that depend on decisions of people.
-
-    Without decisions there is no stage ``review``, so that undoing all of them finds the artifacts
-    of before again.
-    """
+    """The stages that depend on decisions of people."""
     run = runner.run
-    if decided:
-        decisions = Input(decided.key, decided.standing)
-        graph = run(stages.REVIEW, graph=graph, decisions=decisions)
-    else:
-        runner.skip(stages.REVIEW)
+    graph = stages.reviewed(runner, graph, decided)
     level = run_trajectory(runner, measurements, odometry=odometry, graph=graph)
     intensity = run(stages.INTENSITY, **measurements.inputs, level=level)
     run(stages.MAP, **measurements.inputs, level=level, intensity=intensity)

@@ -20,7 +20,7 @@ from recon4.settings import Settings
 from recon4.store.hashing import size_of
 from recon4.store.inputs import input_files
 from recon4.store.project import Project, ProjectDescription, read_artifacts
-from recon4.store.recipes import check_recipes, settings_in
+from recon4.store.recipes import settings_to_repeat
 from recon4.store.stage import Artifact, Input, Stage, StageRunner
 
 BEFORE_REVIEW_2D: tuple[Stage[Any], ...] = (
@@ -97,9 +97,7 @@ def remake_2d(out: Path, *, progress: Progress) -> Summary2d:
         Cancelled: If the watcher requested to stop; the next call continues from there.
     """
     made = read_artifacts(out)
-    before = [stage.name for stage in BEFORE_REVIEW_2D]
-    check_recipes(made.values())
-    settings = settings_in(made[name] for name in sorted(made, key=before.__contains__))
+    settings = settings_to_repeat(made, BEFORE_REVIEW_2D)
     with Project.open(out) as project:
         runner = StageRunner(project, settings, progress)
         scans, odometry, _, graph = (runner.keep(stage) for stage in BEFORE_REVIEW_2D)
@@ -120,12 +118,7 @@ def run_stages_2d(runner: StageRunner, recordings: Input, decided: Decided) -> N
 
 def run_from_review_2d(runner: StageRunner, made: Planar, decided: Decided) -> None:
     """The stages that depend on decisions of people, as `recon4.pipeline.run_from_review`."""
-    graph = made.graph
-    if decided:
-        decisions = Input(decided.key, decided.standing)
-        graph = runner.run(stages.REVIEW, graph=graph, decisions=decisions)
-    else:
-        runner.skip(stages.REVIEW)
+    graph = stages.reviewed(runner, made.graph, decided)
     runner.run(stages_2d.MAP_2D, scans=made.scans, odometry=made.odometry, graph=graph)
 
 

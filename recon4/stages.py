@@ -21,8 +21,8 @@ from recon4.model.figures import (
 )
 from recon4.model.import_notes import import_notes
 from recon4.model.rig import Rig
-from recon4.review.decisions import Standing
-from recon4.store.stage import Stage, StageContext
+from recon4.review.decisions import Decided, Standing
+from recon4.store.stage import Artifact, Input, Stage, StageContext, StageRunner
 
 _MATCHING = (
     "segments", "overlap", "registration", "planes", "odometry", "graph", "recognition",
@@ -306,6 +306,18 @@ TURN_GRAPH = Stage(
     GraphFigures,
 )
 LINE_REFINE = Stage("refine", 101, ("odometry", "lines", "planes"), _refine_lines, RefineFigures)
+
+
+def reviewed(runner: StageRunner, graph: Artifact, decided: Decided) -> Artifact:
+    """The verified graph with the decisions of people.
+
+    Without decisions there is no stage ``review``, so that undoing all of them finds the artifacts
+    of before again.
+    """
+    if not decided:
+        runner.skip(REVIEW)
+        return graph
+    return runner.run(REVIEW, graph=graph, decisions=Input(decided.key, decided.standing))
 
 
 def has_profiler(frames: Path) -> bool:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, replace
 from pathlib import Path
+from typing import Any
 
 from recon4.settings import Settings, current_name
 from recon4.store.seal import check_sealed
-from recon4.store.stage import read_manifest
+from recon4.store.stage import Stage, read_manifest
 
 
 def check_recipes(artifacts: Iterable[Path]) -> None:
@@ -19,6 +20,24 @@ def check_recipes(artifacts: Iterable[Path]) -> None:
     """
     for folder in artifacts:
         check_sealed(folder.parent.parent, f"artifacts/{folder.name}/manifest.json")
+
+
+def settings_to_repeat(made: Mapping[str, Path], kept: Sequence[Stage[Any]]) -> Settings:
+    """Settings for the stages after some that are kept as they are.
+
+    Of a setting that a cut-off run changed, what the kept stages were made with counts.
+
+    Args:
+        made: Stage -> folder of its artifact.
+        kept: Stages that are not run again.
+
+    Raises:
+        Altered: If a manifest was changed.
+        StoreError: If an artifact is damaged.
+    """
+    check_recipes(made.values())
+    names = {stage.name for stage in kept}
+    return settings_in(made[name] for name in sorted(made, key=names.__contains__))
 
 
 def settings_in(artifacts: Iterable[Path]) -> Settings:
