@@ -200,7 +200,7 @@ def make_project(root: Path, points: int) -> None:
         project.describe(preset="outdoor", rig="made up")
         runner = StageRunner(project, Settings(), Silent())
         runner.run(Stage("level", 1, (), _level))
-        runner.run(Stage("map", 1, (), lambda **named: _map(points, named["out"])))
+        runner.run(Stage("map", 1, (), lambda context: _map(points, context.out)))
 
 
 def _level(context: StageContext) -> None:
