@@ -222,6 +222,7 @@ def verify(
 
     if accept:
         seal_again(folder)
+    confine_command()
     with watcher() as progress:
         found = read_again(folder, progress)
     if as_json:

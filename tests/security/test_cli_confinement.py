@@ -1,7 +1,7 @@
 """Commands that read files of users, taken over by such a file: nothing gets out or is changed.
 
 Each command is run as by a user; in place of the function that reads the file runs the attack.
-Figure to hold: 0 of 5 reaches by any of the 6 commands.
+Figure to hold: 0 of 5 reaches by any of the 8 commands.
 """
 
 from __future__ import annotations
@@ -29,12 +29,17 @@ COMMANDS = {
     "export": ("recon4.results.export_map", ["export", "in", "out/a.laz"]),
     "slice": ("recon4.store.project.read_artifacts", ["slice", "in", "out/a.laz", "--z", "1"]),
     "doubles": ("recon4.store.project.read_artifacts", ["doubles", "in"]),
+    "verify": ("recon4.verify.verify", ["verify", "in"]),
+    "calibrate": (
+        "recon4.recording.sources.require_files",
+        ["calibrate", "in/a.pcap", "--rig", "4recon", "--out", "out/rig.toml"],
+    ),
     "evaluate": (
         "recon4.evaluation.evaluate.evaluate",
         ["evaluate", "in/a.tum", "--truth", "in/b.tum", "--report", "out/a.html"],
     ),
 }
-WRITES_NOTHING = {"info", "doubles"}
+WRITES_NOTHING = {"info", "doubles", "verify"}
 
 ATTACK = """
 import importlib, json, os, socket, subprocess, sys
