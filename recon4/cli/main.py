@@ -222,7 +222,7 @@ def verify(
 
     if accept:
         seal_again(folder)
-    confine_command()
+    confine_command(write=[folder])  # SQLite makes files beside what it reads
     with watcher() as progress:
         found = read_again(folder, progress)
     if as_json:

@@ -29,7 +29,7 @@ COMMANDS = {
     "export": ("recon4.results.export_map", ["export", "in", "out/a.laz"]),
     "slice": ("recon4.store.project.read_artifacts", ["slice", "in", "out/a.laz", "--z", "1"]),
     "doubles": ("recon4.store.project.read_artifacts", ["doubles", "in"]),
-    "verify": ("recon4.verify.verify", ["verify", "in"]),
+    "verify": ("recon4.verify.verify", ["verify", "out"]),
     "calibrate": (
         "recon4.recording.sources.require_files",
         ["calibrate", "in/a.pcap", "--rig", "4recon", "--out", "out/rig.toml"],
@@ -39,7 +39,7 @@ COMMANDS = {
         ["evaluate", "in/a.tum", "--truth", "in/b.tum", "--report", "out/a.html"],
     ),
 }
-WRITES_NOTHING = {"info", "doubles", "verify"}
+WRITES_NOTHING = {"info", "doubles"}
 
 ATTACK = """
 import importlib, json, os, socket, subprocess, sys
