@@ -9,7 +9,6 @@ finds the pose.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +21,9 @@ _CELLS = 128
 RADIUS_M = 15.0
 """Radius of an image; with the largest shift nothing wraps around."""
 MAX_SHIFT_M = 10.0
+_REACH = round(MAX_SHIFT_M / CELL_M)
+_SHIFTS = np.arange(-_REACH, _REACH + 1)
+"""Shifts that are tried along each axis, in cells."""
 _MOST = 4.0
 """Points in a cell beyond which it is full."""
 _YAW_STEP_RAD = np.deg2rad(5.0)
@@ -79,13 +81,11 @@ def overlays(
         yaws: Rotations that are tried [rad], (Y,).
         most: Number of overlays; those next to a better one are omitted.
     """
-    reach = round(MAX_SHIFT_M / CELL_M)
-    shifts = np.arange(-reach, reach + 1)
-    scores = np.stack([_correlate(target, source, float(yaw), shifts) for yaw in yaws])
+    scores = np.stack([_correlate(target, source, float(yaw)) for yaw in yaws])
     found = []
     for _ in range(most):
         k, a, b = np.unravel_index(int(np.argmax(scores)), scores.shape)
-        shift = (float(shifts[a] * CELL_M), float(shifts[b] * CELL_M))
+        shift = (float(_SHIFTS[a] * CELL_M), float(_SHIFTS[b] * CELL_M))
         found.append(Overlay(float(yaws[k]), shift, float(scores[k, a, b])))
         _suppress(scores, yaws, at=(int(k), int(a), int(b)))
     return [one for one in found if np.isfinite(one.score)]
@@ -99,15 +99,14 @@ def yaws_within(bound_rad: float) -> Array:
     return np.arange(-steps, steps + 1) * _YAW_STEP_RAD
 
 
-def _correlate(
-    target: DensityImage, source: DensityImage, yaw: float, shifts: NDArray[Any]
-) -> NDArray[np.float32]:
+def _correlate(target: DensityImage, source: DensityImage, yaw: float) -> NDArray[np.float32]:
+    """Cosine of the images for all shifts of the turned source, (S, S)."""
     c, s = np.cos(yaw), np.sin(yaw)
     image = _raster(source.walls_m @ np.array([[c, s], [-s, c]]))
     # The source is not blurred: blurring both would widen the maximum.
     image /= max(float(np.linalg.norm(ndimage.gaussian_filter(image, 1.0))), 1e-9)
     scores = fft.irfft2(target.spectrum * np.conj(fft.rfft2(image)), s=image.shape)
-    chosen: NDArray[np.float32] = scores[np.ix_(shifts, shifts)]
+    chosen: NDArray[np.float32] = scores[np.ix_(_SHIFTS, _SHIFTS)]
     return chosen
 
 

@@ -49,6 +49,8 @@ class _ChainGroup:
     """Chains that agree on one correction."""
 
     chains: list[RecognizedChain]
+    span_m: tuple[float, float]
+    """Path length from the start to its first and last node whose views fit [m]."""
     is_within: bool
     """Whether it moves the nodes by no more than the graph's uncertainty."""
 
@@ -73,27 +75,22 @@ def contradicts(edge: Edge) -> bool:
 
 
 def judge_chains(
-    graph: PoseGraph,
-    places: Places,
-    chains: Sequence[RecognizedChain],
-    *,
-    settings: RecognitionSettings,
+    places: Places, chains: Sequence[RecognizedChain], *, settings: RecognitionSettings
 ) -> list[Edge]:
     """Decide which recognized places become loop closures.
 
     Args:
-        graph: The graph so far.
-        places: Its places.
+        places: Places of the graph so far.
         chains: Registered hypotheses; edges that were rejected stay as they are.
         settings: Limits.
 
     Returns:
         All edges of the chains.
     """
-    groups = _groups(graph, places, [chain for chain in chains if chain.confirmed], settings)
+    groups = _groups(places, [chain for chain in chains if chain.confirmed], settings)
     reasons: dict[int, Reason] = {}
     for group in groups:
-        reason = _reason(group, groups, places, settings)
+        reason = _reason(group, groups, settings)
         reasons |= {id(edge): reason for chain in group.chains for edge in chain.confirmed}
     return [_judged(edge, reasons.get(id(edge))) for chain in chains for edge in chain.edges]
 
@@ -105,10 +102,7 @@ def _judged(edge: Edge, reason: Reason | None) -> Edge:
 
 
 def _reason(
-    group: _ChainGroup,
-    groups: Sequence[_ChainGroup],
-    places: Places,
-    settings: RecognitionSettings,
+    group: _ChainGroup, groups: Sequence[_ChainGroup], settings: RecognitionSettings
 ) -> Reason:
     """Why a group is not accepted; `Reason.NONE` = it is."""
     support = len(group.nodes)
@@ -118,28 +112,24 @@ def _reason(
         return Reason.AMBIGUOUS
     for other in groups:
         weighs = len(other.nodes) >= settings.rival_ratio * support
-        if other is not group and other.is_within and weighs and _compete(places, group, other):
+        if other is not group and other.is_within and weighs and _compete(group, other):
             return Reason.AMBIGUOUS
     return Reason.NONE
 
 
-def _compete(places: Places, a: _ChainGroup, b: _ChainGroup) -> bool:
+def _compete(a: _ChainGroup, b: _ChainGroup) -> bool:
     """Whether two groups, which do not agree, correct nodes close to each other."""
-    path_a, path_b = (places.path_m[sorted(group.nodes)] for group in (a, b))
-    return bool(path_a.min() <= path_b.max() + _LINK_M and path_b.min() <= path_a.max() + _LINK_M)
+    return a.span_m[0] <= b.span_m[1] + _LINK_M and b.span_m[0] <= a.span_m[1] + _LINK_M
 
 
 def _groups(
-    graph: PoseGraph,
-    places: Places,
-    chains: Sequence[RecognizedChain],
-    settings: RecognitionSettings,
+    places: Places, chains: Sequence[RecognizedChain], settings: RecognitionSettings
 ) -> list[_ChainGroup]:
     """Chains that agree with each other directly or through others."""
     agree = [
         (a, b)
         for a, b in _neighboring(places, chains)
-        if _chains_agree(graph, places, chains[a], chains[b])
+        if _chains_agree(places, chains[a], chains[b])
     ]
     rows = np.array(agree, np.intp).reshape(-1, 2)
     joined = coo_array((np.ones(len(rows)), (rows[:, 0], rows[:, 1])), shape=(len(chains),) * 2)
@@ -147,16 +137,15 @@ def _groups(
     members: list[list[RecognizedChain]] = [[] for _ in range(count)]
     for chain, group in zip(chains, label, strict=True):
         members[group].append(chain)
-    return [_ChainGroup(some, _is_within(graph, places, some, settings)) for some in members]
+    return [
+        _ChainGroup(some, _span_m(places, some), _is_within(places, some, settings))
+        for some in members
+    ]
 
 
 def _neighboring(places: Places, chains: Sequence[RecognizedChain]) -> Iterator[tuple[int, int]]:
     """Chains with so little path in between that they could agree."""
-    spans = [
-        (float(path_m.min()), float(path_m.max()), k)
-        for k, chain in enumerate(chains)
-        for path_m in [places.path_m[[edge.j for edge in chain.confirmed]]]
-    ]
+    spans = [(*_span_m(places, [chain]), k) for k, chain in enumerate(chains)]
     near: list[tuple[float, float, int]] = []
     for start_m, end_m, k in sorted(spans):
         near = [span for span in near if span[1] >= start_m - _LINK_M]
@@ -164,12 +153,19 @@ def _neighboring(places: Places, chains: Sequence[RecognizedChain]) -> Iterator[
         near.append((start_m, end_m, k))
 
 
-def _chains_agree(graph: PoseGraph, places: Places, a: RecognizedChain, b: RecognizedChain) -> bool:
+def _span_m(places: Places, chains: Sequence[RecognizedChain]) -> tuple[float, float]:
+    """Path length from the start to the first and the last node whose views fit [m]."""
+    path_m = places.path_m[[edge.j for chain in chains for edge in chain.confirmed]]
+    return float(path_m.min()), float(path_m.max())
+
+
+def _chains_agree(places: Places, a: RecognizedChain, b: RecognizedChain) -> bool:
     """Whether the motion between corrected poses of two chains is that of the odometry."""
-    return any(_agree(graph, places, one, other) for one in a.confirmed for other in b.confirmed)
+    return any(_agree(places, one, other) for one in a.confirmed for other in b.confirmed)
 
 
-def _agree(graph: PoseGraph, places: Places, a: Edge, b: Edge) -> bool:
+def _agree(places: Places, a: Edge, b: Edge) -> bool:
+    graph = places.graph
     path_m = abs(float(places.path_m[a.j] - places.path_m[b.j]))
     if path_m > _LINK_M:
         return False
@@ -185,20 +181,18 @@ def _corrected(graph: PoseGraph, edge: Edge) -> SE3:
 
 
 def _is_within(
-    graph: PoseGraph,
-    places: Places,
-    chains: Sequence[RecognizedChain],
-    settings: RecognitionSettings,
+    places: Places, chains: Sequence[RecognizedChain], settings: RecognitionSettings
 ) -> bool:
     """Whether most edges move their nodes by no more than the graph's uncertainty."""
-    moves = [within for chain in chains for within in _moves_within(graph, places, chain, settings)]
+    moves = [within for chain in chains for within in _moves_within(places, chain, settings)]
     return sum(moves) * 2 > len(moves)
 
 
 def _moves_within(
-    graph: PoseGraph, places: Places, chain: RecognizedChain, settings: RecognitionSettings
+    places: Places, chain: RecognizedChain, settings: RecognitionSettings
 ) -> Iterator[bool]:
     """For each confirmed edge, whether it moves its node within the bounds."""
+    graph = places.graph
     at = (chain.earlier, chain.place)
     far_m, height_m = (
         settings.bound_sd * float(sd[at])

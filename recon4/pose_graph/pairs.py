@@ -45,14 +45,15 @@ class PairRegistrar:
     def __init__(
         self, make_submaps: SubmapFactory, views: NodeRangeImages, settings: Settings
     ) -> None:
-        self._make_submaps, self._views, self._settings = make_submaps, views, settings
+        self._make_submaps = make_submaps
+        self.views, self.settings = views, settings
 
     def prepare(self, nodes: int, progress: Progress) -> None:
         """Compute segments and range images of all nodes."""
         progress.start("view volumes", nodes, "node")
         chunks = [range(k, min(k + _CHUNK, nodes)) for k in range(0, nodes, _CHUNK)]
-        with ThreadPoolExecutor(self._settings.graph.workers) as pool:
-            fills = pool.map(lambda chunk: self._views.fill(self._make_submaps(), chunk), chunks)
+        with ThreadPoolExecutor(self.settings.graph.workers) as pool:
+            fills = pool.map(lambda chunk: self.views.fill(self._make_submaps(), chunk), chunks)
             for chunk, _ in zip(chunks, fills, strict=True):
                 progress.advance(len(chunk))
 
@@ -63,7 +64,7 @@ class PairRegistrar:
         chunks = [groups[k : k + _CHUNK] for k in range(0, len(groups), _CHUNK)]
         edges: dict[int, Edge] = {}
         progress.start("pairs", len(pairs), "pair")
-        with ThreadPoolExecutor(self._settings.graph.workers) as pool:
+        with ThreadPoolExecutor(self.settings.graph.workers) as pool:
             for done in pool.map(lambda chunk: self._try_chunk(chunk, pairs), chunks):
                 edges.update(done)
                 for edge in done.values():
@@ -74,10 +75,10 @@ class PairRegistrar:
     def seen_through(self, edge: Edge) -> float:
         """Fraction of the points of one node that lie in the free space of the other, 0..1."""
         i, j = self._view(edge.i), self._view(edge.j)
-        return seen_through(i, j, edge.T_i_j, settings=self._settings.overlap)
+        return seen_through(i, j, edge.T_i_j, settings=self.settings.overlap)
 
     def _try_chunk(self, groups: list[list[int]], pairs: Sequence[Pair]) -> dict[int, Edge]:
-        submaps, planes = self._make_submaps(), PlaneMap(self._settings.planes)
+        submaps, planes = self._make_submaps(), PlaneMap(self.settings.planes)
         edges = [self._try_group(submaps, planes, group, pairs=pairs) for group in groups]
         return {k: edge for tried in edges for k, edge in tried}
 
@@ -87,12 +88,12 @@ class PairRegistrar:
         """Register all pairs of one target node; its map is built once, if a pair needs it."""
         target: PlaneMap | LineTarget | None = None
         out = []
-        reach = self._settings.graph.target_reach
+        reach = self.settings.graph.target_reach
         for k in group:
             pair = pairs[k]
-            ends = self._views.ends(pair.j)
+            ends = self.views.ends(pair.j)
             overlap_ratio = self._overlap(pair)
-            if overlap_ratio < self._settings.overlap.threshold:
+            if overlap_ratio < self.settings.overlap.threshold:
                 out.append((k, _edge(pair, overlap_ratio, Reason.OVERLAP)))
                 continue
             if target is None:
@@ -111,13 +112,13 @@ class PairRegistrar:
 
     def _overlap(self, pair: Pair) -> float:
         source, target = (self._view(node) for node in (pair.i, pair.j))
-        return overlap(source, target, pair.T_i_j, settings=self._settings.overlap)
+        return overlap(source, target, pair.T_i_j, settings=self.settings.overlap)
 
     def _view(self, node: int) -> RangeImage:
-        return RangeImage(self._views.ends(node).reshape(-1, 3), self._views.nearest_m(node))
+        return RangeImage(self.views.ends(node).reshape(-1, 3), self.views.nearest_m(node))
 
     def _target(self, ends: Ends, planes: PlaneMap) -> PlaneMap | LineTarget:
-        if self._settings.registration.solver != "planes":
+        if self.settings.registration.solver != "planes":
             return LineTarget(Lines.through(ends[:, 0], ends[:, 1]))
         planes.clear()
         planes.add(np.ascontiguousarray(ends.reshape(-1, 3)))
@@ -126,7 +127,7 @@ class PairRegistrar:
     def _solve(
         self, target: PlaneMap | LineTarget, ends: Ends, pair: Pair, *, overlap_ratio: float
     ) -> Registration:
-        settings = self._settings.registration
+        settings = self.settings.registration
         if isinstance(target, LineTarget):
             source = Lines.through(ends[:, 0], ends[:, 1])
             return register_lines(
@@ -134,13 +135,13 @@ class PairRegistrar:
             )
         return register_to_planes(
             target, ends.reshape(-1, 3), initial=pair.T_i_j,
-            settings=settings, normal_noise_rad=self._settings.graph.normal_noise_rad,
+            settings=settings, normal_noise_rad=self.settings.graph.normal_noise_rad,
         )  # fmt: skip
 
     def _judge(self, pair: Pair, overlap_ratio: float, found: Registration) -> Edge:
         """Accept or reject (V Algorithm 2.1 line 8; A0 no. 12)."""
-        g = self._settings.graph
-        range_m = median_range_m(self._views.ends(pair.i))
+        g = self.settings.graph
+        range_m = median_range_m(self.views.ends(pair.i))
         limit_m = range_m * g.error_relative + g.error_absolute_m
         reason = Reason.NONE
         if not found.converged:
@@ -158,7 +159,7 @@ class PairRegistrar:
             degeneracy=found.degeneracy,
             converged=found.converged,
             iterations=found.iterations,
-            information=_information(found, self._settings),
+            information=_information(found, self.settings),
         )
 
 

@@ -26,6 +26,8 @@ _BROKEN_SD_M = 1.0
 class Places:
     """Nodes a few meters apart, each with the walls around it."""
 
+    graph: PoseGraph
+    """The graph with the poses they were drawn with."""
     node: Rows
     """Node of each place, in the order of the walk, (K,)."""
     path_m: Array
@@ -60,8 +62,9 @@ def make_places(
     for node in nodes:
         near = np.abs(path_m - path_m[node]) <= settings.reach_m
         members = np.flatnonzero(near & (part == part[node]))
-        images.append(_image(graph, views, node, members))
+        images.append(_image(graph, views, node, members=members))
     return Places(
+        graph=graph,
         node=nodes,
         path_m=path_m,
         images=tuple(images),
@@ -90,7 +93,7 @@ def _every(path_m: Array, part: NDArray[np.int64], spacing_m: float) -> Rows:
     return np.array(chosen, np.intp)
 
 
-def _image(graph: PoseGraph, views: NodeRangeImages, node: int, members: Rows) -> DensityImage:
+def _image(graph: PoseGraph, views: NodeRangeImages, node: int, *, members: Rows) -> DensityImage:
     """The walls around a node, from the nodes of its sub-map."""
     center = graph.T_map_body.t[node]
     walls, heights = [], []

@@ -21,14 +21,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.geometry.se3 import SE3, Array, so3_exp
+from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
 from recon4.pose_graph.density import MAX_SHIFT_M, Overlay, overlays, yaws_within
 from recon4.pose_graph.groups import RecognizedChain, contradicts, judge_chains
 from recon4.pose_graph.pairs import Pair, PairRegistrar
 from recon4.pose_graph.places import Places, make_places
 from recon4.progress import Progress
-from recon4.registration.submap import NodeRangeImages
 from recon4.settings import RecognitionSettings
 
 _NEAR_M, _NEAR_RAD = 1.5, 0.26
@@ -79,51 +78,37 @@ class _PlaceHypothesis:
 
 
 def recognize(
-    graph: PoseGraph,
-    views: NodeRangeImages,
-    registrar: PairRegistrar,
-    *,
-    settings: RecognitionSettings,
-    leveled: bool,
-    progress: Progress,
+    graph: PoseGraph, registrar: PairRegistrar, *, leveled: bool, progress: Progress
 ) -> list[Edge]:
     """Find loop closures between places that the graph does not join yet.
 
     Args:
         graph: The graph so far; z of its map is vertical.
-        views: Segments of every node.
-        registrar: Registers pairs of nodes.
-        settings: What is searched and what is accepted.
+        registrar: Registers pairs of nodes; has their segments and the settings.
         leveled: The vertical is known by an IMU.
         progress: Receives an event for each registered pair.
 
     Returns:
         An edge for every registered pair, accepted or rejected with its reason.
     """
-    places = make_places(graph, views, settings, leveled=leveled)
+    settings = registrar.settings.recognition
+    places = make_places(graph, registrar.views, settings, leveled=leveled)
     hypotheses = [
-        one
-        for place in _open_places(graph, places)
-        for one in _hypotheses(graph, places, place, settings)
+        one for place in _open_places(places) for one in _hypotheses(places, place, settings)
     ]
-    pairs, kept = _pairs(graph, hypotheses, places)
+    pairs, kept = _pairs(places, hypotheses)
     if not pairs:
         return []
-    edges = _register(pairs, registrar, settings, progress)
+    edges = _register(pairs, registrar, progress)
     chains = [
         RecognizedChain(place=one.place, earlier=one.earlier, edges=[edge])
         for one, edge in zip(kept, edges, strict=True)
     ]
-    _grow(graph, places, chains, lambda more: _register(more, registrar, settings, progress))
-    return judge_chains(graph, places, chains, settings=settings)
+    _grow(places, chains, lambda more: _register(more, registrar, progress))
+    return judge_chains(places, chains, settings=settings)
 
 
-def _register(
-    pairs: Sequence[Pair],
-    registrar: PairRegistrar,
-    settings: RecognitionSettings,
-    progress: Progress,
-) -> list[Edge]:
+def _register(pairs: Sequence[Pair], registrar: PairRegistrar, progress: Progress) -> list[Edge]:
     """Register pairs and compare them with the free space.
 
     Pairs that ran out of rounds close to a fit continue from there.
@@ -135,7 +120,7 @@ def _register(
     further = [Pair(e.i, e.j, e.kind, e.T_i_j) for e in (edges[k] for k in again)]
     for k, edge in zip(again, registrar.register(further, progress) if again else [], strict=True):
         edges[k] = edge
-    return [_check_free_space(edge, registrar, settings) for edge in edges]
+    return [_check_free_space(edge, registrar) for edge in edges]
 
 
 def _is_close(edge: Edge) -> bool:
@@ -158,12 +143,12 @@ def without_settled(graph: PoseGraph) -> PoseGraph:
     )
 
 
-def _open_places(graph: PoseGraph, places: Places) -> list[int]:
+def _open_places(places: Places) -> list[int]:
     """Places that no loop closure joins to an earlier visit.
 
     Where a pair was degenerate, as in a bare corridor, no other pose would be better determined.
     """
-    return np.flatnonzero(~_closed_nodes(graph)[places.node]).tolist()
+    return np.flatnonzero(~_closed_nodes(places.graph)[places.node]).tolist()
 
 
 def _closed_nodes(graph: PoseGraph) -> NDArray[np.bool_]:
@@ -177,12 +162,12 @@ def _closed_nodes(graph: PoseGraph) -> NDArray[np.bool_]:
 
 
 def _hypotheses(
-    graph: PoseGraph, places: Places, place: int, settings: RecognitionSettings
+    places: Places, place: int, settings: RecognitionSettings
 ) -> list[_PlaceHypothesis]:
     """The best distinct corrections of a place, by laying it onto similar earlier places."""
-    T_map_place = graph.T_map_body[places.node]
+    T_map_place = places.graph.T_map_body[places.node]
     found = []
-    for k in _candidates(places, T_map_place.t, place, settings):
+    for k in _candidates(places, place, settings):
         yaws = yaws_within(settings.bound_sd * float(places.bounds.yaw_rad[k, place]) + _YAW_RAD)
         likely_m = settings.bound_sd * float(places.bounds.horizontal_m[k, place])
         for overlay in overlays(
@@ -206,9 +191,9 @@ def _distinct(ranked: Sequence[_PlaceHypothesis], most: int) -> list[_PlaceHypot
     return chosen
 
 
-def _candidates(places: Places, t_m: Array, place: int, settings: RecognitionSettings) -> list[int]:
+def _candidates(places: Places, place: int, settings: RecognitionSettings) -> list[int]:
     """The earlier places within reach with the most similar descriptors."""
-    path_m = places.path_m[places.node]
+    path_m, t_m = places.path_m[places.node], places.graph.T_map_body.t[places.node]
     walked_m = path_m[place] - path_m[:place]
     bounds, ratio = places.bounds, settings.search_ratio * walked_m
     offset = t_m[:place] - t_m[place]
@@ -241,9 +226,10 @@ def _taken(graph: PoseGraph) -> set[tuple[int, int]]:
 
 
 def _pairs(
-    graph: PoseGraph, hypotheses: Sequence[_PlaceHypothesis], places: Places
+    places: Places, hypotheses: Sequence[_PlaceHypothesis]
 ) -> tuple[list[Pair], list[_PlaceHypothesis]]:
     """One pair for each hypothesis: the place and the earlier node nearest to where it moves."""
+    graph = places.graph
     taken = _taken(graph)
     pairs, kept = [], []
     for one in hypotheses:
@@ -262,7 +248,6 @@ def _pairs(
 
 
 def _grow(
-    graph: PoseGraph,
     places: Places,
     chains: Sequence[RecognizedChain],
     register: Callable[[list[Pair]], list[Edge]],
@@ -272,12 +257,12 @@ def _grow(
     A true revisit ends where the two paths part. A place that only looks alike ends where the views
     contradict each other.
     """
-    taken = _taken(graph) | {(e.i, e.j) for c in chains for e in c.edges}
+    taken = _taken(places.graph) | {(e.i, e.j) for c in chains for e in c.edges}
     fronts = [(c, c.edges[0], way, 0) for c in chains if c.edges[0].in_graph for way in (-1, 1)]
     for _ in range(_MAX_GROWTH):
         pairs, kept = [], []
         for chain, edge, way, stuck in fronts:
-            pair = _next_pair(graph, places, edge, way)
+            pair = _next_pair(places, edge, way)
             if pair is not None and (pair.i, pair.j) not in taken:
                 taken.add((pair.i, pair.j))
                 pairs.append(pair)
@@ -303,9 +288,9 @@ def _checked_drift(pair: Pair, edge: Edge) -> Edge:
     return edge.evolve(verdict=Verdict.REJECTED, reason=Reason.UNCONFIRMED)
 
 
-def _next_pair(graph: PoseGraph, places: Places, edge: Edge, way: int) -> Pair | None:
+def _next_pair(places: Places, edge: Edge, way: int) -> Pair | None:
     """The same correction a step along the path; None = the paths part there."""
-    path_m = places.path_m
+    graph, path_m = places.graph, places.path_m
     ahead = np.flatnonzero(way * (path_m - path_m[edge.j]) >= _GROWTH_M)
     if not len(ahead):
         return None
@@ -323,8 +308,9 @@ def _next_pair(graph: PoseGraph, places: Places, edge: Edge, way: int) -> Pair |
     return Pair(i, j, EdgeKind.LOOP, graph.T_map_body[i].inverse() @ T_map_body)
 
 
-def _check_free_space(edge: Edge, registrar: PairRegistrar, settings: RecognitionSettings) -> Edge:
+def _check_free_space(edge: Edge, registrar: PairRegistrar) -> Edge:
     """Reject an edge if one visit sees points where the other one saw through."""
-    if not edge.in_graph or registrar.seen_through(edge) <= settings.max_seen_through:
+    most = registrar.settings.recognition.max_seen_through
+    if not edge.in_graph or registrar.seen_through(edge) <= most:
         return edge
     return edge.evolve(verdict=Verdict.REJECTED, reason=Reason.SEEN_THROUGH)

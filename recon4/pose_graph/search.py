@@ -104,8 +104,13 @@ def search(
         scratch: Folder for unnamed temporary files of 0.2 MB per node.
     """
     start = start_graph(frames, odometry, settings=settings.graph)
+    rows = start.frame_ids.astype(np.intp)
     return close_loops(
-        start, frames, odometry, settings=settings, progress=progress, scratch=scratch
+        start,
+        make_registrar(frames, odometry, rows, settings=settings, scratch=scratch),
+        pieces=odometry.piece[rows],
+        leveled=frames.imu is not None and settings.odometry.use_imu,
+        progress=progress,
     )
 
 
@@ -124,38 +129,51 @@ def start_graph(
     return PoseGraph(rows.astype(np.int64), t_ns, T_odom_body, edges)
 
 
-def close_loops(
-    graph: PoseGraph,
+def make_registrar(
     frames: FrameStore,
     odometry: OdometryTrack,
+    rows: NDArray[np.intp],
     *,
     settings: Settings,
-    progress: Progress,
     scratch: Path,
+) -> PairRegistrar:
+    """Make what registers pairs of the multiframes ``rows``; arguments as of `search`."""
+    return PairRegistrar(
+        lambda: Submaps(frames, odometry.trajectory, rows, settings=settings, skip=odometry.lost),
+        NodeRangeImages(len(rows), settings, scratch),
+        settings,
+    )
+
+
+def close_loops(
+    graph: PoseGraph,
+    registrar: PairRegistrar,
+    *,
+    pieces: Pieces,
+    leveled: bool,
+    progress: Progress,
 ) -> PoseGraph:
-    """Register pairs of the nodes of `start_graph` in all rounds; arguments as of `search`."""
-    g, rows = settings.graph, graph.frame_ids.astype(np.intp)
+    """Register pairs of nodes in all rounds.
+
+    Args:
+        graph: As of `start_graph`.
+        registrar: Registers pairs of these nodes, not prepared yet.
+        pieces: Piece of the walk of each node, (N,).
+        leveled: The vertical is known by an IMU.
+        progress: Counts pairs and receives an event for each registration.
+    """
+    g, recognition = registrar.settings.graph, registrar.settings.recognition
     progress.event(
         NodesPlaced(t_ns=tuple(graph.t_ns.tolist()), t_m=positions_of(graph.T_map_body.t))
     )
-    views = NodeRangeImages(len(rows), settings, scratch)
-    registrar = PairRegistrar(
-        lambda: Submaps(frames, odometry.trajectory, rows, settings=settings, skip=odometry.lost),
-        views,
-        settings,
-    )
-    registrar.prepare(len(rows), progress)
-    attempts = _Attempts(registrar, odometry.piece[rows], progress)
-    selections = rounds(len(rows), g)
+    registrar.prepare(len(graph), progress)
+    attempts = _Attempts(registrar, pieces, progress)
+    selections = rounds(len(graph), g)
     for select in selections[:_BEFORE_RECOGNITION]:
         graph = attempts.run(graph, select(graph))
-    if settings.recognition.enabled and len(selections) > _BEFORE_RECOGNITION and not g.exhaustive:
-        leveled = frames.imu is not None and settings.odometry.use_imu
-        for _ in range(settings.recognition.passes):
-            edges = recognize(
-                graph, views, registrar,
-                settings=settings.recognition, leveled=leveled, progress=progress,
-            )  # fmt: skip
+    if recognition.enabled and len(selections) > _BEFORE_RECOGNITION and not g.exhaustive:
+        for _ in range(recognition.passes):
+            edges = recognize(graph, registrar, leveled=leveled, progress=progress)
             graph = attempts.add(graph, edges)
             if not any(edge.in_graph for edge in edges):
                 break

@@ -25,7 +25,7 @@ from recon4.evaluation.table import number, text_table
 from recon4.geometry.se3 import SE3, Array, align_points, so3_exp
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason
 from recon4.model.rig import load_rig
-from recon4.pose_graph.search import OdometryTrack, close_loops, start_graph
+from recon4.pose_graph.search import OdometryTrack, close_loops, make_registrar, start_graph
 from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
@@ -123,10 +123,16 @@ def row(spec: str, walk: DriftedWalk, *, drift_m: float, recognition: bool) -> t
     start = drifted(start, drift_m=drift_m, drift_rad=np.deg2rad(drift_m))
     begun = time.process_time()
     with tempfile.TemporaryDirectory() as scratch:
+        rows = start.frame_ids.astype(np.intp)
         graph = close_loops(
-            start, walk.frames, walk.odometry,
-            settings=settings, progress=Silent(), scratch=Path(scratch),
-        )  # fmt: skip
+            start,
+            make_registrar(
+                walk.frames, walk.odometry, rows, settings=settings, scratch=Path(scratch)
+            ),
+            pieces=walk.odometry.piece[rows],
+            leveled=walk.frames.imu is not None,
+            progress=Silent(),
+        )
     found = verify(graph, settings=settings.verification).graph
     cpu_s = time.process_time() - begun
     trajectory = read_tum(walk.recording / "truth.tum")

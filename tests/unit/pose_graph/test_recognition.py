@@ -135,7 +135,7 @@ def places_of(graph):
     """A place at every node."""
     nodes = np.arange(len(graph))
     bounds = relative_bounds(graph, nodes, leveled=True)
-    return Places(nodes, np.arange(len(graph), dtype=float), (), np.zeros((41, 1)), bounds)
+    return Places(graph, nodes, np.arange(len(graph), dtype=float), (), np.zeros((41, 1)), bounds)
 
 
 def chain(first, *, off_m=(0.0, 0.0, 0.0), nodes=5, bad=0):
@@ -153,7 +153,7 @@ def chain(first, *, off_m=(0.0, 0.0, 0.0), nodes=5, bad=0):
 
 
 def reasons(*chains, settings=SETTINGS):
-    judged = judge_chains(WALK, places_of(WALK), chains, settings=settings)
+    judged = judge_chains(places_of(WALK), chains, settings=settings)
     out, at = [], 0
     for one in chains:
         out.append({e.reason for e in judged[at : at + len(one.edges)]} - {Reason.SEEN_THROUGH})
