@@ -147,10 +147,9 @@ class Odometry:
             self._good = self._state
         self._count_lost(prediction.end.t_ns, lost=lost)
         T_dense = prediction.T_odom_body if lost or first else fit.T_dense
-        step = _step(
-            frame, prediction, fit, T_dense=T_dense, lost=lost, unknown=self._unknown(frame, fit)
-        )
-        step = replace(step, piece=self._piece)
+        step = _step(frame, prediction, fit, T_dense=T_dense, lost=lost)
+        motion_cov = step.motion_cov + self._unknown(frame, fit)
+        step = replace(step, motion_cov=motion_cov, piece=self._piece)
         if not lost:
             if self._is_keyframe(T_dense[-1]):
                 self._extend_map(segments, prediction.t_s, T_dense)
@@ -324,13 +323,7 @@ def _updated(prediction: Prediction, fit: FrameFit, *, lost: bool, first: bool) 
 
 
 def _step(
-    frame: Multiframe,
-    prediction: Prediction,
-    fit: FrameFit,
-    *,
-    T_dense: SE3,
-    lost: bool,
-    unknown: Array,
+    frame: Multiframe, prediction: Prediction, fit: FrameFit, *, T_dense: SE3, lost: bool
 ) -> OdometryStep:
     end = prediction.T_odom_body[-1]
     middle = prediction.t_s[-1] / 2
@@ -350,7 +343,7 @@ def _step(
         fit.match.degeneracy,
         float(np.linalg.norm(T_dense.t[-1] - end.t)),
         lost,
-        _motion_cov(prediction.prior if lost else fit.P) + unknown,
+        _motion_cov(prediction.prior if lost else fit.P),
         fit.match.weak_direction,
         _weak_sd_m(fit),
         fit.stationary,

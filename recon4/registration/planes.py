@@ -36,25 +36,16 @@ def register_to_planes(
             such errors create keep the initial pose, and the result has no information there.
     """
     T_target_source = initial
-    zero = np.zeros(len(source))
     stop, rounds = StopReason.LIMIT, 0
     match = _empty(len(source))
     for rounds in range(1, settings.max_iterations + 1):
         last_gate = rounds >= len(_GATES_M)
-        match = target.match(
-            T_target_source @ source,
-            zero,
-            center=T_target_source.t,
-            finest=max(target.levels - rounds, 0),
-            gate_m=_GATES_M[min(rounds, len(_GATES_M)) - 1],
-        )
+        match = _match_round(target, T_target_source, source, rounds=rounds)
         if match.matches < _MIN_MATCHES:
             stop = StopReason.TOO_FEW
             break
         step = _gauss_newton_step(match.H[START, START], match.g[START])
-        T_target_source = SE3(
-            so3_exp(step[ROTATION]) @ T_target_source.R, T_target_source.t + step[TRANSLATION]
-        )
+        T_target_source = _corrected(T_target_source, step)
         if not np.isfinite(step).all() or _moved(initial, T_target_source) > settings.max_move_m:
             stop = StopReason.UNSTABLE
             break
@@ -67,7 +58,7 @@ def register_to_planes(
         H, T_target_source = _observable(
             H, initial, T_target_source, normal_noise_rad=normal_noise_rad
         )
-    error_m = _error(target, T_target_source, source, fraction=zero)
+    error_m = _error(target, T_target_source, source)
     return Registration(
         T_target_source, stop, rounds, error_m, match.match_ratio, H, match.degeneracy,
     )  # fmt: skip
@@ -83,7 +74,7 @@ def _observable(
     reduced, keep = observable_pose(H, normal_noise_rad)
     moved = np.concatenate([so3_log(found.R @ initial.R.T), found.t - initial.t])
     kept = keep @ moved
-    return reduced, SE3(so3_exp(kept[ROTATION]) @ initial.R, initial.t + kept[TRANSLATION])
+    return reduced, _corrected(initial, kept)
 
 
 def _gauss_newton_step(H: Array, g: Array) -> Array:
@@ -91,11 +82,27 @@ def _gauss_newton_step(H: Array, g: Array) -> Array:
     return -np.linalg.solve(H + 1e-6 * np.trace(H) / 6 * np.eye(6), g)
 
 
-def _error(target: PlaneMap, T_target_source: SE3, source: Array, *, fraction: Array) -> float:
+def _corrected(T_target_source: SE3, step: Array) -> SE3:
+    """The pose turned about the source's origin and moved, in the target's axes."""
+    return SE3(so3_exp(step[ROTATION]) @ T_target_source.R, T_target_source.t + step[TRANSLATION])
+
+
+def _match_round(target: PlaneMap, T_target_source: SE3, source: Array, *, rounds: int) -> Match:
+    """Matches of a round, counted from 1: the cubes become smaller and the gate narrower."""
+    return target.match(
+        T_target_source @ source,
+        np.zeros(len(source)),
+        center=T_target_source.t,
+        finest=max(target.levels - rounds, 0),
+        gate_m=_GATES_M[min(rounds, len(_GATES_M)) - 1],
+    )
+
+
+def _error(target: PlaneMap, T_target_source: SE3, source: Array) -> float:
     """Mean distance within a wide gate: one narrow enough to register hides what does not fit."""
     wide = target.match(
         T_target_source @ source,
-        fraction,
+        np.zeros(len(source)),
         center=T_target_source.t,
         finest=0,
         gate_m=_ERROR_GATE_M,
