@@ -13,6 +13,7 @@ from recon4.errors import ConfigError, StoreError
 from recon4.export.laz import export_laz
 from recon4.export.names import check_name
 from recon4.export.ply import export_ply
+from recon4.export.points import OutputCrs
 from recon4.georeference.stage import read_crs
 from recon4.mapping.tiles import TileSet
 from recon4.model.figures import UncertaintyFigures
@@ -192,10 +193,8 @@ def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progre
     # The stamp goes onto a file beside it, so that a file without one is never there.
     with atomic_file(path) as temporary:
         if ending == ".laz":
-            wkt = place.wkt if place else None
-            count = export_laz(
-                tiles, temporary, crs=wkt, to_crs=to_crs, strays=wanted.strays, progress=progress
-            )
+            output = OutputCrs(place.wkt if place else None, to_crs)
+            count = export_laz(tiles, temporary, output, strays=wanted.strays, progress=progress)
         else:
             count = export_ply(tiles, temporary, to_crs=to_crs, progress=progress)
         if approval:

@@ -198,26 +198,24 @@ def _map(
 ) -> MapFigures:
     from recon4.evaluation.thickness import plane_thickness
     from recon4.export.laz import export_laz
+    from recon4.export.points import CRS_OF_MAP, OutputCrs
     from recon4.georeference.stage import read_crs
     from recon4.intensity.table import IntensityTable
-    from recon4.mapping.build import build_map
+    from recon4.mapping.build import MapInputs, build_map
     from recon4.store.arrays import load_trajectory
     from recon4.store.frames import open_frames
 
-    tiles = build_map(
+    inputs = MapInputs(
         open_frames(frames, calibration),
         load_trajectory(level / "trajectory.npz"),
         IntensityTable.load(intensity / "table.npz"),
-        context.out,
-        settings=context.settings.map,
-        progress=context.progress,
     )
+    tiles = build_map(inputs, context.out, settings=context.settings.map, progress=context.progress)
     crs = read_crs(level)
     export_laz(
         context.out,
         context.out / "map.laz",
-        crs=crs.wkt if crs else None,
-        to_crs=crs.to_crs if crs else None,
+        OutputCrs(crs.wkt, crs.to_crs) if crs else CRS_OF_MAP,
         progress=context.progress,
     )
     low, high = (tuple(corner.tolist()) for corner in tiles.bounds_m)

@@ -12,7 +12,7 @@ from rosbags.rosbag2 import Writer as Writer2
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.velodyne.encode import PcapWriter, encode_vlp16, vlp16_firings
+from recon4.recording.velodyne.encode import PacketBlocks, PcapWriter, encode_vlp16, vlp16_firings
 
 ROOM_M = np.array([8.0, 6.0, 3.0])
 T0_NS = 1_700_000_000_000_000_000
@@ -83,7 +83,9 @@ def room_packets(*, seconds=1.0, rate_hz=10.0, t0_ns=T0_NS):
     distance, _ = room_range(azimuth, np.tile(model.elevation_rad, 2))
     t_ns = t0_ns + np.rint(t_packet_s * 1e9).astype(np.int64)
     units = np.rint(distance / 0.002).astype(np.int64)
-    payloads = encode_vlp16(t_ns // 1000, azimuth_cdeg, units, intensity=np.full(units.shape, 40))
+    payloads = encode_vlp16(
+        t_ns // 1000, PacketBlocks(azimuth_cdeg, units, np.full(units.shape, 40))
+    )
     return t_ns, payloads
 
 

@@ -101,23 +101,22 @@ def evaluate(
 
 
 def _against_truth(result: Path, truth: Path, *, model: Path | None, floor: bool) -> Evaluation:
+    from recon4.evaluation.evaluate import MapChunks
     from recon4.evaluation.evaluate import evaluate as evaluate_result
     from recon4.store.project import is_project, read_artifacts
 
-    chunks = measured = frames = None
+    chunks = frames = None
     artifacts = read_artifacts(result) if is_project(result) else {}
     if "map" in artifacts:
-        chunks = _map_chunks(artifacts["map"])
-        measured = _measured_chunks(artifacts["map"])
+        map_ = artifacts["map"]
+        chunks = MapChunks(_map_chunks(map_), _measured_chunks(map_))
     if floor:
         if "frames" not in artifacts:
             raise typer.BadParameter(f"--floor needs a project with its frames, got {result}")
         from recon4.store.frames import open_frames
 
         frames = open_frames(artifacts["frames"], artifacts.get("calibration"))
-    return evaluate_result(
-        result, truth=truth, model=model, chunks=chunks, measured=measured, frames=frames
-    )
+    return evaluate_result(result, truth=truth, model=model, chunks=chunks, frames=frames)
 
 
 def _relation_errors(result: Path, relations: Path) -> RelationErrors:

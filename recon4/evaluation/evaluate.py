@@ -28,12 +28,22 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.model.frames import Frames
 from recon4.model.trajectory import Trajectory
 
+_EVERY = 10
+"""Of the multiframes, every tenth is placed by the estimate and by the truth."""
 FRAME_NS = 100_000_000
 """Dense trajectories are evaluated at one pose per multiframe of 10 Hz [ns]."""
 Chunks = Callable[[], Iterable[Array]]
 """Makes a fresh pass over the points of the map [m], arrays of (N, 3)."""
-_EVERY = 10
-"""Of the multiframes, every tenth is placed by the estimate and by the truth."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MapChunks:
+    """The points of a map, a new pass at each call."""
+
+    delivered: Chunks
+    """For example ``lambda: (tile.xyz_m() for tile in TileSet.open(folder))``."""
+    measured: Chunks | None = None
+    """The same points where they were measured; None = the map has no fitted surfaces."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -88,8 +98,7 @@ def evaluate(
     *,
     truth: Path,
     model: Path | None = None,
-    chunks: Chunks | None = None,
-    measured: Chunks | None = None,
+    chunks: MapChunks | None = None,
     frames: Frames | None = None,
 ) -> Evaluation:
     """Evaluate a result against ground truth.
@@ -98,9 +107,7 @@ def evaluate(
         project_or_trajectory: ``.tum`` or ``.npz`` file, or a project with ``trajectory.tum``.
         truth: Ground truth trajectory in the same formats, at any rate, in any frame.
         model: True model as a triangle mesh in the frame of ``truth``; needed for e_r.
-        chunks: Function that returns an iterator over the map's points, for example
-            ``lambda: TileSet.open(folder).points()``; needed for e_r and the map's quality.
-        measured: The same for the points where they were measured, if the map has fitted surfaces.
+        chunks: Points of the map; needed for e_r and the map's quality.
         frames: Multiframes; with ``model``, every tenth gives e_r of the true poses from the same
             points.
 
@@ -117,9 +124,9 @@ def evaluate(
         tenth = [frames[row] for row in range(0, len(frames), _EVERY)]
         floor = relative_error_floor(tenth, frames.rig, mesh, estimate=estimate, truth=true)
     if mesh is not None and chunks is not None:
-        relative = _relative(chunks, mesh, start=aligned.T_true_map)
-        if measured is not None:
-            as_measured = _relative(measured, mesh, start=aligned.T_true_map)
+        relative = _relative(chunks.delivered, mesh, start=aligned.T_true_map)
+        if chunks.measured is not None:
+            as_measured = _relative(chunks.measured, mesh, start=aligned.T_true_map)
     return Evaluation(
         estimate=project_or_trajectory.name,
         truth=truth.name,
@@ -134,7 +141,7 @@ def evaluate(
         relative=relative,
         measured=as_measured,
         floor=floor,
-        quality=map_quality(chunks) if chunks is not None else None,
+        quality=map_quality(chunks.delivered) if chunks is not None else None,
     )
 
 

@@ -24,7 +24,7 @@ import recon4
 from recon4.errors import GeoreferenceError, StoreError
 from recon4.export.gps_time import day_of, is_absolute, point_time_s
 from recon4.export.names import check_name
-from recon4.export.points import Block, ToCrs, blocks, center, into_crs
+from recon4.export.points import CRS_OF_MAP, Block, OutputCrs, blocks, center, into_crs
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Progress, Silent
 from recon4.store.atomic import atomic_file
@@ -74,9 +74,8 @@ class _Watched(io.BufferedWriter):
 def export_laz(
     map_: Path | TileSet,
     path: Path,
+    output: OutputCrs = CRS_OF_MAP,
     *,
-    crs: str | None = None,
-    to_crs: ToCrs | None = None,
     strays: bool = False,
     progress: Progress | None = None,
 ) -> int:
@@ -89,8 +88,7 @@ def export_laz(
     Args:
         map_: Artifact of the stage ``map``, or what is open of it.
         path: File to write, ``.laz``.
-        crs: WKT or code of the CRS; None = that of the map, if it has one.
-        to_crs: Map coordinates to those of ``crs``; None = the shift by the map's origin in it.
+        output: CRS of the file.
         strays: Also write the stray returns, as class 7 (low noise).
         progress: Who watches.
 
@@ -104,8 +102,9 @@ def export_laz(
     """
     check_name(path, ".laz")
     tiles = TileSet.open(map_) if isinstance(map_, Path) else map_
-    transform = into_crs(tiles, to_crs)
-    header = _header(tiles, center(tiles, transform), crs or (tiles.crs and tiles.crs.wkt) or None)
+    transform = into_crs(tiles, output.to_crs)
+    crs = output.crs or (tiles.crs and tiles.crs.wkt) or None
+    header = _header(tiles, center(tiles, transform), crs)
     fields = [name for name in [*FIELDS, *OPTIONAL] if name in tiles.fields]
     stream = blocks(tiles, fields, to_crs=transform, progress=progress or Silent())
     if strays:

@@ -22,6 +22,20 @@ ToCrs = Callable[[Array], Array]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class OutputCrs:
+    """The coordinates in which a map is written."""
+
+    crs: str | None = None
+    """WKT or code of the CRS; None = that of the map, if it has one."""
+    to_crs: ToCrs | None = None
+    """Map coordinates to those of the CRS; None = the shift by the map's origin in it."""
+
+
+CRS_OF_MAP = OutputCrs()
+"""The CRS that the map itself names."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Block:
     """Some points."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TypeVar
@@ -32,14 +33,25 @@ Item = TypeVar("Item")
 Made = TypeVar("Made")
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class MapInputs:
+    """What a map is made of."""
+
+    frames: Frames
+    """The points in the frames of their sensors."""
+    trajectory: Trajectory
+    """``T_map_body``, dense."""
+    intensity: IntensityTable | None = None
+    """Normalizes intensities; None = the map has no normalized ones."""
+    crs: MapCrs | None = None
+    """CRS of the map, if it is georeferenced."""
+
+
 def build_map(
-    frames: Frames,
-    trajectory: Trajectory,
-    intensity: IntensityTable | None,
+    inputs: MapInputs,
     out: Path,
     *,
     settings: MapSettings,
-    crs: MapCrs | None = None,
     progress: Progress | None = None,
     burst: int = BURST,
 ) -> TileSet:
@@ -50,12 +62,9 @@ def build_map(
     tile, not on the walk.
 
     Args:
-        frames: The points in the frames of their sensors.
-        trajectory: ``T_map_body``, dense.
-        intensity: Normalizes intensities; None = the map has no normalized ones.
+        inputs: The multiframes and what belongs to them.
         out: The stage's folder; needs 32 bytes of disk space per point.
         settings: Settings of the map.
-        crs: CRS of the map, if it is georeferenced.
         progress: Receives the progress.
         burst: Points collected before a write; for tests.
 
@@ -64,19 +73,19 @@ def build_map(
         StoreError: If the folder cannot be written (`NoSpace` when the disk is full).
     """
     progress = progress or Silent()
-    grid = Grid.of(settings)
+    grid, frames = Grid.of(settings), inputs.frames
     t_ns = np.array([frames[k].t_ns for k in range(len(frames))], dtype=np.int64)
-    recipe = Recipe(grid, settings, intensity, t_ns)
+    recipe = Recipe(grid, settings, inputs.intensity, t_ns)
     with (
         TemporaryDirectory(dir=out, prefix="buckets-") as folder,
         TileWriter(out, _fields(recipe), tile_m=grid.tile_m) as writer,
     ):
         buckets = TileBuckets(Path(folder), grid, burst=burst)
-        _distribute(frames, trajectory, buckets, settings=settings, progress=progress)
+        _distribute(inputs, buckets, settings=settings, progress=progress)
         removed = _finish_tiles(buckets, recipe, writer, progress=progress)
         writer.notes = MapNotes(
             voxel_m=settings.voxel_m,
-            crs=crs,
+            crs=inputs.crs,
             sensors=tuple(sensor.name for sensor in frames.rig.sensors),
             removed=dict(removed),
         )
@@ -93,19 +102,15 @@ def _fields(recipe: Recipe) -> list[str]:
 
 
 def _distribute(
-    frames: Frames,
-    trajectory: Trajectory,
-    buckets: TileBuckets,
-    *,
-    settings: MapSettings,
-    progress: Progress,
+    inputs: MapInputs, buckets: TileBuckets, *, settings: MapSettings, progress: Progress
 ) -> None:
+    frames = inputs.frames
     grid, rig = Grid.of(settings), frames.rig
     enabled = np.array([sensor.enabled for sensor in rig.sensors])
 
     def split(k: int) -> dict[Tile, Records]:
         frame = frames[k]
-        placed = place_with_origins(frame, trajectory, rig)
+        placed = place_with_origins(frame, inputs.trajectory, rig)
         return split_into_tiles(
             frame, placed, grid, enabled=enabled, max_range_m=settings.max_range_m
         )

@@ -123,8 +123,7 @@ class BagRecording:
             elif topic is not None:
                 clouds = CloudDecoder(
                     row,
-                    sensor.name,
-                    sensor.model,
+                    sensor,
                     report=self._report,
                     deskewed=self._settings.deskewed,
                 )

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, UnknownFormat
+from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.cloud_files import Table
@@ -42,8 +43,7 @@ class CloudDecoder:
     def __init__(
         self,
         sensor_row: int,
-        name: str,
-        model: str,
+        sensor: Sensor,
         *,
         report: ImportReport,
         points_lead: bool = False,
@@ -53,14 +53,14 @@ class CloudDecoder:
 
         Args:
             sensor_row: Row in ``Rig.sensors``.
-            name: What the sensor is called in the report.
-            model: Its model, for rings that are not given.
+            sensor: Its name in the report; its model, for rings that are not given.
             report: Receives what was detected.
             points_lead: Absolute times of points count, however far they are from the stamps
                 (file names in local time); otherwise the stamps do (one clock for a whole bag).
             deskewed: Without the motion of the sensor inside: all points are of the stamp.
         """
-        self._row, self._name, self._model, self._report = sensor_row, name, model, report
+        self._row, self._report = sensor_row, report
+        self._name, self._model = sensor.name, sensor.model
         self._points_lead, self._deskewed = points_lead, deskewed
         self._ring_of: NDArray[np.uint8] | None = None
         self.absolute = False

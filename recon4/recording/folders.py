@@ -98,9 +98,7 @@ def read_frames(
         RecordingError: If not one of the files can be read.
     """
     static = settings.deskewed or frames.are_static
-    decoder = CloudDecoder(
-        0, sensor.name, sensor.model, report=report, points_lead=True, deskewed=static
-    )
+    decoder = CloudDecoder(0, sensor, report=report, points_lead=True, deskewed=static)
     for text in time_warnings(frames):
         report.warn(text)
     frame_id, last_ns, failed = 0, None, None

@@ -176,7 +176,7 @@ class LineAssembly:
         self._row, self._head, self._report = row, head, report
         self._sensor = rig.sensors[row]
         self._offset_ns = round(1e9 * self._sensor.time_offset_s)
-        self._clouds = CloudDecoder(row, self._sensor.name, self._sensor.model, report=report)
+        self._clouds = CloudDecoder(row, self._sensor, report=report)
         self._waiting: list[Shots] = []
         self._done: list[tuple[Shots, float]] = []
         self._last_ns = 0

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
 from recon4.recording.velodyne.encode import (
+    PacketBlocks,
     PcapWriter,
     encode_position,
     encode_vlp16,
@@ -53,9 +54,11 @@ def pack(
     t_ns = degradation.stamps(row, firings.t_ns[:, 0, 0], sensors=len(setup.lidars))
     payloads = encode_vlp16(
         (sensor_epoch_ns + t_ns) // 1000,
-        np.rint(np.rad2deg(azimuth) * 100.0).astype(np.int64),
-        firings.distance.reshape(count, BLOCKS, CHANNELS),
-        intensity=firings.intensity.reshape(count, BLOCKS, CHANNELS),
+        PacketBlocks(
+            np.rint(np.rad2deg(azimuth) * 100.0).astype(np.int64),
+            firings.distance.reshape(count, BLOCKS, CHANNELS),
+            firings.intensity.reshape(count, BLOCKS, CHANNELS),
+        ),
     )
     delay = _LATENCY_NS + rng.integers(0, _JITTER_NS, count)
     return Packets(row, sensor_epoch_ns + firings.t_ns[:, -1, -1] + delay, payloads)

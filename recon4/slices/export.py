@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from recon4.errors import ConfigError, GeoreferenceError
 from recon4.export.laz import export_laz
 from recon4.export.names import check_name
+from recon4.export.points import OutputCrs
 from recon4.geometry.se3 import Array
 from recon4.mapping.tile import progressive
 from recon4.mapping.tiles import TileSet, TileWriter
@@ -74,7 +75,7 @@ def write_laz(chosen: SliceSelection, path: Path, *, frame: MapFrame) -> int:
                 writer.append(part.tile.ijk, {k: v[order] for k, v in part.columns.items()})
         if not len(TileSet.open(out)):
             raise ConfigError("the slice holds no points, there is nothing to export")
-        return export_laz(out, path, crs=frame.wkt or None, to_crs=frame.to_crs)
+        return export_laz(out, path, OutputCrs(frame.wkt or None, frame.to_crs))
 
 
 def write_csv(chosen: SliceSelection, path: Path, *, frame: MapFrame) -> int:

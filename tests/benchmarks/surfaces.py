@@ -23,7 +23,7 @@ import numpy as np
 from recon4.evaluation.table import text_table
 from recon4.export.laz import export_laz
 from recon4.geometry.se3 import SE3
-from recon4.mapping.build import build_map
+from recon4.mapping.build import MapInputs, build_map
 from recon4.mapping.tiles import TileSet
 from recon4.model.trajectory import Trajectory
 from recon4.recording.formats.poses import read_tum
@@ -130,7 +130,7 @@ def built(
         out.mkdir(parents=True)
         with PeakMemory() as memory:
             begun = time.process_time()
-            tiles = build_map(store, trajectory, None, out, settings=settings)
+            tiles = build_map(MapInputs(store, trajectory), out, settings=settings)
             cpu_s = time.process_time() - begun
         digests.append(digest(out))
     same = len(digests) > 1 and digests[0] == digests[1]
@@ -149,7 +149,7 @@ def against_truth(frames: Path, work: Path, *, times: int) -> None:
     for (name, made), share in zip(maps.items(), covered, strict=True):
         error = error_to_truth((tile.xyz_m() for tile in made.tiles), mesh)
         laz = work / "map.laz"
-        export_laz(made.folder, laz, crs=None)
+        export_laz(made.folder, laz)
         rows.append(
             (
                 name,

@@ -18,7 +18,7 @@ import numpy as np
 from recon4.evaluation.table import number, text_table
 from recon4.evaluation.thickness import plane_thickness
 from recon4.geometry.se3 import SE3
-from recon4.mapping.build import build_map
+from recon4.mapping.build import MapInputs, build_map
 from recon4.mapping.tiles import TileSet
 from recon4.model.figures import PlaneThickness
 from recon4.model.multiframe import Multiframe
@@ -85,7 +85,7 @@ def fitted(sequence: Sequence, folder: Path) -> TileSet:
     (folder / "map").mkdir()
     frames = store(sequence.frames, sequence.rig, folder / "frames")
     settings = replace(MapSettings(), surface="fitted")
-    return build_map(frames, sequence.trajectory, None, folder / "map", settings=settings)
+    return build_map(MapInputs(frames, sequence.trajectory), folder / "map", settings=settings)
 
 
 def slice_pair(tiles: TileSet, *, side_m: float = 5.0, pixels: int = 420) -> bytes:

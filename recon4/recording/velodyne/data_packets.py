@@ -28,14 +28,20 @@ from recon4.recording.velodyne.sensor_clock import SECOND_NS, SensorClock
 from recon4.settings import IngestSettings
 
 
+@dataclass(frozen=True, slots=True)
+class PacketSource:
+    """The sensor that sent packets."""
+
+    sensor_row: int
+    """Row in ``Rig.sensors``."""
+    model: VelodyneModel
+    """Beams and firing times."""
+    settings: IngestSettings
+    """Limits of the range."""
+
+
 def decode_packets(
-    t_ns: Times,
-    payloads: Payloads,
-    *,
-    sensor_row: int,
-    model: VelodyneModel,
-    settings: IngestSettings,
-    report: ImportReport,
+    t_ns: Times, payloads: Payloads, source: PacketSource, *, report: ImportReport
 ) -> Shots:
     """Points of packets that passed the filter and are in order.
 
@@ -45,9 +51,7 @@ def decode_packets(
     Args:
         t_ns: Time of the first shot of each packet [ns], non-decreasing, (P,).
         payloads: Data packets, (P, 1206).
-        sensor_row: Row in ``Rig.sensors``.
-        model: Beams and firing times.
-        settings: Limits of the range.
+        source: The sensor that sent them.
         report: Takes the counts.
     """
     dual = as_packets(payloads)["return_mode"] == DUAL if len(payloads) else np.zeros(0, np.bool_)
@@ -55,13 +59,13 @@ def decode_packets(
     parts = []
     for start, stop in zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True):
         pair = 2 if stop > start and dual[start] else 1
-        parts.append(_decode(t_ns[start:stop], payloads[start:stop], pair, how=(model, settings)))
+        parts.append(_decode(t_ns[start:stop], payloads[start:stop], source, pair=pair))
     counts = np.sum([part[5] for part in parts], axis=0)
     columns = [
         part[0] if len(parts) == 1 else np.concatenate(part)
         for part in zip(*(part[:5] for part in parts), strict=True)
     ]
-    shots = Shots(sensor_row, *columns)
+    shots = Shots(source.sensor_row, *columns)
     names = ("points_no_return", "points_near", "points_far", "azimuth_jumps")
     for name, count in zip(names, counts.tolist(), strict=True):
         report.count(name, count)
@@ -70,9 +74,9 @@ def decode_packets(
 
 
 def _decode(
-    t_ns: Times, payloads: Payloads, pair: int, *, how: tuple[VelodyneModel, IngestSettings]
+    t_ns: Times, payloads: Payloads, source: PacketSource, *, pair: int
 ) -> tuple[NDArray[np.generic], ...]:
-    model, settings = how
+    model, settings = source.model, source.settings
     unit = model.distance_unit_m
     rounding = np.array([-1e-6, 1e-6])  # so that a limit of 100 m keeps 50000 units of 2 mm
     limits = np.array([settings.min_range_m, settings.max_range_m]) / unit + rounding
@@ -241,9 +245,7 @@ class PacketDecoder:
         return decode_packets(
             t_ns + self._offset_ns,
             payloads,
-            sensor_row=self._row,
-            model=self.model,
-            settings=self._settings,
+            PacketSource(self._row, self.model, self._settings),
             report=self._report,
         )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
 
@@ -46,6 +47,18 @@ _HEADER = np.dtype(
 """Ethernet, IPv4 and UDP headers in front of a payload."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class PacketBlocks:
+    """The blocks of P data packets."""
+
+    azimuth_cdeg: NDArray[np.integer]
+    """Azimuth at the first shot of each block [0.01°], taken modulo 360°, (P, 12)."""
+    distance: NDArray[np.integer]
+    """Distance in units of the model (2 mm for a VLP-16), 0 = no return, (P, 12, 32)."""
+    intensity: NDArray[np.integer]
+    """0..255, (P, 12, 32)."""
+
+
 def vlp16_firings() -> VelodyneModel:
     """Beams and firing times of the VLP-16.
 
@@ -58,30 +71,16 @@ def vlp16_firings() -> VelodyneModel:
 
 
 def encode_vlp16(
-    t_us: NDArray[np.integer],
-    azimuth_cdeg: NDArray[np.integer],
-    distance_2mm: NDArray[np.integer],
-    *,
-    intensity: NDArray[np.integer],
-    return_mode: int = STRONGEST,
+    t_us: NDArray[np.integer], blocks: PacketBlocks, *, return_mode: int = STRONGEST
 ) -> NDArray[np.uint8]:
     """Data packets of a VLP-16, see `encode_packets`."""
-    return encode_packets(
-        t_us,
-        azimuth_cdeg,
-        distance_2mm,
-        intensity=intensity,
-        model=MODELS["VLP-16"],
-        return_mode=return_mode,
-    )
+    return encode_packets(t_us, blocks, model=MODELS["VLP-16"], return_mode=return_mode)
 
 
 def encode_packets(
     t_us: NDArray[np.integer],
-    azimuth_cdeg: NDArray[np.integer],
-    distance: NDArray[np.integer],
+    blocks: PacketBlocks,
     *,
-    intensity: NDArray[np.integer],
     model: VelodyneModel,
     return_mode: int = STRONGEST,
 ) -> NDArray[np.uint8]:
@@ -89,9 +88,7 @@ def encode_packets(
 
     Args:
         t_us: Time of the first shot of each packet [µs]; only the part past the hour is kept, (P,).
-        azimuth_cdeg: Azimuth at the first shot of each block [0.01°], taken modulo 360°, (P, 12).
-        distance: Distance in units of the model (2 mm for a VLP-16), 0 = no return, (P, 12, 32).
-        intensity: 0..255, (P, 12, 32).
+        blocks: Their azimuths and returns.
         model: The sensor.
         return_mode: In dual mode blocks 2k (last) and 2k + 1 (strongest) belong together.
 
@@ -99,15 +96,15 @@ def encode_packets(
         UDP payloads, (P, 1206).
     """
     packets = np.zeros(len(t_us), dtype=DATA_PACKET)
-    blocks = packets["blocks"]
-    blocks["flag"] = BLOCK_FLAG
-    blocks["azimuth_cdeg"] = np.asarray(azimuth_cdeg) % 36000
-    blocks["returns"]["distance"] = distance
-    blocks["returns"]["intensity"] = intensity
+    written = packets["blocks"]
+    written["flag"] = BLOCK_FLAG
+    written["azimuth_cdeg"] = np.asarray(blocks.azimuth_cdeg) % 36000
+    written["returns"]["distance"] = blocks.distance
+    written["returns"]["intensity"] = blocks.intensity
     packets["time_us"] = np.asarray(t_us) % HOUR_US
     packets["return_mode"] = return_mode
     packets["product"] = model.product
-    assert blocks["returns"].shape == (len(t_us), BLOCKS, CHANNELS)
+    assert written["returns"].shape == (len(t_us), BLOCKS, CHANNELS)
     return packets.view(np.uint8).reshape(-1, DATA_SIZE)
 
 

@@ -14,8 +14,9 @@ from recon4.export import laz
 from recon4.export.gps_time import adjusted_gps_s
 from recon4.export.laz import export_laz
 from recon4.export.ply import export_ply
+from recon4.export.points import OutputCrs
 from recon4.intensity.normalize import learn_intensity
-from recon4.mapping.build import build_map
+from recon4.mapping.build import MapInputs, build_map
 from recon4.mapping.notes import MapCrs
 from recon4.mapping.tiles import TileSet
 from recon4.model.trajectory import Trajectory
@@ -32,7 +33,7 @@ def make(folder, *, crs=UTM, walk=None, normalize=True):
     if normalize:
         table, _ = learn_intensity(walk, walk.trajectory, settings=IntensitySettings(min_count=10))
     return build_map(
-        walk, walk.trajectory, table, folder, settings=MapSettings(voxel_m=0.02), crs=crs
+        MapInputs(walk, walk.trajectory, table, crs), folder, settings=MapSettings(voxel_m=0.02)
     )
 
 
@@ -118,8 +119,7 @@ def test_another_crs_and_way_to_it_can_be_given(folder, tmp_path):
     export_laz(
         folder,
         tmp_path / "map.laz",
-        crs="EPSG:5514",
-        to_crs=lambda xyz: xyz[:, [1, 0, 2]] - 700_000,
+        OutputCrs("EPSG:5514", lambda xyz: xyz[:, [1, 0, 2]] - 700_000),
     )
 
     cloud = laspy.read(tmp_path / "map.laz")
@@ -166,9 +166,9 @@ def test_an_empty_map_and_a_wrong_name_are_refused(export, folder, tmp_path):
 
 def test_a_crs_that_is_none_and_coordinates_that_do_not_fit_are_refused(folder, tmp_path):
     with pytest.raises(GeoreferenceError, match="not a CRS"):
-        export_laz(folder, tmp_path / "map.laz", crs="EPSG:0")
+        export_laz(folder, tmp_path / "map.laz", OutputCrs("EPSG:0"))
     with pytest.raises(GeoreferenceError, match="4000 km"):
-        export_laz(folder, tmp_path / "map.laz", to_crs=lambda xyz: xyz * 1e7)
+        export_laz(folder, tmp_path / "map.laz", OutputCrs(to_crs=lambda xyz: xyz * 1e7))
     assert list(tmp_path.iterdir()) == []
 
 

@@ -16,7 +16,7 @@ from recon4.intensity.normalize import (
     write_intensity,
 )
 from recon4.intensity.table import COARSER, IntensityTable
-from recon4.mapping.build import build_map
+from recon4.mapping.build import MapInputs, build_map
 from recon4.settings import IntensitySettings, MapSettings
 from tests.room_walks import Walk, room_walk
 
@@ -216,7 +216,7 @@ def normalized_map(walk, table, folder):
     """Points of the walk's map with raw and normalized intensity."""
     folder.mkdir()
     settings = MapSettings(voxel_m=0.02, normal_cell_m=0.15)
-    tiles = list(build_map(walk, walk.trajectory, table, folder, settings=settings))
+    tiles = list(build_map(MapInputs(walk, walk.trajectory, table), folder, settings=settings))
     columns = [t.read(["intensity", "intensity_normalized"]) for t in tiles]
     fields = ("intensity", "intensity_normalized")
     values = [np.concatenate([c[field] for c in columns]).astype(float) for field in fields]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from recon4.errors import OutOfRange, StoreError
-from recon4.mapping.build import build_map
+from recon4.mapping.build import MapInputs, build_map
 from recon4.mapping.grid import Grid
 from recon4.mapping.notes import MapCrs
 from recon4.mapping.place import place
@@ -22,9 +22,11 @@ from tests.room_walks import FRAME_NS, T0_NS, Walk, room_walk
 ALL = MapSettings(voxel_m=0.0, min_neighborhood=1)
 
 
-def build(walk, folder, settings, **options):
+def build(walk, folder, settings, *, crs=None, **options):
     folder.mkdir()
-    return build_map(walk, walk.trajectory, None, folder, settings=settings, **options)
+    return build_map(
+        MapInputs(walk, walk.trajectory, crs=crs), folder, settings=settings, **options
+    )
 
 
 def points(tiles, field):

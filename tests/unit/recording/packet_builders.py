@@ -8,7 +8,7 @@ from recon4.geometry.se3 import SE3
 from recon4.model.rig import Rig, Sensor
 from recon4.recording.report import ImportReport
 from recon4.recording.velodyne.data_packets import PacketDecoder
-from recon4.recording.velodyne.encode import encode_packets
+from recon4.recording.velodyne.encode import PacketBlocks, encode_packets
 from recon4.recording.velodyne.models import DUAL, MODELS, STRONGEST
 from recon4.settings import IngestSettings
 
@@ -38,9 +38,11 @@ def spin(
     distance = 4000 + (azimuth[:, :, None] // 7 + 31 * channel) % 2000
     payloads = encode_packets(
         (t_ns + clock_off_ns) // 1000,
-        azimuth,
-        distance,
-        intensity=(channel * 7 + np.arange(12)[:, None]) % 256 + np.zeros((count, 1, 1), dtype=int),
+        PacketBlocks(
+            azimuth,
+            distance,
+            (channel * 7 + np.arange(12)[:, None]) % 256 + np.zeros((count, 1, 1), dtype=int),
+        ),
         model=table,
         return_mode=return_mode,
     )

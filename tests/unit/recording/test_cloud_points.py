@@ -7,13 +7,14 @@ from recon4.errors import UnknownFormat
 from recon4.recording.cloud_points import CloudDecoder, model_of_points
 from recon4.recording.report import ImportReport
 from tests.builders import T0_NS, room_cloud, spin
+from tests.unit.recording.packet_builders import sensor
 
 PERIOD_NS = 100_000_000
 
 
 def decode(table, *, model="generic", t_ns=T0_NS, **options):
     report = ImportReport()
-    decoder = CloudDecoder(0, "lidar", model, report=report, **options)
+    decoder = CloudDecoder(0, sensor(model=model), report=report, **options)
     return decoder.decode(table, t_ns=t_ns, period_ns=PERIOD_NS), report
 
 

@@ -5,8 +5,8 @@ import pytest
 
 from recon4.errors import ConfigError
 from recon4.recording.report import ImportReport
-from recon4.recording.velodyne.data_packets import PacketDecoder, decode_packets
-from recon4.recording.velodyne.encode import encode_packets, encode_vlp16
+from recon4.recording.velodyne.data_packets import PacketDecoder, PacketSource, decode_packets
+from recon4.recording.velodyne.encode import PacketBlocks, encode_packets, encode_vlp16
 from recon4.recording.velodyne.models import DUAL, MODELS, STRONGEST
 from recon4.settings import IngestSettings
 from tests.unit.recording.packet_builders import LATENCY_NS, T0_NS, WIDE, decode_all, sensor, spin
@@ -21,14 +21,15 @@ def one_packet(model="VLP-16", *, azimuth=0, step=40, mode=STRONGEST):
 def decoded(azimuth, distance, intensity, *, model="VLP-16", mode=STRONGEST, settings=WIDE):
     report = ImportReport()
     payloads = encode_packets(
-        np.array([0]), azimuth, distance, intensity=intensity, model=MODELS[model], return_mode=mode
+        np.array([0]),
+        PacketBlocks(azimuth, distance, intensity),
+        model=MODELS[model],
+        return_mode=mode,
     )
     shots = decode_packets(
         np.array([0]),
         payloads,
-        sensor_row=3,
-        model=MODELS[model],
-        settings=settings,
+        PacketSource(3, MODELS[model], settings),
         report=report,
     )
     return shots, report
@@ -216,15 +217,13 @@ def test_a_change_of_the_return_mode_inside_a_batch_is_followed():
 def test_an_azimuth_of_exactly_360_degrees_is_zero():
     azimuth, distance, intensity = one_packet()
     distance[0, 0, 0] = 500
-    payloads = encode_vlp16(np.array([0]), azimuth, distance, intensity=intensity)
+    payloads = encode_vlp16(np.array([0]), PacketBlocks(azimuth, distance, intensity))
     payloads.view("<u2")[0, 1] = 36000
 
     shots = decode_packets(
         np.array([0]),
         payloads,
-        sensor_row=0,
-        model=MODELS["VLP-16"],
-        settings=WIDE,
+        PacketSource(0, MODELS["VLP-16"], WIDE),
         report=ImportReport(),
     )
 

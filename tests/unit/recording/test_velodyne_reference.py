@@ -27,7 +27,7 @@ from recon4.recording.formats.pcap import read_pcap
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.clean import join
 from recon4.recording.velodyne.capture import VelodynePcap
-from recon4.recording.velodyne.data_packets import PacketDecoder, decode_packets
+from recon4.recording.velodyne.data_packets import PacketDecoder, PacketSource, decode_packets
 from recon4.recording.velodyne.models import DATA_SIZE, DUAL, MODELS, velodyne_model
 from recon4.recording.velodyne.packet_filter import as_packets
 from tests.unit.recording.packet_builders import WIDE, rig, sensor
@@ -65,9 +65,7 @@ def decoded(payloads, model):
     shots = decode_packets(
         stamps_ns(payloads),
         payloads,
-        sensor_row=0,
-        model=velodyne_model(model),
-        settings=WIDE,
+        PacketSource(0, velodyne_model(model), WIDE),
         report=ImportReport(),
     )
     return shots, in_packets(shots, payloads)
