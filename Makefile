@@ -35,7 +35,8 @@ demo: $(VENV)/installed-run
 	$(BIN)/recon4 demo --out demo $(if $(HEADLESS),--headless)
 
 # Browser tests wait most of the time: they run beside the others, which leave them the processor.
-test: format lint types web
+test: $(VENV)/installed-dev
+	@$(MAKE) --no-print-directory -j2 $(SYNC) format lint types web
 	@$(MAKE) --no-print-directory -j2 $(SYNC) unit e2e
 
 format: $(VENV)/installed-dev

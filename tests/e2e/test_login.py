@@ -83,6 +83,7 @@ def test_a_page_redirects_to_the_login_and_back(server, page, screenshot):
     expect(page.get_by_role("link", name="Account of rita, reviewer")).to_be_visible()
 
 
+@looks("desktop light", "phone dark")
 def test_signing_out_shows_the_login_and_clears_the_session(server, page):
     sign_in(page, server, "vera")
     expect(page.get_by_role("listitem").filter(has_text="office")).to_be_visible()
@@ -168,6 +169,7 @@ def test_a_person_lists_own_sessions_and_ends_another(server, page, screenshot):
         expect(rows).to_have_count(before - 1)
 
 
+@looks("desktop dark", "phone dark")
 def test_a_signature_requires_a_recent_password(server, page, look, screenshot):
     if look[1] != "dark":
         pytest.skip("one color is enough")
@@ -192,6 +194,7 @@ def test_a_signature_requires_a_recent_password(server, page, look, screenshot):
         access.sessions._clock = clock
 
 
+@looks("desktop light", "phone light")
 def test_the_first_admin_is_created_in_the_browser(tmp_path, page, look, screenshot):
     if look[1] != "light":
         pytest.skip("one color is enough")

@@ -183,6 +183,7 @@ def test_a_page_without_link_shows_the_outcome_of_its_job_later(server, context,
         page.close()  # before the link goes
 
 
+@looks("desktop dark", "phone light")
 def test_a_rejected_request_shows_its_message(server, page, look):
     page.goto(server.url)
 
@@ -231,6 +232,7 @@ def test_a_hostile_link_to_the_viewer_stays_on_this_server(finished, page):
     expect(page.get_by_text("Connected", exact=True)).to_be_visible()
 
 
+@looks("desktop light", "phone dark")
 def test_the_api_page_works_without_internet(finished, page, look, screenshot):
     page.goto(f"{finished.url}/api")
 

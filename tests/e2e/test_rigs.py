@@ -100,6 +100,7 @@ def test_a_pointer_turns_the_drawing(server, page):
     assert pitch == pytest.approx(before[1] + 20 * 0.008, abs=2e-3)
 
 
+@looks("desktop light", "phone dark")
 def test_a_rig_is_edited_into_a_new_version(server, page, look, screenshot):
     page.goto(f"{server.url}/rigs/field/")
 
@@ -205,6 +206,7 @@ def test_a_project_is_mapped_again_with_calibration(server, page, tmp_path):
     assert newest["settings"] == ["map.voxel_m=0.02", "calibration.mode=auto"]
 
 
+@looks("desktop dark", "phone light")
 def test_a_calibrated_rig_is_saved_as_a_version(server, page, look, screenshot):
     rig = field_of(server)
     calibrated_project(server.root / "walk", rig=rig, found=tilted(rig))

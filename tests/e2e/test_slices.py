@@ -43,6 +43,7 @@ def test_a_slice_is_shown_with_frame_units_and_legend(server, page, screenshot):
     screenshot(page, "slices")
 
 
+@looks("desktop light", "phone dark")
 def test_keys_change_the_cut_and_the_address_keeps_it(server, page):
     opened(page, server, "?kind=horizontal&z=1.5")
 
@@ -87,6 +88,7 @@ def test_a_drag_on_the_overview_makes_a_vertical_cut(server, page, screenshot):
     screenshot(page, "slices-vertical")
 
 
+@looks("desktop dark", "phone light")
 def test_a_distance_is_measured_between_two_points_of_the_map(server, page):
     opened(page, server, "?kind=horizontal&z=1.5&t=0.4&u=8&v=5&m=0.05")
     view = page.locator("slice-view").first
@@ -107,6 +109,7 @@ def test_a_distance_is_measured_between_two_points_of_the_map(server, page):
     assert horizontal == pytest.approx(10.0, abs=0.5)
 
 
+@looks("desktop light", "phone dark")
 def test_two_slices_stand_side_by_side_and_move_together(server, page, screenshot):
     opened(page, server, "?kind=horizontal&z=1.5")
 
@@ -156,6 +159,7 @@ def test_findings_are_those_of_the_map_that_is_shown(server, page):
     assert asked.value.post_data_json["source"] == "project:earlier"
 
 
+@looks("desktop light", "phone dark")
 def test_a_reference_is_compared_and_shown(server, page, screenshot):
     path = server.root / "walls.xyz"
     rows = [
@@ -183,6 +187,7 @@ def test_a_reference_is_compared_and_shown(server, page, screenshot):
     expect(page.get_by_role("button", name="Remove")).to_have_count(0)
 
 
+@looks("desktop dark", "phone light")
 def test_a_reference_is_uploaded_and_shown(server, page):
     rows = "\n".join(f"0.03 {y / 20:.2f} {z / 10:.1f}" for y in range(200) for z in range(30))
     opened(page, server, "?kind=horizontal&z=1.5")
@@ -224,6 +229,7 @@ def test_tools_take_two_rows_at_most_and_are_large_enough_to_touch(server, page)
     fits(page)
 
 
+@looks("desktop light", "phone dark")
 def test_a_double_wall_is_listed_in_slices_near_it(server, page):
     opened(page, server)
 
@@ -236,6 +242,7 @@ def test_a_double_wall_is_listed_in_slices_near_it(server, page):
     assert found == pytest.approx([0.5, 4.0, 2.0])
 
 
+@looks("desktop light", "phone dark")
 def test_a_survey_is_imported_checked_and_exported(server, page, screenshot):
     opened(page, server)
 

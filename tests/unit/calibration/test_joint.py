@@ -43,6 +43,16 @@ def wrong(dance, tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
+def audited(wrong):
+    return run(wrong)
+
+
+@pytest.fixture(scope="module")
+def calibrated(wrong):
+    return run(wrong, AUTO)
+
+
+@pytest.fixture(scope="module")
 def right(dance, tmp_path_factory):
     return store(tmp_path_factory.mktemp("right"), dance, dance.rig, dance.imu)
 
@@ -56,8 +66,8 @@ def test_a_rig_file_that_is_right_is_confirmed(right):
     assert sum(row.status == "consistent" for row in found.figures.parameters) >= 11
 
 
-def test_errors_of_mounts_and_clocks_are_measured_with_a_true_deviation(wrong):
-    found = run(wrong)
+def test_errors_of_mounts_and_clocks_are_measured_with_a_true_deviation(wrong, audited):
+    found = audited
 
     parameters = Parameters.of(wrong.true, reference=0, lidars=(1,), imu=True)
     error = np.array([row.change for row in found.figures.parameters]) - parameters.between(
@@ -75,15 +85,13 @@ def test_errors_of_mounts_and_clocks_are_measured_with_a_true_deviation(wrong):
     assert "the LiDAR 's1' differs from it by 1." in found.figures.warnings[0]
 
 
-def test_an_audit_changes_nothing(wrong):
-    found = run(wrong)
-
-    assert not found.figures.applied
-    assert found.rig is None
+def test_an_audit_changes_nothing(audited):
+    assert not audited.figures.applied
+    assert audited.rig is None
 
 
-def test_a_confirmed_calibration_is_written_and_used(wrong, tmp_path):
-    found = run(wrong, AUTO)
+def test_a_confirmed_calibration_is_written_and_used(wrong, calibrated, tmp_path):
+    found = calibrated
     figures = found.save(tmp_path)
 
     assert figures.applied, figures.outcome
@@ -180,7 +188,7 @@ def test_a_sensor_that_is_not_in_the_rig_is_refused(right, change):
         run(right, Settings(calibration=replace(CALIBRATION, **change)))
 
 
-def test_a_calibration_that_is_refused_leaves_the_warnings_of_the_audit(wrong):
+def test_a_calibration_that_is_refused_leaves_the_warnings_of_the_audit(wrong, audited):
     short = replace(CALIBRATION, mode="auto", windows=2)
     found = run(wrong, Settings(calibration=short))
 
@@ -188,7 +196,7 @@ def test_a_calibration_that_is_refused_leaves_the_warnings_of_the_audit(wrong):
     assert found.figures.outcome == (
         "the walk is too short to check the calibrated rig on another part of it"
     )
-    assert found.figures.warnings == run(wrong).figures.warnings
+    assert found.figures.warnings == audited.figures.warnings
     assert found.figures.is_severe
 
 
@@ -212,10 +220,9 @@ def test_a_calibrated_rig_of_other_sensors_is_refused(right, dance):
         FrameStore.open(right.frames.folder, replace(dance.rig, sensors=renamed))
 
 
-def test_tracking_with_the_calibrated_rig_is_better(wrong, tmp_path):
-    figures = run(wrong, AUTO)
-    calibrated = tracked(tmp_path, wrong.frames.with_rig(figures.rig), wrong.true)
+def test_tracking_with_the_calibrated_rig_is_better(wrong, calibrated, tmp_path):
+    repeated = tracked(tmp_path, wrong.frames.with_rig(calibrated.rig), wrong.true)
 
     before = np.load(wrong.odometry / "steps.npz")["error_m"]
-    after = np.load(calibrated.odometry / "steps.npz")["error_m"]
+    after = np.load(repeated.odometry / "steps.npz")["error_m"]
     assert np.nanmedian(after) < 0.7 * np.nanmedian(before)
