@@ -28,7 +28,7 @@ SYNC := $(if $(filter output-sync,$(.FEATURES)),--output-sync=target)
 # Else each of the hundreds of interpreters that tests start compiles recon4 again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test format lint types unit web e2e bench docs constraints lock audit sbom clean
+.PHONY: demo test format lint types web kernels unit e2e bench docs constraints lock audit sbom clean
 .DELETE_ON_ERROR:
 
 demo: $(VENV)/installed-run
@@ -36,7 +36,7 @@ demo: $(VENV)/installed-run
 
 # Browser tests wait most of the time: they run beside the others, which leave them the processor.
 test: $(VENV)/installed-dev
-	@$(MAKE) --no-print-directory -j2 $(SYNC) format lint types web
+	@$(MAKE) --no-print-directory -j2 $(SYNC) format lint types web kernels
 	@$(MAKE) --no-print-directory -j2 $(SYNC) unit e2e
 
 format: $(VENV)/installed-dev
@@ -56,6 +56,10 @@ e2e: $(VENV)/installed-dev
 
 web:
 	.ci/web
+
+# Else processes that tests run side by side each compile them.
+kernels: $(VENV)/installed-dev
+	@$(BIN)/python -m tests.compile_kernels
 
 bench: $(VENV)/installed-dev
 	@for name in decode false_loops real_sequences; do \
