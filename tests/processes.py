@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import psutil
 
 
@@ -11,3 +13,15 @@ def command_of(process: psutil.Process) -> list[str]:
         return process.cmdline()
     except psutil.Error:
         return []
+
+
+def viewer_process(root: Path) -> psutil.Process:
+    """The viewer of the project below a folder; there must be one only."""
+    mine = [
+        process
+        for process in psutil.Process().children(recursive=True)
+        if "app.viewer.process" in command_of(process)
+        and str(root / "office") in command_of(process)
+    ]
+    assert len(mine) == 1
+    return mine[0]

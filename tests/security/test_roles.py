@@ -4,7 +4,7 @@ Figures: routes x methods a route does not have x roles: 0 answers of success; r
 others: 0 read, changed or ended beyond the role. The rest of the class stands where it grew:
 routes x their own methods x roles, WebSockets x roles, CSRF and messages to viser in
 `tests/service/test_access_roles.py`; Host and Origin in `test_guard.py`; login, sessions and
-throttle in `test_access.py`; hostile names in paths in `test_access_paths.py`.
+throttle in `test_access_throttling.py`; hostile names in paths in `test_access_paths.py`.
 """
 
 import re

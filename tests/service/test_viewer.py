@@ -4,26 +4,18 @@ import json
 import os
 import signal
 import time
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from urllib.parse import urlsplit
 
-import msgspec.msgpack
 import numpy as np
-import psutil
 import pytest
-from viser import _messages
 from websockets.exceptions import ConnectionClosed
 
 from app.jobs.events import EventWriter
-from app.viewer import proxy
-from app.viewer.client.legend_html import count
 from app.viewer.page import SHIMS
-from app.viewer.proxy import Rate, allowed, passes
 from recon4.model.events import EdgeTried, NodesPlaced, StageChanged, VerdictsChanged
 from recon4.model.pose_graph import EdgeKind, Reason, Verdict
-from tests.benchmarks.viewer_figures import PEOPLE, own_server
-from tests.processes import command_of
+from tests.processes import viewer_process
 from tests.project_builder import add_multiframes, build_project, loop_walk, verified_graph
 from tests.service.running import server_thread
 from tests.service.viser_client import camera, viewing
@@ -188,69 +180,6 @@ def test_a_browser_that_answers_nothing_still_gets_the_map(server):
         client.until(lambda c: c.shown == POINTS)
 
 
-def test_a_request_for_a_public_tunnel_is_dropped_and_the_session_goes_on(server, caplog):
-    with viewing(server.url) as client:
-        client.send({"type": "ShareUrlRequest"})
-        client.socket.send(b"\xc1 not a message")
-        client.send(camera())
-        client.until(lambda c: c.shown)
-
-    assert "dropped a message of kind 'ShareUrlRequest'" in caplog.text
-
-
-@pytest.mark.parametrize("may_review", [False, True])
-def test_of_all_messages_viser_knows_only_looking_and_operating_pass(may_review):
-    kinds = {kind.__name__ for kind in _messages.Message.get_subclasses()}
-
-    passed = {kind for kind in kinds if allowed(kind, may_review)}
-
-    assert len(kinds) > 100
-    assert {"ViewerCameraMessage", "GuiUpdateMessage", "SceneNodeClickMessage"} <= passed
-    assert ("TransformControlsUpdateMessage" in passed) == may_review
-    assert not [kind for kind in passed if "Share" in kind or "Upload" in kind or "File" in kind]
-    assert not [kind for kind in passed if "Javascript" in kind or "SetItem" in kind]
-    assert not passed - kinds
-
-
-@pytest.mark.parametrize(
-    "data",
-    [b"", b"\x00", b"\x90", msgspec.msgpack.encode({"type": ["ViewerCameraMessage"]})],
-)
-def test_what_is_no_message_does_not_pass(data):
-    assert not passes(data, may_review=True)
-
-
-def test_a_message_passes_up_to_64_kibibytes():
-    def message(size):
-        update = {"type": "GuiUpdateMessage", "uuid": "x", "updates": {"value": "x" * size}}
-        return msgspec.msgpack.encode(update)
-
-    assert passes(message(65_000), may_review=False)
-    assert not passes(message(65_536), may_review=True)
-
-
-def test_messages_are_read_no_faster_than_allowed():
-    rate = Rate(100.0, 50)
-    waits = [rate.wait_s(now_s=10.0) for _ in range(150)]
-
-    assert waits[:50] == [0.0] * 50
-    np.testing.assert_allclose(np.diff(waits[50:]), 0.01)
-    assert rate.wait_s(now_s=12.0) == 0.0
-
-
-def test_a_flood_of_messages_arrives_late_but_whole(server):
-    with viewing(server.url) as client:
-        client.send(camera())
-        client.until(lambda c: c.shown == POINTS)
-        for k in range(500):
-            client.set("Point size", 0.005 + 0.005 * (k % 2))
-        client.set("Point size", 0.2)
-
-        waited_s = client.until(lambda c: '"point_size_m": 0.2' in str(c.storage))
-
-    assert waited_s > 1.0
-
-
 def test_a_viewer_above_the_limit_is_rejected_and_the_others_stay(root):
     with (
         server_thread(root, viewer_sockets=2) as server,
@@ -348,70 +277,6 @@ def test_what_a_running_job_finds_appears_while_it_runs(tmp_path):
     job.close()
 
 
-@pytest.fixture(scope="module")
-def million(tmp_path_factory):
-    """A folder of projects with one of a million points."""
-    root = tmp_path_factory.mktemp("million")
-    build_project(root / "office", points=1_000_000)
-    return root
-
-
-def test_the_last_of_twenty_people_has_a_map_of_a_million_points_within_8_s(million):
-    busy = max(1.0, os.getloadavg()[0] / (os.cpu_count() or 1))  # others may use this computer
-
-    def ask_for_all(client):
-        client.send(camera((8.0, 3.0, 1.5)))
-        client.until(lambda c: "Fewer when" in str(c.widgets), limit_s=60.0)
-        client.set("Fewer when this browser is slow", False)
-
-    def look(url):
-        with viewing(url) as client:
-            ask_for_all(client)
-            client.until(
-                lambda c: c.shown == whole and f"{count(whole)} of" in c.html(), limit_s=60.0
-            )
-
-    with own_server(million) as (server, _), ThreadPoolExecutor(PEOPLE) as people:
-        with viewing(server.url) as first:  # the viewer process is there
-            ask_for_all(first)
-            first.rest(quiet_s=2.0)
-            whole = first.shown
-        began_s = time.monotonic()
-        list(people.map(look, [server.url] * PEOPLE))
-        took_s = time.monotonic() - began_s
-
-    assert whole > 800_000
-    assert took_s < 8.0 * busy
-
-
-def test_a_browser_that_reads_nothing_is_disconnected_without_effect_on_others(
-    million, monkeypatch, caplog
-):
-    monkeypatch.setattr(proxy, "STALLED_S", 1.0)
-    with (
-        server_thread(million) as server,
-        viewing(server.url, buffer_bytes=1 << 16) as stalled,
-        viewing(server.url) as other,
-    ):
-        for client in (stalled, other):
-            client.send(camera((8.0, 3.0, 1.5)))
-            client.until(lambda c: c.shown > 150_000 and "Palette" in str(c.widgets))
-        stalled.set("Fewer when this browser is slow", False)  # a million points at once
-        before = viewer_process(million).memory_info().rss
-        for k in range(40):  # the first of them takes none of this
-            stalled.set("Palette", ("turbo", "gray")[k % 2])
-            other.press("Raw or normalized")
-            words = f"Points by {('raw', 'normalized')[k % 2]} intensity"
-            other.until(lambda c, words=words: words in c.html())
-        grown = viewer_process(million).memory_info().rss - before
-        deadline_s = time.monotonic() + 20.0
-        while "read nothing" not in caplog.text and time.monotonic() < deadline_s:
-            other.rest()
-
-    assert "read nothing" in caplog.text
-    assert grown < 64 << 20
-
-
 def test_the_page_is_viser_with_our_repairs_and_a_policy(server):
     answer = server.get("/projects/office/viewer/")
 
@@ -428,18 +293,6 @@ def test_the_page_obeys_no_query(server, query):
 
     assert answer.status_code == 307
     assert answer.headers["location"] == "/projects/office/viewer/"
-
-
-def viewer_process(root):
-    """The viewer of the project below a folder; there must be one only."""
-    mine = [
-        process
-        for process in psutil.Process().children(recursive=True)
-        if "app.viewer.process" in command_of(process)
-        and str(root / "office") in command_of(process)
-    ]
-    assert len(mine) == 1
-    return mine[0]
 
 
 def rejected_edge():

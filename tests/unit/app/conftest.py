@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from app.access.login.login_service import LoginService, open_access
+
 
 class Clock:
     """Time as the test sets it."""
@@ -17,3 +19,20 @@ class Clock:
 @pytest.fixture
 def clock() -> Clock:
     return Clock()
+
+
+@pytest.fixture
+def access(tmp_path, clock, monkeypatch):
+    # One round of little memory: what is tested here is not how dear a hash is.
+    monkeypatch.setattr("app.access.login.passwords.hashed", lambda password: f"hash of {password}")
+    monkeypatch.setattr(
+        "app.access.login.passwords.fits", lambda password, stored: stored == f"hash of {password}"
+    )
+    opened = open_access(tmp_path, login=True, clock=clock)
+    yield opened
+    opened.close()
+
+
+@pytest.fixture
+def logins(access, clock):
+    return LoginService(access.accounts, access.sessions, clock=clock)

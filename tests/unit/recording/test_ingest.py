@@ -7,54 +7,14 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from recon4.errors import ConfigError, CorruptFile, EmptyRecording, RecordingError, UnknownFormat
+from recon4.errors import ConfigError, EmptyRecording, RecordingError, UnknownFormat
 from recon4.model.events import Warned
 from recon4.model.rig import load_rig
 from recon4.progress import Silent
-from recon4.recording.folders import natural
 from recon4.recording.formats.poses import read_tum
-from recon4.recording.frame_times import name_time_ns, read_times
-from recon4.recording.info import describe
-from recon4.recording.ingest import ingest
-from recon4.recording.open import RecordingKind, recognize
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
-from recon4.recording.sources import Sources
-from recon4.settings import IngestSettings
-from recon4.store.frames import FrameStore
-from tests.builders import (
-    T0_NS,
-    room_cloud,
-    write_bin,
-    write_pcd,
-    write_ply,
-    write_room_bag,
-    write_room_pcap,
-)
-
-
-def run(*paths, out, rig=None, imu=None, gnss=None, progress=None, **options):
-    sources = Sources(paths, rig, imu, gnss)
-    ingest(sources, out, settings=IngestSettings(**options), progress=progress or Silent())
-    return FrameStore.open(out)
-
-
-def imu_csv(path, *, start_ns=T0_NS, count=100, accel=9.8):
-    lines = [f"{start_ns + k * 10_000_000},0,0,0.1,0,0,{accel}" for k in range(count)]
-    path.write_text("\n".join([",".join(IMU_HEADER), *lines]) + "\n")
-    return path
-
-
-def frame_folder(folder, names, **options):
-    folder.mkdir()
-    for name in names:
-        write_pcd(folder / name, room_cloud(**options))
-    return folder
-
-
-@pytest.fixture(scope="module")
-def pcap(tmp_path_factory):
-    return write_room_pcap(tmp_path_factory.mktemp("pcap") / "room.pcap", seconds=1.0)
-
+from tests.builders import T0_NS, room_cloud, write_pcd, write_room_bag, write_room_pcap
+from tests.unit.recording.ingested import frame_folder, imu_csv, run
 
 # -- from recording to frame store
 
@@ -160,168 +120,6 @@ def test_the_same_input_gives_the_same_bytes(pcap, tmp_path):
         assert file.read_bytes() == (tmp_path / "b" / file.name).read_bytes()
 
 
-# -- folders
-
-
-@pytest.mark.parametrize("write", [write_pcd, write_ply, write_bin], ids=["pcd", "ply", "bin"])
-def test_a_folder_of_frames_is_one_frame_a_file(tmp_path, write):
-    folder = tmp_path / "frames"
-    folder.mkdir()
-    suffix = write.__name__[-3:]
-    for k in (8, 9, 10):
-        write(folder / f"{k}.{suffix}", {n: c[: k * 160] for n, c in room_cloud().items()})
-
-    store = run(folder, out=tmp_path / "o")
-
-    assert [len(f) for f in store] == [1280, 1440, 1600]
-    assert store.index["t_ns"].tolist() == [0, 100_000_000, 200_000_000]
-    assert any("10 Hz from 0 is assumed" in text for text in store.report["warnings"])
-
-
-def test_a_folder_with_one_frame_works(tmp_path):
-    assert len(run(frame_folder(tmp_path / "f", ["a.pcd"]), out=tmp_path / "o")) == 1
-
-
-def test_a_single_file_is_one_frame(tmp_path):
-    assert len(run(write_pcd(tmp_path / "a.pcd", room_cloud()), out=tmp_path / "o")) == 1
-
-
-def test_times_in_the_file_names_are_used_and_gaps_reported(tmp_path):
-    names = [f"{T0_NS + k * 100_000_000}.pcd" for k in (0, 1, 2, 3, 9)]
-
-    store = run(frame_folder(tmp_path / "f", names), out=tmp_path / "o")
-
-    assert store.index["t_ns"].tolist() == [int(name[:19]) for name in names]
-    (gap,) = store.report["gaps"]
-    assert gap["seconds"] == pytest.approx(0.6)
-
-
-def test_one_damaged_file_is_left_out_and_counted(tmp_path):
-    folder = frame_folder(tmp_path / "f", ["1.pcd", "2.pcd", "3.pcd"])
-    (folder / "2.pcd").write_bytes((folder / "2.pcd").read_bytes()[:-100])
-
-    store = run(folder, out=tmp_path / "o")
-
-    assert len(store) == 2
-    assert store.report["outcome"] == "lossy"
-    assert store.report["counts"]["files_corrupt"] == 1
-    assert any("2.pcd: cut" in text for text in store.report["warnings"])
-
-
-def test_only_damaged_files_are_an_error(tmp_path):
-    folder = frame_folder(tmp_path / "f", ["1.pcd"])
-    (folder / "1.pcd").write_bytes((folder / "1.pcd").read_bytes()[:-100])
-
-    with pytest.raises(CorruptFile, match=r"1\.pcd: cut"):
-        run(folder, out=tmp_path / "o")
-
-
-def test_a_frame_without_points_is_counted(tmp_path):
-    folder = frame_folder(tmp_path / "f", ["1.pcd", "3.pcd"])
-    write_pcd(folder / "2.pcd", {n: c[:0] for n, c in room_cloud().items()})
-
-    store = run(folder, out=tmp_path / "o")
-
-    assert [f.frame_id for f in store] == [0, 1]
-    assert store.report["counts"]["frames_empty"] == 1
-
-
-@pytest.mark.parametrize(
-    ("stem", "expected"),
-    [
-        ("1673400472138016708", 1673400472138016708),
-        ("1673400472138016", 1673400472138016000),
-        ("1673400472.5", 1673400472500000000),
-        ("2021-10-26-16-21-29-468", 1635265289468000000),
-        ("top-2022-02-15-17-36-04-449", 1644946564449000000),
-        ("1673400472138", 1673400472138000000),
-        ("scan_1673400472138", 1673400472138000000),
-        ("cloud-1673400472.25", 1673400472250000000),
-        ("lidar2_1673400472_000000005", 1673400472000000005),
-        ("2021-13-40-16-21-29-468", None),
-        ("000012", None),
-        ("scan2024", None),
-        ("16734004721380167081", None),
-    ],
-)
-def test_times_in_names(stem, expected):
-    assert name_time_ns(stem) == expected
-
-
-@pytest.mark.parametrize(
-    ("lines", "expected"),
-    [
-        ("# seconds\n0\n0.1036712345\n", [0, 103_671_234]),
-        ("1.000000000000000000e+00\n1.5e+00\n", [1_000_000_000, 1_500_000_000]),
-        ("1673400472.138016708\n", [1673400472138016708]),
-        ("1673400472138\r\n1673400472238.5\r\n", [1673400472138000000, 1673400472238500000]),
-        ("2011-09-26 13:02:25.951199337\n", [1317042145951199337]),
-        ("2011-09-26T13:02:25Z\n\n", [1317042145000000000]),
-    ],
-)
-def test_times_in_text_files(tmp_path, lines, expected):
-    (tmp_path / "times.txt").write_bytes(lines.encode())
-
-    assert read_times(tmp_path / "times.txt").tolist() == expected
-
-
-def test_a_line_that_is_no_time_is_named(tmp_path):
-    (tmp_path / "times.txt").write_text("0.0\n0,1\n")
-
-    with pytest.raises(CorruptFile, match=r"times\.txt, line 2: expected seconds or a date"):
-        read_times(tmp_path / "times.txt")
-
-
-def test_kitti_raw_timestamps_lie_beside_the_folder_of_the_frames(tmp_path):
-    folder = frame_folder(tmp_path / "data", ["0.pcd", "1.pcd"])
-    stamps = ("2011-09-26 13:02:25.951199337", "2011-09-26 13:02:26.054870000")
-    (tmp_path / "timestamps.txt").write_text("\n".join(stamps))
-
-    store = run(folder, out=tmp_path / "o")
-
-    assert store.index["t_ns"].tolist() == [1317042145951199337, 1317042146054870000]
-    assert not any("assumed" in text for text in store.report["warnings"])
-
-
-@pytest.mark.parametrize(
-    ("lines", "remark"),
-    [
-        ("0.0\n0.1\n0.2\n", "times.txt has 3 times for 2 files, not used"),
-        ("0.1\n0.1\n", "times.txt: time 2 is not later than the one before, not used"),
-    ],
-)
-def test_times_that_do_not_fit_are_named_before_10_hz_are_assumed(tmp_path, lines, remark):
-    folder = frame_folder(tmp_path / "f", ["0.pcd", "1.pcd"])
-    (folder / "times.txt").write_text(lines)
-
-    warnings = run(folder, out=tmp_path / "o").report["warnings"]
-
-    assert remark in warnings
-    assert any("10 Hz from 0 is assumed" in text for text in warnings)
-    assert remark in describe(folder).warnings
-
-
-def test_deskewed_clouds_have_no_motion_inside(tmp_path):
-    folder = tmp_path / "f"
-    folder.mkdir()
-    for name in ("0.bin", "1.bin"):
-        write_bin(folder / name, room_cloud())
-
-    plain = run(folder, out=tmp_path / "a")
-    deskewed = run(folder, out=tmp_path / "b", deskewed=True)
-
-    assert plain[0].dt_ns.max() > 50_000_000
-    assert deskewed[0].dt_ns.max() == 0
-    assert any("ingest.deskewed" in text for text in plain.report["warnings"])
-    assert not any("ingest.deskewed" in text for text in deskewed.report["warnings"])
-
-
-def test_names_are_sorted_by_their_numbers(tmp_path):
-    names = [tmp_path / n for n in ("10.pcd", "8.pcd", "a2.pcd", "a10.pcd")]
-
-    assert [p.name for p in sorted(names, key=natural)] == ["8.pcd", "10.pcd", "a2.pcd", "a10.pcd"]
-
-
 # -- what is wrong
 
 
@@ -407,61 +205,6 @@ def test_a_pcap_cut_anywhere_gives_what_is_left(pcap, tmp_path_factory, share):
         return
     assert store.report["outcome"] == "lossy" or store.report["counts"]["packets"] > 0
     assert store.points == pytest.approx(share * 289_000, rel=0.1, abs=6000)
-
-
-# -- info
-
-
-@pytest.mark.parametrize("kind", ["bag1", "db3", "mcap"])
-def test_info_of_a_bag_names_topics_rates_and_what_is_derived(tmp_path, kind):
-    info = describe(write_room_bag(tmp_path, kind))
-
-    (sensor,) = info.sensors
-    assert (sensor.label, sensor.model, sensor.count) == ("/velodyne_packets", "VLP-16", 11)
-    assert sensor.rotation_hz == pytest.approx(10.0, abs=0.02)
-    text = "\n".join(info.lines())
-    assert "/imu: IMU, 110" in text
-    assert "/fix: GNSS positions, 6" in text
-    assert "2023-11-14 22:13:20.000 UTC" in text
-    assert "derived   no rig given" in text
-
-
-def test_info_of_a_pcap_says_what_is_missing(pcap):
-    info = describe(pcap)
-
-    assert info.sensors[0].count == 753
-    assert any("IMU" in text for text in info.missing)
-    assert "lidar     192.168.1.201:2368 VLP-16: 753 packets" in "\n".join(info.lines())
-
-
-def test_info_asks_for_a_rig(tmp_path):
-    info = describe(write_room_bag(tmp_path, "db3", seconds=0.3, topics=("/a", "/b")))
-
-    assert len(info.sensors) == 2
-    assert any("give a rig file" in text for text in info.missing)
-
-
-def test_info_of_frames_names_fields(tmp_path):
-    info = describe(frame_folder(tmp_path / "f", ["1.pcd", "2.pcd"]))
-
-    assert info.sensors[0].fields == ("x", "y", "z", "intensity", "ring", "time")
-    assert "no absolute times" in "\n".join(info.lines())
-
-
-def test_info_of_samples(tmp_path):
-    info = describe(imu_csv(tmp_path / "imu.csv"))
-
-    assert info.kind == RecordingKind.IMU_CSV
-    assert info.samples == ("100 IMU samples, 100.0 a second",)
-
-
-def test_poses_are_recognized_and_are_no_recording(tmp_path):
-    path = tmp_path / "t.txt"
-    path.write_text("1.0 0 0 0 0 0 0 1\n")
-
-    assert recognize(path) is RecordingKind.POSES
-    with pytest.raises(UnknownFormat, match="alone is no recording"):
-        run(path, out=tmp_path / "o")
 
 
 # -- real recordings
