@@ -200,15 +200,14 @@ def _map(
     from recon4.export.laz import export_laz
     from recon4.export.points import CRS_OF_MAP, OutputCrs
     from recon4.georeference.stage import read_crs
-    from recon4.intensity.table import IntensityTable
     from recon4.mapping.build import MapInputs, build_map
-    from recon4.store.arrays import load_trajectory
+    from recon4.store.arrays import load_intensity_table, load_trajectory
     from recon4.store.frames import open_frames
 
     inputs = MapInputs(
         open_frames(frames, calibration),
         load_trajectory(level / "trajectory.npz"),
-        IntensityTable.load(intensity / "table.npz"),
+        load_intensity_table(intensity / "table.npz"),
     )
     tiles = build_map(inputs, context.out, settings=context.settings.map, progress=context.progress)
     crs = read_crs(level)

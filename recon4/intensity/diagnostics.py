@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.intensity.surfaces import Observations, Surfaces
-from recon4.intensity.table import IntensityTable
+from recon4.model.intensity_table import IntensityTable
 from recon4.store.arrays import load_record, save_record
 
 

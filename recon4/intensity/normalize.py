@@ -12,15 +12,17 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import Array
 from recon4.intensity.diagnostics import Diagnostics, diagnose
 from recon4.intensity.surfaces import Observations, cells_of, learn_surfaces
-from recon4.intensity.table import IntensityTable
+from recon4.intensity.table import table_of_sums, table_of_surfaces
 from recon4.kernels.intensity import accumulate, bins_of
 from recon4.kernels.voxels import face_sensor
 from recon4.mapping.normals import local_normals
 from recon4.mapping.place import place_with_origins
 from recon4.model.frames import Frames
+from recon4.model.intensity_table import IntensityTable
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, Silent, track
 from recon4.settings import IntensitySettings
+from recon4.store.arrays import save_intensity_table
 
 SAMPLES = 10
 """Multiframes in a window."""
@@ -80,9 +82,9 @@ def learn_intensity(
     largest = max(learned.largest, held_out.largest)
     if settings.method == "surfaces":
         total = learned.sums.sum(axis=(0, 1, 2, 3))
-        table = IntensityTable.of_surfaces(surfaces, total, settings=settings, largest=largest)
+        table = table_of_surfaces(surfaces, total, settings=settings, largest=largest)
     else:
-        table = IntensityTable.of_sums(learned.sums, settings=settings, largest=largest)
+        table = table_of_sums(learned.sums, settings=settings, largest=largest)
     shown = held_out if held_out.sums[..., 0].any() else learned
     return table, diagnose(table, shown.sums, surfaces, seen=shown.observations())
 
@@ -97,7 +99,7 @@ def write_intensity(
 ) -> None:
     """Run the stage ``intensity``: write ``table.npz`` and ``diagnostics.npz``."""
     table, diagnostics = learn_intensity(frames, trajectory, settings=settings, progress=progress)
-    table.save(out / "table.npz")
+    save_intensity_table(out / "table.npz", table)
     diagnostics.save(out / "diagnostics.npz")
 
 

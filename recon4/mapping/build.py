@@ -12,7 +12,6 @@ from typing import TypeVar
 
 import numpy as np
 
-from recon4.intensity.table import IntensityTable
 from recon4.mapping.buckets import BURST, TileBuckets
 from recon4.mapping.grid import Grid
 from recon4.mapping.notes import MapCrs, MapNotes
@@ -22,6 +21,7 @@ from recon4.mapping.tile import FIELDS, SURFACE_FIELDS, MadeTile, Recipe, make_t
 from recon4.mapping.tiles import TileSet, TileWriter
 from recon4.model.events import MapBuilt
 from recon4.model.frames import Frames
+from recon4.model.intensity_table import IntensityTable
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, Silent, track
 from recon4.settings import MapSettings

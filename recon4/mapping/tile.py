@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.intensity.table import IntensityTable
 from recon4.kernels.voxels import face_sensor, seen_from_far, unpack
 from recon4.mapping.grid import Grid
+from recon4.mapping.intensity import normalized_intensity
 from recon4.mapping.normals import local_normals
 from recon4.mapping.records import Records, Views, is_own, to_sensor_m
 from recon4.mapping.surfaces import FittedSurfaces, fit_surfaces
+from recon4.model.intensity_table import IntensityTable
 from recon4.model.trajectory import Times
 from recon4.settings import MapSettings
 
@@ -165,11 +166,5 @@ def _columns(
     face_sensor(normal, to_sensor, columns["range_m"], columns["incidence_rad"])
     columns["normal"] = normal.astype(np.float16)
     if recipe.intensity is not None:
-        columns["intensity_normalized"] = recipe.intensity.apply(
-            columns["intensity"],
-            sensor=columns["sensor"],
-            ring=columns["ring"],
-            incidence_rad=columns["incidence_rad"],
-            range_m=columns["range_m"],
-        )
+        columns["intensity_normalized"] = normalized_intensity(recipe.intensity, columns)
     return columns

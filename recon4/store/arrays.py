@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from recon4.bounded import check_file_size, open_regular
 from recon4.errors import StoreError
 from recon4.geometry.se3 import SE3
+from recon4.model.intensity_table import IntensityTable
 from recon4.model.trajectory import Trajectory
 
 Record = TypeVar("Record")
@@ -72,6 +73,39 @@ def load_trajectory(path: Path) -> Trajectory:
     """
     arrays = load_arrays(path, ["t_ns", "quat_xyzw", "t_m"])
     return Trajectory(arrays["t_ns"], SE3.from_quat(arrays["quat_xyzw"], arrays["t_m"]))
+
+
+def save_intensity_table(path: Path, table: IntensityTable) -> None:
+    """Write ``mean``, ``std``, ``level`` and the ``numbers`` of a table."""
+    numbers = [table.target_mean, table.target_std, table.upper]
+    numbers += [table.incidence_bin_rad, table.range_bin_m]
+    np.savez_compressed(
+        path, mean=table.mean, std=table.std, level=table.level, numbers=np.array(numbers)
+    )
+
+
+def load_intensity_table(path: Path) -> IntensityTable:
+    """Read a table written by `save_intensity_table`.
+
+    Raises:
+        StoreError: If the file is missing or damaged.
+    """
+    arrays = load_arrays(path, ["mean", "std", "level", "numbers"])
+    mean, std, level, numbers = (arrays[name] for name in ("mean", "std", "level", "numbers"))
+    fits = mean.ndim == 4 and mean.shape == std.shape == level.shape and numbers.shape == (5,)
+    if not fits or not np.isfinite(mean).all() or not np.isfinite(std).all():
+        raise StoreError(f"{path.name} is not a table of intensities")
+    target_mean, target_std, upper, incidence_bin_rad, range_bin_m = numbers.tolist()
+    return IntensityTable(
+        mean=mean,
+        std=std,
+        level=level,
+        target_mean=target_mean,
+        target_std=target_std,
+        upper=upper,
+        incidence_bin_rad=incidence_bin_rad,
+        range_bin_m=range_bin_m,
+    )
 
 
 def load_arrays(path: Path, names: list[str] | None = None) -> dict[str, NDArray[Any]]:

@@ -73,7 +73,7 @@ MAY_IMPORT = {
     }
     | {"recon4.report.approval"},
     "recon4/intensity": STAGE | {"recon4.mapping", "recon4.intensity"},
-    "recon4/mapping": STAGE | {"recon4.intensity", "recon4.mapping"},
+    "recon4/mapping": STAGE | {"recon4.mapping"},
     "recon4/export": STAGE
     | {"recon4.mapping", "recon4.export", "recon4.recording.formats.three_dtk"},
     "recon4/evaluation": STAGE

@@ -15,9 +15,11 @@ from recon4.intensity.normalize import (
     sample_windows,
     write_intensity,
 )
-from recon4.intensity.table import COARSER, IntensityTable
+from recon4.intensity.table import COARSER, table_of_sums
 from recon4.mapping.build import MapInputs, build_map
+from recon4.mapping.intensity import normalized_intensity
 from recon4.settings import IntensitySettings, MapSettings
+from recon4.store.arrays import load_intensity_table, save_intensity_table
 from tests.room_walks import Walk, room_walk
 
 SETTINGS = IntensitySettings(max_range_m=10.0, min_count=10, min_contrast=0.0)
@@ -60,13 +62,14 @@ def sums_of(intensity, ring, incidence_deg, range_m, settings=SETTINGS, sensor=N
 
 def apply(table, intensity, ring, incidence_deg, range_m, sensor=0):
     n = len(intensity)
-    return table.apply(
-        np.asarray(intensity, np.uint16),
-        sensor=np.full(n, sensor, np.uint8),
-        ring=np.full(n, ring, np.uint8),
-        incidence_rad=np.full(n, np.deg2rad(incidence_deg), np.float32),
-        range_m=np.full(n, range_m, np.float32),
-    )
+    columns = {
+        "intensity": np.asarray(intensity, np.uint16),
+        "sensor": np.full(n, sensor, np.uint8),
+        "ring": np.full(n, ring, np.uint8),
+        "incidence_rad": np.full(n, np.deg2rad(incidence_deg), np.float32),
+        "range_m": np.full(n, range_m, np.float32),
+    }
+    return normalized_intensity(table, columns)
 
 
 def test_two_bins_computed_by_hand():
@@ -75,7 +78,7 @@ def test_two_bins_computed_by_hand():
     dark = sums_of([10, 30] * 10, 0, 20.5, 3.05)
     light = sums_of([60, 100] * 10, 1, 20.5, 3.05)
 
-    table = IntensityTable.of_sums(dark + light, settings=SETTINGS, largest=255.0)
+    table = table_of_sums(dark + light, settings=SETTINGS, largest=255.0)
 
     sigma = np.sqrt(1150.0)
     assert table.target_mean == 50.0
@@ -88,7 +91,7 @@ def test_two_bins_computed_by_hand():
 def test_a_bin_without_deviation_is_only_shifted():
     sums = sums_of([40] * 20, 0, 10, 2.0) + sums_of([0, 200] * 10, 1, 10, 2.0)
 
-    table = IntensityTable.of_sums(sums, settings=SETTINGS, largest=255.0)
+    table = table_of_sums(sums, settings=SETTINGS, largest=255.0)
 
     np.testing.assert_allclose(apply(table, [40, 50, 0], 0, 10, 2.0), [70, 80, 30], rtol=1e-5)
 
@@ -98,7 +101,7 @@ def test_a_bin_of_one_material_is_not_stretched_to_the_contrast_of_all():
     sums = sums_of([39, 41] * 20, 0, 10, 2.0) + sums_of([10, 70] * 20, 1, 10, 2.0)
     settings = IntensitySettings(max_range_m=10.0, min_count=10, min_contrast=0.5)
 
-    table = IntensityTable.of_sums(sums, settings=settings, largest=255.0)
+    table = table_of_sums(sums, settings=settings, largest=255.0)
 
     np.testing.assert_allclose(apply(table, [39, 41], 0, 10, 2.0), [38, 42], rtol=1e-5)
 
@@ -108,7 +111,7 @@ def test_results_stay_between_zero_and_the_upper_limit(upper, limit):
     settings = IntensitySettings(max_range_m=10.0, min_count=10, min_contrast=0.0, upper=upper)
     sums = sums_of([20, 80] * 20, 0, 10, 2.0)
 
-    table = IntensityTable.of_sums(sums, settings=settings, largest=200.0)
+    table = table_of_sums(sums, settings=settings, largest=200.0)
 
     np.testing.assert_allclose(apply(table, [0, 255], 0, 10, 2.0), [0.0, limit])
 
@@ -118,7 +121,7 @@ def test_sparse_bins_take_the_next_coarser_one():
     few = sums_of([200] * 5, 0, 12.5, 2.0)
     elsewhere = sums_of([100, 120] * 10, 3, 80.5, 9.0)
 
-    table = IntensityTable.of_sums(near + few + elsewhere, settings=SETTINGS, largest=255.0)
+    table = table_of_sums(near + few + elsewhere, settings=SETTINGS, largest=255.0)
 
     own, merged = (0, 0, 10, 10), (0, 0, 12, 10)
     assert table.level[own] == 0 and table.mean[own] == 15.0
@@ -132,7 +135,7 @@ def test_sparse_bins_take_the_next_coarser_one():
 def test_points_without_a_normal_have_bins_of_their_own():
     sums = sums_of([10, 20] * 10, 0, np.nan, 2.0) + sums_of([90, 100] * 10, 0, 10, 2.0)
 
-    table = IntensityTable.of_sums(sums, settings=SETTINGS, largest=255.0)
+    table = table_of_sums(sums, settings=SETTINGS, largest=255.0)
 
     assert table.mean[0, 0, -1, 10] == 15.0
     np.testing.assert_allclose(
@@ -141,18 +144,14 @@ def test_points_without_a_normal_have_bins_of_their_own():
 
 
 def test_channels_without_a_table_keep_their_raw_values():
-    table = IntensityTable.of_sums(
-        sums_of([10, 20] * 10, 0, 10, 2.0), settings=SETTINGS, largest=99
-    )
+    table = table_of_sums(sums_of([10, 20] * 10, 0, 10, 2.0), settings=SETTINGS, largest=99)
 
     np.testing.assert_array_equal(apply(table, [7, 50], 31, 10, 2.0), [7, 50])
     np.testing.assert_array_equal(apply(table, [7, 50], 0, 10, 2.0, sensor=5), [7, 50])
 
 
 def test_ranges_and_angles_beyond_the_last_bin_belong_to_it():
-    table = IntensityTable.of_sums(
-        sums_of([10, 20] * 10, 0, 90.0, 50.0), settings=SETTINGS, largest=255.0
-    )
+    table = table_of_sums(sums_of([10, 20] * 10, 0, 90.0, 50.0), settings=SETTINGS, largest=255.0)
 
     assert table.level[0, 0, 89, 49] == 0
 
@@ -160,7 +159,7 @@ def test_ranges_and_angles_beyond_the_last_bin_belong_to_it():
 def test_two_sensors_with_the_same_ring_are_kept_apart():
     sums = sums_of([10, 20] * 10, 4, 10, 2.0) + sums_of([90, 100] * 10, 4, 10, 2.0, sensor=[1] * 20)
 
-    table = IntensityTable.of_sums(sums, settings=SETTINGS, largest=255.0)
+    table = table_of_sums(sums, settings=SETTINGS, largest=255.0)
 
     assert table.mean[0, 4, 10, 10] == 15.0 and table.mean[1, 4, 10, 10] == 95.0
 
@@ -275,21 +274,19 @@ def test_a_recording_without_points_is_rejected():
 
 
 def test_a_table_is_saved_and_loaded(tmp_path):
-    table = IntensityTable.of_sums(
-        sums_of([10, 20] * 10, 0, 10, 2.0), settings=SETTINGS, largest=255.0
-    )
+    table = table_of_sums(sums_of([10, 20] * 10, 0, 10, 2.0), settings=SETTINGS, largest=255.0)
 
-    table.save(tmp_path / "table.npz")
-    again = IntensityTable.load(tmp_path / "table.npz")
+    save_intensity_table(tmp_path / "table.npz", table)
+    again = load_intensity_table(tmp_path / "table.npz")
 
     np.testing.assert_array_equal(again.gain, table.gain)
     np.testing.assert_array_equal(again.offset, table.offset)
     assert (again.upper, again.range_bin_m) == (255.0, 0.2)
     (tmp_path / "table.npz").write_bytes(b"PK not a table")
     with pytest.raises(StoreError, match=r"table\.npz"):
-        IntensityTable.load(tmp_path / "table.npz")
+        load_intensity_table(tmp_path / "table.npz")
     with pytest.raises(StoreError, match=r"gone\.npz"):
-        IntensityTable.load(tmp_path / "gone.npz")
+        load_intensity_table(tmp_path / "gone.npz")
 
 
 @pytest.mark.parametrize("frames", [1, 5, 10, 99, 100, 101, 5000, 36_000])
