@@ -129,6 +129,7 @@ async def start_capture(
     )
     if new.place:
         await capture.request(AddMark("place", new.place, who.name))
+        await run_in_threadpool(server.projects.rename, new.project, new.place)
     audit(caller.request, "live.start", new.project)
     return _view(server.captures, may_capture=True)
 
@@ -177,10 +178,16 @@ def process_capture(request: Request, server: Server) -> JobView:
 
 @router.post("/marks", status_code=201, dependencies=CAPTURE, summary="Mark a point of interest")
 async def add_mark(mark: NewMark, server: Server, who: Who) -> dict[str, str]:
-    """Save a mark; it is on the disk before it appears in the stream."""
-    request = AddMark(mark.what, mark.text, who.name, mark.ago_s)
-    await server.captures.capture().request(request)
+    """Save a mark; it is on the disk before it appears in the stream. A place names the project."""
+    capture = server.captures.capture()
+    await capture.request(AddMark(mark.what, mark.text, who.name, mark.ago_s))
+    if mark.what == "place" and mark.text:
+        await run_in_threadpool(server.projects.rename, capture.project, _one_line(mark.text))
     return {"status": "noted"}
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())[:200]
 
 
 @router.websocket("/stream", dependencies=LOOK)

@@ -73,10 +73,9 @@ class Phone:
         self.voxels = np.concatenate([known, fresh])
 
 
-def start(server, walk, project="walk"):
-    response = server.post(
-        "/api/live", json={"project": project, "rig": "4recon", "preset": "indoor"}
-    )
+def start(server, walk, project="walk", place=""):
+    new = {"project": project, "rig": "4recon", "preset": "indoor", "place": place}
+    response = server.post("/api/live", json=new)
     assert response.status_code == 201, response.text
     return response.json()
 
@@ -94,18 +93,24 @@ def sending(server, walk):
 
 
 def test_a_walk_is_seen_on_the_phone_and_is_a_project_when_it_ends(server, walk):
-    start(server, walk)
+    start(server, walk, place="Town hall")
     phone = Phone()
 
     with sending(server, walk):
         asyncio.run(phone.follow(server, lambda p, message: len(p.voxels) > 5000 and p.path > 10))
+        (card,) = server.get("/api/projects").json()
+        assert (card["id"], card["name"]) == ("walk", "Town hall")
+        named = server.post(
+            "/api/live/marks", json={"what": "place", "text": "Town hall,\n2nd floor"}
+        )
+        assert named.status_code == 201
         assert server.post("/api/live/marks", json={"text": "crack"}).status_code == 201
     assert server.post("/api/live/stop").json()["project"] == "walk"
     asyncio.run(phone.follow(server, lambda p, message: message.get("state") == "ready",
                            have={"project": "walk", "generation": 0, "points": len(phone.voxels),
                                  "path": phone.path, "marks": 0}))  # fmt: skip
 
-    assert phone.newest["marks"]["marks"][0]["text"] == "crack"
+    assert phone.newest["marks"]["marks"][-1]["text"] == "crack"
     assert phone.newest["pose"]["imu"] is True
     assert phone.newest["words"] is not None
     extent_m = np.ptp(phone.voxels, axis=0) * phone.newest["points"]["voxel_m"]
@@ -113,6 +118,7 @@ def test_a_walk_is_seen_on_the_phone_and_is_a_project_when_it_ends(server, walk)
     assert len(np.unique(phone.voxels, axis=0)) == len(phone.voxels)
     project = server.get("/api/projects/walk").json()
     assert [stage["stage"] for stage in project["stages"]] == ["frames"]
+    assert project["name"] == "Town hall, 2nd floor"
 
 
 @pytest.mark.parametrize("greeting", [b"\x00\xff", "", "[", "3", '{"have": [1]}', "[" * 100_000])

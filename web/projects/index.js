@@ -59,6 +59,7 @@ function draw(id, project = projects.find((one) => one.id === id)) {
       make("strong", {}, project?.name ?? id),
     ),
     open ? null : badge(stateOf(project, view)),
+    project && project.name !== id ? make("p", { className: "quiet" }, id) : null,
     make("p", { className: "quiet" }, text.join(" · ")),
     project?.problem ? make("p", { className: "error" }, `Damaged: ${project.problem}`) : null,
   );
