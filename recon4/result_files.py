@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from recon4.model.trajectory import Trajectory
+import numpy as np
+
+from recon4.mapping.deviation import PoseCovariances
+from recon4.model.trajectory import Times, Trajectory
 from recon4.pose_graph.files import load_graph
 from recon4.pose_graph.g2o import write_g2o
 from recon4.pose_graph.uncertainty_files import load_uncertainty, write_covariances
@@ -26,6 +29,21 @@ def write_pose_covariances(frames: Path, level: Path, path: Path) -> None:
     t_ns = FrameStore.open(frames).t_mid_ns
     t_ns = t_ns[(t_ns >= dense.t_ns[0]) & (t_ns <= dense.t_ns[-1])]
     write_covariances(path, Trajectory(t_ns, dense.at(t_ns)), load_uncertainty(level))
+
+
+def pose_covariances(t_ns: Times, trajectory: Trajectory, level: Path) -> PoseCovariances | None:
+    """Positions and covariances at some times; None where none are stated.
+
+    Args:
+        t_ns: Times [ns], (F,); those outside the trajectory get its nearest end.
+        trajectory: ``T_map_body``.
+        level: Artifact of the stage ``level``.
+    """
+    found = load_uncertainty(level)
+    if found is None:
+        return None
+    inside = np.clip(t_ns, trajectory.t_ns[0], trajectory.t_ns[-1])
+    return PoseCovariances(trajectory.at(inside).t, found.at(inside))
 
 
 def write_graph(artifact: Path, path: Path) -> None:

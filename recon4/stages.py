@@ -201,13 +201,16 @@ def _map(
     from recon4.export.points import CRS_OF_MAP, OutputCrs
     from recon4.georeference.stage import read_crs
     from recon4.mapping.build import MapInputs, build_map
+    from recon4.result_files import pose_covariances
     from recon4.store.arrays import load_intensity_table, load_trajectory
     from recon4.store.frames import open_frames
 
+    store, trajectory = open_frames(frames, calibration), load_trajectory(level / "trajectory.npz")
     inputs = MapInputs(
-        open_frames(frames, calibration),
-        load_trajectory(level / "trajectory.npz"),
+        store,
+        trajectory,
         load_intensity_table(intensity / "table.npz"),
+        covariances=pose_covariances(store.t_mid_ns, trajectory, level),
     )
     tiles = build_map(inputs, context.out, settings=context.settings.map, progress=context.progress)
     crs = read_crs(level)
@@ -288,7 +291,7 @@ REFINE = Stage(
 )
 LEVEL = Stage("level", 7, ("level", "gnss", "verification"), _level, LevelFigures)
 INTENSITY: Stage[Figures] = Stage("intensity", 2, ("intensity",), _intensity)
-MAP = Stage("map", 2, ("map",), _map, MapFigures)
+MAP = Stage("map", 3, ("map",), _map, MapFigures)
 
 _PLANAR = ("slam2d", "hector", "loops2d", "grid2d", "verification")
 LINE_ODOMETRY = Stage(

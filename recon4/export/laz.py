@@ -25,6 +25,7 @@ from recon4.errors import GeoreferenceError, StoreError
 from recon4.export.gps_time import day_of, is_absolute, point_time_s
 from recon4.export.names import check_name
 from recon4.export.points import CRS_OF_MAP, Block, OutputCrs, blocks, center, into_crs
+from recon4.mapping.tile import DEVIATION
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Progress, Silent
 from recon4.store.atomic import atomic_file
@@ -33,6 +34,8 @@ SCALE_M = 0.001
 """Resolution of the coordinates [m]."""
 NORMALIZED_STEP = 1.0 / 16.0
 """Normalized intensities are rounded to this: finer than the raw step, and it compresses."""
+DEVIATION_STEP_M = 0.0001
+"""Deviations of positions are stored as whole steps, which compress better than floats [m]."""
 FIELDS = ["intensity", "ring", "sensor", "echo", "frame_id", "t_ns"]
 """What is read beside the coordinates."""
 OPTIONAL = {
@@ -40,9 +43,10 @@ OPTIONAL = {
     "returns": ("u2", "returns the surface is fitted to"),
     "sigma_m": ("f4", "deviation across the surface"),
     "planarity": ("f4", "0..1"),
+    DEVIATION: ("u4", "1 sigma by pose, worst axis"),
 }
 """Fields a map may have: type and description of the extra dimension."""
-SURFACE = ("returns", "sigma_m", "planarity")
+COPIED = ("returns", "sigma_m", "planarity")
 LOW_NOISE = 7
 """Class of stray returns."""
 
@@ -138,11 +142,19 @@ def _header(tiles: TileSet, offset: NDArray[np.float64], crs: str | None) -> Any
     )
     extra = [("ring", "u1", "beam, 0 = lowest"), ("frame_id", "u4", "multiframe")]
     extra += [(name, *OPTIONAL[name]) for name in OPTIONAL if name in tiles.fields]
-    header.add_extra_dims([laspy.ExtraBytesParams(*row) for row in extra])
+    header.add_extra_dims([_dimension(*row) for row in extra])
     header.global_encoding.wkt = True
     if crs is not None:
         header.vlrs.append(laspy.vlrs.known.WktCoordinateSystemVlr(_wkt(crs)))
     return header
+
+
+def _dimension(name: str, kind: str, description: str) -> Any:
+    """An extra dimension; deviations are whole steps with a scale, which readers apply."""
+    if name != DEVIATION:
+        return laspy.ExtraBytesParams(name, kind, description)
+    scale, offset = np.array([DEVIATION_STEP_M]), np.zeros(1)
+    return laspy.ExtraBytesParams(name, kind, description, offsets=offset, scales=scale)
 
 
 def _wkt(crs: str) -> str:
@@ -195,12 +207,14 @@ def _points(block: Block, header: Any, *, absolute: bool) -> Any:
     points["frame_id"][:] = columns["frame_id"]
     if block.noise:
         points.classification[:] = LOW_NOISE
-    for name in SURFACE:
+    for name in COPIED:
         if name in columns:
             points[name][:] = columns[name]
     if "intensity_normalized" in columns:
         fine = columns["intensity_normalized"]
         points["intensity_normalized"][:] = np.rint(fine / NORMALIZED_STEP) * NORMALIZED_STEP
+    if DEVIATION in columns:
+        points[DEVIATION] = columns[DEVIATION].astype(np.float64)
     return points
 
 

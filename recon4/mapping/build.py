@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TypeVar
@@ -13,11 +14,12 @@ from typing import TypeVar
 import numpy as np
 
 from recon4.mapping.buckets import BURST, TileBuckets
+from recon4.mapping.deviation import PoseCovariances, point_deviations
 from recon4.mapping.grid import Grid
 from recon4.mapping.notes import MapCrs, MapNotes
 from recon4.mapping.place import place_with_origins
 from recon4.mapping.records import Records, Tile, split_into_tiles
-from recon4.mapping.tile import FIELDS, SURFACE_FIELDS, MadeTile, Recipe, make_tile
+from recon4.mapping.tile import DEVIATION, FIELDS, SURFACE_FIELDS, MadeTile, Recipe, make_tile
 from recon4.mapping.tiles import TileSet, TileWriter
 from recon4.model.events import MapBuilt
 from recon4.model.frames import Frames
@@ -45,6 +47,8 @@ class MapInputs:
     """Normalizes intensities; None = the map has no normalized ones."""
     crs: MapCrs | None = None
     """CRS of the map, if it is georeferenced."""
+    covariances: PoseCovariances | None = None
+    """Of the multiframes; None = the map has no deviations of its points."""
 
 
 def build_map(
@@ -78,11 +82,12 @@ def build_map(
     recipe = Recipe(grid, settings, inputs.intensity, t_ns)
     with (
         TemporaryDirectory(dir=out, prefix="buckets-") as folder,
-        TileWriter(out, _fields(recipe), tile_m=grid.tile_m) as writer,
+        TileWriter(out, _fields(recipe, inputs), tile_m=grid.tile_m) as writer,
     ):
         buckets = TileBuckets(Path(folder), grid, burst=burst)
         _distribute(inputs, buckets, settings=settings, progress=progress)
-        removed = _finish_tiles(buckets, recipe, writer, progress=progress)
+        make = partial(_make_tile, buckets, recipe, inputs.covariances)
+        removed = _finish_tiles(buckets.tiles(), make, writer, progress=progress)
         writer.notes = MapNotes(
             voxel_m=settings.voxel_m,
             crs=inputs.crs,
@@ -94,9 +99,10 @@ def build_map(
     return made
 
 
-def _fields(recipe: Recipe) -> list[str]:
+def _fields(recipe: Recipe, inputs: MapInputs) -> list[str]:
     """Fields of the map, in their order: some need an intensity table or fitted surfaces."""
     left_out = set() if recipe.intensity else {"intensity_normalized"}
+    left_out |= set() if inputs.covariances else {DEVIATION}
     left_out |= set(SURFACE_FIELDS) if recipe.settings.surface == "raw" else set()
     return [name for name in FIELDS if name not in left_out]
 
@@ -122,17 +128,26 @@ def _distribute(
         buckets.flush(pool)
 
 
+def _make_tile(
+    buckets: TileBuckets, recipe: Recipe, covariances: PoseCovariances | None, tile: Tile
+) -> MadeTile:
+    made = make_tile(buckets.read(tile), recipe)
+    buckets.drop(tile)
+    if covariances:
+        columns = made.columns
+        p_map = columns["xyz"] + np.array(tile, dtype=np.float64) * recipe.grid.tile_m
+        columns[DEVIATION] = point_deviations(covariances, p_map, columns["frame_id"])
+    return made
+
+
 def _finish_tiles(
-    buckets: TileBuckets, recipe: Recipe, writer: TileWriter, *, progress: Progress
+    tiles: Sequence[Tile],
+    make: Callable[[Tile], MadeTile],
+    writer: TileWriter,
+    *,
+    progress: Progress,
 ) -> Counter[str]:
     removed: Counter[str] = Counter()
-
-    def make(tile: Tile) -> MadeTile:
-        made = make_tile(buckets.read(tile), recipe)
-        buckets.drop(tile)
-        return made
-
-    tiles = buckets.tiles()
     with ThreadPoolExecutor(WORKERS) as pool:
         made_tiles = zip(tiles, _in_order(pool, make, tiles), strict=True)
         for tile, made in track(made_tiles, progress, what="map", unit="tiles", total=len(tiles)):

@@ -19,6 +19,7 @@ from recon4.model.intensity_table import IntensityTable
 from recon4.model.trajectory import Times
 from recon4.settings import MapSettings
 
+DEVIATION = "position_sd_m"
 FIELDS: dict[str, tuple[str, int]] = {
     "xyz": ("<f4", 3),
     "intensity": ("<u2", 1),
@@ -35,8 +36,10 @@ FIELDS: dict[str, tuple[str, int]] = {
     "returns": ("<u2", 1),
     "sigma_m": ("<f2", 1),
     "planarity": ("<f2", 1),
+    DEVIATION: ("<f2", 1),
 }
-"""Name -> (dtype, width). ``intensity_normalized`` exists only with an intensity table."""
+"""Name -> (dtype, width). ``intensity_normalized`` exists only with an intensity table,
+``position_sd_m`` only where covariances of the poses are stated."""
 SURFACE_FIELDS = ("raw_offset_m", "returns", "sigma_m", "planarity")
 """Exist only in maps of fitted surfaces."""
 
@@ -144,7 +147,7 @@ def _columns(
     columns: Columns = {
         name: np.empty((n, width) if width > 1 else n, dtype)
         for name, (dtype, width) in FIELDS.items()
-        if name not in {"normal", "intensity_normalized", *SURFACE_FIELDS}
+        if name not in {"normal", "intensity_normalized", DEVIATION, *SURFACE_FIELDS}
     }
     to_sensor = np.empty((n, 3), np.float32)
     views = Views.of(records)

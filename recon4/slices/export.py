@@ -17,7 +17,7 @@ from recon4.export.laz import export_laz
 from recon4.export.names import check_name
 from recon4.export.points import OutputCrs
 from recon4.geometry.se3 import Array
-from recon4.mapping.tile import progressive
+from recon4.mapping.tile import DEVIATION, progressive
 from recon4.mapping.tiles import TileSet, TileWriter
 from recon4.recording.formats.scratch import scratch_folder
 from recon4.slices.cut import Cut
@@ -84,8 +84,8 @@ def write_csv(chosen: SliceSelection, path: Path, *, frame: MapFrame) -> int:
     Returns:
         How many points were written.
     """
-    fields = [n for n in ("intensity", "intensity_normalized", "sensor", "frame_id", "t_ns")
-              if n in chosen.tiles.fields]  # fmt: skip
+    wanted = "intensity", "intensity_normalized", "sensor", "frame_id", "t_ns", DEVIATION
+    fields = [name for name in wanted if name in chosen.tiles.fields]
     count = 0
     axes = ["easting_m", "northing_m", "height_m"] if frame.to_crs else ["x_m", "y_m", "z_m"]
     with atomic_file(path) as temporary, temporary.open("w", encoding="utf-8") as file:

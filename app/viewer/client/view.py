@@ -15,7 +15,7 @@ from recon4.store.earlier_names import PALETTES
 
 ColorBy = Literal[
     "normalized intensity", "raw intensity", "height", "time", "sensor", "ring", "multiframe",
-    "distance",
+    "distance", "uncertainty",
 ]  # fmt: skip
 COLOR_BY: tuple[ColorBy, ...] = get_args(ColorBy)
 CATEGORIES: frozenset[ColorBy] = frozenset({"sensor", "multiframe"})
@@ -30,6 +30,7 @@ UNITS: dict[ColorBy, str] = {
     "ring": "0 = lowest beam",
     "multiframe": "neighbors differ",
     "distance": "m from the sensor",
+    "uncertainty": "m, 1 σ of the position by the pose",
 }
 
 Points = Literal["map", "map and multiframe", "multiframe"]

@@ -22,6 +22,7 @@ MAX_POINTS = 150_000
 """A window with more points is thinned out."""
 SLACK_NS = 500_000_000
 """Largest time of a point outside the trajectory [ns]."""
+IN_THE_MAP_ONLY: frozenset[ColorBy] = frozenset({"normalized intensity", "uncertainty"})
 HIGHLIGHT: Rgb = (255, 145, 0)
 """A multiframe over the map."""
 
@@ -100,14 +101,14 @@ class MultiframeWindow:
     ) -> PointsNode:
         """The points, colored by a value; None = in one color, to stand out from the map.
 
-        The normalized intensity of a single multiframe is not known: the raw one stands in.
+        Normalized intensity and uncertainty are known in the map only: the raw intensity stands in.
         """
         origin = self.p_map[0]
         if color_by is None:
             rgb = np.tile(np.array(HIGHLIGHT, np.uint8), (len(self.p_map), 1))
         else:
             values = self._values(color_by)
-            known = span if color_by != "normalized intensity" else None
+            known = None if color_by in IN_THE_MAP_ONLY else span
             rgb = colors(values, color_by, span=known or usual_range(values), palette=palette)
         return PointsNode(
             path="/multiframe",
@@ -119,7 +120,7 @@ class MultiframeWindow:
 
     def _values(self, color_by: ColorBy) -> NDArray[Any]:
         match color_by:
-            case "normalized intensity" | "raw intensity":
+            case "normalized intensity" | "uncertainty" | "raw intensity":
                 return self.intensity
             case "height":
                 return self.p_map[:, 2]

@@ -27,6 +27,7 @@ from app.viewer.cloud.palette import (
     usual_range,
 )
 from recon4.geometry.se3 import Array
+from recon4.mapping.tile import DEVIATION
 from recon4.mapping.tiles import RAW_OFFSET, Surface, Tile, TileSet
 
 BASE_POINTS = 60_000
@@ -45,6 +46,7 @@ FIELD_OF: dict[ColorBy, str] = {
     "ring": "ring",
     "multiframe": "frame_id",
     "distance": "range_m",
+    "uncertainty": DEVIATION,
 }
 
 

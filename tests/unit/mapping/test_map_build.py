@@ -193,7 +193,7 @@ def test_the_list_of_tiles_has_rows_and_bounds(tmp_path):
 
     listed = json.loads((tmp_path / "map" / "tiles.json").read_text())
     assert tiles.crs == crs
-    left_out = {"intensity_normalized", *SURFACE_FIELDS}
+    left_out = {"intensity_normalized", "position_sd_m", *SURFACE_FIELDS}
     assert listed["fields"] == [name for name in FIELDS if name not in left_out]
     assert listed["points"] == len(tiles) == sum(map(len, tiles))
     low, high = tiles.bounds_m
