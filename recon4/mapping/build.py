@@ -86,7 +86,7 @@ def build_map(
     ):
         buckets = TileBuckets(Path(folder), grid, burst=burst)
         _distribute(inputs, buckets, settings=settings, progress=progress)
-        make = partial(_make_tile, buckets, recipe, inputs.covariances)
+        make = partial(_make_tile, buckets, recipe, covariances=inputs.covariances)
         removed = _finish_tiles(buckets.tiles(), make, writer, progress=progress)
         writer.notes = MapNotes(
             voxel_m=settings.voxel_m,
@@ -129,7 +129,7 @@ def _distribute(
 
 
 def _make_tile(
-    buckets: TileBuckets, recipe: Recipe, covariances: PoseCovariances | None, tile: Tile
+    buckets: TileBuckets, recipe: Recipe, tile: Tile, *, covariances: PoseCovariances | None
 ) -> MadeTile:
     made = make_tile(buckets.read(tile), recipe)
     buckets.drop(tile)
